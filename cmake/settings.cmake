@@ -1,0 +1,17 @@
+# Compiler settings of every target of ours, kept in one interface library so that users of the installed libraries never get them.
+add_library(rtmsim_settings INTERFACE)
+target_compile_options(rtmsim_settings INTERFACE -Wall -Wextra -Wpedantic -Wshadow=local $<$<BOOL:${RTMSIM_WERROR}>:-Werror>)
+if(RTMSIM_SANITIZE)
+  add_compile_options(-fsanitize=${RTMSIM_SANITIZE} -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${RTMSIM_SANITIZE})
+endif()
+
+find_program(RTMSIM_CCACHE ccache)
+if(RTMSIM_CCACHE)
+  set(CMAKE_C_COMPILER_LAUNCHER ${RTMSIM_CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${RTMSIM_CCACHE})
+endif()
+find_program(RTMSIM_MOLD mold)
+if(RTMSIM_MOLD)
+  add_link_options(-fuse-ld=mold)
+endif()

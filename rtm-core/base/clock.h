@@ -1,0 +1,33 @@
+// Time as an argument: what needs the time takes a Clock, so that tests move it by hand. Any thread.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+
+namespace base {
+
+// Implementations must be callable from any thread.
+class Clock {
+ public:
+  virtual ~Clock() = default;
+  // Time since the clock's epoch: Unix time for SystemClock, start of the simulation for simulated clocks.
+  virtual std::chrono::nanoseconds now() const = 0;
+};
+
+class SystemClock final : public Clock {
+ public:
+  std::chrono::nanoseconds now() const override;
+};
+
+// Moved by its owner. For tests.
+class ManualClock final : public Clock {
+ public:
+  std::chrono::nanoseconds now() const override { return std::chrono::nanoseconds(now_.load(std::memory_order_acquire)); }
+  void set(std::chrono::nanoseconds now) { now_.store(now.count(), std::memory_order_release); }  // pairs with the acquire in now
+  void advance(std::chrono::nanoseconds by) { now_.fetch_add(by.count(), std::memory_order_acq_rel); }
+
+ private:
+  std::atomic<std::int64_t> now_{0};
+};
+
+}  // namespace base

@@ -1,0 +1,33 @@
+// Small functions on text, and numbers read strictly. Any thread. None of them depends on the locale.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace base {
+
+std::string_view trim(std::string_view text);
+std::string to_lower(std::string_view text);
+// ASCII letters only.
+bool equal_ignoring_case(std::string_view a, std::string_view b);
+
+// Splits at every separator and trims the pieces; empty pieces are dropped.
+std::vector<std::string> split_list(std::string_view text, char separator = ',');
+std::string join(const std::vector<std::string>& parts, std::string_view separator);
+
+// The whole text (blanks at the ends apart) must be the number; no overflow. parse_number also refuses NaN and infinities.
+std::optional<std::int64_t> parse_integer(std::string_view text);
+std::optional<double> parse_number(std::string_view text);
+// YES/NO, TRUE/FALSE, ON/OFF, 1/0 in any case.
+std::optional<bool> parse_bool(std::string_view text);
+
+// The shortest text that reads back as the same number.
+std::string format_number(double value);
+
+// A value that comes from outside, fit for one line of a message: control characters escaped, cut after 120 characters.
+std::string in_quotes(std::string_view text);
+
+}  // namespace base

@@ -1,0 +1,44 @@
+#include "base/text.h"
+
+#include <gtest/gtest.h>
+
+#include "base/id.h"
+
+namespace base {
+namespace {
+
+TEST(Text, lists_are_split_at_separators_and_trimmed) {
+  EXPECT_EQ(split_list(" a, b ,,c "), (std::vector<std::string>{"a", "b", "c"}));
+  EXPECT_TRUE(split_list("  ").empty());
+}
+
+TEST(Text, numbers_are_read_whole_or_not_at_all) {
+  EXPECT_EQ(parse_number(" -1.5e3 "), -1500.0);
+  EXPECT_EQ(parse_number("+2"), 2.0);
+  for (const auto bad : {"", "1x", "nan", "inf", "1e999", "+-1", "1 2"}) EXPECT_EQ(parse_number(bad), std::nullopt) << bad;
+}
+
+TEST(Text, integers_do_not_overflow) {
+  EXPECT_EQ(parse_integer("-9223372036854775808"), INT64_MIN);
+  EXPECT_EQ(parse_integer("9223372036854775808"), std::nullopt);
+  EXPECT_EQ(parse_integer("1.0"), std::nullopt);
+}
+
+TEST(Text, formatted_numbers_read_back_the_same) {
+  for (const double value : {0.1, -1.0 / 3.0, 1e300, 5.0}) EXPECT_EQ(parse_number(format_number(value)), value);
+}
+
+TEST(Text, foreign_text_fits_one_line) {
+  EXPECT_EQ(in_quotes("a\nb"), "\"a\\x0ab\"");
+  EXPECT_EQ(in_quotes(std::string(1000, 'x')).size(), 125u);
+}
+
+TEST(Id, uuids_differ_and_have_the_usual_form) {
+  const auto a = make_uuid();
+  EXPECT_EQ(a.size(), 36u);
+  EXPECT_EQ(a[14], '4');
+  EXPECT_NE(a, make_uuid());
+}
+
+}  // namespace
+}  // namespace base
