@@ -1,9 +1,26 @@
 #include "base/clock.h"
 
 namespace base {
+namespace {
+
+const Clock*& scoped_clock() {
+  thread_local const Clock* clock = nullptr;
+  return clock;
+}
+
+}  // namespace
 
 std::chrono::nanoseconds SystemClock::now() const {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch());
 }
+
+const Clock& current_clock() {
+  static const SystemClock system_clock;
+  const Clock* clock = scoped_clock();
+  return clock ? *clock : system_clock;
+}
+
+ScopedClock::ScopedClock(const Clock& clock) : previous_(scoped_clock()) { scoped_clock() = &clock; }
+ScopedClock::~ScopedClock() { scoped_clock() = previous_; }
 
 }  // namespace base

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 
 namespace base {
 
@@ -28,6 +29,21 @@ class ManualClock final : public Clock {
 
  private:
   std::atomic<std::int64_t> now_{0};
+};
+
+// The clock of what runs on this thread: the execution context's while it calls a component, else the system clock.
+const Clock& current_clock();
+
+// Makes `clock` the current one of this thread for the guard's life; guards nest.
+class ScopedClock {
+ public:
+  explicit ScopedClock(const Clock& clock);
+  ~ScopedClock();
+  ScopedClock(const ScopedClock&) = delete;
+  ScopedClock& operator=(const ScopedClock&) = delete;
+
+ private:
+  const Clock* previous_;
 };
 
 }  // namespace base
