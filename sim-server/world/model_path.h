@@ -1,0 +1,34 @@
+// Where models and the files they refer to are looked for. A value; any thread.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sim {
+
+class ModelPath {
+ public:
+  ModelPath() = default;
+  explicit ModelPath(std::vector<std::filesystem::path> folders);
+
+  // The folders given on the command line first, then RTMSIM_RESOURCE_PATH, GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH and
+  // GAZEBO_MODEL_PATH (lists separated by ":"), then `installed` (the folder of our own worlds, with models/ in it; may be empty).
+  static ModelPath from_environment(const std::vector<std::string>& command_line, const std::filesystem::path& installed);
+
+  // The folder and models/ in it are searched before all others: the place of the world itself.
+  void add_first(const std::filesystem::path& folder);
+
+  const std::vector<std::filesystem::path>& folders() const { return folders_; }
+
+  // What a URI in a file of `folder` means: model://name/..., model:///name, package://, file://, Fuel addresses (by the model's name),
+  // absolute and relative paths. The file or folder exists; empty when none does.
+  std::optional<std::filesystem::path> find(std::string_view uri, const std::filesystem::path& folder) const;
+
+ private:
+  std::vector<std::filesystem::path> folders_;
+};
+
+}  // namespace sim

@@ -1,0 +1,132 @@
+#include "world/world_def.h"
+
+#include "base/text.h"
+
+namespace sim {
+
+const ParameterNode* ParameterNode::child(std::string_view child_name) const {
+  for (const ParameterNode& node : children) {
+    if (node.name == child_name) return &node;
+  }
+  return nullptr;
+}
+
+std::optional<std::string> ParameterNode::text_of(std::initializer_list<std::string_view> spellings) const {
+  for (std::string_view spelling : spellings) {
+    if (const ParameterNode* node = child(spelling)) return node->text;
+  }
+  return std::nullopt;
+}
+
+std::optional<double> ParameterNode::number_of(std::initializer_list<std::string_view> spellings) const {
+  const std::optional<std::string> found = text_of(spellings);
+  return found ? base::parse_number(*found) : std::nullopt;
+}
+
+std::optional<bool> ParameterNode::bool_of(std::initializer_list<std::string_view> spellings) const {
+  const std::optional<std::string> found = text_of(spellings);
+  return found ? base::parse_bool(*found) : std::nullopt;
+}
+
+std::string ParameterNode::attribute(std::string_view attribute_name) const {
+  for (const auto& [key, value] : attributes) {
+    if (key == attribute_name) return value;
+  }
+  return {};
+}
+
+std::string_view kind_of(const GeometryDef& geometry) {
+  static constexpr std::array<std::string_view, std::variant_size_v<GeometryDef>> words{
+      "box", "sphere", "cylinder", "capsule", "ellipsoid", "plane", "mesh", "heightmap", "polyline"};
+  return words[geometry.index()];
+}
+
+std::string_view to_text(SensorKind kind) {
+  switch (kind) {
+    case SensorKind::ray:
+      return "ray";
+    case SensorKind::camera:
+      return "camera";
+    case SensorKind::depth_camera:
+      return "depth_camera";
+    case SensorKind::rgbd_camera:
+      return "rgbd_camera";
+    case SensorKind::multi_camera:
+      return "multi_camera";
+    case SensorKind::contact:
+      return "contact";
+    case SensorKind::imu:
+      return "imu";
+    case SensorKind::gps:
+      return "gps";
+    case SensorKind::sonar:
+      return "sonar";
+    case SensorKind::force_torque:
+      return "force_torque";
+    case SensorKind::altimeter:
+      return "altimeter";
+    case SensorKind::magnetometer:
+      return "magnetometer";
+    case SensorKind::air_pressure:
+      return "air_pressure";
+  }
+  return "unknown";
+}
+
+std::string_view to_text(JointDef::Kind kind) {
+  switch (kind) {
+    case JointDef::Kind::fixed:
+      return "fixed";
+    case JointDef::Kind::revolute:
+      return "revolute";
+    case JointDef::Kind::continuous:
+      return "continuous";
+    case JointDef::Kind::prismatic:
+      return "prismatic";
+    case JointDef::Kind::ball:
+      return "ball";
+    case JointDef::Kind::universal:
+      return "universal";
+    case JointDef::Kind::revolute2:
+      return "revolute2";
+    case JointDef::Kind::screw:
+      return "screw";
+    case JointDef::Kind::gearbox:
+      return "gearbox";
+  }
+  return "unknown";
+}
+
+const LinkDef* ModelDef::link(std::string_view link_name) const {
+  for (const LinkDef& link : links) {
+    if (link.name == link_name) return &link;
+  }
+  return nullptr;
+}
+
+const JointDef* ModelDef::joint(std::string_view joint_name) const {
+  for (const JointDef& joint : joints) {
+    if (joint.name == joint_name) return &joint;
+  }
+  return nullptr;
+}
+
+const ModelDef* WorldDef::model(std::string_view model_name) const {
+  for (const ModelDef& model : models) {
+    if (model.name == model_name) return &model;
+  }
+  return nullptr;
+}
+
+std::string iface_name(std::string_view model, std::string_view scope, std::string_view own_name) {
+  std::string name(model);
+  if (!scope.empty()) name.append("::").append(scope);
+  return name.append("::").append(own_name);
+}
+
+std::string Finding::text() const {
+  if (file.empty()) return message;
+  return line > 0 ? file + ":" + std::to_string(line) + ": " + message : file + ": " + message;
+}
+
+}  // namespace sim

@@ -1,0 +1,491 @@
+// The constant description of a world: plain values that physics, rays, render and devices are built from. Every name is resolved, every
+// pose is relative to what its name says, every file is an absolute path that existed when the world was loaded, every number is finite and
+// within its bounds (the loader refuses or mends the rest and says so). Lengths in m, angles in rad, masses in kg, times in s, unless a
+// comment says otherwise. Values: any thread may read a shared one.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace sim {
+
+inline constexpr double infinite = std::numeric_limits<double>::infinity();
+
+// Components 0..1.
+struct Color {
+  float r = 1, g = 1, b = 1, a = 1;
+  bool operator==(const Color&) const = default;
+};
+
+// One node of the free-form parameters of a plugin: an element with its attributes, text and children, in the order of the file.
+struct ParameterNode {
+  std::string name;
+  std::string text;  // trimmed
+  std::vector<std::pair<std::string, std::string>> attributes;
+  std::vector<ParameterNode> children;
+
+  // The first child of that name, or null.
+  const ParameterNode* child(std::string_view child_name) const;
+  // The text of the first child that exists, tried in order of the spellings given ("left_joint", "leftJoint").
+  std::optional<std::string> text_of(std::initializer_list<std::string_view> spellings) const;
+  // As text_of; empty also when the text is no finite number (or no yes/no word).
+  std::optional<double> number_of(std::initializer_list<std::string_view> spellings) const;
+  std::optional<bool> bool_of(std::initializer_list<std::string_view> spellings) const;
+  std::string attribute(std::string_view attribute_name) const;  // empty when absent
+};
+
+// A <plugin>. What it does is decided by the devices; the loader only reads it.
+struct PluginDef {
+  std::string name;
+  std::string filename;  // as written: "libDiffDrivePlugin.so", "gz-sim-diff-drive-system", ...
+  std::string
+      scope;  // nested model it stands in, relative to its ModelDef ("" or "arm::hand"); joints and links it names are relative to it
+  ParameterNode parameters;
+  std::string source;  // "file:line" for messages
+};
+
+// --- shapes
+// ---------------------------------------------------------------------------------------------------------------------------------
+
+struct BoxShape {
+  Eigen::Vector3d size{1, 1, 1};
+};
+struct SphereShape {
+  double radius = 1;
+};
+// Along z, centred.
+struct CylinderShape {
+  double radius = 1;
+  double length = 1;
+};
+// Along z, centred; `length` is that of the cylindrical part.
+struct CapsuleShape {
+  double radius = 1;
+  double length = 1;
+};
+struct EllipsoidShape {
+  Eigen::Vector3d radii{1, 1, 1};
+};
+// Infinite for collisions; `size` is what is drawn. The normal is a unit vector.
+struct PlaneShape {
+  Eigen::Vector3d normal{0, 0, 1};
+  Eigen::Vector2d size{1, 1};
+};
+struct MeshShape {
+  std::string path;
+  std::string submesh;  // empty: all of them
+  bool center_submesh = false;
+  Eigen::Vector3d scale{1, 1, 1};  // no component is zero; may mirror
+};
+struct HeightmapTexture {
+  double size = 10;
+  std::string diffuse;  // path or empty
+  std::string normal;
+};
+struct HeightmapShape {
+  std::string path;  // grey image (png, jpg, ...) or elevation file; the middle of the map stands at `position`
+  Eigen::Vector3d size{1, 1, 1};
+  Eigen::Vector3d position{0, 0, 0};
+  int sampling = 1;
+  std::vector<HeightmapTexture> textures;
+  std::vector<std::pair<double, double>> blends;  // minimum height, fade distance; one less than textures
+};
+// A prism: closed outlines in the x-y plane (the outer one first; the others are holes by the even-odd rule), from z = 0 to `height`.
+struct PolylineShape {
+  std::vector<std::vector<Eigen::Vector2d>> outlines;
+  double height = 1;
+};
+using GeometryDef =
+    std::variant<BoxShape, SphereShape, CylinderShape, CapsuleShape, EllipsoidShape, PlaneShape, MeshShape, HeightmapShape, PolylineShape>;
+
+// Word for messages: "box", "mesh", ...
+std::string_view kind_of(const GeometryDef& geometry);
+
+// --- links
+// ----------------------------------------------------------------------------------------------------------------------------------
+
+struct SurfaceDef {
+  double mu = 1;                                      // along friction_direction (or the first tangent); infinite allowed
+  double mu2 = 1;                                     // across it
+  std::optional<Eigen::Vector3d> friction_direction;  // in the collision's frame
+  double slip1 = 0, slip2 = 0;
+  double torsional_mu = 0;
+  double restitution = 0;
+  double bounce_threshold = 100000;  // [m/s]
+  std::optional<double> kp;          // contact stiffness [N/m]; empty: the solver's own erp/cfm
+  std::optional<double> kd;          // contact damping [N s/m]
+  double max_vel = 0.01;             // correction speed [m/s]
+  double min_depth = 0;
+  double soft_cfm = 0, soft_erp = 0.2;
+  bool collide_without_contact = false;  // reported to contact sensors, no force
+  std::uint16_t collide_bitmask = 0xffff;
+  std::uint16_t category_bitmask = 0xffff;
+};
+
+struct CollisionDef {
+  std::string name;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // in the link
+  GeometryDef geometry = BoxShape{};
+  SurfaceDef surface;
+  double laser_retro = 0;
+};
+
+// Fully resolved: scripts and built-in Gazebo colours are already colours and texture paths.
+struct MaterialDef {
+  Color ambient{0.7F, 0.7F, 0.7F, 1};
+  Color diffuse{0.7F, 0.7F, 0.7F, 1};
+  Color specular{0, 0, 0, 1};
+  Color emissive{0, 0, 0, 1};
+  float shininess = 0;
+  std::string texture;                  // colour (albedo) image, path or empty; modulates diffuse
+  std::string normal_map;               // path or empty
+  std::string emissive_map;             // path or empty
+  Eigen::Vector2d texture_scale{1, 1};  // how often the image repeats along u and v
+  bool has_pbr = false;
+  float metalness = 0, roughness = 0.5F;  // meaningful when has_pbr
+  bool lighting = true;
+  bool double_sided = false;
+  std::string script;  // name it came from, for messages ("Gazebo/Grey"); empty when none
+};
+
+struct VisualDef {
+  std::string name;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // in the link
+  GeometryDef geometry = BoxShape{};
+  std::optional<MaterialDef> material;  // empty: the mesh's own, or MaterialDef{} for the other shapes
+  double transparency = 0;              // 0..1
+  bool cast_shadows = true;
+  double laser_retro = 0;
+  std::uint32_t visibility_flags = 0xffffffff;
+};
+
+struct LightDef {
+  enum class Kind { point, directional, spot };
+  std::string name;
+  Kind kind = Kind::point;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // in the world, or in the link that carries it
+  Eigen::Vector3d direction{0, 0, -1};                     // in the light's frame; unit
+  Color diffuse, specular{0.1F, 0.1F, 0.1F, 1};
+  double intensity = 1;
+  double range = 10;
+  double constant_attenuation = 1, linear_attenuation = 1, quadratic_attenuation = 0;
+  double inner_angle = 0, outer_angle = 0, falloff = 0;  // spot
+  bool cast_shadows = false;
+  bool is_on = true;
+};
+
+// --- sensors
+// --------------------------------------------------------------------------------------------------------------------------------
+
+struct NoiseDef {
+  enum class Kind { none, gaussian, gaussian_quantized };
+  Kind kind = Kind::none;
+  double mean = 0, stddev = 0;
+  double bias_mean = 0, bias_stddev = 0;
+  double dynamic_bias_stddev = 0, dynamic_bias_correlation_time = 0;
+  double precision = 0;  // gaussian_quantized: step of the output
+};
+
+struct ScanDef {
+  int samples = 1;
+  double resolution = 1;  // simulated rays per returned sample
+  double min_angle = 0, max_angle = 0;
+};
+
+// Planar or layered range finder.
+struct RayDef {
+  ScanDef horizontal, vertical;
+  double range_min = 0, range_max = 10;
+  double range_resolution = 0;  // 0: none
+  NoiseDef noise;
+  std::uint32_t visibility_mask = 0xffffffff;
+};
+
+// Brown's distortion.
+struct DistortionDef {
+  double k1 = 0, k2 = 0, k3 = 0, p1 = 0, p2 = 0;
+  Eigen::Vector2d center{0.5, 0.5};
+};
+struct LensDef {
+  std::string type = "gnomonical";  // stereographic, gnomonical, equidistant, equisolid_angle, orthographic, custom
+  bool scale_to_fov = true;
+  double cutoff_angle = 1.5707963267948966;
+  int environment_texture_size = 256;
+  double c1 = 1, c2 = 1, c3 = 0, f = 1;  // custom
+  std::string function = "tan";          // custom: sin, tan, id
+};
+struct CameraDef {
+  std::string name;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // in the sensor; looks along +x, z up
+  double horizontal_fov = 1.047;
+  int width = 320, height = 240;
+  std::string format = "R8G8B8";  // R8G8B8, B8G8R8, L8, L16, R_FLOAT32, BAYER_*
+  double near_clip = 0.1, far_clip = 100;
+  std::optional<std::pair<double, double>> depth_clip;  // depth and rgbd cameras
+  NoiseDef noise;
+  std::optional<DistortionDef> distortion;
+  std::optional<LensDef> lens;  // empty: pinhole
+  std::uint32_t visibility_mask = 0xffffffff;
+};
+// One camera, or several taken at the same time (multicamera).
+struct CameraSetDef {
+  std::vector<CameraDef> cameras;
+};
+
+struct SonarDef {
+  double range_min = 0, range_max = 5;
+  double radius = 0.5;  // of the cone at range_max
+};
+struct ImuDef {
+  std::array<NoiseDef, 3> angular_velocity, linear_acceleration;  // x, y, z
+  bool has_orientation = true;
+};
+struct GpsDef {
+  NoiseDef horizontal_position, vertical_position, horizontal_velocity, vertical_velocity;
+};
+struct ContactDef {
+  std::vector<std::string> collisions;  // names within the sensor's link; all exist
+};
+struct ForceTorqueDef {
+  enum class Frame { child, parent, sensor };
+  std::string joint;  // name in the model when the sensor stands in a joint; empty otherwise
+  Frame frame = Frame::child;
+  bool measures_parent_to_child = false;
+  std::array<NoiseDef, 3> force, torque;
+};
+struct AltimeterDef {
+  NoiseDef vertical_position, vertical_velocity;
+};
+struct MagnetometerDef {
+  std::array<NoiseDef, 3> field;
+};
+struct AirPressureDef {
+  NoiseDef pressure;
+  double reference_altitude = 0;
+};
+
+enum class SensorKind {
+  ray,  // ray, gpu_ray, lidar, gpu_lidar
+  camera,
+  depth_camera,
+  rgbd_camera,
+  multi_camera,
+  contact,
+  imu,
+  gps,  // gps, navsat
+  sonar,
+  force_torque,
+  altimeter,
+  magnetometer,
+  air_pressure
+};
+std::string_view to_text(SensorKind kind);
+
+struct SensorDef {
+  std::string name;
+  std::string scope;  // nested model it stands in, as in PluginDef
+  SensorKind kind = SensorKind::ray;
+  std::string type;                                        // as written: "gpu_lidar"
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // in the link
+  double update_rate = 0;                                  // [Hz]; 0: every step
+  bool always_on = false;
+  bool visualize = false;
+  std::string topic;
+  std::variant<RayDef, CameraSetDef, ContactDef, ImuDef, GpsDef, SonarDef, ForceTorqueDef, AltimeterDef, MagnetometerDef, AirPressureDef>
+      data;
+  std::vector<PluginDef> plugins;
+};
+
+struct LinkDef {
+  std::string name;                                        // unique in its model; links of nested models carry their scope: "arm::hand"
+  std::string scope;                                       // nested model it stands in, as in PluginDef
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // in the model, at the start
+  double mass = 1;                                         // positive
+  Eigen::Vector3d center_of_mass{0, 0, 0};                 // in the link
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();   // about the centre of mass, along the link's axes; positive definite
+  bool gravity = true;
+  bool kinematic = false;
+  bool self_collide = false;
+  bool enable_wind = false;
+  double linear_damping = 0, angular_damping = 0;  // velocity decay
+  std::vector<CollisionDef> collisions;
+  std::vector<VisualDef> visuals;
+  std::vector<SensorDef> sensors;
+  std::vector<LightDef> lights;
+};
+
+// --- models
+// ---------------------------------------------------------------------------------------------------------------------------------
+
+struct AxisDef {
+  Eigen::Vector3d xyz{0, 0, 1};                // unit, in the joint's frame at the start
+  double lower = -infinite, upper = infinite;  // rad or m
+  double effort = infinite;                    // N m or N; largest the drive may use
+  double velocity = infinite;                  // rad/s or m/s
+  double damping = 0;                          // N m s/rad or N s/m
+  double friction = 0;                         // N m or N
+  double spring_reference = 0, spring_stiffness = 0;
+  std::optional<double> limit_stiffness, limit_dissipation;  // soft stops
+};
+
+struct JointDef {
+  enum class Kind { fixed, revolute, continuous, prismatic, ball, universal, revolute2, screw, gearbox };
+  std::string name;  // unique in its model; scoped like link names
+  std::string scope;
+  Kind kind = Kind::fixed;
+  std::string parent;  // a link's name in the model; empty: the world
+  std::string child;   // a link's name in the model; empty: the world
+  Eigen::Isometry3d pose_in_child =
+      Eigen::Isometry3d::Identity();  // joint frame in the child link (in the world when child is empty: see pose_in_model)
+  Eigen::Isometry3d pose_in_model = Eigen::Isometry3d::Identity();  // the same frame in the model, at the start
+  std::vector<AxisDef> axes;  // revolute, continuous, prismatic, screw: 1; universal, revolute2, gearbox: 2; fixed, ball: 0
+  double thread_pitch = 0;    // screw: metres of travel along the axis per turn, right-handed positive
+  double gearbox_ratio = 1;
+  std::string gearbox_reference;                                                       // a link's name in the model
+  std::optional<double> cfm, erp, suspension_cfm, suspension_erp, stop_cfm, stop_erp;  // of <physics><ode>
+  bool provide_feedback = false;
+  std::vector<SensorDef> sensors;  // force_torque; the pose is in the joint's frame
+};
+std::string_view to_text(JointDef::Kind kind);
+
+// A top-level model with all its nested ones folded in: their links, joints, sensors and plugins carry a scope.
+struct ModelDef {
+  std::string name;                                        // unique in the world
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // in the world
+  bool is_static = false;
+  bool self_collide = false;
+  bool allow_auto_disable = true;
+  bool enable_wind = false;
+  std::string canonical_link;  // a link's name; never empty when there are links
+  std::vector<LinkDef> links;
+  std::vector<JointDef> joints;
+  std::vector<PluginDef> plugins;
+  std::string source;  // "file:line" where the model comes from
+
+  const LinkDef* link(std::string_view link_name) const;     // null when absent
+  const JointDef* joint(std::string_view joint_name) const;  // null when absent
+};
+
+// Name of the iface of a sensor or plugin: model, scope and own name joined by "::" ("pioneer2dx::laser").
+std::string iface_name(std::string_view model, std::string_view scope, std::string_view own_name);
+
+// --- actors
+// ---------------------------------------------------------------------------------------------------------------------------------
+
+struct WaypointDef {
+  double time = 0;                                         // since the start of the trajectory; ascending
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // in the world
+};
+struct TrajectoryDef {
+  int id = 0;
+  std::string animation;  // name of the AnimationDef that plays meanwhile
+  double tension = 0;     // 0: smooth, 1: straight
+  std::vector<WaypointDef> waypoints;
+};
+struct AnimationDef {
+  std::string name;
+  std::string path;
+  double scale = 1;
+  bool interpolate_x = false;
+};
+// Something that follows its way points whatever is in its way: no mass, no collisions.
+struct ActorDef {
+  std::string name;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // in the world, before the trajectory starts
+  std::string skin;                                        // mesh path or empty
+  double skin_scale = 1;
+  std::vector<VisualDef> visuals;  // those of its links, in the actor's frame
+  std::vector<AnimationDef> animations;
+  std::vector<TrajectoryDef> trajectories;
+  bool loop = true;
+  bool auto_start = true;
+  double delay_start = 0;
+  std::vector<PluginDef> plugins;
+  std::string source;
+};
+
+// --- the world
+// ------------------------------------------------------------------------------------------------------------------------------
+
+struct PhysicsDef {
+  enum class Solver { automatic, exact, iterative };  // automatic: nothing asked for; exact: "world"; iterative: "quick"
+  double step = 0.001;                                // [s]
+  double real_time_factor = 1;                        // 0: as fast as possible
+  Eigen::Vector3d gravity{0, 0, -9.8};
+  Eigen::Vector3d magnetic_field{5.5645e-6, 22.8758e-6, -42.3884e-6};  // [T]
+  Eigen::Vector3d wind{0, 0, 0};                                       // [m/s]
+  Solver solver = Solver::automatic;
+  int iterations = 50;
+  double sor = 1.3;
+  std::optional<double> cfm, erp;
+  double contact_max_correcting_vel = 100;
+  double contact_surface_layer = 0.001;
+  int max_contacts = 20;                                                 // per pair of collisions
+  double atmosphere_temperature = 288.15, atmosphere_pressure = 101325;  // [K], [Pa] at sea level
+};
+
+struct FogDef {
+  std::string type = "linear";  // linear, exponential, quadratic
+  Color color;
+  double start = 1, end = 100, density = 1;
+};
+struct SkyDef {
+  double time = 10, sunrise = 6, sunset = 20;  // [h]
+};
+struct SceneDef {
+  Color ambient{0.4F, 0.4F, 0.4F, 1};
+  Color background{0.7F, 0.7F, 0.7F, 1};
+  bool shadows = true;
+  bool grid = true;
+  std::optional<SkyDef> sky;
+  std::optional<FogDef> fog;
+};
+
+struct SphericalDef {
+  double latitude = 0, longitude = 0;  // [deg]
+  double elevation = 0;
+  double heading = 0;  // [rad] of the world's x axis, counter-clockwise from east
+};
+
+struct WorldDef {
+  std::string name = "default";
+  PhysicsDef physics;
+  SceneDef scene;
+  SphericalDef spherical;
+  std::vector<LightDef> lights;
+  std::vector<ModelDef> models;
+  std::vector<ActorDef> actors;
+  std::vector<PluginDef> plugins;
+  std::optional<Eigen::Isometry3d> gui_camera;  // where the author's window looked from
+
+  const ModelDef* model(std::string_view model_name) const;  // null when absent
+};
+
+// --- complaints
+// -----------------------------------------------------------------------------------------------------------------------------
+
+// One line for a person about something in a world's files.
+struct Finding {
+  enum class Severity {
+    note,     // taken in another way than written ("ellipsoid is approximated"), nothing lost
+    warning,  // mended or ignored without a loss for the simulation
+    dropped,  // an object or element is missing from the world because of this
+  };
+  Severity severity = Severity::warning;
+  std::string file;
+  int line = 0;  // 0: unknown
+  std::string message;
+
+  // "file:line: message"
+  std::string text() const;
+};
+
+}  // namespace sim
