@@ -1,0 +1,3 @@
+# Manager, modules, naming, logging.
+target_sources(openrtm PRIVATE
+  rtm/SystemLogger.cpp)
