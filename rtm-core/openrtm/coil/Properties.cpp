@@ -1,0 +1,311 @@
+#include "coil/Properties.h"
+
+#include <algorithm>
+#include <istream>
+#include <memory>
+#include <ostream>
+#include <utility>
+
+#include "coil/stringutil.h"
+
+namespace coil {
+namespace {
+
+const std::string empty_string;
+
+constexpr std::string_view blanks = " \t\r\n\f";
+
+std::string_view trimmed(std::string_view text) {
+  auto first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+bool is_escaped(std::string_view text, std::size_t pos) {
+  std::size_t backslashes = 0;
+  while (pos > backslashes && text[pos - backslashes - 1] == '\\') ++backslashes;
+  return backslashes % 2 == 1;
+}
+
+// Splits off the first step of a path; dots after a backslash belong to the name.
+std::pair<std::string_view, std::string_view> first_step(std::string_view path) {
+  for (auto dot = path.find('.'); dot != std::string_view::npos; dot = path.find('.', dot + 1)) {
+    if (!is_escaped(path, dot)) return {path.substr(0, dot), path.substr(dot + 1)};
+  }
+  return {path, {}};
+}
+
+// A value with trailing blanks removed, except an escaped one.
+std::string_view without_tail_blanks(std::string_view text) {
+  while (!text.empty() && blanks.find(text.back()) != std::string_view::npos && !is_escaped(text, text.size() - 1)) text.remove_suffix(1);
+  return text;
+}
+
+std::pair<std::string_view, std::string_view> split_line(std::string_view line) {
+  auto separator = std::string_view::npos;
+  for (std::string_view candidates : {":=", " \t"}) {
+    for (auto pos = line.find_first_of(candidates); pos != std::string_view::npos; pos = line.find_first_of(candidates, pos + 1)) {
+      if (is_escaped(line, pos)) continue;
+      separator = pos;
+      break;
+    }
+    if (separator != std::string_view::npos) break;
+  }
+  if (separator == std::string_view::npos) return {line, {}};
+  auto value = line.substr(separator + 1);
+  auto start = value.find_first_not_of(blanks);
+  value = start == std::string_view::npos ? std::string_view{} : without_tail_blanks(value.substr(start));
+  return {without_tail_blanks(line.substr(0, separator)), value};
+}
+
+// Reads one logical line: joined where a line ends in a backslash, without leading blanks. False at the end of the input.
+bool read_logical_line(std::istream& in, std::string& line) {
+  line.clear();
+  std::string part;
+  bool any = false;
+  while (std::getline(in, part)) {
+    any = true;
+    if (!part.empty() && part.back() == '\r') part.pop_back();
+    auto start = part.find_first_not_of(blanks);
+    part.erase(0, start == std::string::npos ? part.size() : start);
+    bool is_comment = line.empty() && !part.empty() && (part[0] == '#' || part[0] == '!');
+    if (!is_comment && !part.empty() && part.back() == '\\' && !is_escaped(part, part.size() - 1)) {
+      line.append(part, 0, part.size() - 1);
+      continue;
+    }
+    line += part;
+    return true;
+  }
+  return any;
+}
+
+// What load() reads back as the same text.
+std::string escaped_for_line(const std::string& text, bool is_key) {
+  std::string out;
+  for (char c : text) {
+    if (c == '\n')
+      out += "\\n";
+    else if (c == '\r')
+      out += "\\r";
+    else if (c == '\t')
+      out += "\\t";
+    else if (c == '\f')
+      out += "\\f";
+    else {
+      if (c == '"' || c == '\\' || (is_key && (c == ':' || c == '=' || c == ' '))) out += '\\';
+      out += c;
+    }
+  }
+  if (!is_key && !out.empty() && out.front() == ' ') out.insert(0, 1, '\\');
+  if (!is_key && out.size() > 1 && out.back() == ' ') out.insert(out.size() - 1, 1, '\\');
+  return out;
+}
+
+}  // namespace
+
+Properties::Properties(const char* key, const char* value) : name_(key ? key : ""), value_(value ? value : "") {}
+
+Properties::Properties(const std::string& key, const std::string& value) : name_(key), value_(value) {}
+
+Properties::Properties(const std::map<std::string, std::string>& defaults) {
+  for (const auto& [key, value] : defaults) setDefault(key, value);
+}
+
+Properties::Properties(const char* const* defaults, long count) { setDefaults(defaults, count); }
+
+Properties::Properties(const Properties& other) : name_(other.name_), value_(other.value_), default_value_(other.default_value_) {
+  copy_children(other);
+}
+
+Properties::Properties(Properties&& other) noexcept
+    : name_(std::move(other.name_)), value_(std::move(other.value_)), default_value_(std::move(other.default_value_)) {
+  adopt_children(other);
+}
+
+Properties& Properties::operator=(const Properties& other) {
+  if (this == &other) return *this;
+  return *this = Properties(other);  // By way of a copy: the other may be a node below this one.
+}
+
+Properties& Properties::operator=(Properties&& other) noexcept {
+  if (this == &other) return *this;
+  Properties taken(std::move(other));
+  clear();
+  if (root_ == nullptr) name_ = std::move(taken.name_);
+  value_ = std::move(taken.value_);
+  default_value_ = std::move(taken.default_value_);
+  adopt_children(taken);
+  return *this;
+}
+
+Properties::~Properties() { clear(); }
+
+const std::string& Properties::getProperty(const std::string& key) const {
+  const Properties* node = find(key);
+  if (node == nullptr) return empty_string;
+  return node->value_.empty() ? node->default_value_ : node->value_;
+}
+
+std::string Properties::getProperty(const std::string& key, const std::string& def) const {
+  const Properties* node = find(key);
+  return node == nullptr || node->value_.empty() ? def : node->value_;
+}
+
+std::string& Properties::operator[](const std::string& key) {
+  Properties& node = make(key);
+  if (node.value_.empty()) node.value_ = node.default_value_;
+  return node.value_;
+}
+
+const std::string& Properties::getDefault(const std::string& key) const {
+  const Properties* node = find(key);
+  return node == nullptr ? empty_string : node->default_value_;
+}
+
+std::string Properties::setProperty(const std::string& key, const std::string& value) { return std::exchange(make(key).value_, value); }
+
+std::string Properties::setDefault(const std::string& key, const std::string& value) {
+  return std::exchange(make(key).default_value_, value);
+}
+
+void Properties::setDefaults(const char* const* defaults, long count) {
+  if (defaults == nullptr) return;
+  for (long i = 0; i + 1 < count && defaults[i] != nullptr && defaults[i][0] != '\0'; i += 2) {
+    if (defaults[i + 1] == nullptr) return;
+    setDefault(std::string(trimmed(defaults[i])), std::string(trimmed(defaults[i + 1])));
+  }
+}
+
+void Properties::load(std::istream& in) {
+  std::string line;
+  while (read_logical_line(in, line)) {
+    if (line.empty() || line[0] == '#' || line[0] == '!') continue;
+    auto [key, value] = split_line(line);
+    if (!key.empty()) setProperty(unescape(std::string(key)), unescape(std::string(value)));
+  }
+}
+
+void Properties::store(std::ostream& out, const std::string& header) const {
+  if (!header.empty()) out << "# " << header << '\n';
+  for (const std::string& name : propertyNames()) {
+    out << escaped_for_line(name, true) << ": " << escaped_for_line(getProperty(name), false) << '\n';
+  }
+}
+
+void Properties::list(std::ostream& out) const { print(out, 0); }
+
+std::vector<std::string> Properties::propertyNames() const {
+  std::vector<std::string> names;
+  for (const Properties* node : leaf_) node->collect_names({}, names);
+  return names;
+}
+
+int Properties::size() const { return static_cast<int>(propertyNames().size()); }
+
+Properties* Properties::findNode(const std::string& key) const {
+  if (key.empty()) return nullptr;
+  return const_cast<Properties*>(find(key));  // The classic signature hands out children of a const tree.
+}
+
+Properties& Properties::getNode(const std::string& key) { return make(key); }
+
+bool Properties::createNode(const std::string& key) {
+  if (key.empty() || find(key) != nullptr) return false;
+  make(key);
+  return true;
+}
+
+Properties* Properties::removeNode(const std::string& leaf_name) {
+  auto it = std::find_if(leaf_.begin(), leaf_.end(), [&](const Properties* node) { return node->name_ == leaf_name; });
+  if (it == leaf_.end()) return nullptr;
+  Properties* node = *it;
+  leaf_.erase(it);
+  node->root_ = nullptr;
+  return node;
+}
+
+Properties* Properties::hasKey(const std::string& key) const { return child(key); }
+
+void Properties::clear() {
+  auto children = std::exchange(leaf_, {});
+  for (Properties* node : children) delete node;
+}
+
+Properties& Properties::operator<<(const Properties& other) {
+  if (this == &other) return *this;
+  const Properties source(other);
+  for (const std::string& name : source.propertyNames()) make(name).value_ = source.getProperty(name);
+  return *this;
+}
+
+Properties* Properties::child(std::string_view name) const {
+  for (Properties* node : leaf_) {
+    if (node->name_ == name) return node;
+  }
+  return nullptr;
+}
+
+const Properties* Properties::find(std::string_view path) const {
+  const Properties* node = this;
+  while (node != nullptr && !path.empty()) {
+    auto [step, rest] = first_step(path);
+    node = node->child(step);
+    path = rest;
+  }
+  return node;
+}
+
+Properties& Properties::make(std::string_view path) {
+  Properties* node = this;
+  while (!path.empty()) {
+    auto [step, rest] = first_step(path);
+    Properties* next = node->child(step);
+    if (next == nullptr) {
+      auto made = std::make_unique<Properties>(std::string(step));
+      made->root_ = node;
+      node->leaf_.push_back(made.get());
+      next = made.release();
+    }
+    node = next;
+    path = rest;
+  }
+  return *node;
+}
+
+void Properties::copy_children(const Properties& other) {
+  leaf_.reserve(other.leaf_.size());
+  for (const Properties* node : other.leaf_) {
+    auto copy = std::make_unique<Properties>(*node);
+    copy->root_ = this;
+    leaf_.push_back(copy.release());
+  }
+}
+
+void Properties::adopt_children(Properties& other) noexcept {
+  leaf_ = std::exchange(other.leaf_, {});
+  for (Properties* node : leaf_) node->root_ = this;
+}
+
+void Properties::collect_names(const std::string& prefix, std::vector<std::string>& names) const {
+  const std::string path = prefix.empty() ? name_ : prefix + "." + name_;
+  if (leaf_.empty() || !value_.empty() || !default_value_.empty()) names.push_back(path);
+  for (const Properties* node : leaf_) node->collect_names(path, names);
+}
+
+void Properties::print(std::ostream& out, int depth) const {
+  const std::string indent(static_cast<std::size_t>(depth) * 2, ' ');
+  for (const Properties* node : leaf_) {
+    const std::string& value = node->value_.empty() ? node->default_value_ : node->value_;
+    out << indent << "- " << node->name_;
+    if (!value.empty()) out << ": " << value;
+    out << '\n';
+    node->print(out, depth + 1);
+  }
+}
+
+std::ostream& operator<<(std::ostream& out, const Properties& properties) {
+  properties.print(out, 0);
+  return out;
+}
+
+}  // namespace coil
