@@ -1,0 +1,137 @@
+// The client's side of ifaces: find, open, read, wait, command. An Iface belongs to one thread at a time.
+//
+//   auto laser = shm::Iface::open(0, shm::IfaceType::laser, "pioneer2dx::laser");
+//   laser->subscribe();
+//   while (laser->wait(last, 100ms) == shm::Wait::fresh) { auto scan = laser->laser_scan(); last = scan.sample->stamp.sequence; ... }
+//
+// When the server dies, restarts or removes the iface, wait() and status() say so (never an exception or a crash, the memory stays
+// readable); reopen() attaches to the new one as soon as there is one.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.h"
+#include "shm/layout.h"
+#include "shm/segment.h"
+
+namespace shm {
+
+enum class Status {
+  live,
+  closed,  // the server removed the iface or ended in an orderly way, or a new server has taken its place
+  dead,    // the server's process is gone
+};
+
+enum class Wait { fresh, timed_out, closed };
+
+struct ScanView {
+  const LaserSample* sample;
+  std::span<const float> ranges, intensities;  // beam by beam, layer by layer
+};
+struct SonarView {
+  const SonarSample* sample;
+  std::span<const float> ranges;
+};
+struct BumperView {
+  const BumperSample* sample;
+  std::span<const Contact> contacts;  // those that are filled
+};
+
+// A frame of the ring that the writer leaves alone as long as this object lives. Must not outlive its Iface.
+class HeldFrame {
+ public:
+  HeldFrame(HeldFrame&& other) noexcept;
+  HeldFrame& operator=(HeldFrame&& other) noexcept;
+  ~HeldFrame();
+  const FrameHead& head() const { return *head_; }
+  std::span<const std::byte> data() const { return data_; }
+  std::uint64_t sequence() const { return sequence_; }
+
+ private:
+  friend class Iface;
+  HeldFrame(std::uint32_t* hold, std::unique_ptr<FrameHead> head, std::span<const std::byte> data, std::uint64_t sequence);
+  std::uint32_t* hold_;
+  std::unique_ptr<FrameHead> head_;  // a private copy
+  std::span<const std::byte> data_;
+  std::uint64_t sequence_;
+};
+
+class Iface {
+ public:
+  // Errors name what was looked for and what there is instead. This user's servers come first, then those of others that can be read.
+  static base::Result<Iface> open(std::uint32_t server_id, IfaceType type, std::string_view name);
+  Iface(Iface&&) noexcept;
+  Iface& operator=(Iface&&) noexcept;
+  ~Iface();  // unsubscribes; a robot that this handle commanded stops
+
+  IfaceType type() const;
+  const std::string& name() const;
+  std::uint32_t server_id() const;
+  const Segment& segment() const;
+
+  // Constants. Info must be the type's own (LaserInfo for laser, ...).
+  template <class Info>
+  const Info& info() const {
+    return *static_cast<const Info*>(info_bytes(sizeof(Info)));
+  }
+  std::span<const Pose> sonar_poses() const;
+
+  // The sensor works as long as somebody has subscribed. Fails when all leases are taken or the server is gone.
+  base::Result<void> subscribe();
+  void unsubscribe();
+  bool is_subscribed() const;
+
+  // ---- samples ----
+  // Copies the latest sample into this handle's buffer. False when there is none yet (or, against all odds, the writer was faster than
+  // eight attempts). No system call.
+  bool read();
+  // Only after read() was true. Valid until the next read(). Sample must be the type's own.
+  template <class Sample>
+  const Sample& sample() const {
+    return *static_cast<const Sample*>(sample_bytes(sizeof(Sample)));
+  }
+  ScanView laser_scan() const;
+  SonarView sonar_scan() const;
+  BumperView bumper() const;
+  std::span<const std::byte> sample_data() const;
+
+  // Number of the latest sample or frame there is; 0 = none.
+  std::uint64_t sequence() const;
+  // Waits until there is one newer than `than`; for samples it has been read then. `closed` within a tenth of a second after a crash, at
+  // once after an orderly end. A time-out of 0 just looks.
+  Wait wait(std::uint64_t than, std::chrono::nanoseconds timeout);
+
+  // ---- frames: need subscribe() ----
+  // The latest one; nothing when there is none, or this handle holds RTMSIM_HOLDS frames already.
+  std::optional<HeldFrame> hold();
+
+  // ---- commands ----
+  // The latest command of all clients counts. Refuses values that are not finite.
+  base::Result<void> command(CommandKind kind, std::span<const double> values);
+  base::Result<void> command_velocity(double vx, double vy, double va);
+  // True while this handle's command is the one in force.
+  bool is_commander() const;
+
+  // ---- life ----
+  Status status() const;
+  // Attaches to the iface that has the name now, keeps a subscription. Fails like open(); then this handle stays as it was.
+  base::Result<void> reopen();
+
+ private:
+  friend class HeldFrame;
+  struct State;
+  explicit Iface(std::unique_ptr<State> state);
+  const void* info_bytes(std::size_t size) const;
+  const void* sample_bytes(std::size_t size) const;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace shm

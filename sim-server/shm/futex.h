@@ -1,0 +1,20 @@
+// Sleep on and wake by a 32-bit word that processes share. Any thread.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+namespace shm {
+
+// Sleeps while word == expected, at most `timeout` (none when <= 0). Returns early for no reason at times; look at the word again.
+void futex_wait(const std::uint32_t& word, std::uint32_t expected, std::chrono::nanoseconds timeout);
+// Wakes at most `count` sleepers.
+void futex_wake(const std::uint32_t& word, int count);
+
+// Sleep and wake without a system call when nobody sleeps. The sleeper:
+//   announce(waiting); if (the news are not there yet) futex_wait(word, value seen before, ...)
+// the waker, after it stored the news: ring(word, waiting). The flag mends itself when a sleeper dies: the next ring clears it.
+void announce(std::uint32_t& waiting);                   // seq_cst store, pairs with the seq_cst load in ring
+void ring(std::uint32_t& word, std::uint32_t& waiting);  // the word must have changed before, with a seq_cst store
+
+}  // namespace shm

@@ -1,0 +1,33 @@
+// Who a process is and whether it still lives; how memory of processes that no longer exist is recognised. Any thread.
+#pragma once
+
+#include <sys/types.h>
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "shm/layout.h"
+
+namespace shm {
+
+// Of the calling process; read again after a fork.
+ProcessMark own_mark();
+// Name of the calling program, for people.
+const std::string& own_program();
+// 16 bytes that differ from boot to boot.
+const std::array<std::uint8_t, 16>& boot_id();
+
+// False when the process has ended (zombies have) or its pid belongs to another one now. A process of another pid namespace can't be
+// judged and counts as alive. A start time of 0 means unknown: then the pid alone decides.
+bool is_alive(const ProcessMark& mark);
+
+// (pid << 32) | number; the number is unique in this process. Never 0.
+std::uint64_t make_owner();
+constexpr pid_t owner_pid(std::uint64_t owner) { return static_cast<pid_t>(owner >> 32); }
+
+// CLOCK_MONOTONIC, Unix time [ns].
+std::int64_t monotonic_ns();
+std::int64_t wall_ns();
+
+}  // namespace shm

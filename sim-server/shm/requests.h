@@ -1,0 +1,125 @@
+// What clients can ask of a simulation, as types, and the way to bytes and back. Values; no thread rule.
+// The meaning of each request is written down in rtmsim_layout.h (RTMSIM_REQUEST_*). Decoding checks everything: numbers finite, names
+// terminated, counts in range; what handles a request need not check again.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+
+#include "base/result.h"
+#include "shm/layout.h"
+
+namespace shm {
+
+struct PauseRequest {};
+struct RunRequest {};
+struct StepRequest {
+  std::int64_t steps = 1;
+};
+struct ResetRequest {
+  bool poses_only = false;
+};
+struct GetPoseRequest {
+  std::string name;
+};
+struct SetPoseRequest {
+  std::string model;
+  Pose pose = identity_pose;  // the quaternion is normalised by decode
+  bool is_planar = false;     // only x, y and the yaw of pose count
+};
+struct GetVelocityRequest {
+  std::string name;
+};
+struct SetVelocityRequest {
+  std::string model;
+  double linear[3] = {}, angular[3] = {};
+};
+struct WrenchRequest {
+  std::string name;
+  double force[3] = {}, torque[3] = {};
+  double duration = 0;  // [s], 0 = one step
+};
+struct ListRequest {};
+struct TreeRequest {
+  std::string model;  // empty = all
+};
+struct SpawnRequest {
+  std::string sdf;  // text, or path when is_path
+  bool is_path = false;
+  std::string name;  // empty = as in the file
+  bool has_pose = false;
+  Pose pose = identity_pose;
+};
+struct DeleteRequest {
+  std::string model;
+};
+struct ScreenshotRequest {
+  std::string path;                         // absolute; written atomically
+  std::uint32_t width = 800, height = 600;  // 1..8192
+  enum class View { whole, top, follow, from } view = View::whole;
+  bool with_scans = false;
+  std::string follow;         // model
+  Pose pose = identity_pose;  // camera for `from`, centre for `top`
+  double span = 0;            // hfov [rad], or metres across for `top`; 0 = a good one
+};
+struct StatsRequest {};
+struct ResetOdometryRequest {
+  std::string iface;
+  double x = 0, y = 0, a = 0;
+  bool is_3d = false;
+  Pose pose = identity_pose;  // for 3d
+};
+struct SetMotorsRequest {
+  std::string iface;
+  bool are_enabled = true;
+};
+struct SetRtfRequest {
+  double rtf = 1;  // 0 = as fast as possible
+};
+struct ContactsRequest {
+  std::string model;
+};
+struct DropParticipantRequest {
+  std::string name;
+};
+
+using Request = std::variant<PauseRequest, RunRequest, StepRequest, ResetRequest, GetPoseRequest, SetPoseRequest, GetVelocityRequest,
+                             SetVelocityRequest, WrenchRequest, ListRequest, TreeRequest, SpawnRequest, DeleteRequest, ScreenshotRequest,
+                             StatsRequest, ResetOdometryRequest, SetMotorsRequest, SetRtfRequest, ContactsRequest, DropParticipantRequest>;
+
+enum class RequestStatus : std::uint32_t {
+  ok = RTMSIM_STATUS_OK,
+  failed = RTMSIM_STATUS_FAILED,
+  bad_request = RTMSIM_STATUS_BAD_REQUEST,
+  not_found = RTMSIM_STATUS_NOT_FOUND,
+  unsupported = RTMSIM_STATUS_UNSUPPORTED,
+};
+
+struct RawRequest {
+  std::uint32_t kind = 0;
+  RequestBody body{};
+  std::string text;
+};
+
+struct Reply {
+  RequestStatus status = RequestStatus::ok;
+  std::string message;  // what went wrong; cut after 255 bytes
+  std::string text;     // JSON where the request says so
+  std::int64_t sim_time_ns = 0;
+  std::uint64_t steps = 0;
+  std::uint64_t hash = 0;
+  std::int64_t count = 0;
+  double values[16] = {};
+};
+
+RawRequest encode(const Request& request);
+base::Result<Request> decode(const RawRequest& raw);
+// "set-pose", "spawn", ...: for messages and logs.
+std::string_view request_name(const Request& request);
+
+Pose planar_pose(double x, double y, double z, double yaw);
+Pose euler_pose(double x, double y, double z, double roll, double pitch, double yaw);
+double yaw_of(const Pose& pose);
+
+}  // namespace shm

@@ -1,0 +1,490 @@
+/* What lies in the shared memory of an iface, byte for byte (docs/shared-memory.md says the same in tables). C11 and C++; plain data only.
+ *
+ * Segment `/dev/shm/rtmsim-<uid>-<server>.<type>.<iface name>`: rtmsim_header, then areas whose offsets and sizes the header names. All
+ * numbers are little endian, all areas start at multiples of 64. Units: m, rad, s, kg, N; times are int64 nanoseconds; x forward, y left,
+ * z up, counter-clockwise positive; quaternions are (w, x, y, z).
+ *
+ * Words marked [atomic] are written while others read them; touch them only with atomic operations of their width. */
+#ifndef RTMSIM_LAYOUT_H
+#define RTMSIM_LAYOUT_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define RTMSIM_MAGIC "RTMSIM\r\n" /* 8 bytes, without the final zero */
+#define RTMSIM_LAYOUT_VERSION 1u
+#define RTMSIM_AREAS 8
+#define RTMSIM_NAME_SIZE 224 /* iface names have at most 200 characters */
+#define RTMSIM_HOLDS 4       /* frames that one client can hold at a time */
+#define RTMSIM_PARTS 12
+#define RTMSIM_TEXT_PIECE 16384 /* longer texts of requests and replies travel in pieces */
+
+/* Iface types; the name in brackets is the one in the segment's name. */
+enum {
+  RTMSIM_SIMULATION = 1, /* [simulation] clock, statistics, requests, participants */
+  RTMSIM_LASER = 2,      /* [laser] */
+  RTMSIM_SONAR = 3,      /* [sonar] */
+  RTMSIM_POSITION2D = 4, /* [position2d] */
+  RTMSIM_POSITION3D = 5, /* [position3d] */
+  RTMSIM_CAMERA = 6,     /* [camera] ring of images */
+  RTMSIM_DEPTH = 7,      /* [depth] ring of float images [m] */
+  RTMSIM_POINTS = 8,     /* [points] ring of float x y z (and intensity) */
+  RTMSIM_IMU = 9,        /* [imu] */
+  RTMSIM_GPS = 10,       /* [gps] */
+  RTMSIM_BUMPER = 11,    /* [bumper] contacts */
+  RTMSIM_TRUTH = 12      /* [truth] true pose and velocity of a model */
+};
+
+/* Areas of a segment, by index into rtmsim_header.areas; those an iface does not have are all zero. */
+enum {
+  RTMSIM_AREA_INFO = 0, /* constants of the iface: rtmsim_<type>_info, and what follows it */
+  RTMSIM_AREA_CELLS =
+      1, /* latest samples: count cells of stride bytes, each a lock word (8 bytes) and the sample (size of the area / count) */
+  RTMSIM_AREA_FRAMES = 2,      /* ring of frames: count slots of stride bytes, each rtmsim_frame and the data */
+  RTMSIM_AREA_LEASES = 3,      /* count rtmsim_lease */
+  RTMSIM_AREA_CONTROL = 4,     /* one rtmsim_control (simulation only) */
+  RTMSIM_AREA_REQUESTS = 5,    /* count request slots (simulation only): rtmsim_request_slot, request text, reply text */
+  RTMSIM_AREA_PARTICIPANTS = 6 /* count rtmsim_participant (simulation only) */
+};
+
+enum { RTMSIM_STATE_LIVE = 1, RTMSIM_STATE_CLOSED = 2 };
+
+/* Which process: the pid alone can be used again, so its start time (field 22 of /proc/<pid>/stat) and pid namespace go with it. */
+typedef struct {
+  int32_t pid;
+  uint32_t pid_namespace; /* inode of /proc/self/ns/pid */
+  uint64_t start_time;    /* [clock ticks since boot] */
+} rtmsim_process;
+
+typedef struct {
+  uint64_t offset; /* from the start of the segment; 0 = the iface has no such area */
+  uint64_t size;   /* [bytes] of the whole area */
+  uint32_t stride; /* [bytes] from one element to the next */
+  uint32_t count;  /* elements */
+} rtmsim_area;
+
+/* The start of every segment. What stands before `state` never changes while the segment exists. */
+typedef struct {
+  char magic[8];
+  uint32_t layout_version;
+  uint32_t type;
+  uint64_t total_size;
+  uint64_t generation; /* differs each time an iface of this name is made; the later one is greater */
+  rtmsim_process server;
+  uint8_t boot_id[16]; /* of the boot the server runs in */
+  uint32_t server_id;
+  uint32_t uid;
+  char type_name[24];
+  char name[RTMSIM_NAME_SIZE];
+  rtmsim_area areas[RTMSIM_AREAS];
+  uint32_t state;          /* [atomic] RTMSIM_STATE_* ; closed: nothing will ever come again, open the name anew */
+  uint32_t lease_epoch;    /* [atomic] changes with every lease taken or given back */
+  int64_t heartbeat_ns;    /* [atomic] CLOCK_MONOTONIC of the server's last sign of life, renewed about ten times a second */
+  uint64_t command_latest; /* [atomic] (number of commands << 16) | index of the lease whose command is the latest; 0 = none yet */
+  uint8_t reserved0[40];
+  uint64_t sequence;    /* [atomic] sequence number of the latest sample or frame, 0 = none yet; sample n is in cell n % count */
+  uint64_t latest_slot; /* [atomic] frames: (sequence << 8) | slot of the latest frame */
+  uint32_t wake_word;   /* [atomic] futex: low half of sequence, and changed when the iface closes */
+  uint32_t waiting;     /* [atomic] a reader sets 1 before it sleeps on wake_word; the writer sets 0 and wakes all */
+  uint64_t dropped;     /* [atomic] frames that found no free slot */
+  uint8_t reserved1[416];
+} rtmsim_header;
+
+/* A client of an iface. A client takes a free lease by changing owner from 0 and gives it back by storing 0; the server takes the leases
+ * of dead processes back. */
+enum { RTMSIM_LEASE_SUBSCRIBER = 1 }; /* flag: the sensor works as long as one lease has it */
+
+typedef struct {
+  uint64_t sequence;   /* counts the commands of this lease */
+  int64_t sim_time_ns; /* when the commander saw the clock, or 0 */
+  uint32_t kind;       /* RTMSIM_COMMAND_* */
+  uint32_t flags;      /* 0 */
+  double values[12];   /* velocity: position2d vx vy va; position3d vx vy vz wx wy wz (body frame). pose: position2d x y a; position3d x y z
+                          roll pitch yaw */
+} rtmsim_command;
+
+enum { RTMSIM_COMMAND_STOP = 0, RTMSIM_COMMAND_VELOCITY = 1, RTMSIM_COMMAND_POSE = 2 };
+
+typedef struct {
+  uint64_t owner;               /* [atomic] (pid << 32) | a number unique in that process; 0 = free */
+  uint64_t start_time;          /* [atomic] of the owner; 0 = not written yet */
+  uint32_t pid_namespace;       /* [atomic] */
+  uint32_t flags;               /* [atomic] */
+  char name[40];                /* of the program, for people */
+  uint32_t holds[RTMSIM_HOLDS]; /* [atomic] slot + 1 of each frame held; the writer leaves these slots alone */
+  uint8_t reserved[48];
+  uint64_t command_lock;  /* [atomic] odd while the owner writes the command */
+  rtmsim_command command; /* [atomic words] */
+} rtmsim_lease;
+
+/* ---- samples: each starts with a stamp ---- */
+
+typedef struct {
+  uint64_t sequence;    /* 1, 2, 3, ... */
+  int64_t sim_time_ns;  /* simulated time that the values belong to */
+  int64_t wall_time_ns; /* Unix time of publication */
+  uint32_t valid;       /* 0: the device has nothing true to say (yet); do not use the values */
+  uint32_t resets;      /* resets of the world so far; simulated time starts again with each */
+} rtmsim_stamp;
+
+typedef struct {
+  double x, y, z;        /* [m] */
+  double qw, qx, qy, qz; /* unit quaternion */
+} rtmsim_pose;
+
+typedef struct {
+  char name[16];
+  uint64_t calls;
+  int64_t total_ns; /* wall time since the start of the server */
+  int64_t max_ns;
+} rtmsim_part;
+
+typedef struct {
+  int64_t step_ns; /* length of a physics step */
+  uint64_t seed;
+  uint32_t lockstep;
+  uint32_t wait_for; /* participants that must join before time starts */
+  char world[128];   /* name in the file */
+  char file[512];
+  char version[32]; /* of the server */
+} rtmsim_simulation_info;
+
+/* The clock: published after each step, and after anything that changes it. stamp.sim_time_ns is the simulated time. */
+typedef struct {
+  rtmsim_stamp stamp;
+  uint64_t steps;      /* since the last reset */
+  uint64_t state_hash; /* of the world at hash_steps; 0 = never computed */
+  uint64_t hash_steps;
+  uint32_t paused;
+  uint32_t waiting_for; /* participants still missing before time starts */
+  double rtf_wanted;    /* 0 = as fast as possible */
+  double rtf_reached;   /* over the last second or so */
+  double load;          /* part of wall time spent working, over the same interval [0..1] */
+  uint32_t models, bodies, joints, contacts;
+  uint32_t ifaces, active_sensors, participants, part_count;
+  rtmsim_part parts[RTMSIM_PARTS];
+} rtmsim_simulation_sample;
+
+typedef struct {
+  uint32_t beams;  /* of one layer; beam i looks to min_angle + i * angle_step: counter-clockwise, from right to left */
+  uint32_t layers; /* from the lowest to the highest; 1 for a planar scanner */
+  double min_angle, max_angle, angle_step; /* [rad] */
+  double min_vertical, max_vertical;       /* [rad], 0 for a planar scanner */
+  double min_range, max_range, range_step; /* [m]; range_step = resolution */
+  double rate;                             /* scans per simulated second */
+  double noise;                            /* standard deviation [m] */
+  rtmsim_pose pose;                        /* of the scanner on its model */
+  char model[128];                         /* scoped name of that model */
+} rtmsim_laser_info;
+
+/* A scan; `count` = beams * layers float ranges [m] follow, then as many float intensities. Beam by beam, layer by layer.
+ * A range is +infinity where nothing is hit, -infinity where something is nearer than min_range. */
+typedef struct {
+  rtmsim_stamp stamp;
+  rtmsim_pose pose; /* true pose of the scanner in the world at the stamp */
+  uint32_t count;
+  uint32_t reserved;
+} rtmsim_laser_sample;
+
+/* `count` poses of the transducers on the model (rtmsim_pose) follow. */
+typedef struct {
+  uint32_t count;
+  uint32_t reserved;
+  double min_range, max_range; /* [m] */
+  double cone;                 /* full opening angle [rad] */
+  double rate, noise;
+  rtmsim_pose pose;
+  char model[128];
+} rtmsim_sonar_info;
+
+/* `count` float ranges [m] follow (padded to 8 bytes), marks as in a laser scan. */
+typedef struct {
+  rtmsim_stamp stamp;
+  uint32_t count;
+  uint32_t reserved;
+} rtmsim_sonar_sample;
+
+enum { RTMSIM_DRIVE_DIFFERENTIAL = 1, RTMSIM_DRIVE_SKID = 2, RTMSIM_DRIVE_HOLONOMIC = 3, RTMSIM_DRIVE_CAR = 4 };
+
+typedef struct {
+  uint32_t drive; /* RTMSIM_DRIVE_* */
+  uint32_t reserved;
+  rtmsim_pose pose;               /* of the robot's centre in the model's frame */
+  double size[3];                 /* length, width, height [m] */
+  double max_speed, max_yaw_rate; /* 0 = unlimited */
+  double max_acceleration, max_yaw_acceleration;
+  double wheel_separation, wheel_radius;
+  double rate;
+  char model[128];
+} rtmsim_position2d_info;
+
+typedef struct {
+  rtmsim_stamp stamp;
+  double odometry[3];      /* x y a by the encoders, since the last reset of the odometry; a is in (-pi, pi] */
+  double velocity[3];      /* vx vy va by the encoders, robot frame */
+  rtmsim_pose true_pose;   /* in the world */
+  double true_velocity[3]; /* vx vy va in the robot frame */
+  double command[3];       /* vx vy va that the drive follows at this time */
+  uint32_t stalled;        /* commanded to move, but it does not */
+  uint32_t motors_enabled;
+  uint32_t commanded; /* a living client commands it */
+  uint32_t reserved;
+} rtmsim_position2d_sample;
+
+typedef struct {
+  uint32_t drive;
+  uint32_t reserved;
+  rtmsim_pose pose;
+  double size[3];
+  double max_speed, max_yaw_rate;
+  double rate;
+  char model[128];
+} rtmsim_position3d_info;
+
+typedef struct {
+  rtmsim_stamp stamp;
+  rtmsim_pose odometry;
+  double velocity[6]; /* linear x y z, angular x y z, body frame */
+  rtmsim_pose true_pose;
+  double true_velocity[6];
+  double command[6];
+  uint32_t stalled;
+  uint32_t motors_enabled;
+  uint32_t commanded;
+  uint32_t reserved;
+} rtmsim_position3d_sample;
+
+enum {
+  RTMSIM_FORMAT_RGB8 = 1, /* r g b */
+  RTMSIM_FORMAT_MONO8 = 2,
+  RTMSIM_FORMAT_DEPTH_FLOAT = 3,           /* metres along the optical axis; +infinity: nothing */
+  RTMSIM_FORMAT_POINTS_FLOAT = 4,          /* x y z [m] in the sensor's frame, three floats per point; NaN: no point */
+  RTMSIM_FORMAT_POINTS_INTENSITY_FLOAT = 5 /* x y z and intensity, four floats per point */
+};
+
+/* Of camera, depth and points. Rows from top to bottom, pixels from left to right; a cloud without image order has height 1. */
+typedef struct {
+  uint32_t width, height, format, stride; /* stride: bytes from one row to the next */
+  uint64_t frame_size;                    /* bytes of a full frame */
+  double hfov;                            /* horizontal field of view [rad] */
+  double near_clip, far_clip;             /* [m] */
+  double fx, fy, cx, cy;                  /* pinhole model [pixel] */
+  double distortion[5];                   /* k1 k2 p1 p2 k3 */
+  double rate, noise;
+  rtmsim_pose pose; /* on the model; the camera looks along its x axis, y is left, z is up */
+  char model[128];
+} rtmsim_camera_info;
+
+/* Head of a slot of the frame ring; the data follow at once. */
+typedef struct {
+  uint64_t lock;      /* [atomic] sequence number of the frame in the slot; 0 while it is empty or written */
+  rtmsim_stamp stamp; /* stamp.sequence == lock */
+  rtmsim_pose pose;   /* true pose of the sensor in the world at the stamp */
+  uint32_t width, height, format, stride;
+  uint64_t size; /* bytes of data that follow */
+  uint64_t reserved;
+} rtmsim_frame;
+
+typedef struct {
+  double rate;
+  double angular_velocity_noise, acceleration_noise; /* standard deviations */
+  rtmsim_pose pose;
+  char model[128];
+} rtmsim_imu_info;
+
+typedef struct {
+  rtmsim_stamp stamp;
+  double orientation[4];      /* w x y z, of the sensor in the world */
+  double angular_velocity[3]; /* [rad/s], sensor frame */
+  double acceleration[3];     /* specific force [m/s^2], sensor frame: at rest it is minus gravity */
+} rtmsim_imu_sample;
+
+typedef struct {
+  double rate;
+  double position_noise, altitude_noise, velocity_noise;
+  double latitude, longitude, altitude; /* of the world's origin [degree, degree, m] */
+  double heading;                       /* of the world's x axis, counter-clockwise from east [rad] */
+  rtmsim_pose pose;
+  char model[128];
+} rtmsim_gps_info;
+
+typedef struct {
+  rtmsim_stamp stamp;
+  double latitude, longitude; /* [degree] WGS 84: the one place where angles are not rad */
+  double altitude;            /* [m] */
+  double velocity[3];         /* east, north, up [m/s] */
+} rtmsim_gps_sample;
+
+typedef struct {
+  uint32_t capacity; /* contacts that fit into a sample */
+  uint32_t reserved;
+  double rate;
+  rtmsim_pose pose;
+  char model[128];
+} rtmsim_bumper_info;
+
+typedef struct {
+  double position[3], normal[3]; /* world frame; the normal points to the bumper's body */
+  double force[3];               /* on the bumper's body [N] */
+  double depth;                  /* [m] */
+  char other[112];               /* scoped name of the collision that it touches */
+} rtmsim_contact;
+
+/* `capacity` contacts (rtmsim_contact) follow, `count` of them are filled. */
+typedef struct {
+  rtmsim_stamp stamp;
+  uint32_t count;
+  uint32_t total; /* contacts there were; more than count when they did not all fit */
+} rtmsim_bumper_sample;
+
+typedef struct {
+  char model[128];
+} rtmsim_truth_info;
+
+typedef struct {
+  rtmsim_stamp stamp;
+  rtmsim_pose pose;
+  double velocity[6]; /* linear x y z, angular x y z, world frame */
+} rtmsim_truth_sample;
+
+/* ---- simulation: requests ---- */
+
+/* What a client can ask. Uses of the body (what is not named is 0): */
+enum {
+  RTMSIM_REQUEST_PAUSE = 1,
+  RTMSIM_REQUEST_RUN = 2,
+  RTMSIM_REQUEST_STEP = 3,     /* count = steps (1..1e9); pauses; answered when they are done */
+  RTMSIM_REQUEST_RESET = 4,    /* world and time as at the start; keeps paused or running; flags 1: poses only, time goes on */
+  RTMSIM_REQUEST_GET_POSE = 5, /* name = model or model::link; reply values 0..6 = pose x y z qw qx qy qz in the world */
+  RTMSIM_REQUEST_SET_POSE =
+      6, /* name = model; values 0..6 = pose; velocities become 0. flags 1: values 0 1 2 = x y yaw, height and tilt kept */
+  RTMSIM_REQUEST_GET_VELOCITY = 7, /* name = model or link; reply values 0..5 = linear, angular, world frame */
+  RTMSIM_REQUEST_SET_VELOCITY = 8, /* name = model; values 0..5; the whole model moves as one body */
+  RTMSIM_REQUEST_WRENCH =
+      9, /* name = model or link; values 0..5 = force, torque, world frame at the centre of mass; 6 = duration [s], 0 = one step */
+  RTMSIM_REQUEST_LIST = 10,   /* reply text: JSON, see docs/shared-memory.md */
+  RTMSIM_REQUEST_TREE = 11,   /* name = model or empty for all; reply text: JSON tree of models, links, joints, sensors */
+  RTMSIM_REQUEST_SPAWN = 12,  /* text = SDF, or flags bit 0: text = path of an SDF file or model folder; name = new name or empty; flags bit
+                                 1: values 0..6 = pose. Reply message = name given */
+  RTMSIM_REQUEST_DELETE = 13, /* name = model */
+  RTMSIM_REQUEST_SCREENSHOT = 14,     /* text = absolute path of the PNG; width, height; flags RTMSIM_VIEW_*; name = model to follow; values
+                                         0..6 = pose of the camera, 7 = hfov or metres across for top views */
+  RTMSIM_REQUEST_STATS = 15,          /* reply text: JSON; reply values 0 = reached real-time factor; hash = state hash, computed now */
+  RTMSIM_REQUEST_RESET_ODOMETRY = 16, /* name = position iface; values 0..2 = new x y a (position3d: 0..6 = pose with flags 1) */
+  RTMSIM_REQUEST_SET_MOTORS = 17,     /* name = position iface; count = 1 on, 0 off */
+  RTMSIM_REQUEST_SET_RTF = 18,        /* values 0 = real-time factor, 0 = as fast as possible */
+  RTMSIM_REQUEST_CONTACTS = 19,       /* name = model; reply count = its contacts since the last such request; text: JSON */
+  RTMSIM_REQUEST_DROP_PARTICIPANT = 20 /* name = participant */
+};
+
+/* Views of a screenshot. Without TOP and FOLLOW the camera's pose is in values; none given: one that shows the whole world. */
+enum { RTMSIM_VIEW_TOP = 1, RTMSIM_VIEW_FOLLOW = 2, RTMSIM_VIEW_FROM = 4, RTMSIM_VIEW_SCANS = 8 };
+
+enum {
+  RTMSIM_STATUS_OK = 0,
+  RTMSIM_STATUS_FAILED = 1,      /* understood, but it did not work */
+  RTMSIM_STATUS_BAD_REQUEST = 2, /* unknown kind, bad number, bad name */
+  RTMSIM_STATUS_NOT_FOUND = 3,   /* nothing has that name */
+  RTMSIM_STATUS_UNSUPPORTED = 4  /* this server can't */
+};
+
+typedef struct {
+  int64_t count;
+  double values[16];
+  uint32_t width, height, flags, reserved;
+  char name[256];
+} rtmsim_request_body;
+
+typedef struct {
+  int64_t sim_time_ns; /* when it was done */
+  uint64_t steps;
+  uint64_t hash;
+  int64_t count;
+  double values[16];
+  char message[256]; /* what went wrong, or a note */
+} rtmsim_reply_body;
+
+/* state of a request slot */
+enum {
+  RTMSIM_SLOT_IDLE = 0,     /* the client may ask */
+  RTMSIM_SLOT_ASKED = 1,    /* the client has written; the server may read */
+  RTMSIM_SLOT_REPLYING = 2, /* the server writes */
+  RTMSIM_SLOT_REPLIED = 3   /* the server has written; the client may read */
+};
+
+/* One client's slot; RTMSIM_TEXT_PIECE bytes for the text of the request follow, then as many for the reply's. */
+typedef struct {
+  uint64_t owner;         /* [atomic] as in a lease */
+  uint64_t start_time;    /* [atomic] */
+  uint32_t pid_namespace; /* [atomic] */
+  uint32_t state;         /* [atomic] futex; RTMSIM_SLOT_* */
+  uint64_t id;            /* chosen by the client, never 0, different for each request; comes back in reply_id */
+  uint32_t kind;
+  uint32_t text_length; /* bytes of text in this piece, at most RTMSIM_TEXT_PIECE */
+  uint32_t more;        /* 1: the text goes on in another piece of the same id */
+  uint32_t status;      /* of the reply, RTMSIM_STATUS_* */
+  uint64_t reply_id;
+  uint32_t reply_length;
+  uint32_t reply_more; /* 1: ask again with the same id to get the next piece */
+  rtmsim_request_body body;
+  rtmsim_reply_body reply;
+  uint8_t reserved[136];
+} rtmsim_request_slot;
+
+/* ---- simulation: lock step (states and rights: shm/lockstep.h) ---- */
+
+typedef struct {
+  uint32_t attention;         /* [atomic] futex: clients add 1 when they ask for something or join */
+  uint32_t attention_waiting; /* [atomic] the server sets 1 before it sleeps on attention; a client that finds 1 stores 0 and wakes */
+  uint32_t participant_epoch; /* [atomic] changes when a participant joins or leaves */
+  uint32_t reserved0[13];
+  int32_t pending;         /* [atomic] participants that have not finished the tick */
+  uint32_t server_word;    /* [atomic] futex: the server sleeps on it during a tick */
+  uint32_t server_waiting; /* [atomic] */
+  uint32_t reserved1[13];
+} rtmsim_control;
+
+enum {
+  RTMSIM_PARTICIPANT_FREE = 0,
+  RTMSIM_PARTICIPANT_JOINING = 1, /* set by the participant */
+  RTMSIM_PARTICIPANT_ACTIVE = 2,  /* set by the server */
+  RTMSIM_PARTICIPANT_LEAVING = 3, /* set by the participant */
+  RTMSIM_PARTICIPANT_DROPPED = 4  /* set by the server: dead, or out of patience */
+};
+
+typedef struct {
+  /* written by the participant before it asks to join */
+  uint64_t owner;         /* [atomic] as in a lease */
+  uint64_t start_time;    /* [atomic] */
+  uint32_t pid_namespace; /* [atomic] */
+  uint32_t phase;
+  int64_t period_ns; /* [atomic] may change at any time; taken over at the next tick */
+  char name[64];
+  uint32_t state; /* [atomic] futex too: the participant waits here for ACTIVE */
+  uint32_t error; /* why the server refused or dropped it: RTMSIM_DROPPED_* */
+  uint8_t reserved0[24];
+  /* written by the server */
+  uint32_t go;      /* [atomic] futex; number of the tick to do, never 0 once active */
+  uint32_t resets;  /* of the world */
+  int64_t now_ns;   /* simulated time of that tick */
+  int64_t due_ns;   /* when it was due; now_ns - due_ns is less than a step */
+  uint64_t steps;   /* physics steps since the reset */
+  uint64_t ticks;   /* finished */
+  int64_t total_ns; /* wall time of all of them */
+  int64_t max_ns;
+  uint64_t missed; /* ticks skipped because the one before was not finished (free running only) */
+  /* written by the participant */
+  uint32_t done;     /* [atomic] number of the tick it has finished */
+  uint32_t sleeping; /* [atomic] 1 before it sleeps on go */
+  uint8_t reserved1[56];
+} rtmsim_participant;
+
+enum { RTMSIM_DROPPED_DEAD = 1, RTMSIM_DROPPED_HUNG = 2, RTMSIM_DROPPED_REFUSED = 3, RTMSIM_DROPPED_ASKED = 4 };
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,117 @@
+// A segment of shared memory: its name, its making, its mapping. Any thread; a Segment is moved, never copied.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.h"
+#include "shm/layout.h"
+
+namespace shm {
+
+// What the name of a segment says.
+struct SegmentName {
+  uid_t uid = 0;
+  std::uint32_t server_id = 0;
+  IfaceType type = IfaceType::simulation;
+  std::string iface;
+
+  // Without folder: rtmsim-<uid>-<server>.<type>.<iface>
+  std::string text() const;
+  static std::optional<SegmentName> parse(std::string_view text);
+  bool operator==(const SegmentName&) const = default;
+};
+
+// Fails, with the reason, for names that are empty, longer than max_name_length or hold '/' or control characters.
+base::Result<void> check_name(std::string_view iface);
+
+struct Access {
+  mode_t mode = 0600;
+  std::optional<gid_t> group;
+};
+
+// What an iface needs; areas of size 0 are left out.
+struct Geometry {
+  std::size_t info_size = 0;
+  std::size_t sample_size = 0;  // whole sample with its stamp
+  std::uint32_t cells = 4;
+  std::size_t frame_size = 0;  // data of a frame
+  std::uint32_t frame_slots = 4;
+  std::uint32_t leases = 32;
+  std::uint32_t request_slots = 0;  // with them come the control block and the participants
+  std::uint32_t participants = 0;
+};
+
+class Segment {
+ public:
+  // Makes a segment that is complete before its name appears. A stale one of a dead server is replaced (its readers are told); a living
+  // server's is refused. `info` is copied in. Fails with a clear message when memory, rights or the name do not do.
+  static base::Result<Segment> create(const SegmentName& name, const Geometry& geometry, std::span<const std::byte> info,
+                                      const Access& access);
+  // Maps an existing one and checks that every area lies inside it.
+  static base::Result<Segment> open(const SegmentName& name);
+
+  Segment() = default;
+  Segment(Segment&& other) noexcept;
+  Segment& operator=(Segment&& other) noexcept;
+  ~Segment();
+
+  bool is_open() const { return base_ != nullptr; }
+  Header& header() const { return *static_cast<Header*>(base_); }
+  const SegmentName& name() const { return name_; }
+  // What the header said at the time of opening: private, so that nobody can change it under us.
+  const Header& facts() const { return facts_; }
+  const Area& area(AreaIndex index) const { return facts_.areas[static_cast<std::size_t>(index)]; }
+  // Start of element i, which must be below area(index).count.
+  std::byte* at(AreaIndex index, std::size_t element = 0) const;
+  template <class T>
+  T& as(AreaIndex index, std::size_t element = 0) const {
+    return *reinterpret_cast<T*>(at(index, element));
+  }
+  std::span<const std::byte> info() const;
+
+  // True when the name still leads to this segment.
+  bool is_current() const;
+  // Says closed to all readers and wakes them; removes the name if it still leads here. For the owner.
+  void close();
+
+ private:
+  void unmap();
+  void* base_ = nullptr;
+  std::size_t size_ = 0;
+  std::uint64_t inode_ = 0;
+  SegmentName name_;
+  Header facts_{};
+};
+
+// What a look at all segments finds.
+struct Found {
+  SegmentName name;
+  bool is_readable = false;  // what follows is only known when it is
+  bool is_alive = false;
+  ProcessMark server{};
+  std::uint64_t generation = 0;
+  std::uint64_t sequence = 0;
+  std::uint64_t dropped = 0;
+  std::size_t size = 0;
+  std::uint32_t subscribers = 0;
+  std::string problem;  // why it is not readable
+};
+// All of them, of every user, sorted by server, type and name.
+std::vector<Found> find_segments();
+std::vector<Found> find_segments(std::uint32_t server_id);
+
+// Removes the segments of dead servers that belong to this user; returns their names.
+std::vector<std::string> remove_stale(std::optional<std::uint32_t> server_id = std::nullopt);
+
+// By process and, when that can't be judged, by heartbeat.
+bool is_server_alive(const Header& header);
+
+}  // namespace shm
