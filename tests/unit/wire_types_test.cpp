@@ -1,0 +1,457 @@
+// Every type and interface of the wire contract has the repository id, the members and the order that the contract names.
+#include <gtest/gtest.h>
+#include <rtm/ext/CameraCommonInterfaceSkel.h>
+#include <rtm/ext/ManipulatorCommonInterface_CommonSkel.h>
+#include <rtm/ext/ManipulatorCommonInterface_DataTypesSkel.h>
+#include <rtm/ext/ManipulatorCommonInterface_MiddleSkel.h>
+#include <rtm/idl/BasicDataTypeSkel.h>
+#include <rtm/idl/ComponentObserverSkel.h>
+#include <rtm/idl/DataPortSkel.h>
+#include <rtm/idl/DataPortUDPSkel.h>
+#include <rtm/idl/DataPort_OpenRTMSkel.h>
+#include <rtm/idl/ExtendedDataTypesSkel.h>
+#include <rtm/idl/ExtendedFsmServiceSkel.h>
+#include <rtm/idl/FsmComponentObserverSkel.h>
+#include <rtm/idl/InterfaceDataTypesSkel.h>
+#include <rtm/idl/LoggerSkel.h>
+#include <rtm/idl/LogicalTimeTriggeredECSkel.h>
+#include <rtm/idl/ManagerSkel.h>
+#include <rtm/idl/OpenRTMSkel.h>
+#include <rtm/idl/RTCSkel.h>
+#include <rtm/idl/SDOPackageSkel.h>
+#include <rtm/idl/SharedMemorySkel.h>
+
+#include <fstream>
+#include <string>
+
+namespace {
+
+// "IDL:omg.org/RTC/Time:1.0" -> "RTC::Time"
+std::string scoped_name(const std::string& id) {
+  std::string path = id.substr(4, id.rfind(':') - 4);
+  if (path.find('.') < path.find('/')) path.erase(0, path.find('/') + 1);
+  if (auto slash = path.find('/'); slash != std::string::npos) path.replace(slash, 1, "::");
+  return path;
+}
+
+std::string type_name(CORBA::TypeCode_ptr type) {
+  switch (type->kind()) {
+    case CORBA::tk_short:
+      return "short";
+    case CORBA::tk_long:
+      return "long";
+    case CORBA::tk_ushort:
+      return "ushort";
+    case CORBA::tk_ulong:
+      return "ulong";
+    case CORBA::tk_ulonglong:
+      return "ulonglong";
+    case CORBA::tk_float:
+      return "float";
+    case CORBA::tk_double:
+      return "double";
+    case CORBA::tk_boolean:
+      return "boolean";
+    case CORBA::tk_char:
+      return "char";
+    case CORBA::tk_wchar:
+      return "wchar";
+    case CORBA::tk_octet:
+      return "octet";
+    case CORBA::tk_string:
+      return "string";
+    case CORBA::tk_wstring:
+      return "wstring";
+    case CORBA::tk_any:
+      return "any";
+    case CORBA::tk_TypeCode:
+      return "TypeCode";
+    case CORBA::tk_sequence: {
+      CORBA::TypeCode_var content = type->content_type();
+      return "sequence<" + type_name(content) + ">";
+    }
+    default:
+      return scoped_name(type->id());
+  }
+}
+
+// A type and its name, with the sizes of an array behind the name for members and behind the type for typedefs.
+std::string declaration(CORBA::TypeCode_ptr type, const std::string& name) {
+  std::string sizes;
+  CORBA::TypeCode_var inner = CORBA::TypeCode::_duplicate(type);
+  while (inner->kind() == CORBA::tk_array) {
+    sizes += "[" + std::to_string(inner->length()) + "]";
+    inner = inner->content_type();
+  }
+  return type_name(inner) + (name.empty() ? "" : " " + name) + sizes;
+}
+
+std::string union_label(CORBA::TypeCode_ptr type, CORBA::ULong i) {
+  CORBA::TypeCode_var discriminator = type->discriminator_type();
+  CORBA::Any_var label = type->member_label(i);
+  cdrMemoryStream stream;
+  label->NP_marshalDataOnly(stream);
+  CORBA::ULong value = 0;
+  value <<= stream;
+  const std::string enum_name = scoped_name(discriminator->id());
+  return enum_name.substr(0, enum_name.find("::") + 2) + discriminator->member_name(value);
+}
+
+std::string content(CORBA::TypeCode_ptr type) {
+  std::string out;
+  if (type->kind() == CORBA::tk_alias) {
+    CORBA::TypeCode_var aliased = type->content_type();
+    return declaration(aliased, "");
+  }
+  if (type->kind() == CORBA::tk_union) {
+    CORBA::TypeCode_var discriminator = type->discriminator_type();
+    out = "switch " + type_name(discriminator) + ": ";
+  }
+  for (CORBA::ULong i = 0; i < type->member_count(); ++i) {
+    if (type->kind() == CORBA::tk_enum) {
+      out += (i ? ", " : "") + std::string(type->member_name(i)) + "=" + std::to_string(i);
+      continue;
+    }
+    CORBA::TypeCode_var member = type->member_type(i);
+    out += i ? "; " : "";
+    if (type->kind() == CORBA::tk_union) out += "[" + union_label(type, i) + "] ";
+    out += declaration(member, type->member_name(i));
+  }
+  return out;
+}
+
+std::string kind_name(CORBA::TypeCode_ptr type) {
+  switch (type->kind()) {
+    case CORBA::tk_alias:
+      return "typedef";
+    case CORBA::tk_struct:
+      return "struct";
+    case CORBA::tk_enum:
+      return "enum";
+    case CORBA::tk_union:
+      return "union";
+    case CORBA::tk_except:
+      return "exception";
+    default:
+      return "?";
+  }
+}
+
+const CORBA::TypeCode_ptr types[] = {
+    SDOPackage::_tc_StringList,
+    SDOPackage::_tc_SDOList,
+    SDOPackage::_tc_OrganizationList,
+    SDOPackage::_tc_UniqueIdentifier,
+    SDOPackage::_tc_NameValue,
+    SDOPackage::_tc_NVList,
+    SDOPackage::_tc_NumericType,
+    SDOPackage::_tc_Numeric,
+    SDOPackage::_tc_EnumerationType,
+    SDOPackage::_tc_RangeType,
+    SDOPackage::_tc_IntervalType,
+    SDOPackage::_tc_ComplexDataType,
+    SDOPackage::_tc_AllowedValues,
+    SDOPackage::_tc_Parameter,
+    SDOPackage::_tc_ParameterList,
+    SDOPackage::_tc_OrganizationProperty,
+    SDOPackage::_tc_DependencyType,
+    SDOPackage::_tc_DeviceProfile,
+    SDOPackage::_tc_ServiceProfile,
+    SDOPackage::_tc_ServiceProfileList,
+    SDOPackage::_tc_ConfigurationSet,
+    SDOPackage::_tc_ConfigurationSetList,
+    SDOPackage::_tc_NotAvailable,
+    SDOPackage::_tc_InterfaceNotImplemented,
+    SDOPackage::_tc_InvalidParameter,
+    SDOPackage::_tc_InternalError,
+    RTC::_tc_ExecutionContextHandle_t,
+    RTC::_tc_UniqueIdentifier,
+    RTC::_tc_NVList,
+    RTC::_tc_ReturnCode_t,
+    RTC::_tc_LifeCycleState,
+    RTC::_tc_ExecutionContextList,
+    RTC::_tc_ExecutionKind,
+    RTC::_tc_PortInterfacePolarity,
+    RTC::_tc_PortInterfaceProfile,
+    RTC::_tc_PortInterfaceProfileList,
+    RTC::_tc_PortServiceList,
+    RTC::_tc_RTCList,
+    RTC::_tc_ConnectorProfile,
+    RTC::_tc_ConnectorProfileList,
+    RTC::_tc_PortProfile,
+    RTC::_tc_PortProfileList,
+    RTC::_tc_ExecutionContextProfile,
+    RTC::_tc_ExecutionContextProfileList,
+    RTC::_tc_FsmBehaviorProfile,
+    RTC::_tc_FsmBehaviorProfileList,
+    RTC::_tc_FsmProfile,
+    RTC::_tc_ComponentProfile,
+    RTC::_tc_ComponentProfileList,
+    RTC::_tc_ExecutionContextServiceList,
+    OpenRTM::_tc_PortStatus,
+    OpenRTM::_tc_CdrData,
+    RTC::_tc_PortStatus,
+    RTC::_tc_OctetSeq,
+    RTM::_tc_NVList,
+    RTM::_tc_ModuleProfile,
+    RTM::_tc_ModuleProfileList,
+    RTM::_tc_ManagerProfile,
+    RTM::_tc_ManagerList,
+    RTC::_tc_FsmEventProfile,
+    RTC::_tc_FsmEventProfileList,
+    RTC::_tc_FsmStructure,
+    OpenRTM::_tc_StatusKind,
+    RTC::_tc_StatusKind,
+    OpenRTM::_tc_LogLevel,
+    OpenRTM::_tc_LogRecord,
+    RTC::_tc_Time,
+    RTC::_tc_TimedState,
+    RTC::_tc_TimedShort,
+    RTC::_tc_TimedLong,
+    RTC::_tc_TimedUShort,
+    RTC::_tc_TimedULong,
+    RTC::_tc_TimedFloat,
+    RTC::_tc_TimedDouble,
+    RTC::_tc_TimedChar,
+    RTC::_tc_TimedWChar,
+    RTC::_tc_TimedBoolean,
+    RTC::_tc_TimedOctet,
+    RTC::_tc_TimedString,
+    RTC::_tc_TimedWString,
+    RTC::_tc_TimedShortSeq,
+    RTC::_tc_TimedLongSeq,
+    RTC::_tc_TimedUShortSeq,
+    RTC::_tc_TimedULongSeq,
+    RTC::_tc_TimedFloatSeq,
+    RTC::_tc_TimedDoubleSeq,
+    RTC::_tc_TimedCharSeq,
+    RTC::_tc_TimedWCharSeq,
+    RTC::_tc_TimedBooleanSeq,
+    RTC::_tc_TimedOctetSeq,
+    RTC::_tc_TimedStringSeq,
+    RTC::_tc_TimedWStringSeq,
+    RTC::_tc_RGBColour,
+    RTC::_tc_Point2D,
+    RTC::_tc_Vector2D,
+    RTC::_tc_Pose2D,
+    RTC::_tc_Velocity2D,
+    RTC::_tc_Acceleration2D,
+    RTC::_tc_PoseVel2D,
+    RTC::_tc_Size2D,
+    RTC::_tc_Geometry2D,
+    RTC::_tc_Covariance2D,
+    RTC::_tc_PointCovariance2D,
+    RTC::_tc_Carlike,
+    RTC::_tc_SpeedHeading2D,
+    RTC::_tc_Point3D,
+    RTC::_tc_Vector3D,
+    RTC::_tc_Orientation3D,
+    RTC::_tc_Pose3D,
+    RTC::_tc_Velocity3D,
+    RTC::_tc_AngularVelocity3D,
+    RTC::_tc_Acceleration3D,
+    RTC::_tc_AngularAcceleration3D,
+    RTC::_tc_PoseVel3D,
+    RTC::_tc_Size3D,
+    RTC::_tc_Geometry3D,
+    RTC::_tc_Covariance3D,
+    RTC::_tc_SpeedHeading3D,
+    RTC::_tc_OAP,
+    RTC::_tc_TimedRGBColour,
+    RTC::_tc_TimedPoint2D,
+    RTC::_tc_TimedVector2D,
+    RTC::_tc_TimedPose2D,
+    RTC::_tc_TimedVelocity2D,
+    RTC::_tc_TimedAcceleration2D,
+    RTC::_tc_TimedPoseVel2D,
+    RTC::_tc_TimedSize2D,
+    RTC::_tc_TimedGeometry2D,
+    RTC::_tc_TimedCovariance2D,
+    RTC::_tc_TimedPointCovariance2D,
+    RTC::_tc_TimedCarlike,
+    RTC::_tc_TimedSpeedHeading2D,
+    RTC::_tc_TimedPoint3D,
+    RTC::_tc_TimedVector3D,
+    RTC::_tc_TimedOrientation3D,
+    RTC::_tc_TimedPose3D,
+    RTC::_tc_TimedVelocity3D,
+    RTC::_tc_TimedAngularVelocity3D,
+    RTC::_tc_TimedAcceleration3D,
+    RTC::_tc_TimedAngularAcceleration3D,
+    RTC::_tc_TimedPoseVel3D,
+    RTC::_tc_TimedSize3D,
+    RTC::_tc_TimedGeometry3D,
+    RTC::_tc_TimedCovariance3D,
+    RTC::_tc_TimedSpeedHeading3D,
+    RTC::_tc_TimedOAP,
+    RTC::_tc_Quaternion,
+    RTC::_tc_TimedQuaternion,
+    RTC::_tc_ActArrayActuatorPos,
+    RTC::_tc_ActArrayActuatorSpeed,
+    RTC::_tc_ActArrayActuatorCurrent,
+    RTC::_tc_ActArrayActuatorStatus,
+    RTC::_tc_Actuator,
+    RTC::_tc_ActuatorList,
+    RTC::_tc_ActArrayState,
+    RTC::_tc_ActArrayActuatorType,
+    RTC::_tc_ActArrayActuatorGeometry,
+    RTC::_tc_ActArrayActuatorGeometryList,
+    RTC::_tc_ActArrayGeometry,
+    RTC::_tc_BumperGeometry,
+    RTC::_tc_BumperGeometryList,
+    RTC::_tc_BumperArrayGeometry,
+    RTC::_tc_CameraImage,
+    RTC::_tc_CameraInfo,
+    RTC::_tc_FiducialInfo,
+    RTC::_tc_FiducialInfoList,
+    RTC::_tc_Fiducials,
+    RTC::_tc_FiducialFOV,
+    RTC::_tc_GPSTime,
+    RTC::_tc_GPSFixType,
+    RTC::_tc_GPSData,
+    RTC::_tc_GripperStatus,
+    RTC::_tc_GripperState,
+    RTC::_tc_GripperGeometry,
+    RTC::_tc_INSData,
+    RTC::_tc_LimbStatus,
+    RTC::_tc_LimbState,
+    RTC::_tc_Hypothesis2D,
+    RTC::_tc_Hypothesis2DList,
+    RTC::_tc_Hypotheses2D,
+    RTC::_tc_Hypothesis3D,
+    RTC::_tc_Hypothesis3DList,
+    RTC::_tc_Hypotheses3D,
+    RTC::_tc_OGMapConfig,
+    RTC::_tc_OGMapCells,
+    RTC::_tc_OGMapTile,
+    RTC::_tc_PointFeature,
+    RTC::_tc_PointFeatureList,
+    RTC::_tc_PoseFeature,
+    RTC::_tc_PoseFeatureList,
+    RTC::_tc_LineFeature,
+    RTC::_tc_LineFeatureList,
+    RTC::_tc_Features,
+    RTC::_tc_MulticameraImageList,
+    RTC::_tc_MultiCameraImages,
+    RTC::_tc_MulticameraInfoList,
+    RTC::_tc_MulticameraGeometryList,
+    RTC::_tc_MulticameraGeometry,
+    RTC::_tc_Waypoint2D,
+    RTC::_tc_Waypoint2DList,
+    RTC::_tc_Path2D,
+    RTC::_tc_Waypoint3D,
+    RTC::_tc_Waypoint3DList,
+    RTC::_tc_Path3D,
+    RTC::_tc_PointCloudPoint,
+    RTC::_tc_PointCloudPointList,
+    RTC::_tc_PointCloud,
+    RTC::_tc_PanTiltAngles,
+    RTC::_tc_PanTiltState,
+    RTC::_tc_ElementGeometryList,
+    RTC::_tc_RangerGeometry,
+    RTC::_tc_RangerConfig,
+    RTC::_tc_RangeList,
+    RTC::_tc_RangeData,
+    RTC::_tc_IntensityList,
+    RTC::_tc_IntensityData,
+    RTC::_tc_RFIDTagData,
+    Img::_tc_Vec3,
+    Img::_tc_Mat44,
+    Img::_tc_ColorFormat,
+    Img::_tc_ImageData,
+    Img::_tc_CameraIntrinsicParameter,
+    Img::_tc_CameraImage,
+    Img::_tc_TimedCameraImage,
+    Img::_tc_MultiCameraImage,
+    Img::_tc_TimedMultiCameraImage,
+    Img::_tc_NamedValue,
+    Img::_tc_NVList,
+    Img::_tc_CameraDeviceProfile,
+    JARA_ARM::_tc_DoubleSeq,
+    JARA_ARM::_tc_JointPos,
+    JARA_ARM::_tc_LimitValue,
+    JARA_ARM::_tc_RETURN_ID,
+    JARA_ARM::_tc_TimedJointPos,
+    JARA_ARM::_tc_ULONG,
+    JARA_ARM::_tc_AlarmType,
+    JARA_ARM::_tc_Alarm,
+    JARA_ARM::_tc_AlarmSeq,
+    JARA_ARM::_tc_LimitSeq,
+    JARA_ARM::_tc_ManipInfo,
+    JARA_ARM::_tc_HgMatrix,
+    JARA_ARM::_tc_CarPosWithElbow,
+    JARA_ARM::_tc_CartesianSpeed,
+};
+
+struct Interface {
+  const char* stub_id;
+  CORBA::TypeCode_ptr type;
+  const char* id;
+};
+
+const Interface interfaces[] = {
+    {SDOPackage::SDOSystemElement::_PD_repoId, SDOPackage::_tc_SDOSystemElement, "IDL:org.omg/SDOPackage/SDOSystemElement:1.0"},
+    {SDOPackage::SDO::_PD_repoId, SDOPackage::_tc_SDO, "IDL:org.omg/SDOPackage/SDO:1.0"},
+    {SDOPackage::Configuration::_PD_repoId, SDOPackage::_tc_Configuration, "IDL:org.omg/SDOPackage/Configuration:1.0"},
+    {SDOPackage::Monitoring::_PD_repoId, SDOPackage::_tc_Monitoring, "IDL:org.omg/SDOPackage/Monitoring:1.0"},
+    {SDOPackage::SDOService::_PD_repoId, SDOPackage::_tc_SDOService, "IDL:org.omg/SDOPackage/SDOService:1.0"},
+    {SDOPackage::Organization::_PD_repoId, SDOPackage::_tc_Organization, "IDL:org.omg/SDOPackage/Organization:1.0"},
+    {RTC::ComponentAction::_PD_repoId, RTC::_tc_ComponentAction, "IDL:omg.org/RTC/ComponentAction:1.0"},
+    {RTC::LightweightRTObject::_PD_repoId, RTC::_tc_LightweightRTObject, "IDL:omg.org/RTC/LightweightRTObject:1.0"},
+    {RTC::ExecutionContext::_PD_repoId, RTC::_tc_ExecutionContext, "IDL:omg.org/RTC/ExecutionContext:1.0"},
+    {RTC::DataFlowComponentAction::_PD_repoId, RTC::_tc_DataFlowComponentAction, "IDL:omg.org/RTC/DataFlowComponentAction:1.0"},
+    {RTC::DataFlowComponent::_PD_repoId, RTC::_tc_DataFlowComponent, "IDL:omg.org/RTC/DataFlowComponent:1.0"},
+    {RTC::Fsm::_PD_repoId, RTC::_tc_Fsm, "IDL:omg.org/RTC/Fsm:1.0"},
+    {RTC::FsmParticipantAction::_PD_repoId, RTC::_tc_FsmParticipantAction, "IDL:omg.org/RTC/FsmParticipantAction:1.0"},
+    {RTC::FsmParticipant::_PD_repoId, RTC::_tc_FsmParticipant, "IDL:omg.org/RTC/FsmParticipant:1.0"},
+    {RTC::Mode::_PD_repoId, RTC::_tc_Mode, "IDL:omg.org/RTC/Mode:1.0"},
+    {RTC::ModeCapable::_PD_repoId, RTC::_tc_ModeCapable, "IDL:omg.org/RTC/ModeCapable:1.0"},
+    {RTC::MultiModeComponentAction::_PD_repoId, RTC::_tc_MultiModeComponentAction, "IDL:omg.org/RTC/MultiModeComponentAction:1.0"},
+    {RTC::MultiModeObject::_PD_repoId, RTC::_tc_MultiModeObject, "IDL:omg.org/RTC/MultiModeObject:1.0"},
+    {RTC::FsmObject::_PD_repoId, RTC::_tc_FsmObject, "IDL:omg.org/RTC/FsmObject:1.0"},
+    {RTC::FsmService::_PD_repoId, RTC::_tc_FsmService, "IDL:omg.org/RTC/FsmService:1.0"},
+    {RTC::PortService::_PD_repoId, RTC::_tc_PortService, "IDL:omg.org/RTC/PortService:1.0"},
+    {RTC::ExecutionContextService::_PD_repoId, RTC::_tc_ExecutionContextService, "IDL:omg.org/RTC/ExecutionContextService:1.0"},
+    {RTC::RTObject::_PD_repoId, RTC::_tc_RTObject, "IDL:omg.org/RTC/RTObject:1.0"},
+    {OpenRTM::DataFlowComponent::_PD_repoId, OpenRTM::_tc_DataFlowComponent, "IDL:openrtm.aist.go.jp/OpenRTM/DataFlowComponent:1.0"},
+    {OpenRTM::ExtTrigExecutionContextService::_PD_repoId, OpenRTM::_tc_ExtTrigExecutionContextService,
+     "IDL:openrtm.aist.go.jp/OpenRTM/ExtTrigExecutionContextService:1.0"},
+    {OpenRTM::InPortCdr::_PD_repoId, OpenRTM::_tc_InPortCdr, "IDL:OpenRTM/InPortCdr:1.0"},
+    {OpenRTM::OutPortCdr::_PD_repoId, OpenRTM::_tc_OutPortCdr, "IDL:OpenRTM/OutPortCdr:1.0"},
+    {RTC::DataPushService::_PD_repoId, RTC::_tc_DataPushService, "IDL:omg.org/RTC/DataPushService:1.0"},
+    {RTC::DataPullService::_PD_repoId, RTC::_tc_DataPullService, "IDL:omg.org/RTC/DataPullService:1.0"},
+    {OpenRTM::InPortCdrUDP::_PD_repoId, OpenRTM::_tc_InPortCdrUDP, "IDL:openrtm.aist.go.jp/OpenRTM/InPortCdrUDP:1.0"},
+    {OpenRTM::PortSharedMemory::_PD_repoId, OpenRTM::_tc_PortSharedMemory, "IDL:OpenRTM/PortSharedMemory:1.0"},
+    {RTM::Manager::_PD_repoId, RTM::_tc_Manager, "IDL:RTM/Manager:1.0"},
+    {RTC::ExtendedFsmService::_PD_repoId, RTC::_tc_ExtendedFsmService, "IDL:omg.org/RTC/ExtendedFsmService:1.0"},
+    {OpenRTM::ComponentObserver::_PD_repoId, OpenRTM::_tc_ComponentObserver, "IDL:OpenRTM/ComponentObserver:1.0"},
+    {RTC::ComponentObserver::_PD_repoId, RTC::_tc_ComponentObserver, "IDL:omg.org/RTC/ComponentObserver:1.0"},
+    {OpenRTM::Logger::_PD_repoId, OpenRTM::_tc_Logger, "IDL:OpenRTM/Logger:1.0"},
+    {OpenRTM::LogicalTimeTriggeredEC::_PD_repoId, OpenRTM::_tc_LogicalTimeTriggeredEC,
+     "IDL:openrtm.org/OpenRTM/LogicalTimeTriggeredEC:1.0"},
+    {Img::CameraCaptureService::_PD_repoId, Img::_tc_CameraCaptureService, "IDL:Img/CameraCaptureService:1.0"},
+    {JARA_ARM::ManipulatorCommonInterface_Common::_PD_repoId, JARA_ARM::_tc_ManipulatorCommonInterface_Common,
+     "IDL:JARA_ARM/ManipulatorCommonInterface_Common:1.0"},
+    {JARA_ARM::ManipulatorCommonInterface_Middle::_PD_repoId, JARA_ARM::_tc_ManipulatorCommonInterface_Middle,
+     "IDL:JARA_ARM/ManipulatorCommonInterface_Middle:1.0"},
+};
+
+TEST(WireTypes, every_type_has_the_id_members_and_order_of_the_contract) {
+  std::ifstream golden(RTMSIM_SOURCE_DIR "/tests/golden/wire_types.txt");
+  ASSERT_TRUE(golden);
+  std::string expected;
+  for (CORBA::TypeCode_ptr type : types) {
+    ASSERT_TRUE(std::getline(golden, expected));
+    EXPECT_EQ(kind_name(type) + " " + type->id() + " " + content(type), expected);
+  }
+  EXPECT_FALSE(std::getline(golden, expected));
+}
+
+TEST(WireTypes, every_interface_has_the_id_of_the_contract) {
+  for (const Interface& interface : interfaces) {
+    EXPECT_STREQ(interface.stub_id, interface.id);
+    EXPECT_STREQ(interface.type->id(), interface.id);
+  }
+}
+
+}  // namespace
