@@ -1,0 +1,65 @@
+// The ORB as a value: made with settings, gone with its destructor. One per process at a time (omniORB's rule). Any thread after start.
+// Listens on the loopback interface unless told otherwise, on tcp and on a unix socket in a private folder; both are published.
+#pragma once
+
+#include <omniORB4/CORBA.h>
+
+#include <chrono>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+
+namespace corba {
+
+struct OrbSettings {
+  // Where to listen: "HOST:PORT", ":PORT" (loopback), "HOST", "all" (every interface), "unix" or an omniORB end point "giop:...". Empty:
+  // any free port on loopback. An empty list is the same as one empty string.
+  std::vector<std::string> endpoints;
+  bool unix_socket = true;                                // a further end point for processes of this host
+  std::chrono::milliseconds call_timeout{10'000};         // of every call to another process; 0: none
+  std::size_t max_message_size = std::size_t{128} << 20;  // [byte]
+  std::vector<std::string> arguments;                     // further -ORB... arguments; they win over the settings above
+};
+
+class Orb {
+ public:
+  // Fails with one line when an end point cannot be used or an argument is not understood. Requests are not served before activate().
+  static base::Result<std::unique_ptr<Orb>> start(const OrbSettings& settings = {});
+  // Shuts the ORB down: waits for requests in progress, then destroys it and removes the unix socket.
+  ~Orb();
+  Orb(const Orb&) = delete;
+  Orb& operator=(const Orb&) = delete;
+
+  void activate();
+
+  // Borrowed.
+  CORBA::ORB_ptr orb() const { return orb_.in(); }
+  PortableServer::POA_ptr root_poa() const { return root_poa_.in(); }
+  PortableServer::POAManager_ptr poa_manager() const { return poa_manager_.in(); }
+
+  // Makes the object answer under `corbaloc:iiop:<host>:<port>/<key>` too, by sending callers on to it. An existing key is replaced.
+  void publish(const std::string& key, CORBA::Object_ptr object);
+  void withdraw(const std::string& key);
+
+  // "host:port" of every tcp end point.
+  std::vector<std::string> addresses() const;
+
+ private:
+  Orb() = default;
+  CORBA::ORB_var orb_;
+  PortableServer::POA_var root_poa_;
+  PortableServer::POA_var ins_poa_;
+  PortableServer::POAManager_var poa_manager_;
+  std::string unix_folder_;
+};
+
+// Every call through this reference (and copies made of it later) ends with CORBA::TIMEOUT or TRANSIENT after that time.
+void set_call_timeout(CORBA::Object_ptr object, std::chrono::milliseconds timeout);
+
+// An exception of a remote call in one line: "TRANSIENT (connect failed)".
+std::string to_text(const CORBA::Exception& exception);
+
+}  // namespace corba

@@ -1,0 +1,55 @@
+// The manager's names in naming services. Any thread; nothing here waits for a naming service longer than a short time-out.
+#pragma once
+
+#include <rtm/RTC.h>
+
+#include <coil/stringutil.h>
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace RTM {
+class ManagerServant;
+}
+
+namespace RTC {
+
+class Manager;
+class RTObject_impl;
+class PortBase;
+
+class NamingManager {
+ public:
+  explicit NamingManager(Manager* manager);
+  ~NamingManager();
+  NamingManager(const NamingManager&) = delete;
+  NamingManager& operator=(const NamingManager&) = delete;
+
+  // method: "corba". name_server: host, host:port or a corbaloc URL.
+  void registerNameServer(const char* method, const char* name_server);
+  // Binds under `name` on every naming service, now or when it comes (back).
+  void bindObject(const char* name, const RTObject_impl* rtobj);
+  void bindObject(const char* name, const RTM::ManagerServant* servant);
+  void bindObject(const std::string& name, CORBA::Object_ptr object);
+  void bindPortObject(const char* name, PortService_ptr port);
+  void unbindObject(const char* name);
+  void unbindAll();
+  // Looks after all bindings soon; the timer does it anyway.
+  void update();
+
+  // The components that a name stands for: an instance name of this process, `rtcname://host:port/path/instance`, `rtcname://*/instance`,
+  // `rtcloc://host:port/category/instance`.
+  RTCList string_to_component(const std::string& name);
+  // The object bound under a full name on any of the naming services; nil if there is none that answers.
+  CORBA::Object_ptr resolve(const std::string& name);
+  // True if something alive that is not ours is bound under an entry of that instance name, under this host's name or anywhere.
+  bool isInstanceTaken(const std::string& instance_name, bool this_host_only);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace RTC
