@@ -1,0 +1,142 @@
+// What an execution context is made from: membership, life cycle, rate, profile, and the three phases of a cycle. It has no thread: a
+// derived class calls invokeWorkerPreDo, Do and PostDo (or invokeWorker) from its own, one at a time. Everything else may be called from
+// any thread. A derived class is also a servant of RTC::ExecutionContextService and answers its operations with the functions here.
+#pragma once
+
+#include <coil/Properties.h>
+#include <rtm/RTObjectStateMachine.h>
+#include <rtm/SystemLogger.h>
+#include <rtm/idl/RTCSkel.h>
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace base {
+class Clock;
+}
+namespace rt {
+class ExecutionContext;
+}
+
+namespace RTC {
+
+class RTObject_impl;
+
+class ExecutionContextBase {
+ public:
+  explicit ExecutionContextBase(const std::string& name = "");
+  virtual ~ExecutionContextBase();
+  ExecutionContextBase(const ExecutionContextBase&) = delete;
+  ExecutionContextBase& operator=(const ExecutionContextBase&) = delete;
+
+  // Takes rate, sync_transition, transition_timeout and their relatives from the options; wrong values are logged and left.
+  virtual void init(coil::Properties& props);
+  // Makes the component an owner of this context.
+  virtual RTC::ReturnCode_t bindComponent(RTC::RTObject_impl* rtc);
+  // Ends the membership of an owner: after return the context does not call it any more. Returns how many owners are left.
+  std::size_t unbindComponent(RTC::RTObject_impl* rtc);
+
+  CORBA::Boolean isRunning() const;
+  // onStartup (onShutdown) of every member is called on the calling thread.
+  RTC::ReturnCode_t start();
+  RTC::ReturnCode_t stop();
+  // [Hz]
+  CORBA::Double getRate() const;
+  std::chrono::nanoseconds getPeriod() const;
+  RTC::ReturnCode_t setRate(CORBA::Double rate);
+
+  RTC::ReturnCode_t addComponent(RTC::LightweightRTObject_ptr comp);
+  RTC::ReturnCode_t removeComponent(RTC::LightweightRTObject_ptr comp);
+  // Wait for the transition unless sync_transition is off or the caller is the stepping thread.
+  RTC::ReturnCode_t activateComponent(RTC::LightweightRTObject_ptr comp);
+  RTC::ReturnCode_t deactivateComponent(RTC::LightweightRTObject_ptr comp);
+  RTC::ReturnCode_t resetComponent(RTC::LightweightRTObject_ptr comp);
+  RTC::LifeCycleState getComponentState(RTC::LightweightRTObject_ptr comp) const;
+  static const char* getStateString(RTC::LifeCycleState state);
+
+  bool isAllCurrentState(RTC::LifeCycleState state) const;
+  bool isAllNextState(RTC::LifeCycleState state) const;
+  bool isOneOfCurrentState(RTC::LifeCycleState state) const;
+  bool isOneOfNextState(RTC::LifeCycleState state) const;
+
+  RTC::ExecutionKind getKind() const;
+  const char* getKindString() const;
+  static const char* getKindString(RTC::ExecutionKind kind);
+  // The caller owns the profile.
+  RTC::ExecutionContextProfile* getProfile();
+  std::vector<RTC::LightweightRTObject_var> getComponents() const;
+
+  void setObjRef(RTC::ExecutionContextService_ptr ref);
+  // A new reference.
+  RTC::ExecutionContextService_ptr getObjRef() const;
+  RTC::ReturnCode_t setKind(RTC::ExecutionKind kind);
+  // Nil when there is none.
+  RTC::RTObject_ptr getOwner() const;
+  RTC::ReturnCode_t setOwner(RTC::LightweightRTObject_ptr comp);
+  void setProperties(const coil::Properties& props);
+  coil::Properties getProperties() const;
+  std::string getName() const;
+  std::string getTypeName() const;
+
+  // Waits until no callback of a member runs on another thread; false on time-out.
+  bool waitForQuiet(std::chrono::nanoseconds timeout);
+
+ protected:
+  // Called by the functions above at the moments their names say; a code other than RTC_OK ends the operation with it.
+  virtual RTC::ReturnCode_t onStarting() { return RTC::RTC_OK; }
+  virtual RTC::ReturnCode_t onStarted() { return RTC::RTC_OK; }
+  virtual RTC::ReturnCode_t onStopping() { return RTC::RTC_OK; }
+  virtual RTC::ReturnCode_t onStopped() { return RTC::RTC_OK; }
+  // May return another rate.
+  virtual double onGetRate(double rate) const { return rate; }
+  virtual double onSettingRate(double rate) { return rate; }
+  virtual RTC::ReturnCode_t onSetRate(double) { return RTC::RTC_OK; }
+  virtual RTC::ReturnCode_t onAddingComponent(RTC::LightweightRTObject_ptr) { return RTC::RTC_OK; }
+  virtual RTC::ReturnCode_t onAddedComponent(RTC::LightweightRTObject_ptr) { return RTC::RTC_OK; }
+  virtual RTC::ReturnCode_t onRemovingComponent(RTC::LightweightRTObject_ptr) { return RTC::RTC_OK; }
+  virtual RTC::ReturnCode_t onRemovedComponent(RTC::LightweightRTObject_ptr) { return RTC::RTC_OK; }
+  virtual RTC::ReturnCode_t onActivating(RTC::LightweightRTObject_ptr) { return RTC::RTC_OK; }
+  // The waiting ones are called once before the caller waits: a context that sleeps must see to it that a cycle begins.
+  virtual RTC::ReturnCode_t onWaitingActivated(RTC_impl::RTObjectStateMachine*, long int) { return RTC::RTC_OK; }
+  virtual RTC::ReturnCode_t onActivated(RTC_impl::RTObjectStateMachine*, long int) { return RTC::RTC_OK; }
+  virtual RTC::ReturnCode_t onDeactivating(RTC::LightweightRTObject_ptr) { return RTC::RTC_OK; }
+  virtual RTC::ReturnCode_t onWaitingDeactivated(RTC_impl::RTObjectStateMachine*, long int) { return RTC::RTC_OK; }
+  virtual RTC::ReturnCode_t onDeactivated(RTC_impl::RTObjectStateMachine*, long int) { return RTC::RTC_OK; }
+  virtual RTC::ReturnCode_t onResetting(RTC::LightweightRTObject_ptr) { return RTC::RTC_OK; }
+  virtual RTC::ReturnCode_t onWaitingReset(RTC_impl::RTObjectStateMachine*, long int) { return RTC::RTC_OK; }
+  virtual RTC::ReturnCode_t onReset(RTC_impl::RTObjectStateMachine*, long int) { return RTC::RTC_OK; }
+  virtual RTC::LifeCycleState onGetComponentState(RTC::LifeCycleState state) const { return state; }
+  virtual RTC::ExecutionKind onGetKind(RTC::ExecutionKind kind) const { return kind; }
+  virtual RTC::ExecutionContextProfile* onGetProfile(RTC::ExecutionContextProfile*& profile) { return profile; }
+  // A member asks for a transition, or the rate has changed; for contexts whose thread may sleep longer than a period. Called without a
+  // lock.
+  virtual void onWakeUp() {}
+
+  // Simulated contexts return their own; it is the current clock (base/clock.h) of components while they are called.
+  virtual const base::Clock& contextClock() const;
+
+  // One cycle: transitions, onExecute (onError), onStateUpdate. Nothing happens while the context is stopped.
+  void invokeWorker();
+  void invokeWorkerPreDo();
+  void invokeWorkerDo();
+  void invokeWorkerPostDo();
+  // Cycles that should have been and were not, for the statistics of the profile.
+  void countMissedCycles(std::uint64_t cycles);
+  bool isSteppingThread() const;
+
+  rt::ExecutionContext& context();
+  const rt::ExecutionContext& context() const;
+
+  mutable Logger rtclog;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// Takes a context out of its object adapter and gives up its servant; calls that still run end first.
+void destroyExecutionContext(ExecutionContextBase* context);
+
+}  // namespace RTC

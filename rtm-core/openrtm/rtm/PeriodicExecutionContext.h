@@ -1,0 +1,48 @@
+// Runs its components at a rate, on a thread of its own, with absolute deadlines: the mean rate is the one asked for. The thread sleeps
+// while no component is active or changes its state. Classic contexts derive from it and replace svc().
+#pragma once
+
+#include <coil/Task.h>
+#include <rtm/ExecutionContextServant.h>
+
+#include <memory>
+#include <vector>
+
+namespace rt {
+class PeriodicWorker;
+}
+
+namespace RTC {
+
+class PeriodicExecutionContext : public ExecutionContextServant<POA_RTC::ExecutionContextService>, public coil::Task {
+ public:
+  explicit PeriodicExecutionContext(const std::string& name = "periodic_ec");
+  ~PeriodicExecutionContext() override;
+
+  // Also takes cpu_affinity (a comma list of processor numbers) and priority (1-99: real-time scheduling).
+  void init(coil::Properties& props) override;
+
+  int open(void* args) override;
+  int svc() override;
+  int close(unsigned long flags) override;
+
+  // Both bases have operations of these names; components call the context's.
+  RTC::ReturnCode_t start() override { return ExecutionContextBase::start(); }
+  RTC::ReturnCode_t stop() override { return ExecutionContextBase::stop(); }
+
+ protected:
+  RTC::ReturnCode_t onStarted() override;
+  RTC::ReturnCode_t onStopping() override;
+  void onWakeUp() override;
+  // True while the thread is to go on.
+  bool threadRunning() const;
+
+ private:
+  std::unique_ptr<rt::PeriodicWorker> worker_;
+  std::vector<unsigned> processors_;
+  int priority_ = 0;
+};
+
+}  // namespace RTC
+
+extern "C" void PeriodicExecutionContextInit(RTC::Manager* manager);

@@ -1,0 +1,354 @@
+// A component: servant of OpenRTM::DataFlowComponent and base class of everything that authors write. Its operations may be called from any
+// thread. Callbacks: onInitialize, onFinalize, onStartup, onShutdown and onRateChanged run on the caller's thread, all others on the thread
+// of the execution context. What a callback throws becomes RTC_ERROR and one log line. No lock is held while a callback runs.
+#pragma once
+
+#include <coil/Properties.h>
+#include <rtm/ComponentActionListener.h>
+#include <rtm/ConfigAdmin.h>
+#include <rtm/ExecutionContextBase.h>
+#include <rtm/PortConnectListener.h>
+#include <rtm/SystemLogger.h>
+#include <rtm/idl/OpenRTMSkel.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace SDOPackage {
+class Organization_impl;
+}
+
+namespace RTC {
+
+class InPortBase;
+class Manager;
+class OutPortBase;
+class PortBase;
+class SdoServiceAdmin;
+class SdoServiceProviderBase;
+
+class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virtual PortableServer::RefCountServantBase {
+ public:
+  explicit RTObject_impl(Manager* manager);
+  RTObject_impl(CORBA::ORB_ptr orb, PortableServer::POA_ptr poa);
+  ~RTObject_impl() override;
+
+ protected:
+  // What authors replace.
+  virtual ReturnCode_t onInitialize();
+  virtual ReturnCode_t onFinalize();
+  virtual ReturnCode_t onStartup(RTC::UniqueId exec_handle);
+  virtual ReturnCode_t onShutdown(RTC::UniqueId exec_handle);
+  virtual ReturnCode_t onActivated(RTC::UniqueId exec_handle);
+  virtual ReturnCode_t onDeactivated(RTC::UniqueId exec_handle);
+  virtual ReturnCode_t onExecute(RTC::UniqueId exec_handle);
+  virtual ReturnCode_t onAborting(RTC::UniqueId exec_handle);
+  virtual ReturnCode_t onError(RTC::UniqueId exec_handle);
+  virtual ReturnCode_t onReset(RTC::UniqueId exec_handle);
+  virtual ReturnCode_t onStateUpdate(RTC::UniqueId exec_handle);
+  virtual ReturnCode_t onRateChanged(RTC::UniqueId exec_handle);
+  virtual ReturnCode_t onAction(RTC::UniqueId exec_handle);
+
+ public:
+  // RTC::LightweightRTObject
+  ReturnCode_t initialize() override;
+  ReturnCode_t finalize() override;
+  // From inside a callback it returns at once and happens after the cycle.
+  ReturnCode_t exit() override;
+  CORBA::Boolean is_alive(ExecutionContext_ptr exec_context) override;
+  ExecutionContext_ptr get_context(ExecutionContextHandle_t exec_handle) override;
+  ExecutionContextList* get_owned_contexts() override;
+  ExecutionContextList* get_participating_contexts() override;
+  ExecutionContextHandle_t get_context_handle(ExecutionContext_ptr cxt) override;
+  ExecutionContextHandle_t attach_context(ExecutionContext_ptr exec_context) override;
+  ReturnCode_t detach_context(ExecutionContextHandle_t exec_handle) override;
+  // -1 when the context is nil or no context.
+  UniqueId bindContext(ExecutionContext_ptr exec_context);
+
+  // RTC::ComponentAction and DataFlowComponentAction: what execution contexts, here and elsewhere, call.
+  ReturnCode_t on_initialize() override;
+  ReturnCode_t on_finalize() override;
+  ReturnCode_t on_startup(ExecutionContextHandle_t exec_handle) override;
+  ReturnCode_t on_shutdown(ExecutionContextHandle_t exec_handle) override;
+  ReturnCode_t on_activated(ExecutionContextHandle_t exec_handle) override;
+  ReturnCode_t on_deactivated(ExecutionContextHandle_t exec_handle) override;
+  ReturnCode_t on_aborting(ExecutionContextHandle_t exec_handle) override;
+  ReturnCode_t on_error(ExecutionContextHandle_t exec_handle) override;
+  ReturnCode_t on_reset(ExecutionContextHandle_t exec_handle) override;
+  ReturnCode_t on_execute(ExecutionContextHandle_t exec_handle) override;
+  ReturnCode_t on_state_update(ExecutionContextHandle_t exec_handle) override;
+  ReturnCode_t on_rate_changed(ExecutionContextHandle_t exec_handle) override;
+
+  // RTC::RTObject
+  ComponentProfile* get_component_profile() override;
+  PortServiceList* get_ports() override;
+
+  // SDOPackage::SDO
+  SDOPackage::OrganizationList* get_owned_organizations() override;
+  char* get_sdo_id() override;
+  char* get_sdo_type() override;
+  SDOPackage::DeviceProfile* get_device_profile() override;
+  SDOPackage::ServiceProfileList* get_service_profiles() override;
+  SDOPackage::ServiceProfile* get_service_profile(const char* id) override;
+  SDOPackage::SDOService_ptr get_sdo_service(const char* id) override;
+  SDOPackage::Configuration_ptr get_configuration() override;
+  SDOPackage::Monitoring_ptr get_monitoring() override;
+  SDOPackage::OrganizationList* get_organizations() override;
+  SDOPackage::NVList* get_status_list() override;
+  CORBA::Any* get_status(const char* name) override;
+
+  // What the component is.
+  const char* getInstanceName() const { return profile_.instance_name.c_str(); }
+  void setInstanceName(const char* instance_name);
+  const char* getTypeName() const { return profile_.type_name.c_str(); }
+  const char* getDescription() const { return profile_.description.c_str(); }
+  const char* getVersion() const { return profile_.version.c_str(); }
+  const char* getVendor() const { return profile_.vendor.c_str(); }
+  const char* getCategory() const { return profile_.category.c_str(); }
+  std::vector<std::string> getNamingNames() const;
+  void setObjRef(const RTObject_ptr rtobj);
+  // A new reference.
+  RTObject_ptr getObjRef() const;
+  // Merges; the values become those of the profile and of the configuration sets.
+  void setProperties(const coil::Properties& prop);
+  // For onInitialize and the constructor; no other thread may read the profile meanwhile.
+  coil::Properties& getProperties() { return m_properties; }
+  Manager* getManager() const { return m_pManager; }
+  std::string getInstanceNameString() const { return profile_.instance_name; }
+
+  // Configuration.
+  template <typename VarType>
+  bool bindParameter(const char* param_name, VarType& var, const char* def_val, bool (*trans)(VarType&, const char*) = coil::stringTo) {
+    prepareBinding();
+    return m_configsets.bindParameter(param_name, var, def_val, trans);
+  }
+  template <typename VarType, typename Function>
+  requires std::is_invocable_r_v<bool, Function, VarType&, const char*>
+  bool bindParameter(const char* param_name, VarType& var, const char* def_val, Function trans) {
+    prepareBinding();
+    return m_configsets.bindParameter(param_name, var, def_val, trans);
+  }
+  ConfigAdmin& getConfigService() { return m_configsets; }
+  void updateParameters(const char* config_set) { m_configsets.update(config_set); }
+
+  // Ports. They stay the caller's and must outlive the component's exit. False when a port of that name is there already.
+  bool addPort(PortBase& port);
+  // A port of another component (composites).
+  bool addPort(PortService_ptr port);
+  bool addInPort(const char* name, InPortBase& inport);
+  bool addOutPort(const char* name, OutPortBase& outport);
+  bool removeInPort(InPortBase& port);
+  bool removeOutPort(OutPortBase& port);
+  bool removePort(PortBase& port);
+  bool removePort(PortService_ptr port);
+  // Older names.
+  void registerPort(PortBase& port) { addPort(port); }
+  void registerPort(PortService_ptr port) { addPort(port); }
+  void registerInPort(const char* name, InPortBase& inport) { addInPort(name, inport); }
+  void registerOutPort(const char* name, OutPortBase& outport) { addOutPort(name, outport); }
+  void deletePort(PortBase& port) { removePort(port); }
+  void deletePort(PortService_ptr port) { removePort(port); }
+  void deletePortByName(const char* port_name);
+  std::vector<InPortBase*> getInPorts() const;
+  std::vector<OutPortBase*> getOutPorts() const;
+  std::vector<PortBase*> getLocalPorts() const;
+
+  // Read (write) every port before (after) each onExecute; `completion`: go on when one fails.
+  bool readAll();
+  bool writeAll();
+  void setReadAll(bool read = true, bool completion = false);
+  void setWriteAll(bool write = true, bool completion = false);
+
+  // Execution contexts by handle: 0.. those of this component, 1000.. those it takes part in. A new reference; nil when there is none.
+  ExecutionContext_ptr getExecutionContext(RTC::UniqueId ec_id);
+  double getExecutionRate(RTC::UniqueId ec_id);
+  ReturnCode_t setExecutionRate(RTC::UniqueId ec_id, double rate);
+  bool isOwnExecutionContext(RTC::UniqueId ec_id);
+  ReturnCode_t activate(RTC::UniqueId ec_id);
+  ReturnCode_t deactivate(RTC::UniqueId ec_id);
+  ReturnCode_t reset(RTC::UniqueId ec_id);
+  // The contexts that this process has made for the component.
+  std::vector<ExecutionContextBase*> getOwnContexts() const;
+
+  // SDO services.
+  bool addSdoServiceProvider(const SDOPackage::ServiceProfile& prof, SdoServiceProviderBase* provider);
+  bool removeSdoServiceProvider(const char* id);
+  bool addSdoServiceConsumer(const SDOPackage::ServiceProfile& prof);
+  bool removeSdoServiceConsumer(const char* id);
+
+  // What Configuration::add_organization and remove_organization do.
+  bool addOrganization(SDOPackage::Organization_ptr organization);
+  bool removeOrganization(const char* organization_id);
+  SDOPackage::DeviceProfile getDeviceProfile() const;
+  void setDeviceProfile(const SDOPackage::DeviceProfile& profile);
+
+  // Listeners. With autoclean they are deleted here. The forms with an object and a member function return the listener they have made, for
+  // removal.
+  void addPreComponentActionListener(PreComponentActionListenerType type, PreComponentActionListener* listener, bool autoclean = true);
+  void removePreComponentActionListener(PreComponentActionListenerType type, PreComponentActionListener* listener);
+  void addPostComponentActionListener(PostComponentActionListenerType type, PostComponentActionListener* listener, bool autoclean = true);
+  void removePostComponentActionListener(PostComponentActionListenerType type, PostComponentActionListener* listener);
+  void addPortActionListener(PortActionListenerType type, PortActionListener* listener, bool autoclean = true);
+  void removePortActionListener(PortActionListenerType type, PortActionListener* listener);
+  void addExecutionContextActionListener(ExecutionContextActionListenerType type, ExecutionContextActionListener* listener,
+                                         bool autoclean = true);
+  void removeExecutionContextActionListener(ExecutionContextActionListenerType type, ExecutionContextActionListener* listener);
+  void addPreFsmActionListener(PreFsmActionListenerType type, PreFsmActionListener* listener, bool autoclean = true);
+  void removePreFsmActionListener(PreFsmActionListenerType type, PreFsmActionListener* listener);
+  void addPostFsmActionListener(PostFsmActionListenerType type, PostFsmActionListener* listener, bool autoclean = true);
+  void removePostFsmActionListener(PostFsmActionListenerType type, PostFsmActionListener* listener);
+  void addPortConnectListener(PortConnectListenerType type, PortConnectListener* listener, bool autoclean = true);
+  void removePortConnectListener(PortConnectListenerType type, PortConnectListener* listener);
+  void addPortConnectRetListener(PortConnectRetListenerType type, PortConnectRetListener* listener, bool autoclean = true);
+  void removePortConnectRetListener(PortConnectRetListenerType type, PortConnectRetListener* listener);
+  void addConfigurationParamListener(ConfigurationParamListenerType type, ConfigurationParamListener* listener, bool autoclean = true);
+  void removeConfigurationParamListener(ConfigurationParamListenerType type, ConfigurationParamListener* listener);
+  void addConfigurationSetListener(ConfigurationSetListenerType type, ConfigurationSetListener* listener, bool autoclean = true);
+  void removeConfigurationSetListener(ConfigurationSetListenerType type, ConfigurationSetListener* listener);
+  void addConfigurationSetNameListener(ConfigurationSetNameListenerType type, ConfigurationSetNameListener* listener,
+                                       bool autoclean = true);
+  void removeConfigurationSetNameListener(ConfigurationSetNameListenerType type, ConfigurationSetNameListener* listener);
+
+  template <class Object>
+  PreComponentActionListener* addPreComponentActionListener(PreComponentActionListenerType type, Object& object,
+                                                            void (Object::*function)(UniqueId)) {
+    using Listener = MemberListener<PreComponentActionListener, Object, decltype(function), UniqueId>;
+    auto* listener = new Listener(object, function);
+    addPreComponentActionListener(type, listener);
+    return listener;
+  }
+  template <class Object>
+  PostComponentActionListener* addPostComponentActionListener(PostComponentActionListenerType type, Object& object,
+                                                              void (Object::*function)(UniqueId, ReturnCode_t)) {
+    using Listener = MemberListener<PostComponentActionListener, Object, decltype(function), UniqueId, ReturnCode_t>;
+    auto* listener = new Listener(object, function);
+    addPostComponentActionListener(type, listener);
+    return listener;
+  }
+  template <class Object>
+  PortActionListener* addPortActionListener(PortActionListenerType type, Object& object,
+                                            void (Object::*function)(const RTC::PortProfile&)) {
+    using Listener = MemberListener<PortActionListener, Object, decltype(function), const RTC::PortProfile&>;
+    auto* listener = new Listener(object, function);
+    addPortActionListener(type, listener);
+    return listener;
+  }
+  template <class Object>
+  ExecutionContextActionListener* addExecutionContextActionListener(ExecutionContextActionListenerType type, Object& object,
+                                                                    void (Object::*function)(UniqueId)) {
+    using Listener = MemberListener<ExecutionContextActionListener, Object, decltype(function), UniqueId>;
+    auto* listener = new Listener(object, function);
+    addExecutionContextActionListener(type, listener);
+    return listener;
+  }
+  template <class Object>
+  PreFsmActionListener* addPreFsmActionListener(PreFsmActionListenerType type, Object& object, void (Object::*function)(const char*)) {
+    using Listener = MemberListener<PreFsmActionListener, Object, decltype(function), const char*>;
+    auto* listener = new Listener(object, function);
+    addPreFsmActionListener(type, listener);
+    return listener;
+  }
+  template <class Object>
+  PostFsmActionListener* addPostFsmActionListener(PostFsmActionListenerType type, Object& object,
+                                                  void (Object::*function)(const char*, ReturnCode_t)) {
+    using Listener = MemberListener<PostFsmActionListener, Object, decltype(function), const char*, ReturnCode_t>;
+    auto* listener = new Listener(object, function);
+    addPostFsmActionListener(type, listener);
+    return listener;
+  }
+  template <class Object>
+  PortConnectListener* addPortConnectListener(PortConnectListenerType type, Object& object,
+                                              void (Object::*function)(const char*, ConnectorProfile&)) {
+    using Listener = MemberListener<PortConnectListener, Object, decltype(function), const char*, ConnectorProfile&>;
+    auto* listener = new Listener(object, function);
+    addPortConnectListener(type, listener);
+    return listener;
+  }
+  template <class Object>
+  PortConnectRetListener* addPortConnectRetListener(PortConnectRetListenerType type, Object& object,
+                                                    void (Object::*function)(const char*, ConnectorProfile&, ReturnCode_t)) {
+    using Listener = MemberListener<PortConnectRetListener, Object, decltype(function), const char*, ConnectorProfile&, ReturnCode_t>;
+    auto* listener = new Listener(object, function);
+    addPortConnectRetListener(type, listener);
+    return listener;
+  }
+  template <class Object>
+  ConfigurationParamListener* addConfigurationParamListener(ConfigurationParamListenerType type, Object& object,
+                                                            void (Object::*function)(const char*, const char*)) {
+    using Listener = MemberListener<ConfigurationParamListener, Object, decltype(function), const char*, const char*>;
+    auto* listener = new Listener(object, function);
+    addConfigurationParamListener(type, listener);
+    return listener;
+  }
+  template <class Object>
+  ConfigurationSetListener* addConfigurationSetListener(ConfigurationSetListenerType type, Object& object,
+                                                        void (Object::*function)(const coil::Properties&)) {
+    using Listener = MemberListener<ConfigurationSetListener, Object, decltype(function), const coil::Properties&>;
+    auto* listener = new Listener(object, function);
+    addConfigurationSetListener(type, listener);
+    return listener;
+  }
+  template <class Object>
+  ConfigurationSetNameListener* addConfigurationSetNameListener(ConfigurationSetNameListenerType type, Object& object,
+                                                                void (Object::*function)(const char*)) {
+    using Listener = MemberListener<ConfigurationSetNameListener, Object, decltype(function), const char*>;
+    auto* listener = new Listener(object, function);
+    addConfigurationSetNameListener(type, listener);
+    return listener;
+  }
+
+  // State machines tell their listeners with these.
+  void preOnFsmInit(const char* state) { m_fsmListeners.preaction_[PRE_ON_INIT].notify(state); }
+  void preOnFsmEntry(const char* state) { m_fsmListeners.preaction_[PRE_ON_ENTRY].notify(state); }
+  void preOnFsmDo(const char* state) { m_fsmListeners.preaction_[PRE_ON_DO].notify(state); }
+  void preOnFsmExit(const char* state) { m_fsmListeners.preaction_[PRE_ON_EXIT].notify(state); }
+  void preOnFsmStateChange(const char* state) { m_fsmListeners.preaction_[PRE_ON_STATE_CHANGE].notify(state); }
+  void postOnFsmInit(const char* state, ReturnCode_t ret) { m_fsmListeners.postaction_[POST_ON_INIT].notify(state, ret); }
+  void postOnFsmEntry(const char* state, ReturnCode_t ret) { m_fsmListeners.postaction_[POST_ON_ENTRY].notify(state, ret); }
+  void postOnFsmDo(const char* state, ReturnCode_t ret) { m_fsmListeners.postaction_[POST_ON_DO].notify(state, ret); }
+  void postOnFsmExit(const char* state, ReturnCode_t ret) { m_fsmListeners.postaction_[POST_ON_EXIT].notify(state, ret); }
+  void postOnFsmStateChange(const char* state, ReturnCode_t ret) { m_fsmListeners.postaction_[POST_ON_STATE_CHANGE].notify(state, ret); }
+
+  // Parts of exit, for those who end a component in another order.
+  void finalizePorts();
+  void finalizeContexts();
+
+ protected:
+  void shutdown();
+  // Composites add themselves.
+  void addOwnedOrganization(SDOPackage::Organization_impl* organization);
+
+  Manager* m_pManager = nullptr;
+  CORBA::ORB_var m_pORB;
+  PortableServer::POA_var m_pPOA;
+  mutable Logger rtclog{"rtobject"};
+  coil::Properties m_properties;
+  ConfigAdmin m_configsets;
+  ComponentActionListeners m_actionListeners;
+  PortConnectListeners m_portconnListeners;
+  FsmActionListeners m_fsmListeners;
+
+ private:
+  struct Names {
+    std::string instance_name, type_name, description, version, vendor, category;
+  };
+  struct Impl;
+  enum class Callback : int;
+
+  void prepareBinding();
+  void takeNamesFromProperties();
+  ReturnCode_t createContexts();
+  ReturnCode_t exitNow();
+  template <class Function>
+  ReturnCode_t callUser(const char* name, Function function);
+  template <class Function>
+  ReturnCode_t action(Callback callback, UniqueId handle, Function function);
+
+  Names profile_;
+  std::unique_ptr<Impl> impl_;
+};
+
+using RtcBase = RTObject_impl;
+
+}  // namespace RTC
