@@ -1,0 +1,22 @@
+// Values to octets and back: the plain CDR of data ports, no header, aligned from the first octet. Any thread.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "corba/type_ops.h"
+#include "core/sample.h"
+
+namespace corba {
+
+std::shared_ptr<rt::Block> encode(const TypeOps& ops, const void* value, rt::ByteOrder order);
+std::shared_ptr<rt::Block> encode(const TypeOps& ops, const void* value, rt::ByteOrder order, rt::BlockPool& pool);
+
+// False if the octets are no value of the type: too short, a length beyond the end, an unknown enumerator. `value` may be half written
+// then. Octets after the value are allowed.
+[[nodiscard]] bool decode(const TypeOps& ops, void* value, std::span<const std::byte> octets, rt::ByteOrder order);
+
+// The same, but `value` stays as it is unless the octets are good, or becomes a default value where keeping it would be dear (above 4 KiB).
+[[nodiscard]] bool decode_safely(const TypeOps& ops, void* value, std::span<const std::byte> octets, rt::ByteOrder order);
+
+}  // namespace corba

@@ -1,0 +1,65 @@
+// One sample as listeners see it: decoded or encoded only when somebody asks, and changeable. One thread at a time.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "corba/type_ops.h"
+#include "core/sample.h"
+
+namespace corba {
+
+// In the order of RTC::ConnectorDataListenerType and RTC::ConnectorListenerType.
+enum class DataEvent {
+  buffer_write,
+  buffer_full,
+  buffer_write_timeout,
+  buffer_overwrite,
+  buffer_read,
+  send,
+  received,
+  receiver_full,
+  receiver_timeout,
+  receiver_error
+};
+enum class ConnectorEvent { buffer_empty, buffer_read_timeout, sender_empty, sender_timeout, sender_error, connect, disconnect };
+
+class EventData {
+ public:
+  // The value must live as long as this; it is never changed itself.
+  EventData(const TypeOps& ops, const void* value, rt::ByteOrder order);
+  EventData(const TypeOps& ops, rt::Sample sample);
+
+  const TypeOps& ops() const { return *ops_; }
+  rt::ByteOrder order() const { return order_; }
+  // A copy that the caller may change (then call value_changed); nullptr if the octets are no value of the type.
+  void* value();
+  void value_changed();
+  // Encoded in order().
+  std::span<const std::byte> octets();
+  void replace_octets(std::span<const std::byte> octets);
+
+  bool is_changed() const { return is_changed_; }
+  // What it has become.
+  rt::Sample sample();
+
+ private:
+  const TypeOps* ops_;
+  const void* original_ = nullptr;
+  rt::ByteOrder order_;
+  rt::Sample sample_;
+  std::shared_ptr<rt::Value> value_;
+  bool is_changed_ = false;
+};
+
+// What a connection tells about itself. Implementations are called on the thread that writes, reads or sends, without locks.
+class ConnectorEvents {
+ public:
+  virtual ~ConnectorEvents() = default;
+  // False: nobody would hear it, so nothing needs to be prepared.
+  virtual bool is_observed(DataEvent event) const = 0;
+  virtual void on_data(DataEvent event, EventData& data) = 0;
+  virtual void on_event(ConnectorEvent event) = 0;
+};
+
+}  // namespace corba

@@ -1,0 +1,115 @@
+// The PortService object: connections between ports, made and undone along the daisy chain of the ConnectorProfile's ports.
+// Any thread. No lock is held while another port, a hook or the log is called; every call to another port has a time-out.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "base/guarded.h"
+#include "core/connector_settings.h"
+#include "rtm/idl/RTCSkel.h"
+
+namespace corba {
+
+class PortServant : public virtual POA_RTC::PortService, public virtual PortableServer::RefCountServantBase {
+ public:
+  ~PortServant() override;
+  PortServant(const PortServant&) = delete;
+  PortServant& operator=(const PortServant&) = delete;
+
+  RTC::PortProfile* get_port_profile() override;
+  RTC::ConnectorProfileList* get_connector_profiles() override;
+  // An empty profile if there is no such connection.
+  RTC::ConnectorProfile* get_connector_profile(const char* connector_id) override;
+  RTC::ReturnCode_t connect(RTC::ConnectorProfile& connector_profile) override;
+  RTC::ReturnCode_t disconnect(const char* connector_id) override;
+  RTC::ReturnCode_t disconnect_all() override;
+  RTC::ReturnCode_t notify_connect(RTC::ConnectorProfile& connector_profile) override;
+  RTC::ReturnCode_t notify_disconnect(const char* connector_id) override;
+
+  // The port's reference; activates the port in its POA at the first call. Nil while there is no ORB. Borrowed, good as long as the port.
+  RTC::PortService_ptr reference();
+  // No call from outside is accepted after this. Connections stay.
+  void deactivate();
+
+  // Removes the connection on this side without calling anyone, because the other end is gone. False if it is not there (any more).
+  bool drop_connection(const char* connector_id);
+
+  std::string port_name() const;
+
+ protected:
+  explicit PortServant(std::string name);
+
+  // The steps of a connection, in the order in which they come; each is called without locks.
+  enum class Step {
+    notify_connect,
+    published,
+    next_connected,
+    subscribed,
+    connected,
+    notify_disconnect,
+    next_disconnected,
+    unsubscribed,
+    disconnected
+  };
+  // Fills in what the connecting client may leave out. Only the first port of a chain is asked.
+  virtual void complete_profile(RTC::ConnectorProfile&) {}
+  // Comes first in notify_connect: refuses (any code but RTC_OK) or adds what the others should know.
+  virtual RTC::ReturnCode_t prepare(RTC::ConnectorProfile&) { return RTC::RTC_OK; }
+  virtual RTC::ReturnCode_t publish(RTC::ConnectorProfile& profile) = 0;
+  virtual RTC::ReturnCode_t subscribe(const RTC::ConnectorProfile& profile) = 0;
+  // Undoes publish and subscribe, also after only one of them. `is_lost`: the other end is gone.
+  virtual void unsubscribe(const RTC::ConnectorProfile& profile, bool is_lost) = 0;
+  virtual void on_step(Step, RTC::ConnectorProfile&, RTC::ReturnCode_t) {}
+  virtual bool allows_duplicate(const RTC::ConnectorProfile&) { return false; }
+
+  void set_port_name(const std::string& name);
+  void set_owner(RTC::RTObject_ptr owner);
+  void set_reference(RTC::PortService_ptr reference);
+  // Sets or replaces one property of the PortProfile.
+  void set_profile_property(const std::string& key, const std::string& value);
+  std::string profile_property(const std::string& key) const;
+  // False if there is one of that instance name, type and polarity already.
+  bool add_interface(const std::string& instance, const std::string& type, RTC::PortInterfacePolarity polarity);
+  bool remove_interface(const std::string& instance, RTC::PortInterfacePolarity polarity);
+  RTC::PortProfile profile() const;
+  // Most connections at a time; negative: any number.
+  void set_connection_limit(int limit) { connection_limit_.store(limit, std::memory_order_relaxed); }
+  std::vector<RTC::ConnectorProfile> connections() const;
+
+ private:
+  struct Connection {
+    RTC::ConnectorProfile profile;
+    bool is_established = false;
+    bool is_leaving = false;
+  };
+  struct State {
+    std::string name;
+    RTC::RTObject_var owner;
+    RTC::PortService_var reference;
+    RTC::PortInterfaceProfileList interfaces;
+    RTC::NVList properties;
+    std::vector<Connection> connections;
+    bool is_active = false;
+  };
+
+  // Where this port stands in the list, -1 if nowhere.
+  int position(const RTC::PortServiceList& ports);
+  RTC::ReturnCode_t reserve(const RTC::ConnectorProfile& profile);
+  RTC::ReturnCode_t connect_next(RTC::ConnectorProfile& profile, int self);
+  RTC::ReturnCode_t disconnect_next(const RTC::ConnectorProfile& profile);
+  RTC::ReturnCode_t leave(const char* connector_id, bool tells_next, bool is_lost);
+  void forget(const char* connector_id);
+
+  base::Guarded<State, base::Rank::port> state_;
+  std::atomic<int> connection_limit_{-1};
+};
+
+// The longest that a call to another port, or one sample on its way to one, may take unless the connection says otherwise
+// (dataport.call_timeout). Default 10 s, as in OpenRTM 2.x.
+void set_port_call_timeout(std::chrono::milliseconds timeout);
+std::chrono::milliseconds port_call_timeout();
+
+}  // namespace corba

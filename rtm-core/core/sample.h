@@ -1,0 +1,71 @@
+// What travels through a data port: octets in the wire's encoding, or a value itself inside a process. Immutable once written, shared.
+// Any thread.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "base/guarded.h"
+
+namespace rt {
+
+// A buffer of octets, aligned to 16, whose contents are not initialised.
+class Block {
+ public:
+  explicit Block(std::size_t capacity);
+  std::byte* data() { return data_.get(); }
+  const std::byte* data() const { return data_.get(); }
+  std::size_t size() const { return size_; }
+  std::size_t capacity() const { return capacity_; }
+  std::span<const std::byte> octets() const { return {data_.get(), size_}; }
+  // size <= capacity().
+  void set_size(std::size_t size) { size_ = size; }
+
+ private:
+  std::unique_ptr<std::byte[]> data_;
+  std::size_t capacity_;
+  std::size_t size_ = 0;
+};
+
+// Hands out blocks and takes them back when their last user lets go, so that a steady stream of samples allocates nothing large.
+class BlockPool : public std::enable_shared_from_this<BlockPool> {
+ public:
+  static std::shared_ptr<BlockPool> make() { return std::shared_ptr<BlockPool>(new BlockPool); }
+  // size() of the block is `size`.
+  std::shared_ptr<Block> take(std::size_t size);
+
+ private:
+  struct Kept {
+    static constexpr std::size_t limit = 4;
+    std::unique_ptr<Block> blocks[limit];
+    std::size_t count = 0;
+  };
+  BlockPool() = default;
+  void give_back(Block* block);
+
+  base::Guarded<Kept, base::Rank::registry> kept_;
+};
+
+// A value of some type of the wire. The type is known to those who made it.
+class Value {
+ public:
+  virtual ~Value() = default;
+  virtual void* address() = 0;
+  const void* address() const { return const_cast<Value*>(this)->address(); }
+};
+
+enum class ByteOrder { little, big };
+
+struct Sample {
+  std::shared_ptr<const Block> block;  // either this, in `order`,
+  std::shared_ptr<const Value> value;  // or this
+  ByteOrder order = ByteOrder::little;
+  std::chrono::nanoseconds received{};  // when the port got it, by the clock of the thread that brought it; 0 if nobody asked
+
+  explicit operator bool() const { return block || value; }
+};
+
+}  // namespace rt

@@ -1,0 +1,70 @@
+// What users see of a connection of a data port. Objects belong to their port and live until it is disconnected. Any thread.
+#pragma once
+
+#include <coil/Properties.h>
+#include <coil/stringutil.h>
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "corba/event_data.h"
+#include "rtm/DataPortStatus.h"
+#include "rtm/idl/RTCStub.h"
+
+namespace RTC {
+
+class PortBase;
+class ConnectorListeners;
+
+// `ports` are stringified references; `properties` are the connection's without the prefix "dataport.".
+class ConnectorInfo {
+ public:
+  ConnectorInfo() = default;
+  ConnectorInfo(const char* name_, const char* id_, coil::vstring ports_, coil::Properties properties_)
+      : name(name_), id(id_), ports(std::move(ports_)), properties(std::move(properties_)) {}
+  std::string name;
+  std::string id;
+  coil::vstring ports;
+  coil::Properties properties;
+};
+using ConnectorInfoList = std::vector<ConnectorInfo>;
+
+class ConnectorBase : public DataPortStatus, public corba::ConnectorEvents {
+ public:
+  ConnectorBase(PortBase& port, ConnectorListeners& listeners, ConnectorInfo info);
+  ~ConnectorBase() override;
+  ConnectorBase(const ConnectorBase&) = delete;
+  ConnectorBase& operator=(const ConnectorBase&) = delete;
+
+  ConnectorInfo profile() const;
+  const char* id() const { return id_.c_str(); }
+  const char* name() const { return name_.c_str(); }
+  // Takes the whole connection apart; the object is gone afterwards.
+  DataPortStatus disconnect();
+
+  bool is_observed(corba::DataEvent event) const override;
+  void on_data(corba::DataEvent event, corba::EventData& data) override;
+  void on_event(corba::ConnectorEvent event) override;
+
+ private:
+  PortBase& port_;
+  ConnectorListeners& listeners_;
+  std::string name_;
+  std::string id_;
+  mutable std::mutex mutex_;
+  ConnectorInfo info_;
+};
+
+class InPortConnector : public ConnectorBase {
+ public:
+  using ConnectorBase::ConnectorBase;
+};
+
+class OutPortConnector : public ConnectorBase {
+ public:
+  using ConnectorBase::ConnectorBase;
+};
+
+}  // namespace RTC

@@ -1,0 +1,138 @@
+// Listeners to what happens to samples and connections. Listeners are called without locks on the thread that writes, sends, receives or
+// reads; adding and removing: any thread. Nothing is decoded unless a listener asks for it.
+#pragma once
+
+#include <atomic>
+#include <string>
+
+#include "corba/cdr.h"
+#include "corba/event_data.h"
+#include "rtm/ByteData.h"
+#include "rtm/ConnectorBase.h"
+#include "rtm/PortConnectListener.h"
+
+namespace RTC {
+
+// Unscoped, so that both ConnectorDataListenerType::ON_SEND and plain ON_SEND compile.
+enum ConnectorDataListenerType {
+  ON_BUFFER_WRITE = 0,
+  ON_BUFFER_FULL,
+  ON_BUFFER_WRITE_TIMEOUT,
+  ON_BUFFER_OVERWRITE,
+  ON_BUFFER_READ,
+  ON_SEND,
+  ON_RECEIVED,
+  ON_RECEIVER_FULL,
+  ON_RECEIVER_TIMEOUT,
+  ON_RECEIVER_ERROR,
+  CONNECTOR_DATA_LISTENER_NUM
+};
+
+enum ConnectorListenerType {
+  ON_BUFFER_EMPTY = 0,
+  ON_BUFFER_READ_TIMEOUT,
+  ON_SENDER_EMPTY,
+  ON_SENDER_TIMEOUT,
+  ON_SENDER_ERROR,
+  ON_CONNECT,
+  ON_DISCONNECT,
+  CONNECTOR_LISTENER_NUM
+};
+
+// A base of the listeners, so that their bodies may say plain NO_CHANGE, and the names of ConnectorListenerStatus.
+struct ConnectorListenerStatusNames {
+  enum Enum { NO_CHANGE = 0, INFO_CHANGED, DATA_CHANGED, BOTH_CHANGED };
+};
+
+// What a listener changed of its arguments. INFO_CHANGED: the new properties stay with the connection; DATA_CHANGED: the sample travels on
+// as the listener left it.
+class ConnectorListenerStatus : public ConnectorListenerStatusNames {
+ public:
+  constexpr ConnectorListenerStatus(Enum value = NO_CHANGE) : value_(value) {}
+  constexpr operator Enum() const { return value_; }
+
+ private:
+  Enum value_;
+};
+
+#define USE_CONNLISTENER_STATUS typedef ::RTC::ConnectorListenerStatus ReturnCode
+
+// A raw listener overrides one of the two call operators.
+class ConnectorDataListener : public ConnectorListenerStatusNames {
+ public:
+  using ConnectorListenerStatus = ::RTC::ConnectorListenerStatus;  // found by sources outside namespace RTC, too
+  USE_CONNLISTENER_STATUS;
+  virtual ~ConnectorDataListener() = default;
+  // 2.x.
+  virtual ReturnCode operator()(ConnectorInfo& info, ByteData& data, const std::string& marshalingtype);
+  // 1.2: the stream is at the start of the payload and knows its byte order.
+  virtual ReturnCode operator()(ConnectorInfo& info, cdrMemoryStream& data);
+  // What ports call.
+  virtual ReturnCode notify(ConnectorInfo& info, corba::EventData& data);
+  static const char* toString(ConnectorDataListenerType type);
+};
+
+template <class DataType>
+class ConnectorDataListenerT : public ConnectorDataListener {
+ public:
+  USE_CONNLISTENER_STATUS;
+  using ConnectorDataListener::operator();
+  virtual ReturnCode operator()(ConnectorInfo& info, DataType& data) = 0;
+
+  ReturnCode notify(ConnectorInfo& info, corba::EventData& data) override {
+    if (*data.ops().type == typeid(DataType)) {
+      auto* value = static_cast<DataType*>(data.value());
+      if (!value) return NO_CHANGE;
+      const ReturnCode code = (*this)(info, *value);
+      if (code == DATA_CHANGED || code == BOTH_CHANGED) data.value_changed();
+      return code;
+    }
+    // A listener of another type than its port's sees the octets as its own type, if they fit.
+    DataType value{};
+    if (!corba::decode(corba::type_ops<DataType>(), &value, data.octets(), data.order())) return NO_CHANGE;
+    const ReturnCode code = (*this)(info, value);
+    if (code == DATA_CHANGED || code == BOTH_CHANGED) {
+      data.replace_octets(corba::encode(corba::type_ops<DataType>(), &value, data.order())->octets());
+    }
+    return code;
+  }
+};
+
+class ConnectorListener : public ConnectorListenerStatusNames {
+ public:
+  using ConnectorListenerStatus = ::RTC::ConnectorListenerStatus;  // found by sources outside namespace RTC, too
+  USE_CONNLISTENER_STATUS;
+  virtual ~ConnectorListener() = default;
+  virtual ReturnCode operator()(ConnectorInfo& info) = 0;
+  static const char* toString(ConnectorListenerType type);
+};
+
+class ConnectorDataListenerHolder : private ListenerSet<ConnectorDataListener> {
+ public:
+  void addListener(ConnectorDataListener* listener, bool autoclean);
+  void removeListener(ConnectorDataListener* listener);
+  std::size_t size() const { return ListenerSet::size(); }
+  bool isEmpty() const { return count_.load(std::memory_order_relaxed) == 0; }
+  void notify(ConnectorInfo& info, corba::EventData& data, bool& info_changed);
+
+ private:
+  std::atomic<std::size_t> count_{0};
+};
+
+class ConnectorListenerHolder : private ListenerSet<ConnectorListener> {
+ public:
+  using ListenerSet::addListener;
+  using ListenerSet::removeListener;
+  using ListenerSet::size;
+  void notify(ConnectorInfo& info, bool& info_changed);
+};
+
+// The listeners of one port.
+class ConnectorListeners {
+ public:
+  ConnectorDataListenerHolder connectorData_[CONNECTOR_DATA_LISTENER_NUM];
+  ConnectorListenerHolder connector_[CONNECTOR_LISTENER_NUM];
+};
+using ConnectorListenersBase = ConnectorListeners;
+
+}  // namespace RTC

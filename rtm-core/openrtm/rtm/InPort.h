@@ -1,0 +1,44 @@
+// A port that receives values of one type into a variable of the component. One thread at a time reads.
+#pragma once
+
+#include <string>
+
+#include "rtm/InPortBase.h"
+#include "rtm/PortCallback.h"
+#include "rtm/Timestamp.h"
+
+namespace RTC {
+
+template <class DataType>
+class InPort : public InPortBase {
+ public:
+  using value_type = DataType;
+
+  // The variable must outlive the port. The other arguments of old are taken and mean nothing: connections bring their own buffers.
+  InPort(const char* name, DataType& value, int = 64, bool = false, bool = false, int = 0, int = 0)
+      : InPortBase(name, corba::type_ops<DataType>()), value_(value) {}
+
+  bool read(std::string name = "") override {
+    if (on_read_) (*on_read_)();
+    if (!readValue(name, &value_)) return false;
+    if (on_read_convert_) value_ = (*on_read_convert_)(value_);
+    return true;
+  }
+  virtual void update() { read(); }
+  bool operator>>(DataType& value) {
+    const bool is_read = read();
+    value = value_;
+    return is_read;
+  }
+
+  // Not owned; nullptr removes one.
+  void setOnRead(OnRead<DataType>* callback) { on_read_ = callback; }
+  void setOnReadConvert(OnReadConvert<DataType>* callback) { on_read_convert_ = callback; }
+
+ private:
+  DataType& value_;
+  OnRead<DataType>* on_read_ = nullptr;
+  OnReadConvert<DataType>* on_read_convert_ = nullptr;
+};
+
+}  // namespace RTC

@@ -1,0 +1,32 @@
+// The repository id of a data type. Any thread.
+#pragma once
+
+#include "corba/type_ops.h"
+
+// "IDL:RTC/TimedLong:1.0".
+template <class DataType>
+const char* toTypename() {
+  return corba::type_ops<DataType>().type_id.c_str();
+}
+
+template <class DataType>
+const char* toRepositoryIdOfStruct() {
+  return toTypename<DataType>();
+}
+
+namespace CORBA_Util {
+
+template <class DataType>
+const char* toTypename() {
+  return ::toTypename<DataType>();
+}
+template <class DataType>
+const char* toRepositoryId() {
+  return ::toTypename<DataType>();
+}
+template <class DataType>
+const char* toRepositoryIdOfStruct() {
+  return ::toTypename<DataType>();
+}
+
+}  // namespace CORBA_Util
