@@ -1,0 +1,36 @@
+// An object with a thread of its own: derive and override svc(). activate() and wait() are called by one thread at a time.
+#pragma once
+
+#include <atomic>
+#include <thread>
+
+#include "coil/NonCopyable.h"
+
+namespace coil {
+
+class Task : private NonCopyable {
+ public:
+  Task();
+  // A thread that is still running is let go; stop it and wait() first.
+  virtual ~Task();
+
+  virtual int open(void* args = nullptr);
+  virtual int close(unsigned long flags = 0);
+  // The body of the thread.
+  virtual int svc();
+  // Starts the thread; does nothing while one is running.
+  virtual void activate();
+  // Returns when the thread has ended; at once if there is none or it is the caller.
+  virtual int wait();
+  // Kept for 1.x sources; a thread can't be stopped from outside.
+  virtual int suspend();
+  virtual int resume();
+  virtual void reset();
+  virtual void finalize();
+
+ private:
+  std::atomic<bool> is_running_{false};
+  std::thread thread_;
+};
+
+}  // namespace coil

@@ -1,0 +1,15 @@
+// The macros that classic component sources use for symbols of shared libraries; nothing has to be marked here.
+#pragma once
+
+#ifndef DLL_EXPORT
+#define DLL_EXPORT __attribute__((visibility("default")))
+#endif
+#ifndef DLL_PLUGIN
+#define DLL_PLUGIN
+#endif
+#ifndef COIL_DLL_PLUGIN
+#define COIL_DLL_PLUGIN
+#endif
+#ifndef DLL_TEMPLATE_PLUGIN
+#define DLL_TEMPLATE_PLUGIN
+#endif
