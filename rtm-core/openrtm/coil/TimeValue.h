@@ -21,11 +21,10 @@ class TimeValue {
   void set_time(long sec, long usec) { *this = TimeValue(sec, usec); }
   void set_time(double seconds) { *this = TimeValue(seconds); }
   constexpr double getDouble() const { return static_cast<double>(usec_) * 1e-6; }
-  // To double and nothing that double converts to: a duration made from a number of seconds would take it for ticks.
-  template <std::same_as<double> T>
-  constexpr operator T() const {
-    return getDouble();
-  }
+  constexpr operator double() const { return getDouble(); }
+  // A std::chrono duration made from this would otherwise take the whole seconds for its ticks.
+  template <std::integral T>
+  operator T() const = delete;
   constexpr operator std::chrono::nanoseconds() const { return std::chrono::microseconds(usec_); }
   constexpr operator std::chrono::microseconds() const { return std::chrono::microseconds(usec_); }
   // 1, 0 or -1.
