@@ -44,16 +44,14 @@ class Orb {
   void publish(const std::string& key, CORBA::Object_ptr object);
   void withdraw(const std::string& key);
 
-  // "host:port" of every tcp end point.
-  std::vector<std::string> addresses() const;
-
  private:
-  Orb() = default;
+  class PrivateFolder;
+  Orb();
   CORBA::ORB_var orb_;
   PortableServer::POA_var root_poa_;
   PortableServer::POA_var ins_poa_;
   PortableServer::POAManager_var poa_manager_;
-  std::string unix_folder_;
+  std::unique_ptr<PrivateFolder> folder_;
 };
 
 // Every call through this reference (and copies made of it later) ends with CORBA::TIMEOUT or TRANSIENT after that time.

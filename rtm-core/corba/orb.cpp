@@ -1,0 +1,273 @@
+#include "corba/orb.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <mutex>
+#include <system_error>
+
+#include "base/log.h"
+#include "base/text.h"
+
+namespace corba {
+namespace {
+
+// ---- a private folder for the unix socket
+
+constexpr const char* folder_prefix = "rtmsim-orb-";
+
+std::filesystem::path runtime_folder() {
+  std::error_code error;
+  if (const char* given = std::getenv("XDG_RUNTIME_DIR"); given != nullptr && *given == '/' && access(given, W_OK) == 0) return given;
+  const auto folder = std::filesystem::temp_directory_path(error);
+  return error ? "/tmp" : folder;
+}
+
+// Folders whose owner has died are removed: the owner holds a lock on the file in it.
+void remove_stale_folders(const std::filesystem::path& where) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(where, error)) {
+    if (!entry.path().filename().string().starts_with(folder_prefix)) continue;
+    struct stat status {};
+    if (lstat(entry.path().c_str(), &status) != 0 || status.st_uid != geteuid() || !S_ISDIR(status.st_mode)) continue;
+    const int lock = open((entry.path() / "lock").c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
+    if (lock < 0) continue;
+    if (flock(lock, LOCK_EX | LOCK_NB) == 0) std::filesystem::remove_all(entry.path(), error);
+    close(lock);
+  }
+}
+
+bool is_same_file(int file, const std::string& path) {
+  struct stat opened {
+  }, named{};
+  return fstat(file, &opened) == 0 && stat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
+}
+
+}  // namespace
+
+// Removed with its owner.
+class Orb::PrivateFolder {
+ public:
+  static std::unique_ptr<PrivateFolder> make() {
+    const auto where = runtime_folder();
+    remove_stale_folders(where);
+    for (int attempt = 0; attempt < 5; ++attempt) {
+      auto pattern = (where / (folder_prefix + std::string("XXXXXX"))).string();
+      if (mkdtemp(pattern.data()) == nullptr) return nullptr;
+      const auto lock_path = pattern + "/lock";
+      const int lock = open(lock_path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600);
+      if (lock >= 0 && flock(lock, LOCK_EX | LOCK_NB) == 0 && is_same_file(lock, lock_path)) {
+        return std::unique_ptr<PrivateFolder>(new PrivateFolder(pattern, lock));
+      }
+      if (lock >= 0) close(lock);  // another process took the new folder for a stale one
+    }
+    return nullptr;
+  }
+  ~PrivateFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+    close(lock_);
+  }
+  PrivateFolder(const PrivateFolder&) = delete;
+  PrivateFolder& operator=(const PrivateFolder&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  PrivateFolder(std::string path, int lock) : path_(std::move(path)), lock_(lock) {}
+  std::string path_;
+  int lock_;
+};
+
+namespace {
+
+// ---- what the ORB says
+
+struct OrbMessages {
+  std::mutex mutex;
+  bool collecting = false;
+  std::string last;
+};
+
+OrbMessages& orb_messages() {
+  static OrbMessages messages;
+  return messages;
+}
+
+void take_orb_message(const char* text) {
+  std::string_view line = base::trim(text);
+  if (line.starts_with("omniORB:")) line = base::trim(line.substr(8));
+  {
+    auto& messages = orb_messages();
+    const std::scoped_lock lock(messages.mutex);
+    if (messages.collecting) {
+      messages.last = line;
+      return;
+    }
+  }
+  base::log_text(base::Level::debug, "orb", line);
+}
+
+// ---- end points
+
+base::Result<void> check_port(std::string_view endpoint, std::string_view port) {
+  if (port.empty()) return {};
+  const auto number = base::parse_integer(port);
+  if (number && *number >= 0 && *number <= 65535) return {};
+  return base::Error{"end point " + base::in_quotes(endpoint) + ": expected a port from 0 to 65535, got " + base::in_quotes(port)};
+}
+
+// As omniORB wants it.
+base::Result<std::string> to_orb_endpoint(std::string_view endpoint) {
+  auto text = base::trim(endpoint);
+  if (text.starts_with("giop:")) return std::string(text);
+  if (text.starts_with("iiop://")) text.remove_prefix(7);
+  if (text == "all" || text == "ipv4") return std::string("giop:tcp:0.0.0.0:");
+  const auto colon = text.rfind(':');
+  const bool is_bare_ipv6 = text.ends_with(']');
+  auto host = colon == std::string_view::npos || is_bare_ipv6 ? text : text.substr(0, colon);
+  const auto port = colon == std::string_view::npos || is_bare_ipv6 ? std::string_view() : text.substr(colon + 1);
+  if (auto checked = check_port(endpoint, port); !checked) return checked.error();
+  if (host.empty()) host = "127.0.0.1";
+  return "giop:tcp:" + std::string(host) + ":" + std::string(port);
+}
+
+bool has_argument(const std::vector<std::string>& arguments, std::string_view name) {
+  for (const auto& argument : arguments) {
+    if (argument == name) return true;
+  }
+  return false;
+}
+
+base::Result<std::vector<std::string>> to_arguments(const OrbSettings& settings, const std::string& unix_folder) {
+  std::vector<std::string> result{"rtm", "-ORBgiopMaxMsgSize", std::to_string(settings.max_message_size),
+                                  // Connections from other processes stay open however seldom they are used.
+                                  "-ORBinConScanPeriod", "0", "-ORBclientCallTimeOutPeriod", std::to_string(settings.call_timeout.count())};
+  auto endpoints = settings.endpoints;
+  if (endpoints.empty()) endpoints.emplace_back();
+  const bool given_by_arguments = has_argument(settings.arguments, "-ORBendPoint");
+  for (const auto& endpoint : endpoints) {
+    if (given_by_arguments) break;
+    if (endpoint == "unix") continue;
+    auto converted = to_orb_endpoint(endpoint);
+    if (!converted) return converted.error();
+    result.insert(result.end(), {"-ORBendPoint", *converted});
+  }
+  if (!unix_folder.empty()) result.insert(result.end(), {"-ORBendPoint", "giop:unix:" + unix_folder + "/socket"});
+  result.insert(result.end(), settings.arguments.begin(), settings.arguments.end());
+  return result;
+}
+
+// ---- object keys that people can write
+
+// Sends every caller on to the object it stands for.
+class Forwarder final : public PortableServer::ServantBase {
+ public:
+  explicit Forwarder(CORBA::Object_ptr target) : target_(CORBA::Object::_duplicate(target)) {}
+  _CORBA_Boolean _dispatch(omniCallHandle&) override { throw omniORB::LOCATION_FORWARD(CORBA::Object::_duplicate(target_), false); }
+  void* _ptrToInterface(const char* id) override { return omni::ptrStrMatch(id, CORBA::Object::_PD_repoId) ? this : nullptr; }
+  const char* _mostDerivedRepoId() override { return CORBA::Object::_PD_repoId; }
+
+ private:
+  CORBA::Object_var target_;
+};
+
+void remove_object(PortableServer::POA_ptr poa, const PortableServer::ObjectId& id) {
+  try {
+    poa->deactivate_object(id);
+  } catch (const PortableServer::POA::ObjectNotActive&) {
+  }
+}
+
+}  // namespace
+
+base::Result<std::unique_ptr<Orb>> Orb::start(const OrbSettings& settings) {
+  std::unique_ptr<Orb> result(new Orb);
+  if (settings.unix_socket) result->folder_ = PrivateFolder::make();
+  auto arguments = to_arguments(settings, result->folder_ ? result->folder_->path() : "");
+  if (!arguments) return arguments.error();
+  std::vector<char*> argv;
+  for (auto& argument : *arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  int argc = static_cast<int>(arguments->size());
+
+  auto& messages = orb_messages();
+  {
+    const std::scoped_lock lock(messages.mutex);
+    messages.collecting = true;
+    messages.last.clear();
+  }
+  omniORB::setLogFunction(&take_orb_message);
+  std::string failure;
+  try {
+    result->orb_ = CORBA::ORB_init(argc, argv.data(), "omniORB4");
+    CORBA::Object_var poa = result->orb_->resolve_initial_references("RootPOA");
+    result->root_poa_ = PortableServer::POA::_narrow(poa);
+    result->poa_manager_ = result->root_poa_->the_POAManager();
+    poa = result->orb_->resolve_initial_references("omniINSPOA");
+    result->ins_poa_ = PortableServer::POA::_narrow(poa);
+  } catch (const CORBA::Exception& e) {
+    failure = to_text(e);
+  } catch (const omniORB::fatalException& e) {
+    failure = e.errmsg();
+  }
+  std::string detail;
+  {
+    const std::scoped_lock lock(messages.mutex);
+    messages.collecting = false;
+    detail = messages.last;
+  }
+  if (failure.empty()) return result;
+  std::string where;
+  for (const auto& endpoint : settings.endpoints) where += (where.empty() ? "" : ", ") + endpoint;
+  return base::Error{"orb: cannot start" + (where.empty() ? "" : " on " + where) + ": " + (detail.empty() ? failure : detail)};
+}
+
+Orb::Orb() = default;
+
+Orb::~Orb() {
+  try {
+    if (!CORBA::is_nil(orb_)) orb_->destroy();
+  } catch (const CORBA::Exception& e) {
+    base::log(base::Level::warn, "orb", "shutting down failed: {}", to_text(e));
+  }
+}
+
+void Orb::activate() {
+  poa_manager_->activate();
+  PortableServer::POAManager_var manager = ins_poa_->the_POAManager();
+  manager->activate();
+}
+
+void Orb::publish(const std::string& key, CORBA::Object_ptr object) {
+  const PortableServer::ObjectId_var id = PortableServer::string_to_ObjectId(key.c_str());
+  remove_object(ins_poa_, id);
+  PortableServer::Servant_var<Forwarder> servant = new Forwarder(object);
+  try {
+    ins_poa_->activate_object_with_id(id, servant);
+  } catch (const CORBA::Exception& e) {
+    base::log(base::Level::warn, "orb", "object key {} cannot be published: {}", base::in_quotes(key), to_text(e));
+  }
+}
+
+void Orb::withdraw(const std::string& key) {
+  const PortableServer::ObjectId_var id = PortableServer::string_to_ObjectId(key.c_str());
+  remove_object(ins_poa_, id);
+}
+
+void set_call_timeout(CORBA::Object_ptr object, std::chrono::milliseconds timeout) {
+  omniORB::setClientCallTimeout(object, static_cast<CORBA::ULong>(timeout.count()));
+}
+
+std::string to_text(const CORBA::Exception& exception) {
+  if (const auto* system = CORBA::SystemException::_downcast(&exception)) {
+    const char* minor = system->NP_minorString();
+    return std::string(system->_name()) + (minor != nullptr ? " (" + std::string(minor) + ")" : "");
+  }
+  return exception._name();
+}
+
+}  // namespace corba
