@@ -21,6 +21,7 @@ struct Entry {
   CORBA::Object_var object;
   bool wanted = true;    // false: to be taken out
   bool settled = false;  // nothing to do until the next look
+  bool bound = false;    // it has been ours before
   bool warned = false;   // somebody else has the name, and that has been said
 };
 
@@ -57,7 +58,7 @@ class Bindings::Server {
 
   void bind(const std::string& key, const CosNaming::Name& name, CORBA::Object_ptr object) {
     auto state = state_.lock();
-    state->entries[key] = Entry{name, CORBA::Object::_duplicate(object), true, false, false};
+    state->entries[key] = Entry{name, CORBA::Object::_duplicate(object)};
     changed_.notify_all();
   }
 
@@ -116,7 +117,7 @@ class Bindings::Server {
       bool remove_contexts = false;
       {
         auto state = state_.lock();
-        const auto wakes = [&] { return state->stopping || state->look_now || (has_work(*state) && (state->reachable || !looks)); };
+        const auto wakes = [&] { return state->stopping || state->look_now || (has_work(*state) && state->reachable); };
         if (looks) {
           state.wait_until(changed_, next_look, wakes);
         } else {
@@ -189,6 +190,7 @@ class Bindings::Server {
       } else {
         at->second.settled = done.settled && reachable;
         at->second.warned = done.warned;
+        at->second.bound = done.bound;
       }
     }
     if (!reachable) {
@@ -212,9 +214,12 @@ class Bindings::Server {
   }
 
   void bind_entry(const std::string& key, Entry& entry) {
-    const bool is_first = !entry.settled;
+    const bool is_first = !entry.bound;
     CORBA::Object_var there = current(entry.name);
-    if (!CORBA::is_nil(there) && there->_is_equivalent(entry.object) && !settings_.always_rebind) return;
+    if (!CORBA::is_nil(there) && there->_is_equivalent(entry.object) && !settings_.always_rebind) {
+      entry.bound = true;
+      return;
+    }
     if (!CORBA::is_nil(there) && !there->_is_equivalent(entry.object) && is_alive(there)) {
       if (!entry.warned) {
         base::log(base::Level::warn, log_name, "{}: {} belongs to another living object; {}", address_, base::in_quotes(key),
@@ -224,6 +229,7 @@ class Bindings::Server {
       if (!is_first) return;
     }
     rebind_recursive(root_, entry.name, entry.object, &contexts_);
+    entry.bound = true;
   }
 
   void unbind_entry(const Entry& entry) {
@@ -271,8 +277,10 @@ struct Bindings::Impl {
   }
 };
 
-Bindings::Bindings(CORBA::ORB_ptr orb, const BindingsSettings& settings)
-    : impl_(std::make_unique<Impl>(Impl{CORBA::ORB::_duplicate(orb), settings, {}, {}})) {}
+Bindings::Bindings(CORBA::ORB_ptr orb, const BindingsSettings& settings) : impl_(std::make_unique<Impl>()) {
+  impl_->orb = CORBA::ORB::_duplicate(orb);
+  impl_->settings = settings;
+}
 
 Bindings::~Bindings() = default;
 
