@@ -45,23 +45,24 @@ struct BumperView {
   std::span<const Contact> contacts;  // those that are filled
 };
 
-// A frame of the ring that the writer leaves alone as long as this object lives. Must not outlive its Iface.
+// A frame of the ring that the writer leaves alone as long as this object lives; it may outlive its Iface.
 class HeldFrame {
  public:
   HeldFrame(HeldFrame&& other) noexcept;
   HeldFrame& operator=(HeldFrame&& other) noexcept;
   ~HeldFrame();
-  const FrameHead& head() const { return *head_; }
+  const FrameHead& head() const { return head_; }
   std::span<const std::byte> data() const { return data_; }
-  std::uint64_t sequence() const { return sequence_; }
+  std::uint64_t sequence() const { return head_.stamp.sequence; }
 
  private:
   friend class Iface;
-  HeldFrame(std::uint32_t* hold, std::unique_ptr<FrameHead> head, std::span<const std::byte> data, std::uint64_t sequence);
+  HeldFrame(std::shared_ptr<void> keeper, std::uint32_t* hold, const FrameHead& head, std::span<const std::byte> data);
+  void release();
+  std::shared_ptr<void> keeper_;  // the mapping and the lease
   std::uint32_t* hold_;
-  std::unique_ptr<FrameHead> head_;  // a private copy
+  FrameHead head_;  // a private copy
   std::span<const std::byte> data_;
-  std::uint64_t sequence_;
 };
 
 class Iface {
@@ -126,12 +127,11 @@ class Iface {
   base::Result<void> reopen();
 
  private:
-  friend class HeldFrame;
   struct State;
-  explicit Iface(std::unique_ptr<State> state);
+  explicit Iface(std::shared_ptr<State> state);
   const void* info_bytes(std::size_t size) const;
   const void* sample_bytes(std::size_t size) const;
-  std::unique_ptr<State> state_;
+  std::shared_ptr<State> state_;
 };
 
 }  // namespace shm

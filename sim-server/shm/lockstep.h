@@ -69,6 +69,7 @@ struct ParticipantRecord {
   bool is_late = false;  // has not finished its current tick
 };
 
+// One per server. Its end tells the participants that the simulation is closed.
 class Barrier {
  public:
   Barrier(IfaceWriter& simulation, Server& server, BarrierOptions options);

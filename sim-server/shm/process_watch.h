@@ -37,7 +37,7 @@ class ProcessWatch {
   std::shared_ptr<const Watched> watch(const ProcessMark& mark);
   // Number of deaths seen so far: changes when a watched process has died.
   std::uint64_t deaths() const { return deaths_.load(std::memory_order_acquire); }  // pairs with the release in the thread
-  // Called from the watching thread after each death; set it before the first watch.
+  // Called from the watching thread after each death. When this returns the callback before is no longer running; not to be called from it.
   void on_death(std::function<void()> callback);
 
  private:

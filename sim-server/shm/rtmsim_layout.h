@@ -40,9 +40,9 @@ enum {
 
 /* Areas of a segment, by index into rtmsim_header.areas; those an iface does not have are all zero. */
 enum {
-  RTMSIM_AREA_INFO = 0, /* constants of the iface: rtmsim_<type>_info, and what follows it */
-  RTMSIM_AREA_CELLS =
-      1, /* latest samples: count cells of stride bytes, each a lock word (8 bytes) and the sample (size of the area / count) */
+  RTMSIM_AREA_INFO = 0,        /* constants of the iface: rtmsim_<type>_info, and what follows it */
+  RTMSIM_AREA_CELLS = 1,       /* latest samples: count cells of stride bytes, each a lock word [atomic, 8 bytes] and the sample; lock is
+                                                        2 n + 1 while sample n is written, 2 n + 2 when it is complete */
   RTMSIM_AREA_FRAMES = 2,      /* ring of frames: count slots of stride bytes, each rtmsim_frame and the data */
   RTMSIM_AREA_LEASES = 3,      /* count rtmsim_lease */
   RTMSIM_AREA_CONTROL = 4,     /* one rtmsim_control (simulation only) */
@@ -467,19 +467,20 @@ typedef struct {
   uint32_t error; /* why the server refused or dropped it: RTMSIM_DROPPED_* */
   uint8_t reserved0[24];
   /* written by the server */
-  uint32_t go;      /* [atomic] futex; number of the tick to do, never 0 once active */
-  uint32_t resets;  /* of the world */
-  int64_t now_ns;   /* simulated time of that tick */
-  int64_t due_ns;   /* when it was due; now_ns - due_ns is less than a step */
-  uint64_t steps;   /* physics steps since the reset */
-  uint64_t ticks;   /* finished */
-  int64_t total_ns; /* wall time of all of them */
-  int64_t max_ns;
-  uint64_t missed; /* ticks skipped because the one before was not finished (free running only) */
+  uint32_t go;     /* [atomic] futex; number of the tick to do; 0 = none yet */
+  uint32_t resets; /* [atomic] of the world */
+  int64_t now_ns;  /* [atomic] simulated time of that tick */
+  int64_t due_ns;  /* [atomic] when it was due; now_ns - due_ns is less than a step */
+  uint64_t steps;  /* [atomic] physics steps since the reset */
+  uint64_t missed; /* [atomic] ticks skipped because the one before was not finished (free running only) */
+  uint8_t reserved1[24];
   /* written by the participant */
   uint32_t done;     /* [atomic] number of the tick it has finished */
   uint32_t sleeping; /* [atomic] 1 before it sleeps on go */
-  uint8_t reserved1[56];
+  uint64_t ticks;    /* [atomic] finished */
+  int64_t total_ns;  /* [atomic] wall time of all of them */
+  int64_t max_ns;    /* [atomic] */
+  uint8_t reserved2[32];
 } rtmsim_participant;
 
 enum { RTMSIM_DROPPED_DEAD = 1, RTMSIM_DROPPED_HUNG = 2, RTMSIM_DROPPED_REFUSED = 3, RTMSIM_DROPPED_ASKED = 4 };

@@ -1,0 +1,335 @@
+#include "shm/request_board.h"
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include "base/text.h"
+#include "shm/futex.h"
+#include "shm/process.h"
+#include "shm/words.h"
+
+namespace shm {
+namespace {
+
+constexpr std::size_t max_text = std::size_t{64} << 20;
+constexpr std::chrono::milliseconds slice{100};
+
+char* request_text(const Segment& segment, std::size_t index) {
+  return reinterpret_cast<char*>(segment.at(AreaIndex::requests, index) + sizeof(RequestSlot));
+}
+char* reply_text(const Segment& segment, std::size_t index) { return request_text(segment, index) + text_piece; }
+
+RequestSlot& slot_at(const Segment& segment, std::size_t index) { return segment.as<RequestSlot>(AreaIndex::requests, index); }
+
+void call_attention(const Segment& segment) {
+  auto& control = segment.as<Control>(AreaIndex::control);
+  word(control.attention).fetch_add(1, std::memory_order_seq_cst);
+  ring(control.attention, control.attention_waiting);
+}
+
+}  // namespace
+
+struct RequestBoard::State {
+  State(const Segment& s, ProcessWatch& w) : segment(s), watch(w), clients(s.area(AreaIndex::requests).count) {}
+
+  // What the server knows of a slot; the slot itself is in the hands of its client.
+  struct ClientRecord {
+    std::uint64_t owner = 0, start_time = 0;
+    std::shared_ptr<const Watched> watched;
+    std::uint64_t id = 0;
+    bool is_complete = false, is_answered = true;
+    RawRequest incoming;
+    std::string remainder;  // of the reply's text
+  };
+
+  const Segment& segment;
+  ProcessWatch& watch;
+  std::vector<ClientRecord> clients;
+  std::uint32_t seen_attention = 0;
+  std::uint64_t seen_deaths = ~std::uint64_t{0};
+
+  Control& control() const { return segment.as<Control>(AreaIndex::control); }
+  void reap();
+  std::optional<Asked> take(std::size_t index);
+  void put_piece(std::size_t index, std::uint64_t id);
+  bool begin_reply(std::size_t index, std::uint64_t id);
+  void end_reply(std::size_t index);
+};
+
+RequestBoard::RequestBoard(IfaceWriter& simulation, Server& server)
+    : state_(std::make_unique<State>(simulation.segment(), server.watch())) {}
+RequestBoard::~RequestBoard() = default;
+
+void RequestBoard::State::reap() {
+  for (std::size_t i = 0; i < clients.size(); ++i) {
+    RequestSlot& slot = slot_at(segment, i);
+    ClientRecord& client = clients[i];
+    std::uint64_t owner = load(slot.owner);
+    if (owner == 0) {
+      client.watched.reset();
+      continue;
+    }
+    const std::uint64_t start_time = load(slot.start_time);
+    if (client.owner != owner || client.start_time != start_time || !client.watched) {
+      client = {};
+      client.owner = owner;
+      client.start_time = start_time;
+      client.watched = watch.watch({owner_pid(owner), load(slot.pid_namespace), start_time});
+    }
+    if (!client.watched->is_dead()) continue;
+    store(slot.state, static_cast<std::uint32_t>(RTMSIM_SLOT_IDLE));
+    store(slot.start_time, std::uint64_t{0});
+    word(slot.owner).compare_exchange_strong(owner, 0, std::memory_order_acq_rel);
+    client = {};
+  }
+}
+
+bool RequestBoard::State::begin_reply(std::size_t index, std::uint64_t id) {
+  RequestSlot& slot = slot_at(segment, index);
+  std::uint32_t asked = RTMSIM_SLOT_ASKED;
+  if (!word(slot.state).compare_exchange_strong(asked, RTMSIM_SLOT_REPLYING, std::memory_order_acq_rel)) return false;
+  if (load(slot.id) == id) return true;
+  store(slot.state, static_cast<std::uint32_t>(RTMSIM_SLOT_ASKED));  // the client has given up and asks for something else
+  return false;
+}
+
+void RequestBoard::State::end_reply(std::size_t index) {
+  RequestSlot& slot = slot_at(segment, index);
+  store(slot.state, static_cast<std::uint32_t>(RTMSIM_SLOT_REPLIED), std::memory_order_seq_cst);  // pairs with Requester's wait
+  futex_wake(slot.state, 1);
+}
+
+void RequestBoard::State::put_piece(std::size_t index, std::uint64_t id) {
+  RequestSlot& slot = slot_at(segment, index);
+  std::string& rest = clients[index].remainder;
+  const std::size_t length = std::min(rest.size(), text_piece);
+  std::memcpy(reply_text(segment, index), rest.data(), length);
+  rest.erase(0, length);
+  slot.reply_id = id;
+  slot.reply_length = static_cast<std::uint32_t>(length);
+  slot.reply_more = rest.empty() ? 0 : 1;
+}
+
+// Takes a piece of a request over; the request when it is complete.
+std::optional<RequestBoard::Asked> RequestBoard::State::take(std::size_t index) {
+  RequestSlot& slot = slot_at(segment, index);
+  if (load(slot.state) != RTMSIM_SLOT_ASKED) return std::nullopt;  // pairs with the release in Requester
+  ClientRecord& client = clients[index];
+  const std::uint64_t owner = load(slot.owner), id = load(slot.id);
+  if (owner == 0 || id == 0) return std::nullopt;
+  if (client.owner != owner) client = {};
+  client.owner = owner;
+  const bool is_next_piece = client.id == id;
+  if (is_next_piece && client.is_answered) {
+    if (client.remainder.empty() || !begin_reply(index, id)) return std::nullopt;
+    put_piece(index, id);
+    end_reply(index);
+    return std::nullopt;
+  }
+  if (is_next_piece && client.is_complete) return std::nullopt;  // being worked on
+  if (!is_next_piece) {
+    client.id = id;
+    client.is_complete = client.is_answered = false;
+    client.incoming = {};
+    client.remainder.clear();
+    client.incoming.kind = slot.kind;
+    std::memcpy(&client.incoming.body, &slot.body, sizeof slot.body);
+  }
+  const std::size_t length = std::min<std::size_t>(slot.text_length, text_piece);
+  client.incoming.text.append(request_text(segment, index), length);
+  if (slot.more != 0 && client.incoming.text.size() <= max_text) {
+    if (!begin_reply(index, id)) return std::nullopt;
+    slot.status = RTMSIM_STATUS_OK;
+    put_piece(index, id);
+    end_reply(index);
+    return std::nullopt;
+  }
+  client.is_complete = true;
+  Asked asked{{static_cast<std::uint32_t>(index), owner, id}, PauseRequest{}, owner_pid(owner)};
+  auto request = slot.more == 0 ? decode(client.incoming) : base::Result<Request>(base::Error{"request text is longer than 64 MiB"});
+  client.incoming.text.clear();
+  client.incoming.text.shrink_to_fit();
+  if (!request) {
+    client.is_answered = true;
+    if (!begin_reply(index, id)) return std::nullopt;
+    slot.status = RTMSIM_STATUS_BAD_REQUEST;
+    slot.reply = {};
+    set_text(slot.reply.message, request.error().message);
+    put_piece(index, id);
+    end_reply(index);
+    return std::nullopt;
+  }
+  asked.request = std::move(*request);
+  return asked;
+}
+
+std::vector<RequestBoard::Asked> RequestBoard::poll() {
+  State& state = *state_;
+  const std::uint32_t attention = load(state.control().attention);  // pairs with call_attention
+  const std::uint64_t deaths = state.watch.deaths();
+  std::vector<Asked> all;
+  if (attention == state.seen_attention && deaths == state.seen_deaths) return all;
+  state.seen_attention = attention;
+  state.seen_deaths = deaths;
+  state.reap();
+  for (std::size_t i = 0; i < state.clients.size(); ++i) {
+    if (auto asked = state.take(i)) all.push_back(std::move(*asked));
+  }
+  return all;
+}
+
+void RequestBoard::reply(const RequestTicket& ticket, const Reply& reply) {
+  State& state = *state_;
+  if (ticket.slot >= state.clients.size()) return;
+  State::ClientRecord& client = state.clients[ticket.slot];
+  RequestSlot& slot = slot_at(state.segment, ticket.slot);
+  if (client.id != ticket.id || client.is_answered || load(slot.owner) != ticket.owner) return;
+  client.is_answered = true;
+  if (!state.begin_reply(ticket.slot, ticket.id)) return;
+  client.remainder = reply.text;
+  slot.status = static_cast<std::uint32_t>(reply.status);
+  slot.reply.sim_time_ns = reply.sim_time_ns;
+  slot.reply.steps = reply.steps;
+  slot.reply.hash = reply.hash;
+  slot.reply.count = reply.count;
+  std::copy(std::begin(reply.values), std::end(reply.values), slot.reply.values);
+  set_text(slot.reply.message, reply.message);
+  state.put_piece(ticket.slot, ticket.id);
+  state.end_reply(ticket.slot);
+}
+
+void RequestBoard::wait(std::chrono::steady_clock::time_point deadline) {
+  Control& control = state_->control();
+  if (load(control.attention) != state_->seen_attention) return;
+  announce(control.attention_waiting);
+  if (load(control.attention, std::memory_order_seq_cst) != state_->seen_attention) return;
+  futex_wait(control.attention, state_->seen_attention, deadline - std::chrono::steady_clock::now());
+}
+
+void RequestBoard::wake() { call_attention(state_->segment); }
+
+struct Requester::State {
+  State(Iface opened) : simulation(std::move(opened)) {}
+  ~State() { leave(); }
+
+  Iface simulation;
+  std::uint64_t owner = 0;
+  std::optional<std::size_t> index;
+  std::uint64_t next_id = 1;
+
+  const Segment& segment() const { return simulation.segment(); }
+  RequestSlot& slot() const { return slot_at(segment(), *index); }
+  base::Error fail(const std::string& what) const {
+    return base::Error{"server " + std::to_string(simulation.server_id()) + " (pid " + std::to_string(segment().facts().server.pid) + ") " +
+                       what};
+  }
+  base::Result<void> enter();
+  void leave();
+  base::Result<void> exchange(std::uint64_t id, std::chrono::steady_clock::time_point deadline);
+};
+
+base::Result<void> Requester::State::enter() {
+  if (index && load(slot().owner) == owner) return {};
+  owner = make_owner();
+  const ProcessMark mark = own_mark();
+  for (std::size_t i = 0; i < segment().area(AreaIndex::requests).count; ++i) {
+    std::uint64_t free = 0;
+    RequestSlot& candidate = slot_at(segment(), i);
+    if (!word(candidate.owner).compare_exchange_strong(free, owner, std::memory_order_acq_rel)) continue;
+    store(candidate.pid_namespace, mark.pid_namespace);
+    store(candidate.start_time, mark.start_time);
+    store(candidate.state, static_cast<std::uint32_t>(RTMSIM_SLOT_IDLE));
+    index = i;
+    return {};
+  }
+  return fail("has no free slot for requests");
+}
+
+void Requester::State::leave() {
+  if (!index || load(slot().owner) != owner) return;
+  store(slot().state, static_cast<std::uint32_t>(RTMSIM_SLOT_IDLE));
+  store(slot().start_time, std::uint64_t{0});
+  word(slot().owner).compare_exchange_strong(owner, 0, std::memory_order_acq_rel);
+  index.reset();
+}
+
+// Hands the slot to the server and waits until it comes back.
+base::Result<void> Requester::State::exchange(std::uint64_t id, std::chrono::steady_clock::time_point deadline) {
+  RequestSlot& mine = slot();
+  store(mine.state, static_cast<std::uint32_t>(RTMSIM_SLOT_ASKED), std::memory_order_seq_cst);  // pairs with RequestBoard's take
+  call_attention(segment());
+  while (true) {
+    const std::uint32_t seen = load(mine.state, std::memory_order_seq_cst);
+    if (seen == RTMSIM_SLOT_REPLIED && mine.reply_id == id) return {};
+    if (seen == RTMSIM_SLOT_REPLIED || seen == RTMSIM_SLOT_IDLE) return fail("answered something that was not asked");
+    if (simulation.status() != Status::live) return fail("has ended");
+    auto left = deadline - std::chrono::steady_clock::now();
+    if (left.count() <= 0) {
+      std::uint32_t asked = RTMSIM_SLOT_ASKED;
+      const bool is_ours = word(mine.state).compare_exchange_strong(asked, RTMSIM_SLOT_IDLE, std::memory_order_acq_rel);
+      // A server that is just writing its reply gets another second.
+      if (is_ours || left < -std::chrono::seconds(1)) return fail("did not answer in time");
+      left = slice;
+    }
+    futex_wait(mine.state, seen, std::min<std::chrono::nanoseconds>(left, slice));
+  }
+}
+
+Requester::Requester(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Requester::Requester(Requester&&) noexcept = default;
+Requester& Requester::operator=(Requester&&) noexcept = default;
+Requester::~Requester() = default;
+
+base::Result<Requester> Requester::open(std::uint32_t server_id) {
+  auto simulation = Iface::open(server_id, IfaceType::simulation, "world");
+  if (!simulation) return simulation.error();
+  if (simulation->segment().area(AreaIndex::control).count == 0) return base::Error{"the simulation iface has no slots for requests"};
+  return Requester(std::make_unique<State>(std::move(*simulation)));
+}
+
+Iface& Requester::simulation() { return state_->simulation; }
+
+base::Result<Reply> Requester::ask(const Request& request, std::chrono::nanoseconds timeout) { return ask_raw(encode(request), timeout); }
+
+base::Result<Reply> Requester::ask_raw(const RawRequest& request, std::chrono::nanoseconds timeout) {
+  State& state = *state_;
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
+  if (request.text.size() > max_text) return base::Error{"request text is longer than 64 MiB"};
+  if (auto good = state.enter(); !good) return good.error();
+  RequestSlot& slot = state.slot();
+  const std::uint64_t id = (state.owner << 32) ^ state.next_id++;
+  store(slot.id, id);
+  slot.kind = request.kind;
+  slot.body = request.body;
+  std::size_t sent = 0;
+  do {
+    const std::size_t length = std::min(request.text.size() - sent, text_piece);
+    std::memcpy(request_text(state.segment(), *state.index), request.text.data() + sent, length);
+    sent += length;
+    slot.text_length = static_cast<std::uint32_t>(length);
+    slot.more = sent < request.text.size() ? 1 : 0;
+    if (auto good = state.exchange(id, deadline); !good) return good.error();
+  } while (sent < request.text.size() && slot.status == RTMSIM_STATUS_OK);
+
+  Reply reply;
+  reply.status = static_cast<RequestStatus>(slot.status);
+  reply.sim_time_ns = slot.reply.sim_time_ns;
+  reply.steps = slot.reply.steps;
+  reply.hash = slot.reply.hash;
+  reply.count = slot.reply.count;
+  std::copy(std::begin(slot.reply.values), std::end(slot.reply.values), reply.values);
+  reply.message.assign(slot.reply.message, strnlen(slot.reply.message, sizeof slot.reply.message));
+  while (true) {
+    reply.text.append(reply_text(state.segment(), *state.index), std::min<std::size_t>(slot.reply_length, text_piece));
+    if (slot.reply_more == 0 || reply.text.size() > max_text) break;
+    slot.text_length = 0;
+    slot.more = 0;
+    if (auto good = state.exchange(id, deadline); !good) return good.error();
+  }
+  store(slot.state, static_cast<std::uint32_t>(RTMSIM_SLOT_IDLE));
+  return reply;
+}
+
+}  // namespace shm

@@ -1,0 +1,415 @@
+#include "shm/segment.h"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <climits>
+#include <cstring>
+#include <memory>
+#include <thread>
+#include <tuple>
+#include <utility>
+
+#include "base/text.h"
+#include "shm/futex.h"
+#include "shm/process.h"
+#include "shm/words.h"
+
+namespace shm {
+namespace {
+
+constexpr char folder[] = "/dev/shm";
+constexpr std::string_view prefix = "rtmsim-";
+constexpr std::int64_t heartbeat_limit_ns = 5'000'000'000;  // a server that can't be judged otherwise is dead after that
+constexpr std::size_t max_segment = std::size_t{4} << 30;
+
+std::string path_of(const SegmentName& name) { return std::string(folder) + "/" + name.text(); }
+std::string reason() { return std::strerror(errno); }
+
+class FileHandle {
+ public:
+  explicit FileHandle(int file) : file_(file) {}
+  FileHandle(const FileHandle&) = delete;
+  FileHandle& operator=(const FileHandle&) = delete;
+  ~FileHandle() {
+    if (file_ >= 0) ::close(file_);
+  }
+  int get() const { return file_; }
+
+ private:
+  int file_;
+};
+
+template <class Number>
+bool take_number(std::string_view& text, char end, Number& number) {
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || rest == text.data() + text.size() || *rest != end) return false;
+  text.remove_prefix(static_cast<std::size_t>(rest - text.data()) + 1);
+  return true;
+}
+
+std::uint64_t inode_of_path(const std::string& path) {
+  struct stat status {};
+  return ::stat(path.c_str(), &status) == 0 ? status.st_ino : 0;
+}
+
+// Places all areas; returns the total size.
+std::uint64_t lay_out(const Geometry& geometry, Header& header) {
+  std::uint64_t end = sizeof(Header);
+  const auto add = [&](AreaIndex index, std::uint64_t stride, std::uint32_t count) {
+    if (stride == 0 || count == 0) return;
+    stride = round_up(stride, 64);
+    header.areas[static_cast<std::size_t>(index)] = {end, stride * count, static_cast<std::uint32_t>(stride), count};
+    end += stride * count;
+  };
+  add(AreaIndex::info, geometry.info_size, 1);
+  if (geometry.sample_size > 0) add(AreaIndex::cells, 8 + geometry.sample_size, geometry.cells);
+  add(AreaIndex::leases, sizeof(Lease), geometry.leases);
+  if (geometry.request_slots > 0) {
+    add(AreaIndex::control, sizeof(Control), 1);
+    add(AreaIndex::requests, sizeof(RequestSlot) + 2 * text_piece, geometry.request_slots);
+    add(AreaIndex::participants, sizeof(ParticipantSlot), geometry.participants);
+  }
+  if (geometry.frame_size > 0) add(AreaIndex::frames, sizeof(FrameHead) + geometry.frame_size, geometry.frame_slots);
+  return round_up(end, 4096);
+}
+
+// An unnamed file that gets its name when it is complete. Needs no clean-up when we die in between.
+base::Result<int> make_file(const SegmentName& name, std::uint64_t size, const Access& access) {
+  const int file = ::open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  const auto fail = [&](const std::string& what) {
+    const std::string why = reason();
+    if (file >= 0) ::close(file);
+    return base::Error{"shared memory " + name.text() + ": " + what + ": " + why};
+  };
+  if (file < 0) return fail("can't make a file in /dev/shm");
+  if (const int code = posix_fallocate(file, 0, static_cast<off_t>(size)); code != 0) {
+    errno = code;
+    return fail("no room for " + std::to_string(size) + " bytes in /dev/shm");
+  }
+  if (access.group && ::fchown(file, static_cast<uid_t>(-1), *access.group) != 0) {
+    return fail("can't give it to group " + std::to_string(*access.group));
+  }
+  if (::fchmod(file, access.mode) != 0) return fail("can't set its mode");
+  return file;
+}
+
+enum class Judgement { gone, removed, retry };
+
+struct Eviction {
+  Judgement judgement = Judgement::retry;
+  std::uint64_t generation = 0;  // of the one removed
+};
+
+void tell_readers(Header& header) {
+  store(header.state, static_cast<std::uint32_t>(RTMSIM_STATE_CLOSED));
+  word(header.wake_word).fetch_add(1, std::memory_order_seq_cst);
+  futex_wake(header.wake_word, INT_MAX);
+}
+
+// Removes the segment with this name unless its server lives. Two who try at the same time do it one after the other: the file is locked,
+// and whoever comes second finds that the name leads to another file.
+base::Result<Eviction> evict(const SegmentName& name) {
+  const std::string path = path_of(name);
+  FileHandle file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW));
+  if (file.get() < 0) {
+    if (errno == ENOENT) return Eviction{Judgement::gone, 0};
+    return base::Error{"shared memory " + name.text() + " exists and can't be opened: " + reason()};
+  }
+  for (int attempt = 0; ::flock(file.get(), LOCK_EX | LOCK_NB) != 0; ++attempt) {
+    if (attempt == 100) return base::Error{"shared memory " + name.text() + " is locked by another process"};
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  struct stat status {};
+  if (::fstat(file.get(), &status) != 0 || inode_of_path(path) != status.st_ino) return Eviction{};
+  Eviction eviction{Judgement::removed, 0};
+  if (static_cast<std::size_t>(status.st_size) >= sizeof(Header)) {
+    void* base = ::mmap(nullptr, sizeof(Header), PROT_READ | PROT_WRITE, MAP_SHARED, file.get(), 0);
+    if (base == MAP_FAILED) return base::Error{"shared memory " + name.text() + " can't be mapped: " + reason()};
+    Header& header = *static_cast<Header*>(base);
+    const bool is_ours = std::memcmp(header.magic, RTMSIM_MAGIC, sizeof header.magic) == 0;
+    const bool is_closed = load(header.state) == RTMSIM_STATE_CLOSED;
+    const ProcessMark server = header.server;
+    if (is_ours && !is_closed && is_server_alive(header)) {
+      ::munmap(base, sizeof(Header));
+      const bool is_self = server.pid == own_mark().pid;
+      return base::Error{is_self ? std::string(to_text(name.type)) + " " + base::in_quotes(name.iface) + " exists already in server " +
+                                       std::to_string(name.server_id) + " of this process"
+                                 : "server " + std::to_string(name.server_id) + " is already running as pid " + std::to_string(server.pid) +
+                                       "; choose another server id or end that one"};
+    }
+    if (is_ours) {
+      eviction.generation = header.generation;
+      tell_readers(header);
+    }
+    ::munmap(base, sizeof(Header));
+  }
+  if (::unlink(path.c_str()) != 0 && errno != ENOENT) {
+    return base::Error{"stale shared memory " + name.text() + " can't be removed: " + reason()};
+  }
+  return eviction;
+}
+
+std::string check_header(const Header& header, const SegmentName& name, std::uint64_t file_size) {
+  if (std::memcmp(header.magic, RTMSIM_MAGIC, sizeof header.magic) != 0) return "is not an iface";
+  if (header.layout_version != layout_version) {
+    return "has layout version " + std::to_string(header.layout_version) + ", expected " + std::to_string(layout_version);
+  }
+  if (header.type != static_cast<std::uint32_t>(name.type)) return "has a type other than its name says";
+  if (header.total_size > file_size || header.total_size > max_segment) return "is shorter than its header says";
+  for (const Area& area : header.areas) {
+    const bool is_inside = area.offset <= header.total_size && area.size <= header.total_size - area.offset;
+    const bool is_consistent =
+        static_cast<std::uint64_t>(area.stride) * area.count <= area.size && area.offset % 64 == 0 && area.stride % 64 == 0;
+    if (!is_inside || !is_consistent) return "has an area outside of itself";
+  }
+  const auto element = [&](AreaIndex index, std::size_t size) {
+    const Area& area = header.areas[static_cast<std::size_t>(index)];
+    return area.count == 0 || (area.stride >= size && area.offset >= sizeof(Header));
+  };
+  const bool fits = element(AreaIndex::info, 1) && element(AreaIndex::cells, 8 + sizeof(Stamp)) &&
+                    element(AreaIndex::frames, sizeof(FrameHead)) && element(AreaIndex::leases, sizeof(Lease)) &&
+                    element(AreaIndex::control, sizeof(Control)) && element(AreaIndex::requests, sizeof(RequestSlot) + 2 * text_piece) &&
+                    element(AreaIndex::participants, sizeof(ParticipantSlot));
+  return fits ? "" : "has elements that are too small";
+}
+
+}  // namespace
+
+std::string SegmentName::text() const {
+  return std::string(prefix) + std::to_string(uid) + "-" + std::to_string(server_id) + "." + std::string(to_text(type)) + "." + iface;
+}
+
+std::optional<SegmentName> SegmentName::parse(std::string_view text) {
+  if (text.substr(0, prefix.size()) != prefix) return std::nullopt;
+  text.remove_prefix(prefix.size());
+  SegmentName name;
+  if (!take_number(text, '-', name.uid) || !take_number(text, '.', name.server_id)) return std::nullopt;
+  const auto dot = text.find('.');
+  if (dot == std::string_view::npos) return std::nullopt;
+  const auto type = parse_type(text.substr(0, dot));
+  if (!type) return std::nullopt;
+  name.type = *type;
+  name.iface = text.substr(dot + 1);
+  if (!check_name(name.iface)) return std::nullopt;
+  return name;
+}
+
+base::Result<void> check_name(std::string_view iface) {
+  const auto fail = [&](const std::string& what) { return base::Error{"iface name " + base::in_quotes(iface) + " " + what}; };
+  if (iface.empty()) return fail("is empty");
+  if (iface.size() > max_name_length) {
+    return fail("has " + std::to_string(iface.size()) + " bytes, at most " + std::to_string(max_name_length) + " fit");
+  }
+  for (char c : iface) {
+    if (c == '/') return fail("holds '/', which no iface name can");
+    if (static_cast<unsigned char>(c) < 32 || c == 127) return fail("holds a control character");
+  }
+  return {};
+}
+
+bool is_server_alive(const Header& header) {
+  if (std::memcmp(header.boot_id, boot_id().data(), boot_id().size()) != 0) return false;
+  if (!is_alive(header.server)) return false;
+  static const std::uint32_t here = own_mark().pid_namespace;
+  if (header.server.pid_namespace == here) return true;
+  return monotonic_ns() - load(header.heartbeat_ns) < heartbeat_limit_ns;
+}
+
+base::Result<Segment> Segment::create(const SegmentName& name, const Geometry& geometry, std::span<const std::byte> info,
+                                      const Access& access) {
+  if (auto good = check_name(name.iface); !good) return good.error();
+  Header header{};
+  const std::uint64_t size = lay_out(geometry, header);
+  if (size > max_segment) return base::Error{"shared memory " + name.text() + " would need " + std::to_string(size) + " bytes"};
+  auto made = make_file(name, size, access);
+  if (!made) return made.error();
+  FileHandle file(*made);
+  void* base = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, file.get(), 0);
+  if (base == MAP_FAILED) return base::Error{"shared memory " + name.text() + " can't be mapped: " + reason()};
+
+  std::memcpy(header.magic, RTMSIM_MAGIC, sizeof header.magic);
+  header.layout_version = layout_version;
+  header.type = static_cast<std::uint32_t>(name.type);
+  header.total_size = size;
+  header.generation = static_cast<std::uint64_t>(wall_ns());
+  header.server = own_mark();
+  std::memcpy(header.boot_id, boot_id().data(), boot_id().size());
+  header.server_id = name.server_id;
+  header.uid = name.uid;
+  std::memcpy(header.type_name, to_text(name.type).data(), to_text(name.type).size());
+  std::memcpy(header.name, name.iface.data(), name.iface.size());
+  header.state = RTMSIM_STATE_LIVE;
+  header.heartbeat_ns = monotonic_ns();
+
+  Segment segment;
+  segment.base_ = base;
+  segment.size_ = size;
+  segment.name_ = name;
+  segment.header() = segment.facts_ = header;
+  if (!info.empty()) std::memcpy(segment.at(AreaIndex::info), info.data(), info.size());
+  struct stat status {};
+  ::fstat(file.get(), &status);
+  segment.inode_ = status.st_ino;
+
+  const std::string path = path_of(name);
+  const std::string from = "/proc/self/fd/" + std::to_string(file.get());
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    if (::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0) return segment;
+    const int error = errno;
+    if (error != EEXIST) {
+      segment.inode_ = 0;
+      return base::Error{"shared memory " + name.text() + " can't be named: " + std::strerror(error)};
+    }
+    auto eviction = evict(name);
+    if (!eviction) {
+      segment.inode_ = 0;
+      return eviction.error();
+    }
+    if (eviction->generation >= segment.facts_.generation) {
+      segment.header().generation = segment.facts_.generation = eviction->generation + 1;
+    }
+  }
+  segment.inode_ = 0;
+  return base::Error{"shared memory " + name.text() + " is taken again and again by others"};
+}
+
+base::Result<Segment> Segment::open(const SegmentName& name) {
+  if (auto good = check_name(name.iface); !good) return good.error();
+  const std::string path = path_of(name);
+  FileHandle file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW));
+  if (file.get() < 0) return base::Error{"shared memory " + name.text() + " can't be opened: " + reason()};
+  struct stat status {};
+  if (::fstat(file.get(), &status) != 0) return base::Error{"shared memory " + name.text() + " can't be read: " + reason()};
+  if (status.st_uid != name.uid) return base::Error{"shared memory " + name.text() + " does not belong to the user in its name"};
+  const auto size = static_cast<std::size_t>(status.st_size);
+  if (size < sizeof(Header)) return base::Error{"shared memory " + name.text() + " is shorter than a header"};
+  void* base = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, file.get(), 0);
+  if (base == MAP_FAILED) return base::Error{"shared memory " + name.text() + " can't be mapped: " + reason()};
+  Segment segment;
+  segment.base_ = base;
+  segment.size_ = size;
+  segment.inode_ = status.st_ino;
+  segment.name_ = name;
+  std::memcpy(&segment.facts_, base, offsetof(Header, state));
+  if (const std::string problem = check_header(segment.facts_, name, size); !problem.empty()) {
+    return base::Error{"shared memory " + name.text() + " " + problem};
+  }
+  return segment;
+}
+
+Segment::Segment(Segment&& other) noexcept
+    : base_(std::exchange(other.base_, nullptr)),
+      size_(other.size_),
+      inode_(other.inode_),
+      name_(std::move(other.name_)),
+      facts_(other.facts_) {}
+
+Segment& Segment::operator=(Segment&& other) noexcept {
+  if (this == &other) return *this;
+  unmap();
+  base_ = std::exchange(other.base_, nullptr);
+  size_ = other.size_;
+  inode_ = other.inode_;
+  name_ = std::move(other.name_);
+  facts_ = other.facts_;
+  return *this;
+}
+
+Segment::~Segment() { unmap(); }
+
+void Segment::unmap() {
+  if (base_ != nullptr) ::munmap(base_, size_);
+  base_ = nullptr;
+}
+
+std::byte* Segment::at(AreaIndex index, std::size_t element) const {
+  const Area& place = area(index);
+  return static_cast<std::byte*>(base_) + place.offset + element * place.stride;
+}
+
+std::span<const std::byte> Segment::info() const {
+  const Area& place = area(AreaIndex::info);
+  return {place.count > 0 ? at(AreaIndex::info) : nullptr, place.count > 0 ? place.size : 0};
+}
+
+bool Segment::is_current() const { return inode_ != 0 && inode_of_path(path_of(name_)) == inode_; }
+
+void Segment::close() {
+  if (base_ == nullptr) return;
+  tell_readers(header());
+  if (is_current()) ::unlink(path_of(name_).c_str());
+}
+
+namespace {
+
+Found inspect(const SegmentName& name) {
+  Found found;
+  found.name = name;
+  auto segment = Segment::open(name);
+  if (!segment) {
+    found.problem = segment.error().message;
+    return found;
+  }
+  const Header& header = segment->header();
+  found.is_readable = true;
+  found.is_alive = load(header.state) == RTMSIM_STATE_LIVE && is_server_alive(header);
+  found.server = segment->facts().server;
+  found.generation = segment->facts().generation;
+  found.sequence = load(header.sequence);
+  found.dropped = load(header.dropped);
+  found.size = segment->facts().total_size;
+  for (std::size_t i = 0; i < segment->area(AreaIndex::leases).count; ++i) {
+    const auto& lease = segment->as<Lease>(AreaIndex::leases, i);
+    if (load(lease.owner) != 0 && (load(lease.flags) & RTMSIM_LEASE_SUBSCRIBER) != 0) ++found.subscribers;
+  }
+  return found;
+}
+
+std::vector<SegmentName> all_names() {
+  std::vector<SegmentName> names;
+  std::unique_ptr<DIR, int (*)(DIR*)> dir(::opendir(folder), &::closedir);
+  if (!dir) return names;
+  while (const dirent* entry = ::readdir(dir.get())) {
+    if (auto name = SegmentName::parse(entry->d_name)) names.push_back(std::move(*name));
+  }
+  std::sort(names.begin(), names.end(), [](const SegmentName& a, const SegmentName& b) {
+    return std::tie(a.server_id, a.uid, a.type, a.iface) < std::tie(b.server_id, b.uid, b.type, b.iface);
+  });
+  return names;
+}
+
+}  // namespace
+
+std::vector<Found> find_segments() {
+  std::vector<Found> found;
+  for (const auto& name : all_names()) found.push_back(inspect(name));
+  return found;
+}
+
+std::vector<Found> find_segments(std::uint32_t server_id) {
+  std::vector<Found> found;
+  for (const auto& name : all_names()) {
+    if (name.server_id == server_id) found.push_back(inspect(name));
+  }
+  return found;
+}
+
+std::vector<std::string> remove_stale(std::optional<std::uint32_t> server_id) {
+  std::vector<std::string> removed;
+  for (const auto& name : all_names()) {
+    if (name.uid != ::geteuid() || (server_id && name.server_id != *server_id)) continue;
+    auto eviction = evict(name);
+    if (eviction && eviction->judgement == Judgement::removed) removed.push_back(name.text());
+  }
+  return removed;
+}
+
+}  // namespace shm

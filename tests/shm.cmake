@@ -1,0 +1,1 @@
+rtmsim_test(shm_test shm/iface_test.cpp LIBRARIES simshm)
