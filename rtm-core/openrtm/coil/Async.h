@@ -47,7 +47,7 @@ class AsyncCall final : public Async {
 // end, otherwise the caller deletes it after wait().
 template <class Object, class Func>
 Async* AsyncInvoker(Object* object, Func function, bool auto_delete = false) {
-  return new detail::AsyncCall([object, function] { std::invoke(function, object); }, auto_delete);
+  return new detail::AsyncCall([object, function]() mutable { std::invoke(function, object); }, auto_delete);
 }
 
 }  // namespace coil

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <string>
+#include <utility>
 
 #include "corba/cdr.h"
 #include "corba/event_data.h"
@@ -57,7 +58,7 @@ class ConnectorListenerStatus : public ConnectorListenerStatusNames {
 
 #define USE_CONNLISTENER_STATUS typedef ::RTC::ConnectorListenerStatus ReturnCode
 
-// A raw listener overrides one of the two call operators.
+// A raw listener overrides one of the three call operators.
 class ConnectorDataListener : public ConnectorListenerStatusNames {
  public:
   using ConnectorListenerStatus = ::RTC::ConnectorListenerStatus;  // found by sources outside namespace RTC, too
@@ -67,6 +68,8 @@ class ConnectorDataListener : public ConnectorListenerStatusNames {
   virtual ReturnCode operator()(ConnectorInfo& info, ByteData& data, const std::string& marshalingtype);
   // 1.2: the stream is at the start of the payload and knows its byte order.
   virtual ReturnCode operator()(ConnectorInfo& info, cdrMemoryStream& data);
+  // 1.1: nothing can be changed.
+  virtual void operator()(const ConnectorInfo&, const cdrMemoryStream&) {}
   // What ports call.
   virtual ReturnCode notify(ConnectorInfo& info, corba::EventData& data);
   static const char* toString(ConnectorDataListenerType type);
@@ -77,7 +80,12 @@ class ConnectorDataListenerT : public ConnectorDataListener {
  public:
   USE_CONNLISTENER_STATUS;
   using ConnectorDataListener::operator();
-  virtual ReturnCode operator()(ConnectorInfo& info, DataType& data) = 0;
+  // A listener overrides one of the two: 1.2 and 2.x, 1.1.
+  virtual ReturnCode operator()(ConnectorInfo& info, DataType& data) {
+    (*this)(std::as_const(info), std::as_const(data));
+    return NO_CHANGE;
+  }
+  virtual void operator()(const ConnectorInfo&, const DataType&) {}
 
   ReturnCode notify(ConnectorInfo& info, corba::EventData& data) override {
     if (*data.ops().type == typeid(DataType)) {
@@ -103,7 +111,12 @@ class ConnectorListener : public ConnectorListenerStatusNames {
   using ConnectorListenerStatus = ::RTC::ConnectorListenerStatus;  // found by sources outside namespace RTC, too
   USE_CONNLISTENER_STATUS;
   virtual ~ConnectorListener() = default;
-  virtual ReturnCode operator()(ConnectorInfo& info) = 0;
+  // A listener overrides one of the two: 1.2 and 2.x, 1.1.
+  virtual ReturnCode operator()(ConnectorInfo& info) {
+    (*this)(std::as_const(info));
+    return NO_CHANGE;
+  }
+  virtual void operator()(const ConnectorInfo&) {}
   static const char* toString(ConnectorListenerType type);
 };
 

@@ -43,6 +43,8 @@ class CorbaConsumer : public CorbaConsumerBase {
    public:
     explicit Held(ObjectTypePtr object) : object_(object) {}
     ObjectTypePtr operator->() const { return object_.in(); }
+    // Good to the end of the expression: CORBA::is_nil(consumer.operator->()).
+    operator ObjectTypePtr() const { return object_.in(); }
 
    private:
     ObjectTypeVar object_;

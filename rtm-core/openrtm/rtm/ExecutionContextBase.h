@@ -4,6 +4,7 @@
 #pragma once
 
 #include <coil/Properties.h>
+#include <coil/Time.h>
 #include <rtm/RTObjectStateMachine.h>
 #include <rtm/SystemLogger.h>
 #include <rtm/idl/RTCSkel.h>

@@ -14,6 +14,8 @@ class TriggeredWorker;
 
 namespace RTC {
 
+class Manager;
+
 class ExtTrigExecutionContext : public ExecutionContextServant<POA_OpenRTM::ExtTrigExecutionContextService>, public coil::Task {
  public:
   ExtTrigExecutionContext();

@@ -13,6 +13,8 @@ class Turns;
 
 namespace RTC {
 
+class Manager;
+
 class OpenHRPExecutionContext : public ExecutionContextServant<POA_OpenRTM::ExtTrigExecutionContextService> {
  public:
   explicit OpenHRPExecutionContext(const std::string& name = "exttrig_sync_ec");

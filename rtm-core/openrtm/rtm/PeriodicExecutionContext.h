@@ -14,6 +14,8 @@ class PeriodicWorker;
 
 namespace RTC {
 
+class Manager;
+
 class PeriodicExecutionContext : public ExecutionContextServant<POA_RTC::ExecutionContextService>, public coil::Task {
  public:
   explicit PeriodicExecutionContext(const std::string& name = "periodic_ec");

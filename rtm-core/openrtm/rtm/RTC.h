@@ -1,12 +1,18 @@
 // What every header of the component API starts from: the interfaces of the RTC standard and the names authors use for them. Any thread.
 #pragma once
 
+#include <coil/config_coil.h>
 #include <rtm/version.h>
 
 #include <rtm/idl/RTCSkel.h>
 
+namespace coil {
+class Properties;
+}
+
 namespace RTC {
 
+using Properties = coil::Properties;
 using UniqueId = ExecutionContextHandle_t;
 
 class RTObject_impl;

@@ -4,13 +4,19 @@
 #pragma once
 
 #include <coil/Properties.h>
+#include <coil/Time.h>
+#include <rtm/CORBA_SeqUtil.h>
 #include <rtm/ComponentActionListener.h>
 #include <rtm/ConfigAdmin.h>
 #include <rtm/ExecutionContextBase.h>
+#include <rtm/NVUtil.h>
 #include <rtm/PortConnectListener.h>
+#include <rtm/RTC.h>
 #include <rtm/SystemLogger.h>
 #include <rtm/idl/OpenRTMSkel.h>
 
+// Authors rely on some of these headers without naming them: coil/Time.h, CORBA_SeqUtil.h, NVUtil.h, iostream.
+#include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -347,6 +353,10 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
 
   Names profile_;
   std::unique_ptr<Impl> impl_;
+
+ protected:
+  // What the component is, as authors print it.
+  const Names& m_profile = profile_;
 };
 
 using RtcBase = RTObject_impl;

@@ -105,11 +105,11 @@ class Logger {
   do {                                                                            \
     if (rtclog.isValid(LV)) rtclog.write(LV, ::RTC::detail::format_log_text fmt); \
   } while (false)
-#define RTC_LOG_STR(LV, str)                \
+#define RTC_LOG_STR(LV, stream)             \
   do {                                      \
     if (rtclog.isValid(LV)) {               \
       std::ostringstream rtclog_text_;      \
-      rtclog_text_ << str;                  \
+      rtclog_text_ << stream;               \
       rtclog.write(LV, rtclog_text_.str()); \
     }                                       \
   } while (false)
