@@ -1,0 +1,20 @@
+// The bare frames of models: all that libsdformat has to see of them. One thread at a time.
+#pragma once
+
+#include <pugixml.hpp>
+#include <string>
+
+namespace sim {
+
+// Appends to `parent` (a <world> or <model>) the model with nothing but its links, joints, frames and nested models. A pose of a collision,
+// visual, sensor or light that is relative to a named frame becomes a frame of its own, whose name is marked on the source
+// (frame_of_pose_mark).
+void append_skeleton(pugi::xml_node model, pugi::xml_node parent, const std::string& name, bool keep_pose);
+
+// The same for lights and actors that stand in a world: marks the source when its pose is relative to something.
+void append_frame_of_pose(pugi::xml_node thing, pugi::xml_node parent, const std::string& attached_to, const std::string& frame_name);
+
+// Whether the <pose> of the element is relative to a named frame.
+bool has_relative_pose(pugi::xml_node thing);
+
+}  // namespace sim

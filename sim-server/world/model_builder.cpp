@@ -1,0 +1,454 @@
+#include "world/model_builder.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/text.h"
+#include "world/checks.h"
+#include "world/plugin_kind.h"
+#include "world/xml_file.h"
+#include "world/xml_values.h"
+
+namespace sim {
+
+namespace {
+
+constexpr double smallest_mass = 1e-9;
+constexpr double largest_mass = 1e12;
+
+std::string scoped(const std::string& scope, const std::string& name) { return scope.empty() ? name : scope + "::" + name; }
+
+std::optional<GeometryDef> build_polyline(pugi::xml_node geometry, BuildContext& context) {
+  PolylineShape shape;
+  shape.height = number_at(geometry.child("polyline"), "height", 1);
+  for (pugi::xml_node line : geometry.children("polyline")) {
+    std::vector<Eigen::Vector2d> outline;
+    for (pugi::xml_node point : line.children("point")) {
+      const std::optional<std::vector<double>> n = parse_numbers(text_of(point));
+      if (n && n->size() == 2) outline.emplace_back((*n)[0], (*n)[1]);
+    }
+    if (outline.size() > 1 && (outline.front() - outline.back()).norm() < 1e-9) outline.pop_back();
+    if (outline.size() >= 3) {
+      shape.outlines.push_back(std::move(outline));
+    } else {
+      context.complaints.warn(line, "a polyline with fewer than three points is ignored");
+    }
+  }
+  if (!shape.outlines.empty()) return shape;
+  context.complaints.drop(geometry, describe_in_context(geometry.parent()) + " has a polyline without an outline and is left out");
+  return std::nullopt;
+}
+
+HeightmapShape build_heightmap(pugi::xml_node node) {
+  HeightmapShape shape;
+  shape.path = text_at(node, "uri");
+  shape.size = vector3_at(node, "size", shape.size);
+  shape.position = vector3_at(node, "pos", shape.position);
+  shape.sampling = std::clamp(integer_at(node, "sampling", 1), 1, 16);
+  for (pugi::xml_node texture : node.children("texture")) {
+    const auto file = [&](const char* key) {
+      const std::string path = text_at(texture, key);
+      return path.starts_with('/') ? path : std::string();
+    };
+    shape.textures.push_back({std::max(number_at(texture, "size", 10), 1e-3), file("diffuse"), file("normal")});
+  }
+  for (pugi::xml_node blend : node.children("blend"))
+    shape.blends.emplace_back(number_at(blend, "min_height", 0), number_at(blend, "fade_dist", 0));
+  return shape;
+}
+
+PlaneShape build_plane(pugi::xml_node node) {
+  PlaneShape shape;
+  shape.normal = vector3_at(node, "normal", shape.normal).normalized();
+  shape.size = vector2_at(node, "size", shape.size);
+  return shape;
+}
+
+MeshShape build_mesh(pugi::xml_node node) {
+  MeshShape shape;
+  shape.path = text_at(node, "uri");
+  shape.scale = vector3_at(node, "scale", shape.scale);
+  shape.submesh = text_at(node, "submesh/name");
+  if (shape.submesh == "__default__") shape.submesh.clear();
+  shape.center_submesh = bool_at(node, "submesh/center", false);
+  return shape;
+}
+
+}  // namespace
+
+std::optional<GeometryDef> build_geometry(pugi::xml_node geometry, BuildContext& context) {
+  if (pugi::xml_node node = geometry.child("box")) return BoxShape{vector3_at(node, "size", {1, 1, 1})};
+  if (pugi::xml_node node = geometry.child("sphere")) return SphereShape{number_at(node, "radius", 1)};
+  if (pugi::xml_node node = geometry.child("cylinder")) return CylinderShape{number_at(node, "radius", 1), number_at(node, "length", 1)};
+  if (pugi::xml_node node = geometry.child("capsule")) return CapsuleShape{number_at(node, "radius", 0.5), number_at(node, "length", 1)};
+  if (pugi::xml_node node = geometry.child("ellipsoid")) {
+    context.complaints.note(node, "the ellipsoid of " + describe_in_context(geometry.parent()) + " is approximated in collisions");
+    return EllipsoidShape{vector3_at(node, "radii", {1, 1, 1})};
+  }
+  if (pugi::xml_node node = geometry.child("plane")) return build_plane(node);
+  if (pugi::xml_node node = geometry.child("mesh")) return build_mesh(node);
+  if (pugi::xml_node node = geometry.child("heightmap")) return build_heightmap(node);
+  if (geometry.child("polyline")) return build_polyline(geometry, context);
+  const pugi::xml_node owner = geometry.parent();
+  if (const pugi::xml_node image = geometry.child("image")) {
+    context.complaints.drop(image, "shapes from images are not simulated; " + describe_in_context(owner) + " is left out");
+  } else if (!geometry.child("empty")) {
+    context.complaints.warn(owner, describe_in_context(owner) + " has no shape and is ignored");
+  }
+  return std::nullopt;
+}
+
+namespace {
+
+double friction_at(pugi::xml_node surface, std::string_view path) {
+  const double mu = number_at(surface, path, 1);
+  return mu < 0 ? infinite : mu;  // -1 is a common spelling of "never slips"
+}
+
+std::uint16_t bitmask_at(pugi::xml_node node, std::string_view path) {
+  const std::string text = text_at(node, path);
+  if (text.empty()) return 0xffff;
+  return static_cast<std::uint16_t>(std::strtoul(text.c_str(), nullptr, 0) & 0xffffU);
+}
+
+SurfaceDef build_surface(pugi::xml_node node) {
+  SurfaceDef surface;
+  if (!node) return surface;
+  surface.mu = friction_at(node, "friction/ode/mu");
+  surface.mu2 = child_at(node, "friction/ode/mu2")  ? friction_at(node, "friction/ode/mu2")
+                : child_at(node, "friction/ode/mu") ? surface.mu
+                                                    : 1;
+  const Eigen::Vector3d direction = vector3_at(node, "friction/ode/fdir1", Eigen::Vector3d::Zero());
+  if (direction.allFinite() && direction.norm() > 1e-9) surface.friction_direction = direction.normalized();
+  surface.slip1 = std::max(0.0, number_at(node, "friction/ode/slip1", 0));
+  surface.slip2 = std::max(0.0, number_at(node, "friction/ode/slip2", 0));
+  if (child_at(node, "friction/torsional")) surface.torsional_mu = std::max(0.0, number_at(node, "friction/torsional/coefficient", 1));
+  surface.restitution = std::clamp(number_at(node, "bounce/restitution_coefficient", 0), 0.0, 1.0);
+  surface.bounce_threshold = std::max(0.0, number_at(node, "bounce/threshold", 100000));
+  const std::optional<double> kp = number_at(node, "contact/ode/kp"), kd = number_at(node, "contact/ode/kd");
+  if (kp && *kp > 0 && std::isfinite(*kp)) surface.kp = kp;
+  if (kd && *kd > 0 && std::isfinite(*kd)) surface.kd = kd;
+  surface.max_vel = std::max(0.0, number_at(node, "contact/ode/max_vel", 0.01));
+  surface.min_depth = std::max(0.0, number_at(node, "contact/ode/min_depth", 0));
+  surface.soft_cfm = std::max(0.0, number_at(node, "contact/ode/soft_cfm", 0));
+  surface.soft_erp = std::clamp(number_at(node, "contact/ode/soft_erp", 0.2), 0.0, 1.0);
+  surface.collide_without_contact = bool_at(node, "contact/collide_without_contact", false);
+  surface.collide_bitmask = bitmask_at(node, "contact/collide_bitmask");
+  surface.category_bitmask = bitmask_at(node, "contact/category_bitmask");
+  return surface;
+}
+
+std::optional<CollisionDef> build_collision(pugi::xml_node node, BuildContext& context) {
+  std::optional<GeometryDef> geometry = build_geometry(node.child("geometry"), context);
+  if (!geometry) return std::nullopt;
+  CollisionDef collision;
+  collision.name = node.attribute("name").value();
+  collision.pose = pose_at(node, "pose");
+  collision.geometry = std::move(*geometry);
+  collision.surface = build_surface(node.child("surface"));
+  collision.laser_retro = number_at(node, "laser_retro", 0);
+  return collision;
+}
+
+}  // namespace
+
+std::optional<VisualDef> build_visual(pugi::xml_node node, BuildContext& context) {
+  std::optional<GeometryDef> geometry = build_geometry(node.child("geometry"), context);
+  if (!geometry) return std::nullopt;
+  VisualDef visual;
+  visual.name = node.attribute("name").value();
+  visual.pose = pose_at(node, "pose");
+  visual.geometry = std::move(*geometry);
+  if (const pugi::xml_node material = node.child("material")) visual.material = context.materials.read(material);
+  visual.transparency = std::clamp(number_at(node, "transparency", 0), 0.0, 1.0);
+  visual.cast_shadows = bool_at(node, "cast_shadows", true);
+  visual.laser_retro = number_at(node, "laser_retro", 0);
+  visual.visibility_flags = static_cast<std::uint32_t>(std::strtoul(text_at(node, "visibility_flags", "4294967295").c_str(), nullptr, 0));
+  return visual;
+}
+
+PluginDef build_plugin(pugi::xml_node node, const std::string& scope, BuildContext& context) {
+  PluginDef plugin;
+  plugin.name = node.attribute("name").value();
+  plugin.filename = node.attribute("filename").value();
+  plugin.scope = scope;
+  plugin.parameters = parameters_of(node);
+  plugin.source = context.complaints.place_of(node).text();
+  if (kind_of(plugin) == PluginKind::unknown) {
+    context.complaints.warn(node, "unknown plugin " + base::in_quotes(plugin.filename) + " (" + describe_in_context(node) + ") is ignored");
+  }
+  return plugin;
+}
+
+namespace {
+
+// Positive definite and possible for a body of positive density; `why` says what was wrong.
+Eigen::Matrix3d mended_inertia(const Eigen::Matrix3d& inertia, double mass, std::string& why) {
+  const Eigen::Matrix3d small_ball = Eigen::Matrix3d::Identity() * (0.4 * mass * 0.01);
+  if (!inertia.allFinite() || inertia.cwiseAbs().maxCoeff() > 1e15) {
+    why = "is not finite";
+    return small_ball;
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia);
+  Eigen::Vector3d moments = solver.eigenvalues();  // ascending
+  if (!(moments(2) > 0)) {
+    why = "is not positive definite";
+    return small_ball;
+  }
+  const double floor = std::max(1e-6 * moments(2), 1e-12);
+  if (moments(0) < floor) {
+    why = "is not positive definite";
+    moments = moments.cwiseMax(floor);
+  }
+  const double excess = moments(2) - moments(0) - moments(1);
+  if (excess > 0.01 * moments(2)) {
+    if (why.empty()) why = "violates the triangle inequality of principal moments";
+    moments(0) += excess / 2;
+    moments(1) += excess / 2;
+  } else if (why.empty()) {
+    return inertia;
+  }
+  return solver.eigenvectors() * moments.asDiagonal() * solver.eigenvectors().transpose();
+}
+
+void build_inertial(LinkDef& link, pugi::xml_node node, bool is_static, BuildContext& context) {
+  if (!node) return;
+  const pugi::xml_node mass = node.child("mass");
+  const std::optional<double> written = number_at(node, "mass");
+  if (mass && mass.first_child() && !(written && *written >= smallest_mass && *written <= largest_mass)) {
+    if (!is_static) {
+      context.complaints.warn(mass, "mass of " + describe_in_context(node.parent()) + " must be a positive number, got " +
+                                        base::in_quotes(text_of(mass)) + "; 1 kg is taken");
+    }
+  } else {
+    link.mass = written.value_or(1);
+  }
+  const Eigen::Isometry3d pose = pose_at(node, "pose");
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();
+  if (const pugi::xml_node values = node.child("inertia")) {
+    const auto entry = [&](const char* key, double fallback) {
+      const std::optional<std::vector<double>> n = parse_numbers(text_at(values, key));
+      return n && n->size() == 1 ? n->front() : fallback;
+    };
+    const double xy = entry("ixy", 0), xz = entry("ixz", 0), yz = entry("iyz", 0);
+    inertia << entry("ixx", 1), xy, xz, xy, entry("iyy", 1), yz, xz, yz, entry("izz", 1);
+  }
+  std::string why;
+  inertia = mended_inertia(inertia, link.mass, why);
+  if (!why.empty() && !is_static)
+    context.complaints.warn(node, "inertia of " + describe_in_context(node.parent()) + " " + why + "; it is mended");
+  link.center_of_mass = pose.translation();
+  link.inertia = pose.linear() * inertia * pose.linear().transpose();
+}
+
+class ModelBuilder {
+ public:
+  ModelBuilder(ModelDef& model, BuildContext& context) : model_(model), context_(context) {}
+
+  void add(pugi::xml_node node, const ResolvedModel& resolved, const std::string& scope, const Eigen::Isometry3d& place) {
+    for (pugi::xml_node nested : node.children("model")) {
+      const auto inner = resolved.models.find(nested.attribute("name").value());
+      if (inner == resolved.models.end()) continue;
+      if (bool_at(nested, "static", false) && !model_.is_static) {
+        context_.complaints.warn(nested, describe_in_context(nested) + " is static in a model that is not; it moves with the model");
+      }
+      add(nested, inner->second, scoped(scope, inner->first), place * inner->second.pose);
+    }
+    for (pugi::xml_node link : node.children("link")) add_link(link, resolved, scope, place);
+    for (pugi::xml_node joint : node.children("joint")) add_joint(joint, resolved, scope, place);
+    for (pugi::xml_node plugin : node.children("plugin")) model_.plugins.push_back(build_plugin(plugin, scope, context_));
+    for (pugi::xml_node gripper : node.children("gripper"))
+      context_.complaints.warn(gripper, "grippers are not simulated; " + describe_in_context(gripper) + " is ignored");
+  }
+
+ private:
+  // The pose of something in a link: its own, or that of the frame that stands for it.
+  Eigen::Isometry3d pose_in_link(pugi::xml_node node, const Eigen::Isometry3d& raw, const Eigen::Isometry3d& link,
+                                 const ResolvedModel& resolved) const {
+    const auto frame = resolved.frames.find(node.attribute(frame_of_pose_mark).value());
+    return frame == resolved.frames.end() ? raw : link.inverse() * frame->second;
+  }
+
+  void add_link(pugi::xml_node node, const ResolvedModel& resolved, const std::string& scope, const Eigen::Isometry3d& place) {
+    const std::string own_name = node.attribute("name").value();
+    const auto pose = resolved.links.find(own_name);
+    if (pose == resolved.links.end()) return;
+    LinkDef link;
+    link.name = scoped(scope, own_name);
+    link.scope = scope;
+    link.pose = place * pose->second;
+    link.gravity = bool_at(node, "gravity", true);
+    link.kinematic = bool_at(node, "kinematic", false);
+    link.self_collide = bool_at(node, "self_collide", model_.self_collide);
+    link.enable_wind = bool_at(node, "enable_wind", model_.enable_wind);
+    link.linear_damping = number_at(node, "velocity_decay/linear", 0);
+    link.angular_damping = number_at(node, "velocity_decay/angular", 0);
+    build_inertial(link, node.child("inertial"), model_.is_static, context_);
+    for (pugi::xml_node child : node.children("collision")) {
+      if (auto built = build_collision(child, context_)) {
+        built->pose = pose_in_link(child, built->pose, pose->second, resolved);
+        link.collisions.push_back(std::move(*built));
+      }
+    }
+    for (pugi::xml_node child : node.children("visual")) {
+      if (auto built = build_visual(child, context_)) {
+        built->pose = pose_in_link(child, built->pose, pose->second, resolved);
+        link.visuals.push_back(std::move(*built));
+      }
+    }
+    for (pugi::xml_node child : node.children("light")) {
+      if (auto built = build_light(child, context_)) {
+        built->pose = pose_in_link(child, built->pose, pose->second, resolved);
+        link.lights.push_back(std::move(*built));
+      }
+    }
+    for (pugi::xml_node child : node.children("sensor")) {
+      if (auto built = build_sensor(child, context_)) {
+        built->pose = pose_in_link(child, built->pose, pose->second, resolved);
+        finish_sensor(*built, child, scope, &link);
+        link.sensors.push_back(std::move(*built));
+      }
+    }
+    for (const char* kind : {"projector", "audio_sink", "audio_source", "battery", "particle_emitter"}) {
+      for (pugi::xml_node child : node.children(kind))
+        context_.complaints.warn(child, describe_in_context(child) + " is not simulated and ignored");
+    }
+    model_.links.push_back(std::move(link));
+  }
+
+  void finish_sensor(SensorDef& sensor, pugi::xml_node node, const std::string& scope, const LinkDef* link) {
+    sensor.scope = scope;
+    for (pugi::xml_node plugin : node.children("plugin")) sensor.plugins.push_back(build_plugin(plugin, scope, context_));
+    auto* contact = std::get_if<ContactDef>(&sensor.data);
+    if (!contact || !link) return;
+    std::vector<std::string> found;
+    for (const std::string& name : contact->collisions) {
+      // Names may come with the model and link before them.
+      const std::size_t last = name.rfind("::");
+      const std::string own = last == std::string::npos ? name : name.substr(last + 2);
+      const bool exists =
+          std::any_of(link->collisions.begin(), link->collisions.end(), [&](const CollisionDef& c) { return c.name == own; });
+      if (exists) {
+        found.push_back(own);
+      } else {
+        context_.complaints.warn(
+            node, describe_in_context(node) + " names the collision " + base::in_quotes(name) + ", which its link does not have");
+      }
+    }
+    contact->collisions = std::move(found);
+  }
+
+  AxisDef build_axis(pugi::xml_node node, const Eigen::Vector3d& xyz, bool is_continuous) {
+    AxisDef axis;
+    axis.xyz = xyz;
+    const auto unlimited = [](double value, double limit) { return std::abs(value) >= 1e15 ? limit : value; };
+    axis.lower = unlimited(number_at(node, "limit/lower", -infinite), -infinite);
+    axis.upper = unlimited(number_at(node, "limit/upper", infinite), infinite);
+    if (is_continuous) axis.lower = -infinite, axis.upper = infinite;
+    if (axis.lower > axis.upper) {
+      context_.complaints.warn(node, "limits of " + describe_in_context(node.parent()) + " must ascend, got " +
+                                         base::format_number(axis.lower) + " and " + base::format_number(axis.upper) +
+                                         "; it moves without limits");
+      axis.lower = -infinite, axis.upper = infinite;
+    }
+    const auto most = [&](const char* path) {
+      const double value = number_at(node, path, infinite);
+      return value < 0 || value >= 1e15 ? infinite : value;
+    };
+    axis.effort = most("limit/effort");
+    axis.velocity = most("limit/velocity");
+    axis.damping = number_at(node, "dynamics/damping", 0);
+    axis.friction = number_at(node, "dynamics/friction", 0);
+    axis.spring_reference = number_at(node, "dynamics/spring_reference", 0);
+    axis.spring_stiffness = number_at(node, "dynamics/spring_stiffness", 0);
+    const std::optional<double> stiffness = number_at(node, "limit/stiffness"), dissipation = number_at(node, "limit/dissipation");
+    if (stiffness && *stiffness > 0 && *stiffness < 1e8)
+      axis.limit_stiffness = stiffness;  // 1e8 is the specification's own value: a hard stop
+    if (axis.limit_stiffness && dissipation) axis.limit_dissipation = dissipation;
+    return axis;
+  }
+
+  static JointDef::Kind kind_of_joint(std::string_view type) {
+    for (int i = 0; i <= static_cast<int>(JointDef::Kind::gearbox); ++i) {
+      if (to_text(static_cast<JointDef::Kind>(i)) == type) return static_cast<JointDef::Kind>(i);
+    }
+    return JointDef::Kind::fixed;  // the type has been checked
+  }
+
+  void add_joint(pugi::xml_node node, const ResolvedModel& resolved, const std::string& scope, const Eigen::Isometry3d& place) {
+    std::string own_name = node.attribute("name").value();
+    const auto found = resolved.joints.find(own_name);
+    if (found == resolved.joints.end()) return;
+    const ResolvedJoint& frames = found->second;
+    if (own_name.ends_with(joint_alias_ending)) own_name.resize(own_name.size() - joint_alias_ending.size());
+    JointDef joint;
+    joint.name = scoped(scope, own_name);
+    joint.scope = scope;
+    joint.kind = kind_of_joint(node.attribute("type").value());
+    if (!frames.parent.empty()) joint.parent = scoped(scope, frames.parent);
+    if (!frames.child.empty()) joint.child = scoped(scope, frames.child);
+    joint.pose_in_model = place * frames.pose;
+    const LinkDef* child = model_.link(joint.child);
+    joint.pose_in_child = child ? Eigen::Isometry3d(child->pose.inverse() * joint.pose_in_model) : joint.pose_in_model;
+    const std::size_t axes =
+        joint.kind == JointDef::Kind::fixed || joint.kind == JointDef::Kind::ball                                                     ? 0
+        : joint.kind == JointDef::Kind::universal || joint.kind == JointDef::Kind::revolute2 || joint.kind == JointDef::Kind::gearbox ? 2
+                                                                                                                                      : 1;
+    for (std::size_t i = 0; i < axes; ++i) {
+      const Eigen::Vector3d xyz = i < frames.axes.size() ? frames.axes[i] : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
+      joint.axes.push_back(build_axis(node.child(i == 0 ? "axis" : "axis2"), xyz, joint.kind == JointDef::Kind::continuous));
+    }
+    // The old element counts turns per metre the other way round.
+    const std::optional<double> pitch = number_at(node, "screw_thread_pitch"), old_pitch = number_at(node, "thread_pitch");
+    if (pitch) {
+      joint.thread_pitch = *pitch;
+    } else if (old_pitch && *old_pitch != 0) {
+      joint.thread_pitch = -2 * 3.14159265358979323846 / *old_pitch;
+    } else if (joint.kind == JointDef::Kind::screw) {
+      joint.thread_pitch = 1;
+    }
+    joint.gearbox_ratio = number_at(node, "gearbox_ratio", 1);
+    if (const std::string reference = text_at(node, "gearbox_reference_body"); !reference.empty())
+      joint.gearbox_reference = scoped(scope, reference);
+    const pugi::xml_node ode = child_at(node, "physics/ode");
+    joint.cfm = number_at(ode, "cfm");
+    joint.erp = number_at(ode, "erp");
+    joint.suspension_cfm = number_at(ode, "suspension/cfm");
+    joint.suspension_erp = number_at(ode, "suspension/erp");
+    joint.stop_cfm = number_at(ode, "limit/cfm");
+    joint.stop_erp = number_at(ode, "limit/erp");
+    joint.provide_feedback = bool_at(ode, "provide_feedback", bool_at(node, "physics/provide_feedback", false));
+    for (pugi::xml_node child_node : node.children("sensor")) {
+      if (auto built = build_sensor(child_node, context_)) {
+        finish_sensor(*built, child_node, scope, nullptr);
+        if (auto* force = std::get_if<ForceTorqueDef>(&built->data)) force->joint = joint.name;
+        joint.sensors.push_back(std::move(*built));
+      }
+    }
+    model_.joints.push_back(std::move(joint));
+  }
+
+  ModelDef& model_;
+  BuildContext& context_;
+};
+
+}  // namespace
+
+ModelDef build_model(pugi::xml_node node, const ResolvedModel& resolved, BuildContext& context) {
+  ModelDef model;
+  model.name = node.attribute("name").value();
+  model.pose = resolved.pose;
+  model.is_static = bool_at(node, "static", false);
+  model.self_collide = bool_at(node, "self_collide", false);
+  model.allow_auto_disable = bool_at(node, "allow_auto_disable", true);
+  model.enable_wind = bool_at(node, "enable_wind", false);
+  model.source = context.complaints.place_of(node).text();
+  ModelBuilder(model, context).add(node, resolved, {}, Eigen::Isometry3d::Identity());
+  model.canonical_link = resolved.canonical_link;
+  if (!model.link(model.canonical_link) && !model.links.empty()) model.canonical_link = model.links.front().name;
+  return model;
+}
+
+}  // namespace sim

@@ -1,0 +1,55 @@
+// Files with models, each read, mended and checked once per world, with all their includes in place. One thread at a time.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <pugixml.hpp>
+#include <set>
+#include <string>
+
+#include "base/result.h"
+#include "world/complaints.h"
+#include "world/model_path.h"
+#include "world/sdf_library.h"
+
+namespace sim {
+
+class ModelFiles {
+ public:
+  // All three outlive the object.
+  ModelFiles(const ModelPath& model_path, SdfLibrary& library, Complaints& complaints);
+
+  // A document in the current version: parsed, mended, translated; not yet checked. Fails for what is no SDFormat (or URDF) at all.
+  base::Result<pugi::xml_document> open_text(const std::string& text, const std::string& file_name);
+
+  // Checks an entity of a document, makes its file names absolute and puts the models that it includes inside models in their places.
+  // Includes that stand directly in a <world> are left alone. False when the entity is not fit to be used (a finding says why).
+  bool complete(pugi::xml_node entity, const std::filesystem::path& folder);
+
+  // The <model>, <actor> or <light> that an <include> names, complete, of the file's own name and pose. Empty, with a finding made, when
+  // there is none. The node lives as long as this object and must not be changed.
+  pugi::xml_node included(pugi::xml_node include, const std::filesystem::path& folder);
+
+  // The entity in a file or in a folder with a model.config.
+  base::Result<pugi::xml_node> entity(const std::filesystem::path& path);
+
+  // Puts name, pose, placement frame, static flag and plugins of the <include> on a copy of the entity.
+  static void apply_include(pugi::xml_node include, pugi::xml_node copy);
+
+  const ModelPath& model_path() const { return model_path_; }
+
+ private:
+  base::Result<pugi::xml_node> load(const std::filesystem::path& file);
+  base::Result<std::filesystem::path> file_in_folder(const std::filesystem::path& folder);
+  void resolve_uris(pugi::xml_node entity, const std::filesystem::path& folder);
+  void expand_includes(pugi::xml_node model, const std::filesystem::path& folder);
+
+  const ModelPath& model_path_;
+  SdfLibrary& library_;
+  Complaints& complaints_;
+  std::map<std::string, pugi::xml_document> documents_;
+  std::map<std::string, std::string> failures_;
+  std::set<std::string> being_loaded_;
+};
+
+}  // namespace sim

@@ -1,0 +1,22 @@
+// Which of the plugins that people's models name are known here, whatever the simulator they were written for. Any thread.
+#pragma once
+
+#include "world/world_def.h"
+
+namespace sim {
+
+enum class PluginKind {
+  differential_drive,   // two driven wheels
+  skid_steer_drive,     // several driven wheels on each side
+  velocity_control,     // the model moves as it is told, without wheels
+  trajectory_follower,  // the model follows way points
+  implied,              // what it does is done by the simulator anyway (sensors, physics, clock, user interface of Gazebo)
+  unknown,
+};
+
+// By file name first ("libDiffDrivePlugin.so", "gz-sim-diff-drive-system", "ignition-gazebo-...", with or without "lib", ".so" and
+// version), then by the class in the name ("gz::sim::systems::DiffDrive").
+PluginKind kind_of(const PluginDef& plugin);
+PluginKind kind_of_plugin(std::string_view filename, std::string_view name);
+
+}  // namespace sim

@@ -1,0 +1,366 @@
+#include "world/sdf_library.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <sdf/sdf.hh>
+#include <set>
+
+#include "base/text.h"
+#include "world/xml_file.h"
+#include "world/xml_values.h"
+
+namespace sim {
+
+namespace {
+
+// libsdformat talks to stderr and opens a log file in the home folder when its console is made. Neither is wanted; the environment is
+// changed only while the console is made, before any of our threads is told to load.
+void silence_console() {
+  static const bool done = [] {
+    const char* home = std::getenv("HOME");
+    const std::string kept = home ? home : "";
+    setenv("HOME", "/dev/null", 1);
+    sdf::Console::Instance()->SetQuiet(true);
+    home ? setenv("HOME", kept.c_str(), 1) : unsetenv("HOME");
+    return true;
+  }();
+  static_cast<void>(done);
+}
+
+sdf::ParserConfig quiet_config() {
+  sdf::ParserConfig config;
+  config.SetWarningsPolicy(sdf::EnforcementPolicy::LOG);
+  config.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::LOG);
+  config.SetDeprecatedElementsPolicy(sdf::EnforcementPolicy::LOG);
+  config.SetFindCallback([](const std::string&) { return std::string(); });
+  return config;
+}
+
+// A document without descriptions: whatever is read into it stays as it was written.
+sdf::SDFPtr free_form() {
+  sdf::SDFPtr document = std::make_shared<sdf::SDF>();
+  document->Root()->SetName("sdf");
+  document->Root()->SetCopyChildren(true);
+  document->Root()->AddAttribute("version", "string", current_sdf_version, true);
+  return document;
+}
+
+void copy_element(const sdf::ElementPtr& from, pugi::xml_node to) {
+  for (const sdf::ParamPtr& attribute : from->GetAttributes()) {
+    if (attribute->GetSet()) to.append_attribute(attribute->GetKey().c_str()) = attribute->GetAsString().c_str();
+  }
+  if (from->GetValue() && !from->GetValue()->GetAsString().empty()) {
+    to.append_child(pugi::node_pcdata).set_value(from->GetValue()->GetAsString().c_str());
+  }
+  for (sdf::ElementPtr child = from->GetFirstElement(); child; child = child->GetNextElement()) {
+    copy_element(child, to.append_child(child->GetName().c_str()));
+  }
+}
+
+pugi::xml_document to_document(const sdf::SDFPtr& source) {
+  pugi::xml_document document;
+  pugi::xml_node root = document.append_child("sdf");
+  copy_element(source->Root(), root);
+  root.remove_attribute("version");
+  root.prepend_attribute("version") = current_sdf_version;
+  return document;
+}
+
+std::string first_message(const sdf::Errors& errors) {
+  if (errors.empty()) return "libsdformat gives no reason";
+  std::string message = errors.front().Message();
+  for (char& c : message) c = c == '\n' ? ' ' : c;
+  return message;
+}
+
+sdf::ElementPtr shallow_copy(const sdf::ElementPtr& description) {
+  auto copy = std::make_shared<sdf::Element>();
+  copy->SetName(description->GetName());
+  copy->SetRequired(description->GetRequired());
+  copy->SetCopyChildren(description->GetCopyChildren());
+  if (const sdf::ParamPtr value = description->GetValue())
+    copy->AddValue(value->GetTypeName(), value->GetDefaultAsString(), value->GetRequired(), "");
+  for (const sdf::ParamPtr& attribute : description->GetAttributes()) {
+    copy->AddAttribute(attribute->GetKey(), attribute->GetTypeName(), attribute->GetDefaultAsString(), attribute->GetRequired(), "");
+  }
+  return copy;
+}
+
+bool is_required(const sdf::ElementPtr& description) { return description->GetRequired() == "1" || description->GetRequired() == "+"; }
+
+// Every element that libsdformat reads gets a copy of all that could stand in it; what no document of ours uses is cut off before.
+sdf::ElementPtr prune(const sdf::ElementPtr& description, const sdf::ElementPtr& model, const std::set<std::string>& used, int nested) {
+  sdf::ElementPtr copy = shallow_copy(description);
+  for (std::size_t i = 0; i < description->GetElementDescriptionCount(); ++i) {
+    sdf::ElementPtr child = description->GetElementDescription(i);
+    const bool is_leaf = child->GetElementDescriptionCount() == 0 && child->ReferenceSDF().empty();
+    if (!is_leaf && !is_required(child) && !used.contains(child->GetName())) continue;
+    if (child->ReferenceSDF() == "model") {
+      if (nested > 0) copy->AddElementDescription(prune(model, model, used, nested - 1));
+      continue;
+    }
+    copy->AddElementDescription(prune(child, model, used, nested));
+  }
+  return copy;
+}
+
+Eigen::Isometry3d to_eigen(const ignition::math::Pose3d& pose) {
+  Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+  out.translation() = Eigen::Vector3d(pose.Pos().X(), pose.Pos().Y(), pose.Pos().Z());
+  out.linear() = Eigen::Quaterniond(pose.Rot().W(), pose.Rot().X(), pose.Rot().Y(), pose.Rot().Z()).normalized().toRotationMatrix();
+  return out;
+}
+
+class Resolver {
+ public:
+  explicit Resolver(sdf::Errors& errors) : errors_(errors) {}
+
+  template <class Thing>
+  Eigen::Isometry3d pose_of(const Thing& thing, const std::string& in) {
+    ignition::math::Pose3d pose;
+    sdf::Errors problems = thing.SemanticPose().Resolve(pose, in);
+    if (!problems.empty()) {
+      keep(problems);
+      pose = thing.RawPose();
+    }
+    return to_eigen(pose);
+  }
+
+  ResolvedModel model(const sdf::Model& source, const std::string& in) {
+    ResolvedModel out;
+    out.pose = pose_of(source, in);
+    out.canonical_link = source.CanonicalLinkAndRelativeName().second;
+    for (std::size_t i = 0; i < source.LinkCount(); ++i)
+      out.links[source.LinkByIndex(i)->Name()] = pose_of(*source.LinkByIndex(i), "__model__");
+    for (std::size_t i = 0; i < source.FrameCount(); ++i)
+      out.frames[source.FrameByIndex(i)->Name()] = pose_of(*source.FrameByIndex(i), "__model__");
+    for (std::size_t i = 0; i < source.JointCount(); ++i) out.joints[source.JointByIndex(i)->Name()] = joint(*source.JointByIndex(i));
+    for (std::size_t i = 0; i < source.ModelCount(); ++i)
+      out.models[source.ModelByIndex(i)->Name()] = model(*source.ModelByIndex(i), "__model__");
+    return out;
+  }
+
+ private:
+  void keep(const sdf::Errors& problems) { errors_.insert(errors_.end(), problems.begin(), problems.end()); }
+
+  ResolvedJoint joint(const sdf::Joint& source) {
+    ResolvedJoint out;
+    keep(source.ResolveParentLink(out.parent));
+    keep(source.ResolveChildLink(out.child));
+    if (out.parent == "world") out.parent.clear();
+    if (out.child == "world") out.child.clear();
+    out.pose = pose_of(source, "__model__");
+    for (unsigned i = 0; i < 2; ++i) {
+      const sdf::JointAxis* axis = source.Axis(i);
+      if (!axis) break;
+      ignition::math::Vector3d xyz = axis->Xyz();
+      keep(axis->ResolveXyz(xyz));
+      const Eigen::Vector3d direction(xyz.X(), xyz.Y(), xyz.Z());
+      out.axes.push_back(direction.norm() > 0 ? Eigen::Vector3d(direction.normalized()) : Eigen::Vector3d::UnitZ());
+    }
+    return out;
+  }
+
+  sdf::Errors& errors_;
+};
+
+// Whether the text can be a value of the type that the specification names.
+bool fits_type(const std::string& type, const std::string& text) {
+  if (type == "bool") return base::parse_bool(text).has_value();
+  if (type == "int" || type == "unsigned int" || type == "uint64_t") {
+    const std::optional<std::vector<double>> numbers = parse_numbers(text);
+    const bool is_hex = text.starts_with("0x");
+    return is_hex || (numbers && numbers->size() == 1 && std::abs(numbers->front()) < 1e19 && (type == "int" || numbers->front() >= 0));
+  }
+  std::size_t least = 0, most = 0;
+  if (type == "double" || type == "float") {
+    least = most = 1;
+  } else if (type == "vector2d" || type == "vector2i") {
+    least = most = 2;
+  } else if (type == "vector3" || type == "color") {
+    least = 3;
+    most = type == "color" ? 4 : 3;
+  } else if (type == "quaternion") {
+    least = most = 4;
+  } else if (type == "pose") {
+    least = 6;
+    most = 7;
+  } else {
+    return true;
+  }
+  const std::optional<std::vector<double>> numbers = parse_numbers(text);
+  if (!numbers || numbers->size() < least || numbers->size() > most) return false;
+  for (double number : *numbers) {
+    if (std::isnan(number)) return false;
+  }
+  return true;
+}
+
+std::string expectation(const std::string& type) {
+  if (type == "bool") return "true or false";
+  if (type == "int") return "a whole number";
+  if (type == "unsigned int" || type == "uint64_t") return "a whole number that is not negative";
+  if (type == "vector3") return "three numbers";
+  if (type == "vector2d" || type == "vector2i") return "two numbers";
+  if (type == "color") return "three or four numbers";
+  if (type == "pose") return "six numbers";
+  return "a number";
+}
+
+}  // namespace
+
+struct SdfLibrary::State {
+  sdf::ParserConfig config = quiet_config();
+  sdf::SDFPtr specification;
+  sdf::ElementPtr model;
+  Complaints* complaints = nullptr;
+
+  void check(pugi::xml_node node, const sdf::ElementPtr& description);
+  void check_attributes(pugi::xml_node node, const sdf::ElementPtr& description);
+  bool has_all_attributes(pugi::xml_node node, const sdf::ElementPtr& description);
+};
+
+SdfLibrary::SdfLibrary() : state_(std::make_unique<State>()) {
+  silence_console();
+  state_->specification = std::make_shared<sdf::SDF>();
+  sdf::init(state_->specification);
+  state_->model = state_->specification->Root()->GetElementDescription("model");
+}
+
+SdfLibrary::~SdfLibrary() = default;
+
+base::Result<pugi::xml_document> SdfLibrary::translate(pugi::xml_node sdf) {
+  const sdf::SDFPtr document = free_form();
+  try {
+    if (sdf::convertString(to_xml(sdf, true), current_sdf_version, state_->config, document)) return to_document(document);
+  } catch (const std::exception& problem) {
+    return base::Error{std::string("cannot be translated to SDFormat ") + current_sdf_version + ": " + problem.what()};
+  }
+  return base::Error{"cannot be translated from SDFormat " + base::in_quotes(sdf.attribute("version").value()) + " to " +
+                     current_sdf_version};
+}
+
+base::Result<pugi::xml_document> SdfLibrary::translate_urdf(const std::string& text) {
+  const sdf::SDFPtr document = free_form();
+  sdf::Errors errors;
+  try {
+    if (sdf::readString(text, state_->config, document, errors)) return to_document(document);
+  } catch (const std::exception& problem) {
+    return base::Error{std::string("the URDF robot cannot be read: ") + problem.what()};
+  }
+  return base::Error{"the URDF robot cannot be read: " + first_message(errors)};
+}
+
+void SdfLibrary::check(pugi::xml_node entity, Complaints& complaints) {
+  state_->complaints = &complaints;
+  const sdf::ElementPtr description = state_->specification->Root()->GetElementDescription(entity.name());
+  if (description) state_->check(entity, description);
+  state_->complaints = nullptr;
+}
+
+void SdfLibrary::State::check_attributes(pugi::xml_node node, const sdf::ElementPtr& description) {
+  for (pugi::xml_attribute attribute = node.first_attribute(), next; attribute; attribute = next) {
+    next = attribute.next_attribute();
+    const std::string name = attribute.name();
+    if (name.starts_with('_') || name.find(':') != std::string::npos || name == "xmlns") continue;
+    const sdf::ParamPtr param = description->GetAttribute(name);
+    if (!param) {
+      complaints->warn(node, "unknown attribute " + base::in_quotes(name) + " of " + describe_in_context(node) + " is ignored");
+    } else if (!fits_type(param->GetTypeName(), attribute.value())) {
+      complaints->warn(node, "attribute " + base::in_quotes(name) + " of " + describe_in_context(node) + " must be " +
+                                 expectation(param->GetTypeName()) + ", got " + base::in_quotes(attribute.value()) + "; it is ignored");
+    } else {
+      continue;
+    }
+    node.remove_attribute(attribute);
+  }
+}
+
+// Missing names are given; false when another attribute is missing without which the element means nothing.
+bool SdfLibrary::State::has_all_attributes(pugi::xml_node node, const sdf::ElementPtr& description) {
+  for (const sdf::ParamPtr& param : description->GetAttributes()) {
+    if (!param->GetRequired()) continue;
+    const std::string& key = param->GetKey();
+    const pugi::xml_attribute attribute = node.attribute(key.c_str());
+    if (attribute && !(key == "name" && base::trim(attribute.value()).empty())) continue;
+    if (key == "name") {
+      if (!attribute) node.append_attribute("name");
+      node.attribute("name") = (std::string(node.name()) + "_without_name").c_str();
+      complaints->warn(node,
+                       "<" + std::string(node.name()) + "> has no name and is called " + base::in_quotes(node.attribute("name").value()));
+    } else if (!(std::string_view(node.name()) == "physics" || std::string_view(node.name()) == "plugin" ||
+                 std::string_view(node.name()) == "noise" || std::string_view(node.name()) == "light")) {
+      complaints->drop(node, describe_in_context(node) + " has no attribute " + base::in_quotes(key) + " and is left out");
+      return false;
+    }
+  }
+  return true;
+}
+
+void SdfLibrary::State::check(pugi::xml_node node, const sdf::ElementPtr& description) {
+  check_attributes(node, description);
+  if (description->GetCopyChildren()) return;
+  for (pugi::xml_node child = node.first_child(), next; child; child = next) {
+    next = child.next_sibling();
+    if (child.type() != pugi::node_element) continue;
+    const std::string name = child.name();
+    if (name.find(':') != std::string::npos || name.starts_with('_')) continue;
+    const sdf::ElementPtr known = description->GetElementDescription(name);
+    if (!known) {
+      complaints->warn(child, "unknown element <" + base::in_quotes(name).substr(1, base::in_quotes(name).size() - 2) + "> in " +
+                                  describe_in_context(node) + " is ignored");
+      node.remove_child(child);
+      continue;
+    }
+    const sdf::ElementPtr& inner = known->ReferenceSDF() == "model" ? model : known;
+    if (!has_all_attributes(child, inner)) {
+      node.remove_child(child);
+      continue;
+    }
+    const std::string text = text_of(child);
+    const sdf::ParamPtr value = inner->GetValue();
+    if (value && !text.empty() && inner->GetElementDescriptionCount() == 0 && !fits_type(value->GetTypeName(), text)) {
+      complaints->warn(child, "<" + name + "> of " + describe_in_context(node) + " must be " + expectation(value->GetTypeName()) +
+                                  ", got " + base::in_quotes(text) + "; it is ignored");
+      node.remove_child(child);
+      continue;
+    }
+    check(child, inner);
+  }
+}
+
+base::Result<ResolvedWorld> SdfLibrary::resolve(pugi::xml_node sdf) {
+  std::set<std::string> used;
+  int nested = 0;
+  const std::function<void(pugi::xml_node, int)> look = [&](pugi::xml_node node, int models) {
+    if (node.type() != pugi::node_element) return;
+    used.insert(node.name());
+    if (std::string_view(node.name()) == "model") nested = std::max(nested, models++);
+    for (const pugi::xml_node& child : node.children()) look(child, models);
+  };
+  look(sdf, 0);
+  sdf::Errors errors;
+  ResolvedWorld out;
+  try {
+    const sdf::SDFPtr document = std::make_shared<sdf::SDF>();
+    document->Root(prune(state_->specification->Root(), state_->model, used, nested));
+    if (!sdf::readString(to_xml(sdf, false), state_->config, document, errors)) return base::Error{first_message(errors)};
+    sdf::Root root;
+    const sdf::Errors problems = root.Load(document, state_->config);
+    errors.insert(errors.end(), problems.begin(), problems.end());
+    if (!errors.empty() || root.WorldCount() == 0) return base::Error{first_message(errors)};
+    const sdf::World& world = *root.WorldByIndex(0);
+    Resolver resolver(errors);
+    for (std::size_t i = 0; i < world.FrameCount(); ++i)
+      out.frames[world.FrameByIndex(i)->Name()] = resolver.pose_of(*world.FrameByIndex(i), "world");
+    for (std::size_t i = 0; i < world.ModelCount(); ++i)
+      out.models[world.ModelByIndex(i)->Name()] = resolver.model(*world.ModelByIndex(i), "world");
+  } catch (const std::exception& problem) {
+    return base::Error{problem.what()};
+  }
+  if (!errors.empty()) return base::Error{first_message(errors)};
+  return out;
+}
+
+}  // namespace sim

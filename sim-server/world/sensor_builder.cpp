@@ -1,0 +1,295 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "base/text.h"
+#include "world/model_builder.h"
+#include "world/xml_file.h"
+#include "world/xml_values.h"
+
+namespace sim {
+
+namespace {
+
+constexpr int most_rays = 4000000;  // of one scan
+constexpr int most_pixels_a_side = 16384;
+
+const std::map<std::string_view, SensorKind>& kinds() {
+  static const std::map<std::string_view, SensorKind> table{
+      {"ray", SensorKind::ray},
+      {"gpu_ray", SensorKind::ray},
+      {"lidar", SensorKind::ray},
+      {"gpu_lidar", SensorKind::ray},
+      {"camera", SensorKind::camera},
+      {"wideanglecamera", SensorKind::camera},
+      {"wide_angle_camera", SensorKind::camera},
+      {"depth", SensorKind::depth_camera},
+      {"depth_camera", SensorKind::depth_camera},
+      {"rgbd", SensorKind::rgbd_camera},
+      {"rgbd_camera", SensorKind::rgbd_camera},
+      {"multicamera", SensorKind::multi_camera},
+      {"contact", SensorKind::contact},
+      {"imu", SensorKind::imu},
+      {"gps", SensorKind::gps},
+      {"navsat", SensorKind::gps},
+      {"sonar", SensorKind::sonar},
+      {"force_torque", SensorKind::force_torque},
+      {"altimeter", SensorKind::altimeter},
+      {"magnetometer", SensorKind::magnetometer},
+      {"air_pressure", SensorKind::air_pressure},
+  };
+  return table;
+}
+
+NoiseDef build_noise(pugi::xml_node node, BuildContext& context) {
+  NoiseDef noise;
+  if (!node) return noise;
+  const std::string type = node.attribute("type") ? node.attribute("type").value() : text_at(node, "type", "gaussian");
+  if (type == "none") return noise;
+  if (type != "gaussian" && type != "gaussian_quantized") {
+    context.complaints.warn(
+        node, "noise of type " + base::in_quotes(type) + " in " + describe_in_context(node.parent()) + " is not known; none is taken");
+    return noise;
+  }
+  noise.kind = type == "gaussian" ? NoiseDef::Kind::gaussian : NoiseDef::Kind::gaussian_quantized;
+  noise.mean = number_at(node, "mean", 0);
+  noise.stddev = number_at(node, "stddev", 0);
+  noise.bias_mean = number_at(node, "bias_mean", 0);
+  noise.bias_stddev = number_at(node, "bias_stddev", 0);
+  noise.dynamic_bias_stddev = std::max(0.0, number_at(node, "dynamic_bias_stddev", 0));
+  noise.dynamic_bias_correlation_time = std::max(0.0, number_at(node, "dynamic_bias_correlation_time", 0));
+  noise.precision = std::max(0.0, number_at(node, "precision", 0));
+  return noise;
+}
+
+NoiseDef noise_at(pugi::xml_node node, const std::string& path, BuildContext& context) {
+  return build_noise(child_at(node, path + "/noise"), context);
+}
+
+std::array<NoiseDef, 3> noises_at(pugi::xml_node node, const std::string& path, BuildContext& context) {
+  return {noise_at(node, path + "/x", context), noise_at(node, path + "/y", context), noise_at(node, path + "/z", context)};
+}
+
+// What is wrong with the sensor, for one line.
+std::string must(pugi::xml_node sensor, const std::string& what, const std::string& expected, double got) {
+  return what + " of " + describe_in_context(sensor) + " must be " + expected + ", got " + base::format_number(got) +
+         "; the sensor is left out";
+}
+
+ScanDef build_scan(pugi::xml_node node) {
+  ScanDef scan;
+  scan.samples = node ? integer_at(node, "samples", 640) : 1;
+  scan.resolution = number_at(node, "resolution", 1);
+  scan.min_angle = number_at(node, "min_angle", 0);
+  scan.max_angle = number_at(node, "max_angle", 0);
+  return scan;
+}
+
+std::optional<RayDef> build_ray(pugi::xml_node sensor, BuildContext& context) {
+  const pugi::xml_node node = sensor.child("lidar") ? sensor.child("lidar") : sensor.child("ray");
+  RayDef ray;
+  ray.horizontal = build_scan(child_at(node, "scan/horizontal"));
+  ray.vertical = build_scan(child_at(node, "scan/vertical"));
+  ray.range_min = number_at(node, "range/min", 0);
+  ray.range_max = number_at(node, "range/max", 10);
+  ray.range_resolution = number_at(node, "range/resolution", 0);
+  ray.noise = build_noise(node.child("noise"), context);
+  ray.visibility_mask = static_cast<std::uint32_t>(std::strtoul(text_at(node, "visibility_mask", "4294967295").c_str(), nullptr, 0));
+  // Old files have 0 for "one layer".
+  if (ray.vertical.samples == 0) ray.vertical.samples = 1;
+  std::string wrong;
+  for (const ScanDef* scan : {&ray.horizontal, &ray.vertical}) {
+    if (scan->samples < 1 || scan->samples > most_rays) wrong = must(sensor, "number of samples", "from 1 to 4000000", scan->samples);
+    if (scan->min_angle > scan->max_angle) wrong = must(sensor, "smallest angle", "at most the largest", scan->min_angle);
+    if (scan->max_angle - scan->min_angle > 4 * std::numbers::pi)
+      wrong = must(sensor, "angle", "within two turns", scan->max_angle - scan->min_angle);
+  }
+  if (wrong.empty() && static_cast<double>(ray.horizontal.samples) * ray.vertical.samples > most_rays) {
+    wrong = must(sensor, "number of rays", "at most 4000000", static_cast<double>(ray.horizontal.samples) * ray.vertical.samples);
+  }
+  // "inf" stands for a sensor that sees to the end of the world.
+  if (ray.range_max > 1e6) {
+    context.complaints.note(node, "largest range of " + describe_in_context(sensor) + " is cut to 1000000 m");
+    ray.range_max = 1e6;
+  }
+  if (ray.range_max <= ray.range_min) wrong = must(sensor, "largest range", "above the smallest", ray.range_max);
+  if (wrong.empty()) return ray;
+  context.complaints.drop(sensor, wrong);
+  return std::nullopt;
+}
+
+std::optional<CameraDef> build_camera(pugi::xml_node sensor, pugi::xml_node node, BuildContext& context) {
+  CameraDef camera;
+  camera.name = node.attribute("name").value();
+  if (camera.name.empty()) camera.name = sensor.attribute("name").value();
+  camera.pose = pose_at(node, "pose");
+  camera.horizontal_fov = number_at(node, "horizontal_fov", 1.047);
+  camera.width = integer_at(node, "image/width", 320);
+  camera.height = integer_at(node, "image/height", 240);
+  camera.format = text_at(node, "image/format", "R8G8B8");
+  camera.near_clip = number_at(node, "clip/near", 0.1);
+  camera.far_clip = number_at(node, "clip/far", 100);
+  if (const pugi::xml_node depth = child_at(node, "depth_camera/clip")) {
+    camera.depth_clip = {number_at(depth, "near", camera.near_clip), number_at(depth, "far", camera.far_clip)};
+  }
+  camera.noise = build_noise(node.child("noise"), context);
+  if (const pugi::xml_node lens = node.child("distortion")) {
+    DistortionDef& d = camera.distortion.emplace();
+    d.k1 = number_at(lens, "k1", 0), d.k2 = number_at(lens, "k2", 0), d.k3 = number_at(lens, "k3", 0);
+    d.p1 = number_at(lens, "p1", 0), d.p2 = number_at(lens, "p2", 0);
+    d.center = vector2_at(lens, "center", d.center);
+    if (d.k1 == 0 && d.k2 == 0 && d.k3 == 0 && d.p1 == 0 && d.p2 == 0) camera.distortion.reset();
+  }
+  if (const pugi::xml_node lens = node.child("lens")) {
+    LensDef& l = camera.lens.emplace();
+    l.type = text_at(lens, "type", "gnomonical");
+    l.scale_to_fov = bool_at(lens, "scale_to_hfov", true);
+    l.cutoff_angle = number_at(lens, "cutoff_angle", l.cutoff_angle);
+    l.environment_texture_size = std::clamp(integer_at(lens, "env_texture_size", 256), 16, 4096);
+    const pugi::xml_node custom = lens.child("custom_function");
+    l.c1 = number_at(custom, "c1", 1), l.c2 = number_at(custom, "c2", 1), l.c3 = number_at(custom, "c3", 0),
+    l.f = number_at(custom, "f", 1);
+    l.function = text_at(custom, "fun", "tan");
+  }
+  camera.visibility_mask = static_cast<std::uint32_t>(std::strtoul(text_at(node, "visibility_mask", "4294967295").c_str(), nullptr, 0));
+  std::string wrong;
+  if (camera.width < 1 || camera.width > most_pixels_a_side) wrong = must(sensor, "image width", "from 1 to 16384", camera.width);
+  if (camera.height < 1 || camera.height > most_pixels_a_side) wrong = must(sensor, "image height", "from 1 to 16384", camera.height);
+  if (!(camera.horizontal_fov > 0.001 && camera.horizontal_fov <= 2 * std::numbers::pi + 1e-3)) {
+    wrong = must(sensor, "horizontal field of view", "above 0.001 and at most a turn", camera.horizontal_fov);
+  }
+  if (!camera.lens && camera.horizontal_fov >= 3.1)
+    wrong = must(sensor, "horizontal field of view", "below 3.1 without a <lens>", camera.horizontal_fov);
+  if (!(camera.near_clip < camera.far_clip)) wrong = must(sensor, "near clip distance", "below the far one", camera.near_clip);
+  if (wrong.empty()) return camera;
+  context.complaints.drop(sensor, wrong);
+  return std::nullopt;
+}
+
+std::optional<CameraSetDef> build_cameras(pugi::xml_node sensor, SensorKind kind, BuildContext& context) {
+  CameraSetDef set;
+  for (pugi::xml_node node : sensor.children("camera")) {
+    std::optional<CameraDef> camera = build_camera(sensor, node, context);
+    if (!camera) return std::nullopt;
+    set.cameras.push_back(std::move(*camera));
+    if (kind != SensorKind::multi_camera) break;
+  }
+  if (!set.cameras.empty()) return set;
+  context.complaints.drop(sensor, describe_in_context(sensor) + " has no <camera> and is left out");
+  return std::nullopt;
+}
+
+std::optional<SonarDef> build_sonar(pugi::xml_node sensor, BuildContext& context) {
+  const pugi::xml_node node = sensor.child("sonar");
+  SonarDef sonar;
+  sonar.range_min = number_at(node, "min", 0);
+  sonar.range_max = number_at(node, "max", 1);
+  sonar.radius = number_at(node, "radius", 0.5);
+  if (sonar.range_max > sonar.range_min) return sonar;
+  context.complaints.drop(sensor, must(sensor, "largest range", "above the smallest", sonar.range_max));
+  return std::nullopt;
+}
+
+ForceTorqueDef build_force_torque(pugi::xml_node sensor, BuildContext& context) {
+  const pugi::xml_node node = sensor.child("force_torque");
+  ForceTorqueDef out;
+  const std::string frame = text_at(node, "frame", "child");
+  out.frame = frame == "parent"   ? ForceTorqueDef::Frame::parent
+              : frame == "sensor" ? ForceTorqueDef::Frame::sensor
+                                  : ForceTorqueDef::Frame::child;
+  out.measures_parent_to_child = text_at(node, "measure_direction") == "parent_to_child";
+  out.force = noises_at(node, "force", context);
+  out.torque = noises_at(node, "torque", context);
+  return out;
+}
+
+ImuDef build_imu(pugi::xml_node sensor, BuildContext& context) {
+  const pugi::xml_node node = sensor.child("imu");
+  ImuDef imu;
+  imu.angular_velocity = noises_at(node, "angular_velocity", context);
+  imu.linear_acceleration = noises_at(node, "linear_acceleration", context);
+  imu.has_orientation = bool_at(node, "enable_orientation", true);
+  return imu;
+}
+
+GpsDef build_gps(pugi::xml_node sensor, BuildContext& context) {
+  const pugi::xml_node node = sensor.child("navsat") ? sensor.child("navsat") : sensor.child("gps");
+  GpsDef gps;
+  gps.horizontal_position = noise_at(node, "position_sensing/horizontal", context);
+  gps.vertical_position = noise_at(node, "position_sensing/vertical", context);
+  gps.horizontal_velocity = noise_at(node, "velocity_sensing/horizontal", context);
+  gps.vertical_velocity = noise_at(node, "velocity_sensing/vertical", context);
+  return gps;
+}
+
+// The part of the sensor that depends on its kind; false when it is left out.
+bool build_data(SensorDef& out, pugi::xml_node sensor, BuildContext& context) {
+  const auto take = [&](auto&& data) {
+    if (data) out.data = std::move(*data);
+    return data.has_value();
+  };
+  switch (out.kind) {
+    case SensorKind::ray:
+      return take(build_ray(sensor, context));
+    case SensorKind::camera:
+    case SensorKind::depth_camera:
+    case SensorKind::rgbd_camera:
+    case SensorKind::multi_camera:
+      return take(build_cameras(sensor, out.kind, context));
+    case SensorKind::sonar:
+      return take(build_sonar(sensor, context));
+    case SensorKind::contact: {
+      ContactDef contact;
+      for (pugi::xml_node name : sensor.child("contact").children("collision")) contact.collisions.push_back(text_of(name));
+      out.data = std::move(contact);
+      return true;
+    }
+    case SensorKind::imu:
+      out.data = build_imu(sensor, context);
+      return true;
+    case SensorKind::gps:
+      out.data = build_gps(sensor, context);
+      return true;
+    case SensorKind::force_torque:
+      out.data = build_force_torque(sensor, context);
+      return true;
+    case SensorKind::altimeter:
+      out.data =
+          AltimeterDef{noise_at(sensor, "altimeter/vertical_position", context), noise_at(sensor, "altimeter/vertical_velocity", context)};
+      return true;
+    case SensorKind::magnetometer:
+      out.data = MagnetometerDef{noises_at(sensor, "magnetometer", context)};
+      return true;
+    case SensorKind::air_pressure:
+      out.data =
+          AirPressureDef{noise_at(sensor, "air_pressure/pressure", context), number_at(sensor, "air_pressure/reference_altitude", 0)};
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::optional<SensorDef> build_sensor(pugi::xml_node node, BuildContext& context) {
+  SensorDef sensor;
+  sensor.name = node.attribute("name").value();
+  sensor.type = node.attribute("type").value();
+  const auto kind = kinds().find(sensor.type);
+  if (kind == kinds().end()) {
+    context.complaints.drop(
+        node, "sensors of type " + base::in_quotes(sensor.type) + " are not simulated; " + describe_in_context(node) + " is left out");
+    return std::nullopt;
+  }
+  sensor.kind = kind->second;
+  sensor.pose = pose_at(node, "pose");
+  sensor.update_rate = std::min(number_at(node, "update_rate", 0), 1e6);
+  sensor.always_on = bool_at(node, "always_on", false);
+  sensor.visualize = bool_at(node, "visualize", false);
+  sensor.topic = text_at(node, "topic");
+  if (sensor.topic == "__default__") sensor.topic.clear();
+  if (!build_data(sensor, node, context)) return std::nullopt;
+  return sensor;
+}
+
+}  // namespace sim

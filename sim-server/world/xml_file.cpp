@@ -1,0 +1,244 @@
+#include "world/xml_file.h"
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <vector>
+
+#include "base/text.h"
+
+namespace sim {
+
+namespace {
+
+constexpr std::uintmax_t most_bytes = 64U << 20U;
+constexpr int most_depth = 100;
+constexpr std::size_t most_elements = 400000;
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+// Copies text and puts quotes round attribute values that have none, without changing the number of lines.
+class AttributeMender {
+ public:
+  explicit AttributeMender(const std::string& text) : text_(text) { mended_.reserve(text.size() + 64); }
+
+  std::string run() {
+    while (at_ < text_.size()) {
+      if (text_[at_] != '<') {
+        mended_ += text_[at_++];
+      } else if (!copy_through("<!--", "-->") && !copy_through("<![CDATA[", "]]>") && !copy_through("<?", "?>") &&
+                 !copy_through("<!", ">")) {
+        copy_tag();
+      }
+    }
+    return std::move(mended_);
+  }
+  std::size_t first_mended() const { return first_; }
+  bool has_mended() const { return first_ != std::string::npos; }
+
+ private:
+  bool copy_through(const char* begin, const char* end) {
+    if (text_.compare(at_, std::strlen(begin), begin) != 0) return false;
+    const std::size_t stop = text_.find(end, at_);
+    const std::size_t next = stop == std::string::npos ? text_.size() : stop + std::strlen(end);
+    mended_.append(text_, at_, next - at_);
+    at_ = next;
+    return true;
+  }
+  bool is_tag_end() const { return text_[at_] == '>' || (text_[at_] == '/' && at_ + 1 < text_.size() && text_[at_ + 1] == '>'); }
+
+  void copy_tag() {
+    while (at_ < text_.size() && !is_blank(text_[at_]) && text_[at_] != '>') mended_ += text_[at_++];
+    while (at_ < text_.size() && text_[at_] != '>') {
+      if (text_[at_] == '=') {
+        copy_value();
+      } else {
+        mended_ += text_[at_++];
+      }
+    }
+  }
+
+  void copy_value() {
+    mended_ += text_[at_++];
+    while (at_ < text_.size() && is_blank(text_[at_])) mended_ += text_[at_++];
+    if (at_ >= text_.size()) return;
+    const char quote = text_[at_];
+    if (quote == '"' || quote == '\'') {
+      const std::size_t end = text_.find(quote, at_ + 1);
+      const std::size_t next = end == std::string::npos ? text_.size() : end + 1;
+      mended_.append(text_, at_, next - at_);
+      at_ = next;
+      if (at_ < text_.size() && !is_blank(text_[at_]) && !is_tag_end() && text_[at_] != '?') mended_ += ' ';
+      return;
+    }
+    if (first_ == std::string::npos) first_ = at_;
+    mended_ += '"';
+    while (at_ < text_.size() && !is_blank(text_[at_]) && !is_tag_end()) mended_ += text_[at_++];
+    mended_ += '"';
+  }
+
+  const std::string& text_;
+  std::string mended_;
+  std::size_t at_ = 0;
+  std::size_t first_ = std::string::npos;
+};
+
+class LineTable {
+ public:
+  explicit LineTable(const std::string& text) {
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      if (text[i] == '\n') ends_.push_back(i);
+    }
+  }
+  int line_at(std::size_t offset) const {
+    return static_cast<int>(std::lower_bound(ends_.begin(), ends_.end(), offset) - ends_.begin()) + 1;
+  }
+
+ private:
+  std::vector<std::size_t> ends_;
+};
+
+// Marks every element with its line; the error when there are too many or they are nested too deep.
+base::Result<void> mark_lines(pugi::xml_document& document, const LineTable& lines, const std::string& file_name, int file) {
+  int depth = 0;
+  std::size_t elements = 0;
+  pugi::xml_node node = document.first_child();
+  while (node) {
+    if (node.type() == pugi::node_element) {
+      if (++elements > most_elements) return base::Error{file_name + ": has more than " + std::to_string(most_elements) + " elements"};
+      node.remove_attribute(line_mark);
+      node.remove_attribute(file_mark);
+      const int line = lines.line_at(static_cast<std::size_t>(std::max<std::ptrdiff_t>(node.offset_debug(), 0)));
+      node.append_attribute(line_mark) = line;
+      if (depth == 0) node.append_attribute(file_mark) = file;
+      if (depth >= most_depth) {
+        return base::Error{file_name + ":" + std::to_string(line) + ": elements are nested deeper than " + std::to_string(most_depth)};
+      }
+    }
+    if (node.first_child()) {
+      node = node.first_child();
+      ++depth;
+      continue;
+    }
+    while (node && !node.next_sibling()) {
+      node = node.parent();
+      --depth;
+    }
+    node = node.next_sibling();
+  }
+  return {};
+}
+
+void append_escaped(std::string& out, std::string_view text) {
+  for (char c : text) {
+    switch (c) {
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '&':
+        out += "&amp;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += static_cast<unsigned char>(c) < 32 ? ' ' : c;
+    }
+  }
+}
+
+void append_xml(std::string& out, pugi::xml_node node, bool with_marks) {
+  if (node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata) {
+    append_escaped(out, base::trim(node.value()));
+    return;
+  }
+  if (node.type() != pugi::node_element) return;
+  out.append("<").append(node.name());
+  for (const pugi::xml_attribute& attribute : node.attributes()) {
+    const std::string_view name = attribute.name();
+    if (!with_marks && (name == line_mark || name == file_mark)) continue;
+    out.append(" ").append(name).append("=\"");
+    append_escaped(out, attribute.value());
+    out += '"';
+  }
+  if (!node.first_child()) {
+    out += "/>";
+    return;
+  }
+  out += '>';
+  for (const pugi::xml_node& child : node.children()) append_xml(out, child, with_marks);
+  out.append("</").append(node.name()).append(">");
+}
+
+}  // namespace
+
+base::Result<std::string> read_file(const std::filesystem::path& path) {
+  std::error_code problem;
+  if (!std::filesystem::exists(path, problem)) return base::Error{path.string() + ": no such file"};
+  if (!std::filesystem::is_regular_file(path, problem)) return base::Error{path.string() + ": is not a file"};
+  const std::uintmax_t size = std::filesystem::file_size(path, problem);
+  if (problem || size > most_bytes) return base::Error{path.string() + ": a file of at most 64 MiB is expected"};
+  std::ifstream stream(path, std::ios::binary);
+  std::string text(static_cast<std::size_t>(size), '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!stream && size > 0) return base::Error{path.string() + ": cannot be read"};
+  return text;
+}
+
+base::Result<pugi::xml_document> parse_xml(const std::string& text, const std::string& file_name, Complaints& complaints) {
+  const int file = complaints.add_file(file_name);
+  if (text.size() > most_bytes) return base::Error{file_name + ": a text of at most 64 MiB is expected"};
+  if (base::trim(text).empty()) return base::Error{file_name + ": is empty"};
+  // Other encodings (a byte order mark of UTF-16) are left to the parser; lines are then only near.
+  const bool is_bytes = text.find('\0') == std::string::npos;
+  pugi::xml_document document;
+  pugi::xml_parse_result parsed =
+      document.load_buffer(text.data(), text.size(), pugi::parse_default, is_bytes ? pugi::encoding_utf8 : pugi::encoding_auto);
+  LineTable lines(text);
+  if (!parsed && is_bytes) {
+    AttributeMender mender(text);
+    const std::string mended = mender.run();
+    if (mender.has_mended()) {
+      parsed = document.load_buffer(mended.data(), mended.size(), pugi::parse_default, pugi::encoding_utf8);
+      lines = LineTable(mended);
+      if (parsed) {
+        complaints.add(Finding::Severity::warning, {file_name, LineTable(text).line_at(mender.first_mended())},
+                       "attribute values without quotes are mended");
+      }
+    }
+  }
+  if (!parsed) {
+    return base::Error{file_name + ":" +
+                       std::to_string(lines.line_at(static_cast<std::size_t>(std::max<std::ptrdiff_t>(parsed.offset, 0)))) +
+                       ": is not well-formed XML: " + base::to_lower(parsed.description())};
+  }
+  if (text.find("<!DOCTYPE") != std::string::npos && text.find("<!ENTITY") != std::string::npos) {
+    complaints.add(Finding::Severity::warning, {file_name, lines.line_at(text.find("<!ENTITY"))},
+                   "entities of the document type are not expanded");
+  }
+  if (base::Result<void> marked = mark_lines(document, lines, file_name, file); !marked) return marked.error();
+  return document;
+}
+
+std::string to_xml(pugi::xml_node node, bool with_marks) {
+  std::string out;
+  append_xml(out, node, with_marks);
+  return out;
+}
+
+pugi::xml_node child_at(pugi::xml_node node, std::string_view path) {
+  while (node && !path.empty()) {
+    const std::size_t slash = path.find('/');
+    const std::string name(path.substr(0, slash));
+    node = node.child(name.c_str());
+    path = slash == std::string_view::npos ? std::string_view{} : path.substr(slash + 1);
+  }
+  return node;
+}
+
+std::string text_of(pugi::xml_node node) { return std::string(base::trim(node.child_value())); }
+
+}  // namespace sim

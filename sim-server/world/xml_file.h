@@ -1,0 +1,29 @@
+// Files and texts of worlds as XML documents: read with limits, mended where people's files are commonly broken, every element marked with
+// its line. Any thread.
+#pragma once
+
+#include <filesystem>
+#include <pugixml.hpp>
+#include <string>
+
+#include "base/result.h"
+#include "world/complaints.h"
+
+namespace sim {
+
+// The whole file. Fails for what is no regular file and for files that are larger than any world.
+base::Result<std::string> read_file(const std::filesystem::path& path);
+
+// Fails for what is not XML (after mending attributes without quotes), too deep, or has too many elements. Entities of a document type are
+// not expanded.
+base::Result<pugi::xml_document> parse_xml(const std::string& text, const std::string& file_name, Complaints& complaints);
+
+// The element and all in it as one line of XML. Without the marks it is the text that libsdformat gets and by which equal models are known.
+std::string to_xml(pugi::xml_node node, bool with_marks);
+
+// First child element of that name along a path: "surface/friction/ode".
+pugi::xml_node child_at(pugi::xml_node node, std::string_view path);
+// Trimmed text of the element.
+std::string text_of(pugi::xml_node node);
+
+}  // namespace sim
