@@ -78,8 +78,8 @@ base::Result<pugi::xml_document> ModelFiles::open_text(const std::string& text, 
   const int number = version_number(version);
   if (number == 0 || number > newest_known) {
     const std::string written = version.empty() ? "names no version" : "is of version " + base::in_quotes(version);
-    const std::string text = "the file " + written + "; it is read as SDFormat " + current_sdf_version;
-    number == 0 ? complaints_.warn(sdf, text) : complaints_.note(sdf, text);
+    const std::string finding = "the file " + written + "; it is read as SDFormat " + current_sdf_version;
+    number == 0 ? complaints_.warn(sdf, finding) : complaints_.note(sdf, finding);
     sdf.remove_attribute("version");
     sdf.append_attribute("version") = current_sdf_version;
     return parsed;

@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-bool exists(const fs::path& path) {
+bool is_there(const fs::path& path) {
   std::error_code problem;
   return fs::exists(path, problem) && !problem;
 }
@@ -57,7 +57,7 @@ std::string folder_spelling(std::string_view name) {
 }
 
 std::optional<fs::path> usable(const fs::path& path) {
-  if (!exists(path)) return std::nullopt;
+  if (!is_there(path)) return std::nullopt;
   std::error_code problem;
   fs::path clean = fs::weakly_canonical(path, problem);
   return problem ? path : clean;

@@ -96,6 +96,10 @@ PluginKind kind_of_plugin(std::string_view filename, std::string_view name) {
   return found == table().end() ? PluginKind::unknown : found->second;
 }
 
+std::string iface_own_name(const PluginDef& plugin) {
+  return plugin.name.empty() || plugin.name.find("::") != std::string::npos ? "position2d" : plugin.name;
+}
+
 PluginKind kind_of(const PluginDef& plugin) { return kind_of_plugin(plugin.filename, plugin.name); }
 
 }  // namespace sim

@@ -19,4 +19,8 @@ enum class PluginKind {
 PluginKind kind_of(const PluginDef& plugin);
 PluginKind kind_of_plugin(std::string_view filename, std::string_view name);
 
+// What the iface of a drive plugin is called after model and scope: the plugin's name, or "position2d" when that is missing or the name of
+// a class.
+std::string iface_own_name(const PluginDef& plugin);
+
 }  // namespace sim

@@ -264,6 +264,8 @@ void SdfLibrary::State::check_attributes(pugi::xml_node node, const sdf::Element
     next = attribute.next_attribute();
     const std::string name = attribute.name();
     if (name.starts_with('_') || name.find(':') != std::string::npos || name == "xmlns") continue;
+    // In some sensors the type is an element, in others an attribute; people mix them up and both are understood.
+    if (name == "type" && std::string_view(node.name()) == "noise") continue;
     const sdf::ParamPtr param = description->GetAttribute(name);
     if (!param) {
       complaints->warn(node, "unknown attribute " + base::in_quotes(name) + " of " + describe_in_context(node) + " is ignored");
