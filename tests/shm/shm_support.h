@@ -15,6 +15,7 @@
 
 #include "shm/client.h"
 #include "shm/requests.h"
+#include "shm/words.h"
 #include "shm/writer.h"
 
 namespace shm::test {
@@ -56,6 +57,9 @@ inline SimulationInfo simulation_info() {
   set_text(info.world, "made up");
   return info;
 }
+
+// What the end of a server does to a segment that a test still needs.
+inline void store_closed(const IfaceWriter& writer) { store(writer.segment().header().state, std::uint32_t{RTMSIM_STATE_CLOSED}); }
 
 struct Fixture {
   std::uint32_t id = fresh_server_id();

@@ -1,0 +1,127 @@
+// conf: list, get, set, use.
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "base/text.h"
+#include "editor.h"
+
+namespace editor {
+namespace {
+
+const ConfigurationSetView* find_set(const ComponentView& component, const std::string& id) {
+  for (const auto& set : component.configuration_sets) {
+    if (set.id == id) return &set;
+  }
+  return nullptr;
+}
+
+Error no_such_set(const ComponentView& component, const std::string& id) {
+  std::vector<std::string> names;
+  for (const auto& set : component.configuration_sets) {
+    if (!set.id.starts_with("_")) names.push_back(set.id);
+  }
+  return {"component " + component.path + ": has no configuration set " + base::in_quotes(id) + "; it has " + base::join(names, ", ")};
+}
+
+Error no_such_parameter(const ComponentView& component, const ConfigurationSetView& set, const std::string& name) {
+  std::vector<std::string> names;
+  for (const auto& [key, value] : set.values) names.push_back(key);
+  return {"component " + component.path + ": set " + set.id + " has no parameter " + base::in_quotes(name) + "; it has " +
+          base::join(names, ", ")};
+}
+
+void print_sets(Editor& editor, const ComponentView& component, bool all) {
+  if (editor.json()) {
+    nlohmann::ordered_json json{{"active", component.active_set}, {"sets", nlohmann::ordered_json::object()}};
+    for (const auto& set : component.configuration_sets) {
+      auto values = nlohmann::ordered_json::object();
+      for (const auto& [key, value] : set.values) values[key] = value;
+      json["sets"][set.id] = values;
+    }
+    return editor.print(json);
+  }
+  for (const auto& set : component.configuration_sets) {
+    if (set.id.starts_with("_") && !all) continue;
+    std::cout << (set.id == component.active_set ? "* " : "  ") << set.id << '\n';
+    for (const auto& [key, value] : set.values) std::cout << "      " << key << "  " << value << '\n';
+  }
+}
+
+}  // namespace
+
+Result<void> set_values(const ComponentView& component, const std::string& id,
+                        const std::vector<std::pair<std::string, std::string>>& values) {
+  const auto what = "component " + component.path + ": setting configuration set " + id;
+  bool accepted = false;
+  auto called = remote(what + ":", [&] {
+    SDOPackage::ConfigurationSet set;
+    set.id = id.c_str();
+    set.description = "";
+    set.configuration_data.length(static_cast<CORBA::ULong>(values.size()));
+    for (CORBA::ULong i = 0; i < values.size(); ++i) {
+      set.configuration_data[i].name = values[i].first.c_str();
+      set.configuration_data[i].value <<= values[i].second.c_str();
+    }
+    SDOPackage::Configuration_var configuration = component.object->get_configuration();
+    accepted = configuration->set_configuration_set_values(set);
+  });
+  if (called && !accepted) return Error{what + ": refused"};
+  return called;
+}
+
+Result<void> use_set(const ComponentView& component, const std::string& id) {
+  const auto what = "component " + component.path + ": activating configuration set " + id;
+  bool accepted = false;
+  auto called = remote(what, [&] {
+    SDOPackage::Configuration_var configuration = component.object->get_configuration();
+    accepted = configuration->activate_configuration_set(id.c_str());
+  });
+  if (called && !accepted) return Error{what + ": refused"};
+  return called;
+}
+
+void configure(Editor& editor, const ConfigurationOptions& options) {
+  auto component = editor.component(options.path, {.configuration = true});
+  if (!component) return editor.fail(component.error());
+  const auto& arguments = options.arguments;
+  const CallLimit limited(editor.limit());
+  if (options.action == "list") return print_sets(editor, *component, options.all);
+  if (options.action == "use" || options.action == "act") {
+    if (arguments.size() != 1) return editor.fail({"conf use: expected one configuration set"});
+    if (!find_set(*component, arguments[0])) return editor.fail(no_such_set(*component, arguments[0]));
+    const auto used = use_set(*component, arguments[0]);
+    if (!used) editor.fail(used.error());
+    return;
+  }
+  auto id = options.set.empty() ? component->active_set : options.set;
+  if (id.empty()) id = "default";
+  const auto* set = find_set(*component, id);
+  if (!set) return editor.fail(no_such_set(*component, id));
+  if (options.action == "get") {
+    if (arguments.size() != 1) return editor.fail({"conf get: expected one parameter"});
+    for (const auto& [key, value] : set->values) {
+      if (key != arguments[0]) continue;
+      if (editor.json()) return editor.print({{key, value}});
+      std::cout << value << '\n';
+      return;
+    }
+    return editor.fail(no_such_parameter(*component, *set, arguments[0]));
+  }
+  if (options.action != "set")
+    return editor.fail({"conf: unknown action " + base::in_quotes(options.action) + ", expected list, get, set or use"});
+  if (arguments.size() != 2) return editor.fail({"conf set: expected a parameter and a value"});
+  auto values = set->values;
+  bool known = false;
+  for (auto& [key, value] : values) {
+    if (key != arguments[0]) continue;
+    value = arguments[1];
+    known = true;
+  }
+  if (!known) return editor.fail(no_such_parameter(*component, *set, arguments[0]));
+  if (const auto done = set_values(*component, id, values); !done) return editor.fail(done.error());
+  // Values reach the component when the set is activated; an active set stays so.
+  if (id != component->active_set && !component->active_set.empty()) return;
+  if (const auto used = use_set(*component, id); !used) editor.fail(used.error());
+}
+
+}  // namespace editor

@@ -1,0 +1,207 @@
+// con, dis.
+#include <algorithm>
+#include <iostream>
+
+#include "base/text.h"
+#include "editor.h"
+
+namespace editor {
+namespace {
+
+constexpr std::chrono::seconds connect_limit{10};
+
+// "key=value"; keys of data ports may leave out the leading "dataport.".
+Result<Properties> parse_properties(const std::vector<std::string>& texts, bool data) {
+  Properties properties;
+  for (const auto& text : texts) {
+    const auto equals = text.find('=');
+    if (equals == 0 || equals == std::string::npos) return Error{"property " + base::in_quotes(text) + ": expected KEY=VALUE"};
+    auto key = std::string(base::trim(text.substr(0, equals)));
+    if (data && !key.starts_with("dataport.") && !key.starts_with("port.")) key = "dataport." + key;
+    properties[key] = std::string(base::trim(text.substr(equals + 1)));
+  }
+  return properties;
+}
+
+bool offers(const PortView& port, const std::string& key, const std::string& value) {
+  const auto offered = base::split_list(property(port.properties, key));
+  if (offered.empty()) return true;
+  return std::any_of(offered.begin(), offered.end(), [&](const std::string& one) {
+    return base::equal_ignoring_case(one, "any") || base::equal_ignoring_case(one, value);
+  });
+}
+
+Result<void> check_data_ports(const std::vector<const PortView*>& ports, const Properties& properties) {
+  const auto count = [&](const char* type) {
+    return std::count_if(ports.begin(), ports.end(), [&](const auto* port) { return port->port_type() == type; });
+  };
+  if (count("DataInPort") == 0 || count("DataOutPort") == 0) {
+    return Error{"ports " + ports[0]->full_name + " and " + ports[1]->full_name + ": are both " + ports[0]->port_type() +
+                 ", expected an OutPort and an InPort"};
+  }
+  for (const auto* port : ports) {
+    if (!port->data_type().empty() && !ports[0]->data_type().empty() && port->data_type() != ports[0]->data_type()) {
+      return Error{"ports " + ports[0]->full_name + " and " + port->full_name + ": carry different types, " + ports[0]->data_type() +
+                   " and " + port->data_type()};
+    }
+    for (const auto* key : {"dataport.interface_type", "dataport.dataflow_type", "dataport.subscription_type"}) {
+      const auto wanted = property(properties, key);
+      if (!wanted.empty() && !offers(*port, key, wanted)) {
+        return Error{"port " + port->full_name + ": does not offer " + key + " " + base::in_quotes(wanted) + ", it offers " +
+                     property(port->properties, key)};
+      }
+    }
+  }
+  return {};
+}
+
+Result<void> check_ports(const std::vector<const PortView*>& ports, const Properties& properties) {
+  const bool data = ports.front()->is_data_port();
+  for (const auto* port : ports) {
+    if (port->is_data_port() != data) {
+      return Error{"ports " + ports.front()->full_name + " (" + ports.front()->port_type() + ") and " + port->full_name + " (" +
+                   port->port_type() + "): cannot be connected"};
+    }
+  }
+  return data ? check_data_ports(ports, properties) : Result<void>{};
+}
+
+Properties with_defaults(const PortView& port, Properties properties) {
+  if (!port.is_data_port()) {
+    properties.emplace("port.port_type", "CorbaPort");
+    return properties;
+  }
+  properties.emplace("dataport.interface_type", "corba_cdr");
+  properties.emplace("dataport.dataflow_type", "push");
+  properties.emplace("dataport.subscription_type", "flush");
+  if (!port.data_type().empty()) properties.emplace("dataport.data_type", port.data_type());
+  return properties;
+}
+
+std::string names_of(const std::vector<const PortView*>& ports, const std::string& separator) {
+  std::vector<std::string> names;
+  for (const auto* port : ports) names.push_back(port->full_name);
+  return base::join(names, separator);
+}
+
+bool are_connected(const PortView& a, const PortView& b) {
+  for (const auto& connector : a.connectors) {
+    for (CORBA::ULong i = 0; i < connector.ports.length(); ++i) {
+      if (connector.ports[i]->_is_equivalent(b.object)) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+Result<void> connect_ports(const std::vector<const PortView*>& ports, const std::string& id, const std::string& name,
+                           const Properties& given) {
+  const auto properties = with_defaults(*ports.front(), given);
+  if (const auto fit = check_ports(ports, properties); !fit) return fit;
+  RTC::ConnectorProfile profile;
+  profile.name = name.empty() ? names_of(ports, "_").c_str() : name.c_str();
+  profile.connector_id = id.c_str();
+  profile.ports.length(static_cast<CORBA::ULong>(ports.size()));
+  for (CORBA::ULong i = 0; i < ports.size(); ++i) profile.ports[i] = RTC::PortService::_duplicate(ports[i]->object);
+  profile.properties = to_nv_list(properties);
+  RTC::ReturnCode_t code = RTC::RTC_ERROR;
+  const auto what = "connecting " + names_of(ports, " and ");
+  const CallLimit limited(connect_limit);
+  const auto called = remote(what + ": a port", [&] { code = ports.front()->object->connect(profile); });
+  if (!called) return called;
+  std::string meaning;
+  if (code == RTC::PRECONDITION_NOT_MET) meaning = "they are connected already, or the connector id is in use";
+  if (code == RTC::BAD_PARAMETER) meaning = "a property has a value that a port does not take";
+  if (code == RTC::RTC_ERROR) meaning = "a port refused, its component's log says why";
+  return check(what, code, meaning);
+}
+
+Result<void> disconnect_connector(const PortView& port, const std::string& id) {
+  RTC::ReturnCode_t code = RTC::RTC_ERROR;
+  const auto what = "port " + port.full_name + ": disconnecting " + id;
+  const CallLimit limited(connect_limit);
+  const auto called = remote(what + ": the port", [&] { code = port.object->disconnect(id.c_str()); });
+  if (!called) return called;
+  return check(what, code);
+}
+
+void connect(Editor& editor, const ConnectOptions& options) {
+  if (options.ports.size() < 2) return editor.fail({"con: expected at least two ports"});
+  std::vector<Editor::Port> found;
+  for (const auto& path : options.ports) {
+    auto port = editor.port(path, options.no_duplicates);
+    if (!port) return editor.fail(port.error());
+    found.push_back(std::move(*port));
+  }
+  std::vector<const PortView*> ports;
+  for (const auto& port : found) ports.push_back(&port.port);
+  if (options.no_duplicates && are_connected(*ports[0], *ports[1])) return;
+  auto properties = parse_properties(options.properties, ports.front()->is_data_port());
+  if (!properties) return editor.fail(properties.error());
+  if (const auto done = connect_ports(ports, options.id, options.name, *properties); !done) editor.fail(done.error());
+}
+
+namespace {
+
+void disconnect_by_id(Editor& editor, const std::string& id) {
+  const auto names = editor.tree();
+  if (!names) return editor.fail(names.error());
+  const auto components = read_components(*names, {.connectors = true}, editor.limit());
+  for (const auto& component : components) {
+    for (const auto& port : component.ports) {
+      const bool has =
+          std::any_of(port.connectors.begin(), port.connectors.end(), [&](const auto& connector) { return connector.id == id; });
+      if (!has) continue;
+      if (const auto done = disconnect_connector(port, id); !done) editor.fail(done.error());
+      return;
+    }
+  }
+  editor.fail({"connector " + base::in_quotes(id) + ": no port has it"});
+}
+
+void disconnect_pair(Editor& editor, const std::string& from, const std::string& to) {
+  const auto a = editor.port(from, true);
+  if (!a) return editor.fail(a.error());
+  const auto b = editor.port(to);
+  if (!b) return editor.fail(b.error());
+  bool any = false;
+  for (const auto& connector : a->port.connectors) {
+    for (CORBA::ULong i = 0; i < connector.ports.length(); ++i) {
+      if (!connector.ports[i]->_is_equivalent(b->port.object)) continue;
+      any = true;
+      if (const auto done = disconnect_connector(a->port, connector.id); !done) editor.fail(done.error());
+      break;
+    }
+  }
+  if (!any) editor.fail({"ports " + a->port.full_name + " and " + b->port.full_name + ": are not connected"});
+}
+
+void disconnect_all(Editor& editor, const std::string& path) {
+  std::vector<PortView> ports;
+  if (path.rfind(':') != std::string::npos && path.rfind(':') > path.rfind('/') + 1) {
+    auto port = editor.port(path, true);
+    if (!port) return editor.fail(port.error());
+    ports.push_back(port->port);
+  } else {
+    auto component = editor.component(path, {.connectors = true});
+    if (!component) return editor.fail(component.error());
+    ports = component->ports;
+  }
+  for (const auto& port : ports) {
+    for (const auto& connector : port.connectors) {
+      if (const auto done = disconnect_connector(port, connector.id); !done) editor.fail(done.error());
+    }
+  }
+}
+
+}  // namespace
+
+void disconnect(Editor& editor, const std::vector<std::string>& paths, const std::string& id) {
+  if (!id.empty()) return disconnect_by_id(editor, id);
+  if (paths.size() == 2) return disconnect_pair(editor, paths[0], paths[1]);
+  if (paths.size() == 1) return disconnect_all(editor, paths[0]);
+  editor.fail({"dis: expected one component or port, two ports, or -i ID"});
+}
+
+}  // namespace editor

@@ -1,0 +1,153 @@
+// print, inject.
+#include <atomic>
+#include <condition_variable>
+#include <csignal>
+#include <deque>
+#include <iostream>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "base/clock.h"
+#include "base/text.h"
+#include "editor.h"
+#include "tap.h"
+#include "value_codec.h"
+
+namespace editor {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+std::atomic<bool> interrupted{false};
+void interrupt(int) { interrupted.store(true, std::memory_order_relaxed); }
+
+struct Sample {
+  std::size_t port;
+  std::vector<unsigned char> payload;
+  bool little_endian;
+};
+
+// From the ORB's threads to the printing one. When the printer cannot follow, the oldest samples are dropped and counted.
+struct Queue {
+  static constexpr std::size_t longest = 1000;
+  std::mutex mutex;
+  std::condition_variable arrived;
+  std::deque<Sample> samples;
+  std::size_t dropped = 0;
+};
+
+std::string as_text(const Json& value) {
+  if (!value.is_object() || !value.contains("tm") || value.size() != 2) return value.dump();
+  const auto& time = value["tm"];
+  char stamp[40];
+  std::snprintf(stamp, sizeof stamp, "[%u.%09u]", time["sec"].get<unsigned>(), time["nsec"].get<unsigned>());
+  return std::string(stamp) + " " + (++value.begin()).value().dump();
+}
+
+}  // namespace
+
+void print_ports(Editor& editor, const PrintOptions& options) {
+  Queue queue;
+  std::vector<Editor::Port> ports;
+  std::vector<CORBA::TypeCode_ptr> types;
+  std::vector<std::unique_ptr<Tap>> taps;
+  for (const auto& path : options.ports) {
+    auto port = editor.port(path);
+    if (!port) return editor.fail(port.error());
+    if (port->port.port_type() != "DataOutPort")
+      return editor.fail({"port " + port->port.full_name + ": is a " + port->port.port_type() + ", print reads OutPorts"});
+    types.push_back(type_code_of(port->port.data_type()));
+    if (CORBA::is_nil(types.back()))
+      return editor.fail({"port " + port->port.full_name + ": carries " + port->port.data_type() + ", which rtse does not know"});
+    ports.push_back(std::move(*port));
+  }
+  for (std::size_t i = 0; i < ports.size(); ++i) {
+    auto tap = Tap::connect(editor.orb(), ports[i].port, {}, [&queue, i](std::span<const unsigned char> payload, bool little_endian) {
+      const std::scoped_lock lock(queue.mutex);
+      if (queue.samples.size() >= Queue::longest) {
+        queue.samples.pop_front();
+        ++queue.dropped;
+      }
+      queue.samples.push_back({i, {payload.begin(), payload.end()}, little_endian});
+      queue.arrived.notify_one();
+    });
+    if (!tap) return editor.fail(tap.error());
+    taps.push_back(std::move(*tap));
+  }
+  std::signal(SIGINT, interrupt);
+  std::signal(SIGTERM, interrupt);
+  const auto end = options.timeout_s > 0
+                       ? Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.timeout_s))
+                       : Clock::time_point::max();
+  auto next_line = Clock::now();
+  int printed = 0;
+  while (!interrupted.load(std::memory_order_relaxed) && Clock::now() < end && (options.count <= 0 || printed < options.count)) {
+    Sample sample;
+    {
+      std::unique_lock lock(queue.mutex);
+      // Wakes now and then to see an interrupt.
+      if (!queue.arrived.wait_until(lock, std::min(end, Clock::now() + std::chrono::milliseconds(100)),
+                                    [&] { return !queue.samples.empty(); }))
+        continue;
+      sample = std::move(queue.samples.front());
+      queue.samples.pop_front();
+    }
+    if (options.rate > 0) {
+      if (Clock::now() < next_line) continue;
+      next_line = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / options.rate));
+    }
+    const auto value = decode(types[sample.port], sample.payload, sample.little_endian);
+    ++printed;
+    if (!value) {
+      editor.fail({"port " + ports[sample.port].port.full_name + ": " + value.error().message});
+    } else if (editor.json()) {
+      std::cout << Json{{"port", ports[sample.port].port.full_name}, {"value", *value}}.dump() << std::endl;
+    } else {
+      std::cout << (ports.size() > 1 ? ports[sample.port].port.full_name + " " : "") << as_text(*value) << std::endl;
+    }
+  }
+  taps.clear();
+  if (queue.dropped > 0)
+    editor.fail({"print: " + std::to_string(queue.dropped) + " samples were dropped, they came faster than they could be written"});
+  if (options.count > 0 && printed < options.count && !interrupted.load(std::memory_order_relaxed)) {
+    editor.fail({"print: got " + std::to_string(printed) + " of " + std::to_string(options.count) + " samples in " +
+                 base::format_number(options.timeout_s) + " s"});
+  }
+}
+
+void inject(Editor& editor, const InjectOptions& options) {
+  auto port = editor.port(options.port);
+  if (!port) return editor.fail(port.error());
+  if (port->port.port_type() != "DataInPort")
+    return editor.fail({"port " + port->port.full_name + ": is a " + port->port.port_type() + ", inject writes to InPorts"});
+  const auto type = type_code_of(port->port.data_type());
+  if (CORBA::is_nil(type))
+    return editor.fail({"port " + port->port.full_name + ": carries " + port->port.data_type() + ", which rtse does not know"});
+  std::vector<std::vector<unsigned char>> payloads;
+  for (const auto& text : options.values) {
+    const auto value = parse_value(type, text, base::SystemClock().now().count());
+    if (!value) return editor.fail({"port " + port->port.full_name + ": " + value.error().message});
+    auto payload = encode(type, *value);
+    if (!payload) return editor.fail({"port " + port->port.full_name + ": " + payload.error().message});
+    payloads.push_back(std::move(*payload));
+  }
+  auto tap = Tap::connect(editor.orb(), port->port, {}, {});
+  if (!tap) return editor.fail(tap.error());
+  std::signal(SIGINT, interrupt);
+  const CallLimit limited(editor.limit());
+  auto next = Clock::now();
+  for (int i = 0; (options.count <= 0 || i < options.count) && !interrupted.load(std::memory_order_relaxed); ++i) {
+    if (i > 0) {
+      next += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / options.rate));
+      std::this_thread::sleep_until(next);
+    }
+    for (const auto& payload : payloads) {
+      const auto sent = (*tap)->put(payload);
+      if (!sent) return editor.fail({"port " + port->port.full_name + ": " + sent.error().message});
+    }
+  }
+}
+
+}  // namespace editor

@@ -1,0 +1,134 @@
+// mgr: create, delete, load, unload, list, through a manager of the name server or at a corbaloc address.
+#include <algorithm>
+#include <cstdlib>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "base/text.h"
+#include "editor.h"
+
+namespace editor {
+namespace {
+
+constexpr std::chrono::seconds create_limit{20};
+
+Result<CORBA::Object_var> manager_object(const Editor& editor, const std::string& manager) {
+  if (manager.starts_with("corbaloc:")) {
+    auto url = manager;
+    if (url.find('/') == std::string::npos) {
+      if (std::count(url.begin(), url.end(), ':') < 3) url += ":2810";
+      url += "/manager";
+    }
+    CORBA::Object_var object;
+    const auto parsed = remote("manager " + manager, [&] { object = editor.orb()->string_to_object(url.c_str()); });
+    if (!parsed) return parsed.error();
+    return object;
+  }
+  const char* working = std::getenv("RTCSH_CWD");
+  const auto address = parse_address(manager, working ? working : "");
+  if (!address) return address.error();
+  const auto names = editor.tree(manager);
+  if (!names) return names.error();
+  const Entry* entry = nullptr;
+  if (manager.empty()) {
+    for (const auto* candidate : names->objects()) {
+      if (candidate->kind != EntryKind::manager || candidate->health != Health::alive) continue;
+      if (entry)
+        return Error{"name server " + names->server() + ": holds several managers, name one with --manager: " + entry->path() + ", " +
+                     candidate->path()};
+      entry = candidate;
+    }
+    if (!entry) return Error{"name server " + names->server() + ": holds no living manager; start one with: rtcd"};
+  } else {
+    const auto found = names->find(*address);
+    if (!found) return found.error();
+    entry = *found;
+  }
+  if (entry->kind != EntryKind::manager) return Error{entry->path() + ": is no manager"};
+  if (entry->health != Health::alive) return Error{"manager " + entry->path() + " " + entry->problem};
+  return entry->object;
+}
+
+void print_profiles(const char* title, const RTM::ModuleProfileList& list, nlohmann::ordered_json& json) {
+  for (CORBA::ULong i = 0; i < list.length(); ++i) {
+    const auto properties = to_properties(list[i].properties);
+    json[title].push_back(properties);
+  }
+}
+
+void list_manager(Editor& editor, RTM::Manager_ptr manager) {
+  nlohmann::ordered_json json{{"components", nlohmann::ordered_json::array()},
+                              {"loaded_modules", nlohmann::ordered_json::array()},
+                              {"loadable_modules", nlohmann::ordered_json::array()},
+                              {"factories", nlohmann::ordered_json::array()}};
+  const auto asked = remote("manager", [&] {
+    RTC::ComponentProfileList_var components = manager->get_component_profiles();
+    for (CORBA::ULong i = 0; i < components->length(); ++i)
+      json["components"].push_back({{"instance", components[i].instance_name.in()}, {"type", components[i].type_name.in()}});
+    RTM::ModuleProfileList_var loaded = manager->get_loaded_modules();
+    print_profiles("loaded_modules", loaded.in(), json);
+    RTM::ModuleProfileList_var loadable = manager->get_loadable_modules();
+    print_profiles("loadable_modules", loadable.in(), json);
+    RTM::ModuleProfileList_var factories = manager->get_factory_profiles();
+    print_profiles("factories", factories.in(), json);
+  });
+  if (!asked) return editor.fail(asked.error());
+  if (editor.json()) return editor.print(json);
+  for (const auto& component : json["components"])
+    std::cout << "component " << component["instance"].get<std::string>() << " (" << component["type"].get<std::string>() << ")\n";
+  for (const auto& module : json["loaded_modules"])
+    std::cout << "loaded    " << module.value("file_path", module.value("module_file_path", "?")) << '\n';
+  for (const auto& module : json["loadable_modules"])
+    std::cout << "loadable  " << module.value("module_file_path", module.value("module_file_name", "?")) << '\n';
+  for (const auto& factory : json["factories"]) std::cout << "factory   " << factory.value("implementation_id", "?") << '\n';
+}
+
+}  // namespace
+
+void manage(Editor& editor, const ManagerOptions& options) {
+  const auto object = manager_object(editor, options.manager);
+  if (!object) return editor.fail(object.error());
+  const CallLimit limited(create_limit);
+  RTM::Manager_var manager;
+  const auto reached = remote("manager " + options.manager, [&] { manager = RTM::Manager::_narrow(*object); });
+  if (!reached) return editor.fail(reached.error());
+  if (CORBA::is_nil(manager)) return editor.fail({"manager " + options.manager + ": the object there is no manager"});
+  if (options.action == "list") return list_manager(editor, manager);
+  if (options.arguments.empty()) return editor.fail({"mgr " + options.action + ": expected a name"});
+  if (options.action == "load") {
+    const auto init = options.arguments.size() > 1 ? options.arguments[1] : "";
+    RTC::ReturnCode_t code = RTC::RTC_OK;
+    const auto called = remote("manager", [&] { code = manager->load_module(options.arguments[0].c_str(), init.c_str()); });
+    if (!called) return editor.fail(called.error());
+    if (const auto done = check("loading module " + options.arguments[0], code, "the manager's log says why"); !done)
+      editor.fail(done.error());
+    return;
+  }
+  for (const auto& argument : options.arguments) {
+    RTC::ReturnCode_t code = RTC::RTC_OK;
+    std::string meaning;
+    const auto called = remote("manager", [&] {
+      if (options.action == "create") {
+        RTC::RTObject_var component = manager->create_component(argument.c_str());
+        if (CORBA::is_nil(component)) {
+          code = RTC::RTC_ERROR;
+          meaning = "no such type is loaded, or its initialisation failed; see: rtse mgr list";
+        } else {
+          RTC::ComponentProfile_var profile = component->get_component_profile();
+          std::cout << profile->instance_name.in() << '\n';
+        }
+      } else if (options.action == "delete") {
+        code = manager->delete_component(argument.c_str());
+        meaning = "the manager has no such component";
+      } else if (options.action == "unload") {
+        code = manager->unload_module(argument.c_str());
+        meaning = "the manager has not loaded it";
+      }
+    });
+    if (!called) return editor.fail(called.error());
+    const auto done = check(options.action + " " + argument, code, meaning);
+    if (!done) editor.fail(done.error());
+  }
+}
+
+}  // namespace editor

@@ -1,0 +1,150 @@
+// act, deact, reset, exit, del, wait.
+#include <iostream>
+#include <thread>
+
+#include "base/text.h"
+#include "editor.h"
+
+namespace editor {
+namespace {
+
+// A transition may take as long as the component's own callback; tools of the field wait half a second and then report a failure.
+constexpr std::chrono::seconds transition_limit{10};
+
+struct Wording {
+  const char* verb;
+  RTC::LifeCycleState from;
+  RTC::LifeCycleState to;
+};
+
+Wording wording(Transition transition) {
+  switch (transition) {
+    case Transition::activate:
+      return {"activating", RTC::INACTIVE_STATE, RTC::ACTIVE_STATE};
+    case Transition::deactivate:
+      return {"deactivating", RTC::ACTIVE_STATE, RTC::INACTIVE_STATE};
+    case Transition::reset:
+      break;
+  }
+  return {"resetting", RTC::ERROR_STATE, RTC::INACTIVE_STATE};
+}
+
+RTC::ReturnCode_t call(RTC::ExecutionContext_ptr context, RTC::RTObject_ptr component, Transition transition) {
+  switch (transition) {
+    case Transition::activate:
+      return context->activate_component(component);
+    case Transition::deactivate:
+      return context->deactivate_component(component);
+    case Transition::reset:
+      break;
+  }
+  return context->reset_component(component);
+}
+
+Result<const ContextView*> pick_context(const ComponentView& component, int index) {
+  if (component.contexts.empty()) return Error{"component " + component.path + ": takes part in no execution context"};
+  if (index < 0) return &component.contexts.front();
+  if (static_cast<std::size_t>(index) >= component.contexts.size()) {
+    return Error{"component " + component.path + ": has no execution context number " + std::to_string(index) + ", it has " +
+                 std::to_string(component.contexts.size())};
+  }
+  return &component.contexts[static_cast<std::size_t>(index)];
+}
+
+}  // namespace
+
+// A component that is there already is fine: the caller wanted the state, not the step.
+Result<void> change_state(const ComponentView& component, Transition transition, int index) {
+  const auto context = pick_context(component, index);
+  if (!context) return context.error();
+  const auto words = wording(transition);
+  const auto what = std::string(words.verb) + " " + component.path;
+  const auto state = (*context)->state;
+  if (state == words.to && transition != Transition::reset) return {};
+  if (state != words.from) {
+    return Error{what + ": is " + state_text(state) + ", must be " + state_text(words.from) +
+                 (state == RTC::ERROR_STATE ? " (try: rtse reset)" : "")};
+  }
+  RTC::ReturnCode_t code = RTC::RTC_ERROR;
+  const CallLimit limited(transition_limit);
+  const auto called = remote(what + ":", [&] { code = call((*context)->object, component.object, transition); });
+  if (!called) return called.error();
+  if (code == RTC::RTC_OK) return {};
+  RTC::LifeCycleState now = RTC::CREATED_STATE;
+  const auto asked = remote(what, [&] { now = (*context)->object->get_component_state(component.object); });
+  if (asked && now == words.to) return {};  // late, but it arrived
+  return check(what, code, asked ? "it is " + state_text(now) + " now, its log says why" : "");
+}
+
+void change_state(Editor& editor, const std::vector<std::string>& paths, Transition transition, int context) {
+  for (const auto& path : paths) {
+    const auto component = editor.component(path, {.contexts = true});
+    if (!component) {
+      editor.fail(component.error());
+      continue;
+    }
+    if (const auto changed = change_state(*component, transition, context); !changed) editor.fail(changed.error());
+  }
+}
+
+void exit_components(Editor& editor, const std::vector<std::string>& paths) {
+  for (const auto& path : paths) {
+    const auto component = editor.component(path, {});
+    if (!component) {
+      editor.fail(component.error());
+      continue;
+    }
+    RTC::ReturnCode_t code = RTC::RTC_OK;
+    const CallLimit limited(transition_limit);
+    const auto called = remote("exit of " + component->path + ":", [&] { code = component->object->exit(); });
+    if (!called) editor.fail(called.error());
+    if (const auto checked = check("exit of " + component->path, code); !checked) editor.fail(checked.error());
+  }
+}
+
+void delete_bindings(Editor& editor, const std::vector<std::string>& paths, bool zombies) {
+  const auto names = editor.tree(paths.empty() ? "" : paths.front());
+  if (!names) return editor.fail(names.error());
+  if (zombies) {
+    for (const auto* entry : names->objects()) {
+      if (entry->health != Health::zombie) continue;
+      const auto gone = unbind(editor.orb(), *entry);
+      if (!gone) editor.fail(gone.error());
+      if (gone) std::cout << "deleted " << entry->path() << '\n';
+    }
+  }
+  for (const auto& path : paths) {
+    const auto address = parse_address(path, "");
+    if (!address) {
+      editor.fail(address.error());
+      continue;
+    }
+    const auto entry = names->find(*address);
+    if (!entry) {
+      editor.fail(entry.error());
+      continue;
+    }
+    if (const auto gone = unbind(editor.orb(), **entry); !gone) editor.fail(gone.error());
+  }
+}
+
+void wait_for_state(Editor& editor, const std::vector<std::string>& paths, const std::string& state, double timeout_s) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_s);
+  for (const auto& path : paths) {
+    while (true) {
+      const auto component = editor.component(path, {.contexts = true});
+      const auto now = component ? state_text(component->state()) : std::string("not there");
+      if (base::equal_ignoring_case(now, state) || (component && base::equal_ignoring_case(state, "any"))) break;
+      if (base::equal_ignoring_case(state, "gone") && !component) break;
+      if (std::chrono::steady_clock::now() >= deadline) {
+        editor.fail({"component " + base::in_quotes(path) + ": is " + now + " after " + base::format_number(timeout_s) + " s, waited for " +
+                     state + (component ? "" : " (" + component.error().message + ")")});
+        break;
+      }
+      // A component that is not there yet can tell nobody that it has come: asking again is all that can be done.
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+  }
+}
+
+}  // namespace editor

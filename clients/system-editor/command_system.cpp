@@ -1,0 +1,398 @@
+// save, load, start, stop, teardown, check: whole systems, as RTSProfile files.
+#include <algorithm>
+#include <ctime>
+#include <iostream>
+#include <mutex>
+#include <set>
+
+#include "base/text.h"
+#include "editor.h"
+#include "rts_profile.h"
+
+namespace editor {
+namespace {
+
+std::string now_text() {
+  const auto now = std::time(nullptr);
+  std::tm parts{};
+  gmtime_r(&now, &parts);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &parts);
+  return text;
+}
+
+// "%g" would write 1000, readers of the format expect 1000.0.
+std::string rate_text(double rate) {
+  auto text = base::format_number(rate);
+  if (text.find_first_of(".e") == std::string::npos) text += ".0";
+  return text;
+}
+
+std::string path_uri(const ComponentView& component) { return base::join(component.segments, "/"); }
+
+bool is_reference(const std::string& key, const std::string& value) {
+  return value.starts_with("IOR:") || key.ends_with("_ior") || key.ends_with("_ref");
+}
+
+SavedComponent to_saved(const ComponentView& component) {
+  SavedComponent saved;
+  saved.id = component.profile_id();
+  saved.path_uri = path_uri(component);
+  saved.active_set = component.active_set;
+  saved.instance = component.instance;
+  if (component.category.starts_with("composite.")) saved.composite_type = component.category.substr(std::string("composite.").size());
+  for (const auto& port : component.ports) (port.is_data_port() ? saved.data_ports : saved.service_ports).push_back({port.name});
+  for (const auto& set : component.configuration_sets) {
+    if (!set.id.starts_with("_")) saved.configuration_sets.push_back({set.id, set.values});
+  }
+  for (const auto& context : component.contexts) {
+    if (context.is_owned) saved.contexts.push_back({std::to_string(context.handle), kind_text(context.kind), rate_text(context.rate)});
+  }
+  saved.participants = component.members;
+  return saved;
+}
+
+SavedTarget target_of(const PortOwner& owner) {
+  return {owner.component->profile_id(), owner.component->instance, owner.component->instance + "." + owner.port->name,
+          path_uri(*owner.component)};
+}
+
+SavedConnector to_saved(const ConnectorView& connector, const PortOwner& source, const PortOwner& target) {
+  SavedConnector saved;
+  saved.is_data = source.port->is_data_port();
+  saved.id = connector.id;
+  saved.name = connector.name;
+  saved.source = target_of(source);
+  saved.target = target_of(target);
+  saved.data_type = property(connector.properties, "dataport.data_type", source.port->data_type());
+  saved.interface_type = property(connector.properties, "dataport.interface_type");
+  saved.dataflow_type = property(connector.properties, "dataport.dataflow_type");
+  saved.subscription_type = property(connector.properties, "dataport.subscription_type", "flush");
+  for (const auto& [key, value] : connector.properties) {
+    if (!is_reference(key, value)) saved.properties.emplace_back(key, value);
+  }
+  return saved;
+}
+
+// Every connection once, the OutPort or the provider's side first.
+void collect_connectors(Editor& editor, const std::vector<ComponentView>& components, SavedSystem& system) {
+  std::set<std::string> seen;
+  for (const auto& component : components) {
+    for (const auto& port : component.ports) {
+      for (const auto& connector : port.connectors) {
+        if (!seen.insert(connector.id).second) continue;
+        std::vector<PortOwner> owners;
+        for (CORBA::ULong i = 0; i < connector.ports.length(); ++i) {
+          const auto owner = owner_of(connector.ports[i], components);
+          if (owner.port) owners.push_back(owner);
+        }
+        if (owners.size() < 2 || owners.size() != connector.ports.length()) {
+          editor.fail({"connection " + connector.id + " of port " + port.full_name +
+                       ": leads to a component that is not on the name server, it is left out"});
+          continue;
+        }
+        if (owners.size() > 2) {
+          editor.fail({"connection " + connector.id + " of port " + port.full_name + ": joins " + std::to_string(owners.size()) +
+                       " ports, the file format holds two; it is left out"});
+          continue;
+        }
+        if (owners[0].port->port_type() == "DataInPort") std::swap(owners[0], owners[1]);
+        system.connectors.push_back(to_saved(connector, owners[0], owners[1]));
+      }
+    }
+  }
+}
+
+// The components that a file speaks of, found on the name server by path, else by instance name.
+class Matched {
+ public:
+  static Result<Matched> read(Editor& editor, const SavedSystem& system, Detail detail) {
+    Matched matched;
+    const auto names = editor.tree();
+    if (!names) return names.error();
+    matched.components_ = read_components(*names, detail, editor.limit());
+    for (const auto& saved : system.components) {
+      const auto* component = matched.find(saved.path_uri, saved.instance);
+      if (component && component->problem.empty()) continue;
+      const Error missing{"component " + saved.path_uri + ": " + (component ? component->problem : "is not on the name server")};
+      if (saved.is_required) matched.missing_.push_back(missing);
+    }
+    return matched;
+  }
+
+  const ComponentView* find(const std::string& uri, const std::string& instance) const {
+    const ComponentView* by_name = nullptr;
+    for (const auto& component : components_) {
+      if (path_uri(component) == uri) return &component;
+      const bool same = component.instance == instance || component.segments.back() == instance + ".rtc";
+      if (same && (!by_name || !by_name->problem.empty())) by_name = &component;
+    }
+    return by_name;
+  }
+  const PortView* port(const SavedTarget& target) const {
+    const auto* component = find(target.path_uri, target.instance);
+    if (!component) return nullptr;
+    const auto prefix = target.instance + ".";
+    const auto name = target.port_name.starts_with(prefix) ? target.port_name.substr(prefix.size()) : target.port_name;
+    return component->port(name);
+  }
+  const std::vector<Error>& missing() const { return missing_; }
+
+ private:
+  std::vector<ComponentView> components_;
+  std::vector<Error> missing_;
+};
+
+// Does the work on all items in parallel and reports failures in order.
+template <class T, class F>
+void for_all(Editor& editor, const std::vector<T>& items, F work) {
+  std::vector<Result<void>> results(items.size());
+  in_parallel(
+      items.size(), editor.limit(), [&](std::size_t i) { results[i] = work(items[i]); }, 8);
+  for (const auto& result : results) {
+    if (!result) editor.fail(result.error());
+  }
+}
+
+Properties connect_properties(const SavedConnector& saved) {
+  Properties properties;
+  for (const auto& [key, value] : saved.properties) {
+    if (!is_reference(key, value)) properties[key] = value;
+  }
+  if (!saved.is_data) return properties;
+  const auto add = [&](const char* key, const std::string& value) {
+    if (!value.empty()) properties.emplace(key, value);
+  };
+  add("dataport.data_type", saved.data_type);
+  add("dataport.interface_type", saved.interface_type);
+  add("dataport.dataflow_type", saved.dataflow_type);
+  add("dataport.subscription_type", saved.subscription_type);
+  return properties;
+}
+
+bool same_connection(const ConnectorView& connector, const PortView& source, const PortView& target) {
+  bool has_source = false;
+  bool has_target = false;
+  for (CORBA::ULong i = 0; i < connector.ports.length(); ++i) {
+    has_source = has_source || connector.ports[i]->_is_equivalent(source.object);
+    has_target = has_target || connector.ports[i]->_is_equivalent(target.object);
+  }
+  return has_source && has_target;
+}
+
+Result<void> restore_connection(const Matched& matched, const SavedConnector& saved, bool dry_run) {
+  const auto* source = matched.port(saved.source);
+  const auto* target = matched.port(saved.target);
+  if (!source || !target) {
+    const auto& side = source ? saved.target : saved.source;
+    return Error{"connection " + saved.id + ": there is no port " + side.port_name};
+  }
+  for (const auto& connector : source->connectors) {
+    if (connector.id == saved.id && same_connection(connector, *source, *target)) return {};  // it stands
+  }
+  if (dry_run) {
+    std::cout << "connect " + source->full_name + " to " + target->full_name + "\n";
+    return {};
+  }
+  return connect_ports({source, target}, saved.id, saved.name, connect_properties(saved));
+}
+
+Result<void> restore_configuration(const Matched& matched, const SavedComponent& saved, bool dry_run) {
+  const auto* component = matched.find(saved.path_uri, saved.instance);
+  if (!component || !component->problem.empty()) return {};  // reported already, or optional
+  for (const auto& set : saved.configuration_sets) {
+    if (set.values.empty()) continue;
+    if (dry_run) {
+      std::cout << "set configuration " + set.id + " of " + component->path + "\n";
+      continue;
+    }
+    if (const auto done = set_values(*component, set.id, set.values); !done) return done;
+  }
+  const auto active = saved.active_set.empty() ? component->active_set : saved.active_set;
+  if (active.empty() || dry_run) return {};
+  return use_set(*component, active);
+}
+
+// The order of a StartUp or ShutDown list; components that it does not name come last, in file order.
+std::vector<SavedTurn> turns(const SavedSystem& system, const std::vector<SavedTurn>& listed) {
+  auto all = listed;
+  std::stable_sort(all.begin(), all.end(), [](const SavedTurn& a, const SavedTurn& b) { return a.sequence < b.sequence; });
+  for (auto& turn : all) {
+    const auto* component = system.component(turn.instance);
+    if (turn.path_uri.empty() && component) turn.path_uri = component->path_uri;
+  }
+  for (const auto& component : system.components) {
+    const bool named =
+        std::any_of(listed.begin(), listed.end(), [&](const SavedTurn& turn) { return turn.instance == component.instance; });
+    if (named) continue;
+    for (const auto& context : component.contexts) all.push_back({component.instance, component.path_uri, component.id, context.id, 0});
+    if (component.contexts.empty()) all.push_back({component.instance, component.path_uri, component.id, "0", 0});
+  }
+  return all;
+}
+
+void move_all(Editor& editor, const std::string& file, bool dry_run, Transition transition) {
+  const auto system = read_system(file);
+  if (!system) return editor.fail(system.error());
+  const auto matched = Matched::read(editor, *system, {.contexts = true});
+  if (!matched) return editor.fail(matched.error());
+  for (const auto& missing : matched->missing()) editor.fail(missing);
+  if (!matched->missing().empty()) return;
+  const auto order = turns(*system, transition == Transition::activate ? system->start_up : system->shut_down);
+  const auto step = [&](const SavedTurn& turn) -> Result<void> {
+    const auto* component = matched->find(turn.path_uri, turn.instance);
+    if (!component || !component->problem.empty()) return {};
+    const auto handle = base::parse_integer(turn.context_id).value_or(0);
+    int index = 0;
+    for (std::size_t i = 0; i < component->contexts.size(); ++i) {
+      if (component->contexts[i].handle == handle) index = static_cast<int>(i);
+    }
+    if (dry_run) {
+      std::cout << (transition == Transition::activate ? "activate " : "deactivate ") + component->path + " in context " + turn.context_id +
+                       "\n";
+      return {};
+    }
+    return change_state(*component, transition, index);
+  };
+  const bool ordered = !(transition == Transition::activate ? system->start_up : system->shut_down).empty();
+  if (!ordered && !dry_run) return for_all(editor, order, step);
+  for (const auto& turn : order) {
+    if (const auto done = step(turn); !done) editor.fail(done.error());
+  }
+}
+
+}  // namespace
+
+void save(Editor& editor, const SaveOptions& options) {
+  const auto names = editor.tree();
+  if (!names) return editor.fail(names.error());
+  const auto components =
+      read_components(*names, {.contexts = true, .connectors = true, .configuration = true, .members = true}, editor.limit());
+  SavedSystem system;
+  system.id = "RTSystem:" + options.vendor + ":" + options.name + ":" + options.version;
+  system.abstract = options.abstract.empty() ? "RT system saved by rtse." : options.abstract;
+  system.creation_date = system.update_date = now_text();
+  for (const auto& component : components) {
+    if (!component.problem.empty()) {
+      editor.fail({"component " + component.path + " " + component.problem + "; it is left out"});
+      continue;
+    }
+    system.components.push_back(to_saved(component));
+  }
+  collect_connectors(editor, components, system);
+  if (options.yaml && options.file == "-") {
+    std::cout << to_yaml(system);
+    return;
+  }
+  if (const auto written = write_system(system, options.file); !written) editor.fail(written.error());
+}
+
+void load(Editor& editor, const std::string& file, bool dry_run) {
+  const auto system = read_system(file);
+  if (!system) return editor.fail(system.error());
+  const auto matched = Matched::read(editor, *system, {.connectors = true, .configuration = true});
+  if (!matched) return editor.fail(matched.error());
+  for (const auto& missing : matched->missing()) editor.fail(missing);
+  if (!matched->missing().empty()) return;
+  for_all(editor, system->connectors, [&](const SavedConnector& saved) -> Result<void> {
+    const auto optional = [&](const SavedTarget& target) {
+      const auto* component = system->component(target.instance);
+      return component && !component->is_required && !matched->find(target.path_uri, target.instance);
+    };
+    if (optional(saved.source) || optional(saved.target)) return {};
+    return restore_connection(*matched, saved, dry_run);
+  });
+  for_all(editor, system->components, [&](const SavedComponent& saved) { return restore_configuration(*matched, saved, dry_run); });
+}
+
+void start(Editor& editor, const std::string& file, bool dry_run) { move_all(editor, file, dry_run, Transition::activate); }
+void stop(Editor& editor, const std::string& file, bool dry_run) { move_all(editor, file, dry_run, Transition::deactivate); }
+
+void teardown(Editor& editor, const std::string& file, bool dry_run) {
+  const auto system = read_system(file);
+  if (!system) return editor.fail(system.error());
+  const auto matched = Matched::read(editor, *system, {.connectors = true});
+  if (!matched) return editor.fail(matched.error());
+  for (const auto& missing : matched->missing()) editor.fail(missing);
+  for_all(editor, system->connectors, [&](const SavedConnector& saved) -> Result<void> {
+    const auto* port = matched->port(saved.source);
+    if (!port) port = matched->port(saved.target);
+    if (!port) return Error{"connection " + saved.id + ": there is no port " + saved.source.port_name};
+    const bool stands =
+        std::any_of(port->connectors.begin(), port->connectors.end(), [&](const auto& connector) { return connector.id == saved.id; });
+    if (!stands) return Error{"connection " + saved.id + ": port " + port->full_name + " does not have it"};
+    if (!dry_run) return disconnect_connector(*port, saved.id);
+    std::cout << "disconnect " + saved.id + " of " + port->full_name + "\n";
+    return {};
+  });
+}
+
+namespace {
+
+void check_connection(Editor& editor, const Matched& matched, const SavedConnector& saved) {
+  const auto* source = matched.port(saved.source);
+  const auto* target = matched.port(saved.target);
+  if (!source || !target)
+    return editor.fail({"connection " + saved.id + ": there is no port " + (source ? saved.target.port_name : saved.source.port_name)});
+  for (const auto& connector : source->connectors) {
+    if (!same_connection(connector, *source, *target)) continue;
+    if (!saved.is_data) return;
+    const auto wanted = connect_properties(saved);
+    for (const auto* key : {"dataport.interface_type", "dataport.dataflow_type", "dataport.subscription_type"}) {
+      const auto is = property(connector.properties, key);
+      const auto should = property(wanted, key);
+      if (!should.empty() && !base::equal_ignoring_case(is, should))
+        editor.fail({"connection " + saved.id + ": " + key + " is " + base::in_quotes(is) + ", expected " + base::in_quotes(should)});
+    }
+    return;
+  }
+  editor.fail({"connection " + saved.id + ": " + source->full_name + " and " + target->full_name + " are not connected"});
+}
+
+void check_component(Editor& editor, const Matched& matched, const SavedComponent& saved, const std::string& state) {
+  const auto* component = matched.find(saved.path_uri, saved.instance);
+  if (!component || !component->problem.empty()) return;
+  if (component->profile_id() != saved.id)
+    editor.fail({"component " + component->path + ": is a " + component->profile_id() + ", expected " + saved.id});
+  if (!saved.active_set.empty() && component->active_set != saved.active_set) {
+    editor.fail({"component " + component->path + ": active configuration set is " + base::in_quotes(component->active_set) +
+                 ", expected " + base::in_quotes(saved.active_set)});
+  }
+  for (const auto& set : saved.configuration_sets) {
+    for (const auto& [key, value] : set.values) {
+      std::string is;
+      bool found = false;
+      for (const auto& candidate : component->configuration_sets) {
+        for (const auto& [name, text] : candidate.values) {
+          if (candidate.id != set.id || name != key) continue;
+          is = text;
+          found = true;
+        }
+      }
+      if (!found || is != value)
+        editor.fail({"component " + component->path + ": parameter " + set.id + "." + key + " is " +
+                     (found ? base::in_quotes(is) : "missing") + ", expected " + base::in_quotes(value)});
+    }
+  }
+  if (state.empty() || base::equal_ignoring_case(state, "any")) return;
+  for (const auto& context : component->contexts) {
+    if (context.is_owned && !base::equal_ignoring_case(state_text(context.state), state)) {
+      editor.fail({"component " + component->path + ": is " + state_text(context.state) + " in context " + std::to_string(context.handle) +
+                   ", expected " + state});
+    }
+  }
+}
+
+}  // namespace
+
+void check_system(Editor& editor, const std::string& file, const std::string& state) {
+  const auto system = read_system(file);
+  if (!system) return editor.fail(system.error());
+  const auto matched = Matched::read(editor, *system, {.contexts = true, .connectors = true, .configuration = true});
+  if (!matched) return editor.fail(matched.error());
+  for (const auto& missing : matched->missing()) editor.fail(missing);
+  for (const auto& connector : system->connectors) check_connection(editor, *matched, connector);
+  for (const auto& component : system->components) check_component(editor, *matched, component, state);
+}
+
+}  // namespace editor

@@ -1,0 +1,126 @@
+// watch: a full-screen view of components, states, ports and rates. q ends it.
+#include <ncurses.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "base/text.h"
+#include "editor.h"
+
+namespace editor {
+namespace {
+
+constexpr std::chrono::milliseconds refresh_period{500};
+
+class Screen {
+ public:
+  Screen() {
+    initscr();
+    cbreak();
+    noecho();
+    curs_set(0);
+    keypad(stdscr, TRUE);
+    timeout(static_cast<int>(refresh_period.count()));
+    if (has_colors()) {
+      start_color();
+      use_default_colors();
+      init_pair(1, COLOR_GREEN, -1);
+      init_pair(2, COLOR_RED, -1);
+      init_pair(3, COLOR_YELLOW, -1);
+    }
+  }
+  ~Screen() { endwin(); }
+  Screen(const Screen&) = delete;
+  Screen& operator=(const Screen&) = delete;
+};
+
+int colour_of(const ComponentView& component) {
+  if (!component.problem.empty()) return COLOR_PAIR(2) | A_BOLD;
+  switch (component.state()) {
+    case RTC::ACTIVE_STATE:
+      return COLOR_PAIR(1);
+    case RTC::ERROR_STATE:
+      return COLOR_PAIR(2) | A_BOLD;
+    default:
+      return COLOR_PAIR(3);
+  }
+}
+
+// Lines beyond the screen are left out; the view scrolls by `first`.
+class Page {
+ public:
+  explicit Page(int first) : line_(-first) {}
+  void write(const std::string& text, int attributes = 0) {
+    if (line_ >= 0 && line_ + 1 < LINES) {
+      attron(attributes);
+      mvaddnstr(line_ + 1, 0, text.c_str(), COLS);
+      attroff(attributes);
+    }
+    ++line_;
+  }
+
+ private:
+  int line_;
+};
+
+std::string peers_of(const PortView& port, const std::vector<ComponentView>& all) {
+  std::vector<std::string> names;
+  for (const auto& connector : port.connectors) {
+    for (CORBA::ULong i = 0; i < connector.ports.length(); ++i) {
+      if (connector.ports[i]->_is_equivalent(port.object)) continue;
+      const auto owner = owner_of(connector.ports[i], all);
+      names.push_back(owner.port ? owner.component->instance + ":" + owner.port->name : "?");
+    }
+  }
+  return base::join(names, ", ");
+}
+
+void draw_component(Page& page, const ComponentView& component, const std::vector<ComponentView>& all) {
+  const auto state = component.problem.empty() ? state_text(component.state()) : component.problem;
+  std::string rate;
+  std::string load;
+  if (!component.contexts.empty()) {
+    rate = base::format_number(component.contexts.front().rate) + " Hz";
+    for (const auto& [key, value] : component.contexts.front().properties) {
+      if (key.starts_with("statistics.") || key.starts_with("measurement.")) load += "  " + key.substr(key.find('.') + 1) + " " + value;
+    }
+  }
+  char line[512];
+  std::snprintf(line, sizeof line, "%-24s %-10s %-10s%s", component.instance.c_str(), state.c_str(), rate.c_str(), load.c_str());
+  page.write(line, colour_of(component));
+  for (const auto& port : component.ports) {
+    const auto mark = port.port_type() == "DataInPort" ? "->" : port.port_type() == "DataOutPort" ? "<-" : "<>";
+    const auto peers = peers_of(port, all);
+    std::snprintf(line, sizeof line, "   %s %-20s %s%s", mark, port.name.c_str(), port.data_type().c_str(),
+                  peers.empty() ? "" : ("   " + peers).c_str());
+    page.write(line, peers.empty() ? A_DIM : 0);
+  }
+}
+
+}  // namespace
+
+void watch(Editor& editor, const std::string& path) {
+  if (!isatty(1)) return editor.fail({"watch: standard output is no terminal; use: rtse ls -l"});
+  const Screen screen;
+  int first = 0;
+  for (int key = 0; key != 'q' && key != 'Q';) {
+    const auto names = editor.tree(path);
+    erase();
+    mvprintw(0, 0, "rtse watch  name server %s   (q: quit, arrows: scroll)", editor.server().c_str());
+    Page page(first);
+    if (!names) {
+      page.write(names.error().message, COLOR_PAIR(2));
+    } else {
+      const auto components = read_components(*names, {.contexts = true, .connectors = true}, editor.limit());
+      for (const auto& component : components) draw_component(page, component, components);
+    }
+    refresh();
+    key = getch();
+    if (key == KEY_DOWN) ++first;
+    if (key == KEY_UP) first = std::max(0, first - 1);
+    if (key == KEY_NPAGE) first += LINES - 2;
+    if (key == KEY_PPAGE) first = std::max(0, first - LINES + 2);
+  }
+}
+
+}  // namespace editor

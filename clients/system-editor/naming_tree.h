@@ -1,0 +1,53 @@
+// What a naming service holds, read in parallel; a process that hangs or is gone is shown as such and delays nobody. Snapshot values; any
+// thread.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "address.h"
+#include "remote.h"
+#include "rtm/idl/ManagerStub.h"
+
+namespace editor {
+
+enum class EntryKind { context, component, manager, other };
+enum class Health { alive, hung, zombie };  // zombie: bound, but the object or its process is gone
+
+struct Entry {
+  EntryKind kind = EntryKind::other;
+  Health health = Health::alive;
+  std::string id;
+  std::string kind_text;              // "rtc", "mgr", "host_cxt", ...
+  std::vector<std::string> segments;  // from the name server on, escaped
+  std::string problem;                // why it is not alive
+  CORBA::Object_var object;
+  std::vector<Entry> children;
+
+  std::string path() const;  // "/localhost/a.host_cxt/B0.rtc"
+  std::string name() const;  // "B0.rtc"
+};
+
+class NamingTree {
+ public:
+  // `server` as HOST or HOST:PORT. Fails when it cannot be reached or is no naming service.
+  static Result<NamingTree> read(CORBA::ORB_ptr orb, const std::string& server, std::chrono::milliseconds limit);
+
+  const Entry& root() const { return root_; }
+  const std::string& server() const { return root_.segments.front(); }
+  // Every component, manager or other object, depth first.
+  std::vector<const Entry*> objects() const;
+  // The one thing that the address names; the error lists what comes near.
+  Result<const Entry*> find(const Address& address) const;
+  Result<const Entry*> find_component(const Address& address) const;
+
+ private:
+  Entry root_;
+};
+
+// Removes a binding; the object need not answer.
+Result<void> unbind(CORBA::ORB_ptr orb, const Entry& entry);
+
+}  // namespace editor

@@ -1,0 +1,67 @@
+#include "rts_profile.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+
+#include "base/text.h"
+
+namespace editor {
+namespace {
+
+constexpr std::uintmax_t largest_file = 64u << 20;
+
+base::Result<std::string> content_of(const std::string& file) {
+  if (file == "-") return std::string(std::istreambuf_iterator<char>(std::cin), {});
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error))
+    return base::Error{"file " + base::in_quotes(file) + ": does not exist or is no file"};
+  if (std::filesystem::file_size(file, error) > largest_file)
+    return base::Error{"file " + base::in_quotes(file) + ": is larger than 64 MiB"};
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return base::Error{"file " + base::in_quotes(file) + ": cannot be read"};
+  return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+}  // namespace
+
+const SavedComponent* SavedSystem::component(const std::string& instance) const {
+  for (const auto& candidate : components) {
+    if (candidate.instance == instance) return &candidate;
+  }
+  return nullptr;
+}
+
+base::Result<SavedSystem> read_system(const std::string& file) {
+  auto content = content_of(file);
+  if (!content) return content.error();
+  const auto start = base::trim(*content);
+  if (start.empty()) return base::Error{"file " + base::in_quotes(file) + ": is empty"};
+  const bool is_xml = start.front() == '<' || start.starts_with("\xef\xbb\xbf<");
+  return is_xml ? parse_xml(*content, file) : parse_yaml(*content, file);
+}
+
+base::Result<void> write_system(const SavedSystem& system, const std::string& file) {
+  const bool is_yaml = file.ends_with(".yaml") || file.ends_with(".yml");
+  const auto text = is_yaml ? to_yaml(system) : to_xml(system);
+  if (file == "-") {
+    std::cout << text;
+    return {};
+  }
+  const auto temporary = file + ".part";
+  {
+    std::ofstream out(temporary, std::ios::binary);
+    out << text;
+    out.close();
+    if (!out) return base::Error{"file " + base::in_quotes(file) + ": cannot be written"};
+  }
+  if (std::rename(temporary.c_str(), file.c_str()) != 0) {
+    std::remove(temporary.c_str());
+    return base::Error{"file " + base::in_quotes(file) + ": cannot be written"};
+  }
+  return {};
+}
+
+}  // namespace editor

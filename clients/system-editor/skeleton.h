@@ -1,0 +1,58 @@
+// rtse new: the sources of a new component, complete and ready to build. Pure but for write_skeleton. Any thread.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+
+namespace CLI {
+class App;
+}
+
+namespace editor {
+
+struct NewPort {
+  std::string name;
+  std::string type;  // C++ type of idl/: RTC::TimedLong
+};
+
+struct NewParameter {
+  std::string name;
+  std::string type;  // short, int, long, float, double, bool, std::string, std::vector<double>, ...
+  std::string default_value;
+};
+
+struct NewService {
+  std::string port;
+  std::string interface;  // of the IDL file: Module::Interface or Interface
+  std::string idl_file;   // copied into idl/
+  bool is_provided = true;
+  std::string instance;
+};
+
+struct NewComponent {
+  std::string name;
+  std::string description = "A new component";
+  std::string version = "1.0.0";
+  std::string vendor = "Me";
+  std::string category = "example";
+  double rate = 100;  // [Hz]
+  std::vector<NewPort> in_ports;
+  std::vector<NewPort> out_ports;
+  std::vector<NewParameter> parameters;
+  std::vector<NewService> services;
+};
+
+// Names must be C++ identifiers, types known ones; the error names what is not.
+base::Result<void> check(const NewComponent& component);
+// File name -> content.
+base::Result<std::map<std::string, std::string>> skeleton(const NewComponent& component);
+// RTC.xml (RtcProfile, what RTCBuilder saves) or a YAML specification.
+base::Result<NewComponent> read_specification(const std::string& file);
+
+// Adds the command "new" to the program; it runs while the command line is parsed and leaves its exit code in `code`.
+void add_new_command(CLI::App& app, int& code);
+
+}  // namespace editor

@@ -1,0 +1,27 @@
+// Samples of any data type of idl/ as text: CDR payload -> JSON and back, led by the type code. Pure; any thread.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "rtm/idl/RTCStub.h"
+
+namespace editor {
+
+// "IDL:RTC/TimedLong:1.0" -> its type code; nil when idl/ has no such data type.
+CORBA::TypeCode_ptr type_code_of(const std::string& repository_id);
+std::vector<std::string> known_data_types();
+
+// Decodes plain CDR (alignment from the first octet). Cut short or with wild lengths: an error.
+base::Result<nlohmann::ordered_json> decode(CORBA::TypeCode_ptr type, std::span<const unsigned char> payload, bool little_endian = true);
+// Missing members of objects are zero; unknown ones, wrong kinds and values out of range are errors that name the member.
+base::Result<std::vector<unsigned char>> encode(CORBA::TypeCode_ptr type, const nlohmann::ordered_json& value, bool little_endian = true);
+
+// What people type: JSON (a number, string or array for a Timed type means its data; the time stamp is then `now_ns`), or the form of
+// rtinject: RTC.TimedLong({time}, 42), members in order, nested.
+base::Result<nlohmann::ordered_json> parse_value(CORBA::TypeCode_ptr type, const std::string& text, std::int64_t now_ns);
+
+}  // namespace editor
