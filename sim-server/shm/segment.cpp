@@ -12,11 +12,13 @@
 #include <charconv>
 #include <climits>
 #include <cstring>
+#include <map>
 #include <memory>
 #include <thread>
 #include <tuple>
 #include <utility>
 
+#include "base/guarded.h"
 #include "base/text.h"
 #include "shm/futex.h"
 #include "shm/process.h"
@@ -58,6 +60,30 @@ bool take_number(std::string_view& text, char end, Number& number) {
 std::uint64_t inode_of_path(const std::string& path) {
   struct stat status {};
   return ::stat(path.c_str(), &status) == 0 ? status.st_ino : 0;
+}
+
+struct FileKey {
+  dev_t device;
+  ino_t inode;
+  auto operator<=>(const FileKey&) const = default;
+};
+
+// Maps a file, or gives the mapping that this process has of it already; null with errno set when that fails.
+std::shared_ptr<void> map_file(int file, std::size_t size) {
+  static base::Guarded<std::map<FileKey, std::weak_ptr<void>>, base::Rank::registry> mappings;
+  struct stat status {};
+  if (::fstat(file, &status) != 0) return nullptr;
+  const FileKey key{status.st_dev, status.st_ino};
+  auto table = mappings.lock();
+  if (auto found = table->find(key); found != table->end()) {
+    if (auto mapping = found->second.lock()) return mapping;
+  }
+  std::erase_if(*table, [](const auto& entry) { return entry.second.expired(); });
+  void* base = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+  if (base == MAP_FAILED) return nullptr;
+  std::shared_ptr<void> mapping(base, [size](void* mapped) { ::munmap(mapped, size); });
+  (*table)[key] = mapping;
+  return mapping;
 }
 
 // Places all areas; returns the total size.
@@ -131,14 +157,13 @@ base::Result<Eviction> evict(const SegmentName& name) {
   if (::fstat(file.get(), &status) != 0 || inode_of_path(path) != status.st_ino) return Eviction{};
   Eviction eviction{Judgement::removed, 0};
   if (static_cast<std::size_t>(status.st_size) >= sizeof(Header)) {
-    void* base = ::mmap(nullptr, sizeof(Header), PROT_READ | PROT_WRITE, MAP_SHARED, file.get(), 0);
-    if (base == MAP_FAILED) return base::Error{"shared memory " + name.text() + " can't be mapped: " + reason()};
-    Header& header = *static_cast<Header*>(base);
+    const auto base = map_file(file.get(), static_cast<std::size_t>(status.st_size));
+    if (!base) return base::Error{"shared memory " + name.text() + " can't be mapped: " + reason()};
+    Header& header = *static_cast<Header*>(base.get());
     const bool is_ours = std::memcmp(header.magic, RTMSIM_MAGIC, sizeof header.magic) == 0;
     const bool is_closed = load(header.state) == RTMSIM_STATE_CLOSED;
     const ProcessMark server = header.server;
     if (is_ours && !is_closed && is_server_alive(header)) {
-      ::munmap(base, sizeof(Header));
       const bool is_self = server.pid == own_mark().pid;
       return base::Error{is_self ? std::string(to_text(name.type)) + " " + base::in_quotes(name.iface) + " exists already in server " +
                                        std::to_string(name.server_id) + " of this process"
@@ -149,7 +174,6 @@ base::Result<Eviction> evict(const SegmentName& name) {
       eviction.generation = header.generation;
       tell_readers(header);
     }
-    ::munmap(base, sizeof(Header));
   }
   if (::unlink(path.c_str()) != 0 && errno != ENOENT) {
     return base::Error{"stale shared memory " + name.text() + " can't be removed: " + reason()};
@@ -232,8 +256,8 @@ base::Result<Segment> Segment::create(const SegmentName& name, const Geometry& g
   auto made = make_file(name, size, access);
   if (!made) return made.error();
   FileHandle file(*made);
-  void* base = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, file.get(), 0);
-  if (base == MAP_FAILED) return base::Error{"shared memory " + name.text() + " can't be mapped: " + reason()};
+  std::shared_ptr<void> base = map_file(file.get(), size);
+  if (!base) return base::Error{"shared memory " + name.text() + " can't be mapped: " + reason()};
 
   std::memcpy(header.magic, RTMSIM_MAGIC, sizeof header.magic);
   header.layout_version = layout_version;
@@ -250,8 +274,7 @@ base::Result<Segment> Segment::create(const SegmentName& name, const Geometry& g
   header.heartbeat_ns = monotonic_ns();
 
   Segment segment;
-  segment.base_ = base;
-  segment.size_ = size;
+  segment.base_ = std::move(base);
   segment.name_ = name;
   segment.header() = segment.facts_ = header;
   if (!info.empty()) std::memcpy(segment.at(AreaIndex::info), info.data(), info.size());
@@ -291,48 +314,22 @@ base::Result<Segment> Segment::open(const SegmentName& name) {
   if (status.st_uid != name.uid) return base::Error{"shared memory " + name.text() + " does not belong to the user in its name"};
   const auto size = static_cast<std::size_t>(status.st_size);
   if (size < sizeof(Header)) return base::Error{"shared memory " + name.text() + " is shorter than a header"};
-  void* base = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, file.get(), 0);
-  if (base == MAP_FAILED) return base::Error{"shared memory " + name.text() + " can't be mapped: " + reason()};
+  std::shared_ptr<void> base = map_file(file.get(), size);
+  if (!base) return base::Error{"shared memory " + name.text() + " can't be mapped: " + reason()};
   Segment segment;
-  segment.base_ = base;
-  segment.size_ = size;
+  segment.base_ = std::move(base);
   segment.inode_ = status.st_ino;
   segment.name_ = name;
-  std::memcpy(&segment.facts_, base, offsetof(Header, state));
+  std::memcpy(&segment.facts_, segment.base_.get(), offsetof(Header, state));
   if (const std::string problem = check_header(segment.facts_, name, size); !problem.empty()) {
     return base::Error{"shared memory " + name.text() + " " + problem};
   }
   return segment;
 }
 
-Segment::Segment(Segment&& other) noexcept
-    : base_(std::exchange(other.base_, nullptr)),
-      size_(other.size_),
-      inode_(other.inode_),
-      name_(std::move(other.name_)),
-      facts_(other.facts_) {}
-
-Segment& Segment::operator=(Segment&& other) noexcept {
-  if (this == &other) return *this;
-  unmap();
-  base_ = std::exchange(other.base_, nullptr);
-  size_ = other.size_;
-  inode_ = other.inode_;
-  name_ = std::move(other.name_);
-  facts_ = other.facts_;
-  return *this;
-}
-
-Segment::~Segment() { unmap(); }
-
-void Segment::unmap() {
-  if (base_ != nullptr) ::munmap(base_, size_);
-  base_ = nullptr;
-}
-
 std::byte* Segment::at(AreaIndex index, std::size_t element) const {
   const Area& place = area(index);
-  return static_cast<std::byte*>(base_) + place.offset + element * place.stride;
+  return static_cast<std::byte*>(base_.get()) + place.offset + element * place.stride;
 }
 
 std::span<const std::byte> Segment::info() const {
@@ -343,7 +340,7 @@ std::span<const std::byte> Segment::info() const {
 bool Segment::is_current() const { return inode_ != 0 && inode_of_path(path_of(name_)) == inode_; }
 
 void Segment::close() {
-  if (base_ == nullptr) return;
+  if (!base_) return;
   tell_readers(header());
   if (is_current()) ::unlink(path_of(name_).c_str());
 }

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -59,12 +60,11 @@ class Segment {
   static base::Result<Segment> open(const SegmentName& name);
 
   Segment() = default;
-  Segment(Segment&& other) noexcept;
-  Segment& operator=(Segment&& other) noexcept;
-  ~Segment();
+  Segment(Segment&&) = default;
+  Segment& operator=(Segment&&) = default;
 
   bool is_open() const { return base_ != nullptr; }
-  Header& header() const { return *static_cast<Header*>(base_); }
+  Header& header() const { return *static_cast<Header*>(base_.get()); }
   const SegmentName& name() const { return name_; }
   // What the header said at the time of opening: private, so that nobody can change it under us.
   const Header& facts() const { return facts_; }
@@ -83,9 +83,8 @@ class Segment {
   void close();
 
  private:
-  void unmap();
-  void* base_ = nullptr;
-  std::size_t size_ = 0;
+  // One mapping per process and file, shared by all segments that show it: threads that talk through it use the same addresses.
+  std::shared_ptr<void> base_;
   std::uint64_t inode_ = 0;
   SegmentName name_;
   Header facts_{};

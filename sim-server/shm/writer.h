@@ -120,7 +120,8 @@ class Server {
   static base::Result<std::unique_ptr<Server>> start(const ServerOptions& options);
   ~Server();  // writers must be gone by then
 
-  // The name must be free among this server's ifaces of that type.
+  // The name must be free among this server's ifaces of that type. Make the simulation iface first: of several servers that start at the
+  // same time with the same id, the one that gets it is the server.
   base::Result<std::unique_ptr<IfaceWriter>> create(const IfaceSpec& spec);
 
   // Renews heartbeats and takes leases of dead clients back. Cheap when called often: does its work at most ten times a second, or at once

@@ -1,5 +1,6 @@
 #include "shm/lockstep.h"
 
+#include <gtest/gtest.h>
 #include <mutex>
 #include <thread>
 

@@ -1,7 +1,6 @@
 // What the tests of shared memory share: server ids that no other test process uses, made-up infos, helper processes.
 #pragma once
 
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
