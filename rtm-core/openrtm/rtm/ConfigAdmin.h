@@ -54,9 +54,9 @@ class ConfigAdmin {
   bool isExist(const char* param_name) const;
   bool isChanged() const;
   void changedParam(const char*, const char*) {}
-  const char* getActiveId() const;
+  std::string getActiveId() const;
   bool haveConfig(const char* config_id) const;
-  // False from a change of the active set until it is activated again.
+  // False from a change of any set until one is activated.
   bool isActive() const;
   std::vector<std::string> getParameterNames() const;
 
@@ -83,7 +83,7 @@ class ConfigAdmin {
 
  private:
   bool bind(const char* name, const char* default_value, std::function<bool(const char*)> assign);
-  void apply(const std::string& set, const char* parameter, bool all);
+  void notify(const std::string& set, const std::vector<std::string>& parameters);
 
   std::unique_ptr<rt::Configuration> configuration_;
   ConfigurationListeners listeners_;

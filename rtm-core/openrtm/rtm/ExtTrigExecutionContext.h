@@ -28,12 +28,18 @@ class ExtTrigExecutionContext : public ExecutionContextServant<POA_OpenRTM::ExtT
   int svc() override;
   int close(unsigned long flags) override;
 
+  // Both bases have operations of these names; components call the context's.
+  RTC::ReturnCode_t start() override { return ExecutionContextBase::start(); }
+  RTC::ReturnCode_t stop() override { return ExecutionContextBase::stop(); }
+
  protected:
   RTC::ReturnCode_t onStarted() override;
   RTC::ReturnCode_t onStopping() override;
   void onWakeUp() override;
 
  private:
+  class Steps;
+  std::unique_ptr<Steps> steps_;
   std::unique_ptr<rt::TriggeredWorker> worker_;
 };
 

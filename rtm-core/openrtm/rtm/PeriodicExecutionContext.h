@@ -40,6 +40,8 @@ class PeriodicExecutionContext : public ExecutionContextServant<POA_RTC::Executi
   bool threadRunning() const;
 
  private:
+  class Steps;
+  std::unique_ptr<Steps> steps_;
   std::unique_ptr<rt::PeriodicWorker> worker_;
   std::vector<unsigned> processors_;
   int priority_ = 0;

@@ -1,0 +1,78 @@
+#include "corba/remote_participant.h"
+
+#include "base/log.h"
+#include "corba/orb.h"
+#include "corba/return_code.h"
+#include "rtm/idl/SDOPackageStub.h"
+
+namespace corba {
+
+namespace {
+
+std::string name_of(RTC::LightweightRTObject_ptr component) {
+  try {
+    SDOPackage::SDO_var sdo = SDOPackage::SDO::_narrow(component);
+    if (!CORBA::is_nil(sdo)) {
+      set_call_timeout(sdo, RemoteParticipant::call_timeout);
+      CORBA::String_var id = sdo->get_sdo_id();
+      return id.in();
+    }
+  } catch (const CORBA::Exception&) {
+    return "a component that does not tell its name";
+  }
+  return "a component without a name";
+}
+
+}  // namespace
+
+RTC::LightweightRTObject_ptr RemoteParticipant::impatient(RTC::LightweightRTObject_ptr component) {
+  if (CORBA::is_nil(component)) return RTC::LightweightRTObject::_nil();
+  int argc = 0;
+  CORBA::ORB_var orb = CORBA::ORB_init(argc, nullptr);
+  CORBA::String_var text = orb->object_to_string(component);
+  CORBA::Object_var object = orb->string_to_object(text);
+  RTC::LightweightRTObject_var own = RTC::LightweightRTObject::_unchecked_narrow(object);
+  set_call_timeout(own, call_timeout);
+  return own._retn();
+}
+
+RemoteParticipant::RemoteParticipant(RTC::LightweightRTObject_ptr component, RTC::ExecutionContextHandle_t handle)
+    : component_(RTC::LightweightRTObject::_duplicate(component)), handle_(handle), name_(name_of(component)) {
+  try {
+    data_flow_ = RTC::DataFlowComponentAction::_narrow(component);
+    if (!CORBA::is_nil(data_flow_)) set_call_timeout(data_flow_, call_timeout);
+  } catch (const CORBA::Exception&) {
+    *lost_.lock() = true;
+  }
+}
+
+rt::ReturnCode RemoteParticipant::call(rt::Action action) {
+  if (*lost_.lock() && action != rt::Action::reset && action != rt::Action::startup) return rt::ReturnCode::error;
+  try {
+    const auto code = from_wire(forward(action));
+    *lost_.lock() = false;
+    return code;
+  } catch (const CORBA::Exception& exception) {
+    *lost_.lock() = true;
+    base::log(base::Level::error, name_, "component of another process does not answer {}: {}", to_text(action), to_text(exception));
+  }
+  return rt::ReturnCode::error;
+}
+
+RTC::ReturnCode_t RemoteParticipant::forward(rt::Action action) {
+  switch (action) {
+    case rt::Action::startup: return component_->on_startup(handle_);
+    case rt::Action::shutdown: return component_->on_shutdown(handle_);
+    case rt::Action::activated: return component_->on_activated(handle_);
+    case rt::Action::deactivated: return component_->on_deactivated(handle_);
+    case rt::Action::aborting: return component_->on_aborting(handle_);
+    case rt::Action::error: return component_->on_error(handle_);
+    case rt::Action::reset: return component_->on_reset(handle_);
+    case rt::Action::execute: return CORBA::is_nil(data_flow_) ? RTC::RTC_OK : data_flow_->on_execute(handle_);
+    case rt::Action::state_update: return CORBA::is_nil(data_flow_) ? RTC::RTC_OK : data_flow_->on_state_update(handle_);
+    case rt::Action::rate_changed: return CORBA::is_nil(data_flow_) ? RTC::RTC_OK : data_flow_->on_rate_changed(handle_);
+  }
+  return RTC::RTC_ERROR;
+}
+
+}  // namespace corba

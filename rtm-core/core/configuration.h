@@ -1,0 +1,99 @@
+// The configuration sets of a component: named lists of parameters, one of them active, and the variables that take the values of the
+// active one. Any thread; variables are assigned without a lock on the thread that calls bind() or update().
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/guarded.h"
+
+namespace rt {
+
+class Configuration {
+ public:
+  // In the order in which they were set.
+  using Values = std::vector<std::pair<std::string, std::string>>;
+  struct Set {
+    std::string id;
+    Values values;
+  };
+  // False when the text cannot be converted; the variable stays as it was.
+  using Assign = std::function<bool(const char* text)>;
+  // What update() has written.
+  struct Update {
+    std::string set;
+    std::vector<std::string> parameters;
+  };
+
+  // There is always a set "default", and it is the first active one.
+  Configuration();
+
+  // The variable takes the active set's value at once, the default when there is none or it cannot be converted. False when the name is
+  // taken.
+  bool bind(const std::string& name, const std::string& default_value, Assign assign);
+  bool unbind(std::string_view name);
+  bool is_bound(std::string_view name) const;
+  std::vector<std::string> bound_names() const;
+
+  // If something has changed since the last time and a set is active, assigns the parameters whose text has changed. Variables that the set
+  // does not name keep their values.
+  std::optional<Update> update();
+  // Assigns all parameters of that set, or the named one, whatever is active. Nothing when there is no such set or parameter.
+  std::optional<Update> update_from(const std::string& set, const std::optional<std::string>& parameter = std::nullopt);
+
+  std::string active_id() const;
+  // False from a change of any set until activate().
+  bool is_active() const;
+  bool has_changed() const;
+  bool has(std::string_view id) const;
+  std::vector<Set> sets() const;
+  std::optional<Set> set(std::string_view id) const;
+
+  // Merges, or makes the set; changes neither which set is active nor whether.
+  void load(const Set& set);
+  // Merges. False when there is no such set.
+  bool set_values(const Set& set);
+  // False when there is one of that id, or the id is empty.
+  bool add(const Set& set);
+  // Only sets that add() made and that are not active.
+  bool remove(std::string_view id);
+  // False for unknown sets and those whose id starts with an underscore: they describe the others.
+  bool activate(std::string_view id);
+
+ private:
+  struct Parameter {
+    std::string name;
+    std::string default_value;
+    std::shared_ptr<const Assign> assign;
+    std::optional<std::string> assigned{};  // the text that the variable was assigned last
+  };
+  struct Data {
+    std::vector<Set> sets{};
+    std::vector<std::string> added{};
+    std::vector<Parameter> parameters{};
+    std::string active = "default";
+    bool is_active = true;
+    bool changed = true;
+  };
+  struct Assignment {
+    std::string name;
+    std::shared_ptr<const Assign> assign;
+    std::string value;
+    std::string default_value;
+  };
+
+  static Set* find(Data& data, std::string_view id);
+  static const Set* find(const Data& data, std::string_view id);
+  static void merge(Set& to, const Set& from);
+  static std::vector<Assignment> assignments(Data& data, const Set& set, const std::optional<std::string>& only, bool changed_only);
+  static std::optional<Update> run(const std::string& set, const std::vector<Assignment>& assignments);
+
+  base::Guarded<Data, base::Rank::component> shared_;
+};
+
+}  // namespace rt

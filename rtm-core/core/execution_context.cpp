@@ -1,0 +1,270 @@
+#include "core/execution_context.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+
+#include "base/log.h"
+
+namespace rt {
+
+using namespace std::chrono_literals;
+
+ExecutionContext::ExecutionContext(std::string name, double rate) : name_(std::move(name)) { shared_.lock()->rate = rate; }
+
+bool ExecutionContext::is_running() const { return shared_.lock()->running; }
+
+double ExecutionContext::rate() const { return shared_.lock()->rate; }
+
+std::chrono::nanoseconds ExecutionContext::period() const { return std::chrono::nanoseconds(std::llround(1e9 / rate())); }
+
+ReturnCode ExecutionContext::call(const Participant& participant, Action action) const {
+  try {
+    return const_cast<Participant&>(participant).call(action);
+  } catch (const std::exception& e) {
+    base::log(base::Level::error, name_, "{} of {} threw: {}", to_text(action), participant.name(), e.what());
+  } catch (...) {
+    base::log(base::Level::error, name_, "{} of {} threw something that is no std::exception", to_text(action), participant.name());
+  }
+  return ReturnCode::error;
+}
+
+void ExecutionContext::call_all(Action action) {
+  std::vector<std::shared_ptr<Participant>> participants;
+  {
+    auto data = shared_.lock();
+    for (const auto& member : data->members) participants.push_back(member->participant);
+  }
+  for (const auto& participant : participants) call(*participant, action);
+}
+
+ReturnCode ExecutionContext::start() {
+  {
+    auto data = shared_.lock();
+    if (data->running) return ReturnCode::precondition_not_met;
+    data->running = true;
+  }
+  call_all(Action::startup);
+  if (wake_) wake_();
+  return ReturnCode::ok;
+}
+
+ReturnCode ExecutionContext::stop() {
+  {
+    auto data = shared_.lock();
+    if (!data->running) return ReturnCode::precondition_not_met;
+    data->running = false;
+  }
+  wait_until_quiet(60s);
+  call_all(Action::shutdown);
+  return ReturnCode::ok;
+}
+
+bool ExecutionContext::wait_until_quiet(std::chrono::nanoseconds timeout) {
+  auto data = shared_.lock();
+  return data.wait_for(changed_, timeout, [&] { return data->called == 0 || data->caller == std::this_thread::get_id(); });
+}
+
+ReturnCode ExecutionContext::set_rate(double rate) {
+  if (!(rate >= min_rate && rate <= max_rate)) return ReturnCode::bad_parameter;  // also not a number
+  shared_.lock()->rate = rate;
+  call_all(Action::rate_changed);
+  if (wake_) wake_();
+  return ReturnCode::ok;
+}
+
+MemberId ExecutionContext::add(std::shared_ptr<Participant> participant) {
+  auto data = shared_.lock();
+  const MemberId id = ++data->last_id;
+  data->members.push_back(std::make_shared<Member>(Member{.id = id, .participant = std::move(participant)}));
+  ++data->version;
+  return id;
+}
+
+bool ExecutionContext::remove(MemberId id, std::chrono::nanoseconds timeout) {
+  std::shared_ptr<Member> removed;  // a participant is destroyed without the lock
+  auto data = shared_.lock();
+  const auto it = std::find_if(data->members.begin(), data->members.end(), [&](const auto& member) { return member->id == id; });
+  if (it == data->members.end()) return false;
+  removed = *it;
+  removed->removed = true;
+  removed->pending.reset();
+  data->members.erase(it);
+  ++data->version;
+  changed_.notify_all();
+  return data.wait_for(changed_, timeout, [&] { return data->called != id || data->caller == std::this_thread::get_id(); });
+}
+
+ExecutionContext::Member* ExecutionContext::find(Data& data, MemberId id) {
+  return const_cast<Member*>(find(static_cast<const Data&>(data), id));
+}
+
+const ExecutionContext::Member* ExecutionContext::find(const Data& data, MemberId id) {
+  for (const auto& member : data.members)
+    if (member->id == id) return member.get();
+  return nullptr;
+}
+
+State ExecutionContext::next(const Member& member) {
+  const Transition* transition = member.pending ? find_transition(member.state, *member.pending) : nullptr;
+  return transition ? transition->to : member.state;
+}
+
+std::vector<ExecutionContext::MemberState> ExecutionContext::members() const {
+  std::vector<MemberState> states;
+  const auto data = shared_.lock();
+  for (const auto& member : data->members) states.push_back({member->id, member->state, next(*member)});
+  return states;
+}
+
+State ExecutionContext::state(MemberId id) const {
+  const auto data = shared_.lock();
+  const Member* member = find(*data, id);
+  return member ? member->state : State::created;
+}
+
+State ExecutionContext::next_state(MemberId id) const {
+  const auto data = shared_.lock();
+  const Member* member = find(*data, id);
+  return member ? next(*member) : State::created;
+}
+
+bool ExecutionContext::is_next(State state) const {
+  const auto data = shared_.lock();
+  return std::all_of(data->members.begin(), data->members.end(), [&](const auto& member) { return next(*member) == state; });
+}
+
+bool ExecutionContext::is_idle() const {
+  const auto data = shared_.lock();
+  if (!data->running) return true;
+  return std::all_of(data->members.begin(), data->members.end(),
+                     [](const auto& member) { return member->state == State::inactive && !member->pending; });
+}
+
+ReturnCode ExecutionContext::request(MemberId id, Event event) {
+  {
+    auto data = shared_.lock();
+    Member* member = find(*data, id);
+    if (!member) return ReturnCode::bad_parameter;
+    if (!find_transition(member->state, event)) return ReturnCode::precondition_not_met;
+    if (member->pending && *member->pending != event) return ReturnCode::precondition_not_met;
+    member->pending = event;
+  }
+  if (wake_) wake_();
+  return ReturnCode::ok;
+}
+
+ReturnCode ExecutionContext::wait(MemberId id, Event event, std::chrono::nanoseconds timeout) {
+  if (is_stepping_thread()) return ReturnCode::ok;
+  const Transition* wanted = nullptr;
+  for (const Transition& transition : transitions)
+    if (transition.event == event) wanted = &transition;
+  auto data = shared_.lock();
+  const bool settled = data.wait_for(changed_, timeout, [&] {
+    const Member* member = find(*data, id);
+    return !member || !member->pending;
+  });
+  const Member* member = find(*data, id);
+  if (!member) return ReturnCode::bad_parameter;
+  if (!settled) return member->pending == Event::fail ? ReturnCode::precondition_not_met : ReturnCode::error;
+  return member->state == wanted->to ? ReturnCode::ok : ReturnCode::precondition_not_met;
+}
+
+bool ExecutionContext::is_stepping_thread() const {
+  const auto data = shared_.lock();
+  return data->called != 0 && data->caller == std::this_thread::get_id();
+}
+
+std::optional<ReturnCode> ExecutionContext::call_in_phase(Member& member, Action action) {
+  {
+    auto data = shared_.lock();
+    if (member.removed || !data->running) return std::nullopt;
+    data->called = member.id;
+    data->caller = std::this_thread::get_id();
+  }
+  const ReturnCode code = call(*member.participant, action);
+  {
+    auto data = shared_.lock();
+    data->called = 0;
+  }
+  changed_.notify_all();  // free when nobody waits
+  return code;
+}
+
+void ExecutionContext::refresh() {
+  std::vector<std::shared_ptr<Member>> old;  // what has left is destroyed without the lock
+  auto data = shared_.lock();
+  if (stepping_version_ == data->version) return;
+  old = std::exchange(stepping_, data->members);
+  stepping_version_ = data->version;
+}
+
+void ExecutionContext::transit() {
+  cycle_start_ = std::chrono::steady_clock::now();
+  refresh();
+  for (const auto& member : stepping_) transit(*member);
+}
+
+void ExecutionContext::transit(Member& member) {
+  const Transition* transition = nullptr;
+  {
+    auto data = shared_.lock();
+    if (member.removed || !data->running || !member.pending) return;
+    transition = find_transition(member.state, *member.pending);
+    assert(transition && "only possible events are pending");
+  }
+  State to = transition->to;
+  if (transition->leave) {
+    const auto code = call_in_phase(member, *transition->leave);
+    if (!code) return;
+    if (*code != ReturnCode::ok) to = transition->if_leave_fails;
+  }
+  bool failed = false;
+  if (const auto enter = actions_of(to).enter; enter && to != transition->from) {
+    const auto code = call_in_phase(member, *enter);
+    if (!code && !transition->leave) return;
+    failed = code && *code != ReturnCode::ok;
+  }
+  {
+    auto data = shared_.lock();
+    member.state = to;
+    member.pending.reset();
+    if (failed && to == State::active) member.pending = Event::fail;
+  }
+  changed_.notify_all();
+}
+
+template <class Select>
+void ExecutionContext::run_phase(Select select) {
+  for (const auto& member : stepping_) {
+    std::optional<Action> action;
+    {
+      auto data = shared_.lock();
+      if (!member->removed && data->running && !member->pending) action = select(actions_of(member->state));
+    }
+    if (!action || call_in_phase(*member, *action).value_or(ReturnCode::ok) == ReturnCode::ok) continue;
+    auto data = shared_.lock();
+    if (!member->removed && member->state == State::active) member->pending = Event::fail;
+  }
+}
+
+void ExecutionContext::execute() {
+  run_phase([](const StateActions& actions) { return actions.execute; });
+}
+
+void ExecutionContext::update() {
+  run_phase([](const StateActions& actions) { return actions.state_update; });
+  const auto took = std::chrono::steady_clock::now() - cycle_start_;
+  auto data = shared_.lock();
+  if (!data->running) return;
+  ContextStatistics& statistics = data->statistics;
+  ++statistics.cycles;
+  statistics.total_execution += took;
+  statistics.max_execution = std::max<std::chrono::nanoseconds>(statistics.max_execution, took);
+}
+
+ContextStatistics ExecutionContext::statistics() const { return shared_.lock()->statistics; }
+
+void ExecutionContext::count_missed(std::uint64_t cycles) { shared_.lock()->statistics.missed_cycles += cycles; }
+
+}  // namespace rt

@@ -1,0 +1,152 @@
+// An execution context without a thread: who takes part, in which state, what is asked for, and the three phases of a cycle.
+// step() and the phases belong to one thread at a time, the stepping thread; everything else may be called from any thread. No lock is held
+// while a participant is called.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/guarded.h"
+#include "core/lifecycle.h"
+#include "core/return_code.h"
+
+namespace rt {
+
+// Never used again after a member has left; 0 is nobody.
+using MemberId = std::uint64_t;
+
+// What a context calls.
+class Participant {
+ public:
+  virtual ~Participant() = default;
+  // For messages.
+  virtual std::string name() const = 0;
+  // Whatever it throws counts as an error and is logged.
+  virtual ReturnCode call(Action action) = 0;
+};
+
+struct ContextStatistics {
+  std::uint64_t cycles = 0;
+  std::uint64_t missed_cycles = 0;
+  std::chrono::nanoseconds total_execution{0};
+  std::chrono::nanoseconds max_execution{0};
+  std::chrono::nanoseconds mean_execution() const {
+    return cycles == 0 ? std::chrono::nanoseconds(0) : total_execution / static_cast<std::int64_t>(cycles);
+  }
+};
+
+class ExecutionContext {
+ public:
+  struct MemberState {
+    MemberId id;
+    State state;
+    State next;  // where the pending request leads, else the state
+  };
+
+  // Rates outside are refused [Hz].
+  static constexpr double min_rate = 1e-6;
+  static constexpr double max_rate = 1e6;
+
+  // The name is for messages.
+  explicit ExecutionContext(std::string name = "execution context", double rate = 1000.0);
+
+  bool is_running() const;
+  // Call every member's startup (shutdown) action. Fail when it runs (is stopped) already. After stop() has returned no phase calls
+  // anybody; it waits for a call that runs on another thread.
+  ReturnCode start();
+  ReturnCode stop();
+
+  double rate() const;
+  std::chrono::nanoseconds period() const;
+  // Takes effect from the next cycle on; calls every member's rate_changed.
+  ReturnCode set_rate(double rate);
+
+  // A new member is inactive and takes part from the next cycle on.
+  MemberId add(std::shared_ptr<Participant> participant);
+  // Waits until the member is not being called on another thread. False when there is no such member or the time is over; even then it is
+  // not called again.
+  bool remove(MemberId id, std::chrono::nanoseconds timeout = std::chrono::seconds(60));
+  std::vector<MemberState> members() const;
+  // State::created for somebody who is no member.
+  State state(MemberId id) const;
+  State next_state(MemberId id) const;
+  bool is_next(State state) const;  // all members will be in that state
+
+  // Asks for a transition, which the next first phase makes: bad_parameter when there is no such member, precondition_not_met when the
+  // state does not allow it or something else is pending.
+  ReturnCode request(MemberId id, Event event);
+  // Waits for the end of a request: precondition_not_met when it ended in another state than asked for, error when the time is over.
+  // On the stepping thread it returns ok at once.
+  ReturnCode wait(MemberId id, Event event, std::chrono::nanoseconds timeout);
+  // Waits until nobody is called on another thread; false when the time is over.
+  bool wait_until_quiet(std::chrono::nanoseconds timeout);
+
+  // Called after every request and change of rate, so that a worker wakes up. Set it before anybody else knows the context.
+  void on_wake(std::function<void()> wake) { wake_ = std::move(wake); }
+  // Nobody is active, in error or about to change: there is nothing to step.
+  bool is_idle() const;
+
+  // The phases: transitions; execute (error); state update. They do nothing while the context is stopped.
+  void transit();
+  void execute();
+  void update();
+  void step() {
+    transit();
+    execute();
+    update();
+  }
+  // True inside a call to a participant on this thread.
+  bool is_stepping_thread() const;
+
+  ContextStatistics statistics() const;
+  void count_missed(std::uint64_t cycles);
+
+ private:
+  struct Member {
+    MemberId id;
+    std::shared_ptr<Participant> participant;
+    State state = State::inactive;
+    std::optional<Event> pending{};
+    bool removed = false;
+  };
+  struct Data {
+    bool running = false;
+    double rate = 1000.0;
+    MemberId last_id = 0;
+    std::vector<std::shared_ptr<Member>> members{};
+    std::uint64_t version = 0;  // of members
+    MemberId called = 0;        // the member that the stepping thread calls now
+    std::thread::id caller{};
+    ContextStatistics statistics{};
+  };
+  using Shared = base::Guarded<Data, base::Rank::context>;
+
+  static Member* find(Data& data, MemberId id);
+  static const Member* find(const Data& data, MemberId id);
+  static State next(const Member& member);
+  ReturnCode call(const Participant& participant, Action action) const;
+  void call_all(Action action);
+  // Nothing when the member has left or the context is stopped: it is not called then.
+  std::optional<ReturnCode> call_in_phase(Member& member, Action action);
+  void refresh();
+  void transit(Member& member);
+  template <class Select>
+  void run_phase(Select select);
+
+  const std::string name_;
+  std::function<void()> wake_;
+  Shared shared_;
+  std::condition_variable changed_;
+  // The stepping thread's own.
+  std::vector<std::shared_ptr<Member>> stepping_;
+  std::uint64_t stepping_version_ = 0;
+  std::chrono::steady_clock::time_point cycle_start_{};
+};
+
+}  // namespace rt

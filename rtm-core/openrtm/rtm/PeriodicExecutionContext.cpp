@@ -1,0 +1,104 @@
+#include <rtm/ECFactory.h>
+#include <rtm/PeriodicExecutionContext.h>
+
+#include <pthread.h>
+
+#include <thread>
+
+#include "base/text.h"
+#include "core/workers.h"
+
+namespace RTC {
+
+using namespace std::chrono_literals;
+
+class PeriodicExecutionContext::Steps final : public rt::Steps {
+ public:
+  explicit Steps(PeriodicExecutionContext& context) : context_(context) {}
+  void transit() override { context_.invokeWorkerPreDo(); }
+  void execute_and_update() override {
+    context_.invokeWorkerDo();
+    context_.invokeWorkerPostDo();
+  }
+
+ private:
+  PeriodicExecutionContext& context_;
+};
+
+PeriodicExecutionContext::PeriodicExecutionContext(const std::string& name)
+    : ExecutionContextServant(name), steps_(std::make_unique<Steps>(*this)), worker_(std::make_unique<rt::PeriodicWorker>(context(), *steps_)) {
+  setObjRef(RTC::ExecutionContextService_var(_this()));
+  setKind(RTC::PERIODIC);
+}
+
+PeriodicExecutionContext::~PeriodicExecutionContext() {
+  worker_->stop();
+  coil::Task::wait();
+}
+
+void PeriodicExecutionContext::init(coil::Properties& props) {
+  ExecutionContextBase::init(props);
+  processors_.clear();
+  for (const std::string& part : base::split_list(props.getProperty("cpu_affinity"))) {
+    const auto number = base::parse_integer(part);
+    if (number && *number >= 0 && *number < CPU_SETSIZE)
+      processors_.push_back(static_cast<unsigned>(*number));
+    else
+      RTC_WARN(("cpu_affinity must be a list of processor numbers, got %s", base::in_quotes(part).c_str()));
+  }
+  priority_ = 0;
+  if (const auto number = base::parse_integer(props.getProperty("priority")); number && *number >= 1 && *number <= 99)
+    priority_ = static_cast<int>(*number);
+}
+
+RTC::ReturnCode_t PeriodicExecutionContext::onStarted() {
+  coil::Task::wait();
+  worker_->reset();
+  open(nullptr);
+  return RTC::RTC_OK;
+}
+
+RTC::ReturnCode_t PeriodicExecutionContext::onStopping() {
+  worker_->stop();
+  if (!waitForQuiet(10s)) {
+    RTC_ERROR(("a component has not returned from its callback for 10 s; the context goes on when it does"));
+    worker_->reset();
+    return RTC::RTC_ERROR;
+  }
+  coil::Task::wait();
+  return RTC::RTC_OK;
+}
+
+void PeriodicExecutionContext::onWakeUp() { worker_->wake(); }
+
+bool PeriodicExecutionContext::threadRunning() const { return !worker_->is_stopping(); }
+
+int PeriodicExecutionContext::open(void*) {
+  coil::Task::activate();
+  return 0;
+}
+
+int PeriodicExecutionContext::svc() {
+  if (!processors_.empty()) {
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    for (const unsigned processor : processors_) CPU_SET(processor, &set);
+    if (pthread_setaffinity_np(pthread_self(), sizeof set, &set) != 0) RTC_WARN(("cpu_affinity names no processor of this machine"));
+  }
+  if (priority_ > 0) {
+    sched_param parameters{};
+    parameters.sched_priority = priority_;
+    if (pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) != 0) RTC_WARN(("no right to the real-time priority %d", priority_));
+  }
+  worker_->run();
+  return 0;
+}
+
+int PeriodicExecutionContext::close(unsigned long) { return 0; }
+
+}  // namespace RTC
+
+extern "C" void PeriodicExecutionContextInit(RTC::Manager*) {
+  RTC::ExecutionContextFactory::instance().addFactory("PeriodicExecutionContext", RTC::ECCreate<RTC::PeriodicExecutionContext>,
+                                                      RTC::ECDelete<RTC::PeriodicExecutionContext>);
+}
