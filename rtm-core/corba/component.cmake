@@ -1,2 +1,2 @@
-# Components of other processes.
-target_sources(rt_corba PRIVATE remote_participant.cpp)
+# Components of other processes, messages to them.
+target_sources(rt_corba PRIVATE courier.cpp remote_participant.cpp)

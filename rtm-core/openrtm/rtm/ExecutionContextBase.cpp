@@ -409,6 +409,28 @@ coil::Properties ExecutionContextBase::getProperties() const { return impl_->sha
 std::string ExecutionContextBase::getName() const { return getProperties().getProperty("name"); }
 std::string ExecutionContextBase::getTypeName() const { return getProperties().getProperty("type"); }
 
+void ExecutionContextBase::calmComponent(RTC::LightweightRTObject_ptr comp, std::chrono::nanoseconds timeout) {
+  const auto member = impl_->find(comp);
+  if (!member || !isRunning()) return;
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
+  const auto left = [&] { return deadline - std::chrono::steady_clock::now(); };
+  RTC_impl::RTObjectStateMachine machine(member->reference, member->handle, impl_->context, member->id, member->owner);
+  // A transition that is under way ends first; a deactivation that fails leads to the error state, and a reset out of it.
+  for (int attempt = 0; attempt < 3 && left() > 0s; ++attempt) {
+    const rt::State state = impl_->context.state(member->id);
+    const rt::State next = impl_->context.next_state(member->id);
+    if (state == next && state != rt::State::active && state != rt::State::error) return;
+    const rt::Event event = state == rt::State::error ? rt::Event::reset : rt::Event::deactivate;
+    if (state == next && impl_->context.request(member->id, event) != rt::ReturnCode::ok) return;
+    if (event == rt::Event::reset)
+      onWaitingReset(&machine, 0);
+    else
+      onWaitingDeactivated(&machine, 0);
+    const rt::ReturnCode code = impl_->context.wait(member->id, event, left());
+    if (state == rt::State::error && code != rt::ReturnCode::ok) return;
+  }
+}
+
 bool ExecutionContextBase::waitForQuiet(std::chrono::nanoseconds timeout) { return impl_->context.wait_until_quiet(timeout); }
 
 const base::Clock& ExecutionContextBase::contextClock() const { return system_clock(); }

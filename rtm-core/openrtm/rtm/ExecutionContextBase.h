@@ -81,6 +81,9 @@ class ExecutionContextBase {
   std::string getName() const;
   std::string getTypeName() const;
 
+  // Brings a member to rest before it leaves: deactivates it when it is active, resets it when it is in error; waits for that whatever
+  // sync_transition says.
+  void calmComponent(RTC::LightweightRTObject_ptr comp, std::chrono::nanoseconds timeout);
   // Waits until no callback of a member runs on another thread; false on time-out.
   bool waitForQuiet(std::chrono::nanoseconds timeout);
 

@@ -340,16 +340,23 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
     std::string instance_name, type_name, description, version, vendor, category;
   };
   struct Impl;
-  enum class Callback : int;
+  struct Port;
 
   void prepareBinding();
-  void takeNamesFromProperties();
+  void takeNames();
+  coil::Properties contextOptions(const std::string& type, const std::string& name) const;
   ReturnCode_t createContexts();
+  bool addPort(Port port);
+  bool removePort(const Port& port);
+  std::string portNameOf(const std::string& name) const;
+  void activatePorts(UniqueId exec_handle);
+  void deactivatePorts(UniqueId exec_handle);
+  void leaveOrganizations();
+  void leaveContexts();
   ReturnCode_t exitNow();
+  // Calls the author's function; what it throws is logged and RTC_ERROR.
   template <class Function>
   ReturnCode_t callUser(const char* name, Function function);
-  template <class Function>
-  ReturnCode_t action(Callback callback, UniqueId handle, Function function);
 
   Names profile_;
   std::unique_ptr<Impl> impl_;

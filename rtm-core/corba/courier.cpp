@@ -1,0 +1,97 @@
+#include "corba/courier.h"
+
+#include <omniORB4/CORBA.h>
+
+#include <algorithm>
+
+#include "base/log.h"
+#include "corba/orb.h"
+
+namespace corba {
+
+Courier::Courier(std::string name) : name_(std::move(name)), thread_([this] { run(); }) {}
+
+Courier::~Courier() {
+  stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+void Courier::send(Message message) {
+  {
+    auto data = shared_.lock();
+    if (data->stopping || data->gave_up || data->waiting.size() >= most_waiting) return;
+    data->waiting.push_back(std::move(message));
+  }
+  condition_.notify_one();
+}
+
+void Courier::repeat(std::vector<Regular> regulars) {
+  const Time now = std::chrono::steady_clock::now();
+  {
+    auto data = shared_.lock();
+    data->regulars.clear();
+    for (Regular& regular : regulars) data->regulars.push_back({regular, now + regular.interval});
+  }
+  condition_.notify_one();
+}
+
+void Courier::stop() {
+  std::deque<Message> dropped;  // destroyed without the lock
+  {
+    auto data = shared_.lock();
+    data->stopping = true;
+    dropped.swap(data->waiting);
+  }
+  condition_.notify_one();
+}
+
+void Courier::run() {
+  while (true) {
+    Message message;
+    {
+      auto data = shared_.lock();
+      while (!message) {
+        if (data->stopping || data->gave_up) return;
+        if (!data->waiting.empty()) {
+          message = std::move(data->waiting.front());
+          data->waiting.pop_front();
+          break;
+        }
+        const Time now = std::chrono::steady_clock::now();
+        Time wake = now + std::chrono::hours(24);
+        for (Due& due : data->regulars) {
+          if (due.next <= now) {
+            due.next = now + due.regular.interval;
+            message = due.regular.message;
+            break;
+          }
+          wake = std::min(wake, due.next);
+        }
+        if (!message) data.wait_until(condition_, wake, [&] { return data->stopping || !data->waiting.empty(); });
+      }
+    }
+    if (!carry(message)) return;
+  }
+}
+
+bool Courier::carry(const Message& message) {
+  std::string reason;
+  try {
+    message();
+    return true;
+  } catch (const CORBA::Exception& exception) {
+    reason = to_text(exception);
+  } catch (...) {
+    reason = "unknown exception";
+  }
+  std::deque<Message> dropped;
+  {
+    auto data = shared_.lock();
+    data->gave_up = true;
+    dropped.swap(data->waiting);
+  }
+  base::log(base::Level::warn, name_, "the peer does not answer and gets nothing any more: {}", reason);
+  return false;
+}
+
+}  // namespace corba

@@ -1,0 +1,60 @@
+// Carries messages to one peer on a thread of its own, in order, so that a peer that hangs costs nobody else anything; and does something at
+// regular intervals on the same thread. Any thread.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/guarded.h"
+
+namespace corba {
+
+class Courier {
+ public:
+  // Calls another process; may throw CORBA exceptions. After one the courier gives up: one log line, and nothing is carried any more.
+  using Message = std::function<void()>;
+  // More wait only for a peer that is slow for good; further ones are dropped.
+  static constexpr std::size_t most_waiting = 1000;
+
+  explicit Courier(std::string name);
+  ~Courier();
+  Courier(const Courier&) = delete;
+  Courier& operator=(const Courier&) = delete;
+
+  void send(Message message);
+  // Replaces what was there.
+  struct Regular {
+    std::chrono::nanoseconds interval;
+    Message message;
+  };
+  void repeat(std::vector<Regular> regulars);
+  // Nothing is carried after return, but for one message that may be on its way.
+  void stop();
+
+ private:
+  using Time = std::chrono::steady_clock::time_point;
+  struct Due {
+    Regular regular;
+    Time next;
+  };
+  struct Data {
+    bool stopping = false;
+    bool gave_up = false;
+    std::deque<Message> waiting{};
+    std::vector<Due> regulars{};
+  };
+  void run();
+  bool carry(const Message& message);
+
+  const std::string name_;
+  base::Guarded<Data, base::Rank::buffer> shared_;
+  std::condition_variable condition_;
+  std::thread thread_;
+};
+
+}  // namespace corba

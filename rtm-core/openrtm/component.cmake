@@ -1,0 +1,22 @@
+# Components, execution contexts, configuration, organizations, SDO services.
+target_sources(openrtm PRIVATE
+  rtm/ComponentObserverConsumer.cpp
+  rtm/ConfigAdmin.cpp
+  rtm/ECFactory.cpp
+  rtm/ExecutionContextBase.cpp
+  rtm/ExtTrigExecutionContext.cpp
+  rtm/ListenerNames.cpp
+  rtm/LocalComponent.cpp
+  rtm/LoggerConsumer.cpp
+  rtm/MultilayerCompositeEC.cpp
+  rtm/OpenHRPExecutionContext.cpp
+  rtm/PeriodicExecutionContext.cpp
+  rtm/RTObject.cpp
+  rtm/RTObjectContexts.cpp
+  rtm/RTObjectPorts.cpp
+  rtm/RTObjectSdo.cpp
+  rtm/RTObjectStateMachine.cpp
+  rtm/SdoConfiguration.cpp
+  rtm/SdoOrganization.cpp
+  rtm/SdoServiceAdmin.cpp
+  rtm/SimulatorExecutionContext.cpp)

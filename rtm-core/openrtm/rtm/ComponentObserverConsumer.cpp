@@ -1,0 +1,371 @@
+#include <rtm/ComponentObserverConsumer.h>
+#include <rtm/ConnectorListener.h>
+#include <rtm/InPortBase.h>
+#include <rtm/NVUtil.h>
+#include <rtm/OutPortBase.h>
+#include <rtm/RTObject.h>
+#include <rtm/idl/ComponentObserverSkel.h>
+#include <rtm/idl/FsmComponentObserverSkel.h>
+
+#include <map>
+#include <memory>
+#include <set>
+
+#include "base/guarded.h"
+#include "base/text.h"
+#include "corba/courier.h"
+#include "corba/orb.h"
+
+namespace RTC {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+// All kinds of both interfaces; the wire has other numbers for some.
+enum class Kind {
+  component_profile,
+  rtc_status,
+  ec_status,
+  port_profile,
+  configuration,
+  rtc_heartbeat,
+  ec_heartbeat,
+  fsm_profile,
+  fsm_status,
+  fsm_structure,
+  user_defined
+};
+
+constexpr std::pair<Kind, const char*> kind_names[] = {
+    {Kind::component_profile, "COMPONENT_PROFILE"},
+    {Kind::rtc_status, "RTC_STATUS"},
+    {Kind::ec_status, "EC_STATUS"},
+    {Kind::port_profile, "PORT_PROFILE"},
+    {Kind::configuration, "CONFIGURATION"},
+    {Kind::fsm_profile, "FSM_PROFILE"},
+    {Kind::fsm_status, "FSM_STATUS"},
+    {Kind::fsm_structure, "FSM_STRUCTURE"},
+    {Kind::user_defined, "USER_DEFINED"},
+};
+
+struct OldObserver {
+  using Interface = OpenRTM::ComponentObserver;
+  static constexpr const char* id = "IDL:OpenRTM/ComponentObserver:1.0";
+  static constexpr std::pair<const char*, Kind> heartbeats[] = {{"heartbeat", Kind::rtc_heartbeat}};
+  static bool to_wire(Kind kind, OpenRTM::StatusKind& wire) {
+    switch (kind) {
+      case Kind::component_profile: return wire = OpenRTM::COMPONENT_PROFILE, true;
+      case Kind::rtc_status: return wire = OpenRTM::RTC_STATUS, true;
+      case Kind::ec_status: return wire = OpenRTM::EC_STATUS, true;
+      case Kind::port_profile: return wire = OpenRTM::PORT_PROFILE, true;
+      case Kind::configuration: return wire = OpenRTM::CONFIGURATION, true;
+      case Kind::rtc_heartbeat: return wire = OpenRTM::HEARTBEAT, true;
+      default: return false;
+    }
+  }
+  using WireKind = OpenRTM::StatusKind;
+};
+
+struct NewObserver {
+  using Interface = RTC::ComponentObserver;
+  static constexpr const char* id = "IDL:omg.org/RTC/ComponentObserver:1.0";
+  static constexpr std::pair<const char*, Kind> heartbeats[] = {
+      {"heartbeat", Kind::rtc_heartbeat}, {"rtc_heartbeat", Kind::rtc_heartbeat}, {"ec_heartbeat", Kind::ec_heartbeat}};
+  static bool to_wire(Kind kind, RTC::StatusKind& wire) {
+    wire = static_cast<RTC::StatusKind>(kind);
+    return true;
+  }
+  using WireKind = RTC::StatusKind;
+};
+static_assert(static_cast<int>(Kind::user_defined) == RTC::USER_DEFINED && static_cast<int>(Kind::fsm_status) == RTC::FSM_STATUS);
+
+// Where the events of one component go; shared by all listeners, which may be called a little longer than the consumer lives.
+class Link {
+ public:
+  using Send = std::function<void(Kind, const std::string& hint)>;
+  Link(Send send, std::set<Kind> observed, std::chrono::nanoseconds port_interval)
+      : courier_("component observer"), send_(std::move(send)), observed_(std::move(observed)), port_interval_(port_interval) {}
+
+  void tell(Kind kind, const std::string& hint) {
+    if (observed_.count(kind) != 0) courier_.send([this, kind, hint] { send_(kind, hint); });
+  }
+
+  // At most one such message per interval.
+  void tell_of_sample(const std::string& hint) {
+    if (observed_.count(Kind::port_profile) == 0) return;
+    const auto now = std::chrono::steady_clock::now();
+    {
+      auto last = last_told_.lock();
+      const auto [it, is_new] = last->try_emplace(hint, now);
+      if (!is_new && now - it->second < port_interval_) return;
+      it->second = now;
+    }
+    tell(Kind::port_profile, hint);
+  }
+
+  void beat(const std::vector<std::pair<Kind, std::chrono::nanoseconds>>& hearts) {
+    std::vector<corba::Courier::Regular> regulars;
+    for (const auto& [kind, interval] : hearts) regulars.push_back({interval, [this, kind = kind] { send_(kind, ""); }});
+    courier_.repeat(std::move(regulars));
+  }
+
+  void stop() { courier_.stop(); }
+
+ private:
+  corba::Courier courier_;
+  const Send send_;
+  const std::set<Kind> observed_;
+  const std::chrono::nanoseconds port_interval_;
+  base::Guarded<std::map<std::string, std::chrono::steady_clock::time_point>, base::Rank::buffer> last_told_;
+};
+
+template <class Base, class Function, class... Args>
+class Calls final : public Base {
+ public:
+  explicit Calls(Function function) : function_(std::move(function)) {}
+  void operator()(Args... args) override { function_(args...); }
+
+ private:
+  Function function_;
+};
+
+class SampleListener final : public ConnectorDataListener {
+ public:
+  SampleListener(std::shared_ptr<Link> link, std::string hint) : link_(std::move(link)), hint_(std::move(hint)) {}
+  ReturnCode notify(ConnectorInfo&, corba::EventData&) override {
+    link_->tell_of_sample(hint_);
+    return NO_CHANGE;
+  }
+
+ private:
+  std::shared_ptr<Link> link_;
+  std::string hint_;
+};
+
+std::string short_name(const std::string& port_name) {
+  const auto dot = port_name.rfind('.');
+  return dot == std::string::npos ? port_name : port_name.substr(dot + 1);
+}
+
+// The listeners of one observer at one component.
+class Listeners {
+ public:
+  Listeners(RTObject_impl& component, std::shared_ptr<Link> link) : component_(component), link_(std::move(link)) {
+    listen_to_life_cycle();
+    listen_to_contexts();
+    listen_to_ports();
+    listen_to_configuration();
+    listen_to_state_machine();
+  }
+  ~Listeners() {
+    for (const auto& undo : undo_) undo();
+  }
+  Listeners(const Listeners&) = delete;
+  Listeners& operator=(const Listeners&) = delete;
+
+ private:
+  void post(PostComponentActionListenerType type, Kind kind, const char* event) {
+    auto function = [link = link_, kind, event](UniqueId id, ReturnCode_t code) {
+      if (code == RTC_OK) link->tell(kind, event + std::to_string(id));
+    };
+    auto* listener = new Calls<PostComponentActionListener, decltype(function), UniqueId, ReturnCode_t>(std::move(function));
+    component_.addPostComponentActionListener(type, listener);
+    undo_.push_back([this, type, listener] { component_.removePostComponentActionListener(type, listener); });
+  }
+
+  void listen_to_life_cycle() {
+    post(POST_ON_ACTIVATED, Kind::rtc_status, "ACTIVATED:");
+    post(POST_ON_DEACTIVATED, Kind::rtc_status, "DEACTIVATED:");
+    post(POST_ON_RESET, Kind::rtc_status, "RESET:");
+    post(POST_ON_ABORTING, Kind::rtc_status, "ABORTING:");
+    post(POST_ON_FINALIZE, Kind::rtc_status, "FINALIZE:");
+  }
+
+  void listen_to_contexts() {
+    post(POST_ON_STARTUP, Kind::ec_status, "STARTUP:");
+    post(POST_ON_SHUTDOWN, Kind::ec_status, "SHUTDOWN:");
+    post(POST_ON_RATE_CHANGED, Kind::ec_status, "RATE_CHANGED:");
+    for (const auto& [type, event] : {std::pair(EC_ATTACHED, "ATTACHED:"), std::pair(EC_DETACHED, "DETACHED:")}) {
+      auto function = [link = link_, event = event](UniqueId id) { link->tell(Kind::ec_status, event + std::to_string(id)); };
+      auto* listener = new Calls<ExecutionContextActionListener, decltype(function), UniqueId>(std::move(function));
+      component_.addExecutionContextActionListener(type, listener);
+      undo_.push_back([this, type = type, listener] { component_.removeExecutionContextActionListener(type, listener); });
+    }
+  }
+
+  void listen_to_ports() {
+    for (const auto& [type, event] : {std::pair(ADD_PORT, "ADD:"), std::pair(REMOVE_PORT, "REMOVE:")}) {
+      auto function = [link = link_, event = event](const PortProfile& profile) {
+        link->tell(Kind::port_profile, event + std::string(profile.name));
+      };
+      auto* listener = new Calls<PortActionListener, decltype(function), const PortProfile&>(std::move(function));
+      component_.addPortActionListener(type, listener);
+      undo_.push_back([this, type = type, listener] { component_.removePortActionListener(type, listener); });
+    }
+    for (const auto& [type, event] : {std::pair(ON_CONNECTED, "CONNECT:"), std::pair(ON_DISCONNECTED, "DISCONNECT:")}) {
+      auto function = [link = link_, event = event](const char* port, ConnectorProfile&, ReturnCode_t code) {
+        if (code == RTC_OK) link->tell(Kind::port_profile, event + std::string(port));
+      };
+      auto* listener =
+          new Calls<PortConnectRetListener, decltype(function), const char*, ConnectorProfile&, ReturnCode_t>(std::move(function));
+      component_.addPortConnectRetListener(type, listener);
+      undo_.push_back([this, type = type, listener] { component_.removePortConnectRetListener(type, listener); });
+    }
+    for (InPortBase* port : component_.getInPorts()) {
+      auto* listener = new SampleListener(link_, "RECEIVE:InPort:" + short_name(port->getName()));
+      port->addConnectorDataListener(ON_RECEIVED, listener);
+      undo_.push_back([port, listener] { port->removeConnectorDataListener(ON_RECEIVED, listener); });
+    }
+    for (OutPortBase* port : component_.getOutPorts()) {
+      auto* listener = new SampleListener(link_, "SEND:OutPort:" + short_name(port->getName()));
+      port->addConnectorDataListener(ON_SEND, listener);
+      undo_.push_back([port, listener] { port->removeConnectorDataListener(ON_SEND, listener); });
+    }
+  }
+
+  void listen_to_configuration() {
+    {
+      auto function = [link = link_](const char* set, const char* parameter) {
+        link->tell(Kind::configuration, "UPDATE_CONFIG_PARAM: " + std::string(set) + "." + parameter);
+      };
+      auto* listener = new Calls<ConfigurationParamListener, decltype(function), const char*, const char*>(std::move(function));
+      component_.addConfigurationParamListener(ON_UPDATE_CONFIG_PARAM, listener);
+      undo_.push_back([this, listener] { component_.removeConfigurationParamListener(ON_UPDATE_CONFIG_PARAM, listener); });
+    }
+    for (const auto& [type, event] : {std::pair(ON_SET_CONFIG_SET, "SET_CONFIG_SET: "), std::pair(ON_ADD_CONFIG_SET, "ADD_CONFIG_SET: ")}) {
+      auto function = [link = link_, event = event](const coil::Properties& set) {
+        link->tell(Kind::configuration, event + std::string(set.getName()));
+      };
+      auto* listener = new Calls<ConfigurationSetListener, decltype(function), const coil::Properties&>(std::move(function));
+      component_.addConfigurationSetListener(type, listener);
+      undo_.push_back([this, type = type, listener] { component_.removeConfigurationSetListener(type, listener); });
+    }
+    for (const auto& [type, event] :
+         {std::pair(ON_UPDATE_CONFIG_SET, "UPDATE_CONFIG_SET: "), std::pair(ON_REMOVE_CONFIG_SET, "REMOVE_CONFIG_SET: "),
+          std::pair(ON_ACTIVATE_CONFIG_SET, "ACTIVATE_CONFIG_SET: ")}) {
+      auto function = [link = link_, event = event](const char* set) { link->tell(Kind::configuration, event + std::string(set)); };
+      auto* listener = new Calls<ConfigurationSetNameListener, decltype(function), const char*>(std::move(function));
+      component_.addConfigurationSetNameListener(type, listener);
+      undo_.push_back([this, type = type, listener] { component_.removeConfigurationSetNameListener(type, listener); });
+    }
+  }
+
+  void listen_to_state_machine() {
+    for (const auto& [type, event] :
+         {std::pair(PRE_ON_INIT, " PRE_ONINIT"), std::pair(PRE_ON_ENTRY, " PRE_ONENTRY"), std::pair(PRE_ON_DO, " PRE_ONDO"),
+          std::pair(PRE_ON_EXIT, " PRE_ONEXIT"), std::pair(PRE_ON_STATE_CHANGE, " PRE_ONSTATECHANGE")}) {
+      auto function = [link = link_, event = event](const char* state) { link->tell(Kind::fsm_status, std::string(state) + event); };
+      auto* listener = new Calls<PreFsmActionListener, decltype(function), const char*>(std::move(function));
+      component_.addPreFsmActionListener(type, listener);
+      undo_.push_back([this, type = type, listener] { component_.removePreFsmActionListener(type, listener); });
+    }
+    for (const auto& [type, event] :
+         {std::pair(POST_ON_INIT, " POST_ONINIT"), std::pair(POST_ON_ENTRY, " POST_ONENTRY"), std::pair(POST_ON_DO, " POST_ONDO"),
+          std::pair(POST_ON_EXIT, " POST_ONEXIT"), std::pair(POST_ON_STATE_CHANGE, " POST_ONSTATECHANGE")}) {
+      auto function = [link = link_, event = event](const char* state, ReturnCode_t) {
+        link->tell(Kind::fsm_status, std::string(state) + event);
+      };
+      auto* listener = new Calls<PostFsmActionListener, decltype(function), const char*, ReturnCode_t>(std::move(function));
+      component_.addPostFsmActionListener(type, listener);
+      undo_.push_back([this, type = type, listener] { component_.removePostFsmActionListener(type, listener); });
+    }
+  }
+
+  RTObject_impl& component_;
+  std::shared_ptr<Link> link_;
+  std::vector<std::function<void()>> undo_;
+};
+
+std::chrono::nanoseconds seconds_or(const std::string& text, std::chrono::nanoseconds fallback) {
+  const auto number = base::parse_number(text);
+  if (!number || !(*number > 0) || *number > 1e6) return fallback;
+  return std::chrono::nanoseconds(static_cast<std::int64_t>(*number * 1e9));
+}
+
+template <class Observer>
+class ObserverConsumer final : public SdoServiceConsumerBase {
+ public:
+  ~ObserverConsumer() override { ObserverConsumer::finalize(); }
+
+  bool init(RTObject_impl& rtobj, const SDOPackage::ServiceProfile& profile) override {
+    component_ = &rtobj;
+    return start(profile);
+  }
+
+  bool reinit(const SDOPackage::ServiceProfile& profile) override {
+    finalize();
+    return start(profile);
+  }
+
+  const SDOPackage::ServiceProfile& getProfile() const override { return profile_; }
+
+  void finalize() override {
+    listeners_.reset();
+    if (link_) link_->stop();
+    link_.reset();
+  }
+
+ private:
+  using Interface = typename Observer::Interface;
+
+  bool start(const SDOPackage::ServiceProfile& profile) {
+    typename Interface::_var_type observer;
+    try {
+      corba::set_call_timeout(profile.service, 1s);
+      observer = Interface::_narrow(profile.service);
+    } catch (const CORBA::Exception&) {
+      return false;
+    }
+    if (CORBA::is_nil(observer)) return false;
+    corba::set_call_timeout(observer, 1s);
+    profile_ = profile;
+    const auto property = [&](const std::string& name) { return NVUtil::toString(profile.properties, name); };
+    link_ = std::make_shared<Link>(
+        [observer](Kind kind, const std::string& hint) {
+          typename Observer::WireKind wire{};
+          typename Interface::_var_type target = observer;
+          if (Observer::to_wire(kind, wire)) target->update_status(wire, hint.c_str());
+        },
+        observed(property("observed_status")), seconds_or(property("port_profile.send_event.min_interval"), 100ms));
+    std::map<Kind, std::chrono::nanoseconds> hearts;
+    for (const auto& [name, kind] : Observer::heartbeats)
+      if (base::parse_bool(property(std::string(name) + ".enable")).value_or(false))
+        hearts[kind] = std::max<std::chrono::nanoseconds>(seconds_or(property(std::string(name) + ".interval"), 1s), 10ms);
+    link_->beat({hearts.begin(), hearts.end()});
+    listeners_ = std::make_unique<Listeners>(*component_, link_);
+    return true;
+  }
+
+  // Without a list everything is observed.
+  static std::set<Kind> observed(const std::string& list) {
+    std::set<Kind> kinds;
+    const std::vector<std::string> words = base::split_list(list);
+    for (const auto& [kind, name] : kind_names) {
+      bool wanted = words.empty();
+      for (const std::string& word : words) wanted = wanted || base::equal_ignoring_case(word, name) || base::equal_ignoring_case(word, "ALL");
+      if (wanted) kinds.insert(kind);
+    }
+    return kinds;
+  }
+
+  RTObject_impl* component_ = nullptr;
+  SDOPackage::ServiceProfile profile_;
+  std::shared_ptr<Link> link_;
+  std::unique_ptr<Listeners> listeners_;
+};
+
+template <class Observer>
+void register_consumer() {
+  SdoServiceConsumerFactory::instance().addFactory(Observer::id, coil::Creator<SdoServiceConsumerBase, ObserverConsumer<Observer>>,
+                                                   coil::Destructor<SdoServiceConsumerBase, ObserverConsumer<Observer>>);
+}
+
+}  // namespace
+
+void registerComponentObserverConsumers() {
+  register_consumer<OldObserver>();
+  register_consumer<NewObserver>();
+}
+
+}  // namespace RTC

@@ -1,0 +1,12 @@
+// Tells an observer that a tool has attached what happens to the component: consumer of OpenRTM::ComponentObserver (1.x) and of
+// RTC::ComponentObserver (2.x). The observer is called on a thread of its own.
+#pragma once
+
+#include <rtm/SdoServiceConsumerBase.h>
+
+namespace RTC {
+
+// Under the repository ids of both interfaces. Calling it again changes nothing.
+void registerComponentObserverConsumers();
+
+}  // namespace RTC

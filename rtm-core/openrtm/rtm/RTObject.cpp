@@ -1,0 +1,454 @@
+#include <coil/stringutil.h>
+#include <rtm/DataFlowComponentBase.h>
+#include <rtm/Manager.h>
+#include <rtm/NVUtil.h>
+#include <rtm/PortBase.h>
+#include <rtm/RTObjectImpl.h>
+
+#include <exception>
+
+#include "corba/orb.h"
+
+namespace RTC {
+
+using namespace std::chrono_literals;
+
+namespace {
+
+// How many callbacks of components run on this thread, one inside the other.
+thread_local int callback_depth = 0;
+
+}  // namespace
+
+void deactivateServant(PortableServer::ServantBase& servant, CORBA::Object_ptr reference) {
+  try {
+    PortableServer::POA_var poa = servant._default_POA();
+    PortableServer::ObjectId_var id = poa->reference_to_id(reference);
+    poa->deactivate_object(id);
+  } catch (const CORBA::Exception&) {
+    // Deactivated already, or the object adapter is gone.
+  }
+}
+
+RTObject_impl::RTObject_impl(Manager* manager) : m_pManager(manager), impl_(std::make_unique<Impl>(*this)) {
+  int argc = 0;
+  m_pORB = manager ? CORBA::ORB::_duplicate(manager->getORB()) : CORBA::ORB_init(argc, nullptr);
+  m_pPOA = manager ? PortableServer::POA::_duplicate(manager->getPOA()) : PortableServer::POA::_the_root_poa();
+  impl_->configuration = new SDOPackage::Configuration_impl(*this, m_configsets, impl_->services);
+  OpenRTM::DataFlowComponent_var self = _this();
+  impl_->shared.lock()->reference = RTObject::_duplicate(self);
+}
+
+RTObject_impl::RTObject_impl(CORBA::ORB_ptr orb, PortableServer::POA_ptr poa) : RTObject_impl(nullptr) {
+  m_pORB = CORBA::ORB::_duplicate(orb);
+  m_pPOA = PortableServer::POA::_duplicate(poa);
+}
+
+RTObject_impl::~RTObject_impl() {
+  if (impl_->exiter.joinable()) {
+    if (impl_->exiter.get_id() == std::this_thread::get_id())
+      impl_->exiter.detach();
+    else
+      impl_->exiter.join();
+  }
+  // A component that never lived, or was deleted without exit.
+  finalizePorts();
+  finalizeContexts();
+  shutdown();
+}
+
+DataFlowComponentBase::DataFlowComponentBase(Manager* manager) : RTObject_impl(manager) {}
+DataFlowComponentBase::DataFlowComponentBase(CORBA::ORB_ptr orb, PortableServer::POA_ptr poa) : RTObject_impl(orb, poa) {}
+DataFlowComponentBase::~DataFlowComponentBase() = default;
+
+// --- callbacks
+
+ReturnCode_t RTObject_impl::onInitialize() { return RTC_OK; }
+ReturnCode_t RTObject_impl::onFinalize() { return RTC_OK; }
+ReturnCode_t RTObject_impl::onStartup(RTC::UniqueId) { return RTC_OK; }
+ReturnCode_t RTObject_impl::onShutdown(RTC::UniqueId) { return RTC_OK; }
+ReturnCode_t RTObject_impl::onActivated(RTC::UniqueId) { return RTC_OK; }
+ReturnCode_t RTObject_impl::onDeactivated(RTC::UniqueId) { return RTC_OK; }
+ReturnCode_t RTObject_impl::onExecute(RTC::UniqueId) { return RTC_OK; }
+ReturnCode_t RTObject_impl::onAborting(RTC::UniqueId) { return RTC_OK; }
+ReturnCode_t RTObject_impl::onError(RTC::UniqueId) { return RTC_OK; }
+ReturnCode_t RTObject_impl::onReset(RTC::UniqueId) { return RTC_OK; }
+ReturnCode_t RTObject_impl::onStateUpdate(RTC::UniqueId) { return RTC_OK; }
+ReturnCode_t RTObject_impl::onRateChanged(RTC::UniqueId) { return RTC_OK; }
+ReturnCode_t RTObject_impl::onAction(RTC::UniqueId) { return RTC_OK; }
+
+template <class Function>
+ReturnCode_t RTObject_impl::callUser(const char* name, Function function) {
+  struct Depth {
+    Depth() { ++callback_depth; }
+    ~Depth() { --callback_depth; }
+  } const depth;
+  try {
+    return function();
+  } catch (const CORBA::Exception& exception) {
+    RTC_ERROR(("%s threw %s", name, corba::to_text(exception).c_str()));
+  } catch (const std::exception& exception) {
+    RTC_ERROR(("%s threw: %s", name, exception.what()));
+  } catch (...) {
+    RTC_ERROR(("%s threw something that is no std::exception", name));
+  }
+  return RTC_ERROR;
+}
+
+ReturnCode_t RTObject_impl::on_initialize() {
+  return callUser("onInitialize", [this] {
+    m_actionListeners.preaction_[PRE_ON_INITIALIZE].notify(0);
+    const ReturnCode_t code = onInitialize();
+    const std::string active = m_properties.getProperty("configuration.active_config", "default");
+    if (!m_configsets.activateConfigurationSet(active.c_str())) m_configsets.activateConfigurationSet("default");
+    m_configsets.update();
+    m_actionListeners.postaction_[POST_ON_INITIALIZE].notify(0, code);
+    return code;
+  });
+}
+
+ReturnCode_t RTObject_impl::on_finalize() {
+  return callUser("onFinalize", [this] {
+    m_actionListeners.preaction_[PRE_ON_FINALIZE].notify(0);
+    const ReturnCode_t code = onFinalize();
+    m_actionListeners.postaction_[POST_ON_FINALIZE].notify(0, code);
+    return code;
+  });
+}
+
+ReturnCode_t RTObject_impl::on_startup(ExecutionContextHandle_t exec_handle) {
+  return callUser("onStartup", [&] {
+    m_actionListeners.preaction_[PRE_ON_STARTUP].notify(exec_handle);
+    const ReturnCode_t code = onStartup(exec_handle);
+    m_actionListeners.postaction_[POST_ON_STARTUP].notify(exec_handle, code);
+    return code;
+  });
+}
+
+ReturnCode_t RTObject_impl::on_shutdown(ExecutionContextHandle_t exec_handle) {
+  return callUser("onShutdown", [&] {
+    m_actionListeners.preaction_[PRE_ON_SHUTDOWN].notify(exec_handle);
+    const ReturnCode_t code = onShutdown(exec_handle);
+    m_actionListeners.postaction_[POST_ON_SHUTDOWN].notify(exec_handle, code);
+    return code;
+  });
+}
+
+ReturnCode_t RTObject_impl::on_activated(ExecutionContextHandle_t exec_handle) {
+  return callUser("onActivated", [&] {
+    m_actionListeners.preaction_[PRE_ON_ACTIVATED].notify(exec_handle);
+    m_configsets.update();
+    const ReturnCode_t code = onActivated(exec_handle);
+    activatePorts(exec_handle);
+    m_actionListeners.postaction_[POST_ON_ACTIVATED].notify(exec_handle, code);
+    return code;
+  });
+}
+
+ReturnCode_t RTObject_impl::on_deactivated(ExecutionContextHandle_t exec_handle) {
+  return callUser("onDeactivated", [&] {
+    m_actionListeners.preaction_[PRE_ON_DEACTIVATED].notify(exec_handle);
+    deactivatePorts(exec_handle);
+    const ReturnCode_t code = onDeactivated(exec_handle);
+    m_actionListeners.postaction_[POST_ON_DEACTIVATED].notify(exec_handle, code);
+    return code;
+  });
+}
+
+ReturnCode_t RTObject_impl::on_aborting(ExecutionContextHandle_t exec_handle) {
+  return callUser("onAborting", [&] {
+    m_actionListeners.preaction_[PRE_ON_ABORTING].notify(exec_handle);
+    const ReturnCode_t code = onAborting(exec_handle);
+    m_actionListeners.postaction_[POST_ON_ABORTING].notify(exec_handle, code);
+    return code;
+  });
+}
+
+ReturnCode_t RTObject_impl::on_error(ExecutionContextHandle_t exec_handle) {
+  return callUser("onError", [&] {
+    m_actionListeners.preaction_[PRE_ON_ERROR].notify(exec_handle);
+    const ReturnCode_t code = onError(exec_handle);
+    m_configsets.update();
+    m_actionListeners.postaction_[POST_ON_ERROR].notify(exec_handle, code);
+    return code;
+  });
+}
+
+ReturnCode_t RTObject_impl::on_reset(ExecutionContextHandle_t exec_handle) {
+  return callUser("onReset", [&] {
+    m_actionListeners.preaction_[PRE_ON_RESET].notify(exec_handle);
+    const ReturnCode_t code = onReset(exec_handle);
+    m_actionListeners.postaction_[POST_ON_RESET].notify(exec_handle, code);
+    return code;
+  });
+}
+
+ReturnCode_t RTObject_impl::on_execute(ExecutionContextHandle_t exec_handle) {
+  return callUser("onExecute", [&] {
+    m_actionListeners.preaction_[PRE_ON_EXECUTE].notify(exec_handle);
+    bool reads = false, writes = false;
+    {
+      const auto data = impl_->shared.lock();
+      reads = data->reads_all;
+      writes = data->writes_all;
+    }
+    if (reads) readAll();
+    const ReturnCode_t code = onExecute(exec_handle);
+    if (writes) writeAll();
+    m_actionListeners.postaction_[POST_ON_EXECUTE].notify(exec_handle, code);
+    return code;
+  });
+}
+
+ReturnCode_t RTObject_impl::on_state_update(ExecutionContextHandle_t exec_handle) {
+  return callUser("onStateUpdate", [&] {
+    m_actionListeners.preaction_[PRE_ON_STATE_UPDATE].notify(exec_handle);
+    const ReturnCode_t code = onStateUpdate(exec_handle);
+    m_configsets.update();
+    m_actionListeners.postaction_[POST_ON_STATE_UPDATE].notify(exec_handle, code);
+    return code;
+  });
+}
+
+ReturnCode_t RTObject_impl::on_rate_changed(ExecutionContextHandle_t exec_handle) {
+  return callUser("onRateChanged", [&] {
+    m_actionListeners.preaction_[PRE_ON_RATE_CHANGED].notify(exec_handle);
+    const ReturnCode_t code = onRateChanged(exec_handle);
+    m_actionListeners.postaction_[POST_ON_RATE_CHANGED].notify(exec_handle, code);
+    return code;
+  });
+}
+
+// --- life
+
+ReturnCode_t RTObject_impl::initialize() {
+  {
+    auto data = impl_->shared.lock();
+    if (data->phase != Impl::Phase::created) return PRECONDITION_NOT_MET;
+    data->phase = Impl::Phase::initializing;
+  }
+  const auto give_up = [this](ReturnCode_t code) {
+    finalizeContexts();
+    impl_->shared.lock()->phase = Impl::Phase::created;
+    return code;
+  };
+  prepareBinding();
+  impl_->services.init(m_properties);
+  if (const ReturnCode_t code = createContexts(); code != RTC_OK) return give_up(code);
+  if (const ReturnCode_t code = on_initialize(); code != RTC_OK) {
+    RTC_ERROR(("onInitialize failed"));
+    return give_up(code);
+  }
+  std::vector<ExecutionContextBase*> contexts;
+  {
+    auto data = impl_->shared.lock();
+    data->phase = Impl::Phase::alive;
+    contexts = data->contexts;
+  }
+  for (ExecutionContextBase* context : contexts) context->start();  // a shared one may run already
+  return RTC_OK;
+}
+
+ReturnCode_t RTObject_impl::finalize() {
+  {
+    auto data = impl_->shared.lock();
+    if (data->phase != Impl::Phase::exiting) return PRECONDITION_NOT_MET;
+    data->phase = Impl::Phase::finalizing;
+  }
+  on_finalize();
+  finalizePorts();
+  finalizeContexts();
+  shutdown();
+  if (m_pManager) m_pManager->notifyFinalized(this);
+  return RTC_OK;
+}
+
+ReturnCode_t RTObject_impl::exit() {
+  {
+    auto data = impl_->shared.lock();
+    if (data->phase != Impl::Phase::alive) return PRECONDITION_NOT_MET;
+    data->phase = Impl::Phase::exiting;
+  }
+  if (callback_depth == 0) return exitNow();
+  // A context cannot be stopped from inside one of its callbacks. This object outlives the thread: its destructor waits.
+  impl_->exiter = std::thread([this] { exitNow(); });
+  return RTC_OK;
+}
+
+ReturnCode_t RTObject_impl::exitNow() {
+  leaveOrganizations();
+  leaveContexts();
+  return finalize();
+}
+
+void RTObject_impl::leaveOrganizations() {
+  std::vector<SDOPackage::Organization_var> organizations;
+  organizations.swap(impl_->shared.lock()->organizations);
+  for (const SDOPackage::Organization_var& organization : organizations) {
+    try {
+      SDOPackage::Organization_var target = organization;
+      target->remove_member(getInstanceName());
+    } catch (const CORBA::Exception& exception) {
+      RTC_DEBUG(("an organization does not let the component go: %s", corba::to_text(exception).c_str()));
+    }
+  }
+}
+
+void RTObject_impl::leaveContexts() {
+  std::vector<ExecutionContextBase*> contexts;
+  std::vector<ExecutionContext_var> foreign;
+  RTObject_var self;
+  {
+    const auto data = impl_->shared.lock();
+    contexts = data->contexts;
+    foreign = data->foreign;
+    self = data->reference;
+  }
+  for (ExecutionContextBase* context : contexts) context->calmComponent(self, 5s);
+  for (ExecutionContext_var& context : foreign) {
+    if (CORBA::is_nil(context)) continue;
+    try {
+      switch (context->get_component_state(self)) {
+        case ACTIVE_STATE: context->deactivate_component(self); break;
+        case ERROR_STATE: context->reset_component(self); break;
+        default: break;
+      }
+      context->remove_component(self);
+    } catch (const CORBA::Exception& exception) {
+      RTC_DEBUG(("a context of another process does not answer: %s", corba::to_text(exception).c_str()));
+    }
+  }
+}
+
+// May be called again.
+void RTObject_impl::shutdown() {
+  std::vector<SDOPackage::Organization_impl*> organizations;
+  RTObject_var self;
+  {
+    auto data = impl_->shared.lock();
+    if (data->phase == Impl::Phase::finalized) return;
+    data->phase = Impl::Phase::finalized;
+    organizations.swap(data->owned_organizations);
+    self = data->reference;
+  }
+  for (SDOPackage::Organization_impl* organization : organizations) {
+    SDOPackage::Organization_var reference = organization->getObjRef();
+    deactivateServant(*organization, reference);
+    organization->_remove_ref();
+  }
+  impl_->services.exit();
+  if (auto* configuration = std::exchange(impl_->configuration, nullptr)) {
+    configuration->close();
+    SDOPackage::Configuration_var reference = configuration->_this();
+    deactivateServant(*configuration, reference);
+    configuration->_remove_ref();
+  }
+  deactivateServant(*this, self);
+}
+
+// --- what it is
+
+void RTObject_impl::setInstanceName(const char* instance_name) {
+  profile_.instance_name = instance_name ? instance_name : "";
+  m_properties["instance_name"] = profile_.instance_name;
+  rtclog.setName(profile_.instance_name.c_str());
+  const std::vector<Port> ports = impl_->shared.lock()->ports;
+  for (const Port& port : ports)
+    if (port.local) port.local->setName(portNameOf(port.name).c_str());
+}
+
+void RTObject_impl::takeNames() {
+  const auto take = [this](const char* key, std::string& name) { name = m_properties.getProperty(key, name); };
+  take("type_name", profile_.type_name);
+  take("description", profile_.description);
+  take("version", profile_.version);
+  take("vendor", profile_.vendor);
+  take("category", profile_.category);
+  const std::string instance = m_properties.getProperty("instance_name");
+  if (!instance.empty() && instance != profile_.instance_name) setInstanceName(instance.c_str());
+}
+
+std::vector<std::string> RTObject_impl::getNamingNames() const {
+  return coil::split(m_properties.getProperty("naming.names"), ",", true);
+}
+
+void RTObject_impl::setObjRef(const RTObject_ptr rtobj) { impl_->shared.lock()->reference = RTObject::_duplicate(rtobj); }
+
+RTObject_ptr RTObject_impl::getObjRef() const { return RTObject::_duplicate(impl_->shared.lock()->reference); }
+
+void RTObject_impl::setProperties(const coil::Properties& prop) {
+  m_properties << prop;
+  takeNames();
+  prepareBinding();
+}
+
+// While the component is made, its configuration sets follow its properties.
+void RTObject_impl::prepareBinding() {
+  const auto phase = impl_->shared.lock()->phase;
+  if (phase != Impl::Phase::created && phase != Impl::Phase::initializing) return;
+  if (const coil::Properties* conf = m_properties.findNode("conf")) m_configsets.load(*conf);
+}
+
+ComponentProfile* RTObject_impl::get_component_profile() {
+  ComponentProfile_var profile = new ComponentProfile();
+  profile->instance_name = profile_.instance_name.c_str();
+  profile->type_name = profile_.type_name.c_str();
+  profile->description = profile_.description.c_str();
+  profile->version = profile_.version.c_str();
+  profile->vendor = profile_.vendor.c_str();
+  profile->category = profile_.category.c_str();
+  const std::vector<Port> ports = impl_->shared.lock()->ports;
+  CORBA::ULong n = 0;
+  profile->port_profiles.length(static_cast<CORBA::ULong>(ports.size()));
+  for (const Port& port : ports) {
+    try {
+      PortProfile_var one = port.local ? port.local->get_port_profile() : PortService_var(port.reference)->get_port_profile();
+      profile->port_profiles[n] = one;
+      ++n;
+    } catch (const CORBA::Exception& exception) {
+      RTC_WARN(("a port of another component does not answer: %s", corba::to_text(exception).c_str()));
+    }
+  }
+  profile->port_profiles.length(n);
+  coil::Properties properties = m_properties;
+  coil::Properties& conf = properties.getNode("conf");
+  for (const coil::Properties& set : m_configsets.getConfigurationSets()) {
+    if (set.getLeaf().empty()) continue;
+    conf.getNode(set.getName()) << set;
+  }
+  NVUtil::copyFromProperties(profile->properties, properties);
+  return profile._retn();
+}
+
+// --- listeners
+
+#define RTC_DEFINE_LISTENERS(What, Type, lists, count)                                             \
+  void RTObject_impl::add##What(Type type, What* listener, bool autoclean) {                       \
+    if (type < count) lists[type].addListener(listener, autoclean);                                \
+  }                                                                                                \
+  void RTObject_impl::remove##What(Type type, What* listener) {                                    \
+    if (type < count) lists[type].removeListener(listener);                                        \
+  }
+RTC_DEFINE_LISTENERS(PreComponentActionListener, PreComponentActionListenerType, m_actionListeners.preaction_,
+                     PRE_COMPONENT_ACTION_LISTENER_NUM)
+RTC_DEFINE_LISTENERS(PostComponentActionListener, PostComponentActionListenerType, m_actionListeners.postaction_,
+                     POST_COMPONENT_ACTION_LISTENER_NUM)
+RTC_DEFINE_LISTENERS(PortActionListener, PortActionListenerType, m_actionListeners.portaction_, PORT_ACTION_LISTENER_NUM)
+RTC_DEFINE_LISTENERS(ExecutionContextActionListener, ExecutionContextActionListenerType, m_actionListeners.ecaction_,
+                     EC_ACTION_LISTENER_NUM)
+RTC_DEFINE_LISTENERS(PreFsmActionListener, PreFsmActionListenerType, m_fsmListeners.preaction_, PRE_FSM_ACTION_LISTENER_NUM)
+RTC_DEFINE_LISTENERS(PostFsmActionListener, PostFsmActionListenerType, m_fsmListeners.postaction_, POST_FSM_ACTION_LISTENER_NUM)
+RTC_DEFINE_LISTENERS(PortConnectListener, PortConnectListenerType, m_portconnListeners.portconnect_, PORT_CONNECT_LISTENER_NUM)
+RTC_DEFINE_LISTENERS(PortConnectRetListener, PortConnectRetListenerType, m_portconnListeners.portconnret_,
+                     PORT_CONNECT_RET_LISTENER_NUM)
+#undef RTC_DEFINE_LISTENERS
+
+#define RTC_DEFINE_LISTENERS(What, Type)                                                                                       \
+  void RTObject_impl::add##What(Type type, What* listener, bool autoclean) { m_configsets.add##What(type, listener, autoclean); } \
+  void RTObject_impl::remove##What(Type type, What* listener) { m_configsets.remove##What(type, listener); }
+RTC_DEFINE_LISTENERS(ConfigurationParamListener, ConfigurationParamListenerType)
+RTC_DEFINE_LISTENERS(ConfigurationSetListener, ConfigurationSetListenerType)
+RTC_DEFINE_LISTENERS(ConfigurationSetNameListener, ConfigurationSetNameListenerType)
+#undef RTC_DEFINE_LISTENERS
+
+}  // namespace RTC

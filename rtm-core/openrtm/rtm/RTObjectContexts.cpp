@@ -1,0 +1,282 @@
+// The execution contexts of a component: its own, made from properties, and those it takes part in.
+#include <coil/stringutil.h>
+#include <rtm/ECFactory.h>
+#include <rtm/Manager.h>
+#include <rtm/RTObjectImpl.h>
+
+#include <algorithm>
+
+#include "base/text.h"
+#include "corba/orb.h"
+
+namespace RTC {
+
+namespace {
+
+struct Wanted {
+  std::string type;
+  std::string name;
+};
+
+// "Type(name), Type2(name2)"; a name may be missing.
+std::vector<Wanted> parse_contexts(const std::string& text) {
+  std::vector<Wanted> list;
+  for (const std::string& part : base::split_list(text)) {
+    const auto open = part.find('(');
+    const auto close = part.rfind(')');
+    if (open == std::string::npos)
+      list.push_back({part, ""});
+    else if (close != std::string::npos && close > open)
+      list.push_back({std::string(base::trim(part.substr(0, open))), std::string(base::trim(part.substr(open + 1, close - open - 1)))});
+  }
+  return list;
+}
+
+// Contexts that have a name are one for all components of the process that ask for that type and name.
+class NamedContexts {
+ public:
+  static NamedContexts& instance() {
+    static NamedContexts contexts;
+    return contexts;
+  }
+  // Finds or makes; a found one has one more owner.
+  template <class Make>
+  ExecutionContextBase* get(const std::string& type, const std::string& name, Make make) {
+    {
+      auto entries = entries_.lock();
+      for (Entry& entry : *entries)
+        if (entry.type == type && entry.name == name) return ++entry.owners, entry.context;
+    }
+    ExecutionContextBase* made = make();
+    if (made && !name.empty()) entries_.lock()->push_back({type, name, made, 1});
+    return made;
+  }
+  // True when nobody owns it any more.
+  bool release(ExecutionContextBase* context) {
+    auto entries = entries_.lock();
+    const auto it = std::find_if(entries->begin(), entries->end(), [&](const Entry& entry) { return entry.context == context; });
+    if (it == entries->end()) return true;
+    if (--it->owners > 0) return false;
+    entries->erase(it);
+    return true;
+  }
+
+ private:
+  struct Entry {
+    std::string type, name;
+    ExecutionContextBase* context;
+    int owners;
+  };
+  base::Guarded<std::vector<Entry>, base::Rank::registry> entries_;
+};
+
+bool is_same(ExecutionContext_ptr a, ExecutionContext_ptr b) {
+  return !CORBA::is_nil(a) && !CORBA::is_nil(b) && a->_is_equivalent(b);
+}
+
+}  // namespace
+
+// exec_cxt.*, then exec_cxt.periodic.*, ec.<type>.* and ec.<name>.*; the last word counts.
+coil::Properties RTObject_impl::contextOptions(const std::string& type, const std::string& name) const {
+  coil::Properties options;
+  options["sync_transition"] = "YES";
+  options["transition_timeout"] = "0.5";
+  if (const coil::Properties* all = m_properties.findNode("exec_cxt"))
+    for (const coil::Properties* leaf : all->getLeaf())
+      if (leaf->getLeaf().empty()) options[leaf->getName()] = all->getProperty(leaf->getName());
+  options["type"] = type;
+  options["rate"] = "1000";
+  options["name"] = name;
+  for (const std::string& path : {std::string("exec_cxt.periodic"), "ec." + type, "ec." + name}) {
+    const coil::Properties* node = path == "ec." ? nullptr : m_properties.findNode(path);
+    if (!node) continue;
+    for (const std::string& key : node->propertyNames())
+      if (key != "type" && key != "name") options[key] = node->getProperty(key);
+  }
+  return options;
+}
+
+ReturnCode_t RTObject_impl::createContexts() {
+  registerBuiltinExecutionContexts(m_pManager);
+  const std::string list = m_properties.getProperty("execution_contexts");
+  std::vector<Wanted> wanted;
+  if (list.empty())
+    wanted.push_back({m_properties.getProperty("exec_cxt.periodic.type", "PeriodicExecutionContext"), ""});
+  else if (!base::equal_ignoring_case(base::trim(list), "none"))
+    wanted = parse_contexts(list);
+  for (const Wanted& one : wanted) {
+    coil::Properties options = contextOptions(one.type, one.name);
+    ExecutionContextBase* context = NamedContexts::instance().get(one.type, one.name, [&]() -> ExecutionContextBase* {
+      ExecutionContextBase* made = ExecutionContextFactory::instance().createObject(one.type);
+      if (made) made->init(options);
+      return made;
+    });
+    if (!context) {
+      RTC_ERROR(("no execution context of type %s", base::in_quotes(one.type).c_str()));
+      return RTC_ERROR;
+    }
+    impl_->shared.lock()->contexts.push_back(context);
+    if (const ReturnCode_t code = context->bindComponent(this); code != RTC_OK) {
+      RTC_ERROR(("execution context of type %s does not take the component", base::in_quotes(one.type).c_str()));
+      return code;
+    }
+  }
+  return RTC_OK;
+}
+
+// Own contexts end with their last owner. May be called again.
+void RTObject_impl::finalizeContexts() {
+  std::vector<ExecutionContextBase*> contexts;
+  contexts.swap(impl_->shared.lock()->contexts);
+  for (ExecutionContextBase* context : contexts) {
+    if (NamedContexts::instance().release(context)) {
+      context->stop();
+      context->unbindComponent(this);
+      destroyExecutionContext(context);
+    } else {
+      context->unbindComponent(this);
+    }
+  }
+  auto data = impl_->shared.lock();
+  data->own.clear();
+  data->foreign.clear();
+}
+
+CORBA::Boolean RTObject_impl::is_alive(ExecutionContext_ptr exec_context) { return get_context_handle(exec_context) >= 0; }
+
+ExecutionContext_ptr RTObject_impl::get_context(ExecutionContextHandle_t exec_handle) { return getExecutionContext(exec_handle); }
+
+ExecutionContext_ptr RTObject_impl::getExecutionContext(RTC::UniqueId ec_id) {
+  const auto data = impl_->shared.lock();
+  const bool is_foreign = ec_id >= foreign_offset;
+  const auto& list = is_foreign ? data->foreign : data->own;
+  const auto index = static_cast<std::size_t>(is_foreign ? ec_id - foreign_offset : ec_id);
+  if (ec_id < 0 || index >= list.size()) return ExecutionContext::_nil();
+  return ExecutionContext::_duplicate(list[index]);
+}
+
+ExecutionContextList* RTObject_impl::get_owned_contexts() {
+  ExecutionContextList_var list = new ExecutionContextList();
+  const auto data = impl_->shared.lock();
+  for (const ExecutionContext_var& context : data->own) {
+    const CORBA::ULong n = list->length();
+    list->length(n + 1);
+    list[n] = ExecutionContext::_duplicate(context);
+  }
+  return list._retn();
+}
+
+ExecutionContextList* RTObject_impl::get_participating_contexts() {
+  ExecutionContextList_var list = new ExecutionContextList();
+  const auto data = impl_->shared.lock();
+  for (const ExecutionContext_var& context : data->foreign) {
+    if (CORBA::is_nil(context)) continue;
+    const CORBA::ULong n = list->length();
+    list->length(n + 1);
+    list[n] = ExecutionContext::_duplicate(context);
+  }
+  return list._retn();
+}
+
+ExecutionContextHandle_t RTObject_impl::get_context_handle(ExecutionContext_ptr cxt) {
+  const auto data = impl_->shared.lock();
+  for (std::size_t i = 0; i < data->own.size(); ++i)
+    if (is_same(data->own[i], cxt)) return static_cast<ExecutionContextHandle_t>(i);
+  for (std::size_t i = 0; i < data->foreign.size(); ++i)
+    if (is_same(data->foreign[i], cxt)) return static_cast<ExecutionContextHandle_t>(i) + foreign_offset;
+  return -1;
+}
+
+UniqueId RTObject_impl::bindContext(ExecutionContext_ptr exec_context) {
+  if (CORBA::is_nil(exec_context)) return -1;
+  UniqueId id = 0;
+  {
+    auto data = impl_->shared.lock();
+    id = static_cast<UniqueId>(data->own.size());
+    if (id >= foreign_offset) return -1;
+    data->own.push_back(ExecutionContext::_duplicate(exec_context));
+  }
+  m_actionListeners.ecaction_[EC_ATTACHED].notify(id);
+  return id;
+}
+
+ExecutionContextHandle_t RTObject_impl::attach_context(ExecutionContext_ptr exec_context) {
+  if (CORBA::is_nil(exec_context)) return -1;
+  // The same one again keeps its handle; it is told like the first time, because the context has just added the component.
+  ExecutionContextHandle_t id = get_context_handle(exec_context);
+  if (id < foreign_offset) {
+    auto data = impl_->shared.lock();
+    auto& list = data->foreign;
+    auto free = std::find_if(list.begin(), list.end(), [](const ExecutionContext_var& context) { return CORBA::is_nil(context); });
+    if (free == list.end()) free = list.insert(list.end(), ExecutionContext_var());
+    *free = ExecutionContext::_duplicate(exec_context);
+    id = static_cast<ExecutionContextHandle_t>(free - list.begin()) + foreign_offset;
+  }
+  m_actionListeners.ecaction_[EC_ATTACHED].notify(id);
+  return id;
+}
+
+ReturnCode_t RTObject_impl::detach_context(ExecutionContextHandle_t exec_handle) {
+  {
+    auto data = impl_->shared.lock();
+    if (exec_handle < foreign_offset) return BAD_PARAMETER;
+    const auto index = static_cast<std::size_t>(exec_handle - foreign_offset);
+    if (index >= data->foreign.size() || CORBA::is_nil(data->foreign[index])) return BAD_PARAMETER;
+    data->foreign[index] = ExecutionContext::_nil();
+  }
+  m_actionListeners.ecaction_[EC_DETACHED].notify(exec_handle);
+  return RTC_OK;
+}
+
+double RTObject_impl::getExecutionRate(RTC::UniqueId ec_id) {
+  ExecutionContext_var context = getExecutionContext(ec_id);
+  try {
+    return CORBA::is_nil(context) ? 0.0 : context->get_rate();
+  } catch (const CORBA::Exception& exception) {
+    RTC_ERROR(("execution context %d does not answer: %s", static_cast<int>(ec_id), corba::to_text(exception).c_str()));
+    return 0.0;
+  }
+}
+
+namespace {
+
+template <class Call>
+ReturnCode_t ask_context(ExecutionContext_ptr context, Call call) {
+  if (CORBA::is_nil(context)) return BAD_PARAMETER;
+  try {
+    return call();
+  } catch (const CORBA::Exception&) {
+    return RTC_ERROR;
+  }
+}
+
+}  // namespace
+
+ReturnCode_t RTObject_impl::setExecutionRate(RTC::UniqueId ec_id, double rate) {
+  ExecutionContext_var context = getExecutionContext(ec_id);
+  return ask_context(context, [&] { return context->set_rate(rate); });
+}
+
+bool RTObject_impl::isOwnExecutionContext(RTC::UniqueId ec_id) { return ec_id >= 0 && ec_id < foreign_offset; }
+
+ReturnCode_t RTObject_impl::activate(RTC::UniqueId ec_id) {
+  ExecutionContext_var context = getExecutionContext(ec_id);
+  RTObject_var self = getObjRef();
+  return ask_context(context, [&] { return context->activate_component(self); });
+}
+
+ReturnCode_t RTObject_impl::deactivate(RTC::UniqueId ec_id) {
+  ExecutionContext_var context = getExecutionContext(ec_id);
+  RTObject_var self = getObjRef();
+  return ask_context(context, [&] { return context->deactivate_component(self); });
+}
+
+ReturnCode_t RTObject_impl::reset(RTC::UniqueId ec_id) {
+  ExecutionContext_var context = getExecutionContext(ec_id);
+  RTObject_var self = getObjRef();
+  return ask_context(context, [&] { return context->reset_component(self); });
+}
+
+std::vector<ExecutionContextBase*> RTObject_impl::getOwnContexts() const { return impl_->shared.lock()->contexts; }
+
+}  // namespace RTC

@@ -1,0 +1,55 @@
+// What a component keeps: private to the RTObject*.cpp files. Locked for data only.
+#pragma once
+
+#include <rtm/RTObject.h>
+#include <rtm/SdoConfiguration.h>
+#include <rtm/SdoOrganization.h>
+#include <rtm/SdoServiceAdmin.h>
+
+#include <condition_variable>
+#include <set>
+#include <thread>
+
+#include "base/guarded.h"
+
+namespace RTC {
+
+struct RTObject_impl::Port {
+  std::string name;  // without the instance name
+  PortService_var reference;
+  PortBase* local = nullptr;  // the same port when it is in this process and added as such
+  InPortBase* in = nullptr;
+  OutPortBase* out = nullptr;
+};
+
+struct RTObject_impl::Impl {
+  enum class Phase { created, initializing, alive, exiting, finalizing, finalized };
+
+  struct Data {
+    Phase phase = Phase::created;
+    RTObject_var reference{};
+    std::vector<ExecutionContext_var> own{};      // by handle
+    std::vector<ExecutionContext_var> foreign{};  // by handle - foreign_offset; nil where one has left
+    std::vector<ExecutionContextBase*> contexts{};
+    std::vector<Port> ports{};
+    std::set<UniqueId> active_in{};  // contexts in which the component is active: ports work while there is one
+    std::vector<SDOPackage::Organization_var> organizations{};
+    std::vector<SDOPackage::Organization_impl*> owned_organizations{};  // servants, one reference each
+    SDOPackage::DeviceProfile device{};
+    bool reads_all = false, reads_on = false, writes_all = false, writes_on = false;
+  };
+
+  explicit Impl(RTObject_impl& component) : services(component) {}
+
+  base::Guarded<Data, base::Rank::component> shared;
+  SdoServiceAdmin services;
+  SDOPackage::Configuration_impl* configuration = nullptr;  // a servant; one reference
+  std::thread exiter;                                       // runs exit() when a callback asked for it
+};
+
+inline constexpr ExecutionContextHandle_t foreign_offset = 1000;
+
+// Takes a servant out of its object adapter; calls in progress end first, then its reference is given back there.
+void deactivateServant(PortableServer::ServantBase& servant, CORBA::Object_ptr reference);
+
+}  // namespace RTC

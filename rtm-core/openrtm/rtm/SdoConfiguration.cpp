@@ -1,0 +1,134 @@
+#include <rtm/ConfigAdmin.h>
+#include <rtm/NVUtil.h>
+#include <rtm/RTObject.h>
+#include <rtm/SdoConfiguration.h>
+#include <rtm/SdoServiceAdmin.h>
+
+#include <cstring>
+
+#include "base/text.h"
+
+namespace SDOPackage {
+
+namespace {
+
+// Names become paths in a tree: longer ones are nobody's parameter but somebody's attack.
+constexpr std::size_t longest_name = 1024;
+
+void check_name(const char* what, const char* name) {
+  if (name[0] == '\0') throw InvalidParameter((std::string(what) + " is empty").c_str());
+  if (std::strlen(name) > longest_name) throw InvalidParameter((std::string(what) + " is too long").c_str());
+}
+
+coil::Properties to_properties(const ConfigurationSet& set) {
+  check_name("id of the configuration set", set.id);
+  for (CORBA::ULong i = 0; i < set.configuration_data.length(); ++i)
+    check_name("name of a configuration parameter", set.configuration_data[i].name);
+  coil::Properties node(set.id.in());
+  NVUtil::copyToProperties(node, set.configuration_data);
+  if (set.description.in()[0] != '\0') node.setProperty("description", set.description.in());
+  return node;
+}
+
+ConfigurationSet to_set(const coil::Properties& node) {
+  ConfigurationSet set;
+  set.id = node.getName();
+  set.description = node.getProperty("description").c_str();
+  NVUtil::copyFromProperties(set.configuration_data, node);
+  return set;
+}
+
+}  // namespace
+
+Configuration_impl::Configuration_impl(RTC::RTObject_impl& component, RTC::ConfigAdmin& configuration, RTC::SdoServiceAdmin& services)
+    : component_(component), configuration_(configuration), services_(services) {}
+
+CORBA::Boolean Configuration_impl::set_device_profile(const DeviceProfile& profile) {
+  const corba::Gate::Inside inside(gate_);
+  component_.setDeviceProfile(profile);
+  return true;
+}
+
+CORBA::Boolean Configuration_impl::add_service_profile(const ServiceProfile& profile) {
+  const corba::Gate::Inside inside(gate_);
+  return services_.addSdoServiceConsumer(profile);
+}
+
+CORBA::Boolean Configuration_impl::add_organization(Organization_ptr organization) {
+  const corba::Gate::Inside inside(gate_);
+  if (CORBA::is_nil(organization)) throw InvalidParameter("the organization is nil");
+  return component_.addOrganization(organization);
+}
+
+CORBA::Boolean Configuration_impl::remove_service_profile(const char* id) {
+  const corba::Gate::Inside inside(gate_);
+  if (id[0] == '\0') throw InvalidParameter("the id is empty");
+  return services_.removeSdoServiceConsumer(id);
+}
+
+CORBA::Boolean Configuration_impl::remove_organization(const char* organization_id) {
+  const corba::Gate::Inside inside(gate_);
+  if (organization_id[0] == '\0') throw InvalidParameter("the id is empty");
+  return component_.removeOrganization(organization_id);
+}
+
+ParameterList* Configuration_impl::get_configuration_parameters() { return new ParameterList(); }
+
+NVList* Configuration_impl::get_configuration_parameter_values() { return new NVList(); }
+
+CORBA::Any* Configuration_impl::get_configuration_parameter_value(const char* name) {
+  if (name[0] == '\0') throw InvalidParameter("the name is empty");
+  return new CORBA::Any();
+}
+
+CORBA::Boolean Configuration_impl::set_configuration_parameter(const char* name, const CORBA::Any&) {
+  if (name[0] == '\0') throw InvalidParameter("the name is empty");
+  return true;
+}
+
+ConfigurationSetList* Configuration_impl::get_configuration_sets() {
+  const corba::Gate::Inside inside(gate_);
+  const std::vector<coil::Properties> nodes = configuration_.getConfigurationSets();
+  ConfigurationSetList_var sets = new ConfigurationSetList();
+  sets->length(static_cast<CORBA::ULong>(nodes.size()));
+  for (CORBA::ULong i = 0; i < sets->length(); ++i) sets[i] = to_set(nodes[i]);
+  return sets._retn();
+}
+
+ConfigurationSet* Configuration_impl::get_configuration_set(const char* id) {
+  const corba::Gate::Inside inside(gate_);
+  if (!configuration_.haveConfig(id)) throw InternalError(("no configuration set " + base::in_quotes(id)).c_str());
+  return new ConfigurationSet(to_set(configuration_.getConfigurationSet(id)));
+}
+
+CORBA::Boolean Configuration_impl::set_configuration_set_values(const ConfigurationSet& set) {
+  const corba::Gate::Inside inside(gate_);
+  return configuration_.setConfigurationSetValues(to_properties(set));
+}
+
+ConfigurationSet* Configuration_impl::get_active_configuration_set() {
+  const corba::Gate::Inside inside(gate_);
+  if (!configuration_.isActive()) throw NotAvailable("a set has changed and none has been activated since");
+  return new ConfigurationSet(to_set(configuration_.getActiveConfigurationSet()));
+}
+
+CORBA::Boolean Configuration_impl::add_configuration_set(const ConfigurationSet& set) {
+  const corba::Gate::Inside inside(gate_);
+  return configuration_.addConfigurationSet(to_properties(set));
+}
+
+CORBA::Boolean Configuration_impl::remove_configuration_set(const char* id) {
+  const corba::Gate::Inside inside(gate_);
+  if (id[0] == '\0') throw InvalidParameter("the id is empty");
+  return configuration_.removeConfigurationSet(id);
+}
+
+CORBA::Boolean Configuration_impl::activate_configuration_set(const char* id) {
+  const corba::Gate::Inside inside(gate_);
+  if (id[0] == '\0') throw InvalidParameter("the id is empty");
+  if (!configuration_.activateConfigurationSet(id))
+    throw InvalidParameter(("no configuration set " + base::in_quotes(id) + " that can be active").c_str());
+  return true;
+}
+
+}  // namespace SDOPackage
