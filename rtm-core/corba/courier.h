@@ -1,5 +1,5 @@
-// Carries messages to one peer on a thread of its own, in order, so that a peer that hangs costs nobody else anything; and does something at
-// regular intervals on the same thread. Any thread.
+// Carries messages to one peer on a thread of its own, in order, so that a peer that hangs costs nobody else anything; and does something
+// at regular intervals on the same thread. Any thread.
 #pragma once
 
 #include <chrono>

@@ -61,16 +61,26 @@ rt::ReturnCode RemoteParticipant::call(rt::Action action) {
 
 RTC::ReturnCode_t RemoteParticipant::forward(rt::Action action) {
   switch (action) {
-    case rt::Action::startup: return component_->on_startup(handle_);
-    case rt::Action::shutdown: return component_->on_shutdown(handle_);
-    case rt::Action::activated: return component_->on_activated(handle_);
-    case rt::Action::deactivated: return component_->on_deactivated(handle_);
-    case rt::Action::aborting: return component_->on_aborting(handle_);
-    case rt::Action::error: return component_->on_error(handle_);
-    case rt::Action::reset: return component_->on_reset(handle_);
-    case rt::Action::execute: return CORBA::is_nil(data_flow_) ? RTC::RTC_OK : data_flow_->on_execute(handle_);
-    case rt::Action::state_update: return CORBA::is_nil(data_flow_) ? RTC::RTC_OK : data_flow_->on_state_update(handle_);
-    case rt::Action::rate_changed: return CORBA::is_nil(data_flow_) ? RTC::RTC_OK : data_flow_->on_rate_changed(handle_);
+    case rt::Action::startup:
+      return component_->on_startup(handle_);
+    case rt::Action::shutdown:
+      return component_->on_shutdown(handle_);
+    case rt::Action::activated:
+      return component_->on_activated(handle_);
+    case rt::Action::deactivated:
+      return component_->on_deactivated(handle_);
+    case rt::Action::aborting:
+      return component_->on_aborting(handle_);
+    case rt::Action::error:
+      return component_->on_error(handle_);
+    case rt::Action::reset:
+      return component_->on_reset(handle_);
+    case rt::Action::execute:
+      return CORBA::is_nil(data_flow_) ? RTC::RTC_OK : data_flow_->on_execute(handle_);
+    case rt::Action::state_update:
+      return CORBA::is_nil(data_flow_) ? RTC::RTC_OK : data_flow_->on_state_update(handle_);
+    case rt::Action::rate_changed:
+      return CORBA::is_nil(data_flow_) ? RTC::RTC_OK : data_flow_->on_rate_changed(handle_);
   }
   return RTC::RTC_ERROR;
 }

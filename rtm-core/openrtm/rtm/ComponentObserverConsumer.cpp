@@ -55,13 +55,20 @@ struct OldObserver {
   static constexpr std::pair<const char*, Kind> heartbeats[] = {{"heartbeat", Kind::rtc_heartbeat}};
   static bool to_wire(Kind kind, OpenRTM::StatusKind& wire) {
     switch (kind) {
-      case Kind::component_profile: return wire = OpenRTM::COMPONENT_PROFILE, true;
-      case Kind::rtc_status: return wire = OpenRTM::RTC_STATUS, true;
-      case Kind::ec_status: return wire = OpenRTM::EC_STATUS, true;
-      case Kind::port_profile: return wire = OpenRTM::PORT_PROFILE, true;
-      case Kind::configuration: return wire = OpenRTM::CONFIGURATION, true;
-      case Kind::rtc_heartbeat: return wire = OpenRTM::HEARTBEAT, true;
-      default: return false;
+      case Kind::component_profile:
+        return wire = OpenRTM::COMPONENT_PROFILE, true;
+      case Kind::rtc_status:
+        return wire = OpenRTM::RTC_STATUS, true;
+      case Kind::ec_status:
+        return wire = OpenRTM::EC_STATUS, true;
+      case Kind::port_profile:
+        return wire = OpenRTM::PORT_PROFILE, true;
+      case Kind::configuration:
+        return wire = OpenRTM::CONFIGURATION, true;
+      case Kind::rtc_heartbeat:
+        return wire = OpenRTM::HEARTBEAT, true;
+      default:
+        return false;
     }
   }
   using WireKind = OpenRTM::StatusKind;
@@ -343,7 +350,8 @@ class ObserverConsumer final : public SdoServiceConsumerBase {
     const std::vector<std::string> words = base::split_list(list);
     for (const auto& [kind, name] : kind_names) {
       bool wanted = words.empty();
-      for (const std::string& word : words) wanted = wanted || base::equal_ignoring_case(word, name) || base::equal_ignoring_case(word, "ALL");
+      for (const std::string& word : words)
+        wanted = wanted || base::equal_ignoring_case(word, name) || base::equal_ignoring_case(word, "ALL");
       if (wanted) kinds.insert(kind);
     }
     return kinds;

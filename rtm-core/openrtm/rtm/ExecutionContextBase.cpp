@@ -31,16 +31,26 @@ class LocalParticipant final : public rt::Participant {
  private:
   ReturnCode_t forward(rt::Action action) {
     switch (action) {
-      case rt::Action::startup: return component_->on_startup(handle_);
-      case rt::Action::shutdown: return component_->on_shutdown(handle_);
-      case rt::Action::activated: return component_->on_activated(handle_);
-      case rt::Action::deactivated: return component_->on_deactivated(handle_);
-      case rt::Action::aborting: return component_->on_aborting(handle_);
-      case rt::Action::error: return component_->on_error(handle_);
-      case rt::Action::reset: return component_->on_reset(handle_);
-      case rt::Action::execute: return component_->on_execute(handle_);
-      case rt::Action::state_update: return component_->on_state_update(handle_);
-      case rt::Action::rate_changed: return component_->on_rate_changed(handle_);
+      case rt::Action::startup:
+        return component_->on_startup(handle_);
+      case rt::Action::shutdown:
+        return component_->on_shutdown(handle_);
+      case rt::Action::activated:
+        return component_->on_activated(handle_);
+      case rt::Action::deactivated:
+        return component_->on_deactivated(handle_);
+      case rt::Action::aborting:
+        return component_->on_aborting(handle_);
+      case rt::Action::error:
+        return component_->on_error(handle_);
+      case rt::Action::reset:
+        return component_->on_reset(handle_);
+      case rt::Action::execute:
+        return component_->on_execute(handle_);
+      case rt::Action::state_update:
+        return component_->on_state_update(handle_);
+      case rt::Action::rate_changed:
+        return component_->on_rate_changed(handle_);
     }
     return RTC::RTC_ERROR;
   }
@@ -298,10 +308,14 @@ RTC::LifeCycleState ExecutionContextBase::getComponentState(RTC::LightweightRTOb
 
 const char* ExecutionContextBase::getStateString(RTC::LifeCycleState state) {
   switch (state) {
-    case RTC::CREATED_STATE: return "CREATED_STATE";
-    case RTC::INACTIVE_STATE: return "INACTIVE_STATE";
-    case RTC::ACTIVE_STATE: return "ACTIVE_STATE";
-    case RTC::ERROR_STATE: return "ERROR_STATE";
+    case RTC::CREATED_STATE:
+      return "CREATED_STATE";
+    case RTC::INACTIVE_STATE:
+      return "INACTIVE_STATE";
+    case RTC::ACTIVE_STATE:
+      return "ACTIVE_STATE";
+    case RTC::ERROR_STATE:
+      return "ERROR_STATE";
   }
   return "";
 }
@@ -335,9 +349,12 @@ const char* ExecutionContextBase::getKindString() const { return getKindString(g
 
 const char* ExecutionContextBase::getKindString(RTC::ExecutionKind kind) {
   switch (kind) {
-    case RTC::PERIODIC: return "PERIODIC";
-    case RTC::EVENT_DRIVEN: return "EVENT_DRIVEN";
-    case RTC::OTHER: return "OTHER";
+    case RTC::PERIODIC:
+      return "PERIODIC";
+    case RTC::EVENT_DRIVEN:
+      return "EVENT_DRIVEN";
+    case RTC::OTHER:
+      return "OTHER";
   }
   return "";
 }
@@ -348,7 +365,7 @@ RTC::ExecutionContextProfile* ExecutionContextBase::getProfile() {
   profile->rate = getRate();
   coil::Properties properties;
   {
-    const auto data = impl_->shared.lock();
+    auto data = impl_->shared.lock();
     properties = data->properties;
     profile->owner = RTC::RTObject::_duplicate(data->owner);
     for (const Member& member : data->members) {

@@ -14,16 +14,16 @@ const char* name_at(const char* const (&names)[n], Type type) {
 }  // namespace
 
 const char* PreComponentActionListener::toString(PreComponentActionListenerType type) {
-  static const char* const names[] = {"PRE_ON_INITIALIZE",  "PRE_ON_FINALIZE", "PRE_ON_STARTUP", "PRE_ON_SHUTDOWN",
-                                      "PRE_ON_ACTIVATED",   "PRE_ON_DEACTIVATED", "PRE_ON_ABORTING", "PRE_ON_ERROR",
-                                      "PRE_ON_RESET",       "PRE_ON_EXECUTE", "PRE_ON_STATE_UPDATE", "PRE_ON_RATE_CHANGED"};
+  static const char* const names[] = {"PRE_ON_INITIALIZE", "PRE_ON_FINALIZE",    "PRE_ON_STARTUP",      "PRE_ON_SHUTDOWN",
+                                      "PRE_ON_ACTIVATED",  "PRE_ON_DEACTIVATED", "PRE_ON_ABORTING",     "PRE_ON_ERROR",
+                                      "PRE_ON_RESET",      "PRE_ON_EXECUTE",     "PRE_ON_STATE_UPDATE", "PRE_ON_RATE_CHANGED"};
   return name_at(names, type);
 }
 
 const char* PostComponentActionListener::toString(PostComponentActionListenerType type) {
-  static const char* const names[] = {"POST_ON_INITIALIZE", "POST_ON_FINALIZE", "POST_ON_STARTUP", "POST_ON_SHUTDOWN",
-                                      "POST_ON_ACTIVATED", "POST_ON_DEACTIVATED", "POST_ON_ABORTING", "POST_ON_ERROR",
-                                      "POST_ON_RESET", "POST_ON_EXECUTE", "POST_ON_STATE_UPDATE", "POST_ON_RATE_CHANGED"};
+  static const char* const names[] = {"POST_ON_INITIALIZE", "POST_ON_FINALIZE",    "POST_ON_STARTUP",      "POST_ON_SHUTDOWN",
+                                      "POST_ON_ACTIVATED",  "POST_ON_DEACTIVATED", "POST_ON_ABORTING",     "POST_ON_ERROR",
+                                      "POST_ON_RESET",      "POST_ON_EXECUTE",     "POST_ON_STATE_UPDATE", "POST_ON_RATE_CHANGED"};
   return name_at(names, type);
 }
 

@@ -9,8 +9,7 @@ std::shared_ptr<RTObject_impl> find_in(PortableServer::POA_ptr poa, CORBA::Objec
   if (CORBA::is_nil(poa)) return nullptr;
   try {
     PortableServer::Servant servant = poa->reference_to_servant(object);
-    if (auto* component = dynamic_cast<RTObject_impl*>(servant))
-      return {component, [](RTObject_impl* counted) { counted->_remove_ref(); }};
+    if (auto* component = dynamic_cast<RTObject_impl*>(servant)) return {component, [](RTObject_impl* counted) { counted->_remove_ref(); }};
     servant->_remove_ref();
   } catch (const CORBA::Exception&) {
     // Not of this adapter: the normal case for components of other processes.

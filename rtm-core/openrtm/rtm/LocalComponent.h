@@ -9,7 +9,8 @@ namespace RTC {
 
 class RTObject_impl;
 
-// Null when the object lives elsewhere, is no component or is gone. The pointer keeps the servant alive, not its place in the object adapter.
+// Null when the object lives elsewhere, is no component or is gone. The pointer keeps the servant alive, not its place in the object
+// adapter.
 std::shared_ptr<RTObject_impl> findLocalComponent(CORBA::Object_ptr object);
 
 }  // namespace RTC

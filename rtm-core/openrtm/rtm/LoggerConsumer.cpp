@@ -20,14 +20,22 @@ constexpr const char* logger_id = "IDL:OpenRTM/Logger:1.0";
 OpenRTM::LogLevel to_wire(int level) {
   switch (level) {
     case Logger::RTL_FATAL:
-    case Logger::RTL_ERROR: return OpenRTM::RTM_ERROR;
-    case Logger::RTL_WARN: return OpenRTM::RTM_WARN;
-    case Logger::RTL_INFO: return OpenRTM::RTM_INFO;
-    case Logger::RTL_DEBUG: return OpenRTM::RTM_DEBUG;
-    case Logger::RTL_TRACE: return OpenRTM::RTM_TRACE;
-    case Logger::RTL_VERBOSE: return OpenRTM::RTM_VERBOSE;
-    case Logger::RTL_PARANOID: return OpenRTM::RTM_PARANOID;
-    default: return OpenRTM::RTM_SILENT;
+    case Logger::RTL_ERROR:
+      return OpenRTM::RTM_ERROR;
+    case Logger::RTL_WARN:
+      return OpenRTM::RTM_WARN;
+    case Logger::RTL_INFO:
+      return OpenRTM::RTM_INFO;
+    case Logger::RTL_DEBUG:
+      return OpenRTM::RTM_DEBUG;
+    case Logger::RTL_TRACE:
+      return OpenRTM::RTM_TRACE;
+    case Logger::RTL_VERBOSE:
+      return OpenRTM::RTM_VERBOSE;
+    case Logger::RTL_PARANOID:
+      return OpenRTM::RTM_PARANOID;
+    default:
+      return OpenRTM::RTM_SILENT;
   }
 }
 

@@ -26,7 +26,9 @@ class PeriodicExecutionContext::Steps final : public rt::Steps {
 };
 
 PeriodicExecutionContext::PeriodicExecutionContext(const std::string& name)
-    : ExecutionContextServant(name), steps_(std::make_unique<Steps>(*this)), worker_(std::make_unique<rt::PeriodicWorker>(context(), *steps_)) {
+    : ExecutionContextServant(name),
+      steps_(std::make_unique<Steps>(*this)),
+      worker_(std::make_unique<rt::PeriodicWorker>(context(), *steps_)) {
   setObjRef(RTC::ExecutionContextService_var(_this()));
   setKind(RTC::PERIODIC);
 }

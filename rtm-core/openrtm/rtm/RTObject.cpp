@@ -36,7 +36,7 @@ RTObject_impl::RTObject_impl(Manager* manager) : m_pManager(manager), impl_(std:
   m_pPOA = manager ? PortableServer::POA::_duplicate(manager->getPOA()) : PortableServer::POA::_the_root_poa();
   impl_->configuration = new SDOPackage::Configuration_impl(*this, m_configsets, impl_->services);
   OpenRTM::DataFlowComponent_var self = _this();
-  impl_->shared.lock()->reference = RTObject::_duplicate(self);
+  impl_->shared.lock()->reference = RTC::RTObject::_duplicate(self);
 }
 
 RTObject_impl::RTObject_impl(CORBA::ORB_ptr orb, PortableServer::POA_ptr poa) : RTObject_impl(nullptr) {
@@ -188,7 +188,7 @@ ReturnCode_t RTObject_impl::on_execute(ExecutionContextHandle_t exec_handle) {
     m_actionListeners.preaction_[PRE_ON_EXECUTE].notify(exec_handle);
     bool reads = false, writes = false;
     {
-      const auto data = impl_->shared.lock();
+      auto data = impl_->shared.lock();
       reads = data->reads_all;
       writes = data->writes_all;
     }
@@ -299,7 +299,7 @@ void RTObject_impl::leaveContexts() {
   std::vector<ExecutionContext_var> foreign;
   RTObject_var self;
   {
-    const auto data = impl_->shared.lock();
+    auto data = impl_->shared.lock();
     contexts = data->contexts;
     foreign = data->foreign;
     self = data->reference;
@@ -309,9 +309,14 @@ void RTObject_impl::leaveContexts() {
     if (CORBA::is_nil(context)) continue;
     try {
       switch (context->get_component_state(self)) {
-        case ACTIVE_STATE: context->deactivate_component(self); break;
-        case ERROR_STATE: context->reset_component(self); break;
-        default: break;
+        case ACTIVE_STATE:
+          context->deactivate_component(self);
+          break;
+        case ERROR_STATE:
+          context->reset_component(self);
+          break;
+        default:
+          break;
       }
       context->remove_component(self);
     } catch (const CORBA::Exception& exception) {
@@ -368,13 +373,11 @@ void RTObject_impl::takeNames() {
   if (!instance.empty() && instance != profile_.instance_name) setInstanceName(instance.c_str());
 }
 
-std::vector<std::string> RTObject_impl::getNamingNames() const {
-  return coil::split(m_properties.getProperty("naming.names"), ",", true);
-}
+std::vector<std::string> RTObject_impl::getNamingNames() const { return coil::split(m_properties.getProperty("naming.names"), ",", true); }
 
-void RTObject_impl::setObjRef(const RTObject_ptr rtobj) { impl_->shared.lock()->reference = RTObject::_duplicate(rtobj); }
+void RTObject_impl::setObjRef(const RTObject_ptr rtobj) { impl_->shared.lock()->reference = RTC::RTObject::_duplicate(rtobj); }
 
-RTObject_ptr RTObject_impl::getObjRef() const { return RTObject::_duplicate(impl_->shared.lock()->reference); }
+RTObject_ptr RTObject_impl::getObjRef() const { return RTC::RTObject::_duplicate(impl_->shared.lock()->reference); }
 
 void RTObject_impl::setProperties(const coil::Properties& prop) {
   m_properties << prop;
@@ -422,12 +425,12 @@ ComponentProfile* RTObject_impl::get_component_profile() {
 
 // --- listeners
 
-#define RTC_DEFINE_LISTENERS(What, Type, lists, count)                                             \
-  void RTObject_impl::add##What(Type type, What* listener, bool autoclean) {                       \
-    if (type < count) lists[type].addListener(listener, autoclean);                                \
-  }                                                                                                \
-  void RTObject_impl::remove##What(Type type, What* listener) {                                    \
-    if (type < count) lists[type].removeListener(listener);                                        \
+#define RTC_DEFINE_LISTENERS(What, Type, lists, count)                       \
+  void RTObject_impl::add##What(Type type, What* listener, bool autoclean) { \
+    if (type < count) lists[type].addListener(listener, autoclean);          \
+  }                                                                          \
+  void RTObject_impl::remove##What(Type type, What* listener) {              \
+    if (type < count) lists[type].removeListener(listener);                  \
   }
 RTC_DEFINE_LISTENERS(PreComponentActionListener, PreComponentActionListenerType, m_actionListeners.preaction_,
                      PRE_COMPONENT_ACTION_LISTENER_NUM)
@@ -439,11 +442,10 @@ RTC_DEFINE_LISTENERS(ExecutionContextActionListener, ExecutionContextActionListe
 RTC_DEFINE_LISTENERS(PreFsmActionListener, PreFsmActionListenerType, m_fsmListeners.preaction_, PRE_FSM_ACTION_LISTENER_NUM)
 RTC_DEFINE_LISTENERS(PostFsmActionListener, PostFsmActionListenerType, m_fsmListeners.postaction_, POST_FSM_ACTION_LISTENER_NUM)
 RTC_DEFINE_LISTENERS(PortConnectListener, PortConnectListenerType, m_portconnListeners.portconnect_, PORT_CONNECT_LISTENER_NUM)
-RTC_DEFINE_LISTENERS(PortConnectRetListener, PortConnectRetListenerType, m_portconnListeners.portconnret_,
-                     PORT_CONNECT_RET_LISTENER_NUM)
+RTC_DEFINE_LISTENERS(PortConnectRetListener, PortConnectRetListenerType, m_portconnListeners.portconnret_, PORT_CONNECT_RET_LISTENER_NUM)
 #undef RTC_DEFINE_LISTENERS
 
-#define RTC_DEFINE_LISTENERS(What, Type)                                                                                       \
+#define RTC_DEFINE_LISTENERS(What, Type)                                                                                          \
   void RTObject_impl::add##What(Type type, What* listener, bool autoclean) { m_configsets.add##What(type, listener, autoclean); } \
   void RTObject_impl::remove##What(Type type, What* listener) { m_configsets.remove##What(type, listener); }
 RTC_DEFINE_LISTENERS(ConfigurationParamListener, ConfigurationParamListenerType)

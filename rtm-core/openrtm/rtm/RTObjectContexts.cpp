@@ -70,9 +70,7 @@ class NamedContexts {
   base::Guarded<std::vector<Entry>, base::Rank::registry> entries_;
 };
 
-bool is_same(ExecutionContext_ptr a, ExecutionContext_ptr b) {
-  return !CORBA::is_nil(a) && !CORBA::is_nil(b) && a->_is_equivalent(b);
-}
+bool is_same(ExecutionContext_ptr a, ExecutionContext_ptr b) { return !CORBA::is_nil(a) && !CORBA::is_nil(b) && a->_is_equivalent(b); }
 
 }  // namespace
 
@@ -147,7 +145,7 @@ CORBA::Boolean RTObject_impl::is_alive(ExecutionContext_ptr exec_context) { retu
 ExecutionContext_ptr RTObject_impl::get_context(ExecutionContextHandle_t exec_handle) { return getExecutionContext(exec_handle); }
 
 ExecutionContext_ptr RTObject_impl::getExecutionContext(RTC::UniqueId ec_id) {
-  const auto data = impl_->shared.lock();
+  auto data = impl_->shared.lock();
   const bool is_foreign = ec_id >= foreign_offset;
   const auto& list = is_foreign ? data->foreign : data->own;
   const auto index = static_cast<std::size_t>(is_foreign ? ec_id - foreign_offset : ec_id);
@@ -157,7 +155,7 @@ ExecutionContext_ptr RTObject_impl::getExecutionContext(RTC::UniqueId ec_id) {
 
 ExecutionContextList* RTObject_impl::get_owned_contexts() {
   ExecutionContextList_var list = new ExecutionContextList();
-  const auto data = impl_->shared.lock();
+  auto data = impl_->shared.lock();
   for (const ExecutionContext_var& context : data->own) {
     const CORBA::ULong n = list->length();
     list->length(n + 1);
@@ -168,7 +166,7 @@ ExecutionContextList* RTObject_impl::get_owned_contexts() {
 
 ExecutionContextList* RTObject_impl::get_participating_contexts() {
   ExecutionContextList_var list = new ExecutionContextList();
-  const auto data = impl_->shared.lock();
+  auto data = impl_->shared.lock();
   for (const ExecutionContext_var& context : data->foreign) {
     if (CORBA::is_nil(context)) continue;
     const CORBA::ULong n = list->length();
@@ -179,7 +177,7 @@ ExecutionContextList* RTObject_impl::get_participating_contexts() {
 }
 
 ExecutionContextHandle_t RTObject_impl::get_context_handle(ExecutionContext_ptr cxt) {
-  const auto data = impl_->shared.lock();
+  auto data = impl_->shared.lock();
   for (std::size_t i = 0; i < data->own.size(); ++i)
     if (is_same(data->own[i], cxt)) return static_cast<ExecutionContextHandle_t>(i);
   for (std::size_t i = 0; i < data->foreign.size(); ++i)

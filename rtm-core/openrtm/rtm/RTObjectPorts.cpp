@@ -116,7 +116,9 @@ bool take(List& list, Fits fits, typename List::value_type& taken) {
 
 bool RTObject_impl::removePort(PortBase& port) {
   Port taken;
-  if (!take(impl_->shared.lock()->ports, [&](const Port& entry) { return entry.local == &port; }, taken)) return false;
+  if (!take(
+          impl_->shared.lock()->ports, [&](const Port& entry) { return entry.local == &port; }, taken))
+    return false;
   return removePort(taken);
 }
 
@@ -174,7 +176,7 @@ void RTObject_impl::deactivatePorts(UniqueId exec_handle) {
 
 PortServiceList* RTObject_impl::get_ports() {
   PortServiceList_var list = new PortServiceList();
-  const auto data = impl_->shared.lock();
+  auto data = impl_->shared.lock();
   list->length(static_cast<CORBA::ULong>(data->ports.size()));
   for (CORBA::ULong i = 0; i < list->length(); ++i) list[i] = PortService::_duplicate(data->ports[i].reference);
   return list._retn();
@@ -182,7 +184,7 @@ PortServiceList* RTObject_impl::get_ports() {
 
 std::vector<InPortBase*> RTObject_impl::getInPorts() const {
   std::vector<InPortBase*> ports;
-  const auto data = impl_->shared.lock();
+  auto data = impl_->shared.lock();
   for (const Port& port : data->ports)
     if (port.in) ports.push_back(port.in);
   return ports;
@@ -190,7 +192,7 @@ std::vector<InPortBase*> RTObject_impl::getInPorts() const {
 
 std::vector<OutPortBase*> RTObject_impl::getOutPorts() const {
   std::vector<OutPortBase*> ports;
-  const auto data = impl_->shared.lock();
+  auto data = impl_->shared.lock();
   for (const Port& port : data->ports)
     if (port.out) ports.push_back(port.out);
   return ports;
@@ -198,7 +200,7 @@ std::vector<OutPortBase*> RTObject_impl::getOutPorts() const {
 
 std::vector<PortBase*> RTObject_impl::getLocalPorts() const {
   std::vector<PortBase*> ports;
-  const auto data = impl_->shared.lock();
+  auto data = impl_->shared.lock();
   for (const Port& port : data->ports)
     if (port.local) ports.push_back(port.local);
   return ports;

@@ -9,7 +9,7 @@ namespace RTC {
 SDOPackage::OrganizationList* RTObject_impl::get_owned_organizations() {
   std::vector<SDOPackage::Organization_impl*> owned;
   {
-    const auto data = impl_->shared.lock();
+    auto data = impl_->shared.lock();
     owned = data->owned_organizations;
     for (auto* organization : owned) organization->_add_ref();
   }
@@ -52,7 +52,7 @@ SDOPackage::Monitoring_ptr RTObject_impl::get_monitoring() { throw SDOPackage::I
 
 SDOPackage::OrganizationList* RTObject_impl::get_organizations() {
   SDOPackage::OrganizationList_var list = new SDOPackage::OrganizationList();
-  const auto data = impl_->shared.lock();
+  auto data = impl_->shared.lock();
   list->length(static_cast<CORBA::ULong>(data->organizations.size()));
   for (CORBA::ULong i = 0; i < list->length(); ++i) list[i] = SDOPackage::Organization::_duplicate(data->organizations[i]);
   return list._retn();

@@ -14,8 +14,6 @@ bool RTObjectStateMachine::isEquivalent(RTC::LightweightRTObject_ptr component) 
 
 RTC::LifeCycleState RTObjectStateMachine::getState() const { return static_cast<RTC::LifeCycleState>(context_->state(member_)); }
 
-RTC::LifeCycleState RTObjectStateMachine::getNextState() const {
-  return static_cast<RTC::LifeCycleState>(context_->next_state(member_));
-}
+RTC::LifeCycleState RTObjectStateMachine::getNextState() const { return static_cast<RTC::LifeCycleState>(context_->next_state(member_)); }
 
 }  // namespace RTC_impl

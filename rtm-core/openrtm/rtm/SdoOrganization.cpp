@@ -24,7 +24,7 @@ OrganizationProperty* Organization_impl::get_organization_property() { return ne
 CORBA::Any* Organization_impl::get_organization_property_value(const char* name) {
   if (name[0] == '\0') throw InvalidParameter("the name is empty");
   {
-    const auto data = shared_.lock();
+    auto data = shared_.lock();
     const CORBA::Long index = NVUtil::find_index(data->property.properties, name);
     if (index >= 0) return new CORBA::Any(data->property.properties[static_cast<CORBA::ULong>(index)].value);
   }

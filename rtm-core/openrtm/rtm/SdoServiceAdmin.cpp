@@ -100,7 +100,7 @@ void SdoServiceAdmin::exit() {
 
 SDOPackage::ServiceProfileList* SdoServiceAdmin::getServiceProviderProfiles() const {
   SDOPackage::ServiceProfileList_var profiles = new SDOPackage::ServiceProfileList();
-  const auto data = impl_->shared.lock();
+  auto data = impl_->shared.lock();
   profiles->length(static_cast<CORBA::ULong>(data->providers.size()));
   for (CORBA::ULong i = 0; i < profiles->length(); ++i) profiles[i] = data->providers[i].profile;
   return profiles._retn();
@@ -108,7 +108,7 @@ SDOPackage::ServiceProfileList* SdoServiceAdmin::getServiceProviderProfiles() co
 
 SDOPackage::ServiceProfile* SdoServiceAdmin::getServiceProviderProfile(const char* id) const {
   const std::string wanted = id;
-  const auto data = impl_->shared.lock();
+  auto data = impl_->shared.lock();
   for (const Provider& provider : data->providers)
     if (wanted == provider.profile.id.in()) return new SDOPackage::ServiceProfile(provider.profile);
   for (const Provider& provider : data->providers)
@@ -146,7 +146,7 @@ bool SdoServiceAdmin::addSdoServiceConsumer(const SDOPackage::ServiceProfile& pr
   std::shared_ptr<SdoServiceConsumerBase> known;
   std::string enabled;
   {
-    const auto data = impl_->shared.lock();
+    auto data = impl_->shared.lock();
     enabled = data->enabled_consumers;
     for (const Consumer& consumer : data->consumers)
       if (consumer.id == id) known = consumer.consumer;
