@@ -1,0 +1,53 @@
+// LaserObstacleAvoid: drives so that nothing is hit. InPort `range` (RTC::RangeData), OutPort `velocity` (RTC::TimedVelocity2D).
+// Configuration: the settings of avoidance.h; scan_timeout [s of the context's time]: the robot is stopped when no scan has come for so
+// long.
+#pragma once
+
+#include <rtm/DataFlowComponentBase.h>
+#include <rtm/DataInPort.h>
+#include <rtm/DataOutPort.h>
+#include <rtm/Manager.h>
+#include <rtm/idl/ExtendedDataTypesSkel.h>
+#include <rtm/idl/InterfaceDataTypesSkel.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+
+#include "avoidance.h"
+
+class LaserObstacleAvoid : public RTC::DataFlowComponentBase {
+ public:
+  explicit LaserObstacleAvoid(RTC::Manager* manager);
+  RTC::ReturnCode_t onInitialize() override;
+  RTC::ReturnCode_t onActivated(RTC::UniqueId ec_id) override;
+  RTC::ReturnCode_t onDeactivated(RTC::UniqueId ec_id) override;
+  RTC::ReturnCode_t onAborting(RTC::UniqueId ec_id) override;
+  RTC::ReturnCode_t onExecute(RTC::UniqueId ec_id) override;
+
+  // A scan is in the port's buffer. Any thread.
+  void scan_arrived();
+
+ private:
+  void wait_for_scan();
+  void drive(const avoidance::Velocity& velocity, const RTC::Time& time);
+  void stop(const char* why);
+
+  avoidance::Settings settings_;
+  double scan_timeout_ = 1;
+
+  RTC::RangeData range_;
+  RTC::InPort<RTC::RangeData> range_in_;
+  RTC::TimedVelocity2D velocity_;
+  RTC::OutPort<RTC::TimedVelocity2D> velocity_out_;
+
+  std::mutex mutex_;
+  std::condition_variable arrived_;
+  bool has_arrived_ = false;
+  std::chrono::nanoseconds last_scan_{0};
+  bool is_driving_ = false;
+};
+
+extern "C" {
+DLL_EXPORT void LaserObstacleAvoidInit(RTC::Manager* manager);
+}

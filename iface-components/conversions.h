@@ -1,0 +1,29 @@
+// Samples of ifaces as data of the standard types. Angles rad, lengths m, time stamps simulated. Pure; any thread.
+#pragma once
+
+#include <rtm/idl/BasicDataTypeSkel.h>
+#include <rtm/idl/ExtendedDataTypesSkel.h>
+#include <rtm/idl/InterfaceDataTypesSkel.h>
+#include <shm/client.h>
+
+#include <chrono>
+
+namespace iface {
+
+RTC::Time to_time(std::int64_t sim_time_ns);
+RTC::Point3D to_point(const shm::Pose& pose);
+// Roll, pitch, yaw about the fixed x, y, z axes, in this order.
+RTC::Orientation3D to_orientation(const shm::Pose& pose);
+RTC::Pose3D to_pose(const shm::Pose& pose);
+
+// A range on a port is never NaN, never negative, never infinite: no hit is max_range, too near is min_range.
+double port_range(float range, double min_range, double max_range);
+
+// The layer of a scanner that looks nearest to the horizon.
+std::uint32_t level_layer(const shm::LaserInfo& info);
+// One layer of a scan, with the scanner's geometry and configuration. Keeps the memory that `data` has.
+void to_range_data(const shm::LaserInfo& info, const shm::ScanView& scan, std::uint32_t layer, RTC::RangeData& data);
+void to_range_data(const shm::SonarInfo& info, std::span<const shm::Pose> poses, const shm::SonarView& scan, RTC::RangeData& data);
+void to_gps_data(const shm::GpsInfo& info, const shm::GpsSample& sample, RTC::GPSData& data);
+
+}  // namespace iface

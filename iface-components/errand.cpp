@@ -1,0 +1,51 @@
+#include "errand.h"
+
+#include <shm/request_board.h>
+
+namespace iface {
+namespace {
+
+constexpr std::size_t longest_queue = 100;
+constexpr std::chrono::seconds answer_limit{10};
+
+}  // namespace
+
+Errand::Errand(Say say) : say_(std::move(say)) {}
+
+Errand::~Errand() = default;  // the thread is asked to stop and joined first
+
+void Errand::post(int server_id, const shm::Request& request) {
+  bool is_full = false;
+  {
+    const std::scoped_lock lock(mutex_);
+    is_full = jobs_.size() >= longest_queue;
+    if (!is_full) jobs_.push_back({server_id, request});
+    if (!thread_.joinable()) thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+  }
+  posted_.notify_one();
+  if (is_full)
+    say_(true, "request " + std::string(shm::request_name(request)) + ": dropped, the simulator does not answer the ones before");
+}
+
+void Errand::run(const std::stop_token& stop) {
+  while (true) {
+    Job job;
+    {
+      std::unique_lock lock(mutex_);
+      if (!posted_.wait(lock, stop, [this] { return !jobs_.empty(); })) return;
+      job = std::move(jobs_.front());
+      jobs_.pop_front();
+    }
+    const auto what = "request " + std::string(shm::request_name(job.request));
+    auto requester = shm::Requester::open(static_cast<std::uint32_t>(job.server_id));
+    if (!requester) {
+      say_(true, what + ": " + requester.error().message);
+      continue;
+    }
+    const auto reply = requester->ask(job.request, answer_limit);
+    if (!reply) say_(true, what + ": " + reply.error().message);
+    if (reply && reply->status != shm::RequestStatus::ok) say_(true, what + ": " + reply->message);
+  }
+}
+
+}  // namespace iface

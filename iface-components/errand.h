@@ -1,0 +1,38 @@
+// Requests to a simulation that nobody waits for. A component in lock step must not wait for an answer: the server answers between ticks,
+// and the tick waits for the component. post() from any thread.
+#pragma once
+
+#include <shm/requests.h>
+
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <thread>
+
+#include "iface_link.h"
+
+namespace iface {
+
+class Errand {
+ public:
+  explicit Errand(Say say);
+  ~Errand();  // what has not been asked yet is dropped
+
+  // In the order of the calls. Failures are said. Posts beyond a hundred that wait are refused and said.
+  void post(int server_id, const shm::Request& request);
+
+ private:
+  struct Job {
+    int server_id;
+    shm::Request request;
+  };
+  void run(const std::stop_token& stop);
+
+  Say say_;
+  std::mutex mutex_;
+  std::condition_variable_any posted_;
+  std::deque<Job> jobs_;
+  std::jthread thread_;  // last: it uses the others
+};
+
+}  // namespace iface

@@ -1,0 +1,61 @@
+#include "iface_component.h"
+
+namespace iface {
+
+IfaceComponent::IfaceComponent(RTC::Manager* manager, shm::IfaceType type, bool subscribe)
+    : RTC::DataFlowComponentBase(manager), subscribe_(subscribe), link_(type, say()) {}
+
+Say IfaceComponent::say() {
+  return [this](bool is_problem, const std::string& line) {
+    if (is_problem) {
+      RTC_WARN(("%s", line.c_str()));
+    } else {
+      RTC_INFO(("%s", line.c_str()));
+    }
+  };
+}
+
+void IfaceComponent::bindDevice(const char* default_device) {
+  bindParameter("server_id", server_id_, "0");
+  bindParameter("device_id", device_id_, default_device);
+}
+
+bool IfaceComponent::attach() {
+  const auto device = configured();
+  if (const auto done = link_.attach(device, subscribe_); !done) {
+    RTC_ERROR(("%s", done.error().message.c_str()));
+    return false;
+  }
+  attached(device);
+  return true;
+}
+
+void IfaceComponent::detach() {
+  detaching();
+  link_.detach();
+}
+
+bool IfaceComponent::follow_configuration() {
+  if (configured() == link_.device()) return true;
+  detach();
+  return attach();
+}
+
+RTC::ReturnCode_t IfaceComponent::onActivated(RTC::UniqueId) { return attach() ? RTC::RTC_OK : RTC::RTC_ERROR; }
+
+RTC::ReturnCode_t IfaceComponent::onDeactivated(RTC::UniqueId) {
+  detach();
+  return RTC::RTC_OK;
+}
+
+RTC::ReturnCode_t IfaceComponent::onAborting(RTC::UniqueId) {
+  detach();
+  return RTC::RTC_OK;
+}
+
+RTC::ReturnCode_t IfaceComponent::onFinalize() {
+  detach();
+  return RTC::RTC_OK;
+}
+
+}  // namespace iface

@@ -1,0 +1,45 @@
+// What the components that carry one iface have in common: the configuration server_id and device_id, attaching on activation, detaching
+// on deactivation, and following changes of both while running.
+#pragma once
+
+#include <rtm/DataFlowComponentBase.h>
+#include <rtm/Manager.h>
+
+#include <string>
+
+#include "iface_link.h"
+
+namespace iface {
+
+class IfaceComponent : public RTC::DataFlowComponentBase {
+ public:
+  IfaceComponent(RTC::Manager* manager, shm::IfaceType type, bool subscribe);
+
+  RTC::ReturnCode_t onActivated(RTC::UniqueId ec_id) override;
+  RTC::ReturnCode_t onDeactivated(RTC::UniqueId ec_id) override;
+  RTC::ReturnCode_t onAborting(RTC::UniqueId ec_id) override;
+  RTC::ReturnCode_t onFinalize() override;
+
+ protected:
+  // To be called in onInitialize.
+  void bindDevice(const char* default_device);
+  // Attaches anew when the configuration names another device. False: it names none that exists; the line is logged.
+  bool follow_configuration();
+  IfaceLink& link() { return link_; }
+  // Called after each attachment, and before the iface is let go.
+  virtual void attached(const Device&) {}
+  virtual void detaching() {}
+  Say say();
+
+ private:
+  Device configured() const { return {server_id_, device_id_}; }
+  bool attach();
+  void detach();
+
+  int server_id_ = 0;
+  std::string device_id_;
+  bool subscribe_;
+  IfaceLink link_;
+};
+
+}  // namespace iface

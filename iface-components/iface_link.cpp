@@ -1,0 +1,77 @@
+#include "iface_link.h"
+
+#include "sim_clock.h"
+
+namespace iface {
+namespace {
+
+constexpr std::chrono::milliseconds retry_period{200};
+constexpr std::chrono::milliseconds longest_wait{50};
+
+}  // namespace
+
+std::chrono::nanoseconds wait_limit() { return in_simulated_time() ? std::chrono::nanoseconds(0) : std::chrono::nanoseconds(longest_wait); }
+
+IfaceLink::IfaceLink(shm::IfaceType type, Say say) : type_(type), say_(std::move(say)) {}
+
+base::Result<void> IfaceLink::attach(const Device& device, bool subscribe) {
+  detach();
+  if (device.server_id < 0) return base::Error{"server_id must not be negative, got " + std::to_string(device.server_id)};
+  auto iface = shm::Iface::open(static_cast<std::uint32_t>(device.server_id), type_, device.device_id);
+  if (!iface) return iface.error();
+  if (subscribe) {
+    if (auto subscribed = iface->subscribe(); !subscribed) return subscribed;
+  }
+  iface_.emplace(std::move(*iface));
+  device_ = device;
+  subscribe_ = subscribe;
+  lost_ = false;
+  last_ = 0;
+  return {};
+}
+
+void IfaceLink::detach() {
+  iface_.reset();
+  lost_ = false;
+}
+
+void IfaceLink::lose(const std::string& why) {
+  if (!lost_)
+    say_(true, "iface " + device_.device_id + " of server " + std::to_string(device_.server_id) + " is lost: " + why + "; waiting for it");
+  lost_ = true;
+  next_try_ = Clock::now() + retry_period;
+}
+
+shm::Iface* IfaceLink::live() {
+  if (!iface_) return nullptr;
+  if (!lost_) {
+    const auto status = iface_->status();
+    if (status == shm::Status::live) return &*iface_;
+    lose(status == shm::Status::dead ? "the simulator died" : "the simulator has closed it");
+  }
+  if (Clock::now() < next_try_) return nullptr;
+  next_try_ = Clock::now() + retry_period;
+  if (!iface_->reopen()) return nullptr;
+  last_ = 0;
+  lost_ = false;
+  say_(false, "iface " + device_.device_id + " of server " + std::to_string(device_.server_id) + " is there again");
+  return &*iface_;
+}
+
+shm::Iface* IfaceLink::fresh(std::chrono::nanoseconds limit) {
+  auto* iface = live();
+  if (!iface) return nullptr;
+  switch (iface->wait(last_, limit)) {
+    case shm::Wait::fresh:
+      last_ = iface->sample<shm::Stamp>().sequence;
+      return iface;
+    case shm::Wait::timed_out:
+      return nullptr;
+    case shm::Wait::closed:
+      break;
+  }
+  lose("the simulator is gone");
+  return nullptr;
+}
+
+}  // namespace iface

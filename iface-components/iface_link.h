@@ -1,0 +1,57 @@
+// A component's hold on one iface: attaches, reads, and attaches again when the simulator has been restarted. One thread at a time.
+//
+// States: detached -> attached -> lost -> attached ... -> detached. What happens is said once per change, never per sample.
+#pragma once
+
+#include <shm/client.h>
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace iface {
+
+struct Device {
+  int server_id = 0;
+  std::string device_id;  // name of the iface, e.g. pioneer2dx::laser
+  bool operator==(const Device&) const = default;
+};
+
+// One line for the log; is_problem tells a warning from good news.
+using Say = std::function<void(bool is_problem, const std::string& line)>;
+
+class IfaceLink {
+ public:
+  IfaceLink(shm::IfaceType type, Say say);
+
+  // Fails with a line that names what there is instead.
+  base::Result<void> attach(const Device& device, bool subscribe);
+  void detach();
+  const Device& device() const { return device_; }
+
+  // The iface while it lives; nullptr while it is lost. Looks for it again now and then.
+  shm::Iface* live();
+  // Waits up to `limit` for a sample newer than the last one that this returned; nullptr when there is none or the iface is lost. The
+  // sample is in the iface then.
+  shm::Iface* fresh(std::chrono::nanoseconds limit);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void lose(const std::string& why);
+
+  shm::IfaceType type_;
+  Say say_;
+  Device device_;
+  std::optional<shm::Iface> iface_;
+  bool subscribe_ = false;
+  bool lost_ = false;
+  std::uint64_t last_ = 0;
+  Clock::time_point next_try_{};
+};
+
+// How long a sensor's component may wait in onExecute for the next sample: in real time so that a sample is forwarded when it comes and not
+// when the context looks, in simulated time not at all.
+std::chrono::nanoseconds wait_limit();
+
+}  // namespace iface

@@ -1,0 +1,66 @@
+#include "rtc_imu.h"
+
+#include "conversions.h"
+
+// clang-format off
+static const char* const rtcimu_spec[] = {
+    "implementation_id", "RTCImu",
+    "type_name", "RTCImu",
+    "description", "Inertial measurement unit of a simulated robot",
+    "version", "1.0.0",
+    "vendor", "rtm-sim",
+    "category", "simulation",
+    "activity_type", "PERIODIC",
+    "kind", "DataFlowComponent",
+    "max_instance", "0",
+    "language", "C++",
+    "lang_type", "compile",
+    "exec_cxt.periodic.rate", "1000",
+    "exec_cxt.sim_time.phase", "0",
+    "conf.default.server_id", "0",
+    "conf.default.device_id", "pioneer2dx::imu",
+    "conf.__type__.server_id", "int",
+    "conf.__type__.device_id", "string",
+    "conf.__widget__.server_id", "spin",
+    "conf.__widget__.device_id", "text",
+    "conf.__constraints__.server_id", "0<=x<=65535",
+    ""};
+// clang-format on
+
+RTCImu::RTCImu(RTC::Manager* manager)
+    : IfaceComponent(manager, shm::IfaceType::imu, true),
+      orientation_out_("orientation", orientation_),
+      angular_velocity_out_("angular_velocity", angular_velocity_),
+      acceleration_out_("acceleration", acceleration_) {}
+
+RTC::ReturnCode_t RTCImu::onInitialize() {
+  addOutPort("orientation", orientation_out_);
+  addOutPort("angular_velocity", angular_velocity_out_);
+  addOutPort("acceleration", acceleration_out_);
+  bindDevice("pioneer2dx::imu");
+  return RTC::RTC_OK;
+}
+
+RTC::ReturnCode_t RTCImu::onExecute(RTC::UniqueId) {
+  if (!follow_configuration()) return RTC::RTC_ERROR;
+  auto* device = link().fresh(iface::wait_limit());
+  if (!device) return RTC::RTC_OK;
+  const auto& sample = device->sample<shm::ImuSample>();
+  if (!sample.stamp.valid) return RTC::RTC_OK;
+  const auto& q = sample.orientation;
+  orientation_.tm = angular_velocity_.tm = acceleration_.tm = iface::to_time(sample.stamp.sim_time_ns);
+  orientation_.data = iface::to_orientation({0, 0, 0, q[0], q[1], q[2], q[3]});
+  angular_velocity_.data = {sample.angular_velocity[0], sample.angular_velocity[1], sample.angular_velocity[2]};
+  acceleration_.data = {sample.acceleration[0], sample.acceleration[1], sample.acceleration[2]};
+  orientation_out_.write();
+  angular_velocity_out_.write();
+  acceleration_out_.write();
+  return RTC::RTC_OK;
+}
+
+extern "C" {
+void RTCImuInit(RTC::Manager* manager) {
+  coil::Properties profile(rtcimu_spec);
+  manager->registerFactory(profile, RTC::Create<RTCImu>, RTC::Delete<RTCImu>);
+}
+}

@@ -1,0 +1,23 @@
+// RTCSonar: carries a sonar iface to the OutPort `range` (RTC::RangeData); where each transducer sits and looks is in elementGeometries.
+// Configuration: server_id, device_id.
+#pragma once
+
+#include <rtm/DataOutPort.h>
+#include <rtm/idl/InterfaceDataTypesSkel.h>
+
+#include "iface_component.h"
+
+class RTCSonar : public iface::IfaceComponent {
+ public:
+  explicit RTCSonar(RTC::Manager* manager);
+  RTC::ReturnCode_t onInitialize() override;
+  RTC::ReturnCode_t onExecute(RTC::UniqueId ec_id) override;
+
+ private:
+  RTC::RangeData range_;
+  RTC::OutPort<RTC::RangeData> range_out_;
+};
+
+extern "C" {
+DLL_EXPORT void RTCSonarInit(RTC::Manager* manager);
+}

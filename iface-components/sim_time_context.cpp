@@ -1,0 +1,150 @@
+#include "sim_time_context.h"
+
+#include <base/text.h>
+#include <rtm/ECFactory.h>
+
+#include <cstdlib>
+#include <thread>
+
+namespace {
+
+constexpr std::chrono::milliseconds longest_wait{100};
+constexpr std::chrono::milliseconds retry_period{100};
+constexpr int highest_server = 65535;
+constexpr std::int64_t highest_phase = 15;
+
+int default_server() {
+  const char* text = std::getenv("RTMSIM_SERVER_ID");
+  return static_cast<int>(base::parse_integer(text ? text : "0").value_or(0));
+}
+
+}  // namespace
+
+SimTimeContext::SimTimeContext(const std::string& name) : RTC::PeriodicExecutionContext(name), server_id_(default_server()) {}
+
+SimTimeContext::~SimTimeContext() {
+  stop();
+  coil::Task::wait();
+}
+
+void SimTimeContext::init(coil::Properties& properties) {
+  RTC::PeriodicExecutionContext::init(properties);
+  const auto number = [&](const char* key, std::int64_t highest, std::int64_t otherwise) {
+    const std::string text = properties.getProperty(key);
+    if (text.empty()) return otherwise;
+    const auto value = base::parse_integer(text);
+    if (value && *value >= 0 && *value <= highest) return *value;
+    RTC_WARN(("exec_cxt.%s must be a number from 0 to %d, got %s", key, static_cast<int>(highest), base::in_quotes(text).c_str()));
+    return otherwise;
+  };
+  server_id_ = static_cast<int>(number("sim_time.server_id", highest_server, server_id_));
+  phase_ = static_cast<std::uint32_t>(number("sim_time.phase", highest_phase, phase_));
+}
+
+void SimTimeContext::say_once(const std::string& line) {
+  if (line == said_) return;
+  said_ = line;
+  RTC_INFO(("%s", line.c_str()));
+}
+
+std::string SimTimeContext::participant_name() const {
+  try {
+    const RTC::RTObject_var owner = getOwner();
+    if (CORBA::is_nil(owner)) return getName();
+    const RTC::ComponentProfile_var profile = owner->get_component_profile();
+    return profile->instance_name.in();
+  } catch (const CORBA::Exception&) {
+    return getName();  // the owner is just going
+  }
+}
+
+std::shared_ptr<shm::Participant> SimTimeContext::join() {
+  shm::ParticipantOptions options;
+  options.name = participant_name();
+  options.phase = phase_;
+  options.period = getPeriod();
+  auto joined = shm::Participant::join(static_cast<std::uint32_t>(server_id_), options);
+  if (!joined) {
+    say_once("waiting for the simulator: " + joined.error().message);
+    return nullptr;
+  }
+  auto simulation = shm::Iface::open(static_cast<std::uint32_t>(server_id_), shm::IfaceType::simulation, "simulation");
+  if (!simulation) return nullptr;
+  simulation_.emplace(std::move(*simulation));
+  say_once("ticking at " + base::format_number(getRate()) + " Hz of simulated time, phase " + std::to_string(phase_) + " of simulator " +
+           std::to_string(server_id_));
+  auto participant = std::make_shared<shm::Participant>(std::move(*joined));
+  const std::scoped_lock lock(mutex_);
+  participant_ = participant;
+  return participant;
+}
+
+bool SimTimeContext::time_stands_still() {
+  if (!simulation_ || !simulation_->read()) return true;
+  const auto& sample = simulation_->sample<shm::SimulationSample>();
+  return sample.paused != 0 || sample.waiting_for != 0;
+}
+
+void SimTimeContext::run(shm::Participant& participant) {
+  shm::Tick tick;
+  while (threadRunning()) {
+    switch (participant.wait(tick, longest_wait)) {
+      case shm::Participant::State::tick:
+        clock_.set(tick.now);
+        invokeWorkerPreDo();
+        invokeWorkerDo();
+        invokeWorkerPostDo();
+        break;
+      case shm::Participant::State::timed_out:
+        if (time_stands_still()) invokeWorkerPreDo();
+        break;
+      case shm::Participant::State::dropped:
+        return say_once("the simulator has dropped this context from the lock step; joining again");
+      case shm::Participant::State::closed:
+        return say_once("the simulator is gone; waiting for it");
+    }
+  }
+}
+
+int SimTimeContext::svc() {
+  while (threadRunning()) {
+    if (const auto participant = join()) {
+      run(*participant);
+      const std::scoped_lock lock(mutex_);
+      participant_.reset();
+    } else {
+      // Without a simulator time stands still, and a component can still be activated and deactivated.
+      invokeWorkerPreDo();
+      std::this_thread::sleep_for(retry_period);  // nothing announces a simulator that does not exist yet
+    }
+    simulation_.reset();
+  }
+  return 0;
+}
+
+void SimTimeContext::interrupt() {
+  const std::scoped_lock lock(mutex_);
+  if (participant_) participant_->interrupt();
+}
+
+void SimTimeContext::onWakeUp() {
+  RTC::PeriodicExecutionContext::onWakeUp();
+  interrupt();
+}
+
+RTC::ReturnCode_t SimTimeContext::onStopping() {
+  interrupt();
+  return RTC::PeriodicExecutionContext::onStopping();
+}
+
+RTC::ReturnCode_t SimTimeContext::onSetRate(double) {
+  const std::scoped_lock lock(mutex_);
+  if (participant_) participant_->set_period(getPeriod());
+  return RTC::RTC_OK;
+}
+
+extern "C" {
+void SimTimeContextInit(RTC::Manager*) {
+  RTC::ExecutionContextFactory::instance().addFactory("SimTimeContext", RTC::ECCreate<SimTimeContext>, RTC::ECDelete<SimTimeContext>);
+}
+}

@@ -1,0 +1,56 @@
+// SimTimeContext: an execution context on simulated time. It ticks its components at `rate` in simulated time and follows pause, step,
+// reset and restart of the simulator; with `sim-server --lockstep` time passes only when the components have finished their tick.
+//
+// A component asks for it with `exec_cxt.periodic.type: SimTimeContext` (and `manager.modules.preload: SimTimeContext.so`). Options:
+//   exec_cxt.sim_time.server_id   which simulator; default: $RTMSIM_SERVER_ID, else 0
+//   exec_cxt.sim_time.phase       0 sensors, 1 clients (default), 2 actuators: phases run in order inside a tick
+//
+// Transitions happen in a tick, so that they are repeatable; while time stands still (paused, or waiting for participants) at once.
+// Threads: the context's own thread ticks; everything else may be called from any thread.
+#pragma once
+
+#include <rtm/Manager.h>
+#include <rtm/PeriodicExecutionContext.h>
+#include <shm/lockstep.h>
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "sim_clock.h"
+
+class SimTimeContext : public RTC::PeriodicExecutionContext {
+ public:
+  explicit SimTimeContext(const std::string& name = "SimTimeContext");
+  ~SimTimeContext() override;
+
+  void init(coil::Properties& properties) override;
+  int svc() override;
+
+ protected:
+  RTC::ReturnCode_t onStopping() override;
+  RTC::ReturnCode_t onSetRate(double rate) override;
+  void onWakeUp() override;
+  const base::Clock& contextClock() const override { return clock_; }
+
+ private:
+  std::shared_ptr<shm::Participant> join();
+  void run(shm::Participant& participant);
+  bool time_stands_still();
+  void interrupt();
+  void say_once(const std::string& line);
+  std::string participant_name() const;
+
+  iface::SimClock clock_;
+  int server_id_ = 0;
+  std::uint32_t phase_ = 1;
+  std::string said_;                      // the last line, not to be said again
+  std::optional<shm::Iface> simulation_;  // of the ticking thread
+  std::mutex mutex_;                      // of participant_
+  std::shared_ptr<shm::Participant> participant_;
+};
+
+extern "C" {
+DLL_EXPORT void SimTimeContextInit(RTC::Manager* manager);
+}
