@@ -11,12 +11,12 @@
 
 namespace corba {
 
-class Gate {
+class CallGate {
  public:
   // Throws CORBA::OBJECT_NOT_EXIST when the gate is closed.
   class Inside {
    public:
-    explicit Inside(Gate& gate) : gate_(gate) {
+    explicit Inside(CallGate& gate) : gate_(gate) {
       auto data = gate_.shared_.lock();
       if (data->closed) throw CORBA::OBJECT_NOT_EXIST();
       ++data->inside;
@@ -29,7 +29,7 @@ class Gate {
     Inside& operator=(const Inside&) = delete;
 
    private:
-    Gate& gate_;
+    CallGate& gate_;
   };
 
   void close() {
