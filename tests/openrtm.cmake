@@ -6,3 +6,11 @@ rtmsim_headers_alone(openrtm_headers_alone ROOT ${PROJECT_SOURCE_DIR}/rtm-core/o
 add_subdirectory(classic-api)
 
 rtmsim_test(include_rules_test unit/include_rules_test.cpp)
+
+if(TARGET rtcd)  # until the runtime can be linked
+# A program and a module of another project, against the build tree and against an installation.
+foreach(mode build install)
+  add_test(NAME package.${mode} COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/run ${mode} ${PROJECT_BINARY_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/package/outside)
+  set_tests_properties(package.${mode} PROPERTIES LABELS package TIMEOUT 600 ENVIRONMENT "SANITIZE=${RTMSIM_SANITIZE}")
+endforeach()
+endif()

@@ -1,0 +1,61 @@
+# What others get: the CMake package OpenRTM (for the build tree and installed), rtm-config, pkg-config files, and the install rules.
+include(CMakePackageConfigHelpers)
+
+set(package_include ${CMAKE_INSTALL_INCLUDEDIR}/rtm-sim)
+set(package_cmake ${CMAKE_INSTALL_LIBDIR}/cmake/OpenRTM)
+
+# The same template twice: absolute paths of the build tree, paths relative to the file for the installation.
+set(PACKAGE_INIT_TEXT "")
+set(PACKAGE_ROOT ${PROJECT_BINARY_DIR})
+set(PACKAGE_CMAKE_DIR ${PROJECT_SOURCE_DIR}/cmake)
+set(PACKAGE_INCLUDE_DIRS
+  "${PROJECT_SOURCE_DIR}/rtm-core/openrtm ${PROJECT_SOURCE_DIR}/rtm-core ${PROJECT_BINARY_DIR}/include ${PROJECT_BINARY_DIR}/include/rtm/idl ${PROJECT_BINARY_DIR}/include/rtm/ext")
+set(PACKAGE_LIBRARY_DIR ${CMAKE_LIBRARY_OUTPUT_DIRECTORY})
+set(PACKAGE_MODULE_DIR ${CMAKE_LIBRARY_OUTPUT_DIRECTORY})
+set(PACKAGE_IDL_DIRS "${PROJECT_SOURCE_DIR}/idl ${PROJECT_SOURCE_DIR}/idl/ext")
+configure_file(cmake/package/OpenRTMConfig.cmake.in ${PROJECT_BINARY_DIR}/OpenRTMConfig.cmake @ONLY)
+
+string(REGEX REPLACE "[^/]+" ".." up ${package_cmake})
+set(PACKAGE_INIT_TEXT "get_filename_component(_openrtm_root \"\${CMAKE_CURRENT_LIST_DIR}/${up}\" ABSOLUTE)")
+set(PACKAGE_ROOT "\${_openrtm_root}")
+set(PACKAGE_CMAKE_DIR "\${CMAKE_CURRENT_LIST_DIR}")
+set(PACKAGE_INCLUDE_DIRS
+  "\${_openrtm_root}/${package_include} \${_openrtm_root}/${package_include}/rtm/idl \${_openrtm_root}/${package_include}/rtm/ext")
+set(PACKAGE_LIBRARY_DIR "\${_openrtm_root}/${CMAKE_INSTALL_LIBDIR}")
+set(PACKAGE_MODULE_DIR "\${_openrtm_root}/${CMAKE_INSTALL_LIBDIR}/rtm-sim")
+set(PACKAGE_IDL_DIRS "\${_openrtm_root}/${package_include}/rtm/idl \${_openrtm_root}/${package_include}/rtm/ext")
+configure_file(cmake/package/OpenRTMConfig.cmake.in ${PROJECT_BINARY_DIR}/package/OpenRTMConfig.cmake @ONLY)
+
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/OpenRTMConfigVersion.cmake VERSION 2.1.0 COMPATIBILITY AnyNewerVersion)
+configure_file(cmake/package/rtm-config.in ${PROJECT_BINARY_DIR}/package/rtm-config @ONLY)
+string(REGEX REPLACE "[^/]+" ".." PACKAGE_PC_UP ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+configure_file(cmake/package/openrtm.pc.in ${PROJECT_BINARY_DIR}/package/openrtm.pc @ONLY)
+
+install(FILES ${PROJECT_BINARY_DIR}/package/OpenRTMConfig.cmake ${PROJECT_BINARY_DIR}/OpenRTMConfigVersion.cmake
+  cmake/omniorb.cmake cmake/idl.cmake cmake/component.cmake cmake/component_main.cpp.in
+  DESTINATION ${package_cmake})
+foreach(name openrtm-aist openrtm2)
+  install(FILES ${PROJECT_BINARY_DIR}/package/openrtm.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig RENAME ${name}.pc)
+endforeach()
+foreach(name rtm rtm2)
+  install(PROGRAMS ${PROJECT_BINARY_DIR}/package/rtm-config DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME ${name}-config)
+  install(PROGRAMS cmake/package/rtm-skelwrapper DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME ${name}-skelwrapper)
+endforeach()
+
+foreach(layer base core corba openrtm/rtm openrtm/coil)
+  cmake_path(GET layer FILENAME folder)
+  install(DIRECTORY rtm-core/${layer}/ DESTINATION ${package_include}/${folder} FILES_MATCHING PATTERN "*.h")
+endforeach()
+install(DIRECTORY ${PROJECT_BINARY_DIR}/include/ DESTINATION ${package_include} FILES_MATCHING PATTERN "*.h" PATTERN "*.hh")
+install(DIRECTORY idl/ DESTINATION ${package_include}/rtm/idl FILES_MATCHING PATTERN "*.idl" PATTERN ext EXCLUDE)
+install(DIRECTORY idl/ext/ DESTINATION ${package_include}/rtm/ext FILES_MATCHING PATTERN "*.idl")
+
+install(TARGETS base rt_core rt_corba openrtm coil rtm_idl LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+foreach(program rtcd rtse sim-server simctl player-gateway)
+  if(TARGET ${program})
+    install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  endif()
+endforeach()
+if(EXISTS ${PROJECT_SOURCE_DIR}/worlds)
+  install(DIRECTORY worlds/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rtm-sim/worlds)
+endif()
