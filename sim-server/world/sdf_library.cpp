@@ -17,15 +17,11 @@ namespace {
 // libsdformat talks to stderr and opens a log file in the home folder when its console is made. Neither is wanted; the environment is
 // changed only while the console is made, before any of our threads is told to load.
 void silence_console() {
-  static const bool done = [] {
-    const char* home = std::getenv("HOME");
-    const std::string kept = home ? home : "";
-    setenv("HOME", "/dev/null", 1);
-    sdf::Console::Instance()->SetQuiet(true);
-    home ? setenv("HOME", kept.c_str(), 1) : unsetenv("HOME");
-    return true;
-  }();
-  static_cast<void>(done);
+  const char* home = std::getenv("HOME");
+  const std::string kept = home ? home : "";
+  setenv("HOME", "/dev/null", 1);
+  sdf::Console::Instance()->SetQuiet(true);
+  home ? setenv("HOME", kept.c_str(), 1) : unsetenv("HOME");
 }
 
 sdf::ParserConfig quiet_config() {
@@ -210,10 +206,25 @@ std::string expectation(const std::string& type) {
 
 }  // namespace
 
+namespace {
+
+// What elements there are. Reading it takes longer than loading a usual world, so that it is made once and never changed; a spawned model
+// need not wait.
+const sdf::ElementPtr& specification() {
+  static const sdf::ElementPtr root = [] {
+    silence_console();
+    const sdf::SDFPtr document = std::make_shared<sdf::SDF>();
+    sdf::init(document);
+    return document->Root();
+  }();
+  return root;
+}
+
+}  // namespace
+
 struct SdfLibrary::State {
   sdf::ParserConfig config = quiet_config();
-  sdf::SDFPtr specification;
-  sdf::ElementPtr model;
+  sdf::ElementPtr model = specification()->GetElementDescription("model");
   Complaints* complaints = nullptr;
 
   void check(pugi::xml_node node, const sdf::ElementPtr& description);
@@ -221,12 +232,7 @@ struct SdfLibrary::State {
   bool has_all_attributes(pugi::xml_node node, const sdf::ElementPtr& description);
 };
 
-SdfLibrary::SdfLibrary() : state_(std::make_unique<State>()) {
-  silence_console();
-  state_->specification = std::make_shared<sdf::SDF>();
-  sdf::init(state_->specification);
-  state_->model = state_->specification->Root()->GetElementDescription("model");
-}
+SdfLibrary::SdfLibrary() : state_(std::make_unique<State>()) {}
 
 SdfLibrary::~SdfLibrary() = default;
 
@@ -254,7 +260,7 @@ base::Result<pugi::xml_document> SdfLibrary::translate_urdf(const std::string& t
 
 void SdfLibrary::check(pugi::xml_node entity, Complaints& complaints) {
   state_->complaints = &complaints;
-  const sdf::ElementPtr description = state_->specification->Root()->GetElementDescription(entity.name());
+  const sdf::ElementPtr description = specification()->GetElementDescription(entity.name());
   if (description) state_->check(entity, description);
   state_->complaints = nullptr;
 }
@@ -346,7 +352,7 @@ base::Result<ResolvedWorld> SdfLibrary::resolve(pugi::xml_node sdf) {
   ResolvedWorld out;
   try {
     const sdf::SDFPtr document = std::make_shared<sdf::SDF>();
-    document->Root(prune(state_->specification->Root(), state_->model, used, nested));
+    document->Root(prune(specification(), state_->model, used, nested));
     if (!sdf::readString(to_xml(sdf, false), state_->config, document, errors)) return base::Error{first_message(errors)};
     sdf::Root root;
     const sdf::Errors problems = root.Load(document, state_->config);

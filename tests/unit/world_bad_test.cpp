@@ -1,0 +1,243 @@
+// What hostile, broken and merely wrong files do to the loader: one line each, the rest of the world is there.
+#include <gmock/gmock.h>
+
+#include "support/world_files.h"
+
+namespace sim {
+namespace {
+
+using testing::HasSubstr;
+
+std::string error_of(const std::string& text) {
+  const WorldFiles files;
+  const base::Result<LoadResult> result = files.load_text(text);
+  return result ? "loaded" : result.error().message;
+}
+
+TEST(BadWorld, that_is_no_world_fails_with_one_line) {
+  EXPECT_THAT(error_of(""), HasSubstr("is empty"));
+  EXPECT_THAT(error_of("not xml at all"), HasSubstr("w.sdf:1: is not well-formed XML"));
+  EXPECT_THAT(error_of("<sdf version='1.9'>\n<world name='w'>\n<model name='m'>"), HasSubstr("is not well-formed XML"));
+  EXPECT_THAT(error_of("<sdf version='1.9'><world name='w'></sdf>"), HasSubstr("is not well-formed XML"));
+  EXPECT_THAT(error_of("<sdf version='1.9'/>"), HasSubstr("a <world> is expected"));
+  EXPECT_THAT(error_of("<sdf version='1.9'><model name='m'><link name='l'/></model></sdf>"), HasSubstr("included in a world or spawned"));
+  EXPECT_THAT(error_of("<html><body/></html>"), HasSubstr("an <sdf> element is expected"));
+  EXPECT_THAT(error_of(std::string("\0\0\0\0garbage", 11)), HasSubstr("w.sdf"));
+  const base::Result<LoadResult> missing = load_world("/nowhere/at/all.sdf", ModelPath{});
+  ASSERT_FALSE(missing.ok());
+  EXPECT_EQ(missing.error().message, "/nowhere/at/all.sdf: no such file");
+  EXPECT_FALSE(load_world("/tmp", ModelPath{}).ok());
+}
+
+TEST(BadWorld, from_before_sdformat_is_called_what_it_is) {
+  for (const char* text :
+       {"<gazebo version='1.0'><world name='default'/></gazebo>", "<gazebo:world xmlns:gazebo='http://x'><params:foo/></gazebo:world>"}) {
+    EXPECT_THAT(error_of(text), HasSubstr("before SDFormat")) << text;
+  }
+}
+
+TEST(BadWorld, does_not_expand_entities) {
+  std::string text = "<?xml version='1.0'?>\n<!DOCTYPE sdf [<!ENTITY a 'ha'>";
+  for (char c = 'b'; c < 'z'; ++c) {
+    text += "<!ENTITY " + std::string(1, c) + " '";
+    for (int i = 0; i < 10; ++i) text += "&" + std::string(1, static_cast<char>(c - 1)) + ";";
+    text += "'>";
+  }
+  const WorldFiles files;
+  const base::Result<LoadResult> result =
+      files.load_text(text + "]><sdf version='1.9'><world name='&y;'><model name='&y;'><link name='l'/></model></world></sdf>");
+  ASSERT_TRUE(result.ok()) << result.error().message;
+  EXPECT_EQ(result->world.models.at(0).name, "&y;");
+  EXPECT_EQ(findings_with(*result, "w.sdf:2: entities"), 1);
+}
+
+TEST(BadWorld, refuses_absurd_sizes_of_names_depth_and_number) {
+  const std::string giant(10 << 20, 'x');
+  const WorldFiles files;
+  const LoadResult named = files.load("<model name='" + giant + "'><link name='l'/></model><model name='ok'><link name='l'/></model>");
+  EXPECT_EQ(named.world.models.size(), 1U);
+  ASSERT_EQ(named.findings.size(), 1U);
+  EXPECT_EQ(named.findings[0].text(), "w.sdf:3: name of a <model> has 10485760 characters, at most 200 expected; the element is left out");
+  EXPECT_TRUE(named.dropped);
+  const LoadResult element = files.load("<" + giant + "/>");
+  EXPECT_EQ(element.findings.size(), 1U);
+  EXPECT_LT(element.findings.at(0).text().size(), 200U);
+  std::string deep;
+  for (int i = 0; i < 100000; ++i) deep += "<a>";
+  for (int i = 0; i < 100000; ++i) deep += "</a>";
+  EXPECT_THAT(error_of("<sdf version='1.9'><world name='w'>" + deep + "</world></sdf>"), HasSubstr("nested deeper"));
+  std::string many;
+  for (int i = 0; i < 500000; ++i) many += "<a/>";
+  EXPECT_THAT(error_of("<sdf version='1.9'><world name='w'>" + many + "</world></sdf>"), HasSubstr("more than 400000 elements"));
+}
+
+TEST(BadWorld, that_includes_itself_ends) {
+  const WorldFiles files;
+  files.write_model("a", "<model name='a'><link name='l'/><include><uri>model://b</uri></include></model>");
+  files.write_model("b", "<model name='b'><link name='l'/><include><uri>model://a</uri></include></model>");
+  const LoadResult result = files.load("<include><uri>model://a</uri></include>");
+  ASSERT_EQ(result.world.models.size(), 1U);
+  EXPECT_NE(result.world.models[0].link("b::l"), nullptr);
+  EXPECT_EQ(findings_with(result, "includes itself"), 1) << all_findings(result);
+  EXPECT_TRUE(result.dropped);
+}
+
+TEST(BadWorld, whose_includes_multiply_is_cut) {
+  const WorldFiles files;
+  files.write_model("m0", "<model name='m0'><link name='l'/></model>");
+  for (int i = 1; i < 14; ++i) {
+    std::string content = "<model name='m" + std::to_string(i) + "'><link name='l'/>";
+    for (int j = 0; j < 10; ++j)
+      content += "<include><uri>model://m" + std::to_string(i - 1) + "</uri><name>n" + std::to_string(j) + "</name></include>";
+    files.write_model("m" + std::to_string(i), content + "</model>");
+  }
+  const LoadResult result = files.load("<include><uri>model://m13</uri></include><model name='ok'><link name='l'/></model>");
+  EXPECT_TRUE(result.dropped);
+  EXPECT_NE(result.world.model("ok"), nullptr);
+  EXPECT_GE(findings_with(result, "elements with all it includes"), 1);
+}
+
+struct BadValue {
+  std::string content;   // of a link
+  std::string expected;  // in the one finding
+};
+
+TEST(BadWorld, bad_numbers_cost_the_object_they_stand_in_and_nothing_else) {
+  const auto shape = [](const std::string& geometry) { return "<collision name='bad'><geometry>" + geometry + "</geometry></collision>"; };
+  const std::vector<BadValue> cases{
+      {shape("<box><size>1 -1 1</size></box>"),
+       "<size> of collision \"bad\" of link \"l\" of model \"m\" must be three positive numbers, got \"1 -1 1\""},
+      {shape("<box><size>1 1 0</size></box>"), "must be three positive numbers, got \"1 1 0\""},
+      {shape("<box><size>nan 1 1</size></box>"), "got \"nan 1 1\""},
+      {shape("<box><size>1 1 inf</size></box>"), "got \"1 1 inf\""},
+      {shape("<box><size>1 1</size></box>"), "got \"1 1\""},
+      {shape("<box><size>a b c</size></box>"), "got \"a b c\""},
+      {shape("<sphere><radius>-1</radius></sphere>"),
+       "<radius> of collision \"bad\" of link \"l\" of model \"m\" must be a positive number, got \"-1\""},
+      {shape("<sphere><radius>1e308</radius></sphere>"), "got \"1e308\""},
+      {shape("<cylinder><radius>1</radius><length>0</length></cylinder>"), "got \"0\""},
+      {shape("<capsule><radius>0</radius><length>1</length></capsule>"), "got \"0\""},
+      {shape("<ellipsoid><radii>1 0 1</radii></ellipsoid>"), "got \"1 0 1\""},
+      {shape("<plane><normal>0 0 0</normal></plane>"), "not all zero"},
+      {shape("<mesh><uri>nothing.dae</uri></mesh>"),
+       "mesh file \"nothing.dae\" of collision \"bad\" of link \"l\" of model \"m\" is not found"},
+      {shape("<polyline><point>0 0</point><point>1 nan</point><point>1 1</point><height>1</height></polyline>"), "got \"1 nan\""},
+      {"<collision name='bad'><pose>0 0 nan 0 0 0</pose><geometry><box/></geometry></collision>",
+       "<pose> of collision \"bad\" of link \"l\" of model \"m\" must be six finite"},
+      {"<visual name='bad'><pose>0 0 1e300 0 0 0</pose><geometry><box/></geometry></visual>", "got \"0 0 1e300 0 0 0\""},
+      {"<sensor name='bad' type='ray'><ray><scan><horizontal><samples>-5</samples></horizontal></scan></ray></sensor>", "-5"},
+      {"<sensor name='bad' type='ray'><ray><scan><horizontal><samples>100000000</samples></horizontal></scan></ray></sensor>",
+       "from 1 to 4000000"},
+      {"<sensor name='bad' type='ray'><ray><range><min>5</min><max>1</max></range></ray></sensor>", "above the smallest"},
+      {"<sensor name='bad' type='ray'><ray><range><min>nan</min><max>1</max></range></ray></sensor>", "got \"nan\""},
+      {"<sensor name='bad' type='camera'><camera><image><width>0</width><height>1</height></image></camera></sensor>", "got \"0\""},
+      {"<sensor name='bad' type='camera'><camera><image><width>999999999</width><height>1</height></image></camera></sensor>",
+       "from 1 to 16384"},
+      {"<sensor name='bad' type='camera'><camera><horizontal_fov>7</horizontal_fov></camera></sensor>", "field of view"},
+      {"<sensor name='bad' type='camera'/>", "has no <camera>"},
+      {"<sensor name='bad' type='rfid'/>", "sensors of type \"rfid\" are not simulated"},
+      {"<sensor name='bad'/>", "has no attribute \"type\""},
+      {"<light name='bad' type='laser'/>", "lights of type \"laser\" are not known"},
+  };
+  const WorldFiles files;
+  for (const BadValue& bad : cases) {
+    const LoadResult result = files.load(model_of(bad.content + "<collision name='good'><geometry><box/></geometry></collision>"));
+    ASSERT_EQ(result.world.models.size(), 1U) << bad.content << "\n" << all_findings(result);
+    const LinkDef& link = result.world.models[0].links.at(0);
+    const bool is_polyline = bad.content.find("polyline") != std::string::npos;
+    EXPECT_EQ(link.collisions.size(), 1U) << bad.content;
+    EXPECT_TRUE(link.visuals.empty()) << bad.content;
+    EXPECT_TRUE(link.sensors.empty() || !result.dropped) << bad.content;
+    EXPECT_TRUE(link.lights.empty()) << bad.content;
+    EXPECT_GE(findings_with(result, bad.expected), 1) << bad.content << "\n" << all_findings(result);
+    EXPECT_LE(result.findings.size(), is_polyline ? 3U : 1U) << all_findings(result);
+    EXPECT_EQ(findings_with(result, "w.sdf:3: "), static_cast<int>(result.findings.size()));
+  }
+}
+
+TEST(BadWorld, a_bad_pose_costs_the_model) {
+  const WorldFiles files;
+  for (const char* bad : {"<model name='m'><pose>nan 0 0 0 0 0</pose><link name='l'/></model>",
+                          "<model name='m'><link name='l'><pose>0 0 0 inf 0 0</pose></link></model>",
+                          "<model name='m'><pose>0 0</pose><link name='l'/></model>", "<model name='m'/>"}) {
+    const LoadResult result = files.load(std::string(bad) + "<model name='ok'><link name='l'/></model>");
+    EXPECT_EQ(result.world.models.size(), 1U) << bad;
+    EXPECT_EQ(result.findings.size(), 1U) << all_findings(result);
+    EXPECT_TRUE(result.dropped);
+  }
+}
+
+TEST(BadWorld, a_bad_pose_in_an_included_file_costs_that_model) {
+  const WorldFiles files;
+  files.write_model("bad", "<model name='bad'><pose>nan 0 0 0 0 0</pose><link name='l'/></model>");
+  const LoadResult result = files.load(
+      "<include><uri>model://bad</uri></include><include><uri>model://bad</uri></include><model name='ok'><link name='l'/></model>");
+  EXPECT_EQ(result.world.models.size(), 1U);
+  EXPECT_TRUE(result.dropped);
+}
+
+TEST(BadWorld, bad_masses_are_replaced_with_a_line) {
+  const WorldFiles files;
+  for (const char* mass : {"0", "-1", "nan", "inf", "1e308", "heavy"}) {
+    const LoadResult result = files.load(model_of("<inertial><mass>" + std::string(mass) + "</mass></inertial>"));
+    EXPECT_EQ(result.world.models.at(0).links.at(0).mass, 1) << mass;
+    ASSERT_EQ(result.findings.size(), 1U) << mass << "\n" << all_findings(result);
+    EXPECT_THAT(result.findings[0].text(), HasSubstr("w.sdf:3: ")) << mass;
+    EXPECT_THAT(result.findings[0].text(), HasSubstr("mass")) << mass;
+  }
+}
+
+TEST(BadWorld, joints_that_lead_nowhere_are_left_out) {
+  const WorldFiles files;
+  const std::string links = "<link name='a'/><link name='b'/>";
+  for (const char* joint : {"<joint name='j' type='fixed'><parent>a</parent><child>nothing</child></joint>",
+                            "<joint name='j' type='fixed'><parent>a</parent><child>a</child></joint>",
+                            "<joint name='j' type='fixed'><parent>a</parent></joint>",
+                            "<joint name='j' type='magic'><parent>a</parent><child>b</child></joint>",
+                            "<joint name='j' type='revolute'><parent>a</parent><child>b</child><axis><xyz>0 0 0</xyz></axis></joint>",
+                            "<joint name='j'><parent>a</parent><child>b</child></joint>"}) {
+    const LoadResult result = files.load("<model name='m'>" + links + joint + "</model>");
+    ASSERT_EQ(result.world.models.size(), 1U) << joint << "\n" << all_findings(result);
+    EXPECT_TRUE(result.world.models[0].joints.empty()) << joint;
+    EXPECT_EQ(result.world.models[0].links.size(), 2U);
+    EXPECT_EQ(result.findings.size(), 1U) << all_findings(result);
+    EXPECT_TRUE(result.dropped);
+  }
+}
+
+TEST(BadWorld, physics_out_of_bounds_is_ignored) {
+  const WorldFiles files;
+  for (const char* step : {"0", "-1", "nan", "100", "1e-12"}) {
+    const LoadResult result = files.load("<physics type='ode'><max_step_size>" + std::string(step) + "</max_step_size></physics>");
+    EXPECT_EQ(result.world.physics.step, 0.001) << step;
+    EXPECT_EQ(result.findings.size(), 1U) << all_findings(result);
+  }
+  const LoadResult gravity = files.load("<gravity>0 0 nan</gravity>");
+  EXPECT_EQ(gravity.world.physics.gravity.z(), -9.8);
+  EXPECT_EQ(gravity.findings.size(), 1U);
+}
+
+TEST(BadWorld, references_to_nothing_are_named) {
+  const WorldFiles files;
+  const LoadResult result = files.load(
+      "<model name='a' canonical_link='nothing'><link name='l'><pose relative_to='nobody'>1 0 0 0 0 0</pose></link></model>\n"
+      "<model name='b'><pose relative_to='nowhere'>1 0 0 0 0 0</pose><link name='l'/></model>\n"
+      "<include><uri>model://nothing</uri></include>\n<include/>");
+  EXPECT_EQ(result.world.models.size(), 2U) << all_findings(result);
+  EXPECT_EQ(findings_with(result, "nothing"), 2) << all_findings(result);
+  EXPECT_EQ(findings_with(result, "nobody"), 1);
+  EXPECT_GE(findings_with(result, "nowhere"), 1) << all_findings(result);
+  EXPECT_EQ(findings_with(result, "no <uri>"), 1);
+}
+
+TEST(BadWorld, a_flood_of_findings_is_cut) {
+  const WorldFiles files;
+  std::string content;
+  for (int i = 0; i < 1500; ++i) content += "<nonsense" + std::to_string(i) + "/>\n";
+  const LoadResult result = files.load(content);
+  EXPECT_EQ(result.findings.size(), 501U);
+  EXPECT_THAT(result.findings.back().text(), HasSubstr("1000 more findings"));
+}
+
+}  // namespace
+}  // namespace sim

@@ -1,0 +1,215 @@
+// Worlds in the manner of those that people have: our own small imitations in tests/worlds, and the mistakes that are common in them.
+#include <gmock/gmock.h>
+
+#include "support/world_files.h"
+#include "world/materials.h"
+#include "world/plugin_kind.h"
+
+namespace sim {
+namespace {
+
+using testing::HasSubstr;
+
+LoadResult load_shipped(const std::string& file) {
+  const std::filesystem::path root = RTMSIM_SOURCE_DIR;
+  base::Result<LoadResult> result = load_world(root / file, ModelPath({root / "worlds"}));
+  if (result) return std::move(*result);
+  ADD_FAILURE() << result.error().message;
+  return {};
+}
+
+TEST(ShippedWorlds, load_without_a_finding) {
+  for (const char* file : {"empty.sdf", "obstacle_course.sdf", "maze.sdf", "hundred.sdf"}) {
+    const LoadResult result = load_shipped("worlds/" + std::string(file));
+    EXPECT_TRUE(result.findings.empty()) << file << "\n" << all_findings(result);
+    EXPECT_EQ(result.world.lights.size(), 1U) << file;
+    EXPECT_NE(result.world.model("ground_plane"), nullptr) << file;
+  }
+}
+
+TEST(ShippedWorlds, have_the_robots_that_they_promise) {
+  const LoadResult course = load_shipped("worlds/obstacle_course.sdf");
+  const ModelDef* robot = course.world.model("pioneer2dx");
+  ASSERT_NE(robot, nullptr);
+  EXPECT_EQ(robot->links.size(), 5U);
+  double mass = 0;
+  for (const LinkDef& link : robot->links) mass += link.mass;
+  EXPECT_NEAR(mass, 9.16, 1e-9) << "9 kg and the laser";
+  ASSERT_EQ(robot->plugins.size(), 1U);
+  EXPECT_EQ(kind_of(robot->plugins[0]), PluginKind::differential_drive);
+  EXPECT_EQ(iface_name(robot->name, robot->plugins[0].scope, iface_own_name(robot->plugins[0])), "pioneer2dx::position2d");
+  EXPECT_EQ(robot->link("chassis")->sensors.size(), 16U);
+  const SensorDef& laser = robot->link("laser_link")->sensors.at(0);
+  EXPECT_EQ(iface_name(robot->name, laser.scope, laser.name), "pioneer2dx::laser");
+  EXPECT_EQ(std::get<RayDef>(laser.data).horizontal.samples, 682);
+  const LoadResult maze = load_shipped("worlds/maze.sdf");
+  for (const char* name : {"leader", "follower"}) {
+    ASSERT_NE(maze.world.model(name), nullptr);
+    EXPECT_EQ(std::get<RayDef>(maze.world.model(name)->link("laser_link")->sensors.at(0).data).horizontal.samples, 181);
+  }
+  const LoadResult hundred = load_shipped("worlds/hundred.sdf");
+  EXPECT_EQ(std::count_if(hundred.world.models.begin(), hundred.world.models.end(),
+                          [](const ModelDef& m) { return m.name.starts_with("pioneer_"); }),
+            100);
+}
+
+TEST(WildWorlds, load_and_keep_everything) {
+  const std::filesystem::path folder = std::filesystem::path(RTMSIM_SOURCE_DIR) / "tests/worlds";
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (!entry.is_regular_file()) continue;
+    ++count;
+    base::Result<LoadResult> result = load_world(entry.path(), ModelPath({std::filesystem::path(RTMSIM_SOURCE_DIR) / "worlds"}));
+    ASSERT_TRUE(result.ok()) << result.error().message;
+    EXPECT_FALSE(result->dropped) << entry.path() << "\n" << all_findings(*result);
+    EXPECT_FALSE(result->world.models.empty()) << entry.path();
+  }
+  EXPECT_GE(count, 8);
+}
+
+TEST(WildWorlds, a_comment_may_stand_before_the_declaration) {
+  const WorldFiles files;
+  const base::Result<LoadResult> result = files.load_text(
+      "\n<!-- licence -->\n<?xml version='1.0'?>\n<sdf version='1.6'><world name='w'><model name='m'><link "
+      "name='l'/></model></world></sdf>");
+  ASSERT_TRUE(result.ok()) << result.error().message;
+  EXPECT_EQ(result->world.models.size(), 1U);
+}
+
+TEST(WildWorlds, attributes_without_quotes_are_mended) {
+  const WorldFiles files;
+  const base::Result<LoadResult> result = files.load_text(
+      "<sdf version=1.6>\n<world name='w'>\n<!-- a=b <c d=e> --><model name=m><link name=l/></model><model name='n'><link "
+      "name='l'/></model></world></sdf>");
+  ASSERT_TRUE(result.ok()) << result.error().message;
+  ASSERT_EQ(result->world.models.size(), 2U);
+  EXPECT_EQ(result->world.models[0].name, "m");
+  EXPECT_EQ(result->world.models[0].source, "w.sdf:3");
+  ASSERT_EQ(result->findings.size(), 1U) << all_findings(*result);
+  EXPECT_EQ(result->findings[0].text(), "w.sdf:1: attribute values without quotes are mended");
+}
+
+TEST(WildWorlds, newer_versions_are_read_as_the_newest_known) {
+  const WorldFiles files;
+  for (const char* version : {"1.10", "1.12"}) {
+    const LoadResult result = files.load("<model name='m'><link name='l'/></model>", version);
+    EXPECT_EQ(result.world.models.size(), 1U);
+    ASSERT_EQ(result.findings.size(), 1U);
+    EXPECT_EQ(result.findings[0].severity, Finding::Severity::note);
+  }
+}
+
+TEST(WildWorlds, names_that_clash_are_numbered) {
+  const WorldFiles files;
+  const LoadResult result = files.load(
+      "<model name='m'><link name='l'><collision name='c'><geometry><box/></geometry></collision><collision "
+      "name='c'><geometry><box/></geometry></collision></link>"
+      "<link name='l'/><link name='world'/><joint name='l' type='fixed'><parent>l</parent><child>world</child></joint></model>"
+      "<model name='m'><link name='l'/></model><model name='a::b'><link name='l'/></model>");
+  ASSERT_EQ(result.world.models.size(), 3U) << all_findings(result);
+  const ModelDef& m = result.world.models[0];
+  EXPECT_EQ(m.links.at(0).collisions.at(1).name, "c_1");
+  EXPECT_EQ(m.links.at(1).name, "l_1");
+  EXPECT_EQ(m.links.at(2).name, "world_link");
+  EXPECT_EQ(m.joints.at(0).name, "l") << "a joint may be called like a link";
+  EXPECT_EQ(m.joints.at(0).child, "world_link");
+  EXPECT_EQ(result.world.models[1].name, "m_1");
+  EXPECT_EQ(result.world.models[2].name, "a_b");
+  EXPECT_FALSE(result.dropped);
+}
+
+TEST(WildWorlds, saved_states_place_their_models) {
+  const WorldFiles files;
+  const LoadResult result = files.load(
+      "<model name='m'><pose>0 0 0 0 0 0</pose><link name='l'/></model><state world_name='w'><sim_time>12 0</sim_time><model "
+      "name='m'><pose>7 8 9 0 0 0</pose>"
+      "<link name='l'><pose>7 8 9 0 0 0</pose></link></model></state>",
+      "1.6");
+  EXPECT_EQ(result.world.models.at(0).pose.translation(), Eigen::Vector3d(7, 8, 9));
+  EXPECT_TRUE(result.findings.empty()) << all_findings(result);
+}
+
+TEST(WildWorlds, unknown_things_get_one_line_each) {
+  const WorldFiles files;
+  const LoadResult result = files.load(
+      "<model name='m'><link name='l'><glitter>1</glitter></link>\n<plugin name='p' filename='libMagic.so'/>\n</model>\n<road "
+      "name='r'><point>0 0 0</point></road>");
+  EXPECT_EQ(result.world.models.size(), 1U);
+  ASSERT_EQ(result.findings.size(), 3U) << all_findings(result);
+  EXPECT_EQ(findings_with(result, "w.sdf:3: unknown element <glitter> in link \"l\" of model \"m\" is ignored"), 1) << all_findings(result);
+  EXPECT_EQ(findings_with(result, "w.sdf:4: unknown plugin \"libMagic.so\""), 1) << all_findings(result);
+  EXPECT_EQ(findings_with(result, "w.sdf:6: <road>"), 1) << all_findings(result);
+}
+
+TEST(Materials, scripts_with_inheritance_and_textures_are_read) {
+  const auto materials = parse_material_script(
+      "// comment\nmaterial Base\n{\n technique\n {\n  pass main\n  {\n   ambient 0.1 0.2 0.3\n   diffuse 1 0 0 0.5\n   specular 0.5 0.5 "
+      "0.5 1 12\n  }\n }\n}\n"
+      "material \"My Wall\" : Base { technique { pass { diffuse 0 1 0\n lighting off\n cull_hardware none\n texture_unit { texture "
+      "wall.png\n scale 0.5 0.25\n } } pass { diffuse 1 1 1 } } }\n");
+  ASSERT_EQ(materials.size(), 2U);
+  const MaterialDef& base_material = materials.at("Base");
+  EXPECT_EQ(base_material.ambient, (Color{0.1F, 0.2F, 0.3F, 1}));
+  EXPECT_EQ(base_material.diffuse, (Color{1, 0, 0, 0.5F}));
+  EXPECT_EQ(base_material.shininess, 12);
+  const MaterialDef& wall = materials.at("My Wall");
+  EXPECT_EQ(wall.ambient, base_material.ambient);
+  EXPECT_EQ(wall.diffuse, (Color{0, 1, 0, 1})) << "of the first pass";
+  EXPECT_EQ(wall.texture, "wall.png");
+  EXPECT_EQ(wall.texture_scale, Eigen::Vector2d(2, 4));
+  EXPECT_FALSE(wall.lighting);
+  EXPECT_TRUE(wall.double_sided);
+}
+
+TEST(Materials, of_visuals_come_from_scripts_built_in_colours_and_pbr) {
+  const WorldFiles files;
+  files.write("wall/materials/scripts/wall.material", "material Wall { technique { pass { texture_unit { texture wall.png\n } } } }");
+  files.write("wall/materials/textures/wall.png", "x");
+  files.write("albedo.png", "x");
+  const auto visual = [](const std::string& name, const std::string& material) {
+    return "<visual name='" + name + "'><geometry><box/></geometry><material>" + material + "</material></visual>";
+  };
+  const LoadResult result = files.load(model_of(
+      visual("script",
+             "<script><uri>model://wall/materials/scripts</uri><uri>model://wall/materials/textures</uri><name>Wall</name></script>") +
+      visual("built_in", "<script><uri>file://media/materials/scripts/gazebo.material</uri><name>Gazebo/Red</name></script>") +
+      visual("no_uri", "<script><name>Gazebo/Green</name></script>") +
+      visual("no_name", "<script><uri>file://media/materials/scripts/gazebo.material</uri></script>") +
+      visual("plain", "<diffuse>0.2 0.3 0.4 1</diffuse>") +
+      visual("pbr", "<pbr><metal><albedo_map>albedo.png</albedo_map><roughness>0.2</roughness></metal></pbr>") +
+      visual("unknown", "<script><name>Nothing/Known</name></script>")));
+  ASSERT_EQ(result.world.models.size(), 1U);
+  std::map<std::string, MaterialDef> found;
+  for (const VisualDef& v : result.world.models[0].links[0].visuals) found[v.name] = v.material.value_or(MaterialDef{});
+  ASSERT_EQ(found.size(), 7U) << all_findings(result);
+  EXPECT_THAT(found["script"].texture, testing::EndsWith("wall/materials/textures/wall.png"));
+  EXPECT_EQ(found["built_in"].diffuse, (Color{1, 0, 0, 1}));
+  EXPECT_EQ(found["no_uri"].diffuse, (Color{0, 1, 0, 1}));
+  EXPECT_EQ(found["plain"].diffuse, (Color{0.2F, 0.3F, 0.4F, 1}));
+  EXPECT_EQ(found["plain"].ambient, found["plain"].diffuse);
+  EXPECT_TRUE(found["pbr"].has_pbr);
+  EXPECT_THAT(found["pbr"].texture, testing::EndsWith("albedo.png"));
+  EXPECT_FLOAT_EQ(found["pbr"].roughness, 0.2F);
+  ASSERT_EQ(result.findings.size(), 1U) << all_findings(result);
+  EXPECT_THAT(result.findings[0].text(), HasSubstr("Nothing/Known"));
+}
+
+TEST(ModelPath, finds_what_uris_mean) {
+  const WorldFiles files;
+  files.write("models/box/meshes/a.dae", "x");
+  const ModelPath path({files.folder()});
+  const std::filesystem::path own = files.folder() / "models/box";
+  for (const char* uri :
+       {"model://box/meshes/a.dae", "model:///box/meshes/a.dae", "package://box/meshes/a.dae", "meshes/a.dae", "file://meshes/a.dae",
+        "https://fuel.ignitionrobotics.org/1.0/someone/models/Box/2/files/meshes/a.dae", "model://box/meshes/%61.dae"}) {
+    const auto found = path.find(uri, own);
+    ASSERT_TRUE(found.has_value()) << uri;
+    EXPECT_EQ(found->filename(), "a.dae");
+  }
+  for (const char* uri : {"", "model://", "model://nothing", "ftp://box/meshes/a.dae", "https://example.com/a.dae"})
+    EXPECT_FALSE(path.find(uri, own)) << uri;
+  EXPECT_TRUE(path.find("file://" + (own / "meshes/a.dae").string(), "/")) << "absolute";
+}
+
+}  // namespace
+}  // namespace sim
