@@ -84,7 +84,9 @@ std::optional<GeometryDef> build_geometry(pugi::xml_node geometry, BuildContext&
   if (pugi::xml_node node = geometry.child("cylinder")) return CylinderShape{number_at(node, "radius", 1), number_at(node, "length", 1)};
   if (pugi::xml_node node = geometry.child("capsule")) return CapsuleShape{number_at(node, "radius", 0.5), number_at(node, "length", 1)};
   if (pugi::xml_node node = geometry.child("ellipsoid")) {
-    context.complaints.note(node, "the ellipsoid of " + describe_in_context(geometry.parent()) + " is approximated in collisions");
+    if (std::string_view(geometry.parent().name()) == "collision") {
+      context.complaints.note(node, "the ellipsoid of " + describe_in_context(geometry.parent()) + " is approximated");
+    }
     return EllipsoidShape{vector3_at(node, "radii", {1, 1, 1})};
   }
   if (pugi::xml_node node = geometry.child("plane")) return build_plane(node);
@@ -436,11 +438,26 @@ class ModelBuilder {
 
 }  // namespace
 
+namespace {
+
+// A model that only wraps static ones is static too, whatever it says; people put a name and a pose on an included piece of furniture that
+// way.
+bool is_static_model(pugi::xml_node model) {
+  if (bool_at(model, "static", false)) return true;
+  if (model.child("link") || !model.child("model")) return false;
+  for (pugi::xml_node nested : model.children("model")) {
+    if (!is_static_model(nested)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 ModelDef build_model(pugi::xml_node node, const ResolvedModel& resolved, BuildContext& context) {
   ModelDef model;
   model.name = node.attribute("name").value();
   model.pose = resolved.pose;
-  model.is_static = bool_at(node, "static", false);
+  model.is_static = is_static_model(node);
   model.self_collide = bool_at(node, "self_collide", false);
   model.allow_auto_disable = bool_at(node, "allow_auto_disable", true);
   model.enable_wind = bool_at(node, "enable_wind", false);

@@ -224,7 +224,7 @@ TEST(BadWorld, references_to_nothing_are_named) {
       "<model name='b'><pose relative_to='nowhere'>1 0 0 0 0 0</pose><link name='l'/></model>\n"
       "<include><uri>model://nothing</uri></include>\n<include/>");
   EXPECT_EQ(result.world.models.size(), 2U) << all_findings(result);
-  EXPECT_EQ(findings_with(result, "nothing"), 2) << all_findings(result);
+  EXPECT_EQ(findings_with(result, "\"nothing\"") + findings_with(result, "model://nothing"), 2) << all_findings(result);
   EXPECT_EQ(findings_with(result, "nobody"), 1);
   EXPECT_GE(findings_with(result, "nowhere"), 1) << all_findings(result);
   EXPECT_EQ(findings_with(result, "no <uri>"), 1);

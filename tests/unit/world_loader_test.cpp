@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <Eigen/Eigenvalues>
+
 #include <numbers>
 
 #include "support/world_files.h"
