@@ -58,20 +58,25 @@ shm::Iface* IfaceLink::live() {
   return &*iface_;
 }
 
+bool IfaceLink::wait_for_newer(shm::Iface& iface, std::chrono::nanoseconds limit) {
+  const auto what = iface.wait(last_, limit);
+  if (what == shm::Wait::closed) lose("the simulator is gone");
+  return what == shm::Wait::fresh;
+}
+
 shm::Iface* IfaceLink::fresh(std::chrono::nanoseconds limit) {
   auto* iface = live();
-  if (!iface) return nullptr;
-  switch (iface->wait(last_, limit)) {
-    case shm::Wait::fresh:
-      last_ = iface->sample<shm::Stamp>().sequence;
-      return iface;
-    case shm::Wait::timed_out:
-      return nullptr;
-    case shm::Wait::closed:
-      break;
-  }
-  lose("the simulator is gone");
-  return nullptr;
+  if (!iface || !wait_for_newer(*iface, limit)) return nullptr;
+  last_ = iface->sample<shm::Stamp>().sequence;
+  return iface;
+}
+
+std::optional<shm::HeldFrame> IfaceLink::fresh_frame(std::chrono::nanoseconds limit) {
+  auto* iface = live();
+  if (!iface || !wait_for_newer(*iface, limit)) return std::nullopt;
+  auto frame = iface->hold();
+  if (frame) last_ = frame->sequence();
+  return frame;
 }
 
 }  // namespace iface

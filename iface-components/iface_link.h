@@ -35,10 +35,13 @@ class IfaceLink {
   // Waits up to `limit` for a sample newer than the last one that this returned; nullptr when there is none or the iface is lost. The
   // sample is in the iface then.
   shm::Iface* fresh(std::chrono::nanoseconds limit);
+  // The same for cameras: the newest frame, held.
+  std::optional<shm::HeldFrame> fresh_frame(std::chrono::nanoseconds limit);
 
  private:
   using Clock = std::chrono::steady_clock;
   void lose(const std::string& why);
+  bool wait_for_newer(shm::Iface& iface, std::chrono::nanoseconds limit);
 
   shm::IfaceType type_;
   Say say_;

@@ -1,8 +1,6 @@
 #include "rtc_position2d.h"
 
-#include <atomic>
-#include <functional>
-#include <mutex>
+#include <array>
 
 #include "conversions.h"
 #include "sim_clock.h"
@@ -39,72 +37,21 @@ static const char* const rtcposition2d_spec[] = {
     ""};
 // clang-format on
 
-class RTCPosition2d::Commander {
- public:
-  explicit Commander(iface::Say say) : link_(shm::IfaceType::position2d, say), say_(std::move(say)) {}
-
-  base::Result<void> attach(const iface::Device& device) {
-    const std::scoped_lock lock(mutex_);
-    return link_.attach(device, false);
-  }
-  void detach() {
-    const std::scoped_lock lock(mutex_);
-    link_.detach();
-    is_driving_ = false;
-  }
-
-  // From the thread that brings a velocity.
-  void received(const RTC::TimedVelocity2D& velocity) {
-    arrivals_.fetch_add(1, std::memory_order_acq_rel);
-    if (!in_simulated_time_.load(std::memory_order_acquire)) drive(velocity);
-  }
-  void drive(const RTC::TimedVelocity2D& velocity) {
-    std::string problem;
-    {
-      const std::scoped_lock lock(mutex_);
-      auto* robot = link_.live();
-      if (!robot) return;
-      const auto done = robot->command_velocity(velocity.data.vx, velocity.data.vy, velocity.data.va);
-      is_driving_ = is_driving_ || done.ok();
-      if (!done && !refused_) problem = done.error().message;
-      refused_ = !done;
-    }
-    if (!problem.empty()) say_(true, problem);
-  }
-  // True when the robot had been driven.
-  bool stop() {
-    const std::scoped_lock lock(mutex_);
-    if (!is_driving_) return false;
-    is_driving_ = false;
-    if (auto* robot = link_.live()) static_cast<void>(robot->command_velocity(0, 0, 0));  // a dead robot stands already
-    return true;
-  }
-  std::uint64_t arrivals() const { return arrivals_.load(std::memory_order_acquire); }
-  void set_simulated_time(bool simulated) { in_simulated_time_.store(simulated, std::memory_order_release); }
-
- private:
-  std::mutex mutex_;
-  iface::IfaceLink link_;
-  iface::Say say_;
-  bool is_driving_ = false;
-  bool refused_ = false;
-  std::atomic<std::uint64_t> arrivals_{0};
-  std::atomic<bool> in_simulated_time_{true};  // until the first onExecute says what the context is
-};
-
 namespace {
+
+std::array<double, 3> values_of(const RTC::TimedVelocity2D& velocity) { return {velocity.data.vx, velocity.data.vy, velocity.data.va}; }
 
 class Received : public RTC::ConnectorDataListenerT<RTC::TimedVelocity2D> {
  public:
-  explicit Received(std::function<void(const RTC::TimedVelocity2D&)> received) : received_(std::move(received)) {}
+  explicit Received(iface::Commander& commander) : commander_(commander) {}
   USE_CONNLISTENER_STATUS;
   ReturnCode operator()(RTC::ConnectorInfo&, RTC::TimedVelocity2D& velocity) override {
-    received_(velocity);
+    commander_.received(values_of(velocity));
     return NO_CHANGE;
   }
 
  private:
-  std::function<void(const RTC::TimedVelocity2D&)> received_;
+  iface::Commander& commander_;
 };
 
 }  // namespace
@@ -114,17 +61,14 @@ RTCPosition2d::RTCPosition2d(RTC::Manager* manager)
       velocity_in_("velocity", velocity_),
       odometry_out_("odometry", odometry_),
       actual_velocity_out_("actual_velocity", actual_velocity_),
-      commander_(std::make_unique<Commander>(say())),
+      commander_(shm::IfaceType::position2d, say()),
       errand_(say()) {}
-
-RTCPosition2d::~RTCPosition2d() = default;
 
 RTC::ReturnCode_t RTCPosition2d::onInitialize() {
   addInPort("velocity", velocity_in_);
   addOutPort("odometry", odometry_out_);
   addOutPort("actual_velocity", actual_velocity_out_);
-  velocity_in_.addConnectorDataListener(RTC::ConnectorDataListenerType::ON_RECEIVED,
-                                        new Received([this](const RTC::TimedVelocity2D& velocity) { commander_->received(velocity); }));
+  velocity_in_.addConnectorDataListener(RTC::ConnectorDataListenerType::ON_RECEIVED, new Received(commander_));
   bindDevice("pioneer2dx::position2d");
   bindParameter("motors_enabled", motors_enabled_, "1");
   bindParameter("command_timeout", command_timeout_, "1.0");
@@ -132,20 +76,20 @@ RTC::ReturnCode_t RTCPosition2d::onInitialize() {
 }
 
 void RTCPosition2d::attached(const iface::Device& device) {
-  if (const auto done = commander_->attach(device); !done) RTC_ERROR(("%s", done.error().message.c_str()));
+  if (const auto done = commander_.attach(device); !done) RTC_ERROR(("%s", done.error().message.c_str()));
   motors_ = true;  // as a new drive is
 }
 
-void RTCPosition2d::detaching() { commander_->detach(); }
+void RTCPosition2d::detaching() { commander_.detach(); }
 
 RTC::ReturnCode_t RTCPosition2d::onExecute(RTC::UniqueId) {
   if (!follow_configuration()) return RTC::RTC_ERROR;
   const bool simulated = iface::in_simulated_time();
-  commander_->set_simulated_time(simulated);
+  commander_.set_simulated_time(simulated);
   if (velocity_in_.isNew()) {
     velocity_in_.read();
     // In real time the listener has driven the robot already.
-    if (simulated) commander_->drive(velocity_);
+    if (simulated) commander_.drive(values_of(velocity_));
   }
   switch_motors();
   publish();
@@ -163,7 +107,8 @@ void RTCPosition2d::publish() {
   auto* robot = link().fresh(iface::wait_limit());
   if (!robot) return;
   const auto& sample = robot->sample<shm::Position2dSample>();
-  watch_commands(sample.stamp.sim_time_ns);
+  if (watch_.expired(commander_, sample.stamp.sim_time_ns, command_timeout_))
+    RTC_WARN(("no velocity for %g s: the robot stops", command_timeout_));
   if (!sample.stamp.valid) return;
   odometry_.tm = iface::to_time(sample.stamp.sim_time_ns);
   odometry_.data.position.x = sample.odometry[0];
@@ -175,18 +120,6 @@ void RTCPosition2d::publish() {
   actual_velocity_.data.vy = sample.velocity[1];
   actual_velocity_.data.va = sample.velocity[2];
   actual_velocity_out_.write();
-}
-
-void RTCPosition2d::watch_commands(std::int64_t now_ns) {
-  const auto arrivals = commander_->arrivals();
-  // Time that runs backwards is a reset of the world.
-  if (arrivals != seen_arrivals_ || now_ns < seen_ns_) {
-    seen_arrivals_ = arrivals;
-    seen_ns_ = now_ns;
-    return;
-  }
-  if (command_timeout_ <= 0 || now_ns - seen_ns_ < static_cast<std::int64_t>(command_timeout_ * 1e9)) return;
-  if (commander_->stop()) RTC_WARN(("no velocity for %g s: the robot stops", command_timeout_));
 }
 
 extern "C" {

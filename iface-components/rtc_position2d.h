@@ -10,15 +10,13 @@
 #include <rtm/DataOutPort.h>
 #include <rtm/idl/ExtendedDataTypesSkel.h>
 
-#include <memory>
-
+#include "commander.h"
 #include "errand.h"
 #include "iface_component.h"
 
 class RTCPosition2d : public iface::IfaceComponent {
  public:
   explicit RTCPosition2d(RTC::Manager* manager);
-  ~RTCPosition2d() override;
   RTC::ReturnCode_t onInitialize() override;
   RTC::ReturnCode_t onExecute(RTC::UniqueId ec_id) override;
 
@@ -27,11 +25,7 @@ class RTCPosition2d : public iface::IfaceComponent {
   void detaching() override;
 
  private:
-  // The handle that commands the robot; its end stops it. Shared with the threads that bring velocities.
-  class Commander;
-
   void publish();
-  void watch_commands(std::int64_t now_ns);
   void switch_motors();
 
   bool motors_enabled_ = true;
@@ -44,10 +38,9 @@ class RTCPosition2d : public iface::IfaceComponent {
   RTC::TimedVelocity2D actual_velocity_;
   RTC::OutPort<RTC::TimedVelocity2D> actual_velocity_out_;
 
-  std::unique_ptr<Commander> commander_;
-  std::uint64_t seen_arrivals_ = 0;  // velocities
-  std::int64_t seen_ns_ = 0;         // simulated time of the last of them
-  bool motors_ = true;               // as told to the simulator
+  iface::Commander commander_;  // shared with the threads that bring velocities
+  iface::CommandWatch watch_;
+  bool motors_ = true;  // as told to the simulator
   iface::Errand errand_;
 };
 

@@ -1,0 +1,120 @@
+#include "picture.h"
+
+#include <base/text.h>
+#include <png.h>
+#include <turbojpeg.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <memory>
+
+namespace video {
+namespace {
+
+using base::Error;
+using base::Result;
+
+constexpr int largest_side = 16384;
+
+struct Layout {
+  std::size_t octets;    // of a pixel
+  int red, green, blue;  // offsets in it
+  bool is_depth = false;
+};
+
+Result<Layout> layout_of(const RTC::CameraImage& image) {
+  const auto format = base::to_lower(image.format.in());
+  const auto is = [&](std::initializer_list<const char*> names) { return std::find(names.begin(), names.end(), format) != names.end(); };
+  if (is({"rgb8", "rgb", "r8g8b8", "rgb888"})) return Layout{3, 0, 1, 2};
+  if (is({"bgr8", "bgr", "bgr888"})) return Layout{3, 2, 1, 0};
+  if (is({"rgba8", "rgba", "rgb32"})) return Layout{4, 0, 1, 2};
+  if (is({"bgra8", "bgra"})) return Layout{4, 2, 1, 0};
+  if (is({"mono8", "mono", "gray", "grey", "gray8", "grey8", "l8", "y8"})) return Layout{1, 0, 0, 0};
+  if (is({"depth32f"})) return Layout{4, 0, 0, 0, true};
+  if (format.empty() && image.bpp == 24) return Layout{3, 0, 1, 2};
+  if (format.empty() && image.bpp == 32) return Layout{4, 0, 1, 2};
+  if (format.empty() && image.bpp == 8) return Layout{1, 0, 0, 0};
+  return Error{"image format " + base::in_quotes(image.format.in()) + " with " + std::to_string(image.bpp) +
+               " bits per pixel is not known, expected RGB8, BGR8, RGBA8, MONO8, DEPTH32F or JPEG"};
+}
+
+Result<Picture> from_jpeg(const RTC::CameraImage& image) {
+  const std::unique_ptr<void, int (*)(void*)> decoder(tjInitDecompress(), tjDestroy);
+  Picture picture;
+  int sampling = 0;
+  int colours = 0;
+  const auto size = image.pixels.length();
+  const auto* bytes = image.pixels.get_buffer();
+  if (!decoder || size == 0 || tjDecompressHeader3(decoder.get(), bytes, size, &picture.width, &picture.height, &sampling, &colours) != 0) {
+    return Error{"image of " + std::to_string(size) + " octets is no JPEG"};
+  }
+  if (picture.width > largest_side || picture.height > largest_side)
+    return Error{"JPEG image of " + std::to_string(picture.width) + "x" + std::to_string(picture.height) + " is too large"};
+  picture.rgb.resize(std::size_t{3} * static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height));
+  if (tjDecompress2(decoder.get(), bytes, size, picture.rgb.data(), picture.width, 0, picture.height, TJPF_RGB, 0) != 0 &&
+      tjGetErrorCode(decoder.get()) == TJERR_FATAL) {
+    return Error{std::string("JPEG image: ") + tjGetErrorStr2(decoder.get())};
+  }
+  return picture;
+}
+
+void depth_to_grey(const RTC::CameraImage& image, Picture& picture) {
+  const std::size_t count = picture.rgb.size() / 3;
+  std::vector<float> depths(count);
+  std::memcpy(depths.data(), image.pixels.get_buffer(), count * sizeof(float));
+  float farthest = 0;
+  for (const float depth : depths) {
+    if (std::isfinite(depth)) farthest = std::max(farthest, depth);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool is_there = std::isfinite(depths[i]) && depths[i] > 0 && farthest > 0;
+    const auto grey = static_cast<unsigned char>(is_there ? 255.0F - 230.0F * depths[i] / farthest : 0.0F);
+    for (std::size_t c = 0; c < 3; ++c) picture.rgb[3 * i + c] = grey;
+  }
+}
+
+}  // namespace
+
+Result<Picture> to_picture(const RTC::CameraImage& image) {
+  if (base::equal_ignoring_case(image.format.in(), "jpeg") || base::equal_ignoring_case(image.format.in(), "jpg")) return from_jpeg(image);
+  const auto layout = layout_of(image);
+  if (!layout) return layout.error();
+  Picture picture;
+  picture.width = image.width;
+  picture.height = image.height;
+  const std::size_t count = static_cast<std::size_t>(image.width) * image.height;
+  const auto wanted = count * layout->octets;
+  const auto size = std::to_string(image.width) + "x" + std::to_string(image.height);
+  if (count == 0 || image.width > largest_side || image.height > largest_side) return Error{"image of " + size + " pixels cannot be shown"};
+  if (image.pixels.length() != wanted) {
+    return Error{"image of " + size + " pixels in format " + base::in_quotes(image.format.in()) + " must have " + std::to_string(wanted) +
+                 " octets, got " + std::to_string(image.pixels.length())};
+  }
+  picture.rgb.resize(3 * count);
+  if (layout->is_depth) {
+    depth_to_grey(image, picture);
+    return picture;
+  }
+  const auto* from = image.pixels.get_buffer();
+  auto* to = picture.rgb.data();
+  for (std::size_t i = 0; i < count; ++i, from += layout->octets, to += 3) {
+    to[0] = from[layout->red];
+    to[1] = from[layout->green];
+    to[2] = from[layout->blue];
+  }
+  return picture;
+}
+
+Result<void> write_png(const Picture& picture, const std::string& file) {
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = static_cast<png_uint_32>(picture.width);
+  image.height = static_cast<png_uint_32>(picture.height);
+  image.format = PNG_FORMAT_RGB;
+  if (png_image_write_to_file(&image, file.c_str(), 0, picture.rgb.data(), 0, nullptr) == 0)
+    return Error{"file " + base::in_quotes(file) + ": " + image.message};
+  return {};
+}
+
+}  // namespace video

@@ -1,0 +1,179 @@
+#include "video_player.h"
+
+#include <base/clock.h>
+#include <base/text.h>
+
+#include <filesystem>
+
+// clang-format off
+static const char* const videoplayer_spec[] = {
+    "implementation_id", "VideoPlayer",
+    "type_name", "VideoPlayer",
+    "description", "Shows camera images in a window",
+    "version", "1.0.0",
+    "vendor", "rtm-sim",
+    "category", "display",
+    "activity_type", "PERIODIC",
+    "kind", "DataFlowComponent",
+    "max_instance", "0",
+    "language", "C++",
+    "lang_type", "compile",
+    "exec_cxt.periodic.rate", "1000",
+    "exec_cxt.sim_time.phase", "1",
+    "conf.default.record_dir", "",
+    "conf.default.window", "1",
+    "conf.__type__.record_dir", "string",
+    "conf.__type__.window", "int",
+    "conf.__widget__.record_dir", "text",
+    "conf.__widget__.window", "radio",
+    "conf.__constraints__.window", "(0,1)",
+    ""};
+// clang-format on
+
+namespace {
+
+constexpr std::chrono::milliseconds longest_wait{50};
+constexpr std::chrono::milliseconds title_period{500};
+
+class FrameListener : public RTC::ConnectorDataListenerT<RTC::CameraImage> {
+ public:
+  FrameListener(VideoPlayer& owner, void (VideoPlayer::*call)()) : owner_(owner), call_(call) {}
+  USE_CONNLISTENER_STATUS;
+  ReturnCode operator()(RTC::ConnectorInfo&, RTC::CameraImage&) override {
+    (owner_.*call_)();
+    return NO_CHANGE;
+  }
+
+ private:
+  VideoPlayer& owner_;
+  void (VideoPlayer::*call_)();
+};
+
+bool in_real_time() { return dynamic_cast<const base::SystemClock*>(&base::current_clock()) != nullptr; }
+
+}  // namespace
+
+VideoPlayer::VideoPlayer(RTC::Manager* manager) : RTC::DataFlowComponentBase(manager), image_in_("image", image_) {}
+VideoPlayer::~VideoPlayer() = default;
+
+RTC::ReturnCode_t VideoPlayer::onInitialize() {
+  addInPort("image", image_in_);
+  image_in_.addConnectorDataListener(RTC::ConnectorDataListenerType::ON_BUFFER_WRITE,
+                                     new FrameListener(*this, &VideoPlayer::frame_arrived));
+  image_in_.addConnectorDataListener(RTC::ConnectorDataListenerType::ON_BUFFER_OVERWRITE,
+                                     new FrameListener(*this, &VideoPlayer::frame_dropped));
+  bindParameter("record_dir", record_dir_, "");
+  bindParameter("window", window_wanted_, "1");
+  return RTC::RTC_OK;
+}
+
+RTC::ReturnCode_t VideoPlayer::onActivated(RTC::UniqueId) {
+  frames_ = saved_ = refused_ = frames_at_title_ = 0;
+  dropped_.store(0, std::memory_order_relaxed);
+  title_time_ = Clock::now();
+  said_.clear();
+  if (!record_dir_.empty()) {
+    std::error_code error;
+    std::filesystem::create_directories(record_dir_, error);
+    if (error) {
+      RTC_ERROR(("record_dir %s cannot be made: %s", base::in_quotes(record_dir_).c_str(), error.message().c_str()));
+      return RTC::RTC_ERROR;
+    }
+  }
+  if (window_wanted_ == 0) return RTC::RTC_OK;
+  auto opened = video::Window::open(getInstanceName());
+  if (opened) {
+    window_ = std::move(*opened);
+  } else if (record_dir_.empty()) {
+    RTC_WARN(("no window: %s; set record_dir to get the frames as PNG files", opened.error().message.c_str()));
+  } else {
+    RTC_WARN(("no window: %s; the frames go to %s", opened.error().message.c_str(), record_dir_.c_str()));
+  }
+  return RTC::RTC_OK;
+}
+
+RTC::ReturnCode_t VideoPlayer::onDeactivated(RTC::UniqueId) {
+  window_.reset();
+  RTC_INFO(("%s frames shown, %s dropped, %s refused", std::to_string(frames_).c_str(),
+            std::to_string(dropped_.load(std::memory_order_relaxed)).c_str(), std::to_string(refused_).c_str()));
+  return RTC::RTC_OK;
+}
+
+RTC::ReturnCode_t VideoPlayer::onAborting(RTC::UniqueId) {
+  window_.reset();
+  return RTC::RTC_OK;
+}
+
+void VideoPlayer::frame_arrived() {
+  {
+    const std::scoped_lock lock(mutex_);
+    has_arrived_ = true;
+  }
+  arrived_.notify_one();
+}
+
+void VideoPlayer::wait_for_frame() {
+  std::unique_lock lock(mutex_);
+  arrived_.wait_for(lock, longest_wait, [this] { return has_arrived_; });
+  has_arrived_ = false;
+}
+
+RTC::ReturnCode_t VideoPlayer::onExecute(RTC::UniqueId) {
+  if (in_real_time() && !image_in_.isNew()) wait_for_frame();
+  while (image_in_.isNew() && image_in_.read()) take(image_);
+  if (window_) handle_events();
+  update_title();
+  return RTC::RTC_OK;
+}
+
+void VideoPlayer::refuse(const std::string& line) {
+  ++refused_;
+  if (said_ != line) RTC_ERROR(("%s", line.c_str()));
+  said_ = line;
+}
+
+void VideoPlayer::take(const RTC::CameraImage& image) {
+  auto picture = video::to_picture(image);
+  if (!picture) return refuse(picture.error().message);
+  ++frames_;
+  if (is_paused_) return;
+  picture_ = std::move(*picture);
+  if (window_) window_->show(picture_);
+  if (!record_dir_.empty()) save(record_dir_, "frame");
+}
+
+void VideoPlayer::save(const std::string& folder, const char* prefix) {
+  if (picture_.rgb.empty()) return;
+  char name[64];
+  std::snprintf(name, sizeof name, "%s-%06llu.png", prefix, static_cast<unsigned long long>(++saved_));
+  const auto file = (std::filesystem::path(folder) / name).string();
+  if (const auto written = video::write_png(picture_, file); !written) refuse(written.error().message);
+}
+
+void VideoPlayer::handle_events() {
+  const auto events = window_->events();
+  if (events.toggle_pause) is_paused_ = !is_paused_;
+  if (events.save) save(record_dir_.empty() ? "." : record_dir_, "picture");
+  if (events.close) window_.reset();
+}
+
+void VideoPlayer::update_title() {
+  const auto now = Clock::now();
+  if (now - title_time_ < title_period) return;
+  rate_ = static_cast<double>(frames_ - frames_at_title_) / std::chrono::duration<double>(now - title_time_).count();
+  title_time_ = now;
+  frames_at_title_ = frames_;
+  if (!window_) return;
+  char title[200];
+  std::snprintf(title, sizeof title, "%s  %dx%d  %.1f frames/s  t = %.2f s  dropped %llu%s", getInstanceName(), picture_.width,
+                picture_.height, rate_, image_.tm.sec + image_.tm.nsec * 1e-9,
+                static_cast<unsigned long long>(dropped_.load(std::memory_order_relaxed)), is_paused_ ? "  paused" : "");
+  window_->set_title(title);
+}
+
+extern "C" {
+void VideoPlayerInit(RTC::Manager* manager) {
+  coil::Properties profile(videoplayer_spec);
+  manager->registerFactory(profile, RTC::Create<VideoPlayer>, RTC::Delete<VideoPlayer>);
+}
+}

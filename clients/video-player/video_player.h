@@ -1,0 +1,70 @@
+// VideoPlayer: shows what comes to the InPort `image` (RTC::CameraImage) in a window, with frame rate, simulated time and dropped frames in
+// its title; space pauses, s saves a PNG, q closes the window. Without a display it says so and needs a record_dir.
+// Configuration: record_dir: a folder for a PNG of every frame (empty: none); window 0 or 1.
+#pragma once
+
+#include <rtm/DataFlowComponentBase.h>
+#include <rtm/DataInPort.h>
+#include <rtm/Manager.h>
+#include <rtm/idl/InterfaceDataTypesSkel.h>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "picture.h"
+#include "window.h"
+
+class VideoPlayer : public RTC::DataFlowComponentBase {
+ public:
+  explicit VideoPlayer(RTC::Manager* manager);
+  ~VideoPlayer() override;
+  RTC::ReturnCode_t onInitialize() override;
+  RTC::ReturnCode_t onActivated(RTC::UniqueId ec_id) override;
+  RTC::ReturnCode_t onDeactivated(RTC::UniqueId ec_id) override;
+  RTC::ReturnCode_t onAborting(RTC::UniqueId ec_id) override;
+  RTC::ReturnCode_t onExecute(RTC::UniqueId ec_id) override;
+
+  // Any thread: a frame is in the buffer; a frame was overwritten before it was shown.
+  void frame_arrived();
+  void frame_dropped() { dropped_.fetch_add(1, std::memory_order_relaxed); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void wait_for_frame();
+  void take(const RTC::CameraImage& image);
+  void handle_events();
+  void update_title();
+  void save(const std::string& folder, const char* prefix);
+  void refuse(const std::string& line);
+
+  std::string record_dir_;
+  int window_wanted_ = 1;
+  RTC::CameraImage image_;
+  RTC::InPort<RTC::CameraImage> image_in_;
+
+  std::unique_ptr<video::Window> window_;
+  video::Picture picture_;
+  bool is_paused_ = false;
+  std::uint64_t frames_ = 0;
+  std::uint64_t saved_ = 0;
+  std::uint64_t refused_ = 0;
+  std::atomic<std::uint64_t> dropped_{0};
+  std::uint64_t frames_at_title_ = 0;
+  Clock::time_point title_time_{};
+  double rate_ = 0;  // [frames/s of real time]
+  std::string said_;
+
+  std::mutex mutex_;
+  std::condition_variable arrived_;
+  bool has_arrived_ = false;
+};
+
+extern "C" {
+DLL_EXPORT void VideoPlayerInit(RTC::Manager* manager);
+}

@@ -1,0 +1,62 @@
+#include "commander.h"
+
+#include <array>
+
+namespace iface {
+
+Commander::Commander(shm::IfaceType type, Say say)
+    : link_(type, say), say_(std::move(say)), values_(type == shm::IfaceType::position3d ? 6 : 3) {}
+
+base::Result<void> Commander::attach(const Device& device) {
+  const std::scoped_lock lock(mutex_);
+  return link_.attach(device, false);
+}
+
+void Commander::detach() {
+  const std::scoped_lock lock(mutex_);
+  link_.detach();
+  is_driving_ = false;
+}
+
+void Commander::received(std::span<const double> velocity) {
+  arrivals_.fetch_add(1, std::memory_order_acq_rel);
+  if (!in_simulated_time_.load(std::memory_order_acquire)) drive(velocity);  // pairs with set_simulated_time
+}
+
+void Commander::drive(std::span<const double> velocity) {
+  std::string problem;
+  {
+    const std::scoped_lock lock(mutex_);
+    auto* robot = link_.live();
+    if (!robot) return;
+    const auto done = robot->command(shm::CommandKind::velocity, velocity);
+    is_driving_ = is_driving_ || done.ok();
+    if (!done && !refused_) problem = done.error().message;
+    refused_ = !done;
+  }
+  if (!problem.empty()) say_(true, problem);
+}
+
+bool Commander::stop() {
+  const std::scoped_lock lock(mutex_);
+  if (!is_driving_) return false;
+  is_driving_ = false;
+  static constexpr std::array<double, 6> standing{};
+  if (auto* robot = link_.live())
+    static_cast<void>(robot->command(shm::CommandKind::velocity, std::span(standing).first(values_)));  // a dead one stands already
+  return true;
+}
+
+bool CommandWatch::expired(Commander& commander, std::int64_t now_ns, double timeout_s) {
+  const auto arrivals = commander.arrivals();
+  // Time that runs backwards is a reset of the world.
+  if (arrivals != seen_arrivals_ || now_ns < seen_ns_) {
+    seen_arrivals_ = arrivals;
+    seen_ns_ = now_ns;
+    return false;
+  }
+  if (timeout_s <= 0 || now_ns - seen_ns_ < static_cast<std::int64_t>(timeout_s * 1e9)) return false;
+  return commander.stop();
+}
+
+}  // namespace iface

@@ -1,0 +1,51 @@
+// The handle that commands a robot; its end stops the robot. Any thread.
+// In real time a velocity goes to the robot on the thread that brings it; in simulated time the component hands it on in its own phase.
+#pragma once
+
+#include <atomic>
+#include <mutex>
+#include <span>
+
+#include "iface_link.h"
+
+namespace iface {
+
+class Commander {
+ public:
+  Commander(shm::IfaceType type, Say say);
+
+  base::Result<void> attach(const Device& device);
+  void detach();
+
+  // A velocity has come, in the order of the iface's command values. Drives at once in real time.
+  void received(std::span<const double> velocity);
+  void drive(std::span<const double> velocity);
+  // True when the robot had been driven.
+  bool stop();
+  // Velocities so far.
+  std::uint64_t arrivals() const { return arrivals_.load(std::memory_order_acquire); }  // pairs with the addition in received
+  void set_simulated_time(bool simulated) { in_simulated_time_.store(simulated, std::memory_order_release); }  // pairs with received
+
+ private:
+  std::mutex mutex_;
+  IfaceLink link_;
+  Say say_;
+  std::size_t values_;  // of a command
+  bool is_driving_ = false;
+  bool refused_ = false;
+  std::atomic<std::uint64_t> arrivals_{0};
+  std::atomic<bool> in_simulated_time_{true};  // until the first onExecute says what the context is
+};
+
+// Stops a robot for which no velocity comes any more. The context's thread only.
+class CommandWatch {
+ public:
+  // True once when nothing has come for `timeout_s` of simulated time and the robot was being driven; it is stopped then.
+  bool expired(Commander& commander, std::int64_t now_ns, double timeout_s);
+
+ private:
+  std::uint64_t seen_arrivals_ = 0;
+  std::int64_t seen_ns_ = 0;
+};
+
+}  // namespace iface

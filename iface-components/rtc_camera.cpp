@@ -1,0 +1,137 @@
+#include "rtc_camera.h"
+
+#include "conversions.h"
+
+// clang-format off
+static const char* const rtccamera_spec[] = {
+    "implementation_id", "RTCCamera",
+    "type_name", "RTCCamera",
+    "description", "Camera of a simulated robot",
+    "version", "1.0.0",
+    "vendor", "rtm-sim",
+    "category", "simulation",
+    "activity_type", "PERIODIC",
+    "kind", "DataFlowComponent",
+    "max_instance", "0",
+    "language", "C++",
+    "lang_type", "compile",
+    "exec_cxt.periodic.rate", "1000",
+    "exec_cxt.sim_time.phase", "0",
+    "conf.default.server_id", "0",
+    "conf.default.device_id", "helicopter::camera",
+    "conf.default.encoding", "raw",
+    "conf.default.quality", "90",
+    "conf.__type__.server_id", "int",
+    "conf.__type__.device_id", "string",
+    "conf.__type__.encoding", "string",
+    "conf.__type__.quality", "int",
+    "conf.__widget__.server_id", "spin",
+    "conf.__widget__.device_id", "text",
+    "conf.__widget__.encoding", "radio",
+    "conf.__widget__.quality", "slider.1",
+    "conf.__constraints__.server_id", "0<=x<=65535",
+    "conf.__constraints__.encoding", "(raw,jpeg)",
+    "conf.__constraints__.quality", "1<=x<=100",
+    ""};
+// clang-format on
+
+namespace {
+
+// A sequence of octets on memory that is somebody else's and stays there while it is sent: no copy.
+template <class Sequence>
+void borrow(Sequence& sequence, std::span<const std::byte> bytes) {
+  const auto length = static_cast<CORBA::ULong>(bytes.size());
+  sequence.replace(length, length, reinterpret_cast<CORBA::Octet*>(const_cast<std::byte*>(bytes.data())), false);
+}
+
+template <class Sequence>
+void give_back(Sequence& sequence) {
+  sequence.replace(0, 0, nullptr, false);
+}
+
+}  // namespace
+
+RTCCamera::RTCCamera(RTC::Manager* manager)
+    : IfaceComponent(manager, shm::IfaceType::camera, true), image_out_("image", image_), timed_image_out_("timed_image", timed_image_) {}
+
+RTC::ReturnCode_t RTCCamera::onInitialize() {
+  addOutPort("image", image_out_);
+  addOutPort("timed_image", timed_image_out_);
+  bindDevice("helicopter::camera");
+  bindParameter("encoding", encoding_, "raw");
+  bindParameter("quality", quality_, "90");
+  return RTC::RTC_OK;
+}
+
+RTC::ReturnCode_t RTCCamera::onExecute(RTC::UniqueId) {
+  if (!follow_configuration()) return RTC::RTC_ERROR;
+  const auto frame = link().fresh_frame(iface::wait_limit());
+  auto* camera = link().live();
+  if (!frame || !camera || !frame->head().stamp.valid) return RTC::RTC_OK;
+  const auto& head = frame->head();
+  auto pixels = frame->data();
+  const bool is_jpeg = encoding_ == "jpeg";
+  if (is_jpeg) {
+    const auto encoded = jpeg_.encode(pixels, static_cast<int>(head.width), static_cast<int>(head.height), static_cast<int>(head.stride),
+                                      head.format == RTMSIM_FORMAT_MONO8, quality_);
+    if (!encoded) {
+      if (said_ != encoded.error().message) RTC_ERROR(("%s", encoded.error().message.c_str()));
+      said_ = encoded.error().message;
+      return RTC::RTC_OK;
+    }
+    pixels = std::as_bytes(*encoded);
+  }
+  send_image(*frame, pixels, is_jpeg);
+  if (!timed_image_out_.connectors().empty()) send_timed_image(camera->info<shm::CameraInfo>(), *frame, pixels, is_jpeg);
+  return RTC::RTC_OK;
+}
+
+void RTCCamera::send_image(const shm::HeldFrame& frame, std::span<const std::byte> pixels, bool is_jpeg) {
+  const auto& head = frame.head();
+  const bool is_grey = head.format == RTMSIM_FORMAT_MONO8;
+  image_.tm = iface::to_time(head.stamp.sim_time_ns);
+  image_.width = static_cast<CORBA::UShort>(head.width);
+  image_.height = static_cast<CORBA::UShort>(head.height);
+  image_.bpp = is_grey ? 8 : 24;
+  image_.format = CORBA::string_dup(is_jpeg ? "JPEG" : is_grey ? "MONO8" : "RGB8");
+  image_.fDiv = 1;
+  borrow(image_.pixels, pixels);
+  image_out_.write();
+  give_back(image_.pixels);
+}
+
+void RTCCamera::send_timed_image(const shm::CameraInfo& info, const shm::HeldFrame& frame, std::span<const std::byte> pixels,
+                                 bool is_jpeg) {
+  const auto& head = frame.head();
+  auto& camera = timed_image_.data;
+  timed_image_.tm = camera.captured_time = iface::to_time(head.stamp.sim_time_ns);
+  camera.image.width = static_cast<CORBA::Long>(head.width);
+  camera.image.height = static_cast<CORBA::Long>(head.height);
+  camera.image.format = is_jpeg ? Img::CF_JPEG : head.format == RTMSIM_FORMAT_MONO8 ? Img::CF_GRAY : Img::CF_RGB;
+  borrow(camera.image.raw_data, pixels);
+  // Order of the elements: fx, skew, cx, fy, cy.
+  const double intrinsic[5] = {info.fx, 0, info.cx, info.fy, info.cy};
+  for (int i = 0; i < 5; ++i) camera.intrinsic.matrix_element[i] = intrinsic[i];
+  camera.intrinsic.distortion_coefficient.length(5);
+  for (CORBA::ULong i = 0; i < 5; ++i) camera.intrinsic.distortion_coefficient[i] = info.distortion[i];
+  const auto& p = head.pose;  // of the camera in the world, as a homogeneous matrix
+  const double rotation[3][3] = {{1 - 2 * (p.qy * p.qy + p.qz * p.qz), 2 * (p.qx * p.qy - p.qw * p.qz), 2 * (p.qx * p.qz + p.qw * p.qy)},
+                                 {2 * (p.qx * p.qy + p.qw * p.qz), 1 - 2 * (p.qx * p.qx + p.qz * p.qz), 2 * (p.qy * p.qz - p.qw * p.qx)},
+                                 {2 * (p.qx * p.qz - p.qw * p.qy), 2 * (p.qy * p.qz + p.qw * p.qx), 1 - 2 * (p.qx * p.qx + p.qy * p.qy)}};
+  const double position[3] = {p.x, p.y, p.z};
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      camera.extrinsic[row][column] = row == 3 ? (column == 3 ? 1 : 0) : column == 3 ? position[row] : rotation[row][column];
+    }
+  }
+  timed_image_.error_code = 0;
+  timed_image_out_.write();
+  give_back(camera.image.raw_data);
+}
+
+extern "C" {
+void RTCCameraInit(RTC::Manager* manager) {
+  coil::Properties profile(rtccamera_spec);
+  manager->registerFactory(profile, RTC::Create<RTCCamera>, RTC::Delete<RTCCamera>);
+}
+}

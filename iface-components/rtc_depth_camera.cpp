@@ -1,0 +1,115 @@
+#include "rtc_depth_camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "conversions.h"
+
+// clang-format off
+static const char* const rtcdepthcamera_spec[] = {
+    "implementation_id", "RTCDepthCamera",
+    "type_name", "RTCDepthCamera",
+    "description", "Depth camera of a simulated robot",
+    "version", "1.0.0",
+    "vendor", "rtm-sim",
+    "category", "simulation",
+    "activity_type", "PERIODIC",
+    "kind", "DataFlowComponent",
+    "max_instance", "0",
+    "language", "C++",
+    "lang_type", "compile",
+    "exec_cxt.periodic.rate", "1000",
+    "exec_cxt.sim_time.phase", "0",
+    "conf.default.server_id", "0",
+    "conf.default.device_id", "helicopter::depth",
+    "conf.default.points_step", "4",
+    "conf.__type__.server_id", "int",
+    "conf.__type__.device_id", "string",
+    "conf.__type__.points_step", "int",
+    "conf.__widget__.server_id", "spin",
+    "conf.__widget__.device_id", "text",
+    "conf.__widget__.points_step", "spin",
+    "conf.__constraints__.server_id", "0<=x<=65535",
+    "conf.__constraints__.points_step", "1<=x<=64",
+    ""};
+// clang-format on
+
+RTCDepthCamera::RTCDepthCamera(RTC::Manager* manager)
+    : IfaceComponent(manager, shm::IfaceType::depth, true), depth_out_("depth", depth_), points_out_("points", points_) {}
+
+RTC::ReturnCode_t RTCDepthCamera::onInitialize() {
+  addOutPort("depth", depth_out_);
+  addOutPort("points", points_out_);
+  bindDevice("helicopter::depth");
+  bindParameter("points_step", points_step_, "4");
+  return RTC::RTC_OK;
+}
+
+RTC::ReturnCode_t RTCDepthCamera::onExecute(RTC::UniqueId) {
+  if (!follow_configuration()) return RTC::RTC_ERROR;
+  const auto frame = link().fresh_frame(iface::wait_limit());
+  auto* camera = link().live();
+  if (!frame || !camera || !frame->head().stamp.valid) return RTC::RTC_OK;
+  if (!depth_out_.connectors().empty()) send_depth(*frame);
+  if (!points_out_.connectors().empty()) send_points(camera->info<shm::CameraInfo>(), *frame);
+  return RTC::RTC_OK;
+}
+
+namespace {
+
+// Row and column must be inside the frame; what is not finite is 0.
+float depth_at(const shm::HeldFrame& frame, std::uint32_t row, std::uint32_t column) {
+  const auto offset = static_cast<std::size_t>(row) * frame.head().stride + column * sizeof(float);
+  float depth = 0;
+  if (offset + sizeof depth <= frame.data().size()) std::memcpy(&depth, frame.data().data() + offset, sizeof depth);
+  return std::isfinite(depth) ? depth : 0;
+}
+
+}  // namespace
+
+void RTCDepthCamera::send_depth(const shm::HeldFrame& frame) {
+  const auto& head = frame.head();
+  depth_.tm = iface::to_time(head.stamp.sim_time_ns);
+  depth_.width = static_cast<CORBA::UShort>(head.width);
+  depth_.height = static_cast<CORBA::UShort>(head.height);
+  depth_.bpp = 32;
+  depth_.format = CORBA::string_dup("DEPTH32F");
+  depth_.fDiv = 1;
+  depth_.pixels.length(static_cast<CORBA::ULong>(sizeof(float) * head.width * head.height));
+  std::size_t at = 0;
+  for (std::uint32_t row = 0; row < head.height; ++row) {
+    for (std::uint32_t column = 0; column < head.width; ++column, at += sizeof(float)) {
+      const float depth = depth_at(frame, row, column);
+      std::memcpy(&depth_.pixels[static_cast<CORBA::ULong>(at)], &depth, sizeof depth);
+    }
+  }
+  depth_out_.write();
+}
+
+void RTCDepthCamera::send_points(const shm::CameraInfo& info, const shm::HeldFrame& frame) {
+  const auto& head = frame.head();
+  const auto step = static_cast<std::uint32_t>(std::clamp(points_step_, 1, 64));
+  points_.tm = iface::to_time(head.stamp.sim_time_ns);
+  points_.points.length(((head.height + step - 1) / step) * ((head.width + step - 1) / step));
+  CORBA::ULong count = 0;
+  for (std::uint32_t row = 0; row < head.height; row += step) {
+    for (std::uint32_t column = 0; column < head.width; column += step) {
+      const double depth = depth_at(frame, row, column);
+      if (depth <= 0) continue;
+      auto& point = points_.points[count++];
+      // Pixel centres lie at half numbers.
+      point.point = {depth, -(column + 0.5 - info.cx) / info.fx * depth, -(row + 0.5 - info.cy) / info.fy * depth};
+      point.colour = {1, 1, 1};
+    }
+  }
+  points_.points.length(count);
+  points_out_.write();
+}
+
+extern "C" {
+void RTCDepthCameraInit(RTC::Manager* manager) {
+  coil::Properties profile(rtcdepthcamera_spec);
+  manager->registerFactory(profile, RTC::Create<RTCDepthCamera>, RTC::Delete<RTCDepthCamera>);
+}
+}
