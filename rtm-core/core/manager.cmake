@@ -6,4 +6,5 @@ target_sources(rt_core PRIVATE
   manager_arguments.cpp
   name_format.cpp
   preconnect.cpp
+  signal_watcher.cpp
   task_runner.cpp)

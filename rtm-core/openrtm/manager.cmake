@@ -1,3 +1,15 @@
 # Manager, modules, naming, logging.
 target_sources(openrtm PRIVATE
-  rtm/SystemLogger.cpp)
+  rtm/CORBA_RTCUtil.cpp
+  rtm/CorbaNaming.cpp
+  rtm/Factory.cpp
+  rtm/LocalServiceAdmin.cpp
+  rtm/Manager.cpp
+  rtm/ManagerComponents.cpp
+  rtm/ManagerConfig.cpp
+  rtm/ManagerServant.cpp
+  rtm/ModuleManager.cpp
+  rtm/NamingManager.cpp
+  rtm/NumberingPolicy.cpp
+  rtm/SystemLogger.cpp
+  rtm/Util.cpp)

@@ -34,17 +34,14 @@ class FactoryBase {
   FactoryBase(const FactoryBase&) = delete;
   FactoryBase& operator=(const FactoryBase&) = delete;
 
-  // nullptr when the author's function fails or throws, or when max_instance components exist already.
+  // nullptr when the author's function fails or throws.
   virtual RTObject_impl* create(Manager* manager) = 0;
   virtual void destroy(RTObject_impl* component) = 0;
 
   const coil::Properties& profile() const { return profile_; }
-  // Components of this factory that exist now.
-  int number() const { return number_; }
 
  protected:
   coil::Properties profile_;
-  int number_ = 0;
 };
 
 class FactoryCXX final : public FactoryBase {

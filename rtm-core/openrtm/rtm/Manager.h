@@ -161,6 +161,8 @@ class Manager {
 
  private:
   friend class ManagerImpl;
+  friend class ModuleManager;
+  friend class RTM::ManagerServant;
   Manager();
   ~Manager();
   std::unique_ptr<ManagerImpl> impl_;

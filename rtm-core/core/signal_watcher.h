@@ -1,0 +1,26 @@
+// Hands signals to a thread, so that what they cause need not be async-signal-safe. One watcher per process at a time.
+// A signal that the program handles or ignores itself when the watcher is made is left to it. The second signal of the same number has its
+// default effect: who presses Ctrl-C twice ends the process at once.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace rt {
+
+class SignalWatcher {
+ public:
+  // `call` runs on the watcher's thread.
+  SignalWatcher(const std::vector<int>& signals, std::function<void(int)> call);
+  // Restores the default handlers; not from within the call.
+  ~SignalWatcher();
+  SignalWatcher(const SignalWatcher&) = delete;
+  SignalWatcher& operator=(const SignalWatcher&) = delete;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rt

@@ -1,0 +1,150 @@
+// The inside of RTC::Manager; shared by its source files only. Any thread, unless a function says otherwise.
+#pragma once
+
+#include <condition_variable>
+#include <future>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/guarded.h"
+#include "corba/orb.h"
+#include "core/component_argument.h"
+#include "core/signal_watcher.h"
+#include "core/task_runner.h"
+#include "rtm/Manager.h"
+#include "rtm/ManagerActionListener.h"
+#include "rtm/NumberingPolicyBase.h"
+
+namespace RTM {
+class ManagerServant;
+}
+
+namespace RTC {
+
+class ManagerConfig;
+class LogstreamBase;
+class ModuleManager;
+class NamingManager;
+
+class ManagerImpl {
+ public:
+  enum class Phase { created, started, active, ending, ended };
+
+  struct RegisteredFactory {
+    std::shared_ptr<FactoryBase> factory;
+    std::string module;  // the file it came from; empty for the program itself
+  };
+
+  // A component of this manager, from the moment its creator returned it until its deletion.
+  struct Record {
+    std::uint64_t id = 0;
+    RTObject_impl* component = nullptr;
+    std::shared_ptr<FactoryBase> factory;  // none for components that others registered
+    std::string module;
+    std::string instance_name;
+    std::vector<std::string> names;  // in the naming service
+    std::string object_key;
+    bool listed = false;     // getComponents shows it
+    bool numbered = false;   // the numbering policy knows it
+    bool finalized = false;  // on its way to deletion
+  };
+
+  struct State {
+    Phase phase = Phase::created;
+    bool end_requested = false;
+    bool life_is_over = false;  // the life thread has done its work
+    int runners = 0;            // threads in runManager
+    std::vector<RegisteredFactory> factories;
+    std::map<std::uint64_t, Record> records;
+    std::uint64_t last_id = 0;
+    std::set<std::string> reserved_names;
+    bool activated = false;  // everything that the configuration names has been made
+    bool had_components = false;
+    std::chrono::steady_clock::time_point empty_since = std::chrono::steady_clock::now();
+  };
+
+  explicit ManagerImpl(Manager& facade);
+  ~ManagerImpl();
+
+  // --- life (Manager.cpp)
+  // Starts ORB, threads and naming. One line on failure.
+  base::Result<void> start(const ManagerConfig& config, const ManagerOptions& options);
+  bool activate();
+  void request_end();
+  void wait_until_ended();
+  bool wait_until_ended(std::chrono::nanoseconds timeout);
+  bool is_ending() const;
+  static void end_at_exit(int status, void*);
+  std::string value(const std::string& key) const;
+  bool flag(const std::string& key, bool otherwise) const;
+  double number(const std::string& key, double otherwise) const;
+  std::vector<std::string> list(const std::string& key) const;
+  bool is_master() const { return flag("manager.is_master", false); }
+
+  // --- components (ManagerComponents.cpp)
+  bool register_factory(const coil::Properties& profile, RtcNewFunc create, RtcDeleteFunc destroy);
+  std::optional<RegisteredFactory> find_factory(const rt::ComponentId& id) const;
+  // How many components of the module exist; without any, its factories are removed.
+  std::size_t forget_module(const std::string& module);
+  base::Result<RTObject_impl*> create(std::string argument);
+  void finalized(RTObject_impl* component);
+  void destroy(std::uint64_t id);
+  void exit_all_components();
+  std::vector<Record> records() const;
+  std::optional<Record> record_of(const RTObject_impl* component) const;
+  base::Result<void> connect(const std::string& request);
+  base::Result<void> activate_component(const std::string& name);
+  // By instance name here, else by URL; nil if there is none.
+  RTObject_var find_component(const std::string& name);
+  bool load_and_create(const std::string& module);
+
+  Manager& facade;
+  Logger rtclog{"manager"};
+  mutable std::mutex config_mutex;  // guards config against our own writers; components read it as they like
+  coil::Properties config;
+  ManagerOptions options;
+  ModuleInitProc init_proc = nullptr;
+  RTM::ManagerActionListeners listeners;
+  base::Guarded<State, base::Rank::manager> state;
+  std::condition_variable changed;
+  std::unique_ptr<corba::Orb> orb;
+  std::unique_ptr<rt::TaskRunner> timer;
+  std::unique_ptr<rt::TaskRunner> cleaner;
+  std::unique_ptr<NamingManager> naming;
+  std::unique_ptr<ModuleManager> modules;
+  RTM::ManagerServant* servant = nullptr;  // we hold one reference
+  std::thread::id home;                    // the thread that called init
+
+  // The module whose init function runs on this thread.
+  static thread_local std::string current_module;
+
+ private:
+  base::Result<void> start_orb();
+  void start_naming();
+  void start_logging();
+  void start_timer_tasks();
+  void live();
+  void end();
+  void look_after_number_of_components();
+
+  coil::Properties inherited_properties() const;
+  coil::Properties configured_properties(const std::string& category, const std::string& name);
+  base::Result<std::string> name_component(RTObject_impl* component, const rt::ComponentArgument& argument, bool& numbered);
+  std::vector<std::string> naming_names(RTObject_impl* component, const coil::Properties& properties) const;
+  base::Result<RTObject_impl*> finish_creation(std::uint64_t id, const RegisteredFactory& source, const rt::ComponentArgument& argument);
+  void publish(const Record& record);
+  void withdraw(const Record& record);
+
+  std::mutex numbering_mutex;  // policies are called one at a time, user-written or not
+  RTM::NumberingPolicyBase* numbering = nullptr;
+  std::unique_ptr<rt::SignalWatcher> signals;
+  std::vector<LogstreamBase*> log_plugins;
+  std::thread life;
+};
+
+}  // namespace RTC

@@ -1,0 +1,311 @@
+#include "rtm/ModuleManager.h"
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <mutex>
+
+#include "base/log.h"
+#include "base/text.h"
+#include "core/config_file.h"
+#include "core/name_format.h"
+#include "rtm/ECFactory.h"
+#include "rtm/ManagerImpl.h"
+
+namespace RTC {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::steady_clock;
+
+constexpr const char* profile_program = "rtcprof";
+constexpr const char* block_end = "---";
+
+std::string canonical(const fs::path& path) {
+  std::error_code error;
+  const auto result = fs::weakly_canonical(path, error);
+  return error ? path.string() : result.string();
+}
+
+bool is_file(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
+// Beside the libraries, as they are built and installed; else wherever PATH has it.
+std::string profile_program_path() {
+  Dl_info info{};
+  if (dladdr(reinterpret_cast<void*>(&profile_program_path), &info) != 0 && info.dli_fname != nullptr) {
+    const auto path = fs::path(canonical(info.dli_fname)).parent_path().parent_path() / "bin" / profile_program;
+    if (is_file(path)) return path.string();
+  }
+  return profile_program;
+}
+
+// What the program prints on stdout; nothing when it fails or takes too long, in which case it is killed.
+std::optional<std::string> output_of(const std::vector<std::string>& words, std::chrono::seconds patience) {
+  constexpr std::size_t longest = std::size_t{4} << 20;
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) return std::nullopt;
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  std::vector<char*> argv;
+  for (const auto& word : words) argv.push_back(const_cast<char*>(word.c_str()));
+  argv.push_back(nullptr);
+  pid_t child = -1;
+  const int failed = posix_spawnp(&child, argv[0], &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  close(ends[1]);
+  std::string output;
+  bool complete = false;
+  if (failed == 0) {
+    const auto deadline = steady_clock::now() + patience;
+    while (output.size() < longest) {
+      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - steady_clock::now()).count();
+      pollfd ready{ends[0], POLLIN, 0};
+      if (left <= 0 || poll(&ready, 1, static_cast<int>(left)) == 0) break;
+      char buffer[4096];
+      const auto size = read(ends[0], buffer, sizeof buffer);
+      if (size < 0 && errno == EINTR) continue;
+      if (size <= 0) {
+        complete = size == 0;
+        break;
+      }
+      output.append(buffer, static_cast<std::size_t>(size));
+    }
+    if (!complete) kill(child, SIGKILL);
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    complete = complete && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  }
+  close(ends[0]);
+  if (!complete) return std::nullopt;
+  return output;
+}
+
+// A library with stubs of its own has registered them with the ORB, which keeps pointers into it: it must stay mapped.
+bool contains_stubs(const std::string& file) {
+  const auto text = rt::read_text_file(file);
+  return !text || text->find("_pof_") != std::string::npos;
+}
+
+struct Module {
+  std::string file;
+  std::string init_function;
+  void* handle = nullptr;
+  bool registers_contexts = false;
+};
+
+// `name(function)` -> name, function.
+std::pair<std::string, std::string> split_module(const std::string& module, const std::string& init_function) {
+  const auto text = std::string(base::trim(module));
+  const auto open = text.find('(');
+  if (open == std::string::npos || !text.ends_with(')')) return {text, init_function};
+  return {std::string(base::trim(text.substr(0, open))), std::string(base::trim(text.substr(open + 1, text.size() - open - 2)))};
+}
+
+}  // namespace
+
+struct ModuleManager::Impl {
+  struct Profile {
+    fs::file_time_type time;
+    std::uintmax_t size = 0;
+    std::vector<coil::Properties> profiles;
+  };
+
+  Manager* manager;
+  mutable std::mutex mutex;  // guards the two
+  std::vector<Module> modules;
+  std::map<std::string, Profile> known_profiles;
+
+  std::vector<fs::path> load_path() const {
+    std::vector<fs::path> folders;
+    const auto nothing = [](char) { return std::optional<std::string>(); };
+    auto paths = base::split_list(manager->configValue("manager.modules.load_path"));
+    for (const auto& path : base::split_list(manager->configValue("manager.modules.C++.load_paths"))) paths.push_back(path);
+    for (const auto& path : paths) folders.emplace_back(rt::expand_format(path, nothing));
+    return folders;
+  }
+
+  std::optional<Module> find(const std::string& name, const std::string& file) const {
+    const std::scoped_lock lock(mutex);
+    for (const auto& module : modules) {
+      const fs::path path(module.file);
+      if (module.file == file || path.filename() == name || path.stem() == name) return module;
+    }
+    return std::nullopt;
+  }
+
+  std::vector<coil::Properties> profiles_of(const fs::path& file) {
+    std::error_code error;
+    Profile profile;
+    profile.time = fs::last_write_time(file, error);
+    profile.size = fs::file_size(file, error);
+    {
+      const std::scoped_lock lock(mutex);
+      const auto at = known_profiles.find(file.string());
+      if (at != known_profiles.end() && at->second.time == profile.time && at->second.size == profile.size) return at->second.profiles;
+    }
+    const auto output = output_of({profile_program_path(), file.string()}, std::chrono::seconds(10));
+    std::string block;
+    std::string_view rest = output ? std::string_view(*output) : std::string_view();
+    while (!rest.empty()) {
+      const auto end = rest.find('\n');
+      const auto line = rest.substr(0, end);
+      rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
+      if (line != block_end) {
+        block.append(line).append("\n");
+        continue;
+      }
+      coil::Properties properties;
+      for (const auto& entry : rt::parse_config(block).entries) properties.setProperty(entry.key, entry.value);
+      properties.setProperty("module_file_name", file.filename().string());
+      properties.setProperty("module_file_path", file.string());
+      profile.profiles.push_back(std::move(properties));
+      block.clear();
+    }
+    const std::scoped_lock lock(mutex);
+    known_profiles[file.string()] = profile;
+    return profile.profiles;
+  }
+};
+
+ModuleManager::ModuleManager(Manager* manager) : impl_(std::make_unique<Impl>()) { impl_->manager = manager; }
+ModuleManager::~ModuleManager() = default;
+
+std::string ModuleManager::findFile(const std::string& name) const {
+  if (name.empty() || name.find('\0') != std::string::npos) return {};
+  const fs::path given(name);
+  if (name.find('/') != std::string::npos) {
+    if (is_file(given)) return canonical(given);
+    if (given.is_absolute()) return {};
+  }
+  for (const auto& folder : impl_->load_path()) {
+    for (const auto& file : {name, name + ".so", "lib" + name + ".so"}) {
+      if (is_file(folder / file)) return canonical(folder / file);
+    }
+  }
+  return {};
+}
+
+std::string ModuleManager::initFunction(const std::string& file) {
+  auto stem = fs::path(file).stem().string();
+  if (stem.starts_with("lib")) stem.erase(0, 3);
+  return stem + "Init";
+}
+
+ReturnCode_t ModuleManager::load(const std::string& text, const std::string& init_function, std::string& error) {
+  auto [name, function] = split_module(text, init_function);
+  const auto complain = [&](const std::string& why) {
+    error = "module " + base::in_quotes(name) + ": " + why;
+    return RTC_ERROR;
+  };
+  if (name.empty() || name.size() > 4096) return complain("not the name of a file"), BAD_PARAMETER;
+  const auto file = findFile(name);
+  if (file.empty()) return complain("not found; looked in " + impl_->manager->configValue("manager.modules.load_path")), BAD_PARAMETER;
+  if (fs::path(name).is_absolute() && !base::parse_bool(impl_->manager->configValue("manager.modules.abs_path_allowed")).value_or(true)) {
+    return complain("absolute paths are not allowed by manager.modules.abs_path_allowed"), PRECONDITION_NOT_MET;
+  }
+  if (impl_->find({}, file)) return RTC_OK;
+  if (function.empty()) function = initFunction(file);
+
+  void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (handle == nullptr) {
+    const char* why = dlerror();
+    return complain(why != nullptr ? why : "cannot be loaded");
+  }
+  void* symbol = dlsym(handle, function.c_str());
+  // A library may be named otherwise than the function in it only when the caller says so, except for the prefix lib.
+  if (symbol == nullptr && init_function.empty()) symbol = dlsym(handle, (fs::path(file).stem().string() + "Init").c_str());
+  if (symbol == nullptr) {
+    dlclose(handle);
+    return complain("has no function " + function);
+  }
+  const auto contexts_before = ExecutionContextFactory::instance().getIdentifiers().size();
+  ManagerImpl::current_module = file;
+  std::string failure;
+  try {
+    reinterpret_cast<void (*)(Manager*)>(symbol)(impl_->manager);
+  } catch (const std::exception& e) {
+    failure = e.what();
+  } catch (...) {
+    failure = "unknown exception";
+  }
+  ManagerImpl::current_module.clear();
+  const std::scoped_lock lock(impl_->mutex);
+  impl_->modules.push_back({file, function, handle, ExecutionContextFactory::instance().getIdentifiers().size() != contexts_before});
+  if (!failure.empty()) return complain(function + " failed: " + failure);
+  return RTC_OK;
+}
+
+ReturnCode_t ModuleManager::unload(const std::string& name) {
+  const auto module = impl_->find(name, findFile(name));
+  if (!module) return BAD_PARAMETER;
+  if (impl_->manager->impl_->forget_module(module->file) > 0) return PRECONDITION_NOT_MET;
+  {
+    const std::scoped_lock lock(impl_->mutex);
+    std::erase_if(impl_->modules, [&](const auto& other) { return other.file == module->file; });
+  }
+  if (!module->registers_contexts && !contains_stubs(module->file)) dlclose(module->handle);
+  return RTC_OK;
+}
+
+void ModuleManager::unloadAll() {
+  std::vector<Module> modules;
+  {
+    const std::scoped_lock lock(impl_->mutex);
+    modules = impl_->modules;
+  }
+  for (const auto& module : modules) unload(module.file);
+}
+
+void* ModuleManager::symbol(const std::string& name, const std::string& function) const {
+  const auto module = impl_->find(name, findFile(name));
+  return module ? dlsym(module->handle, function.c_str()) : nullptr;
+}
+
+std::vector<coil::Properties> ModuleManager::getLoadedModules() const {
+  std::vector<coil::Properties> result;
+  const std::scoped_lock lock(impl_->mutex);
+  for (const auto& module : impl_->modules) {
+    coil::Properties properties;
+    properties.setProperty("file_path", module.file);
+    properties.setProperty("import_path", fs::path(module.file).parent_path().string());
+    properties.setProperty("init_func", module.init_function);
+    properties.setProperty("language", "C++");
+    result.push_back(std::move(properties));
+  }
+  return result;
+}
+
+std::vector<coil::Properties> ModuleManager::getLoadableModules() {
+  std::vector<coil::Properties> result;
+  std::vector<std::string> seen;
+  for (const auto& folder : impl_->load_path()) {
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+      if (entry.path().extension() != ".so" || !is_file(entry.path())) continue;
+      const auto file = canonical(entry.path());
+      if (std::find(seen.begin(), seen.end(), file) != seen.end()) continue;
+      seen.push_back(file);
+      for (auto& profile : impl_->profiles_of(file)) result.push_back(std::move(profile));
+    }
+  }
+  return result;
+}
+
+}  // namespace RTC
