@@ -401,7 +401,7 @@ bool Manager::unregisterComponent(RTObject_impl* comp) {
 
 RTObject_impl* Manager::getComponent(const char* instance_name) {
   if (instance_name == nullptr) return nullptr;
-  const auto locked = impl_->state.lock();
+  auto locked = impl_->state.lock();
   for (const auto& [id, record] : locked->records) {
     if (record.listed && !record.finalized && record.instance_name == instance_name) return record.component;
   }
@@ -410,7 +410,7 @@ RTObject_impl* Manager::getComponent(const char* instance_name) {
 
 std::vector<RTObject_impl*> Manager::getComponents() {
   std::vector<RTObject_impl*> components;
-  const auto locked = impl_->state.lock();
+  auto locked = impl_->state.lock();
   for (const auto& [id, record] : locked->records) {
     if (record.listed && !record.finalized) components.push_back(record.component);
   }

@@ -95,6 +95,9 @@ class ManagerImpl {
   void finalized(RTObject_impl* component);
   void destroy(std::uint64_t id);
   void exit_all_components();
+  // Puts the component's names into the naming service and its key into the ORB, and takes them out.
+  void publish(const Record& record);
+  void withdraw(const Record& record);
   std::vector<Record> records() const;
   std::optional<Record> record_of(const RTObject_impl* component) const;
   base::Result<void> connect(const std::string& request);
@@ -137,9 +140,6 @@ class ManagerImpl {
   base::Result<std::string> name_component(RTObject_impl* component, const rt::ComponentArgument& argument, bool& numbered);
   std::vector<std::string> naming_names(RTObject_impl* component, const coil::Properties& properties) const;
   base::Result<RTObject_impl*> finish_creation(std::uint64_t id, const RegisteredFactory& source, const rt::ComponentArgument& argument);
-  void publish(const Record& record);
-  void withdraw(const Record& record);
-
   std::mutex numbering_mutex;  // policies are called one at a time, user-written or not
   RTM::NumberingPolicyBase* numbering = nullptr;
   std::unique_ptr<rt::SignalWatcher> signals;

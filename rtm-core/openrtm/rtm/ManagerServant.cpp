@@ -110,12 +110,12 @@ RTC::RTCList* ManagerServant::get_components() {
   RTC::RTCList_var list = new RTC::RTCList;
   for (const auto* component : manager_.getComponents()) {
     RTC::RTObject_var reference = component->getObjRef();
-    append(*list, reference);
+    append(list.inout(), reference);
   }
   for (const auto& slave : living_slaves()) {
     try {
       RTC::RTCList_var theirs = slave->get_components();
-      for (CORBA::ULong i = 0; i < theirs->length(); ++i) append(*list, theirs[i]);
+      for (CORBA::ULong i = 0; i < theirs->length(); ++i) append(list.inout(), theirs[i]);
     } catch (const CORBA::Exception&) {  // gone meanwhile
       continue;
     }
@@ -127,12 +127,12 @@ RTC::ComponentProfileList* ManagerServant::get_component_profiles() {
   RTC::ComponentProfileList_var list = new RTC::ComponentProfileList;
   for (auto* component : manager_.getComponents()) {
     RTC::ComponentProfile_var profile = component->get_component_profile();
-    append(*list, profile.in());
+    append(list.inout(), profile.in());
   }
   for (const auto& slave : living_slaves()) {
     try {
       RTC::ComponentProfileList_var theirs = slave->get_component_profiles();
-      for (CORBA::ULong i = 0; i < theirs->length(); ++i) append(*list, theirs[i]);
+      for (CORBA::ULong i = 0; i < theirs->length(); ++i) append(list.inout(), theirs[i]);
     } catch (const CORBA::Exception&) {  // gone meanwhile
       continue;
     }
@@ -151,7 +151,7 @@ RTC::RTCList* ManagerServant::get_components_by_name(const char* name) {
   for (const auto* component : manager_.getComponents()) {
     if (!is_listed(*component, category, instance)) continue;
     RTC::RTObject_var reference = component->getObjRef();
-    append(*list, reference);
+    append(list.inout(), reference);
   }
   return list._retn();
 }
@@ -176,7 +176,7 @@ RTM::NVList* ManagerServant::get_configuration() {
     const std::scoped_lock lock(manager_.impl_->config_mutex);
     config = manager_.impl_->config;
   }
-  NVUtil::copyFromProperties(*list, config);
+  NVUtil::copyFromProperties(list.inout(), config);
   return list._retn();
 }
 

@@ -31,7 +31,7 @@ using std::chrono::steady_clock;
 constexpr const char* profile_program = "rtcprof";
 constexpr const char* block_end = "---";
 
-std::string canonical(const fs::path& path) {
+std::string real_path(const fs::path& path) {
   std::error_code error;
   const auto result = fs::weakly_canonical(path, error);
   return error ? path.string() : result.string();
@@ -46,7 +46,7 @@ bool is_file(const fs::path& path) {
 std::string profile_program_path() {
   Dl_info info{};
   if (dladdr(reinterpret_cast<void*>(&profile_program_path), &info) != 0 && info.dli_fname != nullptr) {
-    const auto path = fs::path(canonical(info.dli_fname)).parent_path().parent_path() / "bin" / profile_program;
+    const auto path = fs::path(real_path(info.dli_fname)).parent_path().parent_path() / "bin" / profile_program;
     if (is_file(path)) return path.string();
   }
   return profile_program;
@@ -191,12 +191,12 @@ std::string ModuleManager::findFile(const std::string& name) const {
   if (name.empty() || name.find('\0') != std::string::npos) return {};
   const fs::path given(name);
   if (name.find('/') != std::string::npos) {
-    if (is_file(given)) return canonical(given);
+    if (is_file(given)) return real_path(given);
     if (given.is_absolute()) return {};
   }
   for (const auto& folder : impl_->load_path()) {
     for (const auto& file : {name, name + ".so", "lib" + name + ".so"}) {
-      if (is_file(folder / file)) return canonical(folder / file);
+      if (is_file(folder / file)) return real_path(folder / file);
     }
   }
   return {};
@@ -299,7 +299,7 @@ std::vector<coil::Properties> ModuleManager::getLoadableModules() {
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(folder, error)) {
       if (entry.path().extension() != ".so" || !is_file(entry.path())) continue;
-      const auto file = canonical(entry.path());
+      const auto file = real_path(entry.path());
       if (std::find(seen.begin(), seen.end(), file) != seen.end()) continue;
       seen.push_back(file);
       for (auto& profile : impl_->profiles_of(file)) result.push_back(std::move(profile));

@@ -1,0 +1,136 @@
+#include "name_service.h"
+
+#include <fcntl.h>
+#include <netdb.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <thread>
+
+#include "base/text.h"
+
+namespace {
+
+struct Address {
+  std::string host = "127.0.0.1";
+  std::string port = "2809";
+};
+
+base::Result<Address> parse(const std::string& text) {
+  Address address;
+  const auto colon = text.rfind(':');
+  const auto host = text.substr(0, colon);
+  if (!host.empty() && host != "localhost") address.host = host;
+  if (colon != std::string::npos) {
+    const auto port = base::parse_integer(text.substr(colon + 1));
+    if (!port || *port < 1 || *port > 65535) return base::Error{"naming service " + base::in_quotes(text) + ": expected host:port"};
+    address.port = std::to_string(*port);
+  }
+  return address;
+}
+
+bool is_listening(const Address& address) {
+  addrinfo hints{};
+  hints.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  if (getaddrinfo(address.host.c_str(), address.port.c_str(), &hints, &found) != 0) return false;
+  bool answered = false;
+  for (const auto* at = found; at != nullptr && !answered; at = at->ai_next) {
+    const int socket = ::socket(at->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    if (socket < 0) continue;
+    if (connect(socket, at->ai_addr, at->ai_addrlen) == 0) {
+      answered = true;
+    } else if (errno == EINPROGRESS) {
+      pollfd ready{socket, POLLOUT, 0};
+      int error = 1;
+      socklen_t size = sizeof error;
+      constexpr int patience = 1000;  // [ms]
+      answered = poll(&ready, 1, patience) == 1 && getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size) == 0 && error == 0;
+    }
+    close(socket);
+  }
+  freeaddrinfo(found);
+  return answered;
+}
+
+// The keeper: a child of ours, because somebody has to remove the folder when we are killed. Signals of the terminal are not for it; it
+// ends when the pipe from us closes or omniNames ends.
+[[noreturn]] void keep(const Address& address, const std::string& folder, int alive) {
+  setpgid(0, 0);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) ::signal(number, SIG_IGN);
+  const pid_t keeper = getpid();
+  const pid_t child = fork();
+  if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != keeper) _exit(127);
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) ::signal(number, SIG_DFL);
+    const int null = open("/dev/null", O_RDWR);
+    for (const int file : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(null, file);
+    const auto end_point = "giop:tcp:" + address.host + ":" + address.port;
+    execlp("omniNames", "omniNames", "-always", "-ignoreport", "-start", address.port.c_str(), "-datadir", folder.c_str(), "-ORBendPoint",
+           end_point.c_str(), static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  for (bool running = child > 0; running;) {
+    pollfd ends{alive, POLLIN, 0};
+    constexpr int look = 500;  // [ms], at a child that ends on its own
+    const int ready = poll(&ends, 1, look);
+    if (ready > 0) {
+      kill(child, SIGTERM);
+      waitpid(child, nullptr, 0);
+      running = false;
+    } else if (waitpid(child, nullptr, WNOHANG) == child) {
+      running = false;
+    }
+  }
+  std::error_code ignored;
+  std::filesystem::remove_all(folder, ignored);
+  _exit(0);
+}
+
+}  // namespace
+
+base::Result<std::unique_ptr<NameService>> NameService::start_if_none(const std::string& text) {
+  const auto address = parse(text);
+  if (!address) return address.error();
+  if (is_listening(*address)) return std::unique_ptr<NameService>();
+
+  std::error_code error;
+  auto folder = (std::filesystem::temp_directory_path(error) / "rtcd-names-XXXXXX").string();
+  if (mkdtemp(folder.data()) == nullptr) return base::Error{"naming service: no folder can be made in the temporary folder"};
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) return base::Error{"naming service: no pipe can be made"};
+  std::unique_ptr<NameService> service(new NameService);
+  service->alive_ = ends[1];
+  service->keeper_ = fork();
+  if (service->keeper_ == 0) {
+    close(ends[1]);
+    keep(*address, folder, ends[0]);
+  }
+  close(ends[0]);
+
+  constexpr std::chrono::seconds patience{10};
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  while (std::chrono::steady_clock::now() < deadline) {
+    if (is_listening(*address)) return service;
+    if (waitpid(service->keeper_, nullptr, WNOHANG) == service->keeper_) {
+      service->keeper_ = -1;
+      break;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));  // nothing else tells when it listens
+  }
+  return base::Error{"naming service " + base::in_quotes(text) + ": omniNames does not start (is it installed, is the port free?)"};
+}
+
+NameService::~NameService() {
+  if (alive_ >= 0) close(alive_);
+  if (keeper_ > 0) waitpid(keeper_, nullptr, 0);
+}

@@ -1,0 +1,24 @@
+// The naming service that `rtcd --with-naming` brings along: omniNames with data of its own, started when none answers. One thread.
+#pragma once
+
+#include <sys/types.h>
+
+#include <memory>
+#include <string>
+
+#include "base/result.h"
+
+class NameService {
+ public:
+  // `address`: host, host:port; the port is 2809 if missing. Returns nothing when one answers there already. The child ends with this
+  // object and with this process, however that ends; its folder is removed.
+  static base::Result<std::unique_ptr<NameService>> start_if_none(const std::string& address);
+  ~NameService();
+  NameService(const NameService&) = delete;
+  NameService& operator=(const NameService&) = delete;
+
+ private:
+  NameService() = default;
+  pid_t keeper_ = -1;  // the process that starts omniNames, waits for our end and tidies up
+  int alive_ = -1;     // closed by our end, however it comes
+};

@@ -1,0 +1,86 @@
+#include "core/task_runner.h"
+
+#include <gtest/gtest.h>
+
+#include <future>
+
+#include "core/signal_watcher.h"
+#include "support/process.h"
+
+namespace rt {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(TaskRunner, posted_tasks_run_in_order) {
+  TaskRunner runner("test");
+  std::vector<int> order;
+  for (int i = 0; i < 10; ++i) runner.post([&order, i] { order.push_back(i); });
+  runner.drain();
+  EXPECT_EQ(order, (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
+}
+
+TEST(TaskRunner, a_periodic_task_runs_until_it_is_removed) {
+  TaskRunner runner("test");
+  std::promise<void> third;
+  int runs = 0;
+  const auto id = runner.add(
+      [&] {
+        if (++runs == 3) third.set_value();
+      },
+      1ms, 0ns);
+  ASSERT_EQ(third.get_future().wait_for(support::watchdog), std::future_status::ready);
+  EXPECT_TRUE(runner.remove(id));
+  const int after = runs;
+  runner.drain();
+  EXPECT_EQ(runs, after);
+  EXPECT_FALSE(runner.remove(id));
+}
+
+TEST(TaskRunner, a_task_may_remove_itself_and_throw) {
+  TaskRunner runner("test");
+  int runs = 0;
+  std::promise<TaskRunner::TaskId> id;
+  auto known = id.get_future().share();
+  id.set_value(runner.add(
+      [&, known] {
+        ++runs;
+        EXPECT_TRUE(runner.remove(known.get()));
+        throw std::runtime_error("expected by the test");
+      },
+      1ms, 0ns));
+  runner.post([] {});
+  runner.drain();
+  EXPECT_EQ(runs, 1);
+}
+
+TEST(TaskRunner, what_is_left_at_the_end_is_dropped_and_drain_does_not_hang) {
+  TaskRunner runner("test");
+  bool ran = false;
+  runner.add([&] { ran = true; }, 0ns, 1h);
+  runner.stop();
+  runner.post([&] { ran = true; });
+  runner.drain();
+  EXPECT_FALSE(ran);
+}
+
+TEST(SignalWatcher, hands_a_signal_to_its_thread) {
+  std::promise<int> got;
+  SignalWatcher watcher({SIGUSR1}, [&](int number) { got.set_value(number); });
+  raise(SIGUSR1);
+  auto answer = got.get_future();
+  ASSERT_EQ(answer.wait_for(support::watchdog), std::future_status::ready);
+  EXPECT_EQ(answer.get(), SIGUSR1);
+}
+
+TEST(SignalWatcher, leaves_handlers_of_the_program_alone) {
+  static volatile std::sig_atomic_t handled = 0;
+  signal(SIGUSR2, [](int) { handled = 1; });
+  SignalWatcher watcher({SIGUSR2}, [](int) { FAIL(); });
+  raise(SIGUSR2);
+  EXPECT_EQ(handled, 1);
+  signal(SIGUSR2, SIG_DFL);
+}
+
+}  // namespace
+}  // namespace rt
