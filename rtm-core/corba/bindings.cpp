@@ -25,8 +25,9 @@ struct Entry {
   bool warned = false;   // somebody else has the name, and that has been said
 };
 
-bool is_alive(CORBA::Object_ptr object) {
+bool is_alive(CORBA::Object_ptr object, std::chrono::milliseconds timeout) {
   try {
+    set_call_timeout(object, timeout);
     return !CORBA::is_nil(object) && !object->_non_existent();
   } catch (const CORBA::TIMEOUT&) {
     return true;  // hung, but there
@@ -109,7 +110,6 @@ class Bindings::Server {
 
   void run() {
     pthread_setname_np(pthread_self(), "rtm-naming");
-    omniORB::setClientThreadCallTimeout(static_cast<CORBA::ULong>(settings_.call_timeout.count()));
     const bool looks = settings_.interval.count() > 0;
     auto next_look = steady_clock::now() + settings_.interval;
     for (;;) {
@@ -220,7 +220,7 @@ class Bindings::Server {
       entry.bound = true;
       return;
     }
-    if (!CORBA::is_nil(there) && !there->_is_equivalent(entry.object) && is_alive(there)) {
+    if (!CORBA::is_nil(there) && !there->_is_equivalent(entry.object) && is_alive(there, settings_.call_timeout)) {
       if (!entry.warned) {
         base::log(base::Level::warn, log_name, "{}: {} belongs to another living object; {}", address_, base::in_quotes(key),
                   is_first ? "it is ours now" : "it is left alone");

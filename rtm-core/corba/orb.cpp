@@ -168,6 +168,9 @@ class Forwarder final : public PortableServer::ServantBase {
  public:
   explicit Forwarder(CORBA::Object_ptr target) : target_(CORBA::Object::_duplicate(target)) {}
   _CORBA_Boolean _dispatch(omniCallHandle&) override { throw omniORB::LOCATION_FORWARD(CORBA::Object::_duplicate(target_), false); }
+  // Callers of this process ask here.
+  _CORBA_Boolean _is_a(const char* id) override { return target_->_is_a(id); }
+  _CORBA_Boolean _non_existent() override { return target_->_non_existent(); }
   void* _ptrToInterface(const char* id) override { return omni::ptrStrMatch(id, CORBA::Object::_PD_repoId) ? this : nullptr; }
   const char* _mostDerivedRepoId() override { return CORBA::Object::_PD_repoId; }
 

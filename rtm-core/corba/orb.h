@@ -17,11 +17,11 @@ namespace corba {
 struct OrbSettings {
   // Where to listen: "HOST:PORT", ":PORT" (loopback), "HOST", "all" (every interface), "unix" or an omniORB end point "giop:...". Empty:
   // any free port on loopback. An empty list is the same as one empty string.
-  std::vector<std::string> endpoints;
+  std::vector<std::string> endpoints{};
   bool unix_socket = true;                                // a further end point for processes of this host
   std::chrono::milliseconds call_timeout{10'000};         // of every call to another process; 0: none
   std::size_t max_message_size = std::size_t{128} << 20;  // [byte]
-  std::vector<std::string> arguments;                     // further -ORB... arguments; they win over the settings above
+  std::vector<std::string> arguments{};                     // further -ORB... arguments; they win over the settings above
 };
 
 class Orb {
