@@ -134,12 +134,17 @@ class Bindings::Server {
         remove_contexts = std::exchange(state->remove_contexts, false);
         state->working = true;
       }
-      const bool reachable = connect() && do_work(work, remove_contexts);
+      // The first call after a restart of the service fails because it goes into the old connection: that alone says nothing.
+      bool reachable = false;
+      for (int attempt = 0; attempt < 2 && !reachable; ++attempt) {
+        const bool is_last = attempt == 1;
+        reachable = connect(is_last) && do_work(work, remove_contexts, is_last);
+      }
       finish(work, reachable);
     }
   }
 
-  bool connect() {
+  bool connect(bool is_last) {
     if (!CORBA::is_nil(root_)) return true;
     auto found = root_context(orb_, address_, settings_.call_timeout);
     if (found) {
@@ -148,7 +153,7 @@ class Bindings::Server {
       complained_ = false;
       return true;
     }
-    complain(found.error().message);
+    if (is_last) complain(found.error().message);
     return false;
   }
 
@@ -158,7 +163,7 @@ class Bindings::Server {
   }
 
   // False when the service has stopped answering.
-  bool do_work(std::map<std::string, Entry>& work, bool remove_contexts) {
+  bool do_work(std::map<std::string, Entry>& work, bool remove_contexts, bool is_last) {
     try {
       for (auto& [key, entry] : work) {
         if (state_.lock()->stopping) return true;
@@ -173,7 +178,7 @@ class Bindings::Server {
       if (remove_contexts) remove_empty_contexts();
       return true;
     } catch (const CORBA::Exception& e) {
-      complain("naming service " + address_ + ": stopped answering: " + to_text(e));
+      if (is_last) complain("naming service " + address_ + ": stopped answering: " + to_text(e));
       root_ = CosNaming::NamingContext::_nil();
       return false;
     }
