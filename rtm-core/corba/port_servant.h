@@ -3,11 +3,12 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <string>
 #include <vector>
 
 #include "base/guarded.h"
+#include "corba/call_timeout.h"
+#include "corba/gate.h"
 #include "core/connector_settings.h"
 #include "rtm/idl/RTCSkel.h"
 
@@ -31,8 +32,9 @@ class PortServant : public virtual POA_RTC::PortService, public virtual Portable
 
   // The port's reference; activates the port in its POA at the first call. Nil while there is no ORB. Borrowed, good as long as the port.
   RTC::PortService_ptr reference();
-  // No call from outside is accepted after this. Connections stay.
-  void deactivate();
+  // No call from outside is accepted after this, and none is running. Connections stay. Classes that end the line of derivation call it
+  // first in their destructors. Not to be called from inside a hook.
+  void shut();
 
   // Removes the connection on this side without calling anyone, because the other end is gone. False if it is not there (any more).
   bool drop_connection(const char* connector_id);
@@ -75,6 +77,8 @@ class PortServant : public virtual POA_RTC::PortService, public virtual Portable
   bool add_interface(const std::string& instance, const std::string& type, RTC::PortInterfacePolarity polarity);
   bool remove_interface(const std::string& instance, RTC::PortInterfacePolarity polarity);
   RTC::PortProfile profile() const;
+  // The same object, as far as can be told without calling it.
+  static bool is_same(CORBA::Object_ptr a, CORBA::Object_ptr b);
   // Most connections at a time; negative: any number.
   void set_connection_limit(int limit) { connection_limit_.store(limit, std::memory_order_relaxed); }
   std::vector<RTC::ConnectorProfile> connections() const;
@@ -92,24 +96,24 @@ class PortServant : public virtual POA_RTC::PortService, public virtual Portable
     RTC::PortInterfaceProfileList interfaces;
     RTC::NVList properties;
     std::vector<Connection> connections;
-    bool is_active = false;
+
+    Connection* find(std::string_view id);
   };
 
   // Where this port stands in the list, -1 if nowhere.
   int position(const RTC::PortServiceList& ports);
-  RTC::ReturnCode_t reserve(const RTC::ConnectorProfile& profile);
-  RTC::ReturnCode_t connect_next(RTC::ConnectorProfile& profile, int self);
-  RTC::ReturnCode_t disconnect_next(const RTC::ConnectorProfile& profile);
-  RTC::ReturnCode_t leave(const char* connector_id, bool tells_next, bool is_lost);
-  void forget(const char* connector_id);
+  RTC::ReturnCode_t join(RTC::ConnectorProfile& profile);
+  RTC::ReturnCode_t reserve(const RTC::ConnectorProfile& profile, bool allows_duplicate);
+  RTC::ReturnCode_t join_next(RTC::ConnectorProfile& profile, int self);
+  RTC::ReturnCode_t leave(std::string_view connector_id, bool tells_next, bool is_lost);
+  RTC::ReturnCode_t leave_next(const RTC::ConnectorProfile& profile);
+  // Tells the ports of a connection to take it apart, in order, until one answers; its answer.
+  RTC::ReturnCode_t break_up(const RTC::ConnectorProfile& profile);
+  void tell(Step step, RTC::ConnectorProfile& profile, RTC::ReturnCode_t code);
 
   base::Guarded<State, base::Rank::port> state_;
   std::atomic<int> connection_limit_{-1};
+  Gate gate_;
 };
-
-// The longest that a call to another port, or one sample on its way to one, may take unless the connection says otherwise
-// (dataport.call_timeout). Default 10 s, as in OpenRTM 2.x.
-void set_port_call_timeout(std::chrono::milliseconds timeout);
-std::chrono::milliseconds port_call_timeout();
 
 }  // namespace corba

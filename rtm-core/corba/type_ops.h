@@ -35,14 +35,16 @@ struct TypeOps {
   void (*decode)(void* value, cdrStream& stream);             // throws CORBA::MARSHAL
   void (*stamp)(void* value, std::chrono::nanoseconds time);  // nullptr if the type has no `tm`
   bool is_stamp_first;                                        // `tm` is the first member
+  bool has_wide_text;                                         // or something else that is encoded from temporary memory
 };
 
+bool has_wide_text(CORBA::TypeCode_ptr code);
+
 template <class T>
-std::string type_id_of() {
+CORBA::TypeCode_ptr type_code_of() {
   RtmAnyProbe any;
   any <<= T{};
-  const CORBA::TypeCode_var code = any.type();
-  return code->id();
+  return any.type();
 }
 
 template <class T>
@@ -57,7 +59,9 @@ void stamp_value(void* value, std::chrono::nanoseconds time) {
 template <class T>
 TypeOps make_type_ops() {
   TypeOps ops{};
-  ops.type_id = type_id_of<T>();
+  const CORBA::TypeCode_var code = type_code_of<T>();
+  ops.type_id = code->id();
+  ops.has_wide_text = has_wide_text(code);
   ops.type = &typeid(T);
   ops.make = []() -> std::shared_ptr<rt::Value> { return std::make_shared<ValueOf<T>>(); };
   ops.copy = [](const void* value) -> std::shared_ptr<rt::Value> { return std::make_shared<ValueOf<T>>(*static_cast<const T*>(value)); };

@@ -63,6 +63,7 @@ struct Sample {
   std::shared_ptr<const Block> block;  // either this, in `order`,
   std::shared_ptr<const Value> value;  // or this
   ByteOrder order = ByteOrder::little;
+  std::uint64_t arrival = 0;            // counts up over all connections of a port
   std::chrono::nanoseconds received{};  // when the port got it, by the clock of the thread that brought it; 0 if nobody asked
 
   explicit operator bool() const { return block || value; }

@@ -33,28 +33,32 @@ using ConnectorInfoList = std::vector<ConnectorInfo>;
 
 class ConnectorBase : public DataPortStatus, public corba::ConnectorEvents {
  public:
-  ConnectorBase(PortBase& port, ConnectorListeners& listeners, ConnectorInfo info);
-  ~ConnectorBase() override;
+  ConnectorBase(PortBase& port, std::shared_ptr<ConnectorListeners> listeners, ConnectorInfo info);
   ConnectorBase(const ConnectorBase&) = delete;
   ConnectorBase& operator=(const ConnectorBase&) = delete;
 
-  ConnectorInfo profile() const;
+  ConnectorInfo profile() const { return *info(); }
   const char* id() const { return id_.c_str(); }
   const char* name() const { return name_.c_str(); }
   // Takes the whole connection apart; the object is gone afterwards.
   DataPortStatus disconnect();
 
+  // What listeners get from now on.
+  void setInfo(ConnectorInfo info);
   bool is_observed(corba::DataEvent event) const override;
   void on_data(corba::DataEvent event, corba::EventData& data) override;
   void on_event(corba::ConnectorEvent event) override;
 
  private:
+  std::shared_ptr<ConnectorInfo> info() const;
+
   PortBase& port_;
-  ConnectorListeners& listeners_;
-  std::string name_;
-  std::string id_;
+  // Shared, because a sample may still be on its way when the port dies.
+  const std::shared_ptr<ConnectorListeners> listeners_;
+  const std::string name_;
+  const std::string id_;
   mutable std::mutex mutex_;
-  ConnectorInfo info_;
+  std::shared_ptr<ConnectorInfo> info_;
 };
 
 class InPortConnector : public ConnectorBase {

@@ -137,6 +137,7 @@ class ConnectorListenerHolder : private ListenerSet<ConnectorListener> {
   using ListenerSet::addListener;
   using ListenerSet::removeListener;
   using ListenerSet::size;
+  bool isEmpty() const { return size() == 0; }
   void notify(ConnectorInfo& info, bool& info_changed);
 };
 

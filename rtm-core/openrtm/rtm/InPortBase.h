@@ -76,8 +76,11 @@ class InPortBase : public PortBase, public DataPortStatus {
   void unsubscribeInterfaces(const ConnectorProfile& profile) override;
 
  private:
+  // Makes the connection in publishInterfaces if this side provides the object, else in subscribeInterfaces.
+  ReturnCode_t open(ConnectorProfile& profile, bool provides);
+
   std::string short_name_;
-  std::unique_ptr<ConnectorListeners> listeners_;
+  std::shared_ptr<ConnectorListeners> listeners_;
   std::unique_ptr<corba::InEngine> engine_;
 };
 

@@ -63,12 +63,13 @@ class ListenerSet {
   }
   template <class... Args>
   void notify(Args&&... args) {
-    std::vector<std::shared_ptr<Listener>> listeners;
-    {
-      std::lock_guard lock(mutex_);
-      listeners = listeners_;
-    }
-    for (auto& listener : listeners) (*listener)(args...);
+    for (auto& listener : snapshot()) (*listener)(args...);
+  }
+
+ protected:
+  std::vector<std::shared_ptr<Listener>> snapshot() const {
+    std::lock_guard lock(mutex_);
+    return listeners_;
   }
 
  private:

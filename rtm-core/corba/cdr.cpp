@@ -1,0 +1,92 @@
+#include "corba/cdr.h"
+
+#include <cstdint>
+
+#include "corba/payload.h"
+
+namespace corba {
+namespace {
+
+constexpr std::size_t cheap_copy = 4096;  // [octets]
+
+}  // namespace
+
+bool has_wide_text(CORBA::TypeCode_ptr code) {
+  // Recursive types are looked into to a depth that no real type reaches.
+  const auto look = [](const auto& self, CORBA::TypeCode_ptr type, int depth) -> bool {
+    if (depth > 16) return true;
+    switch (type->kind()) {
+      case CORBA::tk_wchar:
+      case CORBA::tk_wstring:
+        return true;
+      case CORBA::tk_alias:
+      case CORBA::tk_sequence:
+      case CORBA::tk_array: {
+        const CORBA::TypeCode_var content = type->content_type();
+        return self(self, content, depth + 1);
+      }
+      case CORBA::tk_struct:
+      case CORBA::tk_union:
+      case CORBA::tk_except:
+        for (CORBA::ULong i = 0; i < type->member_count(); ++i) {
+          const CORBA::TypeCode_var member = type->member_type(i);
+          if (self(self, member, depth + 1)) return true;
+        }
+        return false;
+      case CORBA::tk_any:
+      case CORBA::tk_objref:
+      case CORBA::tk_TypeCode:
+      case CORBA::tk_value:
+      case CORBA::tk_value_box:
+      case CORBA::tk_abstract_interface:
+        return true;  // made on the fly while encoding
+      default:
+        return false;
+    }
+  };
+  return look(look, code, 0);
+}
+
+std::shared_ptr<rt::Block> encode(const TypeOps& ops, const void* value, rt::ByteOrder order, rt::BlockPool& pool) {
+  Payload payload(ops, value);
+  return std::const_pointer_cast<rt::Block>(payload.encoded(order, pool).block);
+}
+
+std::shared_ptr<rt::Block> encode(const TypeOps& ops, const void* value, rt::ByteOrder order) {
+  return encode(ops, value, order, *rt::BlockPool::make());
+}
+
+bool decode(const TypeOps& ops, void* value, std::span<const std::byte> octets, rt::ByteOrder order) {
+  if (reinterpret_cast<std::uintptr_t>(octets.data()) % 8 != 0) {
+    // The decoder aligns by address.
+    rt::Block aligned(octets.size());
+    std::copy(octets.begin(), octets.end(), aligned.data());
+    aligned.set_size(octets.size());
+    return decode(ops, value, aligned.octets(), order);
+  }
+  try {
+    static std::byte nothing[8];
+    cdrMemoryStream stream(octets.empty() ? nothing : const_cast<std::byte*>(octets.data()), octets.size());
+    stream.setByteSwapFlag(order == rt::ByteOrder::little);
+    ops.decode(value, stream);
+    return true;
+  } catch (const CORBA::Exception&) {
+    return false;
+  } catch (const std::exception&) {  // a length that no memory holds
+    return false;
+  }
+}
+
+bool decode_safely(const TypeOps& ops, void* value, std::span<const std::byte> octets, rt::ByteOrder order) {
+  if (octets.size() > cheap_copy) {
+    if (decode(ops, value, octets, order)) return true;
+    ops.assign(value, ops.make()->address());
+    return false;
+  }
+  const auto scratch = ops.make();
+  if (!decode(ops, scratch->address(), octets, order)) return false;
+  ops.assign(value, scratch->address());
+  return true;
+}
+
+}  // namespace corba

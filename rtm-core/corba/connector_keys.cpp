@@ -1,0 +1,75 @@
+#include "corba/connector_keys.h"
+
+#include <string>
+
+#include "corba/call_timeout.h"
+#include "corba/nv_list.h"
+
+namespace corba {
+namespace {
+
+// shared_memory uses the keys of corba_cdr.
+std::string prefix_of(rt::Interface interface, rt::Side side) {
+  return std::string("dataport.") + (interface == rt::Interface::data_service ? "data_service" : "corba_cdr") +
+         (side == rt::Side::in ? ".inport" : ".outport");
+}
+
+CORBA::Object_ptr parse_reference(const char* text) {
+  try {
+    return orb()->string_to_object(text);
+  } catch (const CORBA::Exception&) {
+    return CORBA::Object::_nil();
+  }
+}
+
+}  // namespace
+
+void publish_reference(RTC::ConnectorProfile& profile, rt::Interface interface, rt::Side side, const Provider& provider) {
+  const std::string prefix = prefix_of(interface, side);
+  const CORBA::String_var text = orb()->object_to_string(provider.reference());
+  set_text(profile.properties, prefix + "_ior", text.in());
+  set_value(profile.properties, prefix + "_ref", provider.as_any());
+}
+
+CORBA::Object_ptr published_reference(const RTC::ConnectorProfile& profile, rt::Interface interface, rt::Side side) {
+  const std::string prefix = prefix_of(interface, side);
+  // A peer that adds without replacing leaves the stale entry in front of its own.
+  for (CORBA::ULong i = profile.properties.length(); i-- > 0;) {
+    const auto& entry = profile.properties[i];
+    const char* text = nullptr;
+    if (prefix + "_ior" != entry.name.in() || !(entry.value >>= text)) continue;
+    CORBA::Object_var object = parse_reference(text);
+    if (!CORBA::is_nil(object)) return object._retn();
+  }
+  for (CORBA::ULong i = profile.properties.length(); i-- > 0;) {
+    const auto& entry = profile.properties[i];
+    CORBA::Object_var object;
+    if (prefix + "_ref" != entry.name.in() || !(entry.value >>= CORBA::Any::to_object(object.out()))) continue;
+    if (!CORBA::is_nil(object)) return object._retn();
+  }
+  return CORBA::Object::_nil();
+}
+
+void remove_references(RTC::ConnectorProfile& profile) {
+  RTC::NVList kept;
+  kept.length(profile.properties.length());
+  CORBA::ULong count = 0;
+  for (CORBA::ULong i = 0; i < profile.properties.length(); ++i) {
+    bool is_stale = false;
+    for (const auto interface : {rt::Interface::corba_cdr, rt::Interface::data_service}) {
+      for (const auto side : {rt::Side::in, rt::Side::out}) {
+        const std::string prefix = prefix_of(interface, side);
+        is_stale |= prefix + "_ior" == profile.properties[i].name.in() || prefix + "_ref" == profile.properties[i].name.in();
+      }
+    }
+    if (!is_stale) kept[count++] = profile.properties[i];
+  }
+  kept.length(count);
+  profile.properties = kept;
+}
+
+Line line_of(const rt::ConnectorSettings& settings) {
+  return {settings.order, settings.call_timeout.value_or(port_call_timeout()), settings.shared_memory_size};
+}
+
+}  // namespace corba

@@ -1,0 +1,19 @@
+// Where the object of a data port stands in a ConnectorProfile. Any thread.
+#pragma once
+
+#include "corba/transport.h"
+#include "core/connector_settings.h"
+#include "rtm/idl/RTCStub.h"
+
+namespace corba {
+
+// Writes <interface>.<side>port_ior and _ref, replacing what somebody has left there.
+void publish_reference(RTC::ConnectorProfile& profile, rt::Interface interface, rt::Side provider_side, const Provider& provider);
+// The object of the other side: the last _ior that can be read, else _ref; nil if there is neither.
+CORBA::Object_ptr published_reference(const RTC::ConnectorProfile& profile, rt::Interface interface, rt::Side provider_side);
+// Takes out references that an earlier life of this connection has left in the profile.
+void remove_references(RTC::ConnectorProfile& profile);
+// The time-out, byte order and sizes of a connection.
+Line line_of(const rt::ConnectorSettings& settings);
+
+}  // namespace corba

@@ -1,0 +1,65 @@
+#include "corba/event_data.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "corba/cdr.h"
+
+namespace corba {
+
+EventData::EventData(const TypeOps& ops, const void* value, rt::ByteOrder order) : ops_(&ops), original_(value), order_(order) {}
+
+EventData::EventData(const TypeOps& ops, rt::Sample sample) : ops_(&ops), order_(sample.order), sample_(std::move(sample)) {}
+
+void* EventData::value() {
+  if (value_) return value_->address();
+  if (original_) {
+    value_ = ops_->copy(original_);
+  } else if (sample_.value) {
+    value_ = ops_->copy(sample_.value->address());
+  } else {
+    auto made = ops_->make();
+    if (!sample_.block || !decode(*ops_, made->address(), sample_.block->octets(), order_)) return nullptr;
+    value_ = std::move(made);
+  }
+  return value_->address();
+}
+
+void EventData::value_changed() {
+  is_changed_ = true;
+  sample_.block = nullptr;
+  sample_.value = nullptr;
+  original_ = value_ ? value_->address() : nullptr;
+}
+
+std::span<const std::byte> EventData::octets() {
+  if (!sample_.block) {
+    const void* source = original_ ? original_ : sample_.value ? sample_.value->address() : nullptr;
+    if (!source) return {};
+    try {
+      sample_.block = encode(*ops_, source, order_);
+    } catch (const CORBA::Exception&) {
+      return {};
+    }
+  }
+  return sample_.block->octets();
+}
+
+void EventData::replace_octets(std::span<const std::byte> octets) {
+  auto block = rt::BlockPool::make()->take(octets.size());
+  std::ranges::copy(octets, block->data());
+  is_changed_ = true;
+  sample_.block = std::move(block);
+  sample_.value = nullptr;
+  original_ = nullptr;
+  value_ = nullptr;
+}
+
+rt::Sample EventData::sample() {
+  rt::Sample result = sample_;
+  result.order = order_;
+  if (!result.block && !result.value && original_) result.value = value_ && original_ == value_->address() ? value_ : ops_->copy(original_);
+  return result;
+}
+
+}  // namespace corba

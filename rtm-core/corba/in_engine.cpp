@@ -1,0 +1,284 @@
+#include "corba/in_engine.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/clock.h"
+#include "base/log.h"
+#include "base/text.h"
+#include "corba/cdr.h"
+#include "corba/connector_keys.h"
+#include "corba/local_connections.h"
+#include "corba/out_engine.h"
+
+namespace corba {
+namespace {
+
+// Hands over values of an OutPort of this process.
+class DirectFetcher final : public Fetcher {
+ public:
+  explicit DirectFetcher(std::shared_ptr<OutConnection> source) : source_(std::move(source)) {}
+  rt::PortStatus fetch(rt::Sample& sample) override {
+    const rt::PortStatus status = source_->give_value(sample);
+    return status == rt::PortStatus::buffer_timeout ? rt::PortStatus::recv_timeout : status;
+  }
+
+ private:
+  std::shared_ptr<OutConnection> source_;
+};
+
+bool is_same_sample(const rt::Sample& a, const rt::Sample& b) {
+  if (a.value || b.value) return a.value == b.value;
+  return a.block && b.block && std::ranges::equal(a.block->octets(), b.block->octets());
+}
+
+}  // namespace
+
+InConnection::InConnection(const TypeOps& ops, ConnectionPlan plan, std::shared_ptr<rt::Mailbox> mailbox)
+    : ops_(ops), plan_(std::move(plan)), mailbox_(std::move(mailbox)), channel_(mailbox_->open(plan_.settings.buffer)) {
+  if (plan_.settings.is_rendezvous) mailbox_->set_rendezvous(channel_, true);
+}
+
+InConnection::~InConnection() { close(); }
+
+void InConnection::close() { mailbox_->close(channel_); }
+
+rt::PortStatus InConnection::receive(rt::Sample sample) {
+  if (plan_.settings.stamp == rt::StampPolicy::on_received) sample.received = base::current_clock().now();
+  ConnectorEvents& events = *plan_.events;
+  if (events.is_observed(DataEvent::received)) {
+    EventData data(ops_, sample);
+    events.on_data(DataEvent::received, data);
+    if (data.is_changed()) {
+      const auto received = sample.received;
+      sample = data.sample();
+      sample.received = received;
+    }
+  }
+  const auto tell = [&](DataEvent event, const rt::Sample& about) {
+    if (!events.is_observed(event)) return;
+    EventData data(ops_, about);
+    events.on_data(event, data);
+  };
+  // A copy shares the octets; it is needed only for those who listen.
+  const bool is_observed =
+      std::ranges::any_of(std::initializer_list<DataEvent>{DataEvent::buffer_write, DataEvent::buffer_overwrite, DataEvent::buffer_full,
+                                                           DataEvent::buffer_write_timeout, DataEvent::receiver_full,
+                                                           DataEvent::receiver_timeout, DataEvent::receiver_error},
+                          [&](DataEvent event) { return events.is_observed(event); });
+  const rt::Sample about = is_observed ? sample : rt::Sample{};
+  const rt::WriteResult result = mailbox_->write(channel_, std::move(sample));
+  if (!is_observed) return result.status == rt::PortStatus::precondition_not_met ? rt::PortStatus::error : result.status;
+  switch (result.status) {
+    case rt::PortStatus::ok:
+      if (result.overwrote) tell(DataEvent::buffer_overwrite, about);
+      tell(DataEvent::buffer_write, about);
+      return result.status;
+    case rt::PortStatus::buffer_full:
+      tell(DataEvent::buffer_full, about);
+      tell(DataEvent::receiver_full, about);
+      return result.status;
+    case rt::PortStatus::buffer_timeout:
+      tell(DataEvent::buffer_write_timeout, about);
+      tell(DataEvent::receiver_timeout, about);
+      return result.status;
+    default:
+      tell(DataEvent::receiver_error, about);
+      return rt::PortStatus::error;
+  }
+}
+
+rt::PortStatus InConnection::fetch(bool only_new) {
+  if (!fetcher_) return rt::PortStatus::ok;
+  rt::Sample sample;
+  const rt::PortStatus status = fetcher_->fetch(sample);
+  switch (status) {
+    case rt::PortStatus::ok:
+      break;
+    case rt::PortStatus::buffer_empty:
+      plan_.events->on_event(ConnectorEvent::sender_empty);
+      return status;
+    case rt::PortStatus::recv_timeout:
+      plan_.events->on_event(ConnectorEvent::sender_timeout);
+      return status;
+    default:
+      plan_.events->on_event(ConnectorEvent::sender_error);
+      return status;
+  }
+  if (only_new && !plan_.peer_says_when_empty && is_same_sample(sample, *last_fetched_.lock())) return rt::PortStatus::buffer_empty;
+  *last_fetched_.lock() = sample;
+  return receive(std::move(sample));
+}
+
+InEngine::InEngine(const TypeOps& ops) : ops_(ops), connections_(std::make_shared<const Connections>()) {}
+
+InEngine::~InEngine() {
+  for (const auto& connection : *connections()) close(connection->id());
+}
+
+std::shared_ptr<const InEngine::Connections> InEngine::connections() const { return connections_.snapshot(); }
+
+void InEngine::add(std::shared_ptr<InConnection> connection) {
+  auto connections = connections_.lock();
+  auto more = std::make_shared<Connections>(**connections);
+  more->push_back(std::move(connection));
+  *connections = std::move(more);
+}
+
+rt::Refusal InEngine::provide(ConnectionPlan plan, RTC::ConnectorProfile& profile) {
+  const auto settings = plan.settings;
+  const std::string id = plan.id;
+  auto connection = std::make_shared<InConnection>(ops_, std::move(plan), mailbox_);
+  const Line line = line_of(settings);
+  switch (settings.interface) {
+    case rt::Interface::corba_cdr:
+    case rt::Interface::data_service:
+      connection->provider_ = make_cdr_in_provider(settings.interface, connection, line);
+      break;
+    case rt::Interface::shared_memory:
+      connection->provider_ = make_shared_memory_in_provider(connection, line);
+      break;
+    case rt::Interface::direct:
+      add_local(id, connection);
+      break;
+  }
+  if (connection->provider_) publish_reference(profile, settings.interface, rt::Side::in, *connection->provider_);
+  add(connection);
+  return {};
+}
+
+rt::Refusal InEngine::consume(ConnectionPlan plan, const RTC::ConnectorProfile& profile) {
+  const auto settings = plan.settings;
+  const std::string id = plan.id;
+  auto connection = std::make_shared<InConnection>(ops_, std::move(plan), mailbox_);
+  const Line line = line_of(settings);
+  if (settings.interface == rt::Interface::direct) {
+    const auto source = find_local_out(id);
+    if (!source) return {rt::ReturnCode::error, "interface_type direct: the OutPort is not in this process"};
+    if (*source->ops().type != *ops_.type) return {rt::ReturnCode::bad_parameter, "the OutPort sends " + source->ops().type_id};
+    connection->fetcher_ = std::make_unique<DirectFetcher>(source);
+  } else {
+    const CORBA::Object_var object = published_reference(profile, settings.interface, rt::Side::out);
+    connection->fetcher_ = settings.interface == rt::Interface::shared_memory ? make_shared_memory_fetcher(object, line)
+                                                                              : make_cdr_fetcher(settings.interface, object, line);
+    if (!connection->fetcher_) return {rt::ReturnCode::error, "the OutPort gives no object of its interface_type to pull from"};
+  }
+  add(connection);
+  return {};
+}
+
+bool InEngine::close(const std::string& id) {
+  std::shared_ptr<InConnection> closed;
+  {
+    auto connections = connections_.lock();
+    const auto it = std::ranges::find(**connections, id, [](const auto& connection) { return connection->id(); });
+    if (it == (*connections)->end()) return false;
+    closed = *it;
+    auto fewer = std::make_shared<Connections>(**connections);
+    std::erase(*fewer, closed);
+    *connections = std::move(fewer);
+  }
+  if (closed->settings().interface == rt::Interface::direct) remove_local_in(id);
+  closed->provider_.reset();  // the servant holds the connection
+  closed->close();
+  closed->events().on_event(ConnectorEvent::disconnect);
+  return true;
+}
+
+bool InEngine::has_new(const std::string& name, std::vector<std::string>& lost) {
+  const auto all = connections();
+  bool is_new = false;
+  for (const auto& connection : *all) {
+    if (!name.empty() && connection->name() != name) continue;
+    if (mailbox_->unread(connection->channel()) == 0) {
+      if (!connection->fetcher_) continue;
+      const rt::PortStatus status = connection->fetch(true);
+      if (status == rt::PortStatus::connection_lost) lost.push_back(connection->id());
+      if (status != rt::PortStatus::ok) continue;
+    }
+    is_new = true;
+  }
+  return is_new;
+}
+
+void InEngine::note(const Connections& all, const InConnection* read, rt::PortStatus status) {
+  auto statuses = statuses_.lock();
+  statuses->assign(all.size(), read ? rt::PortStatus::buffer_empty : status);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].get() == read) (*statuses)[i] = status;
+  }
+}
+
+std::vector<rt::PortStatus> InEngine::statuses() const { return statuses_.snapshot(); }
+
+rt::PortStatus InEngine::read(const std::string& name, void* value, std::vector<std::string>& lost) {
+  const auto all = connections();
+  rt::Channel channel = rt::Channel::any;
+  std::size_t selected = 0;
+  std::size_t pulled = 0;
+  rt::PortStatus pull_status = rt::PortStatus::ok;
+  for (const auto& connection : *all) {
+    if (!name.empty() && connection->name() != name) continue;
+    ++selected;
+    if (!name.empty()) channel = connection->channel();
+    if (!connection->fetcher_) continue;
+    ++pulled;
+    if (mailbox_->unread(connection->channel()) > 0) continue;
+    const rt::PortStatus status = connection->fetch(false);
+    if (status == rt::PortStatus::connection_lost) lost.push_back(connection->id());
+    if (status != rt::PortStatus::ok) pull_status = status;
+  }
+  if (selected == 0) {
+    note(*all, nullptr, rt::PortStatus::precondition_not_met);
+    return rt::PortStatus::precondition_not_met;
+  }
+  // Where every peer has been asked and none has anything, there is nothing: what to do then was the peer's policy.
+  if (pulled == selected && pull_status != rt::PortStatus::ok && mailbox_->unread(channel) == 0) {
+    note(*all, nullptr, pull_status);
+    return pull_status;
+  }
+
+  const rt::ReadResult result = mailbox_->read(channel);
+  InConnection* connection = nullptr;
+  for (const auto& candidate : *all) {
+    if (candidate->channel() == result.channel || (result.channel == rt::Channel::any && !connection)) connection = candidate.get();
+  }
+  rt::PortStatus status = result.status;
+  if (status == rt::PortStatus::ok && connection) {
+    status = deliver(result.sample, *connection, value);
+  } else if (connection) {
+    if (status == rt::PortStatus::buffer_empty) connection->events().on_event(ConnectorEvent::buffer_empty);
+    if (status == rt::PortStatus::buffer_timeout) connection->events().on_event(ConnectorEvent::buffer_read_timeout);
+  }
+  note(*all, connection, status);
+  return status;
+}
+
+rt::PortStatus InEngine::deliver(const rt::Sample& received, InConnection& connection, void* value) {
+  const rt::Sample* sample = &received;
+  rt::Sample changed;
+  if (connection.events().is_observed(DataEvent::buffer_read)) {
+    EventData data(ops_, received);
+    connection.events().on_data(DataEvent::buffer_read, data);
+    if (data.is_changed()) {
+      changed = data.sample();
+      changed.received = received.received;
+      sample = &changed;
+    }
+  }
+  if (sample->value) {
+    ops_.assign(value, sample->value->address());
+  } else if (!decode_safely(ops_, value, sample->block->octets(), sample->order)) {
+    base::log(base::Level::warn, "data port", "connection {}: {} octets that are no {} are dropped", base::in_quotes(connection.name()),
+              sample->block->size(), ops_.type_id);
+    mailbox_->forget_last(connection.channel());
+    return rt::PortStatus::error;
+  }
+  if (ops_.stamp && connection.settings().stamp == rt::StampPolicy::on_received && sample->received.count()) {
+    ops_.stamp(value, sample->received);
+  }
+  if (ops_.stamp && connection.settings().stamp == rt::StampPolicy::on_read) ops_.stamp(value, base::current_clock().now());
+  return rt::PortStatus::ok;
+}
+
+}  // namespace corba

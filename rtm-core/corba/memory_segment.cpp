@@ -1,0 +1,107 @@
+#include "corba/memory_segment.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+#include "base/text.h"
+
+namespace corba {
+namespace {
+
+base::Error failure(std::string_view what, const std::string& name) {
+  return {"shared memory " + base::in_quotes(name) + ": " + std::string(what) + ": " + std::generic_category().message(errno)};
+}
+
+// A plain name: nothing that leads out of the folder of segments.
+bool is_plain(const std::string& name) {
+  const std::string_view plain = std::string_view(name).substr(name.starts_with('/') ? 1 : 0);
+  return !plain.empty() && plain.size() < 200 && plain != "." && plain != ".." &&
+         plain.find_first_not_of("0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ-_.") == std::string_view::npos;
+}
+
+std::string path_of(const std::string& name) { return name.starts_with('/') ? name : "/" + name; }
+
+std::uint64_t in_order(std::uint64_t value, rt::ByteOrder order) {
+  const bool is_native = (std::endian::native == std::endian::little) == (order == rt::ByteOrder::little);
+  return is_native ? value : __builtin_bswap64(value);
+}
+
+}  // namespace
+
+base::Result<std::unique_ptr<MemorySegment>> MemorySegment::create(const std::string& name, std::size_t size) {
+  if (!is_plain(name)) return base::Error{"shared memory " + base::in_quotes(name) + ": no name for a segment"};
+  const int file = shm_open(path_of(name).c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (file < 0) return failure("cannot be made", name);
+  std::unique_ptr<MemorySegment> segment(new MemorySegment(name, file, size));
+  segment->is_named_ = true;
+  if (ftruncate(file, static_cast<off_t>(size)) != 0) return failure("cannot be made that long", name);
+  void* memory = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+  if (memory == MAP_FAILED) return failure("cannot be mapped", name);
+  segment->memory_ = static_cast<std::byte*>(memory);
+  return segment;
+}
+
+base::Result<std::unique_ptr<MemorySegment>> MemorySegment::open(const std::string& name) {
+  if (!is_plain(name)) return base::Error{"shared memory " + base::in_quotes(name) + ": no name for a segment"};
+  const int file = shm_open(path_of(name).c_str(), O_RDWR | O_CLOEXEC, 0);
+  if (file < 0) return failure("cannot be opened", name);
+  std::unique_ptr<MemorySegment> segment(new MemorySegment(name, file, 0));
+  struct stat status {};
+  if (fstat(file, &status) != 0 || !S_ISREG(status.st_mode)) return failure("is no segment", name);
+  segment->size_ = static_cast<std::size_t>(status.st_size);
+  return segment;
+}
+
+MemorySegment::~MemorySegment() {
+  unlink();
+  if (memory_) munmap(memory_, size_);
+  close(file_);
+}
+
+void MemorySegment::unlink() {
+  if (is_named_) shm_unlink(path_of(name_).c_str());
+  is_named_ = false;
+}
+
+base::Result<void> MemorySegment::write(const Pieces& pieces, rt::ByteOrder order) {
+  if (!memory_ || size_ < header || pieces.size > size_ - header)
+    return base::Error{"shared memory " + name_ + ": too short for the sample"};
+  const std::uint64_t length = in_order(pieces.size, order);
+  std::memcpy(memory_, &length, sizeof length);
+  std::byte* to = memory_ + header;
+  for (const auto& part : pieces.parts) {
+    std::memcpy(to, part.data(), part.size());
+    to += part.size();
+  }
+  return {};
+}
+
+base::Result<std::shared_ptr<rt::Block>> MemorySegment::read(rt::ByteOrder order, rt::BlockPool& pool) {
+  // Read, not mapped: a peer that shortens the segment meanwhile would kill us with SIGBUS.
+  std::uint64_t length = 0;
+  if (pread(file_, &length, sizeof length, 0) != sizeof length) return base::Error{"shared memory " + name_ + ": holds no sample"};
+  length = in_order(length, order);
+  struct stat status {};
+  if (fstat(file_, &status) != 0 || static_cast<std::uint64_t>(status.st_size) < header ||
+      length > static_cast<std::uint64_t>(status.st_size) - header) {
+    return base::Error{"shared memory " + name_ + ": the sample is longer than the segment"};
+  }
+  auto block = pool.take(length);
+  std::size_t done = 0;
+  while (done < length) {
+    const ssize_t count = pread(file_, block->data() + done, length - done, static_cast<off_t>(header + done));
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return base::Error{"shared memory " + name_ + ": has become shorter"};
+    done += static_cast<std::size_t>(count);
+  }
+  return block;
+}
+
+}  // namespace corba

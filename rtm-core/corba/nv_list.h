@@ -1,0 +1,22 @@
+// Name-value lists of the wire as texts, and single entries. Any thread; the lists are values.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/connector_settings.h"
+#include "rtm/idl/SDOPackageStub.h"
+
+namespace corba {
+
+// String values only; of entries of the same name the last counts.
+rt::KeyValues to_key_values(const SDOPackage::NVList& list);
+// nullptr if there is none of that name.
+const CORBA::Any* find_value(const SDOPackage::NVList& list, std::string_view name);
+// Nothing if there is none of that name or it is no string.
+std::optional<std::string> find_text(const SDOPackage::NVList& list, std::string_view name);
+// Replaces the entry of that name or adds one.
+void set_text(SDOPackage::NVList& list, std::string_view name, std::string_view value);
+void set_value(SDOPackage::NVList& list, std::string_view name, const CORBA::Any& value);
+
+}  // namespace corba

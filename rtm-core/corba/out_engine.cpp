@@ -1,0 +1,311 @@
+#include "corba/out_engine.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "base/clock.h"
+#include "base/log.h"
+#include "corba/connector_keys.h"
+#include "corba/local_connections.h"
+
+namespace corba {
+namespace {
+
+// Hands values to an InPort of this process.
+class DirectSender final : public Sender {
+ public:
+  explicit DirectSender(std::shared_ptr<InConnection> receiver) : receiver_(std::move(receiver)) {}
+  rt::PortStatus send(Payload& payload) override {
+    switch (const rt::PortStatus status = receiver_->receive(payload.copied())) {
+      case rt::PortStatus::buffer_full:
+        return rt::PortStatus::send_full;
+      case rt::PortStatus::buffer_timeout:
+        return rt::PortStatus::send_timeout;
+      default:
+        return status;
+    }
+  }
+
+ private:
+  std::shared_ptr<InConnection> receiver_;
+};
+
+// What is written when the payload itself has to be changed on the way.
+class Changed {
+ public:
+  Payload& now() { return *payload_; }
+  explicit Changed(Payload& original) : payload_(&original) {}
+
+  void replace(rt::Sample sample) {
+    const TypeOps& ops = payload_->ops();
+    payload_ = &replacement_.emplace(ops, std::move(sample));
+  }
+  void stamp(std::chrono::nanoseconds time) {
+    const TypeOps& ops = payload_->ops();
+    const void* value = payload_->value();
+    if (!ops.stamp || !value) return;
+    rt::Sample sample;
+    auto copy = ops.copy(value);
+    ops.stamp(copy->address(), time);
+    sample.value = std::move(copy);
+    replace(std::move(sample));
+  }
+
+ private:
+  Payload* payload_;
+  std::optional<Payload> replacement_;
+};
+
+// Lets listeners see, and change, what goes out.
+void tell(ConnectorEvents& events, DataEvent event, Changed& payload, rt::ByteOrder order, bool is_direct, rt::BlockPool& pool) {
+  if (!events.is_observed(event)) return;
+  try {
+    rt::Sample sample = is_direct || payload.now().value() ? payload.now().copied() : payload.now().encoded(order, pool);
+    sample.order = order;
+    EventData data(payload.now().ops(), std::move(sample));
+    events.on_data(event, data);
+    if (data.is_changed()) payload.replace(data.sample());
+  } catch (const CORBA::Exception&) {
+    // It cannot be encoded; the sender says so.
+  }
+}
+
+}  // namespace
+
+// What a publisher's thread may still use after the connection has been closed.
+struct OutConnection::Line {
+  const TypeOps& ops;
+  const ConnectionPlan plan;
+  const std::unique_ptr<Sender> sender;
+  const std::shared_ptr<LossHandler> loss;
+  const std::shared_ptr<rt::BlockPool> pool = rt::BlockPool::make();
+
+  bool is_direct() const { return plan.settings.interface == rt::Interface::direct; }
+  rt::ByteOrder order() const { return plan.settings.order; }
+
+  void tell(DataEvent event, Changed& payload) { corba::tell(*plan.events, event, payload, order(), is_direct(), *pool); }
+
+  rt::Sample keep(Payload& payload) { return is_direct() ? payload.copied() : payload.encoded(order(), *pool); }
+
+  rt::PortStatus send(Payload& payload, bool is_flush) {
+    Changed changed(payload);
+    if (plan.settings.stamp == rt::StampPolicy::on_send || (is_flush && plan.settings.stamp == rt::StampPolicy::on_write)) {
+      changed.stamp(base::current_clock().now());
+    }
+    tell(DataEvent::send, changed);
+    const rt::PortStatus status = sender->send(changed.now());
+    switch (status) {
+      case rt::PortStatus::ok:
+        tell(DataEvent::received, changed);
+        break;
+      case rt::PortStatus::send_full:
+        tell(DataEvent::receiver_full, changed);
+        break;
+      case rt::PortStatus::send_timeout:
+        tell(DataEvent::receiver_timeout, changed);
+        break;
+      default:
+        tell(DataEvent::receiver_error, changed);
+        break;
+    }
+    return status;
+  }
+};
+
+OutConnection::OutConnection(const TypeOps& ops, ConnectionPlan plan, std::unique_ptr<Sender> sender, std::shared_ptr<LossHandler> loss)
+    : line_(std::make_shared<Line>(ops, std::move(plan), std::move(sender), std::move(loss))) {
+  const auto& settings = line_->plan.settings;
+  if (settings.subscription == rt::Subscription::flush) return;
+  rt::Publisher::Hooks hooks;
+  hooks.send = [line = line_](const rt::Sample& sample) {
+    Payload payload(line->ops, sample);
+    Changed changed(payload);
+    line->tell(DataEvent::buffer_read, changed);
+    return line->send(changed.now(), false);
+  };
+  hooks.starved = [line = line_] {
+    line->plan.events->on_event(ConnectorEvent::buffer_empty);
+    line->plan.events->on_event(ConnectorEvent::sender_empty);
+  };
+  hooks.lost = [line = line_] { line->loss->lost(line->plan.id); };
+  publisher_ = std::make_unique<rt::Publisher>(settings.subscription, settings.publisher, settings.buffer, std::move(hooks));
+}
+
+OutConnection::OutConnection(const TypeOps& ops, ConnectionPlan plan)
+    : line_(std::make_shared<Line>(ops, std::move(plan), nullptr, nullptr)), channel_(mailbox_.open(line_->plan.settings.buffer)) {}
+
+OutConnection::~OutConnection() { close(); }
+
+const std::string& OutConnection::id() const { return line_->plan.id; }
+const TypeOps& OutConnection::ops() const { return line_->ops; }
+ConnectorEvents& OutConnection::events() const { return *line_->plan.events; }
+const std::shared_ptr<ConnectorEvents>& OutConnection::shared_events() const { return line_->plan.events; }
+const rt::ConnectorSettings& OutConnection::settings() const { return line_->plan.settings; }
+
+void OutConnection::close() {
+  if (publisher_) publisher_->stop();
+  mailbox_.close(channel_);
+}
+
+rt::PortStatus OutConnection::write(Payload& payload) {
+  if (line_->sender && !publisher_) return line_->send(payload, true);
+  return write_buffered(payload);
+}
+
+rt::PortStatus OutConnection::write_buffered(Payload& payload) {
+  Changed changed(payload);
+  if (line_->plan.settings.stamp == rt::StampPolicy::on_write) changed.stamp(base::current_clock().now());
+  line_->tell(DataEvent::buffer_write, changed);
+  rt::WriteResult result;
+  try {
+    rt::Sample sample = line_->keep(changed.now());
+    result = publisher_ ? publisher_->write(std::move(sample)) : mailbox_.write(channel_, std::move(sample));
+  } catch (const CORBA::Exception& e) {
+    base::log(base::Level::error, "data port", "a {} cannot be encoded: {}", line_->ops.type_id, e._name());
+    return rt::PortStatus::error;
+  }
+  if (result.overwrote) line_->tell(DataEvent::buffer_overwrite, changed);
+  if (result.status == rt::PortStatus::buffer_full) line_->tell(DataEvent::buffer_full, changed);
+  if (result.status == rt::PortStatus::buffer_timeout) line_->tell(DataEvent::buffer_write_timeout, changed);
+  return result.status;
+}
+
+rt::PortStatus OutConnection::take(rt::Sample& sample) {
+  ConnectorEvents& events = *line_->plan.events;
+  rt::ReadResult result = mailbox_.read(channel_);
+  switch (result.status) {
+    case rt::PortStatus::ok:
+      break;
+    case rt::PortStatus::buffer_empty:
+      events.on_event(ConnectorEvent::buffer_empty);
+      events.on_event(ConnectorEvent::sender_empty);
+      return result.status;
+    case rt::PortStatus::buffer_timeout:
+      events.on_event(ConnectorEvent::buffer_read_timeout);
+      events.on_event(ConnectorEvent::sender_timeout);
+      return result.status;
+    default:
+      events.on_event(ConnectorEvent::sender_error);
+      return rt::PortStatus::error;
+  }
+  Payload payload(line_->ops, result.sample);
+  Changed changed(payload);
+  if (line_->plan.settings.stamp == rt::StampPolicy::on_send) changed.stamp(base::current_clock().now());
+  line_->tell(DataEvent::buffer_read, changed);
+  line_->tell(DataEvent::send, changed);
+  sample = line_->keep(changed.now());
+  return rt::PortStatus::ok;
+}
+
+rt::PortStatus OutConnection::give(rt::Sample& sample) {
+  try {
+    return take(sample);
+  } catch (const CORBA::Exception&) {
+    return rt::PortStatus::error;
+  }
+}
+
+rt::PortStatus OutConnection::give_value(rt::Sample& sample) { return give(sample); }
+
+OutEngine::OutEngine(const TypeOps& ops, std::function<void(const std::string& id)> lost)
+    : ops_(ops), loss_(std::make_shared<LossHandler>(std::move(lost))), connections_(std::make_shared<const Connections>()) {}
+
+OutEngine::~OutEngine() {
+  loss_->close();
+  for (const auto& connection : *connections()) close(connection->id());
+}
+
+std::shared_ptr<const OutEngine::Connections> OutEngine::connections() const { return connections_.snapshot(); }
+
+void OutEngine::add(std::shared_ptr<OutConnection> connection) {
+  auto connections = connections_.lock();
+  auto more = std::make_shared<Connections>(**connections);
+  more->push_back(std::move(connection));
+  *connections = std::move(more);
+}
+
+rt::Refusal OutEngine::provide(ConnectionPlan plan, RTC::ConnectorProfile& profile) {
+  const auto settings = plan.settings;
+  const std::string id = plan.id;
+  auto connection = std::make_shared<OutConnection>(ops_, std::move(plan));
+  const corba::Line line = line_of(settings);
+  switch (settings.interface) {
+    case rt::Interface::corba_cdr:
+    case rt::Interface::data_service:
+      connection->provider_ = make_cdr_out_provider(settings.interface, connection, line);
+      break;
+    case rt::Interface::shared_memory:
+      connection->provider_ = make_shared_memory_out_provider(connection, line);
+      break;
+    case rt::Interface::direct:
+      add_local(id, connection);
+      break;
+  }
+  if (connection->provider_) publish_reference(profile, settings.interface, rt::Side::out, *connection->provider_);
+  add(connection);
+  return {};
+}
+
+rt::Refusal OutEngine::consume(ConnectionPlan plan, const RTC::ConnectorProfile& profile) {
+  const auto settings = plan.settings;
+  const corba::Line line = line_of(settings);
+  std::unique_ptr<Sender> sender;
+  if (settings.interface == rt::Interface::direct) {
+    auto receiver = find_local_in(plan.id);
+    if (!receiver) return {rt::ReturnCode::error, "interface_type direct: the InPort is not in this process"};
+    if (*receiver->ops().type != *ops_.type) return {rt::ReturnCode::bad_parameter, "the InPort takes " + receiver->ops().type_id};
+    sender = std::make_unique<DirectSender>(std::move(receiver));
+  } else {
+    const CORBA::Object_var object = published_reference(profile, settings.interface, rt::Side::in);
+    sender = settings.interface == rt::Interface::shared_memory ? make_shared_memory_sender(object, line)
+                                                                : make_cdr_sender(settings.interface, object, line);
+    if (!sender) return {rt::ReturnCode::error, "the InPort gives no object of its interface_type to send to"};
+  }
+  auto connection = std::make_shared<OutConnection>(ops_, std::move(plan), std::move(sender), loss_);
+  add(connection);
+  return {};
+}
+
+bool OutEngine::close(const std::string& id) {
+  std::shared_ptr<OutConnection> closed;
+  {
+    auto connections = connections_.lock();
+    const auto it = std::ranges::find(**connections, id, [](const auto& connection) { return connection->id(); });
+    if (it == (*connections)->end()) return false;
+    closed = *it;
+    auto fewer = std::make_shared<Connections>(**connections);
+    std::erase(*fewer, closed);
+    *connections = std::move(fewer);
+  }
+  if (closed->settings().interface == rt::Interface::direct) remove_local_out(id);
+  closed->provider_.reset();  // the servant holds the connection
+  closed->close();
+  closed->events().on_event(ConnectorEvent::disconnect);
+  return true;
+}
+
+bool OutEngine::write(const void* value) {
+  const auto all = connections();
+  if (all->empty()) {
+    statuses_.lock()->clear();
+    return false;
+  }
+  Payload payload(ops_, value);
+  bool is_ok = true;
+  for (std::size_t i = 0; i < all->size(); ++i) {
+    const rt::PortStatus status = (*all)[i]->write(payload);
+    is_ok &= status == rt::PortStatus::ok;
+    {
+      auto statuses = statuses_.lock();
+      if (i == 0) statuses->assign(all->size(), rt::PortStatus::ok);
+      if (i < statuses->size()) (*statuses)[i] = status;
+    }
+    if (status == rt::PortStatus::connection_lost) loss_->lost((*all)[i]->id());
+  }
+  return is_ok;
+}
+
+std::vector<rt::PortStatus> OutEngine::statuses() const { return statuses_.snapshot(); }
+
+}  // namespace corba

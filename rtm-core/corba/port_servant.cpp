@@ -1,0 +1,410 @@
+#include "corba/port_servant.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "base/id.h"
+#include "base/log.h"
+#include "base/text.h"
+#include "corba/nv_list.h"
+
+namespace corba {
+namespace {
+
+// Every name the protocol needs is far shorter; longer ones only fill the memory of all peers.
+constexpr std::size_t longest_id = 64 * 1024;
+
+bool has_nil(const RTC::PortServiceList& ports) {
+  for (CORBA::ULong i = 0; i < ports.length(); ++i) {
+    if (CORBA::is_nil(ports[i])) return true;
+  }
+  return false;
+}
+
+template <class T>
+void append(_CORBA_Unbounded_Sequence<T>& sequence, const T& element) {
+  const CORBA::ULong length = sequence.length();
+  sequence.length(length + 1);
+  sequence[length] = element;
+}
+
+}  // namespace
+
+PortServant::PortServant(std::string name) { state_.lock()->name = std::move(name); }
+
+PortServant::~PortServant() { shut(); }
+
+void PortServant::shut() {
+  RTC::PortService_var reference;
+  {
+    auto state = state_.lock();
+    reference = state->reference._retn();
+  }
+  if (!CORBA::is_nil(reference)) {
+    try {
+      const PortableServer::POA_var poa = _default_POA();
+      const PortableServer::ObjectId_var id = poa->servant_to_id(this);
+      poa->deactivate_object(id);
+    } catch (const CORBA::Exception&) {
+      // Not active (any more), or the ORB is gone: nobody can call.
+    }
+  }
+  gate_.close();
+}
+
+bool PortServant::is_same(CORBA::Object_ptr a, CORBA::Object_ptr b) {
+  if (CORBA::is_nil(a) || CORBA::is_nil(b)) return false;
+  return a == b || a->_is_equivalent(b);  // the ORB compares keys and addresses itself
+}
+
+PortServant::Connection* PortServant::State::find(std::string_view id) {
+  for (auto& connection : connections) {
+    if (id == connection.profile.connector_id.in()) return &connection;
+  }
+  return nullptr;
+}
+
+RTC::PortService_ptr PortServant::reference() {
+  {
+    auto state = state_.lock();
+    if (!CORBA::is_nil(state->reference)) return state->reference.in();
+  }
+  RTC::PortService_var made;
+  try {
+    made = _this();
+  } catch (const CORBA::Exception& e) {
+    base::log(base::Level::error, port_name(), "the port cannot be made an object: {}", e._name());
+    return RTC::PortService::_nil();
+  }
+  auto state = state_.lock();
+  if (CORBA::is_nil(state->reference)) state->reference = made._retn();
+  return state->reference.in();
+}
+
+std::string PortServant::port_name() const { return state_.lock()->name; }
+void PortServant::set_port_name(const std::string& name) { state_.lock()->name = name; }
+void PortServant::set_owner(RTC::RTObject_ptr owner) { state_.lock()->owner = RTC::RTObject::_duplicate(owner); }
+void PortServant::set_reference(RTC::PortService_ptr reference) { state_.lock()->reference = RTC::PortService::_duplicate(reference); }
+
+void PortServant::set_profile_property(const std::string& key, const std::string& value) {
+  set_text(state_.lock()->properties, key, value);
+}
+std::string PortServant::profile_property(const std::string& key) const { return find_text(state_.lock()->properties, key).value_or(""); }
+
+bool PortServant::add_interface(const std::string& instance, const std::string& type, RTC::PortInterfacePolarity polarity) {
+  auto state = state_.lock();
+  for (CORBA::ULong i = 0; i < state->interfaces.length(); ++i) {
+    const auto& known = state->interfaces[i];
+    if (instance == known.instance_name.in() && type == known.type_name.in() && polarity == known.polarity) return false;
+  }
+  RTC::PortInterfaceProfile added;
+  added.instance_name = instance.c_str();
+  added.type_name = type.c_str();
+  added.polarity = polarity;
+  append<RTC::PortInterfaceProfile>(state->interfaces, added);
+  return true;
+}
+
+bool PortServant::remove_interface(const std::string& instance, RTC::PortInterfacePolarity polarity) {
+  auto state = state_.lock();
+  auto& interfaces = state->interfaces;
+  for (CORBA::ULong i = 0; i < interfaces.length(); ++i) {
+    if (instance != interfaces[i].instance_name.in() || polarity != interfaces[i].polarity) continue;
+    for (CORBA::ULong k = i; k + 1 < interfaces.length(); ++k) interfaces[k] = interfaces[k + 1];
+    interfaces.length(interfaces.length() - 1);
+    return true;
+  }
+  return false;
+}
+
+std::vector<RTC::ConnectorProfile> PortServant::connections() const {
+  std::vector<RTC::ConnectorProfile> profiles;
+  auto state = state_.lock();
+  for (const auto& connection : state->connections) {
+    if (connection.is_established && !connection.is_leaving) profiles.push_back(connection.profile);
+  }
+  return profiles;
+}
+
+RTC::PortProfile PortServant::profile() const {
+  RTC::PortProfile profile;
+  auto state = state_.lock();
+  profile.name = state->name.c_str();
+  profile.interfaces = state->interfaces;
+  profile.port_ref = RTC::PortService::_duplicate(state->reference);
+  profile.owner = RTC::RTObject::_duplicate(state->owner);
+  profile.properties = state->properties;
+  for (const auto& connection : state->connections) {
+    if (connection.is_established && !connection.is_leaving) append<RTC::ConnectorProfile>(profile.connector_profiles, connection.profile);
+  }
+  return profile;
+}
+
+RTC::PortProfile* PortServant::get_port_profile() {
+  reference();
+  return new RTC::PortProfile(profile());
+}
+
+RTC::ConnectorProfileList* PortServant::get_connector_profiles() {
+  RTC::ConnectorProfileList_var list = new RTC::ConnectorProfileList();
+  for (const auto& profile : connections()) append<RTC::ConnectorProfile>(list.inout(), profile);
+  return list._retn();
+}
+
+RTC::ConnectorProfile* PortServant::get_connector_profile(const char* connector_id) {
+  RTC::ConnectorProfile_var profile = new RTC::ConnectorProfile();
+  auto state = state_.lock();
+  const Connection* connection = state->find(connector_id);
+  if (connection && connection->is_established && !connection->is_leaving) profile.inout() = connection->profile;
+  return profile._retn();
+}
+
+int PortServant::position(const RTC::PortServiceList& ports) {
+  const RTC::PortService_ptr self = reference();
+  for (CORBA::ULong i = 0; i < ports.length(); ++i) {
+    if (is_same(ports[i], self)) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+void PortServant::tell(Step step, RTC::ConnectorProfile& profile, RTC::ReturnCode_t code) {
+  try {
+    on_step(step, profile, code);
+  } catch (const std::exception& e) {
+    base::log(base::Level::error, port_name(), "a connect callback has thrown: {}", e.what());
+  } catch (...) {
+    base::log(base::Level::error, port_name(), "a connect callback has thrown something that is no std::exception");
+  }
+}
+
+RTC::ReturnCode_t PortServant::connect(RTC::ConnectorProfile& profile) {
+  const Gate::Visit visit(gate_);
+  if (!visit) return RTC::RTC_ERROR;
+  if (has_nil(profile.ports) || position(profile.ports) < 0) return RTC::BAD_PARAMETER;
+  if (std::strlen(profile.connector_id) > longest_id) return RTC::BAD_PARAMETER;
+  complete_profile(profile);
+  if (*profile.connector_id.in() == '\0') {
+    profile.connector_id = base::make_uuid().c_str();
+  } else if (state_.lock()->find(profile.connector_id.in())) {
+    return RTC::PRECONDITION_NOT_MET;
+  }
+
+  if (is_same(profile.ports[0], reference())) return join(profile);
+  RTC::ReturnCode_t code = RTC::RTC_ERROR;
+  try {
+    const RTC::PortService_var first = RTC::PortService::_duplicate(profile.ports[0]);
+    limit_calls(first, port_call_timeout() * static_cast<int>(profile.ports.length()));
+    code = first->notify_connect(profile);
+    // What the others have set up is of no use if one has refused; a port that knew the id before keeps its connection.
+    if (code != RTC::RTC_OK && code != RTC::PRECONDITION_NOT_MET) break_up(profile);
+  } catch (const CORBA::Exception& e) {
+    base::log(base::Level::warn, port_name(), "the first port of connection {} does not answer: {}", base::in_quotes(profile.name.in()),
+              e._name());
+    break_up(profile);
+  }
+  return code;
+}
+
+RTC::ReturnCode_t PortServant::notify_connect(RTC::ConnectorProfile& profile) {
+  const Gate::Visit visit(gate_);
+  if (!visit) return RTC::RTC_ERROR;
+  const std::size_t id_length = std::strlen(profile.connector_id);
+  if (id_length == 0 || id_length > longest_id || has_nil(profile.ports)) return RTC::BAD_PARAMETER;
+  return join(profile);
+}
+
+RTC::ReturnCode_t PortServant::reserve(const RTC::ConnectorProfile& profile, bool allows_duplicate) {
+  const RTC::PortService_var self = RTC::PortService::_duplicate(reference());
+  const auto share_a_peer = [&](const RTC::PortServiceList& a, const RTC::PortServiceList& b) {
+    for (CORBA::ULong i = 0; i < a.length(); ++i) {
+      if (is_same(a[i], self)) continue;
+      for (CORBA::ULong k = 0; k < b.length(); ++k) {
+        if (is_same(a[i], b[k])) return true;
+      }
+    }
+    return false;
+  };
+  const std::string id = profile.connector_id.in();
+  auto state = state_.lock();
+  if (state->find(id)) return RTC::PRECONDITION_NOT_MET;
+  const int limit = connection_limit_.load(std::memory_order_relaxed);
+  if (limit >= 0 && state->connections.size() >= static_cast<std::size_t>(limit)) return RTC::RTC_ERROR;
+  for (const auto& connection : state->connections) {
+    if (allows_duplicate || connection.is_leaving || !share_a_peer(profile.ports, connection.profile.ports)) continue;
+    // Two ports connecting to each other at the same time come along opposite chains: both ends must give way to the same one of the two,
+    // the one with the smaller id, or both fail.
+    const bool is_opposite = !connection.is_established && !is_same(connection.profile.ports[0], profile.ports[0]);
+    if (is_opposite && id < connection.profile.connector_id.in()) continue;
+    return RTC::PRECONDITION_NOT_MET;
+  }
+  state->connections.push_back({profile});
+  return RTC::RTC_OK;
+}
+
+RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile) {
+  const int self = position(profile.ports);
+  if (self < 0) return RTC::BAD_PARAMETER;
+  tell(Step::notify_connect, profile, RTC::RTC_OK);
+  RTC::ReturnCode_t code = reserve(profile, allows_duplicate(profile));
+  if (code != RTC::RTC_OK) return code;
+
+  bool is_next_told = false;
+  bool is_published = false;
+  try {
+    code = prepare(profile);
+    if (code == RTC::RTC_OK) {
+      is_published = true;
+      code = publish(profile);
+      tell(Step::published, profile, code);
+    }
+    if (code == RTC::RTC_OK) {
+      code = join_next(profile, self);
+      is_next_told = code != RTC::PRECONDITION_NOT_MET;
+      tell(Step::next_connected, profile, code);
+    }
+    if (code == RTC::RTC_OK) {
+      code = subscribe(profile);
+      tell(Step::subscribed, profile, code);
+    }
+  } catch (const CORBA::Exception& e) {
+    base::log(base::Level::error, port_name(), "connecting failed: {}", e._name());
+    code = RTC::RTC_ERROR;
+  } catch (const std::exception& e) {
+    base::log(base::Level::error, port_name(), "connecting failed: {}", e.what());
+    code = RTC::RTC_ERROR;
+  }
+
+  if (code != RTC::RTC_OK) {
+    if (is_next_told) leave_next(profile);
+    if (is_published) unsubscribe(profile, false);
+    auto state = state_.lock();
+    if (const Connection* connection = state->find(profile.connector_id.in())) {
+      state->connections.erase(state->connections.begin() + (connection - state->connections.data()));
+    }
+    return code;
+  }
+  {
+    auto state = state_.lock();
+    if (Connection* connection = state->find(profile.connector_id.in())) {
+      connection->profile = profile;
+      connection->is_established = true;
+    }
+  }
+  tell(Step::connected, profile, code);
+  return code;
+}
+
+RTC::ReturnCode_t PortServant::join_next(RTC::ConnectorProfile& profile, int self) {
+  const CORBA::ULong next = static_cast<CORBA::ULong>(self) + 1;
+  if (next >= profile.ports.length()) return RTC::RTC_OK;
+  const RTC::PortService_var port = RTC::PortService::_duplicate(profile.ports[next]);
+  try {
+    // Whoever comes later in the chain gives up earlier.
+    limit_calls(port, port_call_timeout() * static_cast<int>(profile.ports.length() - next));
+    return port->notify_connect(profile);
+  } catch (const CORBA::Exception& e) {
+    base::log(base::Level::warn, port_name(), "the next port of connection {} does not answer: {}", base::in_quotes(profile.name.in()),
+              e._name());
+    return RTC::RTC_ERROR;
+  }
+}
+
+RTC::ReturnCode_t PortServant::break_up(const RTC::ConnectorProfile& profile) {
+  RTC::ReturnCode_t code = RTC::RTC_ERROR;
+  for (CORBA::ULong i = 0; i < profile.ports.length(); ++i) {
+    if (is_same(profile.ports[i], reference())) return leave(profile.connector_id.in(), true, false);
+    try {
+      const RTC::PortService_var port = RTC::PortService::_duplicate(profile.ports[i]);
+      limit_calls(port, port_call_timeout() * static_cast<int>(profile.ports.length() - i));
+      return port->notify_disconnect(profile.connector_id);
+    } catch (const CORBA::Exception&) {
+      // Dead or hanging: the next one takes the lead.
+    }
+  }
+  return code;
+}
+
+RTC::ReturnCode_t PortServant::disconnect(const char* connector_id) {
+  const Gate::Visit visit(gate_);
+  if (!visit) return RTC::RTC_ERROR;
+  RTC::ConnectorProfile profile;
+  {
+    auto state = state_.lock();
+    const Connection* connection = state->find(connector_id);
+    if (!connection || !connection->is_established || connection->is_leaving) return RTC::BAD_PARAMETER;
+    profile = connection->profile;
+  }
+  const RTC::ReturnCode_t code = break_up(profile);
+  // Whoever took the lead may not have come as far as us.
+  const RTC::ReturnCode_t own = leave(connector_id, true, false);
+  return own == RTC::RTC_OK ? RTC::RTC_OK : code;
+}
+
+RTC::ReturnCode_t PortServant::disconnect_all() {
+  RTC::ReturnCode_t result = RTC::RTC_OK;
+  for (const auto& profile : connections()) {
+    const RTC::ReturnCode_t code = disconnect(profile.connector_id);
+    // Somebody else may have been faster.
+    if (code != RTC::RTC_OK && code != RTC::BAD_PARAMETER) result = code;
+  }
+  return result;
+}
+
+RTC::ReturnCode_t PortServant::notify_disconnect(const char* connector_id) {
+  const Gate::Visit visit(gate_);
+  if (!visit) return RTC::RTC_ERROR;
+  return leave(connector_id, true, false);
+}
+
+bool PortServant::drop_connection(const char* connector_id) {
+  const Gate::Visit visit(gate_);
+  return visit && leave(connector_id, false, true) == RTC::RTC_OK;
+}
+
+RTC::ReturnCode_t PortServant::leave(std::string_view connector_id, bool tells_next, bool is_lost) {
+  const std::string id(connector_id);
+  RTC::ConnectorProfile profile;
+  {
+    auto state = state_.lock();
+    Connection* connection = state->find(id);
+    if (!connection || !connection->is_established || connection->is_leaving) return RTC::BAD_PARAMETER;
+    connection->is_leaving = true;
+    profile = connection->profile;
+  }
+  tell(Step::notify_disconnect, profile, RTC::RTC_OK);
+  if (tells_next) tell(Step::next_disconnected, profile, leave_next(profile));
+  tell(Step::unsubscribed, profile, RTC::RTC_OK);
+  try {
+    unsubscribe(profile, is_lost);
+  } catch (const std::exception& e) {
+    base::log(base::Level::error, port_name(), "disconnecting failed: {}", e.what());
+  } catch (const CORBA::Exception& e) {
+    base::log(base::Level::error, port_name(), "disconnecting failed: {}", e._name());
+  }
+  {
+    auto state = state_.lock();
+    if (const Connection* connection = state->find(id)) {
+      state->connections.erase(state->connections.begin() + (connection - state->connections.data()));
+    }
+  }
+  tell(Step::disconnected, profile, RTC::RTC_OK);
+  return RTC::RTC_OK;
+}
+
+RTC::ReturnCode_t PortServant::leave_next(const RTC::ConnectorProfile& profile) {
+  const int self = position(profile.ports);
+  if (self < 0) return RTC::BAD_PARAMETER;
+  for (CORBA::ULong next = static_cast<CORBA::ULong>(self) + 1; next < profile.ports.length(); ++next) {
+    try {
+      const RTC::PortService_var port = RTC::PortService::_duplicate(profile.ports[next]);
+      limit_calls(port, port_call_timeout() * static_cast<int>(profile.ports.length() - next));
+      return port->notify_disconnect(profile.connector_id);
+    } catch (const CORBA::Exception&) {
+      // Dead or hanging: the next one takes the lead.
+    }
+  }
+  return RTC::RTC_OK;
+}
+
+}  // namespace corba

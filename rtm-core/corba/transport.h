@@ -1,0 +1,84 @@
+// The two ends of every transport of data ports. Implementations: any thread; closing or destroying one does not wait for the peer.
+#pragma once
+
+#include <omniORB4/CORBA.h>
+
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include "corba/payload.h"
+#include "core/connector_settings.h"
+#include "core/port_status.h"
+#include "core/sample.h"
+
+namespace corba {
+
+// Takes samples to the peer's InPort.
+class Sender {
+ public:
+  virtual ~Sender() = default;
+  // ok, error (this sample cannot be sent), send_full, send_timeout, connection_lost, unknown_error.
+  virtual rt::PortStatus send(Payload& payload) = 0;
+};
+
+// Asks the peer's OutPort for samples.
+class Fetcher {
+ public:
+  virtual ~Fetcher() = default;
+  // ok, error, buffer_empty, recv_timeout, connection_lost, unknown_error.
+  virtual rt::PortStatus fetch(rt::Sample& sample) = 0;
+};
+
+// Where a transport delivers what has come.
+class Receiver {
+ public:
+  virtual ~Receiver() = default;
+  // ok, error, buffer_full, buffer_timeout.
+  virtual rt::PortStatus receive(rt::Sample sample) = 0;
+  virtual rt::BlockPool& pool() = 0;
+};
+
+// Where a transport gets what the peer asks for.
+class Source {
+ public:
+  virtual ~Source() = default;
+  // ok, error, buffer_empty, buffer_timeout.
+  virtual rt::PortStatus give(rt::Sample& sample) = 0;
+};
+
+// An object that peers call; they cannot any more once it is destroyed.
+class Provider {
+ public:
+  virtual ~Provider() = default;
+  // Borrowed.
+  virtual CORBA::Object_ptr reference() const = 0;
+  // The reference with the type of its interface.
+  virtual CORBA::Any as_any() const = 0;
+};
+
+// What all calls of one connection share.
+struct Line {
+  rt::ByteOrder order = rt::ByteOrder::little;
+  std::chrono::milliseconds call_timeout{10000};
+  std::size_t shared_memory_size = std::size_t{2} << 20;
+};
+
+// The ORB of this process.
+CORBA::ORB_var orb();
+
+// What an exception of a call says about the connection; logs it under `name`.
+rt::PortStatus status_of(const CORBA::SystemException& problem, std::string_view name);
+
+// nullptr if the object is nil, unreachable or of another interface.
+std::unique_ptr<Sender> make_cdr_sender(rt::Interface interface, CORBA::Object_ptr in_port, const Line& line);
+std::unique_ptr<Fetcher> make_cdr_fetcher(rt::Interface interface, CORBA::Object_ptr out_port, const Line& line);
+std::unique_ptr<Provider> make_cdr_in_provider(rt::Interface interface, std::shared_ptr<Receiver> receiver, const Line& line);
+std::unique_ptr<Provider> make_cdr_out_provider(rt::Interface interface, std::shared_ptr<Source> source, const Line& line);
+
+std::unique_ptr<Sender> make_shared_memory_sender(CORBA::Object_ptr in_port, const Line& line);
+std::unique_ptr<Fetcher> make_shared_memory_fetcher(CORBA::Object_ptr out_port, const Line& line);
+std::unique_ptr<Provider> make_shared_memory_in_provider(std::shared_ptr<Receiver> receiver, const Line& line);
+std::unique_ptr<Provider> make_shared_memory_out_provider(std::shared_ptr<Source> source, const Line& line);
+
+}  // namespace corba

@@ -1,0 +1,75 @@
+// What a port has received and not read yet: a ring for each connection, each with its own policies, read in order of arrival over all of
+// them. Any thread.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <vector>
+
+#include "base/guarded.h"
+#include "core/connector_settings.h"
+#include "core/port_status.h"
+#include "core/ring.h"
+
+namespace rt {
+
+struct WriteResult {
+  PortStatus status = PortStatus::ok;  // ok, buffer_full, buffer_timeout; precondition_not_met: the channel is closed
+  bool overwrote = false;              // an unread sample was lost
+};
+
+enum class Channel : std::uint64_t { any = 0 };
+
+struct ReadResult {
+  PortStatus status = PortStatus::buffer_empty;  // ok, buffer_empty, buffer_timeout; precondition_not_met: no such channel
+  Sample sample;
+  bool is_fresh = false;  // false: read before
+  Channel channel = Channel::any;
+};
+
+class Mailbox {
+ public:
+  Channel open(const BufferSettings& settings);
+  // Drops what is in it; whoever waits to write or read there is released.
+  void close(Channel channel);
+
+  // A full ring overwrites, refuses or waits, as the channel's settings say.
+  WriteResult write(Channel channel, Sample sample);
+  // The oldest sample (of that channel). If nothing is unread: the last one again, nothing, or waits, as the settings of the channel say
+  // from which the last sample came; before the first sample one channel that waits is enough to wait.
+  ReadResult read(Channel channel = Channel::any);
+  std::size_t unread(Channel channel = Channel::any) const;
+  // The last sample of that channel is not read again.
+  void forget_last(Channel channel);
+  // Writers wait for readers and readers for writers while this is set (dataport.sync_readwrite).
+  void set_rendezvous(Channel channel, bool is_rendezvous);
+
+ private:
+  struct Entry {
+    Channel channel;
+    BufferSettings settings;
+    Ring ring;
+    Sample last;  // what was read last
+    bool is_rendezvous = false;
+    std::uint64_t read_count = 0;
+  };
+  struct State {
+    std::vector<Entry> entries;
+    std::uint64_t last_channel = 0;
+    std::uint64_t arrivals = 0;
+
+    Entry* find(Channel channel);
+    // The entry (of that channel) with the oldest unread sample.
+    Entry* oldest(Channel channel);
+    Entry* last_read(Channel channel);
+    ReadResult take(Entry& entry);
+    // How long a reader waits for the first or next sample; nothing if it does not.
+    std::optional<std::chrono::nanoseconds> patience(Channel channel);
+  };
+
+  mutable base::Guarded<State, base::Rank::buffer> state_;
+  std::condition_variable arrived_;
+  std::condition_variable freed_;
+};
+
+}  // namespace rt

@@ -1,0 +1,193 @@
+#include "core/publisher.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <thread>
+#include <utility>
+
+#include "base/guarded.h"
+#include "base/log.h"
+#include "core/send_queue.h"
+
+namespace rt {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Between two attempts to hand a sample to a receiver whose buffer is full.
+constexpr auto first_retry = std::chrono::milliseconds(1);
+constexpr auto longest_retry = std::chrono::milliseconds(128);
+// Not time_point::max(), which overflows inside some condition variables.
+constexpr Clock::duration far = std::chrono::hours(24 * 365);
+
+}  // namespace
+
+struct Publisher::Work {
+  struct State {
+    SendQueue queue;
+    bool is_stopped = false;
+    bool is_lost = false;
+    bool is_in_hooks = false;
+  };
+  enum class Next { go_on, retry, end };
+
+  Work(Subscription s, const PublisherSettings& p, const BufferSettings& b, Hooks h)
+      : subscription(s), period(p.period), buffer(b), hooks(std::move(h)), state(State{SendQueue(b.length, p)}) {}
+
+  void run() {
+    try {
+      if (subscription == Subscription::periodic) {
+        run_periodically();
+      } else {
+        run_on_writes();
+      }
+    } catch (const std::exception& e) {
+      base::log(base::Level::error, "publisher", "stopped: {}", e.what());
+    } catch (...) {
+      base::log(base::Level::error, "publisher", "stopped by an exception that is no std::exception");
+    }
+  }
+
+  void run_on_writes() {
+    Clock::duration retry{};  // 0: the last sample got through
+    for (;;) {
+      std::vector<Sample> batch;
+      {
+        auto locked = state.lock();
+        // While the receiver is full, only the time-out or the end wakes us.
+        const auto deadline = Clock::now() + (retry.count() ? retry : far);
+        locked.wait_until(changed, deadline, [&] { return locked->is_stopped || (!retry.count() && !locked->queue.is_empty()); });
+        if (locked->is_stopped) return;
+        batch = locked->queue.next_batch();
+      }
+      room.notify_all();
+      switch (send(std::move(batch))) {
+        case Next::go_on:
+          retry = {};
+          break;
+        case Next::retry:
+          retry = retry.count() ? std::min<Clock::duration>(retry * 2, longest_retry) : first_retry;
+          break;
+        case Next::end:
+          return;
+      }
+    }
+  }
+
+  void run_periodically() {
+    auto deadline = Clock::now() + period;
+    for (;;) {
+      std::vector<Sample> batch;
+      {
+        auto locked = state.lock();
+        locked.wait_until(changed, deadline, [&] { return locked->is_stopped; });
+        if (locked->is_stopped) return;
+        batch = locked->queue.next_batch();
+      }
+      room.notify_all();
+      if (batch.empty() && hooks.starved) {
+        if (!enter_hooks()) return;
+        hooks.starved();
+        state.lock()->is_in_hooks = false;
+      }
+      if (send(std::move(batch)) == Next::end) return;
+      deadline = std::max<Clock::time_point>(deadline + period, Clock::now());
+    }
+  }
+
+  Next send(std::vector<Sample> batch) {
+    for (auto it = batch.begin(); it != batch.end(); ++it) {
+      if (!enter_hooks()) return Next::end;
+      const PortStatus status = hooks.send(*it);
+      state.lock()->is_in_hooks = false;
+      switch (status) {
+        case PortStatus::send_full:
+        case PortStatus::send_timeout:
+          state.lock()->queue.put_back({std::make_move_iterator(it), std::make_move_iterator(batch.end())});
+          return Next::retry;
+        case PortStatus::connection_lost:
+          end_lost();
+          return Next::end;
+        default:
+          break;
+      }
+    }
+    return Next::go_on;
+  }
+
+  void end_lost() {
+    {
+      auto locked = state.lock();
+      if (std::exchange(locked->is_stopped, true)) return;
+      locked->is_lost = true;
+      locked->is_in_hooks = true;
+    }
+    room.notify_all();
+    if (hooks.lost) hooks.lost();
+  }
+
+  bool enter_hooks() {
+    auto locked = state.lock();
+    locked->is_in_hooks = !locked->is_stopped;
+    return locked->is_in_hooks;
+  }
+
+  const Subscription subscription;
+  const std::chrono::nanoseconds period;
+  const BufferSettings buffer;
+  const Hooks hooks;
+  base::Guarded<State, base::Rank::buffer> state;
+  std::condition_variable changed;
+  std::condition_variable room;
+};
+
+Publisher::Publisher(Subscription subscription, const PublisherSettings& publisher, const BufferSettings& buffer, Hooks hooks)
+    : work_(std::make_shared<Work>(subscription, publisher, buffer, std::move(hooks))) {
+  thread_ = std::thread([work = work_] { work->run(); });
+}
+
+Publisher::~Publisher() {
+  const bool is_busy = request_stop();
+  // Whoever is in a hook may hang there for long, or be the one that destroys us.
+  if (is_busy || thread_.get_id() == std::this_thread::get_id()) {
+    thread_.detach();
+  } else {
+    thread_.join();
+  }
+}
+
+WriteResult Publisher::write(Sample sample) {
+  WriteResult result;
+  {
+    auto state = work_->state.lock();
+    const auto has_ended = [&] { return state->is_stopped || state->is_lost; };
+    const auto ended = [&] { return WriteResult{state->is_lost ? PortStatus::connection_lost : PortStatus::precondition_not_met}; };
+    if (has_ended()) return ended();
+    if (state->queue.is_full() && work_->buffer.full == FullPolicy::do_nothing) return {PortStatus::buffer_full};
+    if (state->queue.is_full() && work_->buffer.full == FullPolicy::block) {
+      const bool is_over =
+          !state.wait_for(work_->room, work_->buffer.write_timeout, [&] { return has_ended() || !state->queue.is_full(); });
+      if (has_ended()) return ended();
+      if (is_over) return {PortStatus::buffer_timeout};
+    }
+    result.overwrote = state->queue.push(std::move(sample));
+  }
+  work_->changed.notify_one();
+  return result;
+}
+
+bool Publisher::request_stop() {
+  bool is_busy = false;
+  {
+    auto state = work_->state.lock();
+    state->is_stopped = true;
+    is_busy = state->is_in_hooks;
+  }
+  work_->changed.notify_all();
+  work_->room.notify_all();
+  return is_busy;
+}
+
+void Publisher::stop() { request_stop(); }
+
+}  // namespace rt

@@ -1,0 +1,47 @@
+// Sends what is written to one connection on a thread of its own: as soon as something is there (subscription `new`) or periodically.
+// Any thread.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <thread>
+
+#include "core/connector_settings.h"
+#include "core/mailbox.h"
+#include "core/port_status.h"
+
+namespace rt {
+
+class Publisher {
+ public:
+  // Called on the publisher's thread, without locks. May stop the publisher.
+  struct Hooks {
+    // send_full and send_timeout: the sample is sent again later; connection_lost: nothing more is sent.
+    std::function<PortStatus(const Sample&)> send;
+    // Its time has come and there is nothing to send (periodic only).
+    std::function<void()> starved;
+    // After send has reported connection_lost.
+    std::function<void()> lost;
+  };
+
+  // `subscription` is not flush. The thread ends with the publisher, or, when that
+  // happens during a hook, soon afterwards; the hooks live as long as the thread.
+  Publisher(Subscription subscription, const PublisherSettings& publisher, const BufferSettings& buffer, Hooks hooks);
+  ~Publisher();
+  Publisher(const Publisher&) = delete;
+  Publisher& operator=(const Publisher&) = delete;
+
+  // status: ok, buffer_full, buffer_timeout; connection_lost or precondition_not_met once it does not send any more.
+  WriteResult write(Sample sample);
+  // Samples that are not sent yet are dropped. Does not wait for one that is being sent: a peer that hangs must not hang others.
+  void stop();
+
+ private:
+  struct Work;
+  // True if the thread is in a hook.
+  bool request_stop();
+  std::shared_ptr<Work> work_;
+  std::thread thread_;
+};
+
+}  // namespace rt

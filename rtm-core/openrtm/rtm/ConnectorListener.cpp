@@ -1,0 +1,95 @@
+#include "rtm/ConnectorListener.h"
+
+#include <exception>
+
+#include "base/log.h"
+
+namespace RTC {
+namespace {
+
+template <std::size_t size>
+const char* name_of(const char* const (&names)[size], int type) {
+  return type >= 0 && static_cast<std::size_t>(type) < size ? names[type] : "";
+}
+
+template <class Call>
+ConnectorListenerStatus guarded(Call call) {
+  try {
+    return call();
+  } catch (const std::exception& e) {
+    base::log(base::Level::error, "data port", "a listener has thrown: {}", e.what());
+  } catch (...) {
+    base::log(base::Level::error, "data port", "a listener has thrown something that is no std::exception");
+  }
+  return ConnectorListenerStatus::NO_CHANGE;
+}
+
+bool changes_data(ConnectorListenerStatus status) {
+  return status == ConnectorListenerStatus::DATA_CHANGED || status == ConnectorListenerStatus::BOTH_CHANGED;
+}
+bool changes_info(ConnectorListenerStatus status) {
+  return status == ConnectorListenerStatus::INFO_CHANGED || status == ConnectorListenerStatus::BOTH_CHANGED;
+}
+
+}  // namespace
+
+const char* ConnectorDataListener::toString(ConnectorDataListenerType type) {
+  static const char* const names[] = {
+      "ON_BUFFER_WRITE", "ON_BUFFER_FULL", "ON_BUFFER_WRITE_TIMEOUT", "ON_BUFFER_OVERWRITE", "ON_BUFFER_READ",
+      "ON_SEND",         "ON_RECEIVED",    "ON_RECEIVER_FULL",        "ON_RECEIVER_TIMEOUT", "ON_RECEIVER_ERROR"};
+  return name_of(names, type);
+}
+
+const char* ConnectorListener::toString(ConnectorListenerType type) {
+  static const char* const names[] = {"ON_BUFFER_EMPTY",   "ON_BUFFER_READ_TIMEOUT", "ON_SENDER_EMPTY",
+                                      "ON_SENDER_TIMEOUT", "ON_SENDER_ERROR",        "ON_CONNECT",
+                                      "ON_DISCONNECT"};
+  return name_of(names, type);
+}
+
+ConnectorDataListener::ReturnCode ConnectorDataListener::operator()(ConnectorInfo& info, ByteData& data, const std::string&) {
+  cdrMemoryStream stream;
+  stream.setByteSwapFlag(data.isLittleEndian());
+  if (data.getDataLength()) stream.put_octet_array(data.getBuffer(), static_cast<int>(data.getDataLength()));
+  stream.rewindInputPtr();
+  const ReturnCode code = (*this)(info, stream);
+  if (changes_data(code)) data.writeData(static_cast<unsigned char*>(stream.bufPtr()), stream.bufSize());
+  return code;
+}
+
+ConnectorDataListener::ReturnCode ConnectorDataListener::operator()(ConnectorInfo&, cdrMemoryStream&) { return NO_CHANGE; }
+
+ConnectorDataListener::ReturnCode ConnectorDataListener::notify(ConnectorInfo& info, corba::EventData& data) {
+  const auto octets = data.octets();
+  ByteData bytes(reinterpret_cast<const unsigned char*>(octets.data()), octets.size());
+  bytes.isLittleEndian(data.order() == rt::ByteOrder::little);
+  const ReturnCode code = (*this)(info, bytes, "cdr");
+  if (changes_data(code)) data.replace_octets(std::as_bytes(std::span(bytes.getBuffer(), bytes.getDataLength())));
+  return code;
+}
+
+void ConnectorDataListenerHolder::addListener(ConnectorDataListener* listener, bool autoclean) {
+  ListenerSet::addListener(listener, autoclean);
+  count_.store(ListenerSet::size(), std::memory_order_relaxed);
+}
+
+void ConnectorDataListenerHolder::removeListener(ConnectorDataListener* listener) {
+  ListenerSet::removeListener(listener);
+  count_.store(ListenerSet::size(), std::memory_order_relaxed);
+}
+
+void ConnectorDataListenerHolder::notify(ConnectorInfo& info, corba::EventData& data, bool& info_changed) {
+  for (const auto& listener : snapshot()) {
+    const auto status = guarded([&] { return listener->notify(info, data); });
+    info_changed |= changes_info(status);
+  }
+}
+
+void ConnectorListenerHolder::notify(ConnectorInfo& info, bool& info_changed) {
+  for (const auto& listener : snapshot()) {
+    const auto status = guarded([&] { return (*listener)(info); });
+    info_changed |= changes_info(status);
+  }
+}
+
+}  // namespace RTC

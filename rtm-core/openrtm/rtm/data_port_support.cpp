@@ -1,0 +1,107 @@
+#include "rtm/data_port_support.h"
+
+#include "base/text.h"
+#include "corba/connector_keys.h"
+#include "corba/nv_list.h"
+#include "rtm/CORBA_SeqUtil.h"
+#include "rtm/NVUtil.h"
+
+namespace RTC::detail {
+
+static_assert(static_cast<int>(rt::PortStatus::unknown_error) == DataPortStatus::UNKNOWN_ERROR);
+static_assert(static_cast<int>(rt::PortStatus::connection_lost) == DataPortStatus::CONNECTION_LOST);
+
+std::string short_name(const std::string& name) {
+  const auto dot = name.rfind('.');
+  return dot == std::string::npos ? name : name.substr(dot + 1);
+}
+
+std::vector<AdvertisedKey> advertised_keys(rt::Side side, const std::string& type_id) {
+  const std::string interfaces = "corba_cdr,data_service,direct,shared_memory";
+  std::vector<AdvertisedKey> keys = {{"port.port_type", side == rt::Side::in ? "DataInPort" : "DataOutPort"},
+                                     {"dataport.data_type", type_id},
+                                     {"data_type", type_id},
+                                     {"dataport.subscription_type", side == rt::Side::in ? "Any" : "block,flush,new,nonblock,periodic"},
+                                     {"dataport.dataflow_type", "push,pull"},
+                                     {"dataport.interface_type", interfaces},
+                                     {"dataport.marshaling_types", "cdr"}};
+  if (side == rt::Side::out) keys.push_back({"dataport.io_mode", "block,flush,new,nonblock,periodic"});
+  for (const char* key : {"dataport.interface_option.corba_cdr", "dataport.interface_option.data_service",
+                          "dataport.interface_option.direct", "dataport.interface_option.shared_memory"}) {
+    keys.push_back({key, ""});
+  }
+  return keys;
+}
+
+void complete_data_profile(ConnectorProfile& profile) {
+  corba::remove_references(profile);
+  if (!corba::find_value(profile.properties, "dataport.serializer.cdr.endian")) {
+    corba::set_text(profile.properties, "dataport.serializer.cdr.endian", "little,big");
+  }
+}
+
+rt::ConnectorSettingsOutcome settings_of(const ConnectorProfile& profile, const coil::Properties& port, rt::Side side) {
+  rt::KeyValues values;
+  for (const auto& name : port.propertyNames()) {
+    const std::string& value = port.getProperty(name);
+    if (value.empty()) continue;
+    values[name.starts_with("dataport.") ? name : "dataport." + name] = value;
+  }
+  for (auto& [name, value] : corba::to_key_values(profile.properties)) {
+    if (!value.empty()) values[name] = value;
+  }
+  return rt::read_connector_settings(values, side);
+}
+
+bool says_when_empty(const ConnectorProfile& profile) {
+  return settings_of(profile, coil::Properties(), rt::Side::out).settings.buffer.empty != rt::EmptyPolicy::readback;
+}
+
+ReturnCode_t check_connection(ConnectorProfile& profile, const coil::Properties& port, rt::Side side, const std::string& type_id,
+                              Logger& rtclog) {
+  const auto outcome = settings_of(profile, port, side);
+  for (const auto& warning : outcome.warnings) RTC_WARN_STR(warning);
+  if (outcome.refusal.code != rt::ReturnCode::ok) {
+    RTC_WARN_STR("connection refused: " + outcome.refusal.reason);
+    return static_cast<ReturnCode_t>(outcome.refusal.code);
+  }
+  for (const char* key : {"dataport.data_type", "dataport.inport.data_type", "dataport.outport.data_type"}) {
+    const auto other = corba::find_text(profile.properties, key);
+    const bool is_own = std::string_view(key) == (side == rt::Side::in ? "dataport.inport.data_type" : "dataport.outport.data_type");
+    if (!other || is_own || rt::are_compatible_types(*other, type_id)) continue;
+    RTC_WARN_STR("connection refused: " + std::string(key) + " is " + base::in_quotes(*other) + ", this port has " + type_id);
+    return BAD_PARAMETER;
+  }
+  corba::set_text(profile.properties, side == rt::Side::in ? "dataport.inport.data_type" : "dataport.outport.data_type", type_id);
+  return RTC_OK;
+}
+
+ConnectorInfo make_info(const ConnectorProfile& profile, const coil::Properties& port) {
+  ConnectorInfo info;
+  info.name = profile.name.in();
+  info.id = profile.connector_id.in();
+  info.ports = CORBA_SeqUtil::refToVstring(profile.ports);
+  info.properties << port;
+  const coil::Properties all = NVUtil::toProperties(profile.properties);
+  if (const coil::Properties* dataport = all.findNode("dataport")) info.properties << *dataport;
+  return info;
+}
+
+corba::ConnectionPlan make_plan(const ConnectorProfile& profile, const rt::ConnectorSettings& settings,
+                                std::shared_ptr<ConnectorBase> connector) {
+  corba::ConnectionPlan plan;
+  plan.id = profile.connector_id.in();
+  plan.name = profile.name.in();
+  plan.settings = settings;
+  plan.events = std::move(connector);
+  plan.peer_says_when_empty = says_when_empty(profile);
+  return plan;
+}
+
+DataPortStatusList to_classic(const std::vector<rt::PortStatus>& statuses) {
+  DataPortStatusList list;
+  for (const auto status : statuses) list.push_back(to_classic(status));
+  return list;
+}
+
+}  // namespace RTC::detail

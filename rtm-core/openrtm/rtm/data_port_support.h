@@ -1,0 +1,43 @@
+// What InPortBase and OutPortBase have in common. Not for component authors.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "corba/in_engine.h"
+#include "rtm/ConnectorBase.h"
+#include "rtm/PortBase.h"
+
+namespace RTC::detail {
+
+// The part of a port's name after the owner's.
+std::string short_name(const std::string& name);
+
+// Writes into the profile what a data port of this type advertises.
+struct AdvertisedKey {
+  const char* key;
+  std::string value;
+};
+std::vector<AdvertisedKey> advertised_keys(rt::Side side, const std::string& type_id);
+
+// Fills in what a client may leave out, and takes out what must not be trusted.
+void complete_data_profile(ConnectorProfile& profile);
+
+// The settings of the connection: the port's own properties, then `dataport.*`, then those of the side.
+rt::ConnectorSettingsOutcome settings_of(const ConnectorProfile& profile, const coil::Properties& port, rt::Side side);
+// The OutPort of this connection does not hand out samples twice.
+bool says_when_empty(const ConnectorProfile& profile);
+
+// RTC_OK, or the code with which to refuse; says why in the log. Announces the type of this side in the profile.
+ReturnCode_t check_connection(ConnectorProfile& profile, const coil::Properties& port, rt::Side side, const std::string& type_id,
+                              Logger& rtclog);
+
+ConnectorInfo make_info(const ConnectorProfile& profile, const coil::Properties& port);
+corba::ConnectionPlan make_plan(const ConnectorProfile& profile, const rt::ConnectorSettings& settings,
+                                std::shared_ptr<ConnectorBase> connector);
+
+inline DataPortStatus to_classic(rt::PortStatus status) { return static_cast<DataPortStatus::Enum>(status); }
+DataPortStatusList to_classic(const std::vector<rt::PortStatus>& statuses);
+
+}  // namespace RTC::detail
