@@ -35,12 +35,9 @@ PortServant::PortServant(std::string name) { state_.lock()->name = std::move(nam
 
 PortServant::~PortServant() { shut(); }
 
-void PortServant::shut() {
-  RTC::PortService_var reference;
-  {
-    auto state = state_.lock();
-    reference = state->reference._retn();
-  }
+void PortServant::deactivate() {
+  // The reference stays, to recognise ourselves by.
+  const RTC::PortService_var reference = RTC::PortService::_duplicate(state_.lock()->reference);
   if (!CORBA::is_nil(reference)) {
     try {
       const PortableServer::POA_var poa = _default_POA();
@@ -50,6 +47,10 @@ void PortServant::shut() {
       // Not active (any more), or the ORB is gone: nobody can call.
     }
   }
+}
+
+void PortServant::shut() {
+  deactivate();
   gate_.close();
 }
 

@@ -32,7 +32,9 @@ class PortServant : public virtual POA_RTC::PortService, public virtual Portable
 
   // The port's reference; activates the port in its POA at the first call. Nil while there is no ORB. Borrowed, good as long as the port.
   RTC::PortService_ptr reference();
-  // No call from outside is accepted after this, and none is running. Connections stay. Classes that end the line of derivation call it
+  // No call from outside is accepted after this; connections stay.
+  void deactivate();
+  // The same, and none is running when it returns. Connections stay. Classes that end the line of derivation call it
   // first in their destructors. Not to be called from inside a hook.
   void shut();
 
