@@ -1,0 +1,41 @@
+// What a model becomes in ODE, worked out once and used whenever the model is built: links that are joined rigidly form one assembly,
+// which is one body. Constant after creation; any thread.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "world/world_def.h"
+
+namespace sim {
+
+struct Assembly {
+  std::vector<std::uint32_t> links;  // indexes into the model's links; the first gives the body its axes
+  bool is_anchored = false;          // joined to the world, or of a static model: never moves
+  bool is_kinematic = false;
+  bool has_gravity = true;
+  double mass = 0;
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();       // about the body's origin, which is the centre of mass
+  Eigen::Isometry3d in_model = Eigen::Isometry3d::Identity();  // the body's frame at the start
+  double linear_damping = 0, angular_damping = 0;
+};
+
+struct Blueprint {
+  std::shared_ptr<const ModelDef> model;
+  std::vector<Assembly> assemblies;
+  std::vector<std::uint32_t> assembly_of_link;
+  std::vector<Eigen::Isometry3d> link_in_body;
+  std::vector<std::uint32_t> joints;  // those that are more than a weld, indexes into the model's joints
+  std::uint32_t canonical = 0;        // link
+  bool is_static = false;             // no assembly moves
+  bool is_joined_to_world = false;    // has a joint that is not fixed between a link and the world
+  std::vector<std::string> notes;     // one line each: what is simulated in another way than written
+
+  // Fails when a number is not finite or a mass or size cannot be simulated.
+  static base::Result<std::shared_ptr<const Blueprint>> of(std::shared_ptr<const ModelDef> model);
+};
+
+}  // namespace sim

@@ -1,0 +1,90 @@
+#include "physics/contact_surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/ode.h"
+
+namespace sim {
+
+dSurfaceParameters combine(const SurfaceDef& a, const SurfaceDef& b, double dt) {
+  dSurfaceParameters s{};
+  s.mode = dContactApprox1 | dContactMu2;
+  const auto friction = [](double x, double y) {
+    const double mu = std::min(x, y);
+    return std::isfinite(mu) && mu < 1e8 ? mu : dInfinity;
+  };
+  s.mu = friction(a.mu, b.mu);
+  s.mu2 = friction(a.mu2, b.mu2);
+  if (const double slip = std::max(a.slip1, b.slip1); slip > 0) s.mode |= dContactSlip1, s.slip1 = slip;
+  if (const double slip = std::max(a.slip2, b.slip2); slip > 0) s.mode |= dContactSlip2, s.slip2 = slip;
+  if (const double bounce = std::max(a.restitution, b.restitution); bounce > 0) {
+    s.mode |= dContactBounce;
+    s.bounce = std::min(bounce, 1.0);
+    s.bounce_vel = std::min(a.bounce_threshold, b.bounce_threshold);
+  }
+  if (a.kp || b.kp) {
+    // Springs in series, dampers side by side; then what ODE calls erp and cfm.
+    const double soft_a = a.kp ? 1 / *a.kp : 0, soft_b = b.kp ? 1 / *b.kp : 0;
+    const double kp = 1 / std::max(soft_a + soft_b, 1e-12);
+    const double kd = a.kd.value_or(0) + b.kd.value_or(0);
+    s.mode |= dContactSoftERP | dContactSoftCFM;
+    s.soft_erp = std::min(dt * kp / (dt * kp + kd), 0.8);
+    s.soft_cfm = 1 / (dt * kp + kd);
+  } else if (a.soft_cfm > 0 || b.soft_cfm > 0) {
+    s.mode |= dContactSoftERP | dContactSoftCFM;
+    s.soft_cfm = std::max(a.soft_cfm, b.soft_cfm);
+    s.soft_erp = std::min(a.soft_erp, b.soft_erp);
+  }
+  return s;
+}
+
+bool friction_direction(const SurfaceDef& a, dGeomID geom_a, const SurfaceDef& b, dGeomID geom_b, const dReal* normal, dReal* out) {
+  const bool from_a = a.friction_direction.has_value();
+  if (!from_a && !b.friction_direction) return false;
+  dQuaternion q;
+  const dGeomID geom = from_a ? geom_a : geom_b;
+  if (dGeomGetClass(geom) == dPlaneClass) return false;
+  dGeomGetQuaternion(geom, q);
+  const Eigen::Vector3d n(normal[0], normal[1], normal[2]);
+  Eigen::Vector3d direction = ode::quaternion(q) * (from_a ? *a.friction_direction : *b.friction_direction);
+  direction -= n * n.dot(direction);
+  if (direction.norm() < 1e-6) return false;
+  direction.normalize();
+  out[0] = direction.x(), out[1] = direction.y(), out[2] = direction.z();
+  return true;
+}
+
+int reduce(dContactGeom* contacts, int count) {
+  if (count <= 4) return count;
+  const auto position = [&](int i) { return ode::vector(contacts[i].pos); };
+  const Eigen::Vector3d normal = ode::vector(contacts[0].normal);
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (int i = 0; i < count; ++i) {
+    if (normal.dot(ode::vector(contacts[i].normal)) < 0.98) return count;
+    middle += position(i) / count;
+  }
+  const auto best = [&](auto score) {
+    int found = 0;
+    double most = -infinite;
+    for (int i = 0; i < count; ++i) {
+      if (const double s = score(position(i)); s > most) most = s, found = i;
+    }
+    return found;
+  };
+  // By place alone: depths of a resting body differ by noise, and a choice that jumps makes it creep.
+  const int first = best([&](const Eigen::Vector3d& p) { return (p - middle).squaredNorm(); });
+  const Eigen::Vector3d a = position(first);
+  const int second = best([&](const Eigen::Vector3d& p) { return (p - a).squaredNorm(); });
+  const Eigen::Vector3d along = position(second) - a;
+  const Eigen::Vector3d across = normal.cross(along);
+  const int third = best([&](const Eigen::Vector3d& p) { return across.dot(p - a); });
+  const int fourth = best([&](const Eigen::Vector3d& p) { return -across.dot(p - a); });
+  int chosen[4] = {first, second, third, fourth};
+  std::sort(chosen, chosen + 4);
+  const int kept = static_cast<int>(std::unique(chosen, chosen + 4) - chosen);
+  for (int i = 0; i < kept; ++i) contacts[i] = contacts[chosen[i]];  // ascending, so nothing is overwritten too early
+  return kept;
+}
+
+}  // namespace sim

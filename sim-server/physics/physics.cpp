@@ -1,0 +1,478 @@
+#include "physics/physics.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "physics/shard.h"
+
+namespace sim {
+namespace {
+
+constexpr double margin = 0.3;  // of neighbourhoods [m]
+constexpr std::size_t most_shards = 16;
+
+bool is_sane(const Eigen::Vector3d& v, double limit) { return v.allFinite() && v.cwiseAbs().maxCoeff() <= limit; }
+
+std::uint32_t root(std::vector<std::uint32_t>& parents, std::uint32_t i) {
+  while (parents[i] != i) i = parents[i] = parents[parents[i]];
+  return i;
+}
+
+}  // namespace
+
+class Physics::Impl {
+ public:
+  Impl(std::shared_ptr<const WorldDef> world, WorkerPool& pool, TriangleCache& triangles)
+      : world_(std::move(world)), pool_(pool), store_(triangles) {}
+
+  void build(std::vector<std::string>& notes, std::vector<std::string>* dropped);
+  void add(ModelId id, std::shared_ptr<const Blueprint> blueprint, std::vector<std::string>& notes);
+  void step();
+  void put_back_insane(Shard& shard);
+  // After the poses or the number of static shapes changed: everybody looks round again.
+  void refresh_statics();
+  void partition();
+  void move_to(ModelInstance& model, int shard);
+  void update_neighbourhood(ModelInstance& model);
+  void share_out(std::vector<std::uint32_t>& parents);
+  bool has_bodies(const ModelInstance& model) const { return !model.blueprint().is_static; }
+  ModelInstance& at(ModelId id) const { return *models_[id]; }
+
+  std::shared_ptr<const WorldDef> world_;
+  WorkerPool& pool_;
+  ShapeStore store_;
+  std::vector<std::shared_ptr<const Blueprint>> initial_;  // by ModelId; null: cannot be simulated
+  std::vector<std::unique_ptr<Shard>> shards_;             // outlive the models
+  std::vector<std::unique_ptr<ModelInstance>> models_;
+  std::vector<ShapeInstance*> statics_;
+  std::set<std::pair<ModelId, ModelId>> pairs_;
+  std::uint64_t steps_ = 0;
+  std::uint32_t moves_ = 0;
+  std::vector<std::string> complaints_;
+};
+
+void Physics::Impl::build(std::vector<std::string>& notes, std::vector<std::string>* dropped) {
+  models_.clear();
+  shards_.clear();
+  statics_.clear();
+  pairs_.clear();
+  steps_ = 0;
+  moves_ = 0;
+  if (dropped != nullptr) {
+    for (const auto& model : world_->models) {
+      auto blueprint = Blueprint::of(std::shared_ptr<const ModelDef>(world_, &model));
+      if (!blueprint) dropped->push_back(blueprint.error().message);
+      if (blueprint) notes.insert(notes.end(), (*blueprint)->notes.begin(), (*blueprint)->notes.end());
+      initial_.push_back(blueprint ? *blueprint : nullptr);
+    }
+  }
+  const auto moving = static_cast<std::size_t>(
+      std::count_if(initial_.begin(), initial_.end(), [](const auto& blueprint) { return blueprint && !blueprint->is_static; }));
+  const bool one = world_->physics.solver == PhysicsDef::Solver::iterative;
+  const std::size_t shards = one ? 1 : std::clamp<std::size_t>(moving / 3, 1, most_shards);
+  for (std::size_t i = 0; i < shards; ++i) shards_.push_back(std::make_unique<Shard>(world_->physics));
+  models_.resize(initial_.size());
+  for (ModelId id = 0; id < initial_.size(); ++id) {
+    if (initial_[id]) add(id, initial_[id], notes);
+  }
+  refresh_statics();
+  partition();
+}
+
+void Physics::Impl::add(ModelId id, std::shared_ptr<const Blueprint> blueprint, std::vector<std::string>& notes) {
+  const Eigen::Isometry3d base = blueprint->model->pose;
+  auto model = std::make_unique<ModelInstance>(id, std::move(blueprint), base, store_, notes);
+  if (has_bodies(*model)) {
+    const auto smallest =
+        std::min_element(shards_.begin(), shards_.end(), [](const auto& a, const auto& b) { return a->models.size() < b->models.size(); });
+    model->shard = static_cast<int>(smallest - shards_.begin());
+    model->enter((*smallest)->world(), world_->physics);
+    auto& list = (*smallest)->models;
+    list.insert(std::lower_bound(list.begin(), list.end(), id, [](auto* m, ModelId i) { return m->id() < i; }), model.get());
+  }
+  models_[id] = std::move(model);
+}
+
+void Physics::Impl::refresh_statics() {
+  statics_.clear();
+  for (const auto& model : models_) {
+    if (!model) continue;
+    for (auto& shape : model->shapes()) {
+      if (model->blueprint().assemblies[shape.assembly].is_anchored) statics_.push_back(&shape);
+    }
+  }
+  for (const auto& model : models_) {
+    if (model && has_bodies(*model)) model->left_neighbourhood = true;
+  }
+}
+
+void Physics::Impl::update_neighbourhood(ModelInstance& model) {
+  model.left_neighbourhood = false;
+  const Aabb& box = model.update_boxes();
+  model.neighbourhood = box;
+  model.near_statics.clear();
+  if (box.is_empty()) return;
+  // Faster models look further, so that they need not look in every step.
+  double speed = 0;
+  for (std::uint32_t i = 0; i < model.body_count(); ++i) {
+    if (model.body(i) != nullptr) speed = std::max(speed, ode::vector(dBodyGetLinearVel(model.body(i))).norm());
+  }
+  const double reach = margin + std::min(speed, 20.0) * 0.25;
+  model.neighbourhood.low.array() -= reach;
+  model.neighbourhood.high.array() += reach;
+  for (std::uint32_t i = 0; i < statics_.size(); ++i) {
+    if (statics_[i]->box.overlaps(model.neighbourhood)) model.near_statics.push_back(i);
+  }
+}
+
+void Physics::Impl::partition() {
+  std::vector<ModelInstance*> moving;
+  bool changed = false;
+  for (const auto& model : models_) {
+    if (!model || !has_bodies(*model)) continue;
+    moving.push_back(model.get());
+    if (!model->left_neighbourhood) continue;
+    changed = true;
+    std::erase_if(pairs_, [&](const auto& pair) { return pair.first == model->id() || pair.second == model->id(); });
+  }
+  if (!changed) return;
+  for (auto* model : moving) {
+    if (!model->left_neighbourhood) continue;
+    update_neighbourhood(*model);
+    for (auto* other : moving) {
+      if (other != model && !other->left_neighbourhood && model->neighbourhood.overlaps(other->neighbourhood)) {
+        pairs_.insert(std::minmax(model->id(), other->id()));
+      }
+    }
+  }
+  std::vector<std::uint32_t> parents(models_.size());
+  std::iota(parents.begin(), parents.end(), 0U);
+  for (const auto& [a, b] : pairs_) {
+    const auto x = root(parents, a), y = root(parents, b);
+    parents[std::max(x, y)] = std::min(x, y);
+  }
+  if (shards_.size() > 1) share_out(parents);
+  for (auto& shard : shards_) shard->pairs.clear();
+  for (const auto& [a, b] : pairs_) {
+    auto &first = at(a), &second = at(b);
+    shards_[static_cast<std::size_t>(first.shard)]->pairs.emplace_back(&first, &second);
+  }
+}
+
+// Models that may meet go to one shard; shards that have become too full give models away.
+void Physics::Impl::share_out(std::vector<std::uint32_t>& parents) {
+  std::vector<std::uint32_t> group_size(models_.size(), 0);
+  std::size_t count = 0;
+  for (ModelId id = 0; id < models_.size(); ++id) {
+    if (!models_[id] || !has_bodies(at(id))) continue;
+    ++count;
+    const auto leader = root(parents, id);
+    ++group_size[leader];
+    if (at(id).shard != at(leader).shard) move_to(at(id), at(leader).shard);
+  }
+  const std::size_t limit = 2 * count / shards_.size() + 2;
+  for (ModelId id = 0; id < models_.size(); ++id) {
+    if (!models_[id] || !has_bodies(at(id)) || group_size[id] != 1) continue;
+    if (shards_[static_cast<std::size_t>(at(id).shard)]->models.size() <= limit) continue;
+    const auto smallest =
+        std::min_element(shards_.begin(), shards_.end(), [](const auto& a, const auto& b) { return a->models.size() < b->models.size(); });
+    move_to(at(id), static_cast<int>(smallest - shards_.begin()));
+  }
+}
+
+void Physics::Impl::move_to(ModelInstance& model, int shard) {
+  ++moves_;
+  auto& from = shards_[static_cast<std::size_t>(model.shard)]->models;
+  std::erase(from, &model);
+  auto& to = shards_[static_cast<std::size_t>(shard)]->models;
+  to.insert(std::lower_bound(to.begin(), to.end(), &model, [](auto* a, auto* b) { return a->id() < b->id(); }), &model);
+  const auto states = model.save();
+  const bool had_left = model.left_neighbourhood;
+  model.enter(shards_[static_cast<std::size_t>(shard)]->world(), world_->physics);
+  model.restore(states);
+  model.update_boxes();
+  model.left_neighbourhood = had_left;
+  model.shard = shard;
+}
+
+void Physics::Impl::put_back_insane(Shard& shard) {
+  for (auto* model : std::vector<ModelInstance*>(shard.models)) {
+    if (model->is_sane()) continue;
+    complaints_.push_back(
+        fmt::format("model {}: left the range of numbers and was put back to where it started", model->blueprint().model->name));
+    model->enter(shard.world(), world_->physics);
+    model->left_neighbourhood = true;
+    shard.has_left = true;
+  }
+}
+
+void Physics::Impl::step() {
+  pool_.run(shards_.size(), [&](std::size_t i) { shards_[i]->step(statics_, steps_); });
+  ++steps_;
+  bool has_left = false;
+  for (auto& shard : shards_) {
+    if (shard->is_insane) put_back_insane(*shard);
+    has_left = has_left || shard->has_left;
+  }
+  if (has_left) partition();
+}
+
+// --- the public face
+
+Physics::Physics(std::shared_ptr<const WorldDef> world, WorkerPool& pool, TriangleCache& triangles, std::vector<std::string>& notes,
+                 std::vector<std::string>& dropped)
+    : impl_(std::make_unique<Impl>(std::move(world), pool, triangles)) {
+  impl_->build(notes, &dropped);
+}
+Physics::~Physics() = default;
+
+void Physics::step() { impl_->step(); }
+
+void Physics::reset() {
+  std::vector<std::string> notes;
+  impl_->build(notes, nullptr);
+}
+
+void Physics::reset_poses() {
+  for (const auto& model : impl_->models_) {
+    if (!model) continue;
+    model->set_base(model->blueprint().model->pose);
+    if (impl_->has_bodies(*model)) model->enter(impl_->shards_[static_cast<std::size_t>(model->shard)]->world(), impl_->world_->physics);
+  }
+  impl_->refresh_statics();
+  impl_->partition();
+}
+
+double Physics::step_length() const { return impl_->world_->physics.step; }
+std::uint64_t Physics::steps() const { return impl_->steps_; }
+std::size_t Physics::model_slots() const { return impl_->models_.size(); }
+bool Physics::exists(ModelId model) const { return model < impl_->models_.size() && impl_->models_[model] != nullptr; }
+
+std::optional<ModelId> Physics::find(std::string_view name) const {
+  for (ModelId id = 0; id < impl_->models_.size(); ++id) {
+    if (impl_->models_[id] && def(id).name == name) return id;
+  }
+  return std::nullopt;
+}
+
+const ModelDef& Physics::def(ModelId model) const { return *impl_->at(model).blueprint().model; }
+std::shared_ptr<const ModelDef> Physics::shared_def(ModelId model) const { return impl_->at(model).blueprint().model; }
+
+LinkId Physics::canonical_link(ModelId model) const { return {model, impl_->at(model).blueprint().canonical}; }
+
+std::optional<LinkId> Physics::find_link(std::string_view name) const {
+  if (const auto model = find(name)) return def(*model).links.empty() ? std::nullopt : std::optional(canonical_link(*model));
+  for (auto at = name.find("::"); at != std::string_view::npos; at = name.find("::", at + 2)) {
+    const auto model = find(name.substr(0, at));
+    if (!model) continue;
+    const auto& links = def(*model).links;
+    for (std::uint32_t i = 0; i < links.size(); ++i) {
+      if (links[i].name == name.substr(at + 2)) return LinkId{*model, i};
+    }
+  }
+  return std::nullopt;
+}
+
+base::Result<ModelId> Physics::spawn(std::shared_ptr<const ModelDef> model, std::vector<std::string>& notes) {
+  if (find(model->name)) return base::Error{fmt::format("model {}: a model of that name exists", model->name)};
+  auto blueprint = Blueprint::of(std::move(model));
+  if (!blueprint) return blueprint.error();
+  notes.insert(notes.end(), (*blueprint)->notes.begin(), (*blueprint)->notes.end());
+  const auto id = static_cast<ModelId>(impl_->models_.size());
+  impl_->models_.emplace_back();
+  impl_->add(id, *blueprint, notes);
+  impl_->refresh_statics();
+  impl_->partition();
+  return id;
+}
+
+void Physics::remove(ModelId model) {
+  auto& instance = impl_->models_[model];
+  if (instance->shard >= 0) std::erase(impl_->shards_[static_cast<std::size_t>(instance->shard)]->models, instance.get());
+  std::erase_if(impl_->pairs_, [&](const auto& pair) { return pair.first == model || pair.second == model; });
+  // What rested on it must notice.
+  for (const auto& other : impl_->models_) {
+    if (other && impl_->has_bodies(*other)) other->wake();
+  }
+  for (auto& shard : impl_->shards_) {
+    std::erase_if(shard->pairs, [&](const auto& pair) { return pair.first->id() == model || pair.second->id() == model; });
+  }
+  instance.reset();
+  impl_->refresh_statics();
+  impl_->partition();
+}
+
+bool Physics::is_static(ModelId model) const { return impl_->at(model).blueprint().is_static; }
+
+bool Physics::can_move(LinkId link) const { return piece_can_move(link.model, piece_of(link)); }
+
+Eigen::Isometry3d Physics::model_pose(ModelId model) const {
+  const ModelInstance& instance = impl_->at(model);
+  if (instance.blueprint().model->links.empty()) return instance.base();
+  const LinkId link = canonical_link(model);
+  return link_pose(link) * instance.blueprint().model->links[link.link].pose.inverse();
+}
+
+Eigen::Isometry3d Physics::link_pose(LinkId link) const {
+  const ModelInstance& model = impl_->at(link.model);
+  return model.assembly_pose(model.blueprint().assembly_of_link[link.link]) * model.blueprint().link_in_body[link.link];
+}
+
+Eigen::Vector3d Physics::center_of_mass(LinkId link) const { return piece_pose(link.model, piece_of(link)).translation(); }
+
+Eigen::Vector3d Physics::point_velocity(LinkId link, const Eigen::Vector3d& point) const {
+  const ModelInstance& model = impl_->at(link.model);
+  if (model.body_count() == 0) return Eigen::Vector3d::Zero();
+  const dBodyID body = model.body(model.blueprint().assembly_of_link[link.link]);
+  if (body == nullptr) return Eigen::Vector3d::Zero();
+  return ode::vector(dBodyGetLinearVel(body)) + ode::vector(dBodyGetAngularVel(body)).cross(point - ode::vector(dBodyGetPosition(body)));
+}
+
+Twist Physics::link_twist(LinkId link) const {
+  const ModelInstance& model = impl_->at(link.model);
+  const dBodyID body = model.body_count() == 0 ? nullptr : model.body(model.blueprint().assembly_of_link[link.link]);
+  if (body == nullptr) return {};
+  return {point_velocity(link, link_pose(link).translation()), ode::vector(dBodyGetAngularVel(body))};
+}
+
+base::Result<void> Physics::set_model_pose(ModelId model, const Eigen::Isometry3d& pose) {
+  if (!pose.matrix().allFinite() || !is_sane(pose.translation(), 1e8)) {
+    return base::Error{fmt::format("model {}: pose must be finite", def(model).name)};
+  }
+  ModelInstance& instance = impl_->at(model);
+  const bool has_anchors = std::any_of(instance.blueprint().assemblies.begin(), instance.blueprint().assemblies.end(),
+                                       [](const Assembly& assembly) { return assembly.is_anchored; });
+  const Eigen::Isometry3d old_pose = model_pose(model);
+  if (!impl_->has_bodies(instance)) {
+    instance.set_base(pose);
+  } else if (has_anchors || instance.blueprint().is_joined_to_world) {
+    // Held by the world: built anew at the new place.
+    instance.set_base(pose);
+    instance.enter(impl_->shards_[static_cast<std::size_t>(instance.shard)]->world(), impl_->world_->physics);
+  } else {
+    const Eigen::Isometry3d move = pose * old_pose.inverse();
+    auto states = instance.save();
+    for (auto& state : states) {
+      state.position = move * state.position;
+      state.orientation = (Eigen::Quaterniond(move.linear()) * state.orientation).normalized();
+      state.linear.setZero();
+      state.angular.setZero();
+      state.is_awake = true;
+    }
+    instance.restore(states);
+  }
+  for (const auto& other : impl_->models_) {
+    if (other && impl_->has_bodies(*other)) other->wake();
+  }
+  if (has_anchors) impl_->refresh_statics();
+  impl_->partition();
+  return {};
+}
+
+base::Result<void> Physics::set_model_twist(ModelId model, const Twist& twist) {
+  if (!is_sane(twist.linear, 1000) || !is_sane(twist.angular, 1000)) {
+    return base::Error{fmt::format("model {}: velocity must be finite and below 1000 m/s and rad/s", def(model).name)};
+  }
+  ModelInstance& instance = impl_->at(model);
+  if (!impl_->has_bodies(instance)) return base::Error{fmt::format("model {}: is static", def(model).name)};
+  const Eigen::Vector3d origin = link_pose(canonical_link(model)).translation();
+  for (std::uint32_t i = 0; i < instance.body_count(); ++i) {
+    const dBodyID body = instance.body(i);
+    if (body == nullptr) continue;
+    const Eigen::Vector3d v = twist.linear + twist.angular.cross(ode::vector(dBodyGetPosition(body)) - origin);
+    dBodySetLinearVel(body, v.x(), v.y(), v.z());
+    dBodySetAngularVel(body, twist.angular.x(), twist.angular.y(), twist.angular.z());
+    dBodyEnable(body);
+  }
+  return {};
+}
+
+base::Result<void> Physics::add_wrench(LinkId link, const Eigen::Vector3d& force, const Eigen::Vector3d& torque) {
+  if (!is_sane(force, 1e7) || !is_sane(torque, 1e7)) {
+    return base::Error{fmt::format("model {}: force and torque must be finite and below 1e7", def(link.model).name)};
+  }
+  ModelInstance& instance = impl_->at(link.model);
+  const dBodyID body = instance.body_count() == 0 ? nullptr : instance.body(instance.blueprint().assembly_of_link[link.link]);
+  if (body == nullptr)
+    return base::Error{fmt::format("model {}: link {} cannot move", def(link.model).name, def(link.model).links[link.link].name)};
+  dBodyEnable(body);
+  dBodyAddForce(body, force.x(), force.y(), force.z());
+  dBodyAddTorque(body, torque.x(), torque.y(), torque.z());
+  return {};
+}
+
+void Physics::set_gravity(ModelId model, bool on) { impl_->at(model).set_gravity(on); }
+
+JointState Physics::joint_state(JointId joint, int axis) const {
+  JointInstance* instance = impl_->at(joint.model).joint(joint.joint);
+  if (instance == nullptr) return {};
+  return {instance->sign * joint_position(instance->joint.id(), axis), instance->sign * joint_rate(instance->joint.id(), axis)};
+}
+
+void Physics::set_motor(JointId joint, int axis, double velocity, double effort) {
+  ModelInstance& model = impl_->at(joint.model);
+  JointInstance* instance = model.joint(joint.joint);
+  if (instance == nullptr || !std::isfinite(velocity) || std::isnan(effort)) return;
+  model.set_drive(*instance, axis, velocity, effort);
+}
+
+std::span<const Contact> Physics::contacts(ModelId model) const { return impl_->at(model).contacts; }
+std::uint64_t Physics::contacts_so_far(ModelId model) const { return impl_->at(model).contacts_so_far; }
+void Physics::record_forces(ModelId model, bool on) { impl_->at(model).records_forces = on; }
+
+void Physics::add_to(StateHash& hash) const {
+  hash.add(impl_->steps_);
+  for (const auto& model : impl_->models_) {
+    if (!model) continue;
+    hash.add(std::uint64_t{model->id()});
+    hash.add(model_pose(model->id()).translation());
+    for (const auto& state : model->save()) {
+      hash.add(state.position);
+      hash.add(state.orientation);
+      hash.add(state.linear);
+      hash.add(state.angular);
+      hash.add(std::uint64_t{state.is_awake});
+    }
+    for (const auto& joint : model->joints()) {
+      for (const auto& drive : joint.drives) hash.add(drive.velocity), hash.add(drive.effort);
+    }
+  }
+}
+
+PhysicsStatistics Physics::statistics() const {
+  PhysicsStatistics s;
+  s.shards = static_cast<std::uint32_t>(impl_->shards_.size());
+  s.moves_between_shards = impl_->moves_;
+  for (const auto& shard : impl_->shards_) s.contacts += shard->contacts;
+  for (const auto& model : impl_->models_) {
+    if (!model) continue;
+    s.joints += static_cast<std::uint32_t>(model->joints().size());
+    for (std::uint32_t i = 0; i < model->body_count(); ++i) {
+      if (model->body(i) == nullptr) continue;
+      ++s.bodies;
+      if (dBodyIsEnabled(model->body(i)) != 0) ++s.awake;
+    }
+  }
+  return s;
+}
+
+std::vector<std::string> Physics::take_complaints() { return std::exchange(impl_->complaints_, {}); }
+
+std::uint32_t Physics::piece_count(ModelId model) const {
+  return static_cast<std::uint32_t>(impl_->at(model).blueprint().assemblies.size());
+}
+std::uint32_t Physics::piece_of(LinkId link) const { return impl_->at(link.model).blueprint().assembly_of_link[link.link]; }
+bool Physics::piece_can_move(ModelId model, std::uint32_t piece) const {
+  return !impl_->at(model).blueprint().assemblies[piece].is_anchored;
+}
+Eigen::Isometry3d Physics::piece_pose(ModelId model, std::uint32_t piece) const { return impl_->at(model).assembly_pose(piece); }
+std::vector<std::uint32_t> Physics::piece_links(ModelId model, std::uint32_t piece) const {
+  return impl_->at(model).blueprint().assemblies[piece].links;
+}
+Eigen::Isometry3d Physics::link_in_piece(LinkId link) const { return impl_->at(link.model).blueprint().link_in_body[link.link]; }
+
+}  // namespace sim

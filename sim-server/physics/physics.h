@@ -1,0 +1,140 @@
+// The moving world: bodies, joints and contacts of a WorldDef, stepped by ODE. Nothing of ODE shows here.
+//
+// Models that cannot touch each other within a step are stepped apart, on several cores when there are: every moving model belongs to a
+// shard (one ODE world); models whose neighbourhoods overlap share one and move over when they do not. Shards depend on the world alone,
+// never on the number of threads, so the result does not either.
+// One thread at a time (the stepping thread). Units: m, rad, kg, N, s; world frame unless a comment says otherwise.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.h"
+#include "physics/hash.h"
+#include "physics/worker_pool.h"
+#include "world/triangles.h"
+#include "world/world_def.h"
+
+namespace sim {
+
+// Index of a model; those of deleted models are not used again before a reset.
+using ModelId = std::uint32_t;
+
+struct LinkId {
+  ModelId model = 0;
+  std::uint32_t link = 0;  // index into ModelDef::links
+  bool operator==(const LinkId&) const = default;
+};
+struct JointId {
+  ModelId model = 0;
+  std::uint32_t joint = 0;  // index into ModelDef::joints
+};
+
+struct Twist {
+  Eigen::Vector3d linear{0, 0, 0};
+  Eigen::Vector3d angular{0, 0, 0};
+};
+
+struct JointState {
+  double position = 0;  // [rad] within (-pi, pi] or [m]
+  double velocity = 0;  // [rad/s] or [m/s]
+};
+
+struct Contact {
+  LinkId link, other;
+  std::uint32_t collision = 0, other_collision = 0;  // indexes into LinkDef::collisions
+  Eigen::Vector3d position, normal;                  // the normal points to `link`
+  Eigen::Vector3d force{0, 0, 0};                    // on `link`; only while forces are recorded for the model
+  double depth = 0;
+};
+
+struct PhysicsStatistics {
+  std::uint32_t bodies = 0, awake = 0, joints = 0, contacts = 0, shards = 0, moves_between_shards = 0;
+};
+
+class Physics {
+ public:
+  // What could not be built as written is added to `notes`, one line each; models that cannot be simulated at all are left out, in
+  // `dropped`. The pool is used by step() and must outlive the object.
+  Physics(std::shared_ptr<const WorldDef> world, WorkerPool& pool, TriangleCache& triangles, std::vector<std::string>& notes,
+          std::vector<std::string>& dropped);
+  ~Physics();
+  Physics(const Physics&) = delete;
+  Physics& operator=(const Physics&) = delete;
+
+  // One step of WorldDef::physics.step.
+  void step();
+  // As after construction, to the bit; models spawned are gone, models deleted are back.
+  void reset();
+  // All models where they were at the start, at rest; what was spawned stays.
+  void reset_poses();
+
+  double step_length() const;
+  std::uint64_t steps() const;  // since the start or the last reset
+
+  std::size_t model_slots() const;  // ids are below this
+  bool exists(ModelId model) const;
+  std::optional<ModelId> find(std::string_view name) const;
+  const ModelDef& def(ModelId model) const;
+  std::shared_ptr<const ModelDef> shared_def(ModelId model) const;
+  // "model" or "model::link" (nested: "model::arm::hand"); a model's name stands for its canonical link.
+  std::optional<LinkId> find_link(std::string_view name) const;
+  LinkId canonical_link(ModelId model) const;
+
+  // Name must be new; fails with a line when the model cannot be simulated.
+  base::Result<ModelId> spawn(std::shared_ptr<const ModelDef> model, std::vector<std::string>& notes);
+  void remove(ModelId model);
+
+  bool is_static(ModelId model) const;  // nothing of it can move
+  bool can_move(LinkId link) const;
+  Eigen::Isometry3d model_pose(ModelId model) const;  // follows the canonical link
+  Eigen::Isometry3d link_pose(LinkId link) const;
+  // Of the link's origin.
+  Twist link_twist(LinkId link) const;
+  // Of the link's origin when `point` is given in the world, moving with the link.
+  Eigen::Vector3d point_velocity(LinkId link, const Eigen::Vector3d& point) const;
+  Eigen::Vector3d center_of_mass(LinkId link) const;  // of the body that the link belongs to
+
+  // The whole model, joints kept as they are, at rest. Fails for poses that are not finite.
+  base::Result<void> set_model_pose(ModelId model, const Eigen::Isometry3d& pose);
+  // The whole model moves as one rigid body: `linear` is that of its canonical link's origin.
+  base::Result<void> set_model_twist(ModelId model, const Twist& twist);
+  // For the next step only, at the centre of mass of the link's body.
+  base::Result<void> add_wrench(LinkId link, const Eigen::Vector3d& force, const Eigen::Vector3d& torque);
+  void set_gravity(ModelId model, bool on);
+
+  JointState joint_state(JointId joint, int axis = 0) const;
+  // The motor of the joint turns it with `velocity` and at most `effort` [N m or N] until it is set again. Effort 0: runs free.
+  void set_motor(JointId joint, int axis, double velocity, double effort);
+
+  // Contacts of the last step in which the model was awake.
+  std::span<const Contact> contacts(ModelId model) const;
+  std::uint64_t contacts_so_far(ModelId model) const;
+  void record_forces(ModelId model, bool on);
+
+  // Everything that decides how the run goes on.
+  void add_to(StateHash& hash) const;
+  PhysicsStatistics statistics() const;
+  // One line for each model that had to be put back because it left the numbers, since the last call.
+  std::vector<std::string> take_complaints();
+
+  // For rays: the rigid pieces that models consist of. A piece is all links of a model that cannot move against each other.
+  std::uint32_t piece_count(ModelId model) const;
+  std::uint32_t piece_of(LinkId link) const;
+  bool piece_can_move(ModelId model, std::uint32_t piece) const;
+  Eigen::Isometry3d piece_pose(ModelId model, std::uint32_t piece) const;
+  std::vector<std::uint32_t> piece_links(ModelId model, std::uint32_t piece) const;
+  Eigen::Isometry3d link_in_piece(LinkId link) const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sim

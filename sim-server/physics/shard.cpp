@@ -1,0 +1,224 @@
+#include "physics/shard.h"
+
+#include <algorithm>
+#include <mutex>
+
+#include "physics/contact_surface.h"
+
+namespace sim {
+namespace {
+
+constexpr int most_contacts = 24;  // of one pair of shapes, before they are thinned out
+// With more contacts the exact solver, which is cubic in the size of a heap, would take seconds.
+constexpr std::uint32_t exact_contacts = 200;
+// Moving bodies that lie on each other: there the exact solver's handling of friction goes wrong (a stack of ten boxes falls at once).
+constexpr std::uint32_t stacked_contacts = 4;
+
+// ODE's mesh and height field colliders work in global buffers.
+std::mutex& shared_collider() {
+  static std::mutex mutex;
+  return mutex;
+}
+// The iterative solver draws from a global random sequence.
+std::mutex& shared_random() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+bool masks_match(const SurfaceDef& a, const SurfaceDef& b) {
+  return (a.collide_bitmask & b.collide_bitmask) != 0 &&
+         ((a.collide_bitmask & b.category_bitmask) != 0 || (b.collide_bitmask & a.category_bitmask) != 0);
+}
+
+bool are_joined(const ModelInstance& model, std::uint32_t a, std::uint32_t b) {
+  return std::any_of(model.joints().begin(), model.joints().end(), [&](const JointInstance& joint) {
+    const auto p = static_cast<std::uint32_t>(joint.parent), c = static_cast<std::uint32_t>(joint.child);
+    return (p == a && c == b) || (p == b && c == a);
+  });
+}
+
+bool may_touch_itself(const ModelInstance& model, const ShapeInstance& a, const ShapeInstance& b) {
+  if (a.assembly == b.assembly) return false;
+  const ModelDef& def = *model.blueprint().model;
+  if (!def.self_collide && !(def.links[a.link.link].self_collide && def.links[b.link.link].self_collide)) return false;
+  return !are_joined(model, a.assembly, b.assembly);
+}
+
+}  // namespace
+
+Shard::Shard(const PhysicsDef& physics) : physics_(physics), contact_joints_(dJointGroupCreate(0)) {
+  const dWorldID w = world_.id();
+  dWorldSetGravity(w, physics.gravity.x(), physics.gravity.y(), physics.gravity.z());
+  dWorldSetERP(w, physics.erp.value_or(0.2));
+  dWorldSetCFM(w, std::max(physics.cfm.value_or(1e-9), 1e-10));
+  dWorldSetQuickStepNumIterations(w, std::clamp(physics.iterations, 1, 10000));
+  if (physics.sor > 0) dWorldSetQuickStepW(w, physics.sor);
+  dWorldSetContactSurfaceLayer(w, physics.contact_surface_layer);
+  // Bodies that start inside each other are pushed apart slowly; SDF's default of 100 m/s would throw them out of the world.
+  dWorldSetContactMaxCorrectingVel(w, std::min(physics.contact_max_correcting_vel, 1.0));
+}
+
+void Shard::find_active() {
+  active_.assign(models.size(), false);
+  const auto index = [&](const ModelInstance* model) {
+    return static_cast<std::size_t>(
+        std::lower_bound(models.begin(), models.end(), model, [](auto* a, auto* b) { return a->id() < b->id(); }) - models.begin());
+  };
+  for (std::size_t i = 0; i < models.size(); ++i) active_[i] = models[i]->is_awake();
+  // What an awake model may touch takes part, and what that may touch, and so on.
+  for (bool changed = !pairs.empty(); changed;) {
+    changed = false;
+    for (const auto& [a, b] : pairs) {
+      const auto i = index(a), k = index(b);
+      if (active_[i] != active_[k] && a->moving_box().overlaps(b->moving_box())) active_[i] = active_[k] = changed = true;
+    }
+  }
+}
+
+void Shard::step(const std::vector<ShapeInstance*>& statics, std::uint64_t step_count) {
+  ode::prepare_thread();
+  contacts = moving_contacts_ = 0;
+  has_left = is_insane = false;
+  if (models.empty()) return;
+  find_active();
+  bool any = false;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    if (!active_[i]) continue;
+    any = true;
+    std::swap(models[i]->contacts, models[i]->previous_contacts);
+    models[i]->contacts.clear();
+  }
+  if (!any) return;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    if (active_[i]) collide_model(*models[i], statics);
+  }
+  for (const auto& [a, b] : pairs) {
+    if (a->moving_box().overlaps(b->moving_box()) && (a->is_awake() || b->is_awake() || !a->contacts.empty())) collide_pair(*a, *b);
+  }
+  for (auto* model : models) model->apply_springs(physics_.step);
+  const bool is_heap = contacts > exact_contacts || moving_contacts_ >= stacked_contacts;
+  if (physics_.solver == PhysicsDef::Solver::iterative || (physics_.solver == PhysicsDef::Solver::automatic && is_heap)) {
+    const std::lock_guard lock(shared_random());
+    dRandSetSeed(static_cast<unsigned long>(step_count) * 2654435761U + 1);
+    dWorldQuickStep(world_.id(), physics_.step);
+  } else {
+    dWorldStep(world_.id(), physics_.step);
+  }
+  read_forces();
+  dJointGroupEmpty(contact_joints_.id());
+  feedback_.clear();
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    if (!active_[i]) continue;
+    ModelInstance& model = *models[i];
+    if (!model.is_sane()) {
+      is_insane = true;
+      continue;
+    }
+    // It fell asleep before this step was solved: what it touches stays as it was, with the forces.
+    if (!model.is_awake()) std::swap(model.contacts, model.previous_contacts);
+    if (!model.neighbourhood.contains(model.update_boxes())) model.left_neighbourhood = has_left = true;
+  }
+}
+
+void Shard::collide_model(ModelInstance& model, const std::vector<ShapeInstance*>& statics) {
+  auto& shapes = model.shapes();
+  for (const auto s : model.near_statics) {
+    ShapeInstance& other = *statics[s];
+    if (!model.moving_box().overlaps(other.box)) continue;
+    for (auto& shape : shapes) {
+      if (model.body(shape.assembly) == nullptr || !shape.box.overlaps(other.box)) continue;
+      if (other.link.model == model.id() && !may_touch_itself(model, shape, other)) continue;
+      collide(model, shape, nullptr, other);
+    }
+  }
+  const ModelDef& def = *model.blueprint().model;
+  if (!def.self_collide && std::none_of(def.links.begin(), def.links.end(), [](const LinkDef& l) { return l.self_collide; })) return;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    for (std::size_t k = i + 1; k < shapes.size(); ++k) {
+      if (model.body(shapes[i].assembly) == nullptr || model.body(shapes[k].assembly) == nullptr) continue;
+      if (shapes[i].box.overlaps(shapes[k].box) && may_touch_itself(model, shapes[i], shapes[k]))
+        collide(model, shapes[i], &model, shapes[k]);
+    }
+  }
+}
+
+void Shard::collide_pair(ModelInstance& a, ModelInstance& b) {
+  for (auto& shape_a : a.shapes()) {
+    if (a.body(shape_a.assembly) == nullptr || !shape_a.box.overlaps(b.moving_box())) continue;
+    for (auto& shape_b : b.shapes()) {
+      if (b.body(shape_b.assembly) != nullptr && shape_a.box.overlaps(shape_b.box)) collide(a, shape_a, &b, shape_b);
+    }
+  }
+}
+
+void Shard::collide(ModelInstance& model_a, ShapeInstance& a, ModelInstance* model_b, ShapeInstance& b) {
+  if (!masks_match(*a.surface, *b.surface)) return;
+  dContactGeom found[most_contacts];
+  const int most = std::clamp(physics_.max_contacts, 1, most_contacts);
+  int count = 0;
+  if (a.needs_lock || b.needs_lock) {
+    const std::lock_guard lock(shared_collider());
+    count = dCollide(a.geom.id(), b.geom.id(), most, found, sizeof(dContactGeom));
+  } else {
+    count = dCollide(a.geom.id(), b.geom.id(), most, found, sizeof(dContactGeom));
+  }
+  if (count <= 0) return;
+  count = reduce(found, count);
+  const dSurfaceParameters surface = combine(*a.surface, *b.surface, physics_.step);
+  const bool has_force = !a.surface->collide_without_contact && !b.surface->collide_without_contact;
+  for (int i = 0; i < count; ++i) {
+    if (std::isfinite(found[i].depth) && std::isfinite(found[i].normal[0]) && std::isfinite(found[i].pos[0])) {
+      add_contact(model_a, a, model_b, b, found[i], surface, has_force);
+    }
+  }
+}
+
+void Shard::add_contact(ModelInstance& model_a, ShapeInstance& a, ModelInstance* model_b, ShapeInstance& b, const dContactGeom& geometry,
+                        const dSurfaceParameters& surface, bool has_force) {
+  ++contacts;
+  if (model_b != nullptr) ++moving_contacts_;
+  Contact contact;
+  contact.link = a.link;
+  contact.other = b.link;
+  contact.collision = a.collision;
+  contact.other_collision = b.collision;
+  contact.position = ode::vector(geometry.pos);
+  contact.normal = ode::vector(geometry.normal);
+  contact.depth = geometry.depth;
+  model_a.contacts.push_back(contact);
+  ++model_a.contacts_so_far;
+  if (model_b != nullptr) {
+    std::swap(contact.link, contact.other);
+    std::swap(contact.collision, contact.other_collision);
+    contact.normal = -contact.normal;
+    model_b->contacts.push_back(contact);
+    ++model_b->contacts_so_far;
+  }
+  if (!has_force) return;
+  dContact joint_contact{};
+  joint_contact.surface = surface;
+  joint_contact.geom = geometry;
+  const double min_depth = std::max(a.surface->min_depth, b.surface->min_depth);
+  joint_contact.geom.depth = std::max(geometry.depth - min_depth, 0.0);
+  if (friction_direction(*a.surface, a.geom.id(), *b.surface, b.geom.id(), geometry.normal, joint_contact.fdir1)) {
+    joint_contact.surface.mode |= dContactFDir1;
+  }
+  const dJointID joint = dJointCreateContact(world_.id(), contact_joints_.id(), &joint_contact);
+  dJointAttach(joint, dGeomGetBody(a.geom.id()), dGeomGetBody(b.geom.id()));
+  if (model_a.records_forces || (model_b != nullptr && model_b->records_forces)) {
+    feedback_.push_back({{}, &model_a, model_b, model_a.contacts.size() - 1, model_b != nullptr ? model_b->contacts.size() - 1 : 0});
+    if (model_b == &model_a) --feedback_.back().contact_a;
+    dJointSetFeedback(joint, &feedback_.back().joint);
+  }
+}
+
+void Shard::read_forces() {
+  for (const auto& feedback : feedback_) {
+    const Eigen::Vector3d force = ode::vector(feedback.joint.f1);
+    if (!force.allFinite()) continue;
+    feedback.a->contacts[feedback.contact_a].force = force;
+    if (feedback.b != nullptr) feedback.b->contacts[feedback.contact_b].force = -force;
+  }
+}
+
+}  // namespace sim

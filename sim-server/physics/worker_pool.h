@@ -1,0 +1,39 @@
+// Runs the parts of one piece of work on several threads: the caller's own and `threads - 1` more. Which thread does which part is not
+// defined, so the parts must not depend on each other. run() is for one thread at a time.
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace sim {
+
+class WorkerPool {
+ public:
+  // At least 1; 1 has no thread of its own and runs everything in the caller's.
+  explicit WorkerPool(int threads);
+  ~WorkerPool();
+  WorkerPool(const WorkerPool&) = delete;
+  WorkerPool& operator=(const WorkerPool&) = delete;
+
+  int threads() const { return static_cast<int>(workers_.size()) + 1; }
+  // part(0) .. part(count - 1), each once; returns when all are done. The parts do not throw.
+  void run(std::size_t count, const std::function<void(std::size_t)>& part);
+
+ private:
+  void work();
+  // Takes parts until none is left. The lock is held on entry and exit, not while a part runs.
+  void take_parts(std::unique_lock<std::mutex>& lock);
+
+  std::mutex mutex_;
+  std::condition_variable started_, finished_;
+  const std::function<void(std::size_t)>* part_ = nullptr;
+  std::size_t next_ = 0, count_ = 0, running_ = 0;
+  bool is_ending_ = false;
+  std::vector<std::thread> workers_;
+};
+
+}  // namespace sim
