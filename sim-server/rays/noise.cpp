@@ -1,0 +1,63 @@
+#include "rays/noise.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace sim {
+namespace {
+
+std::uint64_t mix(std::uint64_t z) {
+  z += 0x9e3779b97f4a7c15U;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
+  return z ^ (z >> 31);
+}
+
+double quantised(double value, double step) { return step > 0 ? std::round(value / step) * step : value; }
+
+}  // namespace
+
+RandomStream::RandomStream(std::uint64_t seed, std::string_view name) : key_(mix(seed)) {
+  for (const char c : name) key_ = mix(key_ ^ static_cast<unsigned char>(c));
+}
+
+std::uint64_t RandomStream::next() { return mix(key_ + mix(++counter_)); }
+
+double RandomStream::uniform() { return (static_cast<double>(next() >> 11) + 0.5) * 0x1.0p-53; }
+
+double RandomStream::gaussian() {
+  const double a = uniform(), b = uniform();
+  return std::sqrt(-2 * std::log(a)) * std::cos(2 * std::numbers::pi * b);
+}
+
+Noise::Noise(const NoiseDef& def, RandomStream stream) : def_(def), stream_(stream) {
+  if (is_none()) return;
+  bias_ = def_.bias_mean + def_.bias_stddev * stream_.gaussian();
+  if ((stream_.next() & 1) != 0) bias_ = -bias_;
+}
+
+double Noise::apply(double value, double dt) {
+  if (is_none()) return value;
+  if (def_.dynamic_bias_stddev > 0 && def_.dynamic_bias_correlation_time > 0) {
+    // A first-order Gauss-Markov walk.
+    const double tau = def_.dynamic_bias_correlation_time, keep = std::exp(-dt / tau);
+    bias_ = keep * bias_ + def_.dynamic_bias_stddev * std::sqrt(1 - keep * keep) * stream_.gaussian();
+  }
+  value += bias_ + def_.mean;
+  if (def_.stddev > 0) value += def_.stddev * stream_.gaussian();
+  return def_.kind == NoiseDef::Kind::gaussian_quantized ? quantised(value, def_.precision) : value;
+}
+
+void Noise::apply(std::span<float> ranges, float step) {
+  const bool has_noise = !is_none() && (def_.stddev > 0 || def_.mean != 0 || bias_ != 0);
+  const double quantum = def_.kind == NoiseDef::Kind::gaussian_quantized && def_.precision > 0 ? def_.precision : static_cast<double>(step);
+  if (!has_noise && quantum <= 0) return;
+  for (float& range : ranges) {
+    // Every beam draws, hit or not: what one beam sees does not change the noise of the others.
+    const double noise = has_noise ? def_.mean + bias_ + def_.stddev * stream_.gaussian() : 0;
+    if (!std::isfinite(range)) continue;
+    range = static_cast<float>(quantised(range + noise, quantum));
+  }
+}
+
+}  // namespace sim
