@@ -1,0 +1,53 @@
+#include "devices/device.h"
+
+#include <cmath>
+
+namespace sim {
+
+Schedule::Schedule(double rate) {
+  if (rate > 0) period_ = std::chrono::nanoseconds(std::max<std::int64_t>(1, std::llround(1e9 / rate)));
+}
+
+void Schedule::done(std::chrono::nanoseconds now) {
+  next_ = period_.count() > 0 ? (now / period_ + 1) * period_ : std::chrono::nanoseconds(0);
+}
+
+shm::Pose to_pose(const Eigen::Isometry3d& pose) {
+  const Eigen::Quaterniond q(pose.linear());
+  const Eigen::Vector3d p = pose.translation();
+  return {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()};
+}
+
+Eigen::Isometry3d from_pose(const shm::Pose& pose) {
+  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
+  result.translation() = Eigen::Vector3d(pose.x, pose.y, pose.z);
+  result.linear() = Eigen::Quaterniond(pose.qw, pose.qx, pose.qy, pose.qz).normalized().toRotationMatrix();
+  return result;
+}
+
+double yaw_of(const Eigen::Isometry3d& pose) { return std::atan2(pose.linear()(1, 0), pose.linear()(0, 0)); }
+
+std::string scoped_model(const ModelDef& model, const std::string& scope) { return scope.empty() ? model.name : model.name + "::" + scope; }
+
+namespace {
+
+template <class Parts>
+std::optional<std::uint32_t> index_of(const Parts& parts, const std::string& scope, const std::string& name) {
+  for (const std::string& full : {scope.empty() ? name : scope + "::" + name, name}) {
+    for (std::uint32_t i = 0; i < parts.size(); ++i) {
+      if (parts[i].name == full) return i;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::uint32_t> link_of(const ModelDef& model, const std::string& scope, const std::string& name) {
+  return index_of(model.links, scope, name);
+}
+std::optional<std::uint32_t> joint_of(const ModelDef& model, const std::string& scope, const std::string& name) {
+  return index_of(model.joints, scope, name);
+}
+
+}  // namespace sim

@@ -1,0 +1,95 @@
+// What every device of a robot is to the server's loop, and what a device may use of the world. The loop calls, in this order and for all
+// devices in the order of the world: before_step, (step), after_step, then for those that are due measure, and publish.
+// The stepping thread only, but measure() of different devices may run in several threads at the same time: it reads the world and
+// changes nothing but its own device.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "physics/hash.h"
+#include "physics/physics.h"
+#include "shm/writer.h"
+
+namespace sim {
+
+class RayWorld;
+
+struct Moment {
+  std::chrono::nanoseconds time{0};  // simulated
+  double dt = 0;                     // [s] of a step
+};
+
+// When a device of a certain rate works: at the first step at or after each multiple of its period.
+class Schedule {
+ public:
+  explicit Schedule(double rate = 0);  // [Hz]; 0: every step
+  bool is_due(std::chrono::nanoseconds now) const { return now >= next_; }
+  void done(std::chrono::nanoseconds now);
+  void restart() { next_ = std::chrono::nanoseconds(0); }
+  std::chrono::nanoseconds period() const { return period_; }
+
+ private:
+  std::chrono::nanoseconds period_{0}, next_{0};
+};
+
+struct DeviceWorld {
+  Physics& physics;
+  RayWorld& rays;
+  shm::Server& shm;
+  std::uint64_t seed = 0;
+  const WorldDef& world;
+};
+
+class Device {
+ public:
+  virtual ~Device() = default;
+  virtual shm::IfaceWriter& iface() = 0;
+  virtual ModelId model() const = 0;
+
+  // Commands become forces and motors.
+  virtual void before_step(const Moment&) {}
+  // What must be followed in every step: encoders, accelerations.
+  virtual void after_step(const Moment&) {}
+  // True when somebody wants a sample and one is due.
+  virtual bool wants_sample(const Moment&) { return false; }
+  virtual bool uses_rays() const { return false; }
+  virtual void measure(const Moment&) {}
+  virtual void publish(const Moment&) {}
+  // Back to the start, with the model (again) at its initial state.
+  virtual void reset() {}
+  virtual void add_to(StateHash&) const {}
+
+  // Of position devices; others refuse.
+  virtual bool set_odometry(const Eigen::Isometry3d&) { return false; }
+  virtual bool set_motors(bool) { return false; }
+};
+
+// All devices of a model: its sensors and those of its plugins that are known. What is left out adds a line to `notes`. Fails when an iface
+// cannot be made (no shared memory left, name taken).
+base::Result<std::vector<std::unique_ptr<Device>>> make_devices(DeviceWorld& world, ModelId model, std::vector<std::string>& notes);
+
+// --- for the devices themselves
+
+shm::Pose to_pose(const Eigen::Isometry3d& pose);
+Eigen::Isometry3d from_pose(const shm::Pose& pose);
+double yaw_of(const Eigen::Isometry3d& pose);
+
+// A sensor's place: the link that carries it and its pose there.
+struct Mount {
+  LinkId link;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // in the link
+  Eigen::Isometry3d in_world(const Physics& physics) const { return physics.link_pose(link) * pose; }
+};
+
+// "model" or "model::scope".
+std::string scoped_model(const ModelDef& model, const std::string& scope);
+// The link or joint that a plugin or sensor of `scope` means by a name: in its scope first.
+std::optional<std::uint32_t> link_of(const ModelDef& model, const std::string& scope, const std::string& name);
+std::optional<std::uint32_t> joint_of(const ModelDef& model, const std::string& scope, const std::string& name);
+
+}  // namespace sim

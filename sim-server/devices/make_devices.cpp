@@ -1,0 +1,122 @@
+// Which sensors and plugins become which devices.
+#include <spdlog/fmt/fmt.h>
+
+#include "base/text.h"
+#include "devices/device.h"
+#include "devices/laser.h"
+#include "devices/position2d.h"
+#include "devices/position3d.h"
+#include "devices/simple_devices.h"
+#include "world/plugin_kind.h"
+
+namespace sim {
+namespace {
+
+using Made = base::Result<std::unique_ptr<Device>>;
+
+bool is_sonar(const SensorDef& sensor) {
+  if (sensor.kind == SensorKind::sonar) return true;
+  return sensor.kind == SensorKind::ray && base::to_lower(sensor.name).starts_with("sonar");
+}
+bool is_of_a_ring(const SensorDef& sensor) { return base::to_lower(sensor.name).starts_with("sonar"); }
+
+// Cameras are made by whoever renders.
+bool is_camera(SensorKind kind) {
+  return kind == SensorKind::camera || kind == SensorKind::depth_camera || kind == SensorKind::rgbd_camera ||
+         kind == SensorKind::multi_camera;
+}
+
+struct Makers {
+  DeviceWorld& world;
+  ModelId model;
+  std::vector<std::string>& notes;
+  std::vector<std::unique_ptr<Device>> devices;
+  std::optional<base::Error> failure;
+
+  void take(Made made) {
+    if (made) {
+      devices.push_back(std::move(*made));
+    } else if (!failure) {
+      failure = made.error();
+    }
+  }
+};
+
+void make_sensor(Makers& m, Mount mount, const SensorDef& sensor) {
+  switch (sensor.kind) {
+    case SensorKind::ray:
+      return m.take(Laser::make(m.world, mount, sensor));
+    case SensorKind::imu:
+      return m.take(Imu::make(m.world, mount, sensor));
+    case SensorKind::gps:
+      return m.take(Gps::make(m.world, mount, sensor));
+    case SensorKind::contact:
+      return m.take(Bumper::make(m.world, mount, sensor));
+    default:
+      break;
+  }
+  if (is_camera(sensor.kind)) return;
+  m.notes.push_back(fmt::format("model {}: sensor {}: {} sensors are not simulated", m.world.physics.def(m.model).name, sensor.name,
+                                to_text(sensor.kind)));
+}
+
+void make_sonars(Makers& m) {
+  const ModelDef& def = m.world.physics.def(m.model);
+  std::vector<std::pair<std::string, std::vector<SonarRing::Transducer>>> rings;  // by scope
+  for (std::uint32_t l = 0; l < def.links.size(); ++l) {
+    for (const auto& sensor : def.links[l].sensors) {
+      if (!is_sonar(sensor)) continue;
+      const SonarRing::Transducer transducer{{{m.model, l}, sensor.pose}, &sensor};
+      if (!is_of_a_ring(sensor)) {
+        m.take(SonarRing::make(m.world, iface_name(def.name, sensor.scope, sensor.name), sensor.scope, {transducer}));
+        continue;
+      }
+      auto ring = std::find_if(rings.begin(), rings.end(), [&](const auto& r) { return r.first == sensor.scope; });
+      if (ring == rings.end()) ring = rings.insert(rings.end(), {sensor.scope, {}});
+      ring->second.push_back(transducer);
+    }
+  }
+  for (const auto& [scope, transducers] : rings) m.take(SonarRing::make(m.world, iface_name(def.name, scope, "sonar"), scope, transducers));
+}
+
+void make_plugin(Makers& m, const PluginDef& plugin) {
+  switch (kind_of(plugin)) {
+    case PluginKind::differential_drive:
+    case PluginKind::skid_steer_drive:
+      // A drive that is wrong is the world's fault, not the machine's: said, left out.
+      if (const auto settings = DriveSettings::of(m.world.physics.def(m.model), plugin); !settings) {
+        m.notes.push_back(settings.error().message);
+        return;
+      }
+      return m.take(Position2d::make(m.world, m.model, plugin));
+    case PluginKind::velocity_control:
+      if (m.world.physics.is_static(m.model)) {
+        m.notes.push_back(fmt::format("{}: plugin {}: the model is static and cannot move", plugin.source, plugin.name));
+        return;
+      }
+      return m.take(Position3d::make(m.world, m.model, plugin));
+    case PluginKind::trajectory_follower:
+    case PluginKind::implied:
+    case PluginKind::unknown:  // the loader has said so
+      return;
+  }
+}
+
+}  // namespace
+
+base::Result<std::vector<std::unique_ptr<Device>>> make_devices(DeviceWorld& world, ModelId model, std::vector<std::string>& notes) {
+  Makers m{world, model, notes, {}, {}};
+  const ModelDef& def = world.physics.def(model);
+  for (const auto& plugin : def.plugins) make_plugin(m, plugin);
+  for (std::uint32_t l = 0; l < def.links.size(); ++l) {
+    for (const auto& sensor : def.links[l].sensors) {
+      if (!is_sonar(sensor)) make_sensor(m, {{model, l}, sensor.pose}, sensor);
+    }
+  }
+  make_sonars(m);
+  if (!world.physics.is_static(model)) m.take(Truth::make(world, model));
+  if (m.failure) return *m.failure;
+  return std::move(m.devices);
+}
+
+}  // namespace sim

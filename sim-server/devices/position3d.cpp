@@ -1,0 +1,148 @@
+#include "devices/position3d.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/text.h"
+
+namespace sim {
+namespace {
+
+double wrapped(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
+
+Eigen::Vector3d three(const std::optional<std::string>& text) {
+  Eigen::Vector3d v(0, 0, 0);
+  if (!text) return v;
+  const auto parts = base::split_list(*text, ' ');
+  for (std::size_t i = 0; i < 3 && i < parts.size(); ++i) v[static_cast<Eigen::Index>(i)] = base::parse_number(parts[i]).value_or(0);
+  return v;
+}
+
+}  // namespace
+
+base::Result<std::unique_ptr<Device>> Position3d::make(DeviceWorld& world, ModelId model, const PluginDef& plugin) {
+  const ModelDef& def = world.physics.def(model);
+  shm::Position3dInfo info{};
+  info.drive = RTMSIM_DRIVE_HOLONOMIC;
+  info.pose = shm::identity_pose;
+  info.max_speed = plugin.parameters.number_of({"max_speed", "max_linear_velocity"}).value_or(0);
+  info.max_yaw_rate = plugin.parameters.number_of({"max_yaw_rate", "max_angular_velocity"}).value_or(0);
+  info.rate = 1 / world.world.physics.step;
+  shm::set_text(info.model, scoped_model(def, plugin.scope));
+  auto writer = world.shm.create(shm::position3d_spec(iface_name(def.name, plugin.scope, "position3d"), info));
+  if (!writer) return writer.error();
+  return std::unique_ptr<Device>(new Position3d(world, model, plugin, std::move(*writer)));
+}
+
+Position3d::Position3d(DeviceWorld& world, ModelId model, const PluginDef& plugin, std::unique_ptr<shm::IfaceWriter> writer)
+    : world_(world), model_(model), writer_(std::move(writer)) {
+  const ParameterNode& p = plugin.parameters;
+  const auto limit = [](std::optional<double> value, double otherwise) { return value && *value > 0 ? *value : otherwise; };
+  max_speed_ = limit(p.number_of({"max_speed", "max_linear_velocity"}), 100);
+  max_yaw_rate_ = limit(p.number_of({"max_yaw_rate", "max_angular_velocity"}), 10);
+  max_acceleration_ = limit(p.number_of({"max_acceleration", "max_linear_acceleration"}), 5);
+  max_yaw_acceleration_ = limit(p.number_of({"max_yaw_acceleration", "max_angular_acceleration"}), 5);
+  initial_command_.head<3>() = three(p.text_of({"initial_linear"}));
+  initial_command_[3] = three(p.text_of({"initial_angular"})).z();
+  reset();
+}
+
+Eigen::Vector4d Position3d::to_goal(const Eigen::Isometry3d& pose) const {
+  const Eigen::Isometry3d odometry = odometry_origin_ * pose;
+  const double yaw = yaw_of(odometry);
+  const Eigen::Vector3d error = Eigen::AngleAxisd(-yaw, Eigen::Vector3d::UnitZ()) * (goal_->head<3>() - odometry.translation());
+  Eigen::Vector4d v;
+  // As fast as allows to stop there.
+  v.head<3>() = error.norm() > 1e-9
+                    ? (error.normalized() * std::min(1.5 * error.norm(), std::sqrt(max_acceleration_ * error.norm()))).eval()
+                    : Eigen::Vector3d(0, 0, 0);
+  v[3] = 1.5 * wrapped((*goal_)[3] - yaw);
+  return v;
+}
+
+void Position3d::before_step(const Moment& moment) {
+  shm::Command command;
+  switch (writer_->poll_command(command)) {
+    case shm::CommandChange::fresh:
+      is_commanded_ = true;
+      goal_.reset();
+      command_.setZero();
+      if (command.kind == RTMSIM_COMMAND_VELOCITY) command_ = {command.values[0], command.values[1], command.values[2], command.values[5]};
+      if (command.kind == RTMSIM_COMMAND_POSE)
+        goal_ = Eigen::Vector4d(command.values[0], command.values[1], command.values[2], command.values[5]);
+      break;
+    case shm::CommandChange::lost:
+      is_commanded_ = false;
+      goal_.reset();
+      command_.setZero();
+      break;
+    case shm::CommandChange::none:
+      break;
+  }
+  if (!motors_enabled_) return;
+  const Eigen::Isometry3d pose = world_.physics.model_pose(model_);
+  Eigen::Vector4d wanted = goal_ ? to_goal(pose) : command_;
+  if (const double speed = wanted.head<3>().norm(); speed > max_speed_) wanted.head<3>() *= max_speed_ / speed;
+  wanted[3] = std::clamp(wanted[3], -max_yaw_rate_, max_yaw_rate_);
+  const Eigen::Vector3d change = wanted.head<3>() - velocity_.head<3>();
+  const double most = max_acceleration_ * moment.dt;
+  velocity_.head<3>() += change.norm() > most ? (change * (most / change.norm())).eval() : change;
+  velocity_[3] += std::clamp(wanted[3] - velocity_[3], -max_yaw_acceleration_ * moment.dt, max_yaw_acceleration_ * moment.dt);
+  // Level again after a bump: turn the body's up towards the world's.
+  const Eigen::Vector3d up = pose.linear().col(2);
+  Twist twist;
+  twist.angular = 2 * up.cross(Eigen::Vector3d::UnitZ()) + Eigen::Vector3d(0, 0, velocity_[3]);
+  const Eigen::Vector3d at_origin = Eigen::AngleAxisd(yaw_of(pose), Eigen::Vector3d::UnitZ()) * velocity_.head<3>();
+  const Eigen::Vector3d arm = world_.physics.link_pose(world_.physics.canonical_link(model_)).translation() - pose.translation();
+  twist.linear = at_origin + twist.angular.cross(arm);
+  (void)world_.physics.set_model_twist(model_, twist);  // values are within the limits
+}
+
+void Position3d::measure(const Moment&) {
+  auto& sample = writer_->sample<shm::Position3dSample>();
+  const Eigen::Isometry3d pose = world_.physics.model_pose(model_);
+  const LinkId link = world_.physics.canonical_link(model_);
+  const Eigen::Vector3d v = pose.linear().transpose() * world_.physics.point_velocity(link, pose.translation());
+  const Eigen::Vector3d w = pose.linear().transpose() * world_.physics.link_twist(link).angular;
+  sample.odometry = to_pose(odometry_origin_ * pose);
+  sample.true_pose = to_pose(pose);
+  for (int i = 0; i < 3; ++i) {
+    sample.velocity[i] = sample.true_velocity[i] = v[i];
+    sample.velocity[i + 3] = sample.true_velocity[i + 3] = w[i];
+    sample.command[i] = velocity_[i];
+    sample.command[i + 3] = i == 2 ? velocity_[3] : 0;
+  }
+  sample.stalled = velocity_.head<3>().norm() > 0.1 && v.norm() < 0.2 * velocity_.head<3>().norm() ? 1 : 0;
+  sample.motors_enabled = motors_enabled_ ? 1 : 0;
+  sample.commanded = is_commanded_ ? 1 : 0;
+}
+
+void Position3d::reset() {
+  world_.physics.set_gravity(model_, false);
+  command_ = initial_command_;
+  velocity_.setZero();
+  goal_.reset();
+  motors_enabled_ = true;
+  odometry_origin_ = world_.physics.model_pose(model_).inverse();
+}
+
+void Position3d::add_to(StateHash& hash) const {
+  hash.add(writer_->name());
+  for (int i = 0; i < 4; ++i) hash.add(velocity_[i]), hash.add(command_[i]);
+}
+
+bool Position3d::set_odometry(const Eigen::Isometry3d& pose) {
+  odometry_origin_ = pose * world_.physics.model_pose(model_).inverse();
+  return true;
+}
+
+// Without its motors it falls.
+bool Position3d::set_motors(bool enabled) {
+  motors_enabled_ = enabled;
+  world_.physics.set_gravity(model_, !enabled);
+  velocity_.setZero();
+  return true;
+}
+
+}  // namespace sim

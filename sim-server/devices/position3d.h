@@ -1,0 +1,40 @@
+// Robots that fly (or glide) by velocity commands, whatever drives them: helicopters and the like. The body follows vx vy vz and the yaw
+// rate in its own, level frame within its limits of acceleration, keeps level and holds its height. See device.h for the thread rule.
+#pragma once
+
+#include "devices/device.h"
+
+namespace sim {
+
+class Position3d final : public Device {
+ public:
+  static base::Result<std::unique_ptr<Device>> make(DeviceWorld& world, ModelId model, const PluginDef& plugin);
+
+  shm::IfaceWriter& iface() override { return *writer_; }
+  ModelId model() const override { return model_; }
+  void before_step(const Moment& moment) override;
+  bool wants_sample(const Moment&) override { return writer_->is_subscribed(); }
+  void measure(const Moment& moment) override;
+  void publish(const Moment& moment) override { writer_->publish(moment.time); }
+  void reset() override;
+  void add_to(StateHash& hash) const override;
+  bool set_odometry(const Eigen::Isometry3d& pose) override;
+  bool set_motors(bool enabled) override;
+
+ private:
+  Position3d(DeviceWorld& world, ModelId model, const PluginDef& plugin, std::unique_ptr<shm::IfaceWriter> writer);
+  Eigen::Vector4d to_goal(const Eigen::Isometry3d& pose) const;
+
+  DeviceWorld& world_;
+  ModelId model_;
+  double max_speed_, max_yaw_rate_, max_acceleration_, max_yaw_acceleration_;
+  Eigen::Vector4d initial_command_{0, 0, 0, 0};
+  Eigen::Vector4d command_{0, 0, 0, 0};                                // vx vy vz, yaw rate
+  Eigen::Vector4d velocity_{0, 0, 0, 0};                               // that it flies with now
+  std::optional<Eigen::Vector4d> goal_;                                // x y z yaw in odometry, for position commands
+  Eigen::Isometry3d odometry_origin_ = Eigen::Isometry3d::Identity();  // odometry = origin * true pose
+  bool motors_enabled_ = true, is_commanded_ = false;
+  std::unique_ptr<shm::IfaceWriter> writer_;
+};
+
+}  // namespace sim
