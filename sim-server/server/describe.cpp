@@ -1,0 +1,177 @@
+#include "server/describe.h"
+
+#include <unistd.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/log.h"
+
+namespace sim {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json numbers(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
+
+Json numbers(const Eigen::Isometry3d& pose) {
+  const Eigen::Quaterniond q(pose.linear());
+  const Eigen::Vector3d p = pose.translation();
+  return Json::array({p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()});
+}
+
+// Names come from files and need not be UTF-8.
+std::string text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+std::string full_name(const Physics& physics, LinkId link, std::uint32_t collision) {
+  if (!physics.exists(link.model)) return "?";
+  const ModelDef& model = physics.def(link.model);
+  return model.name + "::" + model.links[link.link].name + "::" + model.links[link.link].collisions[collision].name;
+}
+
+Json model_tree(const Physics& physics, ModelId id) {
+  const ModelDef& model = physics.def(id);
+  Json links = Json::array(), joints = Json::array(), plugins = Json::array();
+  for (std::uint32_t l = 0; l < model.links.size(); ++l) {
+    const LinkDef& link = model.links[l];
+    Json sensors = Json::array(), collisions = Json::array();
+    for (const auto& sensor : link.sensors) {
+      sensors.push_back({{"name", sensor.name}, {"type", sensor.type}, {"iface", iface_name(model.name, sensor.scope, sensor.name)}});
+    }
+    for (const auto& collision : link.collisions)
+      collisions.push_back({{"name", collision.name}, {"shape", std::string(kind_of(collision.geometry))}});
+    links.push_back({{"name", link.name},
+                     {"mass", link.mass},
+                     {"pose", numbers(physics.link_pose({id, l}))},
+                     {"collisions", collisions},
+                     {"sensors", sensors}});
+  }
+  for (std::uint32_t j = 0; j < model.joints.size(); ++j) {
+    const JointDef& joint = model.joints[j];
+    const JointState state = physics.joint_state({id, j});
+    joints.push_back({{"name", joint.name},
+                      {"type", std::string(to_text(joint.kind))},
+                      {"parent", joint.parent.empty() ? "world" : joint.parent},
+                      {"child", joint.child.empty() ? "world" : joint.child},
+                      {"position", state.position},
+                      {"velocity", state.velocity}});
+  }
+  for (const auto& plugin : model.plugins) plugins.push_back({{"name", plugin.name}, {"filename", plugin.filename}});
+  return {{"name", model.name},
+          {"static", physics.is_static(id)},
+          {"pose", numbers(physics.model_pose(id))},
+          {"links", links},
+          {"joints", joints},
+          {"plugins", plugins}};
+}
+
+}  // namespace
+
+std::size_t resident_memory() {
+  std::ifstream file("/proc/self/statm");
+  std::size_t total = 0, resident = 0;
+  file >> total >> resident;
+  return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+std::string list_text(Simulation& simulation) {
+  const Physics& physics = simulation.physics();
+  Json models = Json::array(), ifaces = Json::array();
+  for (ModelId id = 0; id < physics.model_slots(); ++id) {
+    if (!physics.exists(id)) continue;
+    models.push_back({{"name", physics.def(id).name}, {"static", physics.is_static(id)}, {"pose", numbers(physics.model_pose(id))}});
+  }
+  for (const auto& device : simulation.devices()) {
+    const auto& iface = device->iface();
+    ifaces.push_back({{"type", std::string(shm::to_text(iface.type()))},
+                      {"name", iface.name()},
+                      {"model", physics.def(device->model()).name},
+                      {"subscribed", iface.is_subscribed()}});
+  }
+  return text({{"world", simulation.world().name}, {"models", models}, {"ifaces", ifaces}});
+}
+
+std::string tree_text(const Simulation& simulation, const std::string& model) {
+  const Physics& physics = simulation.physics();
+  Json models = Json::array();
+  for (ModelId id = 0; id < physics.model_slots(); ++id) {
+    if (physics.exists(id) && (model.empty() || physics.def(id).name == model)) models.push_back(model_tree(physics, id));
+  }
+  return text({{"models", models}});
+}
+
+std::string stats_text(Simulation& simulation, const LoopState& loop) {
+  const Physics& physics = simulation.physics();
+  const PhysicsStatistics s = physics.statistics();
+  std::uint32_t models = 0, subscribed = 0;
+  Json contacts = Json::object();
+  for (ModelId id = 0; id < physics.model_slots(); ++id) {
+    if (!physics.exists(id)) continue;
+    ++models;
+    if (!physics.is_static(id))
+      contacts[physics.def(id).name] = {{"now", physics.contacts(id).size()}, {"total", physics.contacts_so_far(id)}};
+  }
+  for (const auto& device : simulation.devices()) subscribed += device->iface().is_subscribed() ? 1U : 0U;
+  Json parts = Json::array();
+  double all = 0;
+  for (const auto& entry : loop.times->entries()) all += static_cast<double>(entry.total.count());
+  for (std::size_t i = 0; i < part_names.size(); ++i) {
+    const auto& entry = loop.times->entries()[i];
+    const double total = static_cast<double>(entry.total.count());
+    parts.push_back({{"name", std::string(part_names[i])},
+                     {"calls", entry.calls},
+                     {"total_ms", total * 1e-6},
+                     {"mean_us", entry.calls > 0 ? total * 1e-3 / static_cast<double>(entry.calls) : 0.0},
+                     {"max_us", static_cast<double>(entry.longest.count()) * 1e-3},
+                     {"share", all > 0 ? total / all : 0.0}});
+  }
+  Json participants = Json::array();
+  for (const auto& p : loop.participants) {
+    participants.push_back({{"name", p.name},
+                            {"pid", p.pid},
+                            {"phase", p.phase},
+                            {"rate", p.period_ns > 0 ? 1e9 / static_cast<double>(p.period_ns) : 0.0},
+                            {"ticks", p.ticks},
+                            {"missed", p.missed},
+                            {"mean_us", static_cast<double>(p.mean_ns) * 1e-3},
+                            {"max_us", static_cast<double>(p.max_ns) * 1e-3},
+                            {"active", p.is_active},
+                            {"late", p.is_late}});
+  }
+  return text({{"world", simulation.world().name},
+               {"sim_time", static_cast<double>(simulation.time().count()) * 1e-9},
+               {"steps", simulation.steps()},
+               {"step", simulation.world().physics.step},
+               {"paused", loop.is_paused},
+               {"rtf_wanted", loop.rtf_wanted},
+               {"rtf", loop.rtf_reached},
+               {"load", loop.load},
+               {"hash", fmt::format("{:016x}", simulation.hash())},
+               {"models", models},
+               {"bodies", s.bodies},
+               {"awake", s.awake},
+               {"joints", s.joints},
+               {"contacts", s.contacts},
+               {"shards", s.shards},
+               {"ifaces", simulation.devices().size()},
+               {"subscribed", subscribed},
+               {"memory_mib", static_cast<double>(resident_memory()) / (1 << 20)},
+               {"parts", parts},
+               {"participants", participants},
+               {"contacts_by_model", contacts}});
+}
+
+std::string contacts_text(const Simulation& simulation, ModelId model) {
+  const Physics& physics = simulation.physics();
+  Json contacts = Json::array();
+  for (const Contact& contact : physics.contacts(model)) {
+    contacts.push_back({{"link", full_name(physics, contact.link, contact.collision)},
+                        {"other", full_name(physics, contact.other, contact.other_collision)},
+                        {"position", numbers(contact.position)},
+                        {"normal", numbers(contact.normal)},
+                        {"depth", contact.depth}});
+  }
+  return text({{"model", physics.def(model).name}, {"total", physics.contacts_so_far(model)}, {"contacts", contacts}});
+}
+
+}  // namespace sim

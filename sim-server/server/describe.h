@@ -1,0 +1,32 @@
+// What a simulation is made of and how it does, as JSON for clients. The stepping thread only.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "server/simulation.h"
+#include "shm/lockstep.h"
+
+namespace sim {
+
+// What the loop knows besides.
+struct LoopState {
+  bool is_paused = false;
+  double rtf_wanted = 1, rtf_reached = 0, load = 0;
+  std::vector<shm::ParticipantRecord> participants;
+  const PartTimes* times = nullptr;
+};
+
+// {"world", "models": [{"name", "static", "pose"}], "ifaces": [{"type", "name", "model", "subscribed"}]}
+std::string list_text(Simulation& simulation);
+// {"models": [{"name", "static", "pose", "links": [...], "joints": [...], "plugins": [...]}]}; of one model, or of all when `model` is
+// empty.
+std::string tree_text(const Simulation& simulation, const std::string& model);
+std::string stats_text(Simulation& simulation, const LoopState& loop);
+// {"model", "total", "contacts": [{"link", "other", "position", "normal", "depth"}]}: those of the last step.
+std::string contacts_text(const Simulation& simulation, ModelId model);
+
+// Pages in use by this process [bytes].
+std::size_t resident_memory();
+
+}  // namespace sim

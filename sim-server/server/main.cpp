@@ -1,0 +1,179 @@
+// sim-server: loads a world and runs it. See --help.
+#include <signal.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <thread>
+
+#include "base/log.h"
+#include "base/text.h"
+#include "server/server_loop.h"
+#include "world/world_loader.h"
+
+namespace {
+
+struct Options {
+  std::string world;
+  std::uint32_t server_id = 0;
+  bool is_paused = false, is_lockstep = false, check = false, print_hash = false;
+  double rtf = 1;
+  std::uint32_t wait_for = 0;
+  double participant_timeout = 0, duration = -1;
+  std::uint64_t seed = 1;
+  std::vector<std::string> resource_paths;
+  std::string record, shm_mode = "0600", shm_group;
+  int verbosity = 1, threads = 0;
+};
+
+// Where our own worlds and models are: installed beside the program, or in the source tree.
+std::filesystem::path installed_worlds() {
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  const auto beside = program.parent_path().parent_path() / "share" / "rtmsim" / "worlds";
+  return std::filesystem::is_directory(beside, error) ? beside : std::filesystem::path(RTMSIM_WORLDS_DIR);
+}
+
+int fail(const std::string& message) {
+  std::fprintf(stderr, "sim-server: %s\n", message.c_str());
+  return 1;
+}
+
+// SIGINT and SIGTERM, received by a thread of their own instead of a handler.
+class Signals {
+ public:
+  Signals() {
+    sigemptyset(&set_);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR2}) sigaddset(&set_, signal);
+    pthread_sigmask(SIG_BLOCK, &set_, nullptr);
+  }
+  // Before any other thread is started this must exist; from here on `stop` is called when a signal comes.
+  void watch(sim::ServerLoop& loop) {
+    thread_ = std::thread([this, &loop] {
+      int signal = 0;
+      sigwait(&set_, &signal);
+      if (signal != SIGUSR2) loop.stop();
+    });
+  }
+  void end() {
+    if (!thread_.joinable()) return;
+    pthread_kill(thread_.native_handle(), SIGUSR2);
+    thread_.join();
+  }
+  ~Signals() { end(); }
+
+ private:
+  sigset_t set_;
+  std::thread thread_;
+};
+
+int run(const Options& options, Signals& signals) {
+  using namespace sim;
+  const ModelPath model_path = ModelPath::from_environment(options.resource_paths, installed_worlds());
+  auto loaded = load_world(options.world, model_path);
+  if (!loaded) return fail(loaded.error().message);
+  std::size_t dropped = 0;
+  for (const auto& finding : loaded->findings) {
+    if (finding.severity == Finding::Severity::dropped) ++dropped;
+    if (options.check || finding.severity != Finding::Severity::note || options.verbosity > 1)
+      std::fprintf(stderr, "%s\n", finding.text().c_str());
+  }
+  auto world = std::make_shared<const WorldDef>(std::move(loaded->world));
+
+  auto access = shm::parse_access(options.shm_mode, options.shm_group);
+  if (!access) return fail(access.error().message);
+  auto server = shm::Server::start({.server_id = options.server_id, .access = *access});
+  if (!server) return fail(server.error().message);
+  shm::SimulationInfo info{};
+  info.step_ns = std::llround(world->physics.step * 1e9);
+  info.seed = options.seed;
+  info.lockstep = options.is_lockstep ? 1 : 0;
+  info.wait_for = options.wait_for;
+  shm::set_text(info.world, world->name);
+  std::error_code error;
+  shm::set_text(info.file, std::filesystem::absolute(options.world, error).string());
+  shm::set_text(info.version, RTMSIM_VERSION);
+  auto iface = (*server)->create(shm::simulation_spec(info));
+  if (!iface) return fail(iface.error().message);
+
+  std::vector<std::string> notes, left_out;
+  const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 8U));
+  auto simulation = Simulation::create(world, **server, {.seed = options.seed, .threads = threads}, notes, left_out);
+  if (!simulation) return fail(simulation.error().message);
+  for (const auto* lines : {&left_out, &notes}) {
+    for (const auto& line : *lines) std::fprintf(stderr, "%s: %s\n", options.world.c_str(), line.c_str());
+  }
+  dropped += left_out.size();
+  if (options.check) return loaded->dropped || dropped > 0 ? 1 : 0;
+
+  std::optional<Recorder> recorder;
+  if (!options.record.empty()) {
+    auto opened = Recorder::open(options.record, world->name);
+    if (!opened) return fail(opened.error().message);
+    recorder = std::move(*opened);
+  }
+  LoopOptions loop_options;
+  loop_options.rtf = options.rtf;
+  loop_options.is_paused = options.is_paused;
+  loop_options.is_lockstep = options.is_lockstep;
+  loop_options.wait_for = options.wait_for;
+  loop_options.participant_timeout = std::chrono::nanoseconds(std::llround(options.participant_timeout * 1e9));
+  if (options.duration >= 0) loop_options.duration = std::chrono::nanoseconds(std::llround(options.duration * 1e9));
+  loop_options.has_status_line = isatty(STDERR_FILENO) != 0;
+  ServerLoop loop(**simulation, **server, **iface, model_path, loop_options, std::move(recorder));
+  signals.watch(loop);
+  loop.run();
+  signals.end();
+  if (options.print_hash) {
+    std::printf("%016lx\n", static_cast<unsigned long>((*simulation)->hash()));
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app("Loads an SDFormat world and runs it. Every device is an iface in shared memory; simctl shows and controls all of it.",
+               "sim-server");
+  app.set_version_flag("--version", std::string("sim-server ") + RTMSIM_VERSION);
+  app.add_option("WORLD", options.world, "SDFormat world file")->required();
+  app.add_option("-s,--server-id", options.server_id, "number that clients name this server by (0)")->check(CLI::Range(0, 9999));
+  app.add_flag("-u,--paused", options.is_paused, "start paused");
+  app.add_option("--rtf", options.rtf, "simulated seconds per second (1); 0: as fast as possible")->check(CLI::Range(0.0, 1e6));
+  app.add_flag("--lockstep", options.is_lockstep, "time passes only when all participants have finished their tick");
+  app.add_option("--wait-for", options.wait_for, "participants that must join before time starts (0)")->check(CLI::Range(0, 64));
+  app.add_option("--participant-timeout", options.participant_timeout, "seconds after which a hanging participant is dropped (0: never)")
+      ->check(CLI::Range(0.0, 1e6));
+  app.add_option("--duration", options.duration, "end after so many simulated seconds")->check(CLI::Range(0.0, 1e9));
+  app.add_option("--seed", options.seed, "of all noise (1)");
+  app.add_option("--resource-path", options.resource_paths,
+                 "folder with models; repeatable (also RTMSIM_RESOURCE_PATH, GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH)")
+      ->expected(1)
+      ->take_all();
+  app.add_flag("--check", options.check, "load, list every finding, exit with 1 when something had to be dropped");
+  app.add_flag("--hash", options.print_hash, "print the hash of the final state");
+  app.add_option("--record", options.record,
+                 "write the poses of moving models, ten times a simulated second, as text: time model x y z qw qx qy qz");
+  app.add_option("--threads", options.threads, "threads for physics and sensors (0: one per core); no influence on results")
+      ->check(CLI::Range(0, 64));
+  app.add_option("--shm-mode", options.shm_mode, "access mode of the ifaces (0600)");
+  app.add_option("--shm-group", options.shm_group, "group of the ifaces");
+  app.add_option("-v", options.verbosity, "0 errors, 1 normal, 2 notes, 3 debug (1)")->check(CLI::Range(0, 3));
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return app.exit(e);
+    std::fprintf(stderr, "sim-server: %s\n", e.what());
+    return 2;
+  }
+  const base::Level levels[] = {base::Level::error, base::Level::info, base::Level::info, base::Level::debug};
+  base::set_log_level(levels[options.verbosity]);
+  Signals signals;
+  try {
+    return run(options, signals);
+  } catch (const std::exception& e) {  // out of memory and the like, from libraries
+    return fail(e.what());
+  }
+}

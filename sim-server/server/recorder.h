@@ -1,0 +1,31 @@
+// Writes where every moving model was, as text: one line per model and tenth of a simulated second. The stepping thread only.
+//   # rtm-sim record 1, world NAME
+//   # time model x y z qw qx qy qz      (s, m, unit quaternion; world frame)
+//   0.100 pioneer2dx 0 0 0 1 0 0 0
+#pragma once
+
+#include <chrono>
+#include <fstream>
+#include <string>
+
+#include "base/result.h"
+#include "devices/device.h"
+#include "physics/physics.h"
+
+namespace sim {
+
+class Recorder {
+ public:
+  static base::Result<Recorder> open(const std::string& path, const std::string& world);
+  // After each step. When the disk is full it says so once and stops.
+  void record(std::chrono::nanoseconds time, const Physics& physics);
+  void restart() { schedule_.restart(); }
+
+ private:
+  Recorder(std::string path, std::ofstream file) : path_(std::move(path)), file_(std::move(file)), schedule_(10) {}
+  std::string path_;
+  std::ofstream file_;
+  Schedule schedule_;
+};
+
+}  // namespace sim

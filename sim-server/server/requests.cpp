@@ -1,0 +1,196 @@
+// What the server does for each request. Decoding has checked all numbers and names; what can fail here is the world's answer.
+#include <cmath>
+
+#include "base/log.h"
+#include "server/picture.h"
+#include "server/server_loop.h"
+#include "world/world_loader.h"
+
+namespace sim {
+namespace {
+
+shm::Reply refused(shm::RequestStatus status, std::string message) {
+  shm::Reply reply;
+  reply.status = status;
+  reply.message = std::move(message);
+  return reply;
+}
+shm::Reply failed(const base::Error& error) { return refused(shm::RequestStatus::failed, error.message); }
+shm::Reply no_model(const std::string& name) { return refused(shm::RequestStatus::not_found, "no model or link " + name); }
+
+void put(double* values, const shm::Pose& p) {
+  const double all[7] = {p.x, p.y, p.z, p.qw, p.qx, p.qy, p.qz};
+  std::copy(all, all + 7, values);
+}
+
+Eigen::Vector3d vector(const double* v) { return {v[0], v[1], v[2]}; }
+
+}  // namespace
+
+// One overload for each kind of request.
+struct ServerLoop::Handler {
+  ServerLoop& loop;
+  const shm::RequestTicket& ticket;
+  Simulation& simulation = loop.simulation_;
+  Physics& physics = loop.simulation_.physics();
+
+  shm::Reply operator()(const shm::PauseRequest&) {
+    loop.is_paused_ = true;
+    loop.publish_clock();
+    return {};
+  }
+  shm::Reply operator()(const shm::RunRequest&) {
+    loop.is_paused_ = false;
+    loop.start_pace();
+    loop.publish_clock();
+    return {};
+  }
+  // Answered when the steps are done.
+  shm::Reply operator()(const shm::StepRequest& request) {
+    if (loop.step_ticket_) return refused(shm::RequestStatus::failed, "steps of another client are under way");
+    loop.is_paused_ = true;
+    loop.steps_to_do_ = static_cast<std::uint64_t>(request.steps);
+    loop.step_ticket_ = ticket;
+    return {};
+  }
+  shm::Reply operator()(const shm::ResetRequest& request) {
+    loop.reset(request.poses_only);
+    return {};
+  }
+  shm::Reply operator()(const shm::GetPoseRequest& request) {
+    const auto link = physics.find_link(request.name);
+    if (!link) return no_model(request.name);
+    const auto model = physics.find(request.name);
+    shm::Reply reply;
+    put(reply.values, to_pose(model ? physics.model_pose(*model) : physics.link_pose(*link)));
+    return reply;
+  }
+  shm::Reply operator()(const shm::SetPoseRequest& request) {
+    const auto model = physics.find(request.model);
+    if (!model) return no_model(request.model);
+    Eigen::Isometry3d pose = from_pose(request.pose);
+    if (request.is_planar) {
+      const Eigen::Isometry3d now = physics.model_pose(*model);
+      const double turn = shm::yaw_of(request.pose) - yaw_of(now);
+      pose.linear() = Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()) * now.linear();
+      pose.translation().z() = now.translation().z();
+    }
+    const auto done = simulation.set_pose(*model, pose);
+    return done ? shm::Reply{} : failed(done.error());
+  }
+  shm::Reply operator()(const shm::GetVelocityRequest& request) {
+    const auto link = physics.find_link(request.name);
+    if (!link) return no_model(request.name);
+    const Twist twist = physics.link_twist(*link);
+    shm::Reply reply;
+    for (int i = 0; i < 3; ++i) reply.values[i] = twist.linear[i], reply.values[i + 3] = twist.angular[i];
+    return reply;
+  }
+  shm::Reply operator()(const shm::SetVelocityRequest& request) {
+    const auto model = physics.find(request.model);
+    if (!model) return no_model(request.model);
+    const auto done = physics.set_model_twist(*model, {vector(request.linear), vector(request.angular)});
+    return done ? shm::Reply{} : failed(done.error());
+  }
+  shm::Reply operator()(const shm::WrenchRequest& request) {
+    const auto link = physics.find_link(request.name);
+    if (!link) return no_model(request.name);
+    const auto duration = std::chrono::nanoseconds(std::llround(std::min(request.duration, 1e6) * 1e9));
+    const auto done = simulation.add_wrench(*link, vector(request.force), vector(request.torque), duration);
+    return done ? shm::Reply{} : failed(done.error());
+  }
+  shm::Reply operator()(const shm::ListRequest&) {
+    shm::Reply reply;
+    reply.text = list_text(simulation);
+    return reply;
+  }
+  shm::Reply operator()(const shm::TreeRequest& request) {
+    if (!request.model.empty() && !physics.find(request.model)) return no_model(request.model);
+    shm::Reply reply;
+    reply.text = tree_text(simulation, request.model);
+    return reply;
+  }
+  shm::Reply operator()(const shm::SpawnRequest& request) {
+    const auto pose = request.has_pose ? std::optional(from_pose(request.pose)) : std::nullopt;
+    const auto loaded = load_model(request.sdf, request.name, pose, loop.model_path_);
+    if (!loaded) return failed(loaded.error());
+    for (const auto& finding : loaded->findings) base::log(base::Level::warn, "sim-server", "{}", finding.text());
+    std::vector<std::string> notes;
+    const auto id = simulation.spawn(loaded->model, notes);
+    for (const auto& note : notes) base::log(base::Level::warn, "sim-server", "{}", note);
+    if (!id) return failed(id.error());
+    shm::Reply reply;
+    reply.message = physics.def(*id).name;
+    return reply;
+  }
+  shm::Reply operator()(const shm::DeleteRequest& request) {
+    const auto model = physics.find(request.model);
+    if (!model) return no_model(request.model);
+    simulation.remove(*model);
+    return {};
+  }
+  shm::Reply operator()(const shm::ScreenshotRequest& request) {
+    if (request.view == shm::ScreenshotRequest::View::follow && !physics.find(request.follow)) return no_model(request.follow);
+    const auto image = draw_picture(simulation, request);
+    if (!image) return failed(image.error());
+    const auto written = write_png(*image, request.path);
+    return written ? shm::Reply{} : failed(written.error());
+  }
+  shm::Reply operator()(const shm::StatsRequest&) {
+    shm::Reply reply;
+    reply.text = stats_text(simulation, loop.state());
+    reply.values[0] = loop.rtf_reached_;
+    reply.hash = loop.last_hash_ = simulation.hash();
+    loop.last_hash_steps_ = simulation.steps();
+    return reply;
+  }
+  shm::Reply operator()(const shm::ResetOdometryRequest& request) {
+    Device* device = simulation.device(request.iface);
+    if (device == nullptr) return refused(shm::RequestStatus::not_found, "no iface " + request.iface);
+    const shm::Pose pose = request.is_3d ? request.pose : shm::planar_pose(request.x, request.y, 0, request.a);
+    if (!device->set_odometry(from_pose(pose))) return refused(shm::RequestStatus::unsupported, request.iface + " has no odometry");
+    return {};
+  }
+  shm::Reply operator()(const shm::SetMotorsRequest& request) {
+    Device* device = simulation.device(request.iface);
+    if (device == nullptr) return refused(shm::RequestStatus::not_found, "no iface " + request.iface);
+    if (!device->set_motors(request.are_enabled)) return refused(shm::RequestStatus::unsupported, request.iface + " has no motors");
+    return {};
+  }
+  shm::Reply operator()(const shm::SetRtfRequest& request) {
+    loop.options_.rtf = request.rtf;
+    loop.start_pace();
+    loop.publish_clock();
+    return {};
+  }
+  shm::Reply operator()(const shm::ContactsRequest& request) {
+    const auto model = physics.find(request.model);
+    if (!model) return no_model(request.model);
+    shm::Reply reply;
+    const auto total = physics.contacts_so_far(*model);
+    reply.count = static_cast<std::int64_t>(total - std::exchange(loop.contacts_told_[*model], total));
+    reply.text = contacts_text(simulation, *model);
+    return reply;
+  }
+  shm::Reply operator()(const shm::DropParticipantRequest& request) {
+    if (!loop.barrier_->drop(request.name)) return refused(shm::RequestStatus::not_found, "no participant " + request.name);
+    return {};
+  }
+};
+
+shm::Reply ServerLoop::handle(const shm::Request& request, const shm::RequestTicket& ticket) {
+  return std::visit(Handler{*this, ticket}, request);
+}
+
+void ServerLoop::handle_requests() {
+  for (const auto& asked : board_.poll()) {
+    base::log(base::Level::debug, "sim-server", "request {} of pid {}", shm::request_name(asked.request), asked.pid);
+    shm::Reply reply = handle(asked.request, asked.ticket);
+    if (std::holds_alternative<shm::StepRequest>(asked.request) && reply.status == shm::RequestStatus::ok) continue;
+    reply.sim_time_ns = simulation_.time().count();
+    reply.steps = simulation_.steps();
+    board_.reply(asked.ticket, reply);
+  }
+}
+
+}  // namespace sim

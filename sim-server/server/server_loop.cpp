@@ -1,0 +1,263 @@
+#include "server/server_loop.h"
+
+#include <sys/prctl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "base/log.h"
+
+namespace sim {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto tend_period = 100ms;
+constexpr auto most_behind = 500ms;  // of wall time that is caught up; the rest is given up
+
+double seconds(std::chrono::nanoseconds t) { return static_cast<double>(t.count()) * 1e-9; }
+
+}  // namespace
+
+ServerLoop::ServerLoop(Simulation& simulation, shm::Server& server, shm::IfaceWriter& iface, const ModelPath& model_path,
+                       const LoopOptions& options, std::optional<Recorder> recorder)
+    : simulation_(simulation),
+      server_(server),
+      iface_(iface),
+      model_path_(model_path),
+      options_(options),
+      recorder_(std::move(recorder)),
+      board_(iface, server),
+      is_paused_(options.is_paused) {
+  shm::BarrierOptions barrier;
+  barrier.is_lockstep = options.is_lockstep;
+  barrier.participant_timeout = options.participant_timeout;
+  barrier.on_event = [this](const shm::BarrierEvent& event) { on_barrier_event(event); };
+  barrier.on_waiting = [this] {
+    server_.tend();
+    return !is_stopping_.load(std::memory_order_acquire);  // pairs with the release in stop
+  };
+  barrier_ = std::make_unique<shm::Barrier>(iface, server, barrier);
+  prctl(PR_SET_TIMERSLACK, 1);
+}
+
+ServerLoop::~ServerLoop() = default;
+
+void ServerLoop::stop() {
+  is_stopping_.store(true, std::memory_order_release);  // pairs with the acquires in the loop
+  board_.wake();
+}
+
+void ServerLoop::on_barrier_event(const shm::BarrierEvent& event) {
+  using Kind = shm::BarrierEvent::Kind;
+  const auto say = [&](base::Level level, const char* what) {
+    base::log(level, "sim-server", "participant {} (pid {}, phase {}) {}", event.name, event.pid, event.phase, what);
+  };
+  switch (event.kind) {
+    case Kind::joined:
+      return say(base::Level::info, "takes part");
+    case Kind::left:
+      return say(base::Level::info, "has left");
+    case Kind::died:
+      return say(base::Level::warn, "died; time goes on without it");
+    case Kind::hangs:
+      return say(base::Level::warn, "has not finished its tick for a second; time waits for it");
+    case Kind::dropped:
+      return say(base::Level::warn, "was dropped: it did not finish its tick in time");
+  }
+}
+
+void ServerLoop::run() {
+  start_pace();
+  publish_clock();
+  wait_for_participants();
+  start_pace();
+  while (!is_stopping_.load(std::memory_order_acquire)) {  // pairs with the release in stop
+    times_.begin_step(simulation_.steps());
+    handle_requests();
+    server_.tend();
+    if (is_fresh_moment_) {
+      is_fresh_moment_ = false;
+      if (!finish_moment()) break;
+    }
+    if (options_.duration && simulation_.time() >= *options_.duration) break;
+    if (is_paused_ && steps_to_do_ == 0) {
+      if (barrier_->refresh() > 0 || is_paused_) board_.wait(Clock::now() + tend_period);
+      start_pace();
+      watch_rate();
+      continue;
+    }
+    step();
+    if (!finish_moment()) break;
+    if (steps_to_do_ > 0 && --steps_to_do_ == 0) finish_step_request();
+    pace();
+    watch_rate();
+  }
+  if (options_.has_status_line) std::fprintf(stderr, "\n");
+}
+
+void ServerLoop::wait_for_participants() {
+  if (options_.wait_for == 0) return;
+  base::log(base::Level::info, "sim-server", "waiting for {} participant{}", options_.wait_for, options_.wait_for == 1 ? "" : "s");
+  while (!is_stopping_.load(std::memory_order_acquire)) {  // pairs with the release in stop
+    handle_requests();
+    const auto there = static_cast<std::uint32_t>(barrier_->refresh());
+    const std::uint32_t missing = there < options_.wait_for ? options_.wait_for - there : 0;
+    if (missing != missing_) missing_ = missing, publish_clock();
+    if (missing == 0) return;
+    server_.tend();
+    board_.wait(Clock::now() + tend_period);
+  }
+}
+
+void ServerLoop::step() {
+  times_.mark(Part::requests);
+  simulation_.step(times_);
+  for (const auto& complaint : simulation_.physics().take_complaints()) base::log(base::Level::warn, "sim-server", "{}", complaint);
+}
+
+bool ServerLoop::finish_moment() {
+  simulation_.sense(times_);
+  if (recorder_) recorder_->record(simulation_.time(), simulation_.physics());
+  publish_clock();
+  times_.mark(Part::publish);
+  const bool goes_on = barrier_->tick(simulation_.time(), simulation_.steps());
+  times_.mark(Part::clients);
+  return goes_on;
+}
+
+void ServerLoop::publish_clock() {
+  auto& sample = iface_.sample<shm::SimulationSample>();
+  sample.steps = simulation_.steps();
+  sample.state_hash = last_hash_;
+  sample.hash_steps = last_hash_steps_;
+  sample.paused = is_paused_ && steps_to_do_ == 0 ? 1 : 0;
+  sample.waiting_for = missing_;
+  sample.rtf_wanted = options_.rtf;
+  sample.rtf_reached = rtf_reached_;
+  sample.load = load_;
+  iface_.publish(simulation_.time());
+}
+
+// Counts for people: renewed about once a second.
+void ServerLoop::watch_rate() {
+  if (simulation_.steps() % 16 != 0 && !is_paused_) return;
+  const auto now = Clock::now();
+  const auto wall = now - rate_wall_;
+  if (wall < 1s) return;
+  rtf_reached_ = seconds(simulation_.time() - rate_sim_) / seconds(wall);
+  load_ = std::clamp(1 - seconds(slept_) / seconds(wall), 0.0, 1.0);
+  rate_wall_ = now;
+  rate_sim_ = simulation_.time();
+  slept_ = 0ns;
+  auto& sample = iface_.sample<shm::SimulationSample>();
+  const PhysicsStatistics s = simulation_.physics().statistics();
+  sample.models = 0;
+  for (ModelId id = 0; id < simulation_.physics().model_slots(); ++id) sample.models += simulation_.physics().exists(id) ? 1 : 0;
+  sample.bodies = s.bodies;
+  sample.joints = s.joints;
+  sample.contacts = s.contacts;
+  sample.ifaces = static_cast<std::uint32_t>(simulation_.devices().size());
+  sample.active_sensors = simulation_.take_active_sensors();
+  sample.participants = static_cast<std::uint32_t>(barrier_->records().size());
+  sample.part_count = static_cast<std::uint32_t>(part_names.size());
+  for (std::size_t i = 0; i < part_names.size(); ++i) {
+    const auto& entry = times_.entries()[i];
+    shm::set_text(sample.parts[i].name, part_names[i]);
+    sample.parts[i].calls = entry.calls;
+    sample.parts[i].total_ns = entry.total.count();
+    sample.parts[i].max_ns = entry.longest.count();
+  }
+  if (is_paused_) publish_clock();
+  if (options_.has_status_line) {
+    std::fprintf(stderr, "\r%10.3f s  %7.2f x real time  load %3.0f %%  contacts %u  sensors %u%s   ", seconds(simulation_.time()),
+                 rtf_reached_, 100 * load_, s.contacts, sample.active_sensors, is_paused_ ? "  paused" : "");
+    std::fflush(stderr);
+  }
+  const auto watched = now - warning_wall_;
+  if (is_paused_ || options_.rtf <= 0 || watched < 10s) return;
+  const double reached = seconds(simulation_.time() - warning_sim_) / seconds(watched);
+  if (reached < 0.99 * options_.rtf) {
+    base::log(base::Level::warn, "sim-server", "runs at {:.2f} times real time, {} was asked for", reached, options_.rtf);
+  }
+  warning_wall_ = now;
+  warning_sim_ = simulation_.time();
+}
+
+void ServerLoop::start_pace() {
+  const auto now = Clock::now();
+  pace_wall_ = now;
+  pace_sim_ = simulation_.time();
+  warning_wall_ = now;
+  warning_sim_ = simulation_.time();
+  if (rate_wall_ == Clock::time_point()) {
+    rate_wall_ = now;
+    rate_sim_ = simulation_.time();
+  }
+}
+
+void ServerLoop::pace() {
+  if (options_.rtf <= 0 || steps_to_do_ > 0) return;
+  const auto due =
+      pace_wall_ + std::chrono::nanoseconds(std::llround(static_cast<double>((simulation_.time() - pace_sim_).count()) / options_.rtf));
+  auto now = Clock::now();
+  if (now > due + most_behind) {
+    // Too slow: what is lost is lost, or a fast stretch would follow each slow one. The watch goes on.
+    pace_wall_ = now;
+    pace_sim_ = simulation_.time();
+    return;
+  }
+  while (now < due && !is_stopping_.load(std::memory_order_acquire)) {  // pairs with the release in stop
+    const auto before = now;
+    board_.wait(std::min(due, now + tend_period));
+    now = Clock::now();
+    slept_ += now - before;
+    if (now < due) {
+      server_.tend();
+      const auto was_at = simulation_.time();
+      handle_requests();
+      if (is_paused_ || steps_to_do_ > 0 || simulation_.time() != was_at || is_fresh_moment_) return;
+    }
+  }
+  times_.mark(Part::pace);
+}
+
+void ServerLoop::finish_step_request() {
+  if (!step_ticket_) return;
+  shm::Reply reply;
+  reply.sim_time_ns = simulation_.time().count();
+  reply.steps = simulation_.steps();
+  reply.hash = last_hash_ = simulation_.hash();
+  last_hash_steps_ = simulation_.steps();
+  publish_clock();
+  board_.reply(*step_ticket_, reply);
+  step_ticket_.reset();
+}
+
+void ServerLoop::reset(bool poses_only) {
+  if (poses_only) {
+    simulation_.reset_poses();
+  } else {
+    std::vector<std::string> notes;
+    if (const auto done = simulation_.reset(notes); !done) base::log(base::Level::error, "sim-server", "reset: {}", done.error().message);
+    for (const auto& note : notes) base::log(base::Level::warn, "sim-server", "{}", note);
+    iface_.set_resets(simulation_.resets());
+    barrier_->rewind(simulation_.time(), simulation_.resets());
+    contacts_told_.clear();
+    is_fresh_moment_ = true;
+    rate_sim_ = simulation_.time();
+    rate_wall_ = Clock::now();
+    slept_ = 0ns;
+    if (recorder_) recorder_->restart();
+  }
+  start_pace();
+  publish_clock();
+}
+
+LoopState ServerLoop::state() const {
+  return {is_paused_ && steps_to_do_ == 0, options_.rtf, rtf_reached_, load_, barrier_->records(), &times_};
+}
+
+}  // namespace sim

@@ -1,0 +1,87 @@
+// The loop of the simulator: requests and commands, step, sensors that are due, publish, participants, pace; always in this order, so that
+// a run is repeatable. run() is called once, in the stepping thread; stop() from any thread.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "base/result.h"
+#include "server/describe.h"
+#include "server/recorder.h"
+#include "server/simulation.h"
+#include "shm/lockstep.h"
+#include "shm/request_board.h"
+#include "shm/writer.h"
+#include "world/model_path.h"
+
+namespace sim {
+
+struct LoopOptions {
+  double rtf = 1;  // 0: as fast as possible
+  bool is_paused = false;
+  bool is_lockstep = false;
+  std::uint32_t wait_for = 0;
+  std::chrono::nanoseconds participant_timeout{0};
+  std::optional<std::chrono::nanoseconds> duration;  // simulated
+  bool has_status_line = false;
+};
+
+class ServerLoop {
+ public:
+  // All must outlive the loop. `iface` is the simulation iface.
+  ServerLoop(Simulation& simulation, shm::Server& server, shm::IfaceWriter& iface, const ModelPath& model_path, const LoopOptions& options,
+             std::optional<Recorder> recorder);
+  ~ServerLoop();
+
+  // Returns when the duration is over or stop() was called.
+  void run();
+  void stop();
+
+ private:
+  void handle_requests();
+  shm::Reply handle(const shm::Request& request, const shm::RequestTicket& ticket);
+  struct Handler;
+
+  void wait_for_participants();
+  // What belongs to a moment: sensors, clock, participants.
+  bool finish_moment();
+  void step();
+  void publish_clock();
+  void reset(bool poses_only);
+  void finish_step_request();
+  // Sleeps until simulated time may go on; requests are served meanwhile.
+  void pace();
+  void start_pace();
+  void watch_rate();
+  void on_barrier_event(const shm::BarrierEvent& event);
+  LoopState state() const;
+
+  Simulation& simulation_;
+  shm::Server& server_;
+  shm::IfaceWriter& iface_;
+  const ModelPath& model_path_;
+  LoopOptions options_;
+  std::optional<Recorder> recorder_;
+  shm::RequestBoard board_;
+  std::unique_ptr<shm::Barrier> barrier_;
+  PartTimes times_;
+
+  std::atomic<bool> is_stopping_{false};
+  bool is_paused_ = false;
+  bool is_fresh_moment_ = true;  // the moment at time 0 has not been published yet
+  std::uint64_t steps_to_do_ = 0;
+  std::optional<shm::RequestTicket> step_ticket_;
+  std::map<ModelId, std::uint64_t> contacts_told_;
+  std::uint64_t last_hash_ = 0, last_hash_steps_ = 0;
+  std::uint32_t missing_ = 0;  // participants
+
+  std::chrono::steady_clock::time_point pace_wall_, rate_wall_, status_wall_, warning_wall_;
+  std::chrono::nanoseconds pace_sim_{0}, rate_sim_{0}, slept_{0}, warning_sim_{0};
+  double rtf_reached_ = 0, load_ = 0;
+};
+
+}  // namespace sim

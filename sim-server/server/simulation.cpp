@@ -1,0 +1,206 @@
+#include "server/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sim {
+
+Simulation::Simulation(std::shared_ptr<const WorldDef> world, shm::Server& shm, const SimulationOptions& options)
+    : world_(std::move(world)), options_(options), pool_(options.threads), step_(std::llround(world_->physics.step * 1e9)) {
+  (void)shm;
+}
+
+base::Result<std::unique_ptr<Simulation>> Simulation::create(std::shared_ptr<const WorldDef> world, shm::Server& shm,
+                                                             const SimulationOptions& options, std::vector<std::string>& notes,
+                                                             std::vector<std::string>& dropped) {
+  if (!(world->physics.step >= 1e-6 && world->physics.step <= 1)) {
+    return base::Error{"world " + world->name + ": step must be between 1e-6 and 1 s, got " + std::to_string(world->physics.step)};
+  }
+  std::unique_ptr<Simulation> s(new Simulation(std::move(world), shm, options));
+  s->physics_ = std::make_unique<Physics>(s->world_, s->pool_, s->triangles_, notes, dropped);
+  s->rays_ = std::make_unique<RayWorld>(*s->physics_, s->triangles_);
+  s->device_world_.reset(new DeviceWorld{*s->physics_, *s->rays_, shm, options.seed, *s->world_});
+  s->initial_models_ = s->physics_->model_slots();
+  std::vector<std::string> ray_notes;  // physics has said the same about the same shapes
+  for (ModelId id = 0; id < s->initial_models_; ++id) {
+    if (s->physics_->exists(id)) s->rays_->add(id, ray_notes);
+  }
+  s->rays_->update();
+  for (ModelId id = 0; id < s->initial_models_; ++id) {
+    if (!s->physics_->exists(id)) continue;
+    if (auto made = s->make_devices_of(id, notes); !made) return made.error();
+  }
+  return s;
+}
+
+base::Result<void> Simulation::make_devices_of(ModelId model, std::vector<std::string>& notes) {
+  auto made = make_devices(*device_world_, model, notes);
+  if (!made) return made.error();
+  for (auto& device : *made) {
+    device->iface().set_resets(resets_);
+    devices_.push_back(std::move(device));
+  }
+  return {};
+}
+
+void Simulation::sort_devices() {
+  std::stable_sort(devices_.begin(), devices_.end(), [](const auto& a, const auto& b) { return a->model() < b->model(); });
+}
+
+void Simulation::step(PartTimes& times) {
+  const Moment moment{time_, world_->physics.step};
+  for (auto& device : devices_) device->before_step(moment);
+  for (const auto& wrench : wrenches_) {
+    if (physics_->exists(wrench.link.model)) (void)physics_->add_wrench(wrench.link, wrench.force, wrench.torque);
+  }
+  times.mark(Part::commands);
+  physics_->step();
+  ++steps_;
+  time_ += step_;
+  std::erase_if(wrenches_, [&](const Wrench& wrench) { return wrench.until <= time_; });
+  times.mark(Part::physics);
+  const Moment after{time_, world_->physics.step};
+  for (auto& device : devices_) device->after_step(after);
+  if (steps_ % 16 == 0) follow_trails();
+  times.mark(Part::commands);
+}
+
+void Simulation::sense(PartTimes& times) {
+  const Moment moment{time_, world_->physics.step};
+  due_.clear();
+  bool needs_rays = false;
+  for (auto& device : devices_) {
+    if (!device->wants_sample(moment)) continue;
+    due_.push_back(device.get());
+    needs_rays = needs_rays || device->uses_rays();
+  }
+  if (due_.empty()) return times.mark(Part::sensors);
+  active_sensors_ = std::max(active_sensors_, static_cast<std::uint32_t>(due_.size()));
+  if (needs_rays) {
+    rays_->update();
+    times.mark(Part::rays);
+    // Each in its own buffers; what is drawn at random comes from streams of their own.
+    pool_.run(due_.size(), [&](std::size_t i) { due_[i]->measure(moment); });
+  } else {
+    for (auto* device : due_) device->measure(moment);
+  }
+  times.mark(Part::sensors);
+  for (auto* device : due_) device->publish(moment);
+  times.mark(Part::publish);
+}
+
+void Simulation::follow_trails() {
+  trails_.resize(physics_->model_slots());
+  for (ModelId id = 0; id < trails_.size(); ++id) {
+    if (!physics_->exists(id) || physics_->is_static(id)) continue;
+    Trail& trail = trails_[id];
+    const Eigen::Vector3f p = physics_->model_pose(id).translation().cast<float>();
+    if (!trail.points.empty() && (trail.points.back() - p).norm() < trail.spacing) continue;
+    trail.points.push_back(p);
+    if (trail.points.size() < 4096) continue;
+    // Every other point is enough from now on.
+    for (std::size_t i = 0; i < trail.points.size() / 2; ++i) trail.points[i] = trail.points[2 * i];
+    trail.points.resize(trail.points.size() / 2);
+    trail.spacing *= 2;
+  }
+}
+
+base::Result<void> Simulation::reset(std::vector<std::string>& notes) {
+  std::vector<bool> was_there(initial_models_, false);
+  for (ModelId id = 0; id < physics_->model_slots(); ++id) {
+    if (!physics_->exists(id)) continue;
+    if (id < initial_models_) {
+      was_there[id] = true;
+    } else {
+      rays_->remove(id);
+    }
+  }
+  std::erase_if(devices_, [&](const auto& device) { return device->model() >= initial_models_; });
+  physics_->reset();
+  wrenches_.clear();
+  trails_.clear();
+  time_ = std::chrono::nanoseconds(0);
+  steps_ = 0;
+  ++resets_;
+  for (ModelId id = 0; id < initial_models_; ++id) {
+    if (!physics_->exists(id)) continue;
+    if (was_there[id]) {
+      rays_->moved(id);
+      continue;
+    }
+    rays_->add(id, notes);
+    if (auto made = make_devices_of(id, notes); !made) return made;
+  }
+  sort_devices();
+  rays_->update();
+  for (auto& device : devices_) {
+    device->reset();
+    device->iface().set_resets(resets_);
+  }
+  return {};
+}
+
+void Simulation::reset_poses() {
+  physics_->reset_poses();
+  for (ModelId id = 0; id < physics_->model_slots(); ++id) {
+    if (physics_->exists(id)) rays_->moved(id);
+  }
+  for (auto& device : devices_) device->reset();
+  wrenches_.clear();
+}
+
+base::Result<ModelId> Simulation::spawn(const ModelDef& model, std::vector<std::string>& notes) {
+  const auto id = physics_->spawn(std::make_shared<const ModelDef>(model), notes);
+  if (!id) return id;
+  rays_->add(*id, notes);
+  if (auto made = make_devices_of(*id, notes); !made) {
+    remove(*id);
+    return made.error();
+  }
+  sort_devices();
+  return id;
+}
+
+void Simulation::remove(ModelId model) {
+  std::erase_if(devices_, [&](const auto& device) { return device->model() == model; });
+  std::erase_if(wrenches_, [&](const Wrench& wrench) { return wrench.link.model == model; });
+  if (model < trails_.size()) trails_[model] = Trail();
+  rays_->remove(model);
+  physics_->remove(model);
+}
+
+base::Result<void> Simulation::set_pose(ModelId model, const Eigen::Isometry3d& pose) {
+  auto done = physics_->set_model_pose(model, pose);
+  if (done) rays_->moved(model);
+  return done;
+}
+
+base::Result<void> Simulation::add_wrench(LinkId link, const Eigen::Vector3d& force, const Eigen::Vector3d& torque,
+                                          std::chrono::nanoseconds duration) {
+  if (!physics_->can_move(link)) return base::Error{"model " + physics_->def(link.model).name + ": cannot move"};
+  if (!force.allFinite() || !torque.allFinite() || force.cwiseAbs().maxCoeff() > 1e7 || torque.cwiseAbs().maxCoeff() > 1e7) {
+    return base::Error{"model " + physics_->def(link.model).name + ": force and torque must be finite and below 1e7"};
+  }
+  wrenches_.push_back({link, force, torque, time_ + std::max(duration, step_)});
+  return {};
+}
+
+std::uint64_t Simulation::hash() const {
+  StateHash hash;
+  hash.add(options_.seed);
+  hash.add(static_cast<std::uint64_t>(time_.count()));
+  physics_->add_to(hash);
+  for (const auto& device : devices_) device->add_to(hash);
+  return hash.value();
+}
+
+Device* Simulation::device(std::string_view iface_name) {
+  for (auto& device : devices_) {
+    if (device->iface().name() == iface_name && device->iface().type() != shm::IfaceType::truth) return device.get();
+  }
+  return nullptr;
+}
+
+std::uint32_t Simulation::take_active_sensors() { return std::exchange(active_sensors_, 0); }
+
+}  // namespace sim

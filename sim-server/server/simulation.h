@@ -1,0 +1,97 @@
+// A running world: physics, rays and devices as one, without the loop, the clock on the wall and the requests around it. The stepping
+// thread only.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "devices/device.h"
+#include "devices/ray_world.h"
+#include "physics/physics.h"
+#include "server/statistics.h"
+#include "shm/writer.h"
+
+namespace sim {
+
+struct SimulationOptions {
+  std::uint64_t seed = 1;
+  int threads = 1;
+};
+
+// Places a moving model has been, for pictures [m].
+struct Trail {
+  std::vector<Eigen::Vector3f> points;
+  float spacing = 0.05F;
+};
+
+class Simulation {
+ public:
+  // Notes are about what runs in another way than written, `dropped` about what does not run. Fails when ifaces cannot be made.
+  static base::Result<std::unique_ptr<Simulation>> create(std::shared_ptr<const WorldDef> world, shm::Server& shm,
+                                                          const SimulationOptions& options, std::vector<std::string>& notes,
+                                                          std::vector<std::string>& dropped);
+
+  std::chrono::nanoseconds time() const { return time_; }
+  std::chrono::nanoseconds step_length() const { return step_; }
+  std::uint64_t steps() const { return steps_; }
+  std::uint32_t resets() const { return resets_; }
+
+  // Commands, physics, encoders; time goes on by a step.
+  void step(PartTimes& times);
+  // Sensors that are due measure and publish.
+  void sense(PartTimes& times);
+
+  // As at the start, to the bit. The ifaces stay.
+  base::Result<void> reset(std::vector<std::string>& notes);
+  void reset_poses();
+  base::Result<ModelId> spawn(const ModelDef& model, std::vector<std::string>& notes);
+  void remove(ModelId model);
+  base::Result<void> set_pose(ModelId model, const Eigen::Isometry3d& pose);
+  // For `duration` from the next step on; at least one step.
+  base::Result<void> add_wrench(LinkId link, const Eigen::Vector3d& force, const Eigen::Vector3d& torque,
+                                std::chrono::nanoseconds duration);
+
+  std::uint64_t hash() const;
+  Physics& physics() { return *physics_; }
+  const Physics& physics() const { return *physics_; }
+  RayWorld& rays() { return *rays_; }
+  const WorldDef& world() const { return *world_; }
+  const std::vector<std::unique_ptr<Device>>& devices() const { return devices_; }
+  Device* device(std::string_view iface_name);
+  const std::vector<Trail>& trails() const { return trails_; }  // by ModelId
+  // Devices that have worked since the last call.
+  std::uint32_t take_active_sensors();
+
+ private:
+  Simulation(std::shared_ptr<const WorldDef> world, shm::Server& shm, const SimulationOptions& options);
+  base::Result<void> make_devices_of(ModelId model, std::vector<std::string>& notes);
+  void sort_devices();
+  void follow_trails();
+
+  struct Wrench {
+    LinkId link;
+    Eigen::Vector3d force, torque;
+    std::chrono::nanoseconds until;
+  };
+
+  std::shared_ptr<const WorldDef> world_;
+  SimulationOptions options_;
+  WorkerPool pool_;
+  TriangleCache triangles_;
+  std::unique_ptr<Physics> physics_;
+  std::unique_ptr<RayWorld> rays_;
+  std::unique_ptr<DeviceWorld> device_world_;
+  std::vector<std::unique_ptr<Device>> devices_;  // by model, then as made
+  std::vector<Device*> due_;
+  std::vector<Wrench> wrenches_;
+  std::vector<Trail> trails_;
+  std::size_t initial_models_ = 0;
+  std::chrono::nanoseconds step_, time_{0};
+  std::uint64_t steps_ = 0;
+  std::uint32_t resets_ = 0, active_sensors_ = 0;
+};
+
+}  // namespace sim
