@@ -21,6 +21,19 @@ void futex_wait(const std::uint32_t& word, std::uint32_t expected, std::chrono::
 
 void futex_wake(const std::uint32_t& word, int count) { syscall(SYS_futex, &word, FUTEX_WAKE, count, nullptr, nullptr, 0); }
 
+void futex_wait_bits(const std::uint32_t& word, std::uint32_t expected, std::uint32_t bits,
+                     std::chrono::steady_clock::time_point deadline) {
+  const std::int64_t end = std::chrono::duration_cast<std::chrono::nanoseconds>(deadline.time_since_epoch()).count();
+  timespec time{};  // CLOCK_MONOTONIC, which is what steady_clock shows
+  time.tv_sec = static_cast<time_t>(end / 1'000'000'000);
+  time.tv_nsec = static_cast<long>(end % 1'000'000'000);
+  syscall(SYS_futex, &word, FUTEX_WAIT_BITSET, expected, &time, nullptr, bits);
+}
+
+void futex_wake_bits(const std::uint32_t& word, std::uint32_t bits) {
+  syscall(SYS_futex, &word, FUTEX_WAKE_BITSET, INT_MAX, nullptr, nullptr, bits);
+}
+
 void announce(std::uint32_t& waiting) { store(waiting, 1U, std::memory_order_seq_cst); }  // pairs with the load in ring
 
 void ring(std::uint32_t& word, std::uint32_t& waiting) {

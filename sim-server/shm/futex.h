@@ -11,6 +11,10 @@ void futex_wait(const std::uint32_t& word, std::uint32_t expected, std::chrono::
 // Wakes at most `count` sleepers.
 void futex_wake(const std::uint32_t& word, int count);
 
+// Sleepers on one word that are told apart by bits: a wake reaches those whose bits are among `bits`.
+void futex_wait_bits(const std::uint32_t& word, std::uint32_t expected, std::uint32_t bits, std::chrono::steady_clock::time_point deadline);
+void futex_wake_bits(const std::uint32_t& word, std::uint32_t bits);
+
 // Sleep and wake without a system call when nobody sleeps. The sleeper:
 //   announce(waiting); if (the news are not there yet) futex_wait(word, value seen before, ...)
 // the waker, after it stored the news: ring(word, waiting). The flag mends itself when a sleeper dies: the next ring clears it.

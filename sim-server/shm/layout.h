@@ -132,7 +132,7 @@ static_assert(sizeof(ImuInfo) == 208 && sizeof(ImuSample) == 112 && sizeof(GpsIn
 static_assert(sizeof(BumperInfo) == 200 && sizeof(Contact) == 192 && sizeof(BumperSample) == 40);
 static_assert(sizeof(TruthInfo) == 128 && sizeof(TruthSample) == 136);
 static_assert(sizeof(RequestBody) == 408 && sizeof(ReplyBody) == 416 && sizeof(RequestSlot) == 1024 && offsetof(RequestSlot, body) == 64);
-static_assert(sizeof(Control) == 128 && offsetof(Control, pending) == 64);
+static_assert(sizeof(Control) == 192 && offsetof(Control, pending) == 64 && offsetof(Control, tick_words) == 128);
 static_assert(sizeof(ParticipantSlot) == 256 && offsetof(ParticipantSlot, go) == 128 && offsetof(ParticipantSlot, done) == 192);
 
 }  // namespace shm

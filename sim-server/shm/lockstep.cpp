@@ -40,6 +40,14 @@ void wake_server(Control& control) {
   if (load(control.server_waiting, std::memory_order_seq_cst) != 0) futex_wake(control.server_word, 1);  // pairs with Barrier's wait
 }
 
+std::uint32_t& tick_word(Control& control, std::size_t index) { return control.tick_words[index / 32 % RTMSIM_TICK_WORDS]; }
+constexpr std::uint32_t tick_bit(std::size_t index) { return 1U << index % 32; }
+
+void wake_participant(Control& control, std::size_t index) {
+  word(tick_word(control, index)).fetch_add(1, std::memory_order_seq_cst);
+  futex_wake_bits(tick_word(control, index), tick_bit(index));
+}
+
 void change_participants(const Segment& segment) {
   Control& control = control_of(segment);
   word(control.participant_epoch).fetch_add(1, std::memory_order_acq_rel);
@@ -95,6 +103,7 @@ struct Barrier::State {
   bool remove_if_gone(Member& member);
   void drop(const Member& member, std::uint32_t why);
   void release(Member& member, std::int64_t now, std::uint64_t steps);
+  void wake(std::span<Member* const> group);
   bool run_phase(std::span<Member*> group, std::int64_t now, std::uint64_t steps);
   bool wait_for(std::span<Member*> group);
   void look_for_hangs(std::span<Member*> group, nanoseconds waited);
@@ -108,7 +117,7 @@ Barrier::Barrier(IfaceWriter& simulation, Server& server, BarrierOptions options
 Barrier::~Barrier() {
   state_->server.watch().on_death({});
   store(state_->segment.header().state, static_cast<std::uint32_t>(RTMSIM_STATE_CLOSED));
-  for (const auto& member : state_->members) futex_wake(state_->slot(member).go, 1);
+  for (const auto& member : state_->members) wake_participant(state_->control(), member.index);
 }
 
 void Barrier::State::schedule_all() {
@@ -133,7 +142,7 @@ void Barrier::State::take_in(std::size_t index) {
   store(slot.error, is_good ? 0U : static_cast<std::uint32_t>(RTMSIM_DROPPED_REFUSED));
   const auto wanted = static_cast<std::uint32_t>(is_good ? RTMSIM_PARTICIPANT_ACTIVE : RTMSIM_PARTICIPANT_DROPPED);
   if (!word(slot.state).compare_exchange_strong(joining, wanted, std::memory_order_acq_rel)) return;  // it left again
-  futex_wake(slot.go, 1);
+  wake_participant(control(), index);
   if (!is_good) return;
   const auto place =
       std::upper_bound(members.begin(), members.end(), member.phase, [](std::uint32_t phase, const Member& m) { return phase < m.phase; });
@@ -188,7 +197,7 @@ void Barrier::State::drop(const Member& member, std::uint32_t why) {
   ParticipantSlot& mine = slot(member);
   store(mine.error, why);
   store(mine.state, static_cast<std::uint32_t>(RTMSIM_PARTICIPANT_DROPPED));
-  futex_wake(mine.go, 1);
+  wake_participant(control(), member.index);
   tell(BarrierEvent::Kind::dropped, member);
 }
 
@@ -204,7 +213,21 @@ void Barrier::State::release(Member& member, std::int64_t now, std::uint64_t ste
   member.next_due = multiple_from(now + 1, member.period);
   if (++member.go == 0) member.go = 1;
   store(mine.go, member.go, std::memory_order_seq_cst);  // pairs with the load in Participant::wait; publishes the tick
-  if (load(mine.sleeping, std::memory_order_seq_cst) != 0) futex_wake(mine.go, 1);
+}
+
+// One system call for up to 32 sleepers, which also keeps the first of them from taking the processor away from us before the others
+// are awake.
+void Barrier::State::wake(std::span<Member* const> group) {
+  std::array<std::uint32_t, RTMSIM_TICK_WORDS> bits{};
+  for (const Member* member : group) {
+    if (load(slot(*member).sleeping, std::memory_order_seq_cst) == 0) continue;  // pairs with the store in Participant::wait
+    bits[member->index / 32 % RTMSIM_TICK_WORDS] |= tick_bit(member->index);
+  }
+  for (std::size_t i = 0; i < bits.size(); ++i) {
+    if (bits[i] == 0) continue;
+    word(control().tick_words[i]).fetch_add(1, std::memory_order_seq_cst);
+    futex_wake_bits(control().tick_words[i], bits[i]);
+  }
 }
 
 void Barrier::State::look_for_hangs(std::span<Member*> group, nanoseconds waited) {
@@ -224,8 +247,8 @@ void Barrier::State::look_for_hangs(std::span<Member*> group, nanoseconds waited
 // Members that die, leave or are dropped meanwhile get owner 0; the caller removes them. False when on_waiting wants to end.
 bool Barrier::State::wait_for(std::span<Member*> group) {
   Control& shared = control();
-  const auto start = steady_clock::now();
-  auto last_look = start;
+  steady_clock::time_point start, last_look;
+  int sleeps = 0;
   std::uint64_t deaths = seen_deaths;
   const auto let_go = [&] {
     for (Member* member : group) {
@@ -240,14 +263,19 @@ bool Barrier::State::wait_for(std::span<Member*> group) {
     }
     const bool is_over = std::all_of(group.begin(), group.end(), [this](const Member* m) { return m->owner == 0 || is_done(*m); });
     if (is_over) break;
+    // The clock is read only when one sleep was not enough.
+    if (++sleeps == 2) {
+      start = last_look = steady_clock::now();
+    } else if (sleeps > 2) {
+      if (const auto now = steady_clock::now(); now - last_look >= server_slice) {
+        last_look = now;
+        let_go();
+        look_for_hangs(group, now - start);
+        if (options.on_waiting && !options.on_waiting()) return false;
+      }
+    }
     store(shared.server_waiting, 1U, std::memory_order_seq_cst);  // pairs with wake_server
     futex_wait(shared.server_word, seen, server_slice);
-    const auto now = steady_clock::now();
-    if (now - last_look < server_slice) continue;
-    last_look = now;
-    let_go();
-    look_for_hangs(group, now - start);
-    if (options.on_waiting && !options.on_waiting()) return false;
   }
   for (Member* member : group) member->is_hanging = member->is_hanging && member->owner != 0 && !is_done(*member);
   return true;
@@ -258,6 +286,7 @@ bool Barrier::State::run_phase(std::span<Member*> group, std::int64_t now, std::
     for (Member* member : group) {
       if (is_done(*member)) {
         release(*member, now, steps);
+        wake({&member, 1});
         continue;
       }
       member->next_due = multiple_from(now + 1, member->period);
@@ -270,6 +299,7 @@ bool Barrier::State::run_phase(std::span<Member*> group, std::int64_t now, std::
   store(control().server_waiting, 1U, std::memory_order_relaxed);
   store(control().pending, static_cast<std::int32_t>(group.size()), std::memory_order_seq_cst);
   for (Member* member : group) release(*member, now, steps);
+  wake(group);
   const bool is_over = wait_for(group);
   store(control().server_waiting, 0U, std::memory_order_relaxed);
   return is_over;
@@ -367,7 +397,7 @@ struct Participant::Impl {
   std::uint64_t owner = 0;
   std::uint32_t last_go = 0;
   bool is_in_tick = false;
-  steady_clock::time_point tick_start;
+  steady_clock::time_point tick_start, check_at;  // check_at: when to look next whether the server lives
   std::uint64_t ticks = 0;
   std::int64_t total = 0, max = 0;
   std::atomic<bool> is_interrupted{false};
@@ -375,6 +405,7 @@ struct Participant::Impl {
   ParticipantSlot& slot() const { return slot_at(simulation.segment(), index); }
   bool is_ours() const { return load(slot().owner) == owner; }
   base::Result<void> take_slot(const ParticipantOptions& options);
+  void finish(steady_clock::time_point now);
   void leave();
 };
 
@@ -451,36 +482,41 @@ base::Result<Participant> Participant::join(std::uint32_t server_id, const Parti
   return Participant(std::move(impl));
 }
 
-void Participant::finish() {
-  Impl& impl = *impl_;
-  if (!impl.is_in_tick) return;
-  impl.is_in_tick = false;
-  if (!impl.is_ours()) return;
-  ParticipantSlot& mine = impl.slot();
-  const std::int64_t took = std::chrono::duration_cast<nanoseconds>(steady_clock::now() - impl.tick_start).count();
-  impl.total += took;
-  impl.max = std::max(impl.max, took);
-  store(mine.ticks, ++impl.ticks, std::memory_order_relaxed);
-  store(mine.total_ns, impl.total, std::memory_order_relaxed);
-  store(mine.max_ns, impl.max, std::memory_order_relaxed);
-  store(mine.done, impl.last_go, std::memory_order_seq_cst);  // pairs with Barrier's is_done
-  Control& control = control_of(impl.simulation.segment());
+void Participant::Impl::finish(steady_clock::time_point now) {
+  if (!is_in_tick) return;
+  is_in_tick = false;
+  if (!is_ours()) return;
+  ParticipantSlot& mine = slot();
+  const std::int64_t took = std::chrono::duration_cast<nanoseconds>(now - tick_start).count();
+  total += took;
+  max = std::max(max, took);
+  store(mine.ticks, ++ticks, std::memory_order_relaxed);
+  store(mine.total_ns, total, std::memory_order_relaxed);
+  store(mine.max_ns, max, std::memory_order_relaxed);
+  store(mine.done, last_go, std::memory_order_seq_cst);  // pairs with Barrier's is_done
+  Control& control = control_of(simulation.segment());
   if (word(control.pending).fetch_sub(1, std::memory_order_seq_cst) <= 1) wake_server(control);
 }
 
+void Participant::finish() { impl_->finish(steady_clock::now()); }
+
 Participant::State Participant::wait(Tick& tick, nanoseconds timeout) {
   Impl& impl = *impl_;
-  finish();
+  const Segment& segment = impl.simulation.segment();
   ParticipantSlot& mine = impl.slot();
-  const auto deadline = steady_clock::now() + timeout;
+  const std::uint32_t& shared = tick_word(control_of(segment), impl.index);
+  auto now = steady_clock::now();  // read once per sleep
+  impl.finish(now);
+  const auto deadline = now + timeout;
   while (true) {
-    if (impl.simulation.status() != Status::live) return State::closed;
+    if (load(segment.header().state) != RTMSIM_STATE_LIVE) return State::closed;
     if (!impl.is_ours() || load(mine.state) == RTMSIM_PARTICIPANT_DROPPED) {
       impl.leave();
       return State::dropped;
     }
-    if (impl.is_interrupted.exchange(false)) return State::timed_out;
-    store(mine.sleeping, 1U, std::memory_order_seq_cst);  // pairs with the load in Barrier's release
+    if (impl.is_interrupted.load(std::memory_order_relaxed) && impl.is_interrupted.exchange(false)) return State::timed_out;
+    store(mine.sleeping, 1U, std::memory_order_seq_cst);  // pairs with the load in Barrier's wake
+    const std::uint32_t seen = load(shared, std::memory_order_seq_cst);
     const std::uint32_t go = load(mine.go, std::memory_order_seq_cst);
     if (go != impl.last_go && load(mine.state) == RTMSIM_PARTICIPANT_ACTIVE) {
       constexpr auto relaxed = std::memory_order_relaxed;
@@ -489,13 +525,20 @@ Participant::State Participant::wait(Tick& tick, nanoseconds timeout) {
               load(mine.resets, relaxed)};
       impl.last_go = go;
       impl.is_in_tick = true;
-      impl.tick_start = steady_clock::now();
+      impl.tick_start = now;
       return State::tick;
     }
-    const nanoseconds left = deadline - steady_clock::now();
-    if (left.count() > 0) futex_wait(mine.go, go, std::min(left, client_slice));
+    if (now >= deadline) {
+      store(mine.sleeping, 0U, std::memory_order_relaxed);
+      return State::timed_out;
+    }
+    if (now >= impl.check_at) {
+      impl.check_at = now + client_slice;
+      if (impl.simulation.status() != Status::live) return State::closed;
+    }
+    futex_wait_bits(shared, seen, tick_bit(impl.index), std::min(deadline, impl.check_at));
     store(mine.sleeping, 0U, std::memory_order_relaxed);
-    if (left.count() <= 0) return State::timed_out;
+    now = steady_clock::now();
   }
 }
 
@@ -507,7 +550,7 @@ bool Participant::is_active() const { return impl_->is_ours() && load(impl_->slo
 
 void Participant::interrupt() {
   impl_->is_interrupted.store(true);
-  if (impl_->is_ours()) futex_wake(impl_->slot().go, 1);
+  if (impl_->is_ours()) wake_participant(control_of(impl_->simulation.segment()), impl_->index);
 }
 
 }  // namespace shm

@@ -11,8 +11,9 @@
 // `active`, `dropped`, `free`. The server keeps private copies of everything it needs; what a client scribbles can at worst make its own
 // tick count as finished, or cost the server one waiting slice (10 ms).
 //
-// A tick at time t: for each phase in ascending order the server releases all participants of that phase that are due (go = tick number,
-// one futex each), and waits until each has stored done = go. Nobody else is woken. Due times are the multiples of the period since time 0,
+// A tick at time t: for each phase in ascending order the server releases all participants of that phase that are due (go = tick
+// number) and wakes them with one system call, and waits until each has stored done = go. Nobody else is woken: sleepers share a futex word
+// and are told apart by its bit sets. Due times are the multiples of the period since time 0,
 // so they do not depend on when somebody joined; a tick happens at the first step at or after the due time, without drift.
 //
 // Failures:

@@ -20,6 +20,7 @@ extern "C" {
 #define RTMSIM_NAME_SIZE 224 /* iface names have at most 200 characters */
 #define RTMSIM_HOLDS 4       /* frames that one client can hold at a time */
 #define RTMSIM_PARTS 12
+#define RTMSIM_TICK_WORDS 4
 #define RTMSIM_TEXT_PIECE 16384 /* longer texts of requests and replies travel in pieces */
 
 /* Iface types; the name in brackets is the one in the segment's name. */
@@ -445,6 +446,8 @@ typedef struct {
   uint32_t server_word;    /* [atomic] futex: the server sleeps on it during a tick */
   uint32_t server_waiting; /* [atomic] */
   uint32_t reserved1[13];
+  uint32_t tick_words[RTMSIM_TICK_WORDS]; /* [atomic] futexes: the participant in slot i sleeps on tick_words[i / 32 % 4] with bit i % 32 */
+  uint32_t reserved2[12];
 } rtmsim_control;
 
 enum {
@@ -463,11 +466,11 @@ typedef struct {
   uint32_t phase;
   int64_t period_ns; /* [atomic] may change at any time; taken over at the next tick */
   char name[64];
-  uint32_t state; /* [atomic] futex too: the participant waits here for ACTIVE */
+  uint32_t state; /* [atomic] RTMSIM_PARTICIPANT_* */
   uint32_t error; /* why the server refused or dropped it: RTMSIM_DROPPED_* */
   uint8_t reserved0[24];
   /* written by the server */
-  uint32_t go;     /* [atomic] futex; number of the tick to do; 0 = none yet */
+  uint32_t go;     /* [atomic] number of the tick to do; 0 = none yet */
   uint32_t resets; /* [atomic] of the world */
   int64_t now_ns;  /* [atomic] simulated time of that tick */
   int64_t due_ns;  /* [atomic] when it was due; now_ns - due_ns is less than a step */
@@ -476,7 +479,7 @@ typedef struct {
   uint8_t reserved1[24];
   /* written by the participant */
   uint32_t done;     /* [atomic] number of the tick it has finished */
-  uint32_t sleeping; /* [atomic] 1 before it sleeps on go */
+  uint32_t sleeping; /* [atomic] 1 before it sleeps on its tick word */
   uint64_t ticks;    /* [atomic] finished */
   int64_t total_ns;  /* [atomic] wall time of all of them */
   int64_t max_ns;    /* [atomic] */
