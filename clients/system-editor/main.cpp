@@ -7,6 +7,7 @@
 #include "base/command_line.h"
 #include "base/text.h"
 #include "editor.h"
+#include "run_system.h"
 #include "skeleton.h"
 
 namespace {
@@ -203,6 +204,28 @@ void add_systems(CLI::App& app, Work& work) {
   check->callback([&work, file, state] { work = [=](Editor& e) { editor::check_system(e, *file, *state); }; });
 }
 
+void add_run(CLI::App& app, Work& work) {
+  auto* run = app.add_subcommand("run", "Run a saved system against a simulated world in lock step, and judge it");
+  auto options = std::make_shared<editor::RunOptions>();
+  auto seeds = std::make_shared<std::string>();
+  auto jobs = std::make_shared<int>(1);
+  run->add_option("SYSTEM", options->system, "RTSProfile, XML or YAML")->required()->check(CLI::ExistingFile);
+  run->add_option("-w,--world", options->world, "SDFormat world")->required()->check(CLI::ExistingFile);
+  run->add_option("-d,--duration", options->duration_s, "Simulated seconds")->check(CLI::Range(0.001, 1e7))->capture_default_str();
+  run->add_option("-x,--expect", options->expectations, "Expectations, YAML")->check(CLI::ExistingFile);
+  run->add_option("--seed", options->seed, "Seed of the world's noise")->capture_default_str();
+  run->add_option("--seeds", *seeds, "A run for each seed FIRST..LAST");
+  run->add_option("-j,--jobs", *jobs, "So many seeds at a time")->check(CLI::Range(1, 64))->capture_default_str();
+  run->add_flag("--one-process-each", options->one_process_each, "A process for every component instead of one for all");
+  run->add_flag("--realtime", options->in_real_time, "No faster than real time");
+  run->add_option("--module-path", options->module_paths, "Folder with modules of components")->allow_extra_args(false);
+  run->add_option("--resource-path", options->resource_paths, "Folder with models")->allow_extra_args(false);
+  run->add_option("--junit", options->junit, "Write the verdicts as JUnit XML");
+  run->add_option("--picture", options->picture, "Write the world at the end as PNG");
+  run->add_option("--keep", options->keep, "Keep logs and the record in this folder");
+  run->callback([&work, options, seeds, jobs] { work = [=](Editor& e) { editor::run(e, *options, *seeds, *jobs); }; });
+}
+
 void add_managers(CLI::App& app, Work& work) {
   auto* mgr = app.add_subcommand(
       "mgr", "Talk to a manager: mgr list | create TYPE[?key=value&...] | delete INSTANCE | load FILE [INIT] | unload FILE");
@@ -239,6 +262,7 @@ int main(int argc, char** argv) {
   add_data(app, work);
   add_systems(app, work);
   add_managers(app, work);
+  add_run(app, work);
   editor::add_new_command(app, code);
   if (const auto end = base::parse_command_line(app, "rtse", argc, argv)) return *end;
   if (!work) return code;  // done without an ORB

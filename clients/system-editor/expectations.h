@@ -1,0 +1,73 @@
+// What a run of a system must fulfil, as a YAML file says it, and the verdict on what was seen. Pure but for reading files; any thread.
+//
+//   - path_length: {model: pioneer2dx, min: 10, max: 40}                      metres
+//   - reach: {model: pioneer2dx, region: [3, 3, 5, 5], within: 60}            corners x1 y1 x2 y2; seconds of simulated time
+//   - stay: {model: pioneer2dx, region: [-6, -6, 6, 6]}
+//   - no_contact: {model: pioneer2dx, except: [ground_plane]}                 what it may touch; default: ground_plane
+//   - value: {port: "LaserObstacleAvoid0:velocity", member: data.vx, min: -0.2, max: 0.2}
+//   - state: {component: RTCLaser0, is: Active}
+//   - command: "./my-check.sh"                                                exit code 0; it finds RTMSIM_RECORD, RTMSIM_SERVER_ID and
+//   RTCTREE_NAMESERVERS
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+
+namespace editor {
+
+struct Expectation {
+  enum class Kind { path_length, reach, stay, no_contact, value, state, command };
+  Kind kind = Kind::command;
+  std::string text;  // the whole expectation in one line, its name in reports
+  std::string model;
+  std::optional<double> min, max;
+  double region[4] = {};
+  double within = 0;  // [s]; 0: the whole run
+  std::vector<std::string> except;
+  std::string port, member;
+  std::string component, state;
+  std::string command;
+};
+
+// The error names the file, the line and what was expected there.
+base::Result<std::vector<Expectation>> read_expectations(const std::string& file);
+
+struct RecordedPose {
+  double time, x, y, z;
+};
+struct RecordedContact {
+  double time;
+  std::string model, other;
+};
+struct Record {
+  std::map<std::string, std::vector<RecordedPose>> poses;
+  std::vector<RecordedContact> contacts;
+};
+// What sim-server --record writes.
+base::Result<Record> read_record(const std::string& file);
+double path_length(const std::vector<RecordedPose>& poses);
+
+struct SeenValue {
+  std::size_t samples = 0;
+  double lowest = 0, highest = 0;
+};
+
+// All that a run has shown.
+struct Seen {
+  Record record;
+  std::map<std::string, SeenValue> values;    // by "port member"
+  std::map<std::string, std::string> states;  // by component
+  std::map<std::string, int> exit_codes;      // by command
+};
+
+struct Verdict {
+  std::string expectation;
+  std::string problem;  // empty: fulfilled
+};
+std::vector<Verdict> judge(const std::vector<Expectation>& expectations, const Seen& seen);
+
+}  // namespace editor
