@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <functional>
+#include <thread>
 #include <utility>
 
 #include "coil/Task.h"
@@ -22,17 +23,19 @@ class AsyncCall final : public Async {
  public:
   AsyncCall(std::function<void()> function, bool auto_delete) : function_(std::move(function)), auto_delete_(auto_delete) {}
 
-  void invoke() override { activate(); }
+  void invoke() override {
+    if (!auto_delete_) return activate();
+    // Nobody waits for this one, so its thread is nobody's: Task's own would still be written to while the call deletes itself.
+    std::thread([this] {
+      svc();
+      delete this;
+    }).detach();
+  }
   bool finished() override { return finished_; }
   int svc() override {
     function_();
     finished_ = true;
     return 0;
-  }
-  // The thread comes here last.
-  void finalize() override {
-    Task::finalize();
-    if (auto_delete_) delete this;
   }
 
  private:

@@ -57,7 +57,10 @@ ConnectorDataListener::ReturnCode ConnectorDataListener::operator()(ConnectorInf
   return code;
 }
 
-ConnectorDataListener::ReturnCode ConnectorDataListener::operator()(ConnectorInfo&, cdrMemoryStream&) { return NO_CHANGE; }
+ConnectorDataListener::ReturnCode ConnectorDataListener::operator()(ConnectorInfo& info, cdrMemoryStream& data) {
+  (*this)(std::as_const(info), std::as_const(data));
+  return NO_CHANGE;
+}
 
 ConnectorDataListener::ReturnCode ConnectorDataListener::notify(ConnectorInfo& info, corba::EventData& data) {
   const auto octets = data.octets();
