@@ -5,11 +5,14 @@ target_sources(openrtm PRIVATE
   rtm/ECFactory.cpp
   rtm/ExecutionContextBase.cpp
   rtm/ExtTrigExecutionContext.cpp
+  rtm/ExtendedFsmServiceProvider.cpp
   rtm/ListenerNames.cpp
   rtm/LocalComponent.cpp
   rtm/LoggerConsumer.cpp
   rtm/MultilayerCompositeEC.cpp
   rtm/OpenHRPExecutionContext.cpp
+  rtm/PeriodicECOrganization.cpp
+  rtm/PeriodicECSharedComposite.cpp
   rtm/PeriodicExecutionContext.cpp
   rtm/RTObject.cpp
   rtm/RTObjectContexts.cpp
@@ -19,4 +22,5 @@ target_sources(openrtm PRIVATE
   rtm/SdoConfiguration.cpp
   rtm/SdoOrganization.cpp
   rtm/SdoServiceAdmin.cpp
-  rtm/SimulatorExecutionContext.cpp)
+  rtm/SimulatorExecutionContext.cpp
+  rtm/StaticFSM.cpp)

@@ -1,0 +1,54 @@
+// The organization behind a PeriodicECSharedComposite: its members leave their own contexts, join the composite's, and lend it their ports.
+// Any thread; one change at a time, members are called without a lock.
+#pragma once
+
+#include <rtm/SdoOrganization.h>
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/workers.h"
+#include "rtm/idl/RTCStub.h"
+
+namespace RTC {
+class RTObject_impl;
+}
+
+namespace SDOPackage {
+
+class PeriodicECOrganization : public Organization_impl {
+ public:
+  // The composite must live until close().
+  explicit PeriodicECOrganization(RTC::RTObject_impl& composite);
+
+  CORBA::Boolean add_members(const SDOList& sdo_list) override;
+  CORBA::Boolean set_members(const SDOList& sdos) override;
+  CORBA::Boolean remove_member(const char* id) override;
+
+  // Makes the ports of that comma list (`<member>.<port>`), and no others, ports of the composite.
+  void export_ports(const std::string& list);
+  // Gives every member back its own life. Later calls from outside find nobody.
+  void close();
+
+  // Asks the composite's context for the members' transitions; without a wait, because that context is the one that would do them.
+  void activate_members();
+  void deactivate_members();
+  void reset_members();
+
+ private:
+  bool join(const Member& member);
+  void leave(const Member& member);
+  void update_ports();
+  template <class Function>
+  void for_each_member(Function function);
+
+  RTC::RTObject_impl& composite_;
+  rt::Turns turns_;
+  bool closed_ = false;  // inside a turn only, as everything below
+  std::set<std::string> wanted_ports_;
+  std::map<std::string, RTC::PortService_var> exported_;  // by full name
+};
+
+}  // namespace SDOPackage

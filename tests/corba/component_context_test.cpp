@@ -1,0 +1,161 @@
+// The execution contexts of components in this process.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rtm/ECFactory.h>
+#include <rtm/ExecutionContextServant.h>
+#include <rtm/idl/OpenRTMSkel.h>
+
+#include "base/clock.h"
+#include "support/component_fixture.h"
+
+namespace {
+
+using namespace std::chrono_literals;
+using support::ComponentTest;
+using support::first_context;
+using support::Owned;
+
+using ComponentContextTest = ComponentTest;
+
+TEST_F(ComponentContextTest, has_the_contexts_that_its_properties_name) {
+  probe->getProperties()["execution_contexts"] = "PeriodicExecutionContext(fast), ExtTrigExecutionContext(hand)";
+  probe->getProperties()["ec.PeriodicExecutionContext.rate"] = "10";
+  probe->getProperties()["ec.fast.rate"] = "250";
+  ASSERT_EQ(probe->initialize(), RTC::RTC_OK);
+  RTC::ExecutionContextList_var contexts = probe->get_owned_contexts();
+  ASSERT_EQ(contexts->length(), 2u);
+  EXPECT_EQ(contexts[0u]->get_rate(), 250);
+  EXPECT_EQ(probe->get_context_handle(contexts[1u]), 1);
+  EXPECT_TRUE(probe->is_alive(contexts[1u]));
+  OpenRTM::ExtTrigExecutionContextService_var trigger = OpenRTM::ExtTrigExecutionContextService::_narrow(contexts[1u]);
+  ASSERT_FALSE(CORBA::is_nil(trigger));
+  ASSERT_EQ(probe->activate(1), RTC::RTC_OK);
+  for (int i = 0; i < 100; ++i) trigger->tick();
+  EXPECT_TRUE(probe->wait_for("onStateUpdate", 100));
+  EXPECT_EQ(probe->count("onExecute"), 100);
+}
+
+TEST_F(ComponentContextTest, components_share_a_context_of_the_same_type_and_name) {
+  Owned<> a(nullptr, "SharedA"), b(nullptr, "SharedB");
+  for (auto* one : {&*a, &*b}) {
+    one->getProperties()["execution_contexts"] = "PeriodicExecutionContext(together)";
+    ASSERT_EQ(one->initialize(), RTC::RTC_OK);
+  }
+  RTC::ExecutionContext_var of_a = first_context(*a);
+  RTC::ExecutionContext_var of_b = first_context(*b);
+  EXPECT_TRUE(of_a->_is_equivalent(of_b));
+  EXPECT_EQ(b->activate(0), RTC::RTC_OK);
+  EXPECT_EQ(a->exit(), RTC::RTC_OK);
+  EXPECT_TRUE(of_b->is_running());
+  EXPECT_TRUE(b->wait_for("onExecute", b->count("onExecute") + 2));
+}
+
+TEST_F(ComponentContextTest, may_have_none) {
+  probe->getProperties()["execution_contexts"] = "none";
+  ASSERT_EQ(probe->initialize(), RTC::RTC_OK);
+  RTC::ExecutionContextList_var contexts = probe->get_owned_contexts();
+  EXPECT_EQ(contexts->length(), 0u);
+}
+
+TEST_F(ComponentContextTest, does_not_live_in_one_of_unknown_type) {
+  probe->getProperties()["exec_cxt.periodic.type"] = "NoSuchContext";
+  EXPECT_EQ(probe->initialize(), RTC::RTC_ERROR);
+}
+
+TEST_F(ComponentContextTest, a_tick_of_the_synchronous_one_returns_after_the_cycle) {
+  for (const char* type : {"OpenHRPExecutionContext", "SimulatorExecutionContext"}) {
+    Owned<> stepped(nullptr, "Stepped0");
+    stepped->getProperties()["execution_contexts"] = type;
+    ASSERT_EQ(stepped->initialize(), RTC::RTC_OK);
+    ASSERT_EQ(stepped->activate(0), RTC::RTC_OK);
+    EXPECT_EQ(stepped->count("onActivated"), 1);
+    EXPECT_EQ(stepped->count("onExecute"), 0);
+    RTC::ExecutionContext_var context = first_context(*stepped);
+    OpenRTM::ExtTrigExecutionContextService_var trigger = OpenRTM::ExtTrigExecutionContextService::_narrow(context);
+    trigger->tick();
+    trigger->tick();
+    EXPECT_EQ(stepped->count("onExecute"), 2);
+    EXPECT_EQ(stepped->thread_of("onExecute"), std::this_thread::get_id());
+    EXPECT_EQ(stepped->deactivate(0), RTC::RTC_OK);
+    EXPECT_EQ(stepped->count("onDeactivated"), 1);
+  }
+}
+
+// What authors of contexts write: a clock of their own, and a cycle when they want one.
+class ManualContext final : public RTC::ExecutionContextServant<POA_RTC::ExecutionContextService> {
+ public:
+  ManualContext() : ExecutionContextServant("manual_ec") { setObjRef(RTC::ExecutionContextService_var(_this())); }
+  void cycle() {
+    now.advance(10ms);
+    invokeWorkerPreDo();
+    invokeWorkerDo();
+    invokeWorkerPostDo();
+  }
+  base::ManualClock now;
+
+ protected:
+  const base::Clock& contextClock() const override { return now; }
+  RTC::ReturnCode_t onWaitingActivated(RTC_impl::RTObjectStateMachine* comp, long int) override {
+    EXPECT_TRUE(comp->isCurrentState(RTC::INACTIVE_STATE));
+    EXPECT_TRUE(comp->isNextState(RTC::ACTIVE_STATE));
+    EXPECT_TRUE(isAllNextState(RTC::ACTIVE_STATE));
+    cycle();
+    return RTC::RTC_OK;
+  }
+};
+
+TEST_F(ComponentContextTest, authors_may_bring_one_with_a_clock_of_its_own) {
+  RTC::ExecutionContextFactory::instance().addFactory("ManualContext", coil::Creator<RTC::ExecutionContextBase, ManualContext>,
+                                                      coil::Destructor<RTC::ExecutionContextBase, ManualContext>);
+  Owned<> simulated(nullptr, "Simulated0");
+  simulated->getProperties()["execution_contexts"] = "ManualContext";
+  ASSERT_EQ(simulated->initialize(), RTC::RTC_OK);
+  std::chrono::nanoseconds seen{};
+  simulated->during = [&](const std::string& callback) {
+    if (callback == "onExecute") seen = base::current_clock().now();
+  };
+  ASSERT_EQ(simulated->activate(0), RTC::RTC_OK);
+  EXPECT_EQ(seen, 10ms);
+  dynamic_cast<ManualContext*>(simulated->getOwnContexts().at(0))->cycle();
+  EXPECT_EQ(seen, 20ms);
+  simulated->during = nullptr;
+}
+
+TEST_F(ComponentContextTest, takes_part_in_the_one_of_another_component) {
+  probe->initialize();
+  Owned<> guest(nullptr, "Guest0");
+  guest->initialize();
+  RTC::ExecutionContext_var context = first_context(*probe);
+  RTC::RTObject_var self = guest->getObjRef();
+  ASSERT_EQ(context->add_component(self), RTC::RTC_OK);
+  EXPECT_EQ(context->add_component(self), RTC::PRECONDITION_NOT_MET);
+  EXPECT_EQ(guest->get_context_handle(context), 1000);
+  RTC::ExecutionContextList_var contexts = guest->get_participating_contexts();
+  EXPECT_EQ(contexts->length(), 1u);
+  EXPECT_EQ(guest->activate(1000), RTC::RTC_OK);
+  EXPECT_TRUE(guest->wait_for("onExecute", 3));
+  EXPECT_EQ(context->get_component_state(self), RTC::ACTIVE_STATE);
+  RTC::ExecutionContext_var own = first_context(*guest);
+  EXPECT_EQ(own->get_component_state(self), RTC::INACTIVE_STATE) << "a state per context";
+  EXPECT_EQ(context->remove_component(self), RTC::RTC_OK);
+  EXPECT_EQ(context->remove_component(self), RTC::BAD_PARAMETER);
+  EXPECT_EQ(guest->get_context_handle(context), -1);
+  EXPECT_EQ(context->get_component_state(self), RTC::CREATED_STATE);
+}
+
+TEST_F(ComponentContextTest, leaves_foreign_ones_when_it_exits) {
+  probe->initialize();
+  RTC::ExecutionContext_var context = first_context(*probe);
+  {
+    Owned<> guest(nullptr, "Guest1");
+    guest->initialize();
+    RTC::RTObject_var reference = guest->getObjRef();
+    ASSERT_EQ(context->add_component(reference), RTC::RTC_OK);
+    ASSERT_EQ(guest->activate(1000), RTC::RTC_OK);
+  }
+  RTC::ExecutionContextService_var service = RTC::ExecutionContextService::_narrow(context);
+  RTC::ExecutionContextProfile_var profile = service->get_profile();
+  EXPECT_EQ(profile->participants.length(), 0u);
+}
+
+}  // namespace

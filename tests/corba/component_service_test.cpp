@@ -1,0 +1,276 @@
+// What tools attach to components in this process, and composites.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rtm/PeriodicECOrganization.h>
+#include <rtm/StaticFSM.h>
+#include <rtm/SystemLogger.h>
+#include <rtm/idl/ComponentObserverSkel.h>
+#include <rtm/idl/FsmComponentObserverSkel.h>
+#include <rtm/idl/LoggerSkel.h>
+
+#include "support/component_fixture.h"
+
+namespace {
+
+using namespace std::chrono_literals;
+using support::ComponentTest;
+using support::first_context;
+using support::Owned;
+using support::Served;
+using support::service_profile;
+using testing::ElementsAre;
+using testing::SizeIs;
+
+using ComponentServiceTest = ComponentTest;
+
+template <class Skeleton, class Kind>
+class Observer : public Skeleton {
+ public:
+  void update_status(Kind kind, const char* hint) override {
+    std::lock_guard lock(mutex);
+    heard.emplace_back(kind, hint);
+    condition.notify_all();
+  }
+  bool wait_for(Kind kind, const std::string& hint) {
+    std::unique_lock lock(mutex);
+    return condition.wait_for(lock, 60s, [&] { return std::find(heard.begin(), heard.end(), std::pair(kind, hint)) != heard.end(); });
+  }
+  std::mutex mutex;
+  std::condition_variable condition;
+  std::vector<std::pair<Kind, std::string>> heard;
+};
+using OldObserver = Observer<POA_OpenRTM::ComponentObserver, OpenRTM::StatusKind>;
+using NewObserver = Observer<POA_RTC::ComponentObserver, RTC::StatusKind>;
+
+TEST_F(ComponentServiceTest, tells_an_observer_of_the_first_version_everything) {
+  probe->initialize();
+  SDOPackage::Configuration_var configuration = probe->get_configuration();
+  Served<OldObserver> observer;
+  ASSERT_TRUE(configuration->add_service_profile(
+      service_profile("one", "IDL:OpenRTM/ComponentObserver:1.0", observer.reference(),
+                      {{"observed_status", "ALL"}, {"heartbeat.enable", "YES"}, {"heartbeat.interval", "0.02"}})));
+  EXPECT_TRUE(observer->wait_for(OpenRTM::HEARTBEAT, ""));
+  probe->activate(0);
+  EXPECT_TRUE(observer->wait_for(OpenRTM::RTC_STATUS, "ACTIVATED:0"));
+  probe->deactivate(0);
+  EXPECT_TRUE(observer->wait_for(OpenRTM::RTC_STATUS, "DEACTIVATED:0"));
+  set("fail", "onActivated");
+  EXPECT_TRUE(observer->wait_for(OpenRTM::CONFIGURATION, "SET_CONFIG_SET: default"));
+  EXPECT_TRUE(observer->wait_for(OpenRTM::CONFIGURATION, "ACTIVATE_CONFIG_SET: default"));
+  probe->activate(0);
+  EXPECT_TRUE(observer->wait_for(OpenRTM::CONFIGURATION, "UPDATE_CONFIG_PARAM: default.fail"));
+  EXPECT_TRUE(observer->wait_for(OpenRTM::CONFIGURATION, "UPDATE_CONFIG_SET: default"));
+  EXPECT_TRUE(observer->wait_for(OpenRTM::RTC_STATUS, "ABORTING:0"));
+  probe->reset(0);
+  EXPECT_TRUE(observer->wait_for(OpenRTM::RTC_STATUS, "RESET:0"));
+  probe->setExecutionRate(0, 100);
+  EXPECT_TRUE(observer->wait_for(OpenRTM::EC_STATUS, "RATE_CHANGED:0"));
+  RTC::ExecutionContext_var context = first_context(*probe);
+  context->stop();
+  EXPECT_TRUE(observer->wait_for(OpenRTM::EC_STATUS, "SHUTDOWN:0"));
+  context->start();
+  EXPECT_TRUE(observer->wait_for(OpenRTM::EC_STATUS, "STARTUP:0"));
+  Owned<> host(nullptr, "Host0");
+  host->initialize();
+  RTC::ExecutionContext_var other = first_context(*host);
+  RTC::RTObject_var self = probe->getObjRef();
+  other->add_component(self);
+  EXPECT_TRUE(observer->wait_for(OpenRTM::EC_STATUS, "ATTACHED:1000"));
+  other->remove_component(self);
+  EXPECT_TRUE(observer->wait_for(OpenRTM::EC_STATUS, "DETACHED:1000"));
+  EXPECT_TRUE(configuration->remove_service_profile("one"));
+  EXPECT_FALSE(configuration->remove_service_profile("one"));
+}
+
+TEST_F(ComponentServiceTest, tells_an_observer_of_the_second_version_only_what_it_asked_for) {
+  probe->initialize();
+  SDOPackage::Configuration_var configuration = probe->get_configuration();
+  Served<NewObserver> observer;
+  ASSERT_TRUE(configuration->add_service_profile(
+      service_profile("two", "IDL:omg.org/RTC/ComponentObserver:1.0", observer.reference(),
+                      {{"observed_status", "RTC_STATUS"}, {"ec_heartbeat.enable", "YES"}, {"ec_heartbeat.interval", "0.02"}})));
+  EXPECT_TRUE(observer->wait_for(RTC::EC_HEARTBEAT, ""));
+  set("fail", "");
+  probe->activate(0);
+  EXPECT_TRUE(observer->wait_for(RTC::RTC_STATUS, "ACTIVATED:0"));
+  std::lock_guard lock(observer->mutex);
+  for (const auto& [kind, hint] : observer->heard) EXPECT_NE(kind, RTC::CONFIGURATION) << hint;
+}
+
+class LogReader : public POA_OpenRTM::Logger {
+ public:
+  void publish(const OpenRTM::LogRecord& record) override {
+    std::lock_guard lock(mutex);
+    records.push_back(record);
+    condition.notify_all();
+  }
+  void close() override {}
+  std::mutex mutex;
+  std::condition_variable condition;
+  std::vector<OpenRTM::LogRecord> records;
+};
+
+TEST_F(ComponentServiceTest, publishes_log_records_to_a_logger) {
+  probe->initialize();
+  SDOPackage::Configuration_var configuration = probe->get_configuration();
+  Served<LogReader> reader;
+  ASSERT_TRUE(configuration->add_service_profile(
+      service_profile("log", "IDL:OpenRTM/Logger:1.0", reader.reference(), {{"logger.log_level", "WARN"}, {"logger.filter", "Probe0"}})));
+  RTC::Logger("Somebody").write(RTC::Logger::RTL_WARN, "not for you");
+  RTC::Logger("Probe0").write(RTC::Logger::RTL_INFO, "too small");
+  RTC::Logger("Probe0").write(RTC::Logger::RTL_WARN, "hot");
+  std::unique_lock lock(reader->mutex);
+  ASSERT_TRUE(reader->condition.wait_for(lock, 60s, [&] { return !reader->records.empty(); }));
+  ASSERT_THAT(reader->records, SizeIs(1));
+  EXPECT_STREQ(reader->records[0].loggername, "Probe0");
+  EXPECT_STREQ(reader->records[0].message, "hot");
+  EXPECT_EQ(reader->records[0].level, OpenRTM::RTM_WARN);
+}
+
+TEST_F(ComponentServiceTest, refuses_services_that_are_not_what_they_say) {
+  probe->initialize();
+  SDOPackage::Configuration_var configuration = probe->get_configuration();
+  Served<LogReader> reader;
+  const auto add = [&](const char* id, const char* type, CORBA::Object_ptr service) {
+    return configuration->add_service_profile(service_profile(id, type, service));
+  };
+  EXPECT_FALSE(add("a", "IDL:omg.org/RTC/ComponentObserver:1.0", reader.reference()));
+  EXPECT_FALSE(add("b", "IDL:nobody/Knows:1.0", reader.reference()));
+  EXPECT_FALSE(add("c", "IDL:OpenRTM/Logger:1.0", CORBA::Object::_nil()));
+  EXPECT_FALSE(add("", "IDL:OpenRTM/Logger:1.0", reader.reference()));
+  EXPECT_TRUE(add("d", "IDL:OpenRTM/Logger:1.0", reader.reference()));
+}
+
+// --- composites
+
+struct Composite : RTC::DataFlowComponentBase {
+  Composite() : RTC::DataFlowComponentBase(nullptr), organization(new SDOPackage::PeriodicECOrganization(*this)) {
+    setInstanceName("Composite0");
+    addOwnedOrganization(organization);
+  }
+  ~Composite() override { organization->_remove_ref(); }
+  RTC::ReturnCode_t onActivated(RTC::UniqueId) override {
+    organization->activate_members();
+    return RTC::RTC_OK;
+  }
+  RTC::ReturnCode_t onDeactivated(RTC::UniqueId) override {
+    organization->deactivate_members();
+    return RTC::RTC_OK;
+  }
+  RTC::ReturnCode_t onFinalize() override {
+    organization->close();
+    return RTC::RTC_OK;
+  }
+  SDOPackage::PeriodicECOrganization* organization;
+};
+
+TEST_F(ComponentServiceTest, members_of_a_composite_run_in_its_context_and_follow_its_state) {
+  probe->initialize();
+  Owned<Composite> composite;
+  composite->initialize();
+  SDOPackage::OrganizationList_var organizations = composite->get_owned_organizations();
+  ASSERT_EQ(organizations->length(), 1u);
+  SDOPackage::SDOList members;
+  members.length(1);
+  members[0] = probe->getObjRef();
+  ASSERT_TRUE(organizations[0u]->add_members(members));
+  RTC::ExecutionContext_var own = first_context(*probe);
+  EXPECT_FALSE(own->is_running());
+  SDOPackage::OrganizationList_var of_member = probe->get_organizations();
+  EXPECT_EQ(of_member->length(), 1u);
+  ASSERT_EQ(composite->activate(0), RTC::RTC_OK);
+  EXPECT_TRUE(probe->wait_for("onExecute", 2));
+  ASSERT_EQ(composite->deactivate(0), RTC::RTC_OK);
+  EXPECT_TRUE(probe->wait_for("onDeactivated"));
+  ASSERT_TRUE(organizations[0u]->remove_member("Probe0"));
+  EXPECT_TRUE(own->is_running());
+  EXPECT_THROW(organizations[0u]->remove_member("Probe0"), SDOPackage::InvalidParameter);
+  of_member = probe->get_organizations();
+  EXPECT_EQ(of_member->length(), 0u);
+}
+
+// --- state machines
+
+std::vector<std::string> steps;
+
+FSM_TOP(Door) {
+  FSM_STATE(Door);
+  virtual void open() {}
+  virtual void close() {}
+  virtual void lock(int) {}
+  RTC::ReturnCode_t onInit() override;
+};
+FSM_SUBSTATE(Shut, Door) {
+  struct Box {
+    int turns = 0;
+  };
+  FSM_STATE(Shut);
+  void open() override;
+  void lock(int n) override;
+  RTC::ReturnCode_t onEntry() override { return steps.push_back("enter Shut"), RTC::RTC_OK; }
+  RTC::ReturnCode_t onExit() override { return steps.push_back("leave Shut"), RTC::RTC_OK; }
+};
+FSM_SUBSTATE(Locked, Shut) {
+  FSM_STATE(Locked);
+  void open() override { steps.push_back("locked " + std::to_string(data().turns)); }
+  RTC::ReturnCode_t onEntry() override { return steps.push_back("enter Locked"), RTC::RTC_OK; }
+  RTC::ReturnCode_t onExit() override { return steps.push_back("leave Locked"), RTC::RTC_OK; }
+};
+FSM_SUBSTATE(Ajar, Door) {
+  FSM_STATE(Ajar);
+  void close() override { setStateHistory<Shut>(); }
+  RTC::ReturnCode_t onEntry() override { return steps.push_back("enter Ajar"), RTC::RTC_OK; }
+};
+RTC::ReturnCode_t Door::onInit() {
+  setState<Shut>();
+  return RTC::RTC_OK;
+}
+void Shut::open() { setState<Ajar>(); }
+void Shut::lock(int n) {
+  data().turns += n;
+  setState<Locked>();
+}
+
+TEST_F(ComponentServiceTest, shows_its_state_machine_to_tools) {
+  probe->initialize();
+  EXPECT_THROW(probe->get_sdo_service("IDL:omg.org/RTC/ExtendedFsmService:1.0"), SDOPackage::InvalidParameter);
+  RTC::Machine<Door> machine(&*probe);
+  machine.add_event_profile("open", "");
+  SDOPackage::SDOService_var object = probe->get_sdo_service("IDL:omg.org/RTC/ExtendedFsmService:1.0");
+  RTC::ExtendedFsmService_var service = RTC::ExtendedFsmService::_narrow(object);
+  ASSERT_FALSE(CORBA::is_nil(service));
+  CORBA::String_var state = service->get_current_state();
+  EXPECT_STREQ(state, "Shut");
+  RTC::FsmStructure_var structure;
+  EXPECT_EQ(service->get_fsm_structure(structure.out()), RTC::RTC_OK);
+  EXPECT_STREQ(structure->name, "Door");
+  ASSERT_EQ(structure->event_profiles.length(), 1u);
+  RTC::FsmStructure other = structure.in();
+  other.name = "Bottom";
+  EXPECT_EQ(service->set_fsm_structure(other), RTC::BAD_PARAMETER);
+  EXPECT_EQ(service->set_fsm_structure(structure.in()), RTC::RTC_OK);
+}
+
+TEST(StaticFsm, enters_and_leaves_states_along_the_tree) {
+  steps.clear();
+  RTC::Machine<Door> machine;
+  EXPECT_EQ(machine.current_state(), "Shut");
+  machine->lock(2);
+  EXPECT_EQ(machine.current_state(), "Locked");
+  machine->open();
+  EXPECT_EQ(machine.current_state(), "Locked");
+  EXPECT_THAT(steps, ElementsAre("enter Shut", "enter Locked", "locked 2"));
+}
+
+TEST(StaticFsm, handles_queued_events_when_it_is_told_to) {
+  RTC::Machine<Door> machine;
+  machine.push(&Door::open);
+  machine.push(&Door::close);
+  EXPECT_EQ(machine.current_state(), "Shut");
+  steps.clear();
+  machine.run_event();
+  EXPECT_EQ(machine.current_state(), "Shut");
+  EXPECT_THAT(steps, ElementsAre("leave Shut", "enter Ajar", "enter Shut"));
+}
+
+}  // namespace
