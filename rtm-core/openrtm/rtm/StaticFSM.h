@@ -192,11 +192,9 @@ class Machine {
 #define FSM_TOP(TOP) struct TOP : public ::RTC::fsm::TopBase<TOP>
 #define FSM_SUBSTATE(STATE, SUPER) struct STATE : public ::RTC::fsm::Link<STATE, SUPER>
 #define FSM_STATE(STATE)                                     \
- public:                                                     \
-  using SELF = STATE;                                        \
-  static const char* _state_name() { return #STATE; }        \
-                                                             \
  private:                                                    \
   Box& data() { return this->engine_->template box<Box>(); } \
                                                              \
- public:
+ public:                                                     \
+  static const char* _state_name() { return #STATE; }        \
+  using SELF = STATE
