@@ -1,6 +1,7 @@
 #include "remote.h"
 
 #include <omniORB4/minorCode.h>
+#include <omnithread.h>
 
 #include <algorithm>
 #include <atomic>
@@ -80,6 +81,7 @@ CallLimit::~CallLimit() { omniORB::setClientThreadCallTimeout(0); }
 void in_parallel(std::size_t count, std::chrono::milliseconds limit, const std::function<void(std::size_t)>& work, std::size_t threads) {
   std::atomic<std::size_t> next{0};
   const auto worker = [&] {
+    const omni_thread::ensure_self known_to_the_orb;  // time-outs per thread need it
     const CallLimit limited(limit);
     for (std::size_t i = next.fetch_add(1); i < count; i = next.fetch_add(1)) work(i);
   };
