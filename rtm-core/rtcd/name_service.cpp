@@ -37,24 +37,31 @@ base::Result<Address> parse(const std::string& text) {
   return address;
 }
 
-bool is_listening(const Address& address) {
+// Asks with a GIOP 1.0 LocateRequest for the object key NameService; true when it is there.
+bool is_naming_service(int socket) {
+  constexpr char request[] = "GIOP\x01\x00\x01\x03\x13\x00\x00\x00\x01\x00\x00\x00\x0b\x00\x00\x00NameService";
+  if (send(socket, request, sizeof request - 1, MSG_NOSIGNAL) != sizeof request - 1) return false;
+  unsigned char reply[20];
+  if (recv(socket, reply, sizeof reply, MSG_WAITALL) != sizeof reply) return false;
+  constexpr unsigned char locate_reply = 4;
+  const bool is_little_endian = (reply[6] & 1) != 0;
+  const unsigned status = is_little_endian ? reply[16] : reply[19];  // 0 unknown, 1 here, 2 elsewhere
+  return reply[7] == locate_reply && status != 0;
+}
+
+bool answers(const Address& address) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
   if (getaddrinfo(address.host.c_str(), address.port.c_str(), &hints, &found) != 0) return false;
   bool answered = false;
   for (const auto* at = found; at != nullptr && !answered; at = at->ai_next) {
-    const int socket = ::socket(at->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    const int socket = ::socket(at->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
     if (socket < 0) continue;
-    if (connect(socket, at->ai_addr, at->ai_addrlen) == 0) {
-      answered = true;
-    } else if (errno == EINPROGRESS) {
-      pollfd ready{socket, POLLOUT, 0};
-      int error = 1;
-      socklen_t size = sizeof error;
-      constexpr int patience = 1000;  // [ms]
-      answered = poll(&ready, 1, patience) == 1 && getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size) == 0 && error == 0;
-    }
+    const timeval patience{1, 0};
+    setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    setsockopt(socket, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);  // also of connect
+    answered = connect(socket, at->ai_addr, at->ai_addrlen) == 0 && is_naming_service(socket);
     close(socket);
   }
   freeaddrinfo(found);
@@ -101,7 +108,7 @@ bool is_listening(const Address& address) {
 base::Result<std::unique_ptr<NameService>> NameService::start_if_none(const std::string& text) {
   const auto address = parse(text);
   if (!address) return address.error();
-  if (is_listening(*address)) return std::unique_ptr<NameService>();
+  if (answers(*address)) return std::unique_ptr<NameService>();
 
   std::error_code error;
   auto folder = (std::filesystem::temp_directory_path(error) / "rtcd-names-XXXXXX").string();
@@ -120,12 +127,12 @@ base::Result<std::unique_ptr<NameService>> NameService::start_if_none(const std:
   constexpr std::chrono::seconds patience{10};
   const auto deadline = std::chrono::steady_clock::now() + patience;
   while (std::chrono::steady_clock::now() < deadline) {
-    if (is_listening(*address)) return service;
+    if (answers(*address)) return service;
     if (waitpid(service->keeper_, nullptr, WNOHANG) == service->keeper_) {
       service->keeper_ = -1;
       break;
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));  // nothing else tells when it listens
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));  // nothing tells when it is ready
   }
   return base::Error{"naming service " + base::in_quotes(text) + ": omniNames does not start (is it installed, is the port free?)"};
 }

@@ -99,8 +99,8 @@ class NamingService {
                                                            "-datadir", data_.path().string(), "-ORBendPoint", "giop:tcp:" + address()});
     const auto deadline = std::chrono::steady_clock::now() + watchdog;
     while (process_->running() && std::chrono::steady_clock::now() < deadline) {
-      if (is_listening(port_)) return process_->running();
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      // It listens before it knows its names; the first checkpoint comes after both.
+      if (process_->wait_for_output("Checkpointing completed", std::chrono::milliseconds(200))) return is_listening(port_);
     }
     return false;
   }
