@@ -11,8 +11,14 @@ namespace sim {
 // (frame_of_pose_mark).
 void append_skeleton(pugi::xml_node model, pugi::xml_node parent, const std::string& name, bool keep_pose);
 
-// The same for lights and actors that stand in a world: marks the source when its pose is relative to something.
+// A <frame> of a model or world.
+void append_frame(pugi::xml_node frame, pugi::xml_node parent);
+
+// The pose of something as a frame (lights and actors of a world, too); marks the source when its pose is relative to something.
 void append_frame_of_pose(pugi::xml_node thing, pugi::xml_node parent, const std::string& attached_to, const std::string& frame_name);
+
+// The <pose> of the element.
+void append_pose(pugi::xml_node thing, pugi::xml_node parent);
 
 // Whether the <pose> of the element is relative to a named frame.
 bool has_relative_pose(pugi::xml_node thing);

@@ -185,14 +185,14 @@ bool Loader::resolve_whole_world(pugi::xml_node world) {
   sdf.append_attribute("version") = current_sdf_version;
   pugi::xml_node out = sdf.append_child("world");
   out.append_attribute("name") = "w";
-  for (pugi::xml_node frame : world.children("frame")) out.append_copy(frame);
+  for (pugi::xml_node frame : world.children("frame")) append_frame(frame, out);
   int frames = 0;
   for (const char* kind : {"light", "actor"}) {
     for (pugi::xml_node thing : world.children(kind)) append_frame_of_pose(thing, out, {}, "_pose_of_" + std::to_string(frames++));
   }
   for (const Instance& instance : instances_) {
     append_skeleton(distinct_[instance.distinct].node, out, instance.name, false);
-    if (instance.pose_node) out.last_child().prepend_copy(instance.pose_node);
+    if (instance.pose_node) append_pose(instance.pose_node.parent(), out.last_child());
   }
   base::Result<ResolvedWorld> resolved = library_.resolve(sdf);
   if (!resolved) {
