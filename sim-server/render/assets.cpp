@@ -1,0 +1,239 @@
+// Reading and keeping meshes and textures.
+#include "render/assets.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace sim {
+namespace {
+
+// sRGB byte -> gamma 2 byte.
+std::array<std::uint8_t, 256> gamma2_table() {
+  std::array<std::uint8_t, 256> table{};
+  for (std::size_t i = 0; i < table.size(); ++i)
+    table[i] = static_cast<std::uint8_t>(std::sqrt(to_linear(static_cast<float>(i) / 255.0F)) * 255.0F + 0.5F);
+  return table;
+}
+
+Image to_gamma2(Image image) {
+  static const auto table = gamma2_table();
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4)
+    for (std::size_t c = 0; c < 3; ++c) image.rgba[i + c] = table[image.rgba[i + c]];
+  return image;
+}
+
+Texture make_texture(Image image) {
+  Texture texture;
+  for (std::size_t i = 3; i < image.rgba.size() && !texture.has_holes; i += 4) texture.has_holes = image.rgba[i] < 128;
+  while (image.width > 1 || image.height > 1) {
+    Image smaller = halve(image);
+    texture.levels.push_back(to_gamma2(std::move(image)));
+    image = std::move(smaller);
+  }
+  texture.levels.push_back(to_gamma2(std::move(image)));
+  return texture;
+}
+
+Image chequer() {
+  Image image{64, 64, std::vector<std::uint8_t>(64 * 64 * 4)};
+  for (std::size_t y = 0; y < 64; ++y)
+    for (std::size_t x = 0; x < 64; ++x) {
+      const bool is_dark = ((x / 16 + y / 16) & 1) != 0;
+      const std::array<std::uint8_t, 4> pixel =
+          is_dark ? std::array<std::uint8_t, 4>{20, 20, 20, 255} : std::array<std::uint8_t, 4>{255, 0, 255, 255};
+      std::copy(pixel.begin(), pixel.end(), image.rgba.begin() + static_cast<std::ptrdiff_t>((y * 64 + x) * 4));
+    }
+  return image;
+}
+
+std::string key_of(const MeshShape& shape) {
+  return fmt::format("{}|{}|{}|{},{},{}", shape.path, shape.submesh, shape.center_submesh, shape.scale.x(), shape.scale.y(), shape.scale.z());
+}
+std::string key_of(const HeightmapShape& shape) {
+  return fmt::format("{}|{},{},{}|{}", shape.path, shape.size.x(), shape.size.y(), shape.size.z(), shape.sampling);
+}
+
+// The weight of each layer at a height: a layer fades in over its distance from its minimum height on, and hides those below.
+std::vector<double> layer_weights(const HeightmapShape& shape, double height) {
+  std::vector<double> weights(shape.textures.size(), 0.0);
+  weights[0] = 1;
+  for (std::size_t i = 0; i < shape.blends.size() && i + 1 < weights.size(); ++i) {
+    const auto& [start, fade] = shape.blends[i];
+    const double share = std::clamp(fade > 0 ? (height - start) / fade : (height >= start ? 1.0 : 0.0), 0.0, 1.0);
+    for (std::size_t k = 0; k <= i; ++k) weights[k] *= 1 - share;
+    weights[i + 1] = share;
+  }
+  return weights;
+}
+
+}  // namespace
+
+Assets::Assets()
+    : box_(std::make_shared<Mesh>(make_box())),
+      sphere_(std::make_shared<Mesh>(make_sphere())),
+      cylinder_(std::make_shared<Mesh>(make_cylinder())),
+      plane_(std::make_shared<Mesh>(make_plane())) {
+  Mesh missing = make_box();
+  for (auto& vertex : missing.vertices)
+    for (auto& coordinate : vertex.position) coordinate *= 0.3F;
+  missing.bounds = Eigen::AlignedBox3f(0.3F * missing.bounds.min(), 0.3F * missing.bounds.max());
+  missing.parts[0].material.diffuse = {1, 0, 1, 1};
+  missing.is_stand_in = true;
+  missing_mesh_ = std::make_shared<Mesh>(std::move(missing));
+  missing_texture_ = std::make_shared<Texture>(make_texture(chequer()));
+  flat_normals_ = std::make_shared<Texture>(Texture{{Image{1, 1, {128, 128, 255, 255}}}, false});
+}
+
+std::shared_ptr<const Mesh> Assets::mesh(const GeometryDef& geometry) {
+  struct Visitor {
+    Assets& assets;
+    std::shared_ptr<const Mesh> operator()(const BoxShape&) { return assets.box_; }
+    std::shared_ptr<const Mesh> operator()(const SphereShape&) { return assets.sphere_; }
+    std::shared_ptr<const Mesh> operator()(const EllipsoidShape&) { return assets.sphere_; }
+    std::shared_ptr<const Mesh> operator()(const CylinderShape&) { return assets.cylinder_; }
+    std::shared_ptr<const Mesh> operator()(const PlaneShape&) { return assets.plane_; }
+    std::shared_ptr<const Mesh> operator()(const CapsuleShape& shape) {
+      auto& kept = assets.meshes_[fmt::format("capsule|{}|{}", shape.radius, shape.length)];
+      if (!kept) kept = std::make_shared<Mesh>(make_capsule(shape.radius, shape.length));
+      return kept;
+    }
+    std::shared_ptr<const Mesh> operator()(const MeshShape& shape) { return assets.load(shape); }
+    std::shared_ptr<const Mesh> operator()(const HeightmapShape& shape) { return assets.load(shape); }
+    std::shared_ptr<const Mesh> operator()(const PolylineShape& shape) { return assets.load(shape); }
+  };
+  return std::visit(Visitor{*this}, geometry);
+}
+
+Eigen::Affine3d Assets::placement_of(const GeometryDef& geometry) {
+  Eigen::Affine3d out = Eigen::Affine3d::Identity();
+  if (const auto* box = std::get_if<BoxShape>(&geometry)) {
+    out.scale(box->size);
+  } else if (const auto* sphere = std::get_if<SphereShape>(&geometry)) {
+    out.scale(2 * sphere->radius);
+  } else if (const auto* ellipsoid = std::get_if<EllipsoidShape>(&geometry)) {
+    out.scale(Eigen::Vector3d(2 * ellipsoid->radii));
+  } else if (const auto* cylinder = std::get_if<CylinderShape>(&geometry)) {
+    out.scale(Eigen::Vector3d(2 * cylinder->radius, 2 * cylinder->radius, cylinder->length));
+  } else if (const auto* plane = std::get_if<PlaneShape>(&geometry)) {
+    out.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), plane->normal).toRotationMatrix();
+    out.scale(Eigen::Vector3d(plane->size.x(), plane->size.y(), 1));
+  } else if (const auto* map = std::get_if<HeightmapShape>(&geometry)) {
+    out.translation() = map->position;
+  }
+  return out;
+}
+
+std::shared_ptr<const Mesh> Assets::load(const MeshShape& shape) {
+  auto& kept = meshes_[key_of(shape)];
+  if (kept) return kept;
+  auto file = read_mesh_file(shape);
+  if (!file) {
+    complaints_.push_back(file.error().message + "; a magenta box stands in");
+    return kept = missing_mesh_;
+  }
+  for (auto& image : file->images) embedded_[image.name] = std::move(image.bytes);
+  return kept = std::make_shared<Mesh>(std::move(file->mesh));
+}
+
+std::shared_ptr<const Mesh> Assets::load(const HeightmapShape& shape) {
+  auto& kept = meshes_[key_of(shape)];
+  if (kept) return kept;
+  auto grid = triangles_.heights(shape);
+  if (!grid) {
+    complaints_.push_back(grid.error().message + "; a magenta box stands in");
+    return kept = missing_mesh_;
+  }
+  const HeightGrid& g = **grid;
+  return kept = std::make_shared<Mesh>(make_height_grid(g.columns, g.rows, g.width, g.depth, g.heights));
+}
+
+std::shared_ptr<const Mesh> Assets::load(const PolylineShape& shape) {
+  auto triangles = triangles_.triangles(shape);
+  if (!triangles) {
+    complaints_.push_back(triangles.error().message + "; a magenta box stands in");
+    return missing_mesh_;
+  }
+  return std::make_shared<Mesh>(make_flat((*triangles)->vertices, (*triangles)->triangles));
+}
+
+base::Result<Image> Assets::image(const std::string& path) {
+  const auto inside = embedded_.find(path);
+  return inside != embedded_.end() ? decode_image(inside->second, path) : read_image(path);
+}
+
+std::shared_ptr<const Texture> Assets::texture(const std::string& path) {
+  auto& kept = textures_[path];
+  if (kept) return kept;
+  auto picture = image(path);
+  if (!picture) {
+    complaints_.push_back(picture.error().message + "; a chequer stands in");
+    return kept = missing_texture_;
+  }
+  return kept = std::make_shared<Texture>(make_texture(std::move(*picture)));
+}
+
+std::shared_ptr<const Texture> Assets::normal_map(const std::string& path) {
+  auto& kept = textures_["normal|" + path];
+  if (kept) return kept;
+  auto picture = image(path);
+  if (!picture) {
+    complaints_.push_back(picture.error().message + "; the surface stays smooth");
+    return kept = flat_normals_;
+  }
+  Texture texture;
+  while (picture->width > 1 || picture->height > 1) {
+    texture.levels.push_back(*picture);
+    *picture = halve(*picture);
+  }
+  texture.levels.push_back(std::move(*picture));
+  return kept = std::make_shared<Texture>(std::move(texture));
+}
+
+std::shared_ptr<const Texture> Assets::height_texture(const HeightmapShape& shape) {
+  if (shape.textures.empty()) return nullptr;
+  std::string key = "height|" + key_of(shape);
+  for (const auto& layer : shape.textures) key += fmt::format("|{},{}", layer.diffuse, layer.size);
+  if (const auto kept = textures_.find(key); kept != textures_.end()) return kept->second;
+  std::vector<Image> layers;
+  for (const auto& layer : shape.textures) {
+    auto picture = layer.diffuse.empty() ? base::Result<Image>(chequer()) : image(layer.diffuse);
+    if (!picture) complaints_.push_back(picture.error().message + "; a chequer stands in");
+    layers.push_back(picture ? std::move(*picture) : chequer());
+  }
+  auto grid = triangles_.heights(shape);
+  if (!grid) return nullptr;
+  constexpr int side = 2048;
+  Image out{side, side, std::vector<std::uint8_t>(static_cast<std::size_t>(side) * side * 4, 255)};
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      const HeightGrid& g = **grid;
+      const auto column = static_cast<std::size_t>(x * (g.columns - 1) / (side - 1));
+      const auto row = static_cast<std::size_t>(y * (g.rows - 1) / (side - 1));
+      const auto weights = layer_weights(shape, g.heights[row * static_cast<std::size_t>(g.columns) + column]);
+      std::array<double, 3> sum{};
+      for (std::size_t k = 0; k < layers.size(); ++k) {
+        if (weights[k] <= 0) continue;
+        const double size = std::max(0.01, shape.textures[k].size);
+        const auto wrap = [&](double metres, int pixels) {
+          const double turns = metres / size;
+          return static_cast<std::size_t>(std::clamp(static_cast<int>((turns - std::floor(turns)) * pixels), 0, pixels - 1));
+        };
+        const std::size_t u = wrap(x * shape.size.x() / side, layers[k].width);
+        const std::size_t v = wrap(y * shape.size.y() / side, layers[k].height);
+        const std::uint8_t* pixel = &layers[k].rgba[(v * static_cast<std::size_t>(layers[k].width) + u) * 4];
+        for (std::size_t c = 0; c < 3; ++c) sum[c] += weights[k] * pixel[c];
+      }
+      std::uint8_t* pixel = &out.rgba[(static_cast<std::size_t>(y) * side + static_cast<std::size_t>(x)) * 4];
+      for (std::size_t c = 0; c < 3; ++c) pixel[c] = static_cast<std::uint8_t>(std::clamp(sum[c], 0.0, 255.0));
+    }
+  }
+  return textures_[key] = std::make_shared<Texture>(make_texture(std::move(out)));
+}
+
+std::vector<std::string> Assets::take_complaints() { return std::exchange(complaints_, {}); }
+
+}  // namespace sim

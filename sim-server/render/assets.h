@@ -1,0 +1,58 @@
+// Meshes and textures in memory, each file read once. What cannot be read gets a visible stand-in (a magenta and black chequer, a small box)
+// and one line of complaint. The cache is for one thread at a time; what it hands out never changes and any thread may read it.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "render/image.h"
+#include "render/mesh.h"
+#include "world/triangles.h"
+#include "world/world_def.h"
+
+namespace sim {
+
+// An image with its smaller copies, ready for GL. Colours are stored with gamma 2 (the square of a byte is linear light): decoding is one
+// multiplication in the shader, and no shade that sRGB tells apart is lost.
+struct Texture {
+  std::vector<Image> levels;
+  bool has_holes = false;  // some alpha is below one half: drawn with the holes cut out
+};
+
+class Assets {
+ public:
+  Assets();
+
+  // Never null. Unit box, sphere, cylinder and plane are shared: scale_of() tells how to scale them.
+  std::shared_ptr<const Mesh> mesh(const GeometryDef& geometry);
+  // From the mesh that mesh() returns to the shape.
+  static Eigen::Affine3d placement_of(const GeometryDef& geometry);
+
+  // Never null.
+  std::shared_ptr<const Texture> texture(const std::string& path);
+  // Bumps: bytes are used as they are.
+  std::shared_ptr<const Texture> normal_map(const std::string& path);
+  // The layers of a height map blended by height into one picture that covers it; null when it has no readable layer.
+  std::shared_ptr<const Texture> height_texture(const HeightmapShape& shape);
+
+  // What could not be read since the last call, one line each.
+  std::vector<std::string> take_complaints();
+
+ private:
+  std::shared_ptr<const Mesh> load(const MeshShape& shape);
+  std::shared_ptr<const Mesh> load(const HeightmapShape& shape);
+  std::shared_ptr<const Mesh> load(const PolylineShape& shape);
+  base::Result<Image> image(const std::string& path);
+
+  std::shared_ptr<const Mesh> box_, sphere_, cylinder_, plane_, missing_mesh_;
+  std::shared_ptr<const Texture> missing_texture_, flat_normals_;
+  TriangleCache triangles_;
+  std::map<std::string, std::shared_ptr<const Mesh>> meshes_;
+  std::map<std::string, std::shared_ptr<const Texture>> textures_;
+  std::map<std::string, std::vector<std::uint8_t>> embedded_;
+  std::vector<std::string> complaints_;
+};
+
+}  // namespace sim

@@ -1,0 +1,66 @@
+// What a context holds of a scene: programs, meshes and textures, made when they are first needed. For the thread of the context.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "base/result.h"
+#include "render/gl.h"
+#include "render/scene.h"
+#include "render/shaders.h"
+
+namespace sim {
+
+class GpuProgram {
+ public:
+  // The error holds the compiler's words: our sources are constant, so it only happens with a broken driver.
+  static base::Result<GpuProgram> build(const gl::Functions& gl, const std::string& vertex, const std::string& fragment);
+  ~GpuProgram();
+  GpuProgram(GpuProgram&& other) noexcept : gl_(other.gl_), name_(std::exchange(other.name_, 0)) {}
+  GpuProgram& operator=(GpuProgram&&) = delete;
+
+  GLuint name() const { return name_; }
+  GLint uniform(const char* uniform_name) const { return gl_->GetUniformLocation(name_, uniform_name); }
+
+ private:
+  explicit GpuProgram(const gl::Functions& gl) : gl_(&gl), name_(gl.CreateProgram()) {}
+  const gl::Functions* gl_;
+  GLuint name_ = 0;
+};
+
+// A program for surfaces with the places of its uniforms; -1 for those it does not have.
+struct SurfaceProgram {
+  explicit SurfaceProgram(GpuProgram built);
+  GpuProgram program;
+  GLint model, normal_matrix, view_projection, repeat;
+  GLint albedo, emissive, shine, ambient, fog_color, fog_range, eye;
+  GLint sun_direction, sun_color, sun_specular;
+  GLint lamp_position, lamp_color, lamp_specular, lamp_reach, spot_axis, spot_cone;
+  GLint shadow_map, shadow_matrix, shadow_lift, shadow_texel, albedo_map, bump_map;
+  std::uint64_t frame = 0;  // of the last picture whose view and lights it was told
+};
+
+struct GpuMesh {
+  gl::Object vertex_array, vertices, indices;
+};
+
+class GpuStore {
+ public:
+  explicit GpuStore(const gl::Functions& gl) : gl_(gl) {}
+
+  const GpuMesh& mesh(const std::shared_ptr<const Mesh>& mesh);
+  GLuint texture(const std::shared_ptr<const Texture>& texture);
+  base::Result<SurfaceProgram*> program(const Features& features);
+
+  // Forgets meshes and textures that the scene does not use.
+  void keep_only(const Scene& scene);
+
+ private:
+  const gl::Functions& gl_;
+  std::map<Features, std::unique_ptr<SurfaceProgram>> programs_;
+  std::map<std::shared_ptr<const Mesh>, GpuMesh> meshes_;
+  std::map<std::shared_ptr<const Texture>, gl::Object> textures_;
+};
+
+}  // namespace sim

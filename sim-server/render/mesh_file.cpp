@@ -1,0 +1,175 @@
+// Meshes from files, by Assimp: geometry, materials, textures inside the file.
+#include <assimp/config.h>
+#include <assimp/material.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <spdlog/fmt/fmt.h>
+
+#include <assimp/Importer.hpp>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "base/text.h"
+#include "render/mesh.h"
+
+namespace sim {
+namespace {
+
+constexpr std::size_t most_triangles = 20'000'000;
+
+Color to_color(const aiColor4D& c) { return {c.r, c.g, c.b, c.a}; }
+
+// Where texture files of a mesh are found in the wild: beside it, in its model's usual folders, or where the author's disk had them.
+std::string find_texture(const std::string& written, const std::filesystem::path& folder) {
+  namespace fs = std::filesystem;
+  std::string name = written;
+  for (auto& c : name) c = c == '\\' ? '/' : c;
+  if (name.starts_with("file://")) name.erase(0, 7);
+  const fs::path last = fs::path(name).filename();
+  for (const fs::path& candidate : {folder / name, folder / last, folder / "../materials/textures" / last, folder / "materials/textures" / last,
+                                    folder / "../textures" / last, folder / "textures" / last}) {
+    std::error_code error;
+    if (fs::is_regular_file(candidate, error)) return candidate.lexically_normal().string();
+  }
+  return (folder / name).lexically_normal().string();  // opening it will say that it is missing
+}
+
+class Reader {
+ public:
+  Reader(const aiScene& scene, const MeshShape& shape) : scene_(scene), shape_(shape), folder_(std::filesystem::path(shape.path).parent_path()) {}
+
+  MeshFile read() {
+    collect(*scene_.mRootNode, aiMatrix4x4(), false);
+    for (auto& [index, indices] : indices_by_material_) {
+      MeshPart part{static_cast<std::uint32_t>(out_.mesh.indices.size()), static_cast<std::uint32_t>(indices.size()), material(index)};
+      out_.mesh.indices.insert(out_.mesh.indices.end(), indices.begin(), indices.end());
+      out_.mesh.parts.push_back(std::move(part));
+    }
+    place();
+    return std::move(out_);
+  }
+
+ private:
+  void collect(const aiNode& node, const aiMatrix4x4& parent, bool is_inside) {
+    const aiMatrix4x4 transform = parent * node.mTransformation;
+    const bool is_wanted = is_inside || shape_.submesh.empty() || shape_.submesh == node.mName.C_Str();
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+      const aiMesh& mesh = *scene_.mMeshes[node.mMeshes[i]];
+      if (is_wanted || shape_.submesh == mesh.mName.C_Str()) add(mesh, transform);
+    }
+    for (unsigned i = 0; i < node.mNumChildren; ++i) collect(*node.mChildren[i], transform, is_wanted && !shape_.submesh.empty());
+  }
+
+  void add(const aiMesh& mesh, const aiMatrix4x4& transform) {
+    const auto first = static_cast<std::uint32_t>(out_.mesh.vertices.size());
+    aiMatrix3x3 normals(transform);
+    normals.Inverse().Transpose();
+    const bool is_mirrored = aiMatrix3x3(transform).Determinant() < 0;
+    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+      const aiVector3D p = transform * mesh.mVertices[v];
+      const aiVector3D n = mesh.HasNormals() ? (normals * mesh.mNormals[v]).NormalizeSafe() : aiVector3D(0, 0, 1);
+      const aiVector3D t = mesh.HasTextureCoords(0) ? mesh.mTextureCoords[0][v] : aiVector3D();
+      out_.mesh.vertices.push_back({{p.x, p.y, p.z}, {n.x, n.y, n.z}, {t.x, t.y}});
+    }
+    auto& indices = indices_by_material_[mesh.mMaterialIndex];
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      const aiFace& face = mesh.mFaces[f];
+      if (face.mNumIndices != 3 || indices.size() >= most_triangles * 3) continue;
+      if (!is_finite(first + face.mIndices[0]) || !is_finite(first + face.mIndices[1]) || !is_finite(first + face.mIndices[2])) continue;
+      indices.push_back(first + face.mIndices[0]);
+      indices.push_back(first + face.mIndices[is_mirrored ? 2 : 1]);
+      indices.push_back(first + face.mIndices[is_mirrored ? 1 : 2]);
+    }
+  }
+
+  bool is_finite(std::uint32_t index) const {
+    const auto& p = out_.mesh.vertices[index].position;
+    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]) && std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]) < 1e7F;
+  }
+
+  MaterialDef material(unsigned index) {
+    MaterialDef out;
+    if (index >= scene_.mNumMaterials) return out;
+    const aiMaterial& in = *scene_.mMaterials[index];
+    aiColor4D color;
+    if (in.Get(AI_MATKEY_COLOR_DIFFUSE, color) == aiReturn_SUCCESS) out.diffuse = to_color(color);
+    if (in.Get(AI_MATKEY_BASE_COLOR, color) == aiReturn_SUCCESS) out.diffuse = to_color(color);
+    if (in.Get(AI_MATKEY_COLOR_AMBIENT, color) == aiReturn_SUCCESS) out.ambient = to_color(color);
+    if (in.Get(AI_MATKEY_COLOR_SPECULAR, color) == aiReturn_SUCCESS) out.specular = to_color(color);
+    if (in.Get(AI_MATKEY_COLOR_EMISSIVE, color) == aiReturn_SUCCESS) out.emissive = to_color(color);
+    float number = 0;
+    if (in.Get(AI_MATKEY_SHININESS, number) == aiReturn_SUCCESS) out.shininess = number;
+    if (in.Get(AI_MATKEY_OPACITY, number) == aiReturn_SUCCESS && number > 0) out.diffuse.a = number;
+    if (in.Get(AI_MATKEY_METALLIC_FACTOR, number) == aiReturn_SUCCESS) out.has_pbr = true, out.metalness = number;
+    if (in.Get(AI_MATKEY_ROUGHNESS_FACTOR, number) == aiReturn_SUCCESS) out.roughness = number;
+    int two_sided = 0;
+    if (in.Get(AI_MATKEY_TWOSIDED, two_sided) == aiReturn_SUCCESS) out.double_sided = two_sided != 0;
+    for (const auto kind : {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR}) {
+      aiString path;
+      if (out.texture.empty() && in.GetTexture(kind, 0, &path) == aiReturn_SUCCESS) out.texture = texture(path.C_Str());
+    }
+    // Exporters write black beside a texture although the texture is what they mean.
+    if (!out.texture.empty() && out.diffuse.r + out.diffuse.g + out.diffuse.b <= 0) out.diffuse = {1, 1, 1, out.diffuse.a};
+    return out;
+  }
+
+  std::string texture(const std::string& written) {
+    const aiTexture* inside = scene_.GetEmbeddedTexture(written.c_str());
+    if (inside == nullptr || inside->mHeight != 0) return find_texture(written, folder_);
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(inside->pcData);
+    std::string name = shape_.path + "#" + written;
+    out_.images.push_back({name, {bytes, bytes + inside->mWidth}});
+    return name;
+  }
+
+  void place() {
+    Eigen::AlignedBox3f box;
+    for (const auto index : out_.mesh.indices) box.extend(Eigen::Map<const Eigen::Vector3f>(out_.mesh.vertices[index].position.data()));
+    const Eigen::Vector3f centre =
+        shape_.center_submesh && !shape_.submesh.empty() && !box.isEmpty() ? Eigen::Vector3f(box.center()) : Eigen::Vector3f::Zero();
+    const Eigen::Vector3f scale = shape_.scale.cast<float>();
+    for (auto& vertex : out_.mesh.vertices) {
+      Eigen::Map<Eigen::Vector3f> position(vertex.position.data());
+      Eigen::Map<Eigen::Vector3f> normal(vertex.normal.data());
+      position = (position - centre).cwiseProduct(scale);
+      normal = normal.cwiseQuotient(scale).normalized();
+    }
+    if (shape_.scale.prod() < 0) {
+      for (std::size_t i = 0; i + 2 < out_.mesh.indices.size(); i += 3) std::swap(out_.mesh.indices[i + 1], out_.mesh.indices[i + 2]);
+    }
+    for (const auto index : out_.mesh.indices)
+      out_.mesh.bounds.extend(Eigen::Map<const Eigen::Vector3f>(out_.mesh.vertices[index].position.data()));
+  }
+
+  const aiScene& scene_;
+  const MeshShape& shape_;
+  std::filesystem::path folder_;
+  MeshFile out_;
+  std::map<unsigned, std::vector<std::uint32_t>> indices_by_material_;
+};
+
+}  // namespace
+
+base::Result<MeshFile> read_mesh_file(const MeshShape& shape) {
+  try {
+    Assimp::Importer importer;
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+    importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+    importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 45.0F);
+    const aiScene* scene =
+        importer.ReadFile(shape.path, aiProcess_Triangulate | aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType |
+                                          aiProcess_FlipUVs | aiProcess_ImproveCacheLocality | aiProcess_TransformUVCoords);
+    if (scene == nullptr || scene->mRootNode == nullptr)
+      return base::Error{fmt::format("mesh {}: {}", shape.path, base::in_quotes(importer.GetErrorString()))};
+    MeshFile file = Reader(*scene, shape).read();
+    if (file.mesh.indices.empty())
+      return base::Error{shape.submesh.empty() ? fmt::format("mesh {}: has no triangle", shape.path)
+                                               : fmt::format("mesh {}: has no submesh {}", shape.path, base::in_quotes(shape.submesh))};
+    return file;
+  } catch (const std::exception& e) {
+    return base::Error{fmt::format("mesh {}: {}", shape.path, base::in_quotes(e.what()))};
+  }
+}
+
+}  // namespace sim

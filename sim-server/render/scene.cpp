@@ -1,0 +1,186 @@
+// Turning definitions into drawables.
+#include "render/scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sim {
+namespace {
+
+Eigen::Vector3f linear(const Color& color) { return {to_linear(color.r), to_linear(color.g), to_linear(color.b)}; }
+
+Material to_material(const MaterialDef& in, double transparency, Assets& assets) {
+  Material out;
+  const Eigen::Vector3f albedo = linear(in.diffuse);
+  const float alpha = in.diffuse.a * static_cast<float>(1 - std::clamp(transparency, 0.0, 1.0));
+  out.albedo << albedo, alpha;
+  out.emissive = linear(in.emissive);
+  out.specular = linear(in.specular);
+  out.shininess = in.shininess;
+  if (in.has_pbr) {
+    // A rough equal of the metal and roughness model in terms of a Blinn-Phong lobe that keeps its energy.
+    const float roughness = std::clamp(in.roughness, 0.08F, 1.0F);
+    out.shininess = 2.0F / std::pow(roughness, 4.0F) - 2.0F;
+    const float peak = (out.shininess + 8.0F) / 25.0F;
+    const Eigen::Vector3f reflected = Eigen::Vector3f::Constant(0.04F) + in.metalness * (albedo - Eigen::Vector3f::Constant(0.04F));
+    out.specular = reflected * std::min(peak, 20.0F);
+    out.albedo.head<3>() *= 1.0F - 0.8F * in.metalness;
+  }
+  if (out.shininess <= 0) out.specular.setZero();
+  if (!in.texture.empty()) out.texture = assets.texture(in.texture);
+  if (!in.normal_map.empty()) out.normal_map = assets.normal_map(in.normal_map);
+  out.repeat = in.texture_scale.cast<float>();
+  out.is_lit = in.lighting;
+  out.is_double_sided = in.double_sided || (out.texture && out.texture->has_holes);
+  out.is_transparent = alpha < 0.999F;
+  return out;
+}
+
+// A visual's own material replaces the mesh's; a missing mesh keeps its warning colour.
+MaterialDef material_of(const VisualDef& visual, const Mesh& mesh, std::uint32_t part) {
+  return visual.material && !mesh.is_stand_in ? *visual.material : mesh.parts[part].material;
+}
+
+VisualDef as_visual(const CollisionDef& collision) {
+  VisualDef visual;
+  visual.name = collision.name;
+  visual.pose = collision.pose;
+  visual.geometry = collision.geometry;
+  visual.material = MaterialDef{};
+  visual.material->diffuse = {1.0F, 0.55F, 0.1F, 1};
+  return visual;
+}
+
+class Builder {
+ public:
+  Builder(Assets& assets, Scene::Content content) : assets_(assets), content_(content) {}
+
+  void add(const ModelDef& model) {
+    SceneModel entry;
+    entry.name = model.name;
+    entry.first_link = entry.canonical_link = static_cast<std::uint32_t>(scene_.links.size());
+    entry.link_count = static_cast<std::uint32_t>(model.links.size());
+    for (const auto& link : model.links) {
+      const auto index = static_cast<std::uint32_t>(scene_.links.size());
+      if (link.name == model.canonical_link) entry.canonical_link = index;
+      scene_.links.push_back({model.name + "::" + link.name, model.is_static, model.pose * link.pose});
+      if (content_ == Scene::Content::visuals) {
+        for (const auto& visual : link.visuals) add(visual, index);
+      } else {
+        for (const auto& collision : link.collisions) add(as_visual(collision), index);
+      }
+      for (const auto& light : link.lights) scene_.lights.push_back({light, static_cast<std::int32_t>(index)});
+    }
+    measure(entry);
+    scene_.models.push_back(std::move(entry));
+  }
+
+  void add(const ActorDef& actor) {
+    SceneModel entry;
+    entry.name = actor.name;
+    entry.first_link = entry.canonical_link = static_cast<std::uint32_t>(scene_.links.size());
+    entry.link_count = 1;
+    const auto index = entry.first_link;
+    scene_.links.push_back({actor.name, false, actor.pose});
+    if (!actor.skin.empty()) {
+      VisualDef skin;
+      skin.name = "skin";
+      MeshShape mesh;
+      mesh.path = actor.skin;
+      mesh.scale.setConstant(actor.skin_scale);
+      skin.geometry = mesh;
+      add(skin, index);
+    }
+    for (const auto& visual : actor.visuals) add(visual, index);
+    measure(entry);
+    scene_.models.push_back(std::move(entry));
+  }
+
+  Scene& scene() { return scene_; }
+
+ private:
+  void add(const VisualDef& visual, std::uint32_t link) {
+    const auto mesh = assets_.mesh(visual.geometry);
+    const auto* plane = std::get_if<PlaneShape>(&visual.geometry);
+    const auto* heightmap = std::get_if<HeightmapShape>(&visual.geometry);
+    for (std::uint32_t part = 0; part < mesh->parts.size(); ++part) {
+      Drawable drawable;
+      drawable.link = link;
+      drawable.in_link = Eigen::Affine3d(visual.pose.matrix()) * Assets::placement_of(visual.geometry);
+      drawable.mesh = mesh;
+      drawable.part = part;
+      drawable.material = to_material(material_of(visual, *mesh, part), visual.transparency, assets_);
+      if (heightmap != nullptr && content_ == Scene::Content::visuals) {
+        if (auto texture = assets_.height_texture(*heightmap)) {
+          drawable.material.texture = std::move(texture);
+          if (!visual.material) drawable.material.albedo = {1, 1, 1, 1};
+        }
+      }
+      drawable.casts_shadow = visual.cast_shadows && plane == nullptr && visual.transparency < 0.9;
+      drawable.is_ground = plane != nullptr;
+      drawable.is_mirrored = drawable.in_link.linear().determinant() < 0;
+      drawable.visibility_flags = visual.visibility_flags;
+      const Eigen::Vector3d centre = mesh->bounds.center().cast<double>();
+      drawable.centre = drawable.in_link * centre;
+      drawable.radius = (drawable.in_link.linear() * (0.5 * mesh->bounds.sizes().cast<double>()).asDiagonal()).rowwise().norm().norm();
+      scene_.drawables.push_back(std::move(drawable));
+    }
+  }
+
+  void measure(SceneModel& model) const {
+    const Eigen::Isometry3d& origin = scene_.links[model.canonical_link].start;
+    for (const auto& drawable : scene_.drawables) {
+      if (drawable.link < model.first_link || drawable.link >= model.first_link + model.link_count || drawable.is_ground) continue;
+      const Eigen::Isometry3d& pose = scene_.links[drawable.link].start;
+      model.radius = std::max(model.radius, (pose * drawable.centre - origin.translation()).norm() + drawable.radius);
+      const Eigen::Matrix3d turned = pose.linear() * drawable.in_link.linear();
+      const double half = (turned * (0.5 * drawable.mesh->bounds.sizes().cast<double>()).asDiagonal()).row(2).cwiseAbs().sum();
+      model.height = std::max(model.height, (pose * drawable.centre - origin.translation()).z() + half);
+    }
+  }
+
+  Assets& assets_;
+  Scene::Content content_;
+  Scene scene_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Scene> Scene::build(const Parts& parts, Assets& assets, Content content) {
+  Builder builder(assets, content);
+  builder.scene().look = parts.look;
+  for (const auto* light : parts.lights) builder.scene().lights.push_back({*light, -1});
+  for (const auto* model : parts.models) builder.add(*model);
+  for (const auto* actor : parts.actors) builder.add(*actor);
+  return std::make_shared<Scene>(std::move(builder.scene()));
+}
+
+std::shared_ptr<const Scene> Scene::build(const WorldDef& world, Assets& assets, Content content) {
+  Parts parts{world.scene, {}, {}, {}};
+  for (const auto& light : world.lights) parts.lights.push_back(&light);
+  for (const auto& model : world.models) parts.models.push_back(&model);
+  for (const auto& actor : world.actors) parts.actors.push_back(&actor);
+  return build(parts, assets, content);
+}
+
+std::vector<Eigen::Isometry3d> Scene::start_poses() const {
+  std::vector<Eigen::Isometry3d> poses;
+  poses.reserve(links.size());
+  for (const auto& link : links) poses.push_back(link.start);
+  return poses;
+}
+
+Eigen::AlignedBox3d Scene::bounds(std::span<const Eigen::Isometry3d> poses) const {
+  Eigen::AlignedBox3d box;
+  for (const auto& drawable : drawables) {
+    if (drawable.is_ground || drawable.link >= poses.size()) continue;
+    const Eigen::Matrix3d linear = poses[drawable.link].linear() * drawable.in_link.linear();
+    const Eigen::Vector3d centre = poses[drawable.link] * drawable.centre;
+    const Eigen::Vector3d half = (linear * (0.5 * drawable.mesh->bounds.sizes().cast<double>()).asDiagonal()).cwiseAbs().rowwise().sum();
+    box.extend(Eigen::Vector3d(centre - half));
+    box.extend(Eigen::Vector3d(centre + half));
+  }
+  return box;
+}
+
+}  // namespace sim

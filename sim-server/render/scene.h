@@ -1,0 +1,87 @@
+// A world as the renderer sees it: things to draw, each hanging on a link, and lights. Built from the definition of a world; afterwards it
+// never changes and any thread may read it. The poses of the links come with every picture: one per link in the order of Scene::links.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "render/assets.h"
+#include "world/world_def.h"
+
+namespace sim {
+
+// Colours here are linear light.
+struct Material {
+  Eigen::Vector4f albedo{0.45F, 0.45F, 0.45F, 1};  // and opacity
+  Eigen::Vector3f emissive{0, 0, 0};
+  Eigen::Vector3f specular{0, 0, 0};
+  float shininess = 0;
+  std::shared_ptr<const Texture> texture, normal_map;  // may be null
+  Eigen::Vector2f repeat{1, 1};                        // of the texture along u and v
+  bool is_lit = true;
+  bool is_double_sided = false;
+  bool is_transparent = false;  // drawn after all others, from far to near
+};
+
+struct Drawable {
+  std::uint32_t link = 0;                                 // index into Scene::links and into the poses
+  Eigen::Affine3d in_link = Eigen::Affine3d::Identity();  // from the mesh to the link
+  std::shared_ptr<const Mesh> mesh;
+  std::uint32_t part = 0;  // of the mesh
+  Material material;
+  Eigen::Vector3d centre{0, 0, 0};  // of the bounding sphere, in the link
+  double radius = 0;
+  bool casts_shadow = true;
+  bool is_ground = false;    // an infinite plane: never in the shadow pass
+  bool is_mirrored = false;  // in_link turns the outside in
+  std::uint32_t visibility_flags = 0xffffffff;
+};
+
+struct SceneLink {
+  std::string name;  // model::link; an actor's name
+  bool is_static = false;
+  Eigen::Isometry3d start = Eigen::Isometry3d::Identity();  // pose in the world when the world begins
+};
+
+struct SceneLight {
+  LightDef light;
+  std::int32_t link = -1;  // -1: the pose of the light is in the world
+};
+
+struct SceneModel {
+  std::string name;
+  std::uint32_t first_link = 0, link_count = 0;
+  std::uint32_t canonical_link = 0;  // index into links
+  double radius = 0;                 // round the canonical link's origin, of all that is drawn
+  double height = 0;                 // of the highest point over that origin at the start
+};
+
+struct Scene {
+  enum class Content { visuals, collisions };
+
+  SceneDef look;
+  std::vector<SceneLink> links;  // of models[0], models[1], ... in the order of their definitions, then one per actor
+  std::vector<SceneModel> models;
+  std::vector<Drawable> drawables;
+  std::vector<SceneLight> lights;
+
+  // What it takes of a world; pointers must live during the call only.
+  struct Parts {
+    SceneDef look;
+    std::vector<const LightDef*> lights;
+    std::vector<const ModelDef*> models;
+    std::vector<const ActorDef*> actors;
+  };
+  static std::shared_ptr<const Scene> build(const Parts& parts, Assets& assets, Content content = Content::visuals);
+  static std::shared_ptr<const Scene> build(const WorldDef& world, Assets& assets, Content content = Content::visuals);
+
+  std::vector<Eigen::Isometry3d> start_poses() const;
+  // All that is drawn and is no ground, with the links at these poses.
+  Eigen::AlignedBox3d bounds(std::span<const Eigen::Isometry3d> poses) const;
+};
+
+}  // namespace sim

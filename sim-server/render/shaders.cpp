@@ -1,0 +1,294 @@
+#include "render/shaders.h"
+
+namespace sim {
+namespace {
+
+std::string define(const char* name, int value) { return "#define " + std::string(name) + " " + std::to_string(value) + "\n"; }
+
+std::string header(const Features& f) {
+  std::string out = "#version 330 core\n";
+  out += define("DEPTH_ONLY", f.depth_only) + define("TEXTURE", f.texture) + define("HOLES", f.holes) + define("NORMAL_MAP", f.normal_map);
+  out += define("LIT", f.lit) + define("SPECULAR", f.specular) + define("DOUBLE_SIDED", f.double_sided) + define("GRID", f.grid);
+  out += define("FOG", static_cast<int>(f.fog)) + define("SHADOW_TAPS", f.shadow_taps);
+  out += define("DIRECTIONAL", f.directional) + define("POINTS", f.points) + define("SPOTS", f.spots);
+  return out;
+}
+
+// sRGB of linear light: two square roots, within 0.1/255 of the exact curve and much cheaper than a power.
+constexpr const char* encode_source = R"(
+vec3 encode(vec3 l) {
+  l = clamp(l, 0.0, 1.0);
+  vec3 s = sqrt(l);
+  vec3 q = sqrt(s);
+  return mix(-0.0769017564 + 0.8337588221 * s + 0.2981013597 * q - 0.0553171001 * l, 12.92 * l, lessThan(l, vec3(0.0031308)));
+}
+)";
+
+constexpr const char* surface_vertex = R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec2 uv;
+uniform mat4 model;          // to camera-relative world axes
+uniform mat3 normal_matrix;
+uniform mat4 view_projection;
+uniform vec2 repeat;
+#if !DEPTH_ONLY
+out vec3 v_position;
+out vec3 v_normal;
+#endif
+#if TEXTURE
+out vec2 v_uv;
+#endif
+void main() {
+  vec4 p = model * vec4(position, 1.0);
+#if !DEPTH_ONLY
+  v_position = p.xyz;
+  v_normal = normal_matrix * normal;
+#endif
+#if TEXTURE
+  v_uv = uv * repeat;
+#endif
+  gl_Position = view_projection * p;
+}
+)";
+
+constexpr const char* surface_fragment = R"(
+#if TEXTURE
+in vec2 v_uv;
+uniform sampler2D albedo_map;
+#endif
+#if DEPTH_ONLY
+void main() {
+#if HOLES
+  if (texture(albedo_map, v_uv).a < 0.5) discard;
+#endif
+}
+#else
+in vec3 v_position;
+in vec3 v_normal;
+out vec4 picture;
+uniform vec4 albedo;
+uniform vec3 emissive;
+uniform vec4 shine;  // colour, exponent
+uniform vec3 ambient;
+uniform vec4 fog_color;  // colour, density
+uniform vec2 fog_range;  // start, 1 / (end - start)
+uniform vec3 eye;  // in the world, for the grid
+#if DIRECTIONAL
+uniform vec3 sun_direction[DIRECTIONAL];  // to the light
+uniform vec3 sun_color[DIRECTIONAL];
+uniform vec3 sun_specular[DIRECTIONAL];
+#endif
+#if POINTS + SPOTS
+uniform vec3 lamp_position[POINTS + SPOTS];  // points first; camera-relative
+uniform vec3 lamp_color[POINTS + SPOTS];
+uniform vec3 lamp_specular[POINTS + SPOTS];
+uniform vec4 lamp_reach[POINTS + SPOTS];  // constant, linear, quadratic, range
+#endif
+#if SPOTS
+uniform vec3 spot_axis[SPOTS];
+uniform vec3 spot_cone[SPOTS];  // cos(outer / 2), 1 / (cos(inner / 2) - cos(outer / 2)), falloff
+#endif
+#if SHADOW_TAPS
+uniform sampler2DShadow shadow_map;
+uniform mat4 shadow_matrix;  // camera-relative to the map's [0, 1]
+uniform float shadow_lift;   // along the normal [m]
+uniform float shadow_texel;  // size of one in the map's [0, 1]
+#endif
+#if NORMAL_MAP
+uniform sampler2D bump_map;
+#endif
+)";
+
+constexpr const char* surface_functions = R"(
+#if SHADOW_TAPS
+float shade(vec3 p, vec3 n) {
+  vec3 s = (shadow_matrix * vec4(p + n * shadow_lift, 1.0)).xyz;
+  s.z = min(s.z, 1.0);
+#if SHADOW_TAPS == 1
+  return texture(shadow_map, s);
+#else
+  float sum = 0.0;
+  for (int i = 0; i < SHADOW_TAPS; ++i)
+    for (int k = 0; k < SHADOW_TAPS; ++k)
+      sum += texture(shadow_map, s + vec3(vec2(i, k) - 0.5 * float(SHADOW_TAPS - 1), 0.0) * vec3(shadow_texel, shadow_texel, 0.0));
+  return sum / float(SHADOW_TAPS * SHADOW_TAPS);
+#endif
+}
+#endif
+#if NORMAL_MAP
+vec3 bumped(vec3 n) {
+  vec3 dx = dFdx(v_position), dy = dFdy(v_position);
+  vec2 tx = dFdx(v_uv), ty = dFdy(v_uv);
+  vec3 t = dx * ty.y - dy * tx.y;
+  float size = dot(t, t);
+  if (size <= 0.0) return n;
+  t = normalize(t * sign(tx.x * ty.y - ty.x * tx.y) - n * dot(n, t));
+  vec3 bump = texture(bump_map, v_uv).xyz * 2.0 - 1.0;
+  return normalize(t * bump.x + cross(n, t) * bump.y + n * bump.z);
+}
+#endif
+#if GRID
+// Share of the pixel that lines cover which are drawn every `step` metres.
+float lines(vec2 p, vec2 pixel, float step, float width) {
+  vec2 d = abs(fract(p / step + 0.5) - 0.5) * step;
+  vec2 cover = clamp((width + 0.5 * pixel - d) / pixel, 0.0, 1.0) * clamp(2.0 * width / pixel, 0.0, 1.0);
+  return max(cover.x, cover.y);
+}
+#endif
+void main() {
+  vec4 base = albedo;
+#if TEXTURE
+  vec4 texel = texture(albedo_map, v_uv);
+#if HOLES
+  if (texel.a < 0.5) discard;
+#else
+  base.a *= texel.a;
+#endif
+  base.rgb *= texel.rgb * texel.rgb;
+#endif
+#if GRID
+  vec2 ground = v_position.xy + eye.xy;
+  vec2 pixel = max(abs(dFdx(ground)) + abs(dFdy(ground)), vec2(1e-4));
+  float near = clamp(1.0 - length(v_position) / 60.0, 0.0, 1.0);
+  base.rgb *= 1.0 - near * (0.22 * lines(ground, pixel, 1.0, 0.006) + 0.2 * lines(ground, pixel, 5.0, 0.012));
+#endif
+#if LIT
+  vec3 n = normalize(v_normal);
+#if DOUBLE_SIDED
+  if (!gl_FrontFacing) n = -n;
+#endif
+#if NORMAL_MAP && TEXTURE
+  n = bumped(n);
+#endif
+  vec3 diffuse = ambient * (0.75 + 0.25 * n.z);
+  vec3 specular = vec3(0.0);
+#if SPECULAR
+  vec3 v = normalize(-v_position);
+#endif
+#if DIRECTIONAL
+  for (int i = 0; i < DIRECTIONAL; ++i) {
+    float d = max(dot(n, sun_direction[i]), 0.0);
+    float open = 1.0;
+#if SHADOW_TAPS
+    if (i == 0) open = shade(v_position, n);
+#endif
+    diffuse += d * open * sun_color[i];
+#if SPECULAR
+    float s = max(dot(n, normalize(sun_direction[i] + v)), 0.0);
+    specular += (d > 0.0 ? pow(s, shine.w) * open : 0.0) * sun_specular[i];
+#endif
+  }
+#endif
+#if POINTS + SPOTS
+  for (int i = 0; i < POINTS + SPOTS; ++i) {
+    vec3 l = lamp_position[i] - v_position;
+    float r = length(l);
+    l /= max(r, 1e-6);
+    vec4 reach = lamp_reach[i];
+    float strength = r < reach.w ? 1.0 / max(reach.x + r * (reach.y + r * reach.z), 1e-3) : 0.0;
+#if SPOTS
+    if (i >= POINTS) {
+      vec3 cone = spot_cone[max(i - POINTS, 0)];
+      float inside = clamp((dot(-l, spot_axis[max(i - POINTS, 0)]) - cone.x) * cone.y, 0.0, 1.0);
+      strength *= inside > 0.0 ? pow(inside, cone.z) : 0.0;
+    }
+#endif
+    float d = max(dot(n, l), 0.0) * strength;
+    diffuse += d * lamp_color[i];
+#if SPECULAR
+    float s = max(dot(n, normalize(l + v)), 0.0);
+    specular += (d > 0.0 ? pow(s, shine.w) * strength : 0.0) * lamp_specular[i];
+#endif
+  }
+#endif
+  vec3 light = emissive + base.rgb * diffuse;
+#if SPECULAR
+  light += specular * shine.rgb;
+#endif
+#else
+  vec3 light = emissive + base.rgb;
+#endif
+#if FOG
+  float distance = length(v_position);
+#if FOG == 1
+  float f = clamp((distance - fog_range.x) * fog_range.y, 0.0, 1.0);
+#elif FOG == 2
+  float f = 1.0 - exp(-fog_color.w * distance);
+#else
+  float f = 1.0 - exp(-fog_color.w * fog_color.w * distance * distance);
+#endif
+  light = mix(light, fog_color.rgb, f);
+#endif
+  picture = vec4(encode(light), base.a);
+}
+#endif
+)";
+
+}  // namespace
+
+std::string surface_vertex_source(const Features& features) { return header(features) + surface_vertex; }
+std::string surface_fragment_source(const Features& features) {
+  // The functions close the conditional that the declarations open: without colour there is nothing else.
+  return header(features) + surface_fragment + encode_source + surface_functions;
+}
+
+std::string sky_vertex_source() {
+  return R"(#version 330 core
+layout(location = 0) in vec3 position;
+uniform vec3 forward, right, up;  // world directions of the picture's middle, and to its right and upper edge
+uniform vec2 middle;              // of the frustum, in its half widths
+out vec3 v_direction;
+void main() {
+  v_direction = forward + (position.x + middle.x) * right + (middle.y - position.y) * up;
+  gl_Position = vec4(position.xy, 1.0, 1.0);
+}
+)";
+}
+
+std::string sky_fragment_source() {
+  return std::string(R"(#version 330 core
+in vec3 v_direction;
+out vec4 picture;
+uniform vec3 zenith, horizon, ground;  // linear
+uniform vec3 sun_direction;
+uniform vec3 sun_glow;  // linear
+)") + encode_source +
+         R"(
+void main() {
+  vec3 d = normalize(v_direction);
+  float h = max(d.z, 0.0);
+  float s = sqrt(sqrt(h));
+  vec3 sky = mix(horizon, zenith, clamp(s * 1.25 - 0.25 + 0.1 * h, 0.0, 1.0));
+  float toward = max(dot(d, sun_direction), 0.0);
+  float t2 = toward * toward, t4 = t2 * t2, t8 = t4 * t4;
+  float t64 = t8 * t8 * t8 * t8 * t8 * t8 * t8 * t8;
+  sky += sun_glow * (0.12 * t8 + 0.25 * t64 + smoothstep(0.9994, 0.9998, toward));
+  sky = mix(sky, ground, smoothstep(0.0, 0.02, -d.z));
+  picture = vec4(encode(sky), 1.0);
+}
+)";
+}
+
+std::string overlay_vertex_source() {
+  return R"(#version 330 core
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec4 color;
+uniform mat4 view_projection;
+out vec4 v_color;
+void main() {
+  v_color = color;
+  gl_Position = view_projection * vec4(position, 1.0);
+}
+)";
+}
+
+std::string overlay_fragment_source() {
+  return R"(#version 330 core
+in vec4 v_color;
+out vec4 picture;
+void main() { picture = v_color; }
+)";
+}
+
+}  // namespace sim

@@ -1,0 +1,54 @@
+// The GLSL that draws, and the formula of its light. A program is made for each set of features that occurs, so nothing is paid for what a
+// surface does not have. Values; any thread.
+//
+// The formula. Colours of materials, textures, background, fog and scene ambient are sRGB and turned into linear light first; colours of
+// lights are linear light already. For a point p with unit normal n, seen from direction v (from p to the eye):
+//
+//   diffuse  = ambient * (0.75 + 0.25 n.z) + sum over lights of  L * max(0, n.l)
+//   specular = sum over lights of  L.specular * material.specular * max(0, n.h)^shininess    with h = (l + v) / |l + v|, where n.l > 0
+//   linear   = emissive + albedo * diffuse + specular          albedo = material diffuse * texture;  materials without lighting: albedo
+//   L        = light diffuse * intensity * reach * shade
+//   reach    = 1 (directional);  within the range 1 / (constant + linear d + quadratic d^2), else 0 (point and spot);  a spot's is times
+//              clamp((cos a - cos(outer / 2)) / (cos(inner / 2) - cos(outer / 2)), 0, 1)^falloff,  a: off the spot's axis
+//   shade    = share of the point that the first shadow-casting directional light reaches; 1 for all other lights
+//   picture  = sRGB(mix(linear, fog, f))   f = linear: (d - start) / (end - start); exponential: 1 - exp(-density d);
+//                                              quadratic: 1 - exp(-(density d)^2)        with d = |v|
+//
+// A material's own ambient colour is not used: a surface reflects ambient light with the same colour as all other light.
+#pragma once
+
+#include <compare>
+#include <string>
+
+namespace sim {
+
+enum class FogKind { none, linear, exponential, quadratic };
+
+struct Features {
+  bool depth_only = false;  // no colour; shadow maps and depth cameras
+  bool texture = false;
+  bool holes = false;  // of the texture: cut out
+  bool normal_map = false;
+  bool lit = true;
+  bool specular = false;
+  bool double_sided = false;
+  bool grid = false;  // metre lines on the ground
+  FogKind fog = FogKind::none;
+  int shadow_taps = 0;  // a side; 0: no shadow
+  int directional = 0, points = 0, spots = 0;
+
+  auto operator<=>(const Features&) const = default;
+};
+
+std::string surface_vertex_source(const Features& features);
+std::string surface_fragment_source(const Features& features);
+
+// A triangle over all the picture at the far end, with the direction in the world that each pixel looks to.
+std::string sky_vertex_source();
+std::string sky_fragment_source();
+
+// Coloured triangles in camera-relative or screen coordinates.
+std::string overlay_vertex_source();
+std::string overlay_fragment_source();
+
+}  // namespace sim
