@@ -47,11 +47,11 @@ struct MeshFile {
 
 // Unit shapes, to be scaled: a box, ellipsoid or cylinder of 1 x 1 x 1 m about the origin; a square of 1 m in the x-y plane.
 Mesh make_box();
-Mesh make_sphere(int rings = 24, int segments = 48);
-Mesh make_cylinder(int segments = 48);
+Mesh make_sphere(int rings = 18, int segments = 36);
+Mesh make_cylinder(int segments = 40);
 Mesh make_plane();
 // Can't be scaled from a unit shape without losing its round ends.
-Mesh make_capsule(double radius, double length, int rings = 24, int segments = 48);
+Mesh make_capsule(double radius, double length, int rings = 18, int segments = 36);
 // A rectangular grid of heights: row 0 lies at +y, column 0 at -x, its middle at the origin.
 Mesh make_height_grid(int columns, int rows, double width, double depth, std::span<const float> heights);
 // Every triangle gets its own flat normal; u and v are metres along the sides.

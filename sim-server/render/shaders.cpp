@@ -161,7 +161,7 @@ void main() {
 #if NORMAL_MAP && TEXTURE
   n = bumped(n);
 #endif
-  vec3 diffuse = ambient * (0.75 + 0.25 * n.z);
+  vec3 diffuse = ambient * (1.0 + 0.25 * n.z);
   vec3 specular = vec3(0.0);
 #if SPECULAR
   vec3 v = normalize(-v_position);

@@ -4,7 +4,7 @@
 // The formula. Colours of materials, textures, background, fog and scene ambient are sRGB and turned into linear light first; colours of
 // lights are linear light already. For a point p with unit normal n, seen from direction v (from p to the eye):
 //
-//   diffuse  = ambient * (0.75 + 0.25 n.z) + sum over lights of  L * max(0, n.l)
+//   diffuse  = ambient * (1 + 0.25 n.z) + sum over lights of  L * max(0, n.l)
 //   specular = sum over lights of  L.specular * material.specular * max(0, n.h)^shininess    with h = (l + v) / |l + v|, where n.l > 0
 //   linear   = emissive + albedo * diffuse + specular          albedo = material diffuse * texture;  materials without lighting: albedo
 //   L        = light diffuse * intensity * reach * shade

@@ -1,0 +1,86 @@
+#include "render/camera.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "render/pixels.h"
+
+namespace sim {
+namespace {
+
+bool is_mono_format(const std::string& format) {
+  static constexpr std::array<std::string_view, 6> names = {"L8", "L16", "L_INT8", "L_INT16", "INTENSITY8", "MONO8"};
+  return std::find(names.begin(), names.end(), format) != names.end();
+}
+
+constexpr double widest_pinhole = 3.1;  // [rad]
+
+}  // namespace
+
+Camera::Camera(const CameraDef& def, Output output, std::uint64_t seed)
+    : def_(def), output_(output), seed_(seed), is_mono_(is_mono_format(def.format)), lens_(Lens::make(def)) {
+  def_.horizontal_fov = lens_ ? def_.horizontal_fov : std::min(def_.horizontal_fov, widest_pinhole);
+  if (output != Output::depth) rgba_.resize(pixels() * 4);
+  if (output != Output::color) depth_.resize(pixels());
+}
+
+std::size_t Camera::pixels() const { return static_cast<std::size_t>(def_.width) * static_cast<std::size_t>(def_.height); }
+std::size_t Camera::color_bytes() const { return pixels() * (is_mono_ ? 1 : 3); }
+double Camera::focal_length() const { return 0.5 * def_.width / std::tan(0.5 * std::min(def_.horizontal_fov, widest_pinhole)); }
+
+base::Result<void> Camera::take(Renderer& renderer, const std::shared_ptr<const Scene>& scene, std::span<const Eigen::Isometry3d> poses,
+                                const Eigen::Isometry3d& pose, std::int64_t time) {
+  time_ = time;
+  View plain = View::pinhole(pose, def_.horizontal_fov, def_.width, def_.height);
+  plain.near_clip = def_.near_clip;
+  plain.far_clip = def_.far_clip;
+  std::vector<View> views = lens_ ? lens_->views(pose) : std::vector<View>{plain};
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    View& view = views[i];
+    view.visibility_mask = def_.visibility_mask;
+    view.wants_color = output_ != Output::depth;
+    if (auto drawn = renderer.draw(scene, poses, view); !drawn) return drawn;
+    const std::size_t count = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
+    if (view.wants_color) {
+      if (lens_) face_rgba_.resize(count * 4);
+      renderer.read_rgba(lens_ ? face_rgba_ : rgba_);
+      if (lens_) lens_->map_rgba(i, face_rgba_, rgba_);
+    }
+    if (output_ != Output::color && i == 0) {
+      if (lens_) face_depth_.resize(count);
+      renderer.read_depth(lens_ ? face_depth_ : depth_);
+      if (lens_) lens_->map_depth(face_depth_, depth_);
+    }
+  }
+  if (output_ != Output::color) add_depth_noise();
+  return {};
+}
+
+void Camera::add_depth_noise() {
+  if (def_.depth_clip) {
+    const auto nearest = static_cast<float>(def_.depth_clip->first), farthest = static_cast<float>(def_.depth_clip->second);
+    for (auto& d : depth_) d = d < nearest || d > farthest ? std::numeric_limits<float>::infinity() : d;
+  }
+  // The noise of an rgbd camera is that of its colours.
+  if (def_.noise.kind == NoiseDef::Kind::none || output_ != Output::depth) return;
+  NoiseStream(mix_seed(seed_, static_cast<std::uint64_t>(time_))).add(std::span<float>(depth_), def_.noise.mean, def_.noise.stddev);
+}
+
+void Camera::write_color(std::span<std::uint8_t> out) const {
+  out = out.first(std::min(out.size(), color_bytes()));
+  if (is_mono_)
+    rgba_to_mono(rgba_, out);
+  else
+    rgba_to_rgb(rgba_, out);
+  if (def_.noise.kind == NoiseDef::Kind::none) return;
+  NoiseStream(mix_seed(seed_, static_cast<std::uint64_t>(time_))).add(out, def_.noise.mean, def_.noise.stddev);
+}
+
+void Camera::write_points(std::span<float> out) const {
+  const double f = focal_length();
+  depth_to_points(depth_, def_.width, f, f, 0.5 * def_.width, 0.5 * def_.height, out);
+}
+
+}  // namespace sim

@@ -1,0 +1,61 @@
+// One camera of a world: takes pictures with a renderer and hands them out in the formats of sensors. One thread at a time.
+//
+// Pictures are the same for the same scene, poses, seed and time, whatever was taken before. Rows run from the top down, pixels from left to
+// right, without padding. Colour: red, green, blue, one byte each, sRGB. Mono: one byte of luminance (cameras of formats L8, L16,
+// INTENSITY8). Depth: one float [m] along the axis, native byte order, +infinity where nothing is between the clip planes.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "render/lens.h"
+#include "render/renderer.h"
+#include "world/world_def.h"
+
+namespace sim {
+
+class Camera {
+ public:
+  enum class Output { color, depth, color_and_depth };
+
+  // `seed`: of its noise.
+  Camera(const CameraDef& def, Output output, std::uint64_t seed);
+
+  const CameraDef& def() const { return def_; }
+  Output output() const { return output_; }
+  bool is_mono() const { return is_mono_; }
+  std::size_t color_bytes() const;  // of a picture in its format
+  std::size_t pixels() const;
+
+  // Pinhole model [pixel]; of a distorting lens before its distortion.
+  double focal_length() const;
+
+  // `pose`: of the camera in the world. `time` [ns] only chooses the noise.
+  base::Result<void> take(Renderer& renderer, const std::shared_ptr<const Scene>& scene, std::span<const Eigen::Isometry3d> poses,
+                          const Eigen::Isometry3d& pose, std::int64_t time);
+
+  // Of the last picture taken; each may be called several times.
+  void write_color(std::span<std::uint8_t> out) const;
+  std::span<const std::uint8_t> rgba() const { return rgba_; }  // without noise
+  std::span<const float> depth() const { return depth_; }
+  // x forward, y left, z up in the camera; NaN where there is none. Three floats a pixel.
+  void write_points(std::span<float> out) const;
+
+ private:
+  void add_depth_noise();
+
+  CameraDef def_;
+  Output output_;
+  std::uint64_t seed_;
+  std::int64_t time_ = 0;
+  bool is_mono_;
+  std::optional<Lens> lens_;
+  std::vector<std::uint8_t> rgba_, face_rgba_;
+  std::vector<float> depth_, face_depth_;
+};
+
+}  // namespace sim
