@@ -51,7 +51,8 @@ Image chequer() {
 }
 
 std::string key_of(const MeshShape& shape) {
-  return fmt::format("{}|{}|{}|{},{},{}", shape.path, shape.submesh, shape.center_submesh, shape.scale.x(), shape.scale.y(), shape.scale.z());
+  return fmt::format("{}|{}|{}|{},{},{}", shape.path, shape.submesh, shape.center_submesh, shape.scale.x(), shape.scale.y(),
+                     shape.scale.z());
 }
 std::string key_of(const HeightmapShape& shape) {
   return fmt::format("{}|{},{},{}|{}", shape.path, shape.size.x(), shape.size.y(), shape.size.z(), shape.sampling);

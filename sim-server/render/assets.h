@@ -1,5 +1,5 @@
-// Meshes and textures in memory, each file read once. What cannot be read gets a visible stand-in (a magenta and black chequer, a small box)
-// and one line of complaint. The cache is for one thread at a time; what it hands out never changes and any thread may read it.
+// Meshes and textures in memory, each file read once. What cannot be read gets a visible stand-in (a magenta and black chequer, a small
+// box) and one line of complaint. The cache is for one thread at a time; what it hands out never changes and any thread may read it.
 #pragma once
 
 #include <map>

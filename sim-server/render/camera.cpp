@@ -31,7 +31,7 @@ std::size_t Camera::color_bytes() const { return pixels() * (is_mono_ ? 1 : 3); 
 double Camera::focal_length() const { return 0.5 * def_.width / std::tan(0.5 * std::min(def_.horizontal_fov, widest_pinhole)); }
 
 base::Result<void> Camera::take(Renderer& renderer, const std::shared_ptr<const Scene>& scene, std::span<const Eigen::Isometry3d> poses,
-                                const Eigen::Isometry3d& pose, std::int64_t time) {
+                                const Eigen::Isometry3d& pose, std::int64_t time, Output wanted) {
   time_ = time;
   View plain = View::pinhole(pose, def_.horizontal_fov, def_.width, def_.height);
   plain.near_clip = def_.near_clip;
@@ -40,7 +40,7 @@ base::Result<void> Camera::take(Renderer& renderer, const std::shared_ptr<const 
   for (std::size_t i = 0; i < views.size(); ++i) {
     View& view = views[i];
     view.visibility_mask = def_.visibility_mask;
-    view.wants_color = output_ != Output::depth;
+    view.wants_color = wanted != Output::depth;
     if (auto drawn = renderer.draw(scene, poses, view); !drawn) return drawn;
     const std::size_t count = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
     if (view.wants_color) {
@@ -48,13 +48,13 @@ base::Result<void> Camera::take(Renderer& renderer, const std::shared_ptr<const 
       renderer.read_rgba(lens_ ? face_rgba_ : rgba_);
       if (lens_) lens_->map_rgba(i, face_rgba_, rgba_);
     }
-    if (output_ != Output::color && i == 0) {
+    if (wanted != Output::color && i == 0) {
       if (lens_) face_depth_.resize(count);
       renderer.read_depth(lens_ ? face_depth_ : depth_);
       if (lens_) lens_->map_depth(face_depth_, depth_);
     }
   }
-  if (output_ != Output::color) add_depth_noise();
+  if (wanted != Output::color) add_depth_noise();
   return {};
 }
 

@@ -1,7 +1,7 @@
 // One camera of a world: takes pictures with a renderer and hands them out in the formats of sensors. One thread at a time.
 //
-// Pictures are the same for the same scene, poses, seed and time, whatever was taken before. Rows run from the top down, pixels from left to
-// right, without padding. Colour: red, green, blue, one byte each, sRGB. Mono: one byte of luminance (cameras of formats L8, L16,
+// Pictures are the same for the same scene, poses, seed and time, whatever was taken before. Rows run from the top down, pixels from left
+// to right, without padding. Colour: red, green, blue, one byte each, sRGB. Mono: one byte of luminance (cameras of formats L8, L16,
 // INTENSITY8). Depth: one float [m] along the axis, native byte order, +infinity where nothing is between the clip planes.
 #pragma once
 
@@ -34,9 +34,13 @@ class Camera {
   // Pinhole model [pixel]; of a distorting lens before its distortion.
   double focal_length() const;
 
-  // `pose`: of the camera in the world. `time` [ns] only chooses the noise.
+  // `pose`: of the camera in the world. `time` [ns] only chooses the noise. `wanted`: within the camera's output; depth alone is cheaper.
   base::Result<void> take(Renderer& renderer, const std::shared_ptr<const Scene>& scene, std::span<const Eigen::Isometry3d> poses,
-                          const Eigen::Isometry3d& pose, std::int64_t time);
+                          const Eigen::Isometry3d& pose, std::int64_t time, Output wanted);
+  base::Result<void> take(Renderer& renderer, const std::shared_ptr<const Scene>& scene, std::span<const Eigen::Isometry3d> poses,
+                          const Eigen::Isometry3d& pose, std::int64_t time) {
+    return take(renderer, scene, poses, pose, time, output_);
+  }
 
   // Of the last picture taken; each may be called several times.
   void write_color(std::span<std::uint8_t> out) const;

@@ -111,8 +111,8 @@ const char* load_all(Functions& f) {
 
 base::Result<std::unique_ptr<Context>> Context::open() {
   prepare_environment();
-  static constexpr int attributes[] = {OSMESA_FORMAT,        OSMESA_RGBA, OSMESA_PROFILE, OSMESA_CORE_PROFILE, OSMESA_CONTEXT_MAJOR_VERSION, 3,
-                                       OSMESA_CONTEXT_MINOR_VERSION, 3, 0};
+  static constexpr int attributes[] = {
+      OSMESA_FORMAT, OSMESA_RGBA, OSMESA_PROFILE, OSMESA_CORE_PROFILE, OSMESA_CONTEXT_MAJOR_VERSION, 3, OSMESA_CONTEXT_MINOR_VERSION, 3, 0};
   std::unique_ptr<Context> context(new Context);
   context->handle_ = OSMesaCreateContextAttribs(attributes, nullptr);
   if (context->handle_ == nullptr) return base::Error{"render: OSMesa makes no GL 3.3 core context"};

@@ -187,8 +187,7 @@ Image halve(const Image& image) {
         alpha += p[3];
       }
       std::uint8_t* p = &out.rgba[(static_cast<std::size_t>(y) * static_cast<std::size_t>(out.width) + static_cast<std::size_t>(x)) * 4];
-      for (int c = 0; c < 3; ++c)
-        p[c] = srgb.value[static_cast<std::size_t>(sum[c] / weight * static_cast<float>(SrgbTable::size) + 0.5F)];
+      for (int c = 0; c < 3; ++c) p[c] = srgb.value[static_cast<std::size_t>(sum[c] / weight * static_cast<float>(SrgbTable::size) + 0.5F)];
       p[3] = static_cast<std::uint8_t>((alpha + 2) / 4);
     }
   }

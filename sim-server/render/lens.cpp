@@ -31,6 +31,7 @@ Eigen::Vector2d straighten(const DistortionDef& d, const Eigen::Vector2d& seen) 
   for (int i = 0; i < 60; ++i) {
     const Eigen::Vector2d error = distort(d, p) - seen;
     p -= 0.7 * error;
+    if (error.squaredNorm() < 1e-16) break;
     if (!p.allFinite() || p.norm() > 20) return seen;
   }
   return p;
@@ -108,7 +109,8 @@ void Lens::make_brown(const CameraDef& camera) {
   const double margin = 2 / focal;
   const Eigen::Vector2d low = (box.min().array() - margin).max(-6.0), high = (box.max().array() + margin).min(6.0);
   const auto pixels = [&](double tangent) { return std::clamp(static_cast<int>(std::ceil(tangent * focal)), 2, 8192); };
-  faces_.push_back({Eigen::Matrix3d::Identity(), low.x(), high.x(), -high.y(), -low.y(), pixels(high.x() - low.x()), pixels(high.y() - low.y())});
+  faces_.push_back(
+      {Eigen::Matrix3d::Identity(), low.x(), high.x(), -high.y(), -low.y(), pixels(high.x() - low.x()), pixels(high.y() - low.y())});
   for (std::size_t i = 0; i < rays.size(); ++i) assign(i, {1, -rays[i].x(), -rays[i].y()});
 }
 
@@ -181,7 +183,8 @@ void Lens::map_rgba(std::size_t view, std::span<const std::uint8_t> source, std:
     if (from.face < 0 && view == 0) std::fill(pixel, pixel + 4, std::uint8_t{0});
     if (from.face != static_cast<int>(view)) continue;
     const auto x = static_cast<std::size_t>(from.x), y = static_cast<std::size_t>(from.y);
-    const auto fx = static_cast<std::uint32_t>((from.x - static_cast<float>(x)) * 256), fy = static_cast<std::uint32_t>((from.y - static_cast<float>(y)) * 256);
+    const auto fx = static_cast<std::uint32_t>((from.x - static_cast<float>(x)) * 256),
+               fy = static_cast<std::uint32_t>((from.y - static_cast<float>(y)) * 256);
     const std::uint8_t* p = &source[y * row + 4 * x];
     for (std::size_t c = 0; c < 4; ++c) {
       const std::uint32_t top = p[c] * (256 - fx) + p[c + 4] * fx;

@@ -1,4 +1,5 @@
-// Lenses that are no pinhole: how the picture of a distorting or wide lens is put together from one or more flat views. A value; any thread.
+// Lenses that are no pinhole: how the picture of a distorting or wide lens is put together from one or more flat views. A value; any
+// thread.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -61,7 +61,8 @@ void add_disc(Mesh& mesh, double radius, double z, bool is_up, int segments) {
   add_vertex(mesh, {0, 0, z}, normal, 0.5, 0.5);
   for (int s = 0; s <= segments; ++s) {
     const double angle = 2 * pi * s / segments;
-    add_vertex(mesh, {radius * std::cos(angle), radius * std::sin(angle), z}, normal, 0.5 + 0.5 * std::cos(angle), 0.5 - 0.5 * std::sin(angle));
+    add_vertex(mesh, {radius * std::cos(angle), radius * std::sin(angle), z}, normal, 0.5 + 0.5 * std::cos(angle),
+               0.5 - 0.5 * std::sin(angle));
   }
   for (std::uint32_t s = 1; s <= static_cast<std::uint32_t>(segments); ++s) {
     const std::uint32_t a = middle + s;
@@ -158,8 +159,8 @@ Mesh make_height_grid(int columns, int rows, double width, double depth, std::sp
   for (int r = 0; r < rows; ++r) {
     for (int c = 0; c < columns; ++c) {
       const Eigen::Vector3d normal((height(c - 1, r) - height(c + 1, r)) / (2 * dx), (height(c, r + 1) - height(c, r - 1)) / (2 * dy), 1);
-      add_vertex(mesh, {c * dx - 0.5 * width, 0.5 * depth - r * dy, height(c, r)}, normal.normalized(), static_cast<double>(c) / (columns - 1),
-                 static_cast<double>(r) / (rows - 1));
+      add_vertex(mesh, {c * dx - 0.5 * width, 0.5 * depth - r * dy, height(c, r)}, normal.normalized(),
+                 static_cast<double>(c) / (columns - 1), static_cast<double>(r) / (rows - 1));
     }
   }
   for (int r = 0; r + 1 < rows; ++r) {

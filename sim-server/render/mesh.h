@@ -1,4 +1,5 @@
-// What is drawn, before it reaches GL: triangles with normals and texture coordinates, and the materials of their parts. Values; any thread.
+// What is drawn, before it reaches GL: triangles with normals and texture coordinates, and the materials of their parts. Values; any
+// thread.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -57,8 +58,8 @@ Mesh make_height_grid(int columns, int rows, double width, double depth, std::sp
 // Every triangle gets its own flat normal; u and v are metres along the sides.
 Mesh make_flat(std::span<const Eigen::Vector3d> vertices, std::span<const std::array<std::uint32_t, 3>> triangles);
 
-// By Assimp: COLLADA, STL, OBJ and the like; all parts, or the submesh (a node or a mesh of that name). The result is scaled and, when asked
-// for, centred.
+// By Assimp: COLLADA, STL, OBJ and the like; all parts, or the submesh (a node or a mesh of that name). The result is scaled and, when
+// asked for, centred.
 base::Result<MeshFile> read_mesh_file(const MeshShape& shape);
 
 }  // namespace sim

@@ -27,8 +27,8 @@ std::string find_texture(const std::string& written, const std::filesystem::path
   for (auto& c : name) c = c == '\\' ? '/' : c;
   if (name.starts_with("file://")) name.erase(0, 7);
   const fs::path last = fs::path(name).filename();
-  for (const fs::path& candidate : {folder / name, folder / last, folder / "../materials/textures" / last, folder / "materials/textures" / last,
-                                    folder / "../textures" / last, folder / "textures" / last}) {
+  for (const fs::path& candidate : {folder / name, folder / last, folder / "../materials/textures" / last,
+                                    folder / "materials/textures" / last, folder / "../textures" / last, folder / "textures" / last}) {
     std::error_code error;
     if (fs::is_regular_file(candidate, error)) return candidate.lexically_normal().string();
   }
@@ -37,7 +37,8 @@ std::string find_texture(const std::string& written, const std::filesystem::path
 
 class Reader {
  public:
-  Reader(const aiScene& scene, const MeshShape& shape) : scene_(scene), shape_(shape), folder_(std::filesystem::path(shape.path).parent_path()) {}
+  Reader(const aiScene& scene, const MeshShape& shape)
+      : scene_(scene), shape_(shape), folder_(std::filesystem::path(shape.path).parent_path()) {}
 
   MeshFile read() {
     collect(*scene_.mRootNode, aiMatrix4x4(), false);
@@ -157,9 +158,9 @@ base::Result<MeshFile> read_mesh_file(const MeshShape& shape) {
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 45.0F);
-    const aiScene* scene =
-        importer.ReadFile(shape.path, aiProcess_Triangulate | aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType |
-                                          aiProcess_FlipUVs | aiProcess_ImproveCacheLocality | aiProcess_TransformUVCoords);
+    const aiScene* scene = importer.ReadFile(shape.path, aiProcess_Triangulate | aiProcess_GenSmoothNormals |
+                                                             aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_FlipUVs |
+                                                             aiProcess_ImproveCacheLocality | aiProcess_TransformUVCoords);
     if (scene == nullptr || scene->mRootNode == nullptr)
       return base::Error{fmt::format("mesh {}: {}", shape.path, base::in_quotes(importer.GetErrorString()))};
     MeshFile file = Reader(*scene, shape).read();

@@ -84,7 +84,8 @@ Lamp make_lamp(const LightDef& light, const Eigen::Isometry3d& pose, const Eigen
   lamp.position = (pose.translation() - eye).cast<float>();
   lamp.color = radiance(light.diffuse, light.intensity);
   lamp.specular = radiance(light.specular, light.intensity);
-  lamp.reach = Eigen::Vector4d(light.constant_attenuation, light.linear_attenuation, light.quadratic_attenuation, light.range).cast<float>();
+  lamp.reach =
+      Eigen::Vector4d(light.constant_attenuation, light.linear_attenuation, light.quadratic_attenuation, light.range).cast<float>();
   lamp.is_spot = light.kind == LightDef::Kind::spot;
   lamp.axis = (pose.linear() * light.direction).cast<float>();
   const double outer = std::cos(0.5 * light.outer_angle), inner = std::cos(0.5 * light.inner_angle);
@@ -234,7 +235,8 @@ base::Result<void> Renderer::Impl::prepare() {
 base::Result<void> Renderer::Impl::check(const Scene& scene, std::span<const Eigen::Isometry3d> poses, const View& view) const {
   const auto bad = [](const std::string& what) { return base::Error{"render: " + what}; };
   if (view.width < 1 || view.height < 1 || view.width > largest_ || view.height > largest_)
-    return bad("picture of " + std::to_string(view.width) + "x" + std::to_string(view.height) + " pixels (expected 1.." + std::to_string(largest_) + ")");
+    return bad("picture of " + std::to_string(view.width) + "x" + std::to_string(view.height) + " pixels (expected 1.." +
+               std::to_string(largest_) + ")");
   if (poses.size() != scene.links.size())
     return bad(std::to_string(poses.size()) + " poses for " + std::to_string(scene.links.size()) + " links");
   const bool is_frustum = view.right > view.left && view.top > view.bottom && view.far_clip > view.near_clip &&
@@ -303,7 +305,10 @@ Features Renderer::Impl::features_of(const Drawable& drawable, const Scene& scen
   f.texture = material.texture != nullptr;
   f.lit = material.is_lit;
   f.grid = view.grid && drawable.is_ground;
-  if (scene.look.fog) f.fog = scene.look.fog->type == "linear" ? FogKind::linear : scene.look.fog->type == "quadratic" ? FogKind::quadratic : FogKind::exponential;
+  if (scene.look.fog)
+    f.fog = scene.look.fog->type == "linear"      ? FogKind::linear
+            : scene.look.fog->type == "quadratic" ? FogKind::quadratic
+                                                  : FogKind::exponential;
   if (!f.lit) return f;
   f.normal_map = f.texture && material.normal_map != nullptr;
   f.specular = material.specular.maxCoeff() > 0;
@@ -464,8 +469,8 @@ void Renderer::Impl::draw_triangles(const std::vector<OverlayVertex>& triangles,
   gl_.Disable(GL_BLEND);
 }
 
-base::Result<void> Renderer::Impl::draw(const std::shared_ptr<const Scene>& scene, std::span<const Eigen::Isometry3d> poses, const View& view,
-                                        const Overlay* overlay) {
+base::Result<void> Renderer::Impl::draw(const std::shared_ptr<const Scene>& scene, std::span<const Eigen::Isometry3d> poses,
+                                        const View& view, const Overlay* overlay) {
   if (auto checked = check(*scene, poses, view); !checked) return checked;
   if (!context_->make_current()) return base::Error{"render: OSMesa refuses its own context"};
   if (scene_ != scene) {

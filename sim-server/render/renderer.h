@@ -1,6 +1,6 @@
-// Draws a scene into memory, without a display or GPU: one context of llvmpipe with what it holds of the scene. One thread at a time; several
-// renderers may work in as many threads. Pictures depend on nothing but what is given: the same calls make the same bytes. How light falls
-// is written down in shaders.h.
+// Draws a scene into memory, without a display or GPU: one context of llvmpipe with what it holds of the scene. One thread at a time;
+// several renderers may work in as many threads. Pictures depend on nothing but what is given: the same calls make the same bytes. How
+// light falls is written down in shaders.h.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -54,9 +54,9 @@ class Renderer {
   void read_depth(std::span<float> out);
 
   struct Statistics {
-    std::uint64_t draws = 0;           // pictures
-    std::uint64_t drawn = 0;           // drawables in the last picture
-    std::uint64_t culled = 0;          // drawables outside the last picture's frustum
+    std::uint64_t draws = 0;            // pictures
+    std::uint64_t drawn = 0;            // drawables in the last picture
+    std::uint64_t culled = 0;           // drawables outside the last picture's frustum
     std::uint64_t shadow_rebuilds = 0;  // of the static shadow map
   };
   Statistics statistics() const;

@@ -50,7 +50,8 @@ Eigen::Vector3d ShadowMap::snapped(const Eigen::Vector3d& focus) const {
   return {std::round(p.x() / focus_step) * focus_step, std::round(p.y() / focus_step) * focus_step, 0};
 }
 
-void ShadowMap::fit(const Scene& scene, std::span<const Eigen::Isometry3d> poses, const Eigen::Vector3d& to_light, const Eigen::Vector3d& focus) {
+void ShadowMap::fit(const Scene& scene, std::span<const Eigen::Isometry3d> poses, const Eigen::Vector3d& to_light,
+                    const Eigen::Vector3d& focus) {
   to_light_ = to_light;
   axes_ = axes_for(to_light);
   region_.setEmpty();
@@ -96,7 +97,8 @@ bool ShadowMap::still_fits(const Scene& scene, std::span<const Eigen::Isometry3d
       if (!is_same(pose, poses_[drawable.link])) return false;
     } else if (covers_all_) {
       const Eigen::Vector3d centre = axes_ * (pose * drawable.centre);
-      const Eigen::Array2d outside = (centre - region_.center()).head<2>().array().abs() + drawable.radius - 0.5 * region_.sizes().head<2>().array();
+      const Eigen::Array2d outside =
+          (centre - region_.center()).head<2>().array().abs() + drawable.radius - 0.5 * region_.sizes().head<2>().array();
       if (outside.maxCoeff() > 0) return false;
     }
   }

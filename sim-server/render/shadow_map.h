@@ -1,5 +1,5 @@
-// The shadow of the sun: a depth map seen along its rays. What never moves is drawn once and kept; what moves is drawn over a copy, and only
-// the patches it touched are put back. Ground planes are never in it. For the thread of the context.
+// The shadow of the sun: a depth map seen along its rays. What never moves is drawn once and kept; what moves is drawn over a copy, and
+// only the patches it touched are put back. Ground planes are never in it. For the thread of the context.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -35,8 +35,8 @@ class ShadowMap {
   };
   void allocate(int size);
   void fit(const Scene& scene, std::span<const Eigen::Isometry3d> poses, const Eigen::Vector3d& to_light, const Eigen::Vector3d& focus);
-  bool still_fits(const Scene& scene, std::span<const Eigen::Isometry3d> poses, const Eigen::Vector3d& to_light, const Eigen::Vector3d& focus,
-                  int size) const;
+  bool still_fits(const Scene& scene, std::span<const Eigen::Isometry3d> poses, const Eigen::Vector3d& to_light,
+                  const Eigen::Vector3d& focus, int size) const;
   base::Result<void> draw(const Scene& scene, std::span<const Eigen::Isometry3d> poses, bool is_static);
   void restore_patches();
   Patch patch_of(const Drawable& drawable, const Eigen::Isometry3d& pose) const;
