@@ -1,0 +1,239 @@
+#include "devices/camera.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <cstring>
+#include <optional>
+#include <thread>
+
+#include "base/guarded.h"
+#include "base/log.h"
+#include "devices/render_world.h"
+#include "render/pixels.h"
+
+namespace sim {
+namespace {
+
+struct Channel {
+  shm::IfaceType type;
+  std::shared_ptr<shm::IfaceWriter> writer;
+};
+
+struct Job {
+  Snapshot snapshot;
+  Eigen::Isometry3d pose;  // of the camera in the world
+  std::chrono::nanoseconds time;
+  std::vector<bool> channels;  // which are wanted
+};
+
+std::uint64_t seed_of(std::uint64_t seed, const std::string& name) {
+  for (const char c : name) seed = mix_seed(seed, static_cast<unsigned char>(c));
+  return seed;
+}
+
+// Draws and publishes one picture at a time in its own thread, which begins with the first.
+class CameraWorker {
+ public:
+  CameraWorker(Camera camera, std::vector<Channel> channels) : camera_(std::move(camera)), channels_(std::move(channels)) {}
+  ~CameraWorker() {
+    state_.lock()->is_ending = true;
+    changed_.notify_all();
+  }
+
+  bool is_idle() const { return !state_.lock()->is_busy; }
+  // Only when idle.
+  void start(Job job) {
+    if (!thread_.joinable()) thread_ = std::jthread([this] { run(); });
+    {
+      auto state = state_.lock();
+      state->job = std::move(job);
+      state->is_busy = true;
+    }
+    changed_.notify_all();
+  }
+  void wait() {
+    auto state = state_.lock();
+    while (!state.wait_for(changed_, std::chrono::hours(1), [&] { return !state->is_busy; })) {
+    }
+  }
+
+ private:
+  struct State {
+    std::optional<Job> job;
+    bool is_busy = false;
+    bool is_ending = false;
+  };
+
+  void run() {
+    while (auto job = next()) {
+      draw(*job);
+      job.reset();  // the snapshot may be large; nobody needs it now
+      state_.lock()->is_busy = false;
+      changed_.notify_all();
+    }
+    renderer_.reset();  // in the thread that it belongs to
+  }
+
+  std::optional<Job> next() {
+    auto state = state_.lock();
+    while (!state.wait_for(changed_, std::chrono::hours(1), [&] { return state->job || state->is_ending; })) {
+    }
+    if (state->is_ending) return std::nullopt;
+    return std::exchange(state->job, std::nullopt);
+  }
+
+  void draw(const Job& job) {
+    auto done = take(job);
+    if (!done && !has_failed_) base::log(base::Level::error, channels_.front().writer->name(), "{}", done.error().message);
+    has_failed_ = !done;
+    if (done) publish(job);
+  }
+
+  base::Result<void> take(const Job& job) {
+    if (!renderer_) {
+      auto opened = Renderer::open();
+      if (!opened) return opened.error();
+      renderer_ = std::move(*opened);
+    }
+    bool needs_color = false, needs_depth = false;
+    for (std::size_t i = 0; i < channels_.size(); ++i) {
+      if (job.channels[i]) (channels_[i].type == shm::IfaceType::camera ? needs_color : needs_depth) = true;
+    }
+    const auto wanted = !needs_depth ? Camera::Output::color : needs_color ? Camera::Output::color_and_depth : Camera::Output::depth;
+    return camera_.take(*renderer_, job.snapshot.scene, *job.snapshot.poses, job.pose, job.time.count(), wanted);
+  }
+
+  void publish(const Job& job) {
+    for (std::size_t i = 0; i < channels_.size(); ++i) {
+      if (!job.channels[i]) continue;
+      auto frame = channels_[i].writer->begin_frame();
+      if (!frame) continue;  // readers hold every slot: counted by the ring
+      fill(channels_[i].type, *frame);
+      channels_[i].writer->publish_frame(job.time, to_pose(job.pose));
+    }
+  }
+
+  void fill(shm::IfaceType type, std::span<std::byte> frame) const {
+    if (type == shm::IfaceType::camera) return camera_.write_color({reinterpret_cast<std::uint8_t*>(frame.data()), frame.size()});
+    const std::span<float> floats(reinterpret_cast<float*>(frame.data()), frame.size() / sizeof(float));
+    if (type == shm::IfaceType::points) return camera_.write_points(floats);
+    std::copy_n(camera_.depth().begin(), std::min(floats.size(), camera_.depth().size()), floats.begin());
+  }
+
+  Camera camera_;
+  std::vector<Channel> channels_;
+  std::unique_ptr<Renderer> renderer_;
+  bool has_failed_ = false;
+  base::Guarded<State, base::Rank::buffer> state_;
+  std::condition_variable changed_;
+  std::jthread thread_;  // last: ends before what it uses
+};
+
+// Carries the first iface and does the work for all of them.
+class CameraDevice final : public Device {
+ public:
+  CameraDevice(DeviceWorld& world, Mount mount, double rate, Camera camera, const std::vector<Channel>& channels)
+      : world_(world), mount_(mount), schedule_(rate), channels_(channels), worker_(std::move(camera), channels) {}
+
+  shm::IfaceWriter& iface() override { return *channels_.front().writer; }
+  ModelId model() const override { return mount_.link.model; }
+
+  bool wants_sample(const Moment& moment) override {
+    if (!schedule_.is_due(moment.time)) return false;
+    std::vector<bool> wanted;
+    for (const auto& channel : channels_) wanted.push_back(channel.writer->is_subscribed());
+    if (std::find(wanted.begin(), wanted.end(), true) == wanted.end()) return false;
+    // In its own time: while a picture is drawn the next one stays due.
+    if (!worker_.is_idle()) return false;
+    job_ = Job{world_.pictures->snapshot(moment.time), mount_.in_world(world_.physics), moment.time, std::move(wanted)};
+    return true;
+  }
+  void measure(const Moment&) override { worker_.start(std::move(*job_)); }
+  void publish(const Moment& moment) override {
+    schedule_.done(moment.time);
+    job_.reset();
+    if (world_.pictures->is_synchronous()) worker_.wait();
+  }
+  void reset() override {
+    worker_.wait();
+    schedule_.restart();
+  }
+
+ private:
+  DeviceWorld& world_;
+  Mount mount_;
+  Schedule schedule_;
+  std::vector<Channel> channels_;
+  std::optional<Job> job_;
+  CameraWorker worker_;
+};
+
+// Only shows that the iface is there; the sensor's CameraDevice does the work.
+class SecondIface final : public Device {
+ public:
+  SecondIface(ModelId model, std::shared_ptr<shm::IfaceWriter> writer) : model_(model), writer_(std::move(writer)) {}
+  shm::IfaceWriter& iface() override { return *writer_; }
+  ModelId model() const override { return model_; }
+
+ private:
+  ModelId model_;
+  std::shared_ptr<shm::IfaceWriter> writer_;
+};
+
+shm::CameraInfo info_of(const Camera& camera, const DeviceWorld& world, const Mount& mount, const SensorDef& sensor) {
+  const CameraDef& def = camera.def();
+  const ModelDef& model = world.physics.def(mount.link.model);
+  shm::CameraInfo info{};
+  info.width = static_cast<std::uint32_t>(def.width);
+  info.height = static_cast<std::uint32_t>(def.height);
+  info.hfov = def.horizontal_fov;
+  info.near_clip = def.near_clip;
+  info.far_clip = def.far_clip;
+  info.fx = info.fy = camera.focal_length();
+  info.cx = 0.5 * def.width;
+  info.cy = 0.5 * def.height;
+  if (def.distortion) {
+    const DistortionDef& d = *def.distortion;
+    const double terms[5] = {d.k1, d.k2, d.p1, d.p2, d.k3};
+    std::copy(std::begin(terms), std::end(terms), info.distortion);
+  }
+  info.rate = sensor.update_rate > 0 ? sensor.update_rate : 1 / world.world.physics.step;
+  info.noise = def.noise.kind == NoiseDef::Kind::none ? 0 : def.noise.stddev;
+  info.pose = to_pose(model.links[mount.link.link].pose * mount.pose);
+  shm::set_text(info.model, scoped_model(model, sensor.scope));
+  return info;
+}
+
+shm::Format format_of(shm::IfaceType type, const Camera& camera) {
+  if (type == shm::IfaceType::depth) return shm::Format::depth_float;
+  if (type == shm::IfaceType::points) return shm::Format::points_float;
+  return camera.is_mono() ? shm::Format::mono8 : shm::Format::rgb8;
+}
+
+}  // namespace
+
+base::Result<std::vector<std::unique_ptr<Device>>> make_cameras(DeviceWorld& world, Mount mount, const SensorDef& sensor) {
+  std::vector<std::unique_ptr<Device>> devices;
+  const bool is_depth = sensor.kind == SensorKind::depth_camera, is_rgbd = sensor.kind == SensorKind::rgbd_camera;
+  const auto output = is_depth ? Camera::Output::depth : is_rgbd ? Camera::Output::color_and_depth : Camera::Output::color;
+  for (const auto& def : std::get<CameraSetDef>(sensor.data).cameras) {
+    const std::string own_name = sensor.kind == SensorKind::multi_camera ? sensor.name + "::" + def.name : sensor.name;
+    const std::string name = iface_name(world.physics.def(mount.link.model).name, sensor.scope, own_name);
+    Camera camera(def, output, seed_of(world.seed, name));
+    const Mount place{mount.link, mount.pose * def.pose};
+    std::vector<Channel> channels;
+    for (const auto type : {shm::IfaceType::camera, shm::IfaceType::depth, shm::IfaceType::points}) {
+      if (type == shm::IfaceType::camera ? is_depth : !is_depth && !is_rgbd) continue;
+      shm::CameraInfo info = info_of(camera, world, place, sensor);
+      info.format = static_cast<std::uint32_t>(format_of(type, camera));
+      auto writer = world.shm.create(shm::camera_spec(type, name, info));
+      if (!writer) return writer.error();
+      channels.push_back({type, std::move(*writer)});
+    }
+    devices.push_back(std::make_unique<CameraDevice>(world, place, sensor.update_rate, std::move(camera), channels));
+    for (std::size_t i = 1; i < channels.size(); ++i) devices.push_back(std::make_unique<SecondIface>(mount.link.model, channels[i].writer));
+  }
+  return devices;
+}
+
+}  // namespace sim

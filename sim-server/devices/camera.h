@@ -1,0 +1,17 @@
+// Cameras of all kinds: camera, depth, rgbd, multicamera. Each camera draws in a thread of its own, with a context of its own, and only while
+// somebody subscribes. The frame of time t shows the world at t, and its pose is the camera's at t. See device.h for the thread rule.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "devices/device.h"
+#include "render/camera.h"
+
+namespace sim {
+
+// The devices of one sensor: one for each iface. A camera has a `camera` iface, a depth camera `depth` and `points`, an rgbd camera all
+// three under the same name; the cameras of a set are named sensor::camera.
+base::Result<std::vector<std::unique_ptr<Device>>> make_cameras(DeviceWorld& world, Mount mount, const SensorDef& sensor);
+
+}  // namespace sim
