@@ -130,13 +130,15 @@ class CameraWorker {
 };
 
 // Carries the first iface and does the work for all of them.
-class CameraDevice final : public Device {
+class CameraDevice final : public Device, public CameraPlaceSource {
  public:
   CameraDevice(DeviceWorld& world, Mount mount, double rate, Camera camera, const std::vector<Channel>& channels)
-      : world_(world), mount_(mount), schedule_(rate), channels_(channels), worker_(std::move(camera), channels) {}
+      : world_(world), mount_(mount), def_(camera.def()), schedule_(rate), channels_(channels), worker_(std::move(camera), channels) {}
 
   shm::IfaceWriter& iface() override { return *channels_.front().writer; }
   ModelId model() const override { return mount_.link.model; }
+  Eigen::Isometry3d camera_pose() const override { return mount_.in_world(world_.physics); }
+  const CameraDef& camera_def() const override { return def_; }
 
   bool wants_sample(const Moment& moment) override {
     if (!schedule_.is_due(moment.time)) return false;
@@ -162,6 +164,7 @@ class CameraDevice final : public Device {
  private:
   DeviceWorld& world_;
   Mount mount_;
+  CameraDef def_;
   Schedule schedule_;
   std::vector<Channel> channels_;
   std::optional<Job> job_;
@@ -231,7 +234,8 @@ base::Result<std::vector<std::unique_ptr<Device>>> make_cameras(DeviceWorld& wor
       channels.push_back({type, std::move(*writer)});
     }
     devices.push_back(std::make_unique<CameraDevice>(world, place, sensor.update_rate, std::move(camera), channels));
-    for (std::size_t i = 1; i < channels.size(); ++i) devices.push_back(std::make_unique<SecondIface>(mount.link.model, channels[i].writer));
+    for (std::size_t i = 1; i < channels.size(); ++i)
+      devices.push_back(std::make_unique<SecondIface>(mount.link.model, channels[i].writer));
   }
   return devices;
 }

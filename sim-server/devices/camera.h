@@ -1,5 +1,5 @@
-// Cameras of all kinds: camera, depth, rgbd, multicamera. Each camera draws in a thread of its own, with a context of its own, and only while
-// somebody subscribes. The frame of time t shows the world at t, and its pose is the camera's at t. See device.h for the thread rule.
+// Cameras of all kinds: camera, depth, rgbd, multicamera. Each camera draws in a thread of its own, with a context of its own, and only
+// while somebody subscribes. The frame of time t shows the world at t, and its pose is the camera's at t. See device.h for the thread rule.
 #pragma once
 
 #include <memory>
@@ -9,6 +9,14 @@
 #include "render/camera.h"
 
 namespace sim {
+
+// What a device of a camera answers about its place: for pictures through its eyes.
+class CameraPlaceSource {
+ public:
+  virtual ~CameraPlaceSource() = default;
+  virtual Eigen::Isometry3d camera_pose() const = 0;  // in the world, now
+  virtual const CameraDef& camera_def() const = 0;
+};
 
 // The devices of one sensor: one for each iface. A camera has a `camera` iface, a depth camera `depth` and `points`, an rgbd camera all
 // three under the same name; the cameras of a set are named sensor::camera.

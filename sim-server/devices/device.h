@@ -18,6 +18,7 @@
 namespace sim {
 
 class RayWorld;
+class RenderWorld;
 
 struct Moment {
   std::chrono::nanoseconds time{0};  // simulated
@@ -43,6 +44,7 @@ struct DeviceWorld {
   shm::Server& shm;
   std::uint64_t seed = 0;
   const WorldDef& world;
+  RenderWorld* pictures = nullptr;  // never null while there are cameras
 };
 
 class Device {

@@ -2,6 +2,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "base/text.h"
+#include "devices/camera.h"
 #include "devices/device.h"
 #include "devices/laser.h"
 #include "devices/position2d.h"
@@ -20,7 +21,6 @@ bool is_sonar(const SensorDef& sensor) {
 }
 bool is_of_a_ring(const SensorDef& sensor) { return base::to_lower(sensor.name).starts_with("sonar"); }
 
-// Cameras are made by whoever renders.
 bool is_camera(SensorKind kind) {
   return kind == SensorKind::camera || kind == SensorKind::depth_camera || kind == SensorKind::rgbd_camera ||
          kind == SensorKind::multi_camera;
@@ -55,7 +55,12 @@ void make_sensor(Makers& m, Mount mount, const SensorDef& sensor) {
     default:
       break;
   }
-  if (is_camera(sensor.kind)) return;
+  if (is_camera(sensor.kind)) {
+    auto made = make_cameras(m.world, mount, sensor);
+    if (!made && !m.failure) m.failure = made.error();
+    if (made) std::move(made->begin(), made->end(), std::back_inserter(m.devices));
+    return;
+  }
   m.notes.push_back(fmt::format("model {}: sensor {}: {} sensors are not simulated", m.world.physics.def(m.model).name, sensor.name,
                                 to_text(sensor.kind)));
 }

@@ -23,8 +23,8 @@ std::vector<WaypointDef> all_waypoints(const ActorDef& actor) {
 }
 
 // A smooth curve through p1 and p2 that looks at their neighbours; tension 1 makes it straight.
-Eigen::Vector3d curve(const Eigen::Vector3d& p0, const Eigen::Vector3d& p1, const Eigen::Vector3d& p2, const Eigen::Vector3d& p3, double tension,
-                      double u) {
+Eigen::Vector3d curve(const Eigen::Vector3d& p0, const Eigen::Vector3d& p1, const Eigen::Vector3d& p2, const Eigen::Vector3d& p3,
+                      double tension, double u) {
   const Eigen::Vector3d m1 = (1 - tension) * 0.5 * (p2 - p0) + tension * (p2 - p1);
   const Eigen::Vector3d m2 = (1 - tension) * 0.5 * (p3 - p1) + tension * (p2 - p1);
   const double u2 = u * u, u3 = u2 * u;

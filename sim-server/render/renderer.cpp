@@ -583,9 +583,13 @@ Renderer::Statistics Renderer::statistics() const { return impl_->statistics(); 
 
 base::Result<Image> draw_smooth(Renderer& renderer, const std::shared_ptr<const Scene>& scene, std::span<const Eigen::Isometry3d> poses,
                                 View view, const Overlay* overlay) {
-  view.width *= 2;
-  view.height *= 2;
-  view.pixel_scale = 2;
+  // Very large pictures are fine enough as they are.
+  const bool is_doubled = std::max(view.width, view.height) <= 4096;
+  if (is_doubled) {
+    view.width *= 2;
+    view.height *= 2;
+    view.pixel_scale = 2;
+  }
   view.shadow_size = view.shadow_size > 0 ? 4096 : 0;
   view.shadow_taps = 4;
   if (auto drawn = renderer.draw(scene, poses, view, overlay); !drawn) return drawn.error();
@@ -593,7 +597,7 @@ base::Result<Image> draw_smooth(Renderer& renderer, const std::shared_ptr<const 
   image.rgba.resize(image.size_bytes());
   renderer.read_rgba(image.rgba);
   for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
-  return halve(image);
+  return is_doubled ? halve(image) : std::move(image);
 }
 
 }  // namespace sim

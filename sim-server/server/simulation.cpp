@@ -19,7 +19,8 @@ base::Result<std::unique_ptr<Simulation>> Simulation::create(std::shared_ptr<con
   std::unique_ptr<Simulation> s(new Simulation(std::move(world), shm, options));
   s->physics_ = std::make_unique<Physics>(s->world_, s->pool_, s->triangles_, notes, dropped);
   s->rays_ = std::make_unique<RayWorld>(*s->physics_, s->triangles_);
-  s->device_world_.reset(new DeviceWorld{*s->physics_, *s->rays_, shm, options.seed, *s->world_});
+  s->pictures_ = std::make_unique<RenderWorld>(*s->physics_, *s->world_);
+  s->device_world_.reset(new DeviceWorld{*s->physics_, *s->rays_, shm, options.seed, *s->world_, s->pictures_.get()});
   s->initial_models_ = s->physics_->model_slots();
   std::vector<std::string> ray_notes;  // physics has said the same about the same shapes
   for (ModelId id = 0; id < s->initial_models_; ++id) {
@@ -31,6 +32,15 @@ base::Result<std::unique_ptr<Simulation>> Simulation::create(std::shared_ptr<con
     if (auto made = s->make_devices_of(id, notes); !made) return made.error();
   }
   return s;
+}
+
+base::Result<Renderer*> Simulation::renderer() {
+  if (!renderer_) {
+    auto opened = Renderer::open();
+    if (!opened) return opened.error();
+    renderer_ = std::move(*opened);
+  }
+  return renderer_.get();
 }
 
 base::Result<void> Simulation::make_devices_of(ModelId model, std::vector<std::string>& notes) {

@@ -76,7 +76,8 @@ struct Encoder {
     raw.body.values[7] = r.span;
     using View = ScreenshotRequest::View;
     raw.body.flags = (r.view == View::top ? RTMSIM_VIEW_TOP : 0) | (r.view == View::follow ? RTMSIM_VIEW_FOLLOW : 0) |
-                     (r.view == View::from ? RTMSIM_VIEW_FROM : 0) | (r.with_scans ? RTMSIM_VIEW_SCANS : 0);
+                     (r.view == View::from ? RTMSIM_VIEW_FROM : 0) | (r.with_scans ? RTMSIM_VIEW_SCANS : 0) |
+                     (r.view == View::camera ? RTMSIM_VIEW_CAMERA : 0) | (r.with_collisions ? RTMSIM_VIEW_COLLISIONS : 0);
   }
   void operator()(const StatsRequest&) {}
   void operator()(const ResetOdometryRequest& r) {
@@ -203,6 +204,7 @@ base::Result<Request> Decoder::screenshot() const {
     return fail("size must be 1x1 to 8192x8192, got " + std::to_string(request.width) + "x" + std::to_string(request.height));
   }
   request.with_scans = (body().flags & RTMSIM_VIEW_SCANS) != 0;
+  request.with_collisions = (body().flags & RTMSIM_VIEW_COLLISIONS) != 0;
   request.span = values()[7];
   if (request.span < 0) return fail("field of view or width must not be negative");
   if ((body().flags & RTMSIM_VIEW_TOP) != 0) {
@@ -212,6 +214,9 @@ base::Result<Request> Decoder::screenshot() const {
     if (name_.empty()) return fail("needs the name of the model to follow");
   } else if ((body().flags & RTMSIM_VIEW_FROM) != 0) {
     request.view = View::from;
+  } else if ((body().flags & RTMSIM_VIEW_CAMERA) != 0) {
+    request.view = View::camera;
+    if (name_.empty()) return fail("needs the name of the camera");
   }
   request.follow = name_;
   const auto wanted = pose();
