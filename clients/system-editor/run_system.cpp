@@ -326,8 +326,8 @@ class Run {
     const auto stats = simctl({"--json", "stats"});
     if (!stats) return stats.error();
     const auto json = Json::parse(*stats, nullptr, false);
-    if (json.is_object() && json.contains("state_hash"))
-      result_.state_hash = json["state_hash"].is_string() ? json["state_hash"].get<std::string>() : json["state_hash"].dump();
+    if (json.is_object() && json.contains("hash"))
+      result_.state_hash = json["hash"].is_string() ? json["hash"].get<std::string>() : json["hash"].dump();
     if (!options_.picture.empty()) {
       const auto file = std::filesystem::absolute(options_.picture).string();
       if (const auto drawn = simctl({"screenshot", file, "--top", "--scans", "--size", "900x900"}, 60s); !drawn) return drawn.error();

@@ -56,7 +56,11 @@ void ConfigAdmin::update(const char* config_set, const char* config_param) {
 
 bool ConfigAdmin::isExist(const char* param_name) const { return configuration_->is_bound(text(param_name)); }
 bool ConfigAdmin::isChanged() const { return configuration_->has_changed(); }
-std::string ConfigAdmin::getActiveId() const { return configuration_->active_id(); }
+const char* ConfigAdmin::getActiveId() const {
+  thread_local std::string id;
+  id = configuration_->active_id();
+  return id.c_str();
+}
 bool ConfigAdmin::haveConfig(const char* config_id) const { return configuration_->has(text(config_id)); }
 bool ConfigAdmin::isActive() const { return configuration_->is_active(); }
 std::vector<std::string> ConfigAdmin::getParameterNames() const { return configuration_->bound_names(); }
@@ -72,7 +76,7 @@ coil::Properties ConfigAdmin::getConfigurationSet(const char* config_id) const {
   return set ? to_properties(*set) : coil::Properties();
 }
 
-coil::Properties ConfigAdmin::getActiveConfigurationSet() const { return getConfigurationSet(getActiveId().c_str()); }
+coil::Properties ConfigAdmin::getActiveConfigurationSet() const { return getConfigurationSet(getActiveId()); }
 
 bool ConfigAdmin::setConfigurationSetValues(const coil::Properties& config_set) {
   if (!configuration_->set_values(to_set(config_set))) return false;

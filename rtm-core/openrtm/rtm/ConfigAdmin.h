@@ -54,7 +54,8 @@ class ConfigAdmin {
   bool isExist(const char* param_name) const;
   bool isChanged() const;
   void changedParam(const char*, const char*) {}
-  std::string getActiveId() const;
+  // Valid until this thread asks again.
+  const char* getActiveId() const;
   bool haveConfig(const char* config_id) const;
   // False from a change of any set until one is activated.
   bool isActive() const;

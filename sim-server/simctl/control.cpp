@@ -1,0 +1,202 @@
+// Requests and commands: step, pose, velocity, spawn, screenshot, contacts.
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "base/text.h"
+#include "shm/request_board.h"
+#include "simctl.h"
+
+namespace simctl {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+volatile std::sig_atomic_t interrupted = 0;
+
+shm::Pose pose_of(const std::vector<double>& v) {
+  switch (v.size()) {
+    case 3:
+      return shm::planar_pose(v[0], v[1], 0, v[2]);
+    case 4:
+      return shm::planar_pose(v[0], v[1], v[2], v[3]);
+    default:
+      return shm::euler_pose(v[0], v[1], v[2], v[3], v[4], v[5]);
+  }
+}
+
+}  // namespace
+
+bool is_interrupted() { return interrupted != 0; }
+void catch_interrupts() {
+  const auto handler = [](int) { interrupted = 1; };
+  std::signal(SIGINT, handler);
+  std::signal(SIGTERM, handler);
+}
+
+void Control::fail(const std::string& message) {
+  std::cout.flush();
+  std::fprintf(stderr, "simctl: %s\n", message.c_str());
+  failed_ = true;
+}
+
+void Control::print(const Json& value) const { std::cout << value.dump(2, ' ', false, Json::error_handler_t::replace) << '\n'; }
+
+std::optional<shm::Reply> Control::ask(const shm::Request& request, std::chrono::seconds limit) {
+  auto requester = shm::Requester::open(server_id_);
+  if (!requester) return fail(requester.error().message), std::nullopt;
+  auto reply = requester->ask(request, limit);
+  if (!reply) return fail(reply.error().message), std::nullopt;
+  if (reply->status != shm::RequestStatus::ok) return fail(std::string(shm::request_name(request)) + ": " + reply->message), std::nullopt;
+  return std::move(*reply);
+}
+
+std::optional<shm::Iface> Control::open(shm::IfaceType type, const std::string& name) {
+  auto iface = shm::Iface::open(server_id_, type, name);
+  if (!iface) return fail(iface.error().message), std::nullopt;
+  return std::move(*iface);
+}
+
+std::optional<shm::Iface> Control::open(const std::string& text) {
+  // TYPE:NAME has one colon; names of models inside models have two in a row.
+  const auto colon = text.find(':');
+  if (colon != std::string::npos && text.compare(colon, 2, "::") != 0) {
+    if (const auto type = shm::parse_type(text.substr(0, colon))) return open(*type, text.substr(colon + 1));
+  }
+  std::vector<shm::Found> matches;
+  std::vector<std::string> names;
+  for (const auto& found : shm::find_segments(server_id_)) {
+    if (found.name.iface == text) matches.push_back(found);
+    names.push_back(std::string(shm::to_text(found.name.type)) + ":" + found.name.iface);
+  }
+  if (matches.size() == 1) return open(matches.front().name.type, text);
+  if (matches.size() > 1) {
+    std::vector<std::string> choices;
+    for (const auto& match : matches) choices.push_back(std::string(shm::to_text(match.name.type)) + ":" + match.name.iface);
+    return fail("iface " + base::in_quotes(text) + ": several types have this name, name one: " + base::join(choices, ", ")), std::nullopt;
+  }
+  constexpr std::size_t most = 12;
+  if (names.size() > most) {
+    names.resize(most);
+    names.emplace_back("...");
+  }
+  fail("server " + std::to_string(server_id_) + ": " +
+       (names.empty() ? "is not there" : "has no iface " + base::in_quotes(text) + "; there are " + base::join(names, ", ")));
+  return std::nullopt;
+}
+
+void step(Control& control, std::int64_t steps) {
+  // Steps take as long as the world needs; a dead server is noticed anyway.
+  const auto reply = control.ask(shm::StepRequest{steps}, std::chrono::hours(24));
+  if (reply && control.json()) control.print({{"sim_time", static_cast<double>(reply->sim_time_ns) * 1e-9}, {"steps", reply->steps}});
+}
+
+void pose(Control& control, const std::string& model, const std::vector<double>& values) {
+  if (!values.empty()) {
+    shm::SetPoseRequest request;
+    request.model = model;
+    request.is_planar = values.size() == 3;
+    request.pose = pose_of(values);
+    control.ask(request);
+    return;
+  }
+  const auto reply = control.ask(shm::GetPoseRequest{model});
+  if (!reply) return;
+  const auto& v = reply->values;
+  const shm::Pose p{v[0], v[1], v[2], v[3], v[4], v[5], v[6]};
+  if (control.json())
+    return control.print(
+        {{"model", model}, {"position", {p.x, p.y, p.z}}, {"orientation", {p.qw, p.qx, p.qy, p.qz}}, {"yaw", shm::yaw_of(p)}});
+  std::printf("%.6f %.6f %.6f  yaw %.6f\n", p.x, p.y, p.z, shm::yaw_of(p));
+}
+
+void velocity(Control& control, const std::string& name, const std::vector<double>& values, double seconds) {
+  auto iface = control.open(name);
+  if (!iface) return;
+  std::vector<double> command = values;
+  if (iface->type() == shm::IfaceType::position3d) {
+    // vx vy vz and the yaw rate, as people fly.
+    if (values.size() != 4 && values.size() != 6) return control.fail("velocity of a position3d: expected VX VY VZ YAWRATE, or all six");
+    if (values.size() == 4) command = {values[0], values[1], values[2], 0, 0, values[3]};
+  } else if (iface->type() != shm::IfaceType::position2d) {
+    return control.fail("iface " + name + ": is a " + std::string(shm::to_text(iface->type())) + ", which takes no velocity");
+  } else if (values.size() != 3) {
+    return control.fail("velocity of a position2d: expected VX VY VA, got " + std::to_string(values.size()) + " numbers");
+  }
+  if (const auto done = iface->command(shm::CommandKind::velocity, command); !done) return control.fail(done.error().message);
+  auto simulation = control.open(shm::IfaceType::simulation, "simulation");
+  if (!simulation) return;
+  catch_interrupts();
+  const auto now = [&] { return simulation->read() ? simulation->sample<shm::SimulationSample>().stamp.sim_time_ns : 0; };
+  const auto end = now() + static_cast<std::int64_t>(seconds * 1e9);
+  while (!is_interrupted() && (seconds <= 0 || now() < end)) {
+    if (simulation->wait(simulation->sequence(), std::chrono::milliseconds(100)) == shm::Wait::closed)
+      return control.fail("the simulator is gone");
+    if (!iface->is_commander()) return control.fail("iface " + name + ": another client commands it now");
+  }
+}
+
+void spawn(Control& control, const SpawnOptions& options) {
+  shm::SpawnRequest request;
+  std::error_code error;
+  request.is_path = options.file.find('<') == std::string::npos;
+  request.sdf = options.file;
+  // Paths are ours, not the server's; model:// and the like stay as they are.
+  if (request.is_path && options.file.find("://") == std::string::npos) {
+    if (!std::filesystem::exists(options.file, error)) return control.fail("file " + base::in_quotes(options.file) + ": does not exist");
+    request.sdf = std::filesystem::absolute(options.file, error).string();
+  }
+  request.name = options.name;
+  request.has_pose = !options.pose.empty();
+  if (request.has_pose) request.pose = pose_of(options.pose);
+  const auto reply = control.ask(request);
+  if (!reply) return;
+  if (control.json()) return control.print({{"name", reply->message}});
+  std::cout << reply->message << '\n';
+}
+
+void screenshot(Control& control, const ScreenshotOptions& options) {
+  shm::ScreenshotRequest request;
+  const auto x = options.size.find('x');
+  const auto width = base::parse_integer(options.size.substr(0, x));
+  const auto height = x == std::string::npos ? std::nullopt : base::parse_integer(options.size.substr(x + 1));
+  if (!width || !height || *width < 1 || *height < 1 || *width > 8192 || *height > 8192)
+    return control.fail("size " + base::in_quotes(options.size) + ": expected WIDTHxHEIGHT, each from 1 to 8192");
+  request.path = std::filesystem::absolute(options.file).string();
+  request.width = static_cast<std::uint32_t>(*width);
+  request.height = static_cast<std::uint32_t>(*height);
+  request.with_scans = options.with_scans;
+  request.with_collisions = options.with_collisions;
+  request.span = options.span;
+  using View = shm::ScreenshotRequest::View;
+  if (!options.camera.empty()) {
+    request.view = View::camera;
+    request.follow = options.camera;
+  } else if (!options.follow.empty()) {
+    request.view = View::follow;
+    request.follow = options.follow;
+  } else if (options.from_top) {
+    request.view = View::top;
+  } else if (!options.from.empty()) {
+    request.view = View::from;
+    request.pose = pose_of(options.from);
+  }
+  control.ask(request, std::chrono::seconds(60));
+}
+
+void contacts(Control& control, const std::string& model) {
+  const auto reply = control.ask(shm::ContactsRequest{model});
+  if (!reply) return;
+  const auto json = Json::parse(reply->text, nullptr, false);
+  if (control.json()) return control.print(json);
+  std::cout << reply->count << " contacts since the last time\n";
+  if (!json.is_object()) return;
+  for (const auto& contact : json.value("contacts", Json::array()))
+    std::cout << contact.value("link", "?") << " touches " << contact.value("other", "?") << '\n';
+}
+
+}  // namespace simctl

@@ -1,0 +1,156 @@
+// simctl: shows and controls a running simulation. See --help.
+#include <iostream>
+
+#include "base/command_line.h"
+#include "simctl.h"
+
+namespace {
+
+using simctl::Control;
+using Work = std::function<void(Control&)>;
+
+template <class T>
+std::shared_ptr<T> option_value(T value = {}) {
+  return std::make_shared<T>(std::move(value));
+}
+
+void add_simple(CLI::App& app, Work& work, const char* name, const char* help, Work what) {
+  app.add_subcommand(name, help)->callback([&work, what] { work = what; });
+}
+
+void add_looks(CLI::App& app, Work& work) {
+  auto* list = app.add_subcommand("list", "List the ifaces of the server");
+  auto all = option_value(false);
+  list->add_flag("-a,--all", *all, "Of all servers");
+  list->callback([&work, all] { work = [all](Control& c) { simctl::list(c, *all); }; });
+
+  const auto with_name = [&](const char* command, const char* help, void (*function)(Control&, const std::string&)) {
+    auto* sub = app.add_subcommand(command, help);
+    auto name = option_value<std::string>();
+    sub->add_option("IFACE", *name, "NAME, or TYPE:NAME")->required();
+    sub->callback([&work, name, function] { work = [name, function](Control& c) { function(c, *name); }; });
+  };
+  with_name("info", "Show the constants of an iface", simctl::info);
+  with_name("dump", "Show the layout of an iface's shared memory", simctl::dump);
+
+  auto* echo = app.add_subcommand("echo", "Print what an iface publishes; scans as a picture on a terminal");
+  auto name = option_value<std::string>();
+  auto count = option_value(0);
+  echo->add_option("IFACE", *name, "NAME, or TYPE:NAME")->required();
+  echo->add_option("-n,--count", *count, "End after so many samples")->check(CLI::NonNegativeNumber);
+  echo->callback([&work, name, count] { work = [name, count](Control& c) { simctl::echo(c, *name, *count); }; });
+
+  add_simple(app, work, "stats", "Show time, speed, state hash and where the time goes", simctl::stats);
+  add_simple(app, work, "participants", "Show who takes part in lock step", simctl::participants);
+
+  auto* tree = app.add_subcommand("tree", "Show models, links, joints and sensors");
+  auto model = option_value<std::string>();
+  tree->add_option("MODEL", *model, "One model only");
+  tree->callback([&work, model] { work = [model](Control& c) { simctl::tree(c, *model); }; });
+
+  add_simple(app, work, "clean", "Remove what crashed servers have left in shared memory", simctl::clean);
+}
+
+void add_control(CLI::App& app, Work& work) {
+  add_simple(app, work, "pause", "Stop simulated time", [](Control& c) { c.ask(shm::PauseRequest{}); });
+  add_simple(app, work, "run", "Let simulated time go on", [](Control& c) { c.ask(shm::RunRequest{}); });
+  add_simple(app, work, "reset", "World and time as at the start", [](Control& c) { c.ask(shm::ResetRequest{}); });
+
+  auto* step = app.add_subcommand("step", "Make physics steps and pause; returns when they are done");
+  auto steps = option_value<std::int64_t>(1);
+  step->add_option("N", *steps, "How many")->check(CLI::Range(1, 1000000000))->capture_default_str();
+  step->callback([&work, steps] { work = [steps](Control& c) { simctl::step(c, *steps); }; });
+
+  auto* pose = app.add_subcommand("pose", "Show or set the pose of a model: pose MODEL [X Y [Z] YAW]");
+  auto model = option_value<std::string>();
+  auto values = option_value<std::vector<double>>();
+  pose->add_option("MODEL", *model, "Model, or MODEL::LINK to show")->required();
+  pose->add_option("NUMBERS", *values, "X Y YAW, X Y Z YAW, or X Y Z ROLL PITCH YAW [m, rad]")->expected(0, 6);
+  pose->callback([&work, model, values] {
+    if (values->size() == 1 || values->size() == 2 || values->size() == 5)
+      throw CLI::ValidationError("pose", "expected X Y YAW, X Y Z YAW or X Y Z ROLL PITCH YAW");
+    work = [model, values](Control& c) { simctl::pose(c, *model, *values); };
+  });
+
+  auto* velocity = app.add_subcommand("velocity", "Drive a robot while this command runs: velocity IFACE VX VY VA");
+  auto robot = option_value<std::string>();
+  auto speeds = option_value<std::vector<double>>();
+  auto seconds = option_value(0.0);
+  velocity->add_option("IFACE", *robot, "position2d or position3d iface")->required();
+  velocity->add_option("NUMBERS", *speeds, "VX VY VA [m/s, rad/s]; position3d: VX VY VZ YAWRATE")->required()->expected(3, 6);
+  velocity->add_option("--for", *seconds, "Simulated seconds; default: until interrupted")->check(CLI::Range(0.0, 1e9));
+  velocity->callback([&work, robot, speeds, seconds] { work = [=](Control& c) { simctl::velocity(c, *robot, *speeds, *seconds); }; });
+
+  auto* spawn = app.add_subcommand("spawn", "Add a model");
+  auto options = option_value<simctl::SpawnOptions>();
+  spawn->add_option("FILE", options->file, "SDF file, model folder, model://NAME, or SDF text")->required();
+  spawn->add_option("--name", options->name, "Name; default: the file's, with a number when it is taken");
+  spawn->add_option("--pose", options->pose, "X Y YAW, X Y Z YAW, or X Y Z ROLL PITCH YAW")->expected(3, 6);
+  spawn->callback([&work, options] { work = [options](Control& c) { simctl::spawn(c, *options); }; });
+
+  auto* remove = app.add_subcommand("delete", "Remove a model");
+  auto gone = option_value<std::string>();
+  remove->add_option("MODEL", *gone)->required();
+  remove->callback([&work, gone] { work = [gone](Control& c) { c.ask(shm::DeleteRequest{*gone}); }; });
+
+  auto* contacts = app.add_subcommand("contacts", "Show what a model touches");
+  auto touched = option_value<std::string>();
+  contacts->add_option("MODEL", *touched)->required();
+  contacts->callback([&work, touched] { work = [touched](Control& c) { simctl::contacts(c, *touched); }; });
+}
+
+void add_pictures(CLI::App& app, Work& work) {
+  auto* screenshot = app.add_subcommand("screenshot", "Write a picture of the world");
+  auto options = option_value<simctl::ScreenshotOptions>();
+  screenshot->add_option("FILE", options->file, "PNG")->required();
+  auto* from = screenshot->add_option("--from", options->from, "Camera at X Y Z ROLL PITCH YAW")->expected(6);
+  auto* follow = screenshot->add_option("--follow", options->follow, "From behind a model");
+  auto* top = screenshot->add_flag("--top", options->from_top, "From above");
+  auto* camera = screenshot->add_option("--camera", options->camera, "As a camera of the world sees it");
+  for (auto* one : {from, follow, top, camera}) {
+    for (auto* other : {from, follow, top, camera}) {
+      if (one != other) one->excludes(other);
+    }
+  }
+  screenshot->add_option("--size", options->size, "WIDTHxHEIGHT")->capture_default_str();
+  screenshot->add_flag("--scans", options->with_scans, "With laser fans, trails and names");
+  screenshot->add_option("--show", "visuals or collisions")
+      ->check(CLI::IsMember({"visuals", "collisions"}))
+      ->each([options](const std::string& what) { options->with_collisions = what == "collisions"; });
+  screenshot->add_option("--span", options->span, "Metres across (--top) or field of view [rad]")->check(CLI::Range(0.0, 1e6));
+  screenshot->callback([&work, options] { work = [options](Control& c) { simctl::screenshot(c, *options); }; });
+
+  auto* record = app.add_subcommand("record", "Record a camera as film (.mp4) or as PNG files in a folder");
+  auto camera_name = option_value<std::string>();
+  auto target = option_value<std::string>();
+  auto frames = option_value(0);
+  auto seconds = option_value(0.0);
+  record->add_option("CAMERA", *camera_name, "camera iface")->required();
+  record->add_option("TARGET", *target, "File.mp4 or folder")->required();
+  record->add_option("-n,--count", *frames, "End after so many frames")->check(CLI::NonNegativeNumber);
+  record->add_option("--for", *seconds, "End after so many simulated seconds")->check(CLI::Range(0.0, 1e9));
+  record->callback([&work, camera_name, target, frames, seconds] {
+    work = [=](Control& c) { simctl::record(c, *camera_name, *target, *frames, *seconds); };
+  });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"simctl: show and control a running simulation"};
+  base::add_standard_options(app, "simctl", RTMSIM_VERSION);
+  app.require_subcommand(1);
+  app.fallthrough();
+  std::uint32_t server_id = 0;
+  bool json = false;
+  app.add_option("-s,--server-id", server_id, "Which server")->check(CLI::Range(0, 65535))->capture_default_str();
+  app.add_flag("--json", json, "Print JSON");
+  Work work;
+  add_looks(app, work);
+  add_control(app, work);
+  add_pictures(app, work);
+  if (const auto end = base::parse_command_line(app, "simctl", argc, argv)) return *end;
+  Control control(server_id, json);
+  work(control);
+  return control.failed() ? 1 : 0;
+}

@@ -1,0 +1,75 @@
+// What every command of simctl works with, and the commands. One thread at a time.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "shm/client.h"
+#include "shm/requests.h"
+
+namespace simctl {
+
+// Prints errors as "simctl: ..." and remembers that there was one.
+class Control {
+ public:
+  Control(std::uint32_t server_id, bool json) : server_id_(server_id), json_(json) {}
+  std::uint32_t server_id() const { return server_id_; }
+  bool json() const { return json_; }
+
+  // The server's reply; nothing when it refused or does not answer, which is printed.
+  std::optional<shm::Reply> ask(const shm::Request& request, std::chrono::seconds limit = std::chrono::seconds(10));
+  // By NAME or TYPE:NAME; nothing when there is none, or several types have the name, which is printed.
+  std::optional<shm::Iface> open(const std::string& name);
+  std::optional<shm::Iface> open(shm::IfaceType type, const std::string& name);
+  void fail(const std::string& message);
+  bool failed() const { return failed_; }
+  void print(const nlohmann::ordered_json& value) const;
+
+ private:
+  std::uint32_t server_id_;
+  bool json_;
+  bool failed_ = false;
+};
+
+// ---- control ----
+void step(Control& control, std::int64_t steps);
+void pose(Control& control, const std::string& model, const std::vector<double>& values);
+// Drives for so long [s] and stops, or until it is interrupted when `seconds` is 0: a robot obeys only as long as its commander lives.
+void velocity(Control& control, const std::string& iface, const std::vector<double>& values, double seconds);
+struct SpawnOptions {
+  std::string file, name;
+  std::vector<double> pose;
+};
+void spawn(Control& control, const SpawnOptions& options);
+struct ScreenshotOptions {
+  std::string file, follow, camera, size = "1200x900";
+  std::vector<double> from;
+  bool from_top = false, with_scans = false, with_collisions = false;
+  double span = 0;
+};
+void screenshot(Control& control, const ScreenshotOptions& options);
+void contacts(Control& control, const std::string& model);
+
+// ---- look inside ----
+void list(Control& control, bool all_servers);
+void info(Control& control, const std::string& name);
+void echo(Control& control, const std::string& name, int count);
+void stats(Control& control);
+void participants(Control& control);
+void tree(Control& control, const std::string& model);
+void dump(Control& control, const std::string& name);
+void clean(Control& control);
+// PNG frames into a folder, or an mp4 when ffmpeg is installed.
+void record(Control& control, const std::string& camera, const std::string& target, int frames, double seconds);
+
+// True once SIGINT or SIGTERM came.
+bool is_interrupted();
+void catch_interrupts();
+
+// A scan seen from above, for a terminal: the scanner at the bottom in the middle looking up.
+std::string polar_plot(const shm::LaserInfo& info, std::span<const float> ranges, int columns, int rows);
+
+}  // namespace simctl
