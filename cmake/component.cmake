@@ -25,9 +25,6 @@ function(rtmsim_component name)
   add_executable(${name}Comp ${arg_MAIN})
   foreach(target ${name} ${name}Comp)
     target_link_libraries(${target} PRIVATE ${name}_objects)
-    if(PROJECT_NAME STREQUAL rtm-sim AND NOT TARGET rtcd)  # until the runtime can be linked
-      set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL ON)
-    endif()
   endforeach()
 
   if(arg_INSTALL)

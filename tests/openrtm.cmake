@@ -7,10 +7,10 @@ add_subdirectory(classic-api)
 
 rtmsim_test(include_rules_test unit/include_rules_test.cpp)
 
-if(TARGET rtcd)  # until the runtime can be linked
 # A program and a module of another project, against the build tree and against an installation.
 foreach(mode build install)
   add_test(NAME package.${mode} COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/run ${mode} ${PROJECT_BINARY_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/package/outside)
   set_tests_properties(package.${mode} PROPERTIES LABELS package TIMEOUT 600 ENVIRONMENT "SANITIZE=${RTMSIM_SANITIZE}")
 endforeach()
-endif()
+add_test(NAME package.tutorial COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/tutorial ${PROJECT_BINARY_DIR} ${PROJECT_SOURCE_DIR}/docs/tutorial-component.md)
+set_tests_properties(package.tutorial PROPERTIES LABELS package TIMEOUT 300 ENVIRONMENT "SANITIZE=${RTMSIM_SANITIZE}")
