@@ -23,7 +23,7 @@ static const char* const rtcbumper_spec[] = {
     "conf.__type__.device_id", "string",
     "conf.__widget__.server_id", "spin",
     "conf.__widget__.device_id", "text",
-    "conf.__constraints__.server_id", "0<=x<=65535",
+    "conf.__constraints__.server_id", "0<=x<=9999",
     ""};
 // clang-format on
 

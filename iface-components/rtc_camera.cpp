@@ -29,7 +29,7 @@ static const char* const rtccamera_spec[] = {
     "conf.__widget__.device_id", "text",
     "conf.__widget__.encoding", "radio",
     "conf.__widget__.quality", "slider.1",
-    "conf.__constraints__.server_id", "0<=x<=65535",
+    "conf.__constraints__.server_id", "0<=x<=9999",
     "conf.__constraints__.encoding", "(raw,jpeg)",
     "conf.__constraints__.quality", "1<=x<=100",
     ""};

@@ -30,7 +30,7 @@ static const char* const rtcdepthcamera_spec[] = {
     "conf.__widget__.server_id", "spin",
     "conf.__widget__.device_id", "text",
     "conf.__widget__.points_step", "spin",
-    "conf.__constraints__.server_id", "0<=x<=65535",
+    "conf.__constraints__.server_id", "0<=x<=9999",
     "conf.__constraints__.points_step", "1<=x<=64",
     ""};
 // clang-format on

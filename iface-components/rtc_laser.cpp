@@ -28,7 +28,7 @@ static const char* const rtclaser_spec[] = {
     "conf.__widget__.server_id", "spin",
     "conf.__widget__.device_id", "text",
     "conf.__widget__.layer", "spin",
-    "conf.__constraints__.server_id", "0<=x<=65535",
+    "conf.__constraints__.server_id", "0<=x<=9999",
     ""};
 // clang-format on
 

@@ -32,7 +32,7 @@ static const char* const rtcposition3d_spec[] = {
     "conf.__widget__.device_id", "text",
     "conf.__widget__.motors_enabled", "radio",
     "conf.__widget__.command_timeout", "text",
-    "conf.__constraints__.server_id", "0<=x<=65535",
+    "conf.__constraints__.server_id", "0<=x<=9999",
     "conf.__constraints__.motors_enabled", "(0,1)",
     ""};
 // clang-format on

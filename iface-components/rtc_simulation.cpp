@@ -23,7 +23,7 @@ static const char* const rtcsimulation_spec[] = {
     "conf.default.server_id", "0",
     "conf.__type__.server_id", "int",
     "conf.__widget__.server_id", "spin",
-    "conf.__constraints__.server_id", "0<=x<=65535",
+    "conf.__constraints__.server_id", "0<=x<=9999",
     ""};
 // clang-format on
 
@@ -111,7 +111,7 @@ RTC::ReturnCode_t RTCSimulation::ask(const shm::Request& request) {
 
 RTC::ReturnCode_t RTCSimulation::onActivated(RTC::UniqueId) {
   service_.set_server(server_id_);
-  if (const auto done = link_.attach({server_id_, "simulation"}, false); !done) {
+  if (const auto done = link_.attach({server_id_, "world"}, false); !done) {
     RTC_ERROR(("%s", done.error().message.c_str()));
     return RTC::RTC_ERROR;
   }

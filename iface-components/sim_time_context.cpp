@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::chrono::milliseconds longest_wait{100};
 constexpr std::chrono::milliseconds retry_period{100};
-constexpr int highest_server = 65535;
+constexpr int highest_server = 9999;
 constexpr std::int64_t highest_phase = 15;
 
 int default_server() {
@@ -68,7 +68,7 @@ std::shared_ptr<shm::Participant> SimTimeContext::join() {
     say_once("waiting for the simulator: " + joined.error().message);
     return nullptr;
   }
-  auto simulation = shm::Iface::open(static_cast<std::uint32_t>(server_id_), shm::IfaceType::simulation, "simulation");
+  auto simulation = shm::Iface::open(static_cast<std::uint32_t>(server_id_), shm::IfaceType::simulation, "world");
   if (!simulation) return nullptr;
   simulation_.emplace(std::move(*simulation));
   say_once("ticking at " + base::format_number(getRate()) + " Hz of simulated time, phase " + std::to_string(phase_) + " of simulator " +

@@ -27,8 +27,11 @@ std::string default_server() {
 class Orb {
  public:
   Orb() {
-    const char* options[][2] = {
-        {"endPoint", "giop:tcp:127.0.0.1:"}, {"giopMaxMsgSize", "268435456"}, {"supportPerThreadTimeOut", "1"}, {"clientConnectTimeOutPeriod", "2000"}, {nullptr, nullptr}};
+    const char* options[][2] = {{"endPoint", "giop:tcp:127.0.0.1:"},
+                                {"giopMaxMsgSize", "268435456"},
+                                {"supportPerThreadTimeOut", "1"},
+                                {"clientConnectTimeOutPeriod", "2000"},
+                                {nullptr, nullptr}};
     int argc = 0;
     orb_ = CORBA::ORB_init(argc, nullptr, "omniORB4", options);
     CORBA::Object_var object = orb_->resolve_initial_references("RootPOA");

@@ -139,6 +139,7 @@ class Run {
     const int port = free_port();
     if (port == 0) return fail("no free port on 127.0.0.1");
     server_ = "127.0.0.1:" + std::to_string(port);
+    std::filesystem::remove_all(place_.file("names"));  // of an earlier run that was kept
     std::filesystem::create_directories(place_.file("names"));
     auto started = ChildProcess::start({{"omniNames", "-start", std::to_string(port), "-datadir", place_.file("names"), "-errlog",
                                          place_.file("omninames.err"), "-ORBendPoint", "giop:tcp:127.0.0.1:" + std::to_string(port)},
@@ -152,7 +153,7 @@ class Run {
   // Ids below a thousand are for people.
   static std::string pick_server_id() {
     static std::atomic<unsigned> next{0};
-    return std::to_string(1000 + (static_cast<unsigned>(getpid()) * 7 + next.fetch_add(1)) % 60000);
+    return std::to_string(1000 + (static_cast<unsigned>(getpid()) * 7 + next.fetch_add(1)) % 9000);
   }
 
   Result<void> start_simulator() {

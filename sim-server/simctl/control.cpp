@@ -128,7 +128,7 @@ void velocity(Control& control, const std::string& name, const std::vector<doubl
     return control.fail("velocity of a position2d: expected VX VY VA, got " + std::to_string(values.size()) + " numbers");
   }
   if (const auto done = iface->command(shm::CommandKind::velocity, command); !done) return control.fail(done.error().message);
-  auto simulation = control.open(shm::IfaceType::simulation, "simulation");
+  auto simulation = control.open(shm::IfaceType::simulation, "world");
   if (!simulation) return;
   catch_interrupts();
   const auto now = [&] { return simulation->read() ? simulation->sample<shm::SimulationSample>().stamp.sim_time_ns : 0; };

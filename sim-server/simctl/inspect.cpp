@@ -356,7 +356,7 @@ void stats(Control& control) {
 }
 
 void participants(Control& control) {
-  const auto simulation = control.open(shm::IfaceType::simulation, "simulation");
+  const auto simulation = control.open(shm::IfaceType::simulation, "world");
   if (!simulation) return;
   const auto records = shm::read_participants(*simulation);
   if (!records) return control.fail(records.error().message);

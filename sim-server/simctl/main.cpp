@@ -143,7 +143,7 @@ int main(int argc, char** argv) {
   app.fallthrough();
   std::uint32_t server_id = 0;
   bool json = false;
-  app.add_option("-s,--server-id", server_id, "Which server")->check(CLI::Range(0, 65535))->capture_default_str();
+  app.add_option("-s,--server-id", server_id, "Which server")->check(CLI::Range(0, 9999))->capture_default_str();
   app.add_flag("--json", json, "Print JSON");
   Work work;
   add_looks(app, work);

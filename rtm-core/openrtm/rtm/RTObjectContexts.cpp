@@ -80,8 +80,8 @@ coil::Properties RTObject_impl::contextOptions(const std::string& type, const st
   options["sync_transition"] = "YES";
   options["transition_timeout"] = "0.5";
   if (const coil::Properties* all = m_properties.findNode("exec_cxt"))
-    for (const coil::Properties* leaf : all->getLeaf())
-      if (leaf->getLeaf().empty()) options[leaf->getName()] = all->getProperty(leaf->getName());
+    for (const std::string& key : all->propertyNames())
+      if (!key.starts_with("periodic.")) options[key] = all->getProperty(key);
   options["type"] = type;
   options["rate"] = "1000";
   options["name"] = name;
