@@ -29,6 +29,7 @@ void Courier::repeat(std::vector<Regular> regulars) {
   const Time now = std::chrono::steady_clock::now();
   {
     auto data = shared_.lock();
+    data->rescheduled = true;
     data->regulars.clear();
     for (Regular& regular : regulars) data->regulars.push_back({regular, now + regular.interval});
   }
@@ -58,6 +59,7 @@ void Courier::run() {
           break;
         }
         const Time now = std::chrono::steady_clock::now();
+        data->rescheduled = false;
         Time wake = now + std::chrono::hours(24);
         for (Due& due : data->regulars) {
           if (due.next <= now) {
@@ -67,7 +69,7 @@ void Courier::run() {
           }
           wake = std::min(wake, due.next);
         }
-        if (!message) data.wait_until(condition_, wake, [&] { return data->stopping || !data->waiting.empty(); });
+        if (!message) data.wait_until(condition_, wake, [&] { return data->stopping || data->rescheduled || !data->waiting.empty(); });
       }
     }
     if (!carry(message)) return;

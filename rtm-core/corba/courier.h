@@ -45,6 +45,7 @@ class Courier {
   struct Data {
     bool stopping = false;
     bool gave_up = false;
+    bool rescheduled = false;
     std::deque<Message> waiting{};
     std::vector<Due> regulars{};
   };

@@ -51,8 +51,8 @@ RTObject_impl::~RTObject_impl() {
     else
       impl_->exiter.join();
   }
-  // A component that never lived, or was deleted without exit.
-  finalizePorts();
+  // A component that never lived, or was deleted without exit. Its ports are members of the derived class and gone already.
+  impl_->shared.lock()->ports.clear();
   finalizeContexts();
   shutdown();
 }
@@ -228,8 +228,9 @@ ReturnCode_t RTObject_impl::initialize() {
     data->phase = Impl::Phase::initializing;
   }
   const auto give_up = [this](ReturnCode_t code) {
+    finalizePorts();
     finalizeContexts();
-    impl_->shared.lock()->phase = Impl::Phase::created;
+    shutdown();
     return code;
   };
   prepareBinding();
@@ -270,8 +271,12 @@ ReturnCode_t RTObject_impl::exit() {
     data->phase = Impl::Phase::exiting;
   }
   if (callback_depth == 0) return exitNow();
-  // A context cannot be stopped from inside one of its callbacks. This object outlives the thread: its destructor waits.
-  impl_->exiter = std::thread([this] { exitNow(); });
+  // A context cannot be stopped from inside one of its callbacks. The thread holds a reference: the component may be given back meanwhile.
+  _add_ref();
+  impl_->exiter = std::thread([this] {
+    exitNow();
+    _remove_ref();
+  });
   return RTC_OK;
 }
 
@@ -337,15 +342,23 @@ void RTObject_impl::shutdown() {
     self = data->reference;
   }
   for (SDOPackage::Organization_impl* organization : organizations) {
-    SDOPackage::Organization_var reference = organization->getObjRef();
-    deactivateServant(*organization, reference);
+    try {
+      SDOPackage::Organization_var reference = organization->getObjRef();
+      deactivateServant(*organization, reference);
+    } catch (const CORBA::Exception&) {
+      // The object adapter is gone.
+    }
     organization->_remove_ref();
   }
   impl_->services.exit();
   if (auto* configuration = std::exchange(impl_->configuration, nullptr)) {
     configuration->close();
-    SDOPackage::Configuration_var reference = configuration->_this();
-    deactivateServant(*configuration, reference);
+    try {
+      SDOPackage::Configuration_var reference = configuration->_this();
+      deactivateServant(*configuration, reference);
+    } catch (const CORBA::Exception&) {
+      // The object adapter is gone.
+    }
     configuration->_remove_ref();
   }
   deactivateServant(*this, self);

@@ -131,6 +131,10 @@ template <class State, class Super>
 class Link : public Super {
  public:
   static const StateType* parent_type() { return &state_type<Super>(); }
+  // Events are inherited from the state above, these are not: that one has its own turn.
+  ReturnCode_t onInit() override { return RTC_OK; }
+  ReturnCode_t onEntry() override { return RTC_OK; }
+  ReturnCode_t onExit() override { return RTC_OK; }
 };
 
 template <class State>
