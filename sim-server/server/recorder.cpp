@@ -1,5 +1,6 @@
 #include "server/recorder.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
@@ -14,10 +15,27 @@ base::Result<Recorder> Recorder::open(const std::string& path, const std::string
   return Recorder(path, std::move(file));
 }
 
+void Recorder::record_contacts(double seconds, const Physics& physics) {
+  std::set<std::pair<ModelId, ModelId>> now;
+  for (ModelId id = 0; id < physics.model_slots(); ++id) {
+    if (!physics.exists(id) || physics.is_static(id)) continue;
+    for (const Contact& contact : physics.contacts(id)) {
+      const ModelId other = contact.link.model == id ? contact.other.model : contact.link.model;
+      if (other == id || !physics.exists(other)) continue;
+      const auto pair = std::minmax(id, other);
+      if (!now.insert(pair).second || touching_.contains(pair)) continue;
+      file_ << fmt::format("contact {:.3f} {} {}\n", seconds, physics.def(id).name, physics.def(other).name);
+    }
+  }
+  touching_ = std::move(now);
+}
+
 void Recorder::record(std::chrono::nanoseconds time, const Physics& physics) {
-  if (!file_ || !schedule_.is_due(time)) return;
-  schedule_.done(time);
+  if (!file_) return;
   const double seconds = static_cast<double>(time.count()) * 1e-9;
+  record_contacts(seconds, physics);
+  if (!schedule_.is_due(time)) return;
+  schedule_.done(time);
   for (ModelId id = 0; id < physics.model_slots(); ++id) {
     if (!physics.exists(id) || physics.is_static(id)) continue;
     const Eigen::Isometry3d pose = physics.model_pose(id);
