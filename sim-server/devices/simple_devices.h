@@ -36,7 +36,6 @@ class SonarRing final : public Device {
   float min_range_, max_range_;
   Schedule schedule_;
   Noise noise_, fresh_noise_;
-  std::vector<float> scratch_;
   std::unique_ptr<shm::IfaceWriter> writer_;
 };
 

@@ -7,6 +7,8 @@
 namespace sim {
 namespace {
 
+constexpr double grazing = 0.26;  // sine of 15 degrees
+
 // Half the opening of the cone, whether it is written as a sonar or as a ray sensor with a narrow fan.
 double half_angle(const SensorDef& sensor) {
   if (const auto* sonar = std::get_if<SonarDef>(&sensor.data)) return std::atan2(sonar->radius, sonar->range_max);
@@ -77,9 +79,15 @@ SonarRing::SonarRing(DeviceWorld& world, const std::vector<Transducer>& transduc
 void SonarRing::measure(const Moment&) {
   const auto ranges = writer_->ranges();
   for (std::size_t i = 0; i < mounts_.size(); ++i) {
-    scratch_.resize(cones_[i].size());
-    world_.rays.scene().trace(cones_[i], mounts_[i].in_world(world_.physics), scratch_, {});
-    ranges[i] = *std::min_element(scratch_.begin(), scratch_.end());
+    const Eigen::Isometry3d pose = mounts_[i].in_world(world_.physics);
+    ranges[i] = std::numeric_limits<float>::infinity();
+    for (std::size_t k = 0; k < cones_[i].size(); ++k) {
+      const Eigen::Vector3d direction = pose.linear() * cones_[i].direction(k).cast<double>();
+      const RayHit hit = world_.rays.scene().trace_one(pose.translation(), direction, cones_[i].near(k), max_range_);
+      // Sound that meets a surface at a grazing angle, such as the floor, does not come back.
+      if (std::isfinite(hit.range) && std::abs(hit.normal.cast<double>().dot(direction)) > grazing)
+        ranges[i] = std::min(ranges[i], hit.range);
+    }
   }
   noise_.apply(ranges, 0);
   for (float& range : ranges) {

@@ -31,6 +31,11 @@ class FlushDenormals {
   unsigned before_;
 };
 
+// Embree takes a direction below 1e-18 for a positive one, but its coherent packets sort rays by the sign the direction had: a component
+// of -2e-19, as of a robot that stands almost exactly along an axis, makes whole packets miss. So what is next to nothing becomes nothing;
+// 1e-8 is a third of a micrometre at 30 m, and products of two such numbers stay above Embree's limit.
+float without_dust(float v) { return std::abs(v) < 1e-8F ? 0.0F : v; }
+
 void on_error(void*, RTCError, const char* text) { base::log(base::Level::error, "rays", "embree: {}", text); }
 
 struct DeviceRelease {
@@ -277,7 +282,10 @@ class RayScene::Impl {
   void place(Body& body) const {
     std::array<float, 12> m;
     for (int column = 0; column < 4; ++column) {
-      for (int row = 0; row < 3; ++row) m[static_cast<std::size_t>(column * 3 + row)] = static_cast<float>(body.pose.matrix()(row, column));
+      for (int row = 0; row < 3; ++row) {
+        const auto value = static_cast<float>(body.pose.matrix()(row, column));
+        m[static_cast<std::size_t>(column * 3 + row)] = column < 3 ? without_dust(value) : value;
+      }
     }
     rtcSetGeometryTransform(body.instance.get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m.data());
     rtcCommitGeometry(body.instance.get());
@@ -374,9 +382,9 @@ void RayScene::trace(const Beams& beams, const Eigen::Isometry3d& sensor, std::s
     const float *x = &beams.x_[first], *y = &beams.y_[first], *z = &beams.z_[first], *near = &beams.near_[first];
     const auto count = std::min<std::size_t>(16, beams.size_ - first);
     for (std::size_t i = 0; i < 16; ++i) {
-      packet.ray.dir_x[i] = r(0, 0) * x[i] + r(0, 1) * y[i] + r(0, 2) * z[i];
-      packet.ray.dir_y[i] = r(1, 0) * x[i] + r(1, 1) * y[i] + r(1, 2) * z[i];
-      packet.ray.dir_z[i] = r(2, 0) * x[i] + r(2, 1) * y[i] + r(2, 2) * z[i];
+      packet.ray.dir_x[i] = without_dust(r(0, 0) * x[i] + r(0, 1) * y[i] + r(0, 2) * z[i]);
+      packet.ray.dir_y[i] = without_dust(r(1, 0) * x[i] + r(1, 1) * y[i] + r(1, 2) * z[i]);
+      packet.ray.dir_z[i] = without_dust(r(2, 0) * x[i] + r(2, 1) * y[i] + r(2, 2) * z[i]);
       packet.ray.org_x[i] = origin.x();
       packet.ray.org_y[i] = origin.y();
       packet.ray.org_z[i] = origin.z();
@@ -419,7 +427,7 @@ RayHit RayScene::trace_one(const Eigen::Vector3d& origin, const Eigen::Vector3d&
   RayHit result;
   result.range = none;
   RTCRayHit ray{};
-  const Eigen::Vector3f o = origin.cast<float>(), d = direction.cast<float>();
+  const Eigen::Vector3f o = origin.cast<float>(), d = direction.cast<float>().unaryExpr(&without_dust);
   ray.ray.org_x = o.x(), ray.ray.org_y = o.y(), ray.ray.org_z = o.z();
   ray.ray.dir_x = d.x(), ray.ray.dir_y = d.y(), ray.ray.dir_z = d.z();
   ray.ray.tnear = near;

@@ -177,6 +177,25 @@ TEST(Rays, a_sensor_looks_out_of_its_casing_but_sees_the_rest_of_its_robot) {
   EXPECT_NEAR(ranges[1], 0.45, 1e-4);
 }
 
+TEST(Rays, directions_with_a_component_of_almost_nothing_are_not_lost) {
+  TriangleCache triangles;
+  RayScene scene(triangles);
+  std::vector<std::string> notes;
+  const GeometryDef wall = BoxShape{{0.2, 2, 1}};
+  const RayShape shape{&wall};
+  scene.add_static({&shape, 1}, at(3.1, 0, 0.5), notes);
+  scene.add_moving({&shape, 1}, at(-3.1, 0, 0.5, -3e-19), notes);
+  scene.commit();
+  const Beams beams = Beams::fan(181, -std::numbers::pi / 2, std::numbers::pi / 2, 1, 0, 0, 0, 8);
+  for (const double turn : {0.0, std::numbers::pi}) {
+    for (const double dust : {-2.4e-19, 2.4e-19, -1e-30, -1e-12}) {
+      std::vector<float> ranges(181);
+      scene.trace(beams, tilted(0, 3e-19, 0.31, dust, -4.9e-6, turn + dust), ranges, {});
+      for (std::size_t i = 84; i < 97; ++i) ASSERT_NEAR(ranges[i], 3, 0.05) << "beam " << i << " dust " << dust;
+    }
+  }
+}
+
 TEST(Rays, bodies_are_seen_where_they_are_after_many_moves) {
   TriangleCache triangles;
   RayScene scene(triangles);
