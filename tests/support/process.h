@@ -107,8 +107,10 @@ class Process {
     return status;
   }
 
+  // All of it when the process has ended (unless children of it keep the pipe open).
   std::string output() const {
-    const std::scoped_lock lock(mutex_);
+    std::unique_lock lock(mutex_);
+    if (status_) changed_.wait_for(lock, std::chrono::seconds(1), [&] { return closed_; });
     return output_;
   }
 
@@ -150,7 +152,7 @@ class Process {
   std::optional<int> status_;
   std::thread reader_;
   mutable std::mutex mutex_;
-  std::condition_variable changed_;
+  mutable std::condition_variable changed_;
   std::string output_;
   bool closed_ = false;
 };

@@ -158,8 +158,10 @@ base::Result<void> ManagerImpl::start(const ManagerConfig& configuration, const 
   signals = std::make_unique<rt::SignalWatcher>(std::vector<int>{SIGINT, SIGTERM}, [this](int number) {
     request_end();
     wait_until_ended();
-    // Nobody waits in runManager who would let the process end.
-    if (state.lock()->runners == 0) ::raise(number);
+    // If nobody comes to runManager who would let the process end, the signal ends it.
+    constexpr std::chrono::seconds patience{2};
+    auto locked = state.lock();
+    if (!locked.wait_for(changed, patience, [&] { return locked->runners > 0; })) ::raise(number);
   });
   life = std::thread([this] { live(); });
   return {};
@@ -229,7 +231,19 @@ bool ManagerImpl::activate() {
     if (locked->phase == Phase::active) return true;
     if (locked->phase != Phase::started) return false;
     locked->phase = Phase::active;
+    locked->activating = true;
   }
+  const bool ok = activate_all();
+  auto locked = state.lock();
+  locked->empty_since = steady_clock::now();
+  locked->activating = false;
+  locked->activated = true;
+  changed.notify_all();
+  return ok && !locked->end_requested;
+}
+
+// What the configuration and the program name, in this order.
+bool ManagerImpl::activate_all() {
   orb->activate();
   if (servant != nullptr && (is_master() || options.bind_manager)) {
     for (const auto& format : list("manager.naming_formats")) {
@@ -276,10 +290,7 @@ bool ManagerImpl::activate() {
   facade.connectPorts(value("manager.components.preconnect"));
   facade.activateComponents(value("manager.components.preactivation"));
   on_exit(&end_at_exit, nullptr);  // again: before what has been made meanwhile is destroyed
-  auto locked = state.lock();
-  locked->empty_since = steady_clock::now();
-  locked->activated = true;
-  return ok && locked->phase == Phase::active;
+  return ok;
 }
 
 // A manager that nobody ever gave a component ends after a while, so that forgotten processes go away.
@@ -322,9 +333,9 @@ bool ManagerImpl::wait_until_ended(std::chrono::nanoseconds timeout) {
 // Waits for the request and does the work of ending: on a thread of its own because anybody may ask, also a component or the ORB.
 void ManagerImpl::live() {
   pthread_setname_np(pthread_self(), "rtm-life");
-  for (bool requested = false; !requested;) {
+  for (bool ready = false; !ready;) {  // nothing is taken away under the hands of activate
     auto locked = state.lock();
-    requested = locked.wait_for(changed, std::chrono::hours(1), [&] { return locked->end_requested; });
+    ready = locked.wait_for(changed, std::chrono::hours(1), [&] { return locked->end_requested && !locked->activating; });
   }
   try {
     end();
@@ -418,13 +429,14 @@ bool Manager::activateManager() { return impl_->activate(); }
 
 void Manager::runManager(bool no_block) {
   ++impl_->state.lock()->runners;
+  impl_->changed.notify_all();
   if (no_block) return;  // the life thread does the rest
   impl_->wait_until_ended();
 }
 
 bool Manager::isRunning() const {
-  const auto phase = impl_->state.lock()->phase;
-  return phase == ManagerImpl::Phase::started || phase == ManagerImpl::Phase::active;
+  auto locked = impl_->state.lock();
+  return !locked->end_requested && (locked->phase == ManagerImpl::Phase::started || locked->phase == ManagerImpl::Phase::active);
 }
 
 coil::Properties& Manager::getConfig() { return impl_->config; }

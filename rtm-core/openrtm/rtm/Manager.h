@@ -78,6 +78,7 @@ class Manager {
   // Blocks until the manager is told to end (signal, terminate, tools, last component gone) and shuts it down. no_block: that happens on a
   // thread of its own.
   void runManager(bool no_block = false);
+  // From init until somebody asks it to end.
   bool isRunning() const;
 
   coil::Properties& getConfig();

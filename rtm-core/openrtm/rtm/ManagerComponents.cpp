@@ -118,9 +118,9 @@ std::vector<std::string> Manager::getModulesFactories() {
 
 base::Result<RTObject_impl*> ManagerImpl::create(std::string argument) {
   {
-    const auto phase = state.lock()->phase;
-    if (phase != Phase::started && phase != Phase::active)
-      return base::Error{"component " + base::in_quotes(argument) + ": the manager is not running"};
+    auto locked = state.lock();
+    const bool is_running = (locked->phase == Phase::started || locked->phase == Phase::active) && !locked->end_requested;
+    if (!is_running) return base::Error{"component " + base::in_quotes(argument) + ": the manager is not running"};
   }
   listeners.rtclifecycle_.call(&RTM::RtcLifecycleActionListener::preCreate, argument);
   const auto parsed = rt::parse_component_argument(argument);

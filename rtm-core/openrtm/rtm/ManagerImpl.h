@@ -63,7 +63,8 @@ class ManagerImpl {
     std::map<std::uint64_t, Record> records;
     std::uint64_t last_id = 0;
     std::set<std::string> reserved_names;
-    bool activated = false;  // everything that the configuration names has been made
+    bool activating = false;  // a thread is in activate
+    bool activated = false;   // everything that the configuration names has been made
     bool had_components = false;
     std::chrono::steady_clock::time_point empty_since = std::chrono::steady_clock::now();
   };
@@ -127,6 +128,7 @@ class ManagerImpl {
   static thread_local std::string current_module;
 
  private:
+  bool activate_all();
   base::Result<void> start_orb();
   void start_naming();
   void start_logging();

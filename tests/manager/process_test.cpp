@@ -1,0 +1,380 @@
+// rtcd and what tools see of it: real processes, a real naming service, only the loopback interface.
+#include <gtest/gtest.h>
+#include <rtm/CORBA_RTCUtil.h>
+#include <rtm/NVUtil.h>
+#include <rtm/idl/ManagerStub.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <set>
+
+#include "corba/naming.h"
+#include "corba/orb.h"
+#include "support/naming_service.h"
+
+namespace {
+
+using namespace std::chrono_literals;
+
+bool eventually(const std::function<bool()>& holds) {
+  const auto deadline = std::chrono::steady_clock::now() + support::watchdog;
+  while (!holds()) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::sleep_for(5ms);
+  }
+  return true;
+}
+
+const std::string program = std::string(RTMSIM_BIN_DIR) + "/rtcd";
+const std::string modules = std::string(RTMSIM_BIN_DIR) + "/../lib";
+
+// A naming service, an ORB to look at it with, and what every rtcd here is started with.
+class Rtcd : public testing::Test {
+ protected:
+  Rtcd() : orb_(corba::Orb::start({.call_timeout = 20s}).value()) {}
+
+  std::vector<std::string> command(const std::vector<std::string>& further) const {
+    std::vector<std::string> words{program, "-i", "-f", "none.conf"};
+    for (const auto& setting :
+         {"corba.nameservers:" + names_.address(), std::string("naming.formats:%n.rtc"), "manager.modules.load_path:" + modules,
+          std::string("manager.naming_formats:%n.mgr"), std::string("naming.update.interval:0.1")}) {
+      words.insert(words.end(), {"-o", setting});
+    }
+    words.insert(words.end(), further.begin(), further.end());
+    return words;
+  }
+
+  std::set<std::string> entries() const {
+    std::set<std::string> result;
+    auto root = corba::root_context(orb_->orb(), names_.address(), 5s);
+    if (!root) return result;
+    try {
+      for (const auto& name : corba::find_names(root->in(), [](const auto&) { return true; })) result.insert(corba::to_text(name));
+    } catch (const CORBA::Exception&) {
+      result.clear();
+    }
+    return result;
+  }
+  bool has(const std::string& name) const { return entries().contains(name); }
+
+  RTC::RTObject_var component(const std::string& name) const {
+    auto root = corba::root_context(orb_->orb(), names_.address(), 5s);
+    try {
+      CORBA::Object_var object = (*root)->resolve(*corba::parse_name(name));
+      return RTC::RTObject::_narrow(object);
+    } catch (const CORBA::Exception&) {
+      return RTC::RTObject::_nil();
+    }
+  }
+
+  // By its object key; waits until it answers.
+  RTM::Manager_var manager_at(int port) const {
+    CORBA::Object_var object = orb_->orb()->string_to_object(("corbaloc:iiop:127.0.0.1:" + std::to_string(port) + "/manager").c_str());
+    RTM::Manager_var manager;
+    eventually([&] {
+      try {
+        manager = RTM::Manager::_narrow(object);
+        return !CORBA::is_nil(manager);
+      } catch (const CORBA::Exception&) {
+        return false;
+      }
+    });
+    return manager;
+  }
+
+  support::NamingService names_;
+  std::unique_ptr<corba::Orb> orb_;
+};
+
+TEST_F(Rtcd, makes_connects_and_activates_what_its_configuration_names_and_leaves_nothing) {
+  support::Process rtcd(command({"-o", "manager.components.precreate:SourceAll, SinkAll?instance_name=Sink", "-o",
+                                 "manager.components.preconnect:SourceAll0.long?port=Sink.long&subscription_type=new", "-o",
+                                 "manager.components.preactivation:SourceAll0,Sink"}));
+  ASSERT_TRUE(rtcd.wait_for_output("long: 3")) << rtcd.output();
+  EXPECT_EQ(entries(), (std::set<std::string>{"SourceAll0.rtc", "Sink.rtc", "manager.mgr"}));
+  RTC::RTObject_var sink = component("Sink.rtc");
+  EXPECT_TRUE(CORBA_RTCUtil::is_in_active(sink));
+  EXPECT_EQ(CORBA_RTCUtil::get_connector_names(sink, "long"), coil::vstring{"SourceAll0.long?port=Sink.long&subscription_type=new"});
+  const auto properties = CORBA_RTCUtil::get_component_profile(sink);
+  EXPECT_EQ(std::as_const(properties)["naming.names"], "Sink.rtc");
+  EXPECT_EQ(std::as_const(properties)["manager.instance_name"], "manager");
+  EXPECT_EQ(rtcd.stop(), 0);
+  EXPECT_TRUE(entries().empty());
+}
+
+TEST_F(Rtcd, components_register_again_after_the_naming_service_restarts) {
+  support::Process rtcd(command({"FailOnRequest"}));
+  ASSERT_TRUE(eventually([&] { return has("FailOnRequest0.rtc"); })) << rtcd.output();
+  names_.start_again(true);
+  EXPECT_TRUE(eventually([&] { return has("FailOnRequest0.rtc") && has("manager.mgr"); })) << rtcd.output();
+  names_.kill();
+  names_.start_again(false);
+  EXPECT_TRUE(eventually([&] { return has("FailOnRequest0.rtc"); })) << rtcd.output();
+  EXPECT_EQ(rtcd.stop(), 0);
+  EXPECT_TRUE(entries().empty());
+}
+
+TEST_F(Rtcd, a_naming_service_that_hangs_delays_nothing_for_long) {
+  names_.process().signal(SIGSTOP);
+  const int port = support::free_port();
+  support::Process rtcd(command({"-p", std::to_string(port), "-o", "naming.update.timeout:0.2", "FailOnRequest"}));
+  RTM::Manager_var manager = manager_at(port);
+  ASSERT_FALSE(CORBA::is_nil(manager)) << rtcd.output();
+  EXPECT_TRUE(eventually([&] {
+    RTC::RTCList_var list = manager->get_components();
+    return list->length() == 1;
+  }));
+  names_.process().signal(SIGCONT);
+  EXPECT_TRUE(eventually([&] { return has("FailOnRequest0.rtc"); }));
+  names_.process().signal(SIGSTOP);
+  EXPECT_EQ(rtcd.stop(), 0);
+  names_.process().signal(SIGCONT);
+}
+
+// Start and stop of a process with ten connected components: 200 times with RTMSIM_START_STOP=200.
+TEST_F(Rtcd, starts_and_stops_with_ten_connected_components_many_times) {
+  const char* given = std::getenv("RTMSIM_START_STOP");
+  const int times = given != nullptr ? std::atoi(given) : 100;
+  std::string precreate;
+  std::string preconnect;
+  std::string preactivation;
+  for (int i = 0; i < 5; ++i) {
+    const auto n = std::to_string(i);
+    const std::string comma = i > 0 ? "," : "";
+    precreate += comma + "SourceAll,SinkAll";
+    preconnect += comma + "SourceAll" + n + ".long?port=SinkAll" + n + ".long";
+    preactivation += comma + "SourceAll" + n + ",SinkAll" + n;
+  }
+  for (int i = 0; i < times; ++i) {
+    support::Process rtcd(command({"-o", "manager.components.precreate:" + precreate, "-o", "manager.components.preconnect:" + preconnect,
+                                   "-o", "manager.components.preactivation:" + preactivation}));
+    ASSERT_TRUE(rtcd.wait_for_output("long: 1")) << i << rtcd.output();
+    ASSERT_EQ(rtcd.stop(), 0) << i << rtcd.output();
+    ASSERT_TRUE(entries().empty()) << i;
+  }
+}
+
+TEST_F(Rtcd, the_manager_answers_every_operation) {
+  const int port = support::free_port();
+  support::Process rtcd(command({"-d", "-p", std::to_string(port)}));
+  RTM::Manager_var manager = manager_at(port);
+  ASSERT_FALSE(CORBA::is_nil(manager)) << rtcd.output();
+  EXPECT_TRUE(manager->is_master());
+
+  RTM::ManagerProfile_var profile = manager->get_profile();
+  for (const auto* key :
+       {"name", "instance_name", "pid", "naming_formats", "refstring_path", "components.precreate", "modules.load_path",
+        "modules.abs_path_allowed", "modules.config_path", "modules.preload", "modules.init_func_prefix", "modules.init_func_suffix",
+        "modules.download_allowed", "os.name", "os.release", "os.version", "os.arch", "os.hostname"}) {
+    EXPECT_GE(NVUtil::find_index(profile->properties, key), 0) << key;
+  }
+  EXPECT_EQ(NVUtil::toString(profile->properties, "pid"), std::to_string(rtcd.pid()));
+
+  EXPECT_EQ(manager->load_module("NoSuchModule", ""), RTC::BAD_PARAMETER);
+  EXPECT_EQ(manager->load_module("FailOnRequest.so", "NoSuchFunction"), RTC::RTC_ERROR);
+  EXPECT_EQ(manager->load_module("FailOnRequest.so", "FailOnRequestInit"), RTC::RTC_OK);
+  EXPECT_EQ(manager->load_module("FailOnRequest", ""), RTC::RTC_OK);
+  RTM::ModuleProfileList_var list = manager->get_loaded_modules();
+  EXPECT_EQ(list->length(), 1u);
+  list = manager->get_factory_profiles();
+  EXPECT_EQ(list->length(), 2u);  // and the composite
+  list = manager->get_loadable_modules();
+  bool is_listed = false;
+  for (CORBA::ULong i = 0; i < list->length(); ++i) {
+    is_listed = is_listed || NVUtil::toString(list[i].properties, "implementation_id") == "SinkAll";
+  }
+  EXPECT_TRUE(is_listed);
+
+  RTC::RTObject_var made =
+      manager->create_component("RTC:rtm-sim:example:FailOnRequest:C++:1.0.0?instance_name=Fail&conf.default.how=throw");
+  ASSERT_FALSE(CORBA::is_nil(made));
+  EXPECT_EQ(CORBA_RTCUtil::get_parameter_by_key(made, "default", "how"), "throw");
+  RTC::RTObject_var by_number = manager->create_component("FailOnRequest");
+  EXPECT_TRUE(has("FailOnRequest0.rtc"));
+  RTC::RTCList_var components = manager->get_components();
+  EXPECT_EQ(components->length(), 2u);
+  RTC::ComponentProfileList_var profiles = manager->get_component_profiles();
+  EXPECT_EQ(profiles->length(), 2u);
+  for (const auto* name : {"Fail", "example/Fail", "*/Fail"}) {
+    components = manager->get_components_by_name(name);
+    EXPECT_EQ(components->length(), 1u) << name;
+  }
+  components = manager->get_components_by_name("other/Fail");
+  EXPECT_EQ(components->length(), 0u);
+  CORBA::Object_var by_key = orb_->orb()->string_to_object(("corbaloc:iiop:127.0.0.1:" + std::to_string(port) + "/example.Fail").c_str());
+  RTC::RTObject_var narrowed = RTC::RTObject::_narrow(by_key);
+  ASSERT_FALSE(CORBA::is_nil(narrowed));
+  CORBA::String_var id = narrowed->get_sdo_id();
+  EXPECT_STREQ(id, "Fail");
+
+  EXPECT_EQ(manager->unload_module("FailOnRequest"), RTC::PRECONDITION_NOT_MET);
+  EXPECT_EQ(manager->delete_component("nobody"), RTC::BAD_PARAMETER);
+  EXPECT_EQ(manager->delete_component("Fail"), RTC::RTC_OK);
+  EXPECT_EQ(manager->delete_component("FailOnRequest0"), RTC::RTC_OK);
+  EXPECT_TRUE(eventually([&] { return manager->unload_module("FailOnRequest") == RTC::RTC_OK; }));
+  EXPECT_EQ(manager->unload_module("FailOnRequest"), RTC::BAD_PARAMETER);
+  EXPECT_EQ(entries(), std::set<std::string>{"manager.mgr"});
+
+  EXPECT_EQ(manager->set_configuration("manager.components.precreate", "X"), RTC::RTC_OK);
+  EXPECT_EQ(manager->set_configuration("naming.update.interval", "often"), RTC::BAD_PARAMETER);
+  EXPECT_EQ(manager->set_configuration("", "1"), RTC::BAD_PARAMETER);
+  RTM::NVList_var configuration = manager->get_configuration();
+  EXPECT_EQ(NVUtil::toString(configuration, "manager.components.precreate"), "X");
+
+  EXPECT_EQ(manager->add_slave_manager(RTM::Manager::_nil()), RTC::BAD_PARAMETER);
+  EXPECT_EQ(manager->remove_master_manager(manager), RTC::BAD_PARAMETER);
+  RTM::ManagerList_var managers = manager->get_slave_managers();
+  EXPECT_EQ(managers->length(), 0u);
+  CORBA::Object_var service = manager->get_service("none");
+  EXPECT_TRUE(CORBA::is_nil(service));
+  EXPECT_EQ(manager->fork(), RTC::UNSUPPORTED);
+  EXPECT_EQ(manager->shutdown(), RTC::RTC_OK);
+  EXPECT_EQ(rtcd.wait(), 0);
+  EXPECT_TRUE(entries().empty());
+}
+
+TEST_F(Rtcd, a_slave_shows_its_components_at_the_master) {
+  const int port = support::free_port();
+  support::Process master(command({"-d", "-p", std::to_string(port)}));
+  RTM::Manager_var manager = manager_at(port);
+  support::Process slave(
+      command({"-o", "corba.master_manager:127.0.0.1:" + std::to_string(port), "-o", "corba.update_master_manager.enable:YES", "-o",
+               "corba.update_master_manager.interval:0.1", "-o", "manager.instance_name:slave", "FailOnRequest"}));
+  const auto has_components = [&](CORBA::ULong count) {
+    RTC::RTCList_var list = manager->get_components();
+    return list->length() == count;
+  };
+  EXPECT_TRUE(eventually([&] { return has_components(1); })) << slave.output();
+  EXPECT_EQ(slave.stop(), 0);
+  EXPECT_TRUE(eventually([&] { return has_components(0); }));
+  EXPECT_EQ(master.stop(), 0);
+}
+
+TEST_F(Rtcd, hostile_arguments_and_bytes_leave_it_as_it_was) {
+  const int port = support::free_port();
+  support::Process rtcd(command({"-d", "-p", std::to_string(port)}));
+  RTM::Manager_var manager = manager_at(port);
+  const std::string huge(std::size_t{1} << 20, 'x');
+  for (const auto& argument : {std::string(), std::string("?"), std::string("RTC:::::"), huge, "FailOnRequest?instance_name=" + huge,
+                               std::string("FailOnRequest?instance_name="), std::string("FailOnRequest?=1"),
+                               std::string("../../etc/passwd"), std::string("FailOnRequest?conf.default.fail_in=onInitialize")}) {
+    RTC::RTObject_var made = manager->create_component(argument.c_str());
+    EXPECT_TRUE(CORBA::is_nil(made)) << argument.substr(0, 60);
+  }
+  EXPECT_EQ(manager->delete_component(huge.c_str()), RTC::BAD_PARAMETER);
+  EXPECT_EQ(manager->load_module(huge.c_str(), huge.c_str()), RTC::BAD_PARAMETER);
+  EXPECT_EQ(manager->set_configuration(huge.c_str(), ""), RTC::BAD_PARAMETER);
+  RTC::RTCList_var list = manager->get_components_by_name(huge.c_str());
+  EXPECT_EQ(list->length(), 0u);
+
+  const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  ASSERT_EQ(connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  const std::string garbage(std::size_t{1} << 16, '\xa5');
+  EXPECT_GT(send(socket, garbage.data(), garbage.size(), MSG_NOSIGNAL), 0);
+  close(socket);
+
+  // The name of the one that failed is free, and a name is given once only.
+  RTC::RTObject_var first = manager->create_component("FailOnRequest?instance_name=a.b/c");
+  EXPECT_FALSE(CORBA::is_nil(first));
+  RTC::RTObject_var second = manager->create_component("FailOnRequest?instance_name=a.b/c");
+  EXPECT_TRUE(CORBA::is_nil(second));
+  EXPECT_EQ(entries(), (std::set<std::string>{"manager.mgr", "a\\.b\\/c.rtc"}));
+  EXPECT_EQ(rtcd.stop(), 0) << rtcd.output();
+}
+
+TEST_F(Rtcd, ends_when_its_last_component_has_gone) {
+  support::Process rtcd(command({"FailOnRequest"}));
+  ASSERT_TRUE(eventually([&] { return has("FailOnRequest0.rtc"); })) << rtcd.output();
+  RTC::RTObject_var only = component("FailOnRequest0.rtc");
+  EXPECT_EQ(only->exit(), RTC::RTC_OK);
+  EXPECT_EQ(rtcd.wait(), 0);
+  EXPECT_TRUE(entries().empty());
+}
+
+TEST_F(Rtcd, without_components_ends_after_a_while_unless_it_is_a_master) {
+  support::Process rtcd(command({"-o", "manager.auto_shutdown_duration:0.5"}));
+  EXPECT_EQ(rtcd.wait(), 0);
+}
+
+TEST_F(Rtcd, says_what_is_wrong_in_a_file_with_its_line) {
+  support::TemporaryFolder folder;
+  const auto file = folder.path() / "my.conf";
+  std::ofstream(file) << "# mine\nnaming.enable: NO\ncorba.nameserver: x\nnonsense\nexec_cxt.periodic.rate: fast\n"
+                         "example.FailOnRequest.conf.default.how: throw\nexample.Special.config_file: special.conf\n";
+  std::ofstream(folder.path() / "special.conf") << "conf.default.how: throw_number\nconf.default.fail_in: onInitialize\n";
+  support::Process rtcd(
+      {program, "-f", file, "-o", "manager.modules.load_path:" + modules, "FailOnRequest", "FailOnRequest?instance_name=Special"}, {},
+      folder.path());
+  EXPECT_EQ(rtcd.wait(), 1);  // Special fails, as its file wants
+  const auto output = rtcd.output();
+  EXPECT_NE(output.find("my.conf:3: unknown key \"corba.nameserver\", did you mean corba.nameservers?"), std::string::npos) << output;
+  EXPECT_NE(output.find("my.conf:4: expected `key: value`"), std::string::npos) << output;
+  EXPECT_NE(output.find("my.conf:5: exec_cxt.periodic.rate must be a number"), std::string::npos) << output;
+  EXPECT_NE(output.find("component \"FailOnRequest?instance_name=Special\": its initialisation failed"), std::string::npos) << output;
+}
+
+TEST_F(Rtcd, wrong_command_lines_are_one_line_and_exit_code_2) {
+  for (const auto& bad : std::vector<std::vector<std::string>>{
+           {"-p", "x"}, {"-f", "/nonexistent"}, {"--bad"}, {"-o", "x"}, {"-o", "manager.is_master:perhaps"}}) {
+    std::vector<std::string> words{program};
+    words.insert(words.end(), bad.begin(), bad.end());
+    support::Process rtcd(words);
+    EXPECT_EQ(rtcd.wait(), 2) << bad.back();
+    const auto output = rtcd.output();
+    EXPECT_EQ(std::count(output.begin(), output.end(), '\n'), 1) << output;
+  }
+  support::Process busy(command({"-o", "corba.endpoints:" + names_.address()}));
+  EXPECT_EQ(busy.wait(), 1);
+}
+
+TEST_F(Rtcd, brings_a_naming_service_along_and_takes_it_away_again) {
+  for (const int ending : {SIGTERM, SIGKILL}) {
+    const int port = support::free_port();
+    support::Process rtcd({program, "-i", "-f", "none.conf", "--with-naming", "-o", "corba.nameservers:127.0.0.1:" + std::to_string(port),
+                           "-o", "naming.formats:%n.rtc", "-o", "manager.modules.load_path:" + modules, "FailOnRequest"});
+    const auto is_bound = [&] {
+      auto root = corba::root_context(orb_->orb(), "127.0.0.1:" + std::to_string(port), 5s);
+      if (!root) return false;
+      try {
+        CORBA::Object_var object = (*root)->resolve(*corba::parse_name("FailOnRequest0.rtc"));
+        return true;
+      } catch (const CORBA::Exception&) {
+        return false;
+      }
+    };
+    ASSERT_TRUE(eventually(is_bound)) << rtcd.output();
+    rtcd.signal(ending);
+    EXPECT_EQ(rtcd.wait(), ending == SIGTERM ? 0 : 128 + SIGKILL);
+    EXPECT_TRUE(eventually([&] { return !support::is_listening(port); }));
+  }
+}
+
+TEST_F(Rtcd, a_name_of_another_living_process_is_taken_with_a_warning_and_given_back_by_nobody_else) {
+  support::Process first(command({"FailOnRequest"}));
+  ASSERT_TRUE(eventually([&] { return has("FailOnRequest0.rtc"); }));
+  support::Process second(command({"-o", "manager.instance_name:second", "FailOnRequest"}));
+  EXPECT_TRUE(second.wait_for_output("belongs to another living object")) << second.output();
+  EXPECT_TRUE(first.wait_for_output("it is left alone")) << first.output();
+  EXPECT_EQ(first.stop(), 0);
+  EXPECT_TRUE(has("FailOnRequest0.rtc"));
+  EXPECT_EQ(second.stop(), 0);
+  EXPECT_TRUE(entries().empty());
+}
+
+TEST_F(Rtcd, ns_unique_numbers_go_on_behind_those_of_other_processes) {
+  support::Process first(command({"FailOnRequest"}));
+  ASSERT_TRUE(eventually([&] { return has("FailOnRequest0.rtc"); }));
+  support::Process second(
+      command({"-o", "manager.instance_name:second", "-o", "manager.components.naming_policy:ns_unique", "FailOnRequest"}));
+  EXPECT_TRUE(eventually([&] { return has("FailOnRequest1.rtc"); })) << second.output();
+  EXPECT_EQ(second.stop(), 0);
+  EXPECT_EQ(first.stop(), 0);
+}
+
+}  // namespace
