@@ -1,0 +1,17 @@
+# Whole systems of real processes: omniNames, sim-server, rtcd, rtse. Each run has a naming service and a simulator of its own.
+set(rtse $<TARGET_FILE:rtse>)
+set(avoidance ${PROJECT_SOURCE_DIR}/worlds/systems/obstacle_avoidance.xml)
+set(course ${PROJECT_SOURCE_DIR}/worlds/obstacle_course.sdf)
+
+add_test(NAME integration.obstacle_avoidance_explores_without_touching
+  COMMAND ${rtse} run ${avoidance} --world ${course} --duration 120 --seeds 1..10 -j 2
+          --expect ${CMAKE_CURRENT_SOURCE_DIR}/scenario/obstacle_avoidance.yaml)
+add_test(NAME integration.the_same_run_in_one_process_and_in_three
+  COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/same_state.py ${rtse} ${avoidance} ${course})
+add_test(NAME integration.free_run_in_real_time
+  COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/free_run.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+add_test(NAME integration.unmet_expectations_fail_the_run
+  COMMAND ${rtse} run ${avoidance} --world ${course} --duration 5 --expect ${CMAKE_CURRENT_SOURCE_DIR}/scenario/impossible.yaml)
+set_tests_properties(integration.unmet_expectations_fail_the_run PROPERTIES PASS_REGULAR_EXPRESSION "path_length.*expected at least 1000")
+set_tests_properties(integration.obstacle_avoidance_explores_without_touching integration.the_same_run_in_one_process_and_in_three
+                     integration.free_run_in_real_time integration.unmet_expectations_fail_the_run PROPERTIES LABELS integration TIMEOUT 300)
