@@ -1,0 +1,95 @@
+#include "expectations.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace editor {
+namespace {
+
+// Files of one test, gone with it.
+class ExpectationsTest : public testing::Test {
+ protected:
+  std::string file(const std::string& content) {
+    const auto path =
+        std::filesystem::path(testing::TempDir()) / ("expectations-" + std::to_string(getpid()) + "-" + std::to_string(files_.size()));
+    std::ofstream(path) << content;
+    files_.push_back(path);
+    return path.string();
+  }
+  // The problem of the only expectation in the file.
+  std::string problem(const std::string& yaml) {
+    const auto expectations = read_expectations(file(yaml));
+    EXPECT_TRUE(expectations.ok()) << expectations.error().message;
+    return expectations ? judge(*expectations, seen_).at(0).problem : "unread";
+  }
+  std::string refusal(const std::string& yaml) {
+    const auto expectations = read_expectations(file(yaml));
+    EXPECT_FALSE(expectations.ok()) << yaml;
+    return expectations ? "" : expectations.error().message;
+  }
+  void TearDown() override {
+    for (const auto& path : files_) std::filesystem::remove(path);
+  }
+
+  Seen seen_ = [] {
+    Seen seen;
+    seen.record.poses["robot"] = {{0, 0, 0, 0}, {1, 3, 0, 0}, {2, 3, 4, 0}};
+    seen.record.contacts = {{0.1, "robot", "ground_plane"}, {1.5, "box", "robot"}};
+    seen.values["A0:out data"] = {3, -1, 2};
+    seen.states["A0"] = "Active";
+    return seen;
+  }();
+
+ private:
+  std::vector<std::filesystem::path> files_;
+};
+
+TEST_F(ExpectationsTest, paths_are_as_long_as_their_pieces) {
+  EXPECT_EQ(problem("- path_length: {model: robot, min: 7, max: 7}"), "");
+  EXPECT_EQ(problem("- path_length: {model: robot, max: 6.5}"), "it was 7 m, expected at most 6.5");
+  EXPECT_NE(problem("- path_length: {model: nobody, min: 1}").find("nobody"), std::string::npos);
+}
+
+TEST_F(ExpectationsTest, regions_are_reached_in_time_or_not) {
+  EXPECT_EQ(problem("- reach: {model: robot, region: [4, 5, 2, 3]}"), "");
+  EXPECT_NE(problem("- reach: {model: robot, region: [2, 3, 4, 5], within: 1.5}"), "");
+  EXPECT_EQ(problem("- stay: {model: robot, region: [0, 0, 3, 4]}"), "");
+  EXPECT_EQ(problem("- stay: {model: robot, region: [0, 0, 2, 4]}"), "it was at (3, 0) at 1 s");
+}
+
+TEST_F(ExpectationsTest, contacts_count_for_both_models_and_the_ground_does_not) {
+  EXPECT_EQ(problem("- no_contact: {model: robot}"), "it touched box at 1.5 s");
+  EXPECT_EQ(problem("- no_contact: {model: robot, except: [ground_plane, box]}"), "");
+}
+
+TEST_F(ExpectationsTest, values_states_and_commands_are_judged_by_what_was_seen) {
+  EXPECT_EQ(problem("- value: {port: 'A0:out', member: data, min: -1, max: 2}"), "");
+  EXPECT_NE(problem("- value: {port: 'A0:out', member: data, min: 0}"), "");
+  EXPECT_EQ(problem("- value: {port: 'A0:out', member: other, min: 0}"), "no sample came");
+  EXPECT_EQ(problem("- state: {component: A0, is: active}"), "");
+  EXPECT_EQ(problem("- state: {component: A0, is: Error}"), "it is Active");
+  EXPECT_EQ(problem("- command: 'true'"), "it was not run");
+}
+
+TEST_F(ExpectationsTest, what_cannot_be_judged_is_refused_with_its_line) {
+  EXPECT_NE(refusal("- state: {component: A0, is: Active}\n- fly: {}").find(":2:"), std::string::npos);
+  EXPECT_NE(refusal("- path_length: {model: robot}").find("min or max"), std::string::npos);
+  EXPECT_NE(refusal("- path_length: {model: robot, min: far}").find("far"), std::string::npos);
+  EXPECT_NE(refusal("- reach: {model: robot, region: [1, 2]}").find("region"), std::string::npos);
+  EXPECT_NE(refusal("just text").find("list"), std::string::npos);
+  EXPECT_FALSE(read_expectations("/nonexistent.yaml").ok());
+}
+
+TEST_F(ExpectationsTest, records_are_read_whole_or_refused) {
+  const auto record = read_record(file("# rtm-sim record 1\n0.100 robot 1 2 3 1 0 0 0\ncontact 0.2 robot box\n"));
+  ASSERT_TRUE(record.ok());
+  EXPECT_EQ(record->poses.at("robot").at(0).z, 3);
+  EXPECT_EQ(record->contacts.at(0).other, "box");
+  EXPECT_FALSE(read_record(file("0.1 robot 1 x 3\n")).ok());
+}
+
+}  // namespace
+}  // namespace editor

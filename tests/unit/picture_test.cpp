@@ -1,0 +1,48 @@
+#include "picture.h"
+
+#include <gtest/gtest.h>
+
+namespace video {
+namespace {
+
+RTC::CameraImage image(const char* format, int bits, std::vector<unsigned char> pixels, int width = 2, int height = 1) {
+  RTC::CameraImage result;
+  result.width = static_cast<CORBA::UShort>(width);
+  result.height = static_cast<CORBA::UShort>(height);
+  result.bpp = static_cast<CORBA::UShort>(bits);
+  result.format = CORBA::string_dup(format);
+  result.pixels.length(static_cast<CORBA::ULong>(pixels.size()));
+  for (CORBA::ULong i = 0; i < pixels.size(); ++i) result.pixels[i] = pixels[i];
+  return result;
+}
+
+TEST(Picture, every_order_of_colours_becomes_rgb) {
+  const std::vector<unsigned char> wanted = {1, 2, 3, 4, 5, 6};
+  EXPECT_EQ(to_picture(image("RGB8", 24, {1, 2, 3, 4, 5, 6}))->rgb, wanted);
+  EXPECT_EQ(to_picture(image("bgr8", 24, {3, 2, 1, 6, 5, 4}))->rgb, wanted);
+  EXPECT_EQ(to_picture(image("RGBA8", 32, {1, 2, 3, 9, 4, 5, 6, 9}))->rgb, wanted);
+  EXPECT_EQ(to_picture(image("", 24, {1, 2, 3, 4, 5, 6}))->rgb, wanted);
+  EXPECT_EQ(to_picture(image("MONO8", 8, {7, 8}))->rgb, (std::vector<unsigned char>{7, 7, 7, 8, 8, 8}));
+}
+
+TEST(Picture, near_things_are_bright_in_depth_images) {
+  std::vector<unsigned char> pixels(8);
+  const float depths[2] = {1, 10};
+  std::copy_n(reinterpret_cast<const unsigned char*>(depths), sizeof depths, pixels.begin());
+  const auto picture = to_picture(image("DEPTH32F", 32, pixels));
+  ASSERT_TRUE(picture.ok());
+  EXPECT_GT(picture->rgb[0], picture->rgb[3]);
+}
+
+TEST(Picture, images_that_do_not_fit_their_size_are_refused_with_both_numbers) {
+  const auto short_one = to_picture(image("RGB8", 24, {1, 2, 3}));
+  ASSERT_FALSE(short_one.ok());
+  EXPECT_NE(short_one.error().message.find("6 octets, got 3"), std::string::npos) << short_one.error().message;
+  EXPECT_FALSE(to_picture(image("RGB8", 24, {}, 0, 0)).ok());
+  EXPECT_FALSE(to_picture(image("HSV", 24, {1, 2, 3, 4, 5, 6})).ok());
+  EXPECT_FALSE(to_picture(image("JPEG", 24, {1, 2, 3, 4, 5, 6})).ok());
+  EXPECT_FALSE(to_picture(image("JPEG", 24, {})).ok());
+}
+
+}  // namespace
+}  // namespace video
