@@ -15,3 +15,6 @@ add_test(NAME integration.unmet_expectations_fail_the_run
 set_tests_properties(integration.unmet_expectations_fail_the_run PROPERTIES PASS_REGULAR_EXPRESSION "path_length.*expected at least 1000")
 set_tests_properties(integration.obstacle_avoidance_explores_without_touching integration.the_same_run_in_one_process_and_in_three
                      integration.free_run_in_real_time integration.unmet_expectations_fail_the_run PROPERTIES LABELS integration TIMEOUT 300)
+
+add_test(NAME package.new_component_builds COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/new_component ${PROJECT_BINARY_DIR})
+set_tests_properties(package.new_component_builds PROPERTIES LABELS package TIMEOUT 300)
