@@ -144,6 +144,9 @@ TEST_F(ComponentTest, a_transition_that_takes_too_long_is_an_error_and_happens_l
   condition.notify_all();
   EXPECT_TRUE(probe->wait_for("onExecute"));
   EXPECT_EQ(state(), RTC::ACTIVE_STATE);
+  // The callbacks use what lives in this function only.
+  EXPECT_EQ(probe->deactivate(0), RTC::RTC_OK);
+  probe->during = {};
 }
 
 TEST_F(ComponentTest, takes_configuration_values_on_activation) {
