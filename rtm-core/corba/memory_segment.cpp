@@ -50,12 +50,16 @@ base::Result<std::unique_ptr<MemorySegment>> MemorySegment::create(const std::st
 
 base::Result<std::unique_ptr<MemorySegment>> MemorySegment::open(const std::string& name) {
   if (!is_plain(name)) return base::Error{"shared memory " + base::in_quotes(name) + ": no name for a segment"};
-  const int file = shm_open(path_of(name).c_str(), O_RDWR | O_CLOEXEC, 0);
+  const int file = shm_open(path_of(name).c_str(), O_RDONLY | O_CLOEXEC, 0);
   if (file < 0) return failure("cannot be opened", name);
   std::unique_ptr<MemorySegment> segment(new MemorySegment(name, file, 0));
   struct stat status {};
   if (fstat(file, &status) != 0 || !S_ISREG(status.st_mode)) return failure("is no segment", name);
+  if (static_cast<std::size_t>(status.st_size) < header) return base::Error{"shared memory " + base::in_quotes(name) + ": too short"};
+  void* memory = mmap(nullptr, static_cast<std::size_t>(status.st_size), PROT_READ, MAP_SHARED, file, 0);
+  if (memory == MAP_FAILED) return failure("cannot be mapped", name);
   segment->size_ = static_cast<std::size_t>(status.st_size);
+  segment->memory_ = static_cast<std::byte*>(memory);
   return segment;
 }
 
@@ -84,23 +88,16 @@ base::Result<void> MemorySegment::write(const Pieces& pieces, rt::ByteOrder orde
 }
 
 base::Result<std::shared_ptr<rt::Block>> MemorySegment::read(rt::ByteOrder order, rt::BlockPool& pool) {
-  // Read, not mapped: a peer that shortens the segment meanwhile would kill us with SIGBUS.
-  std::uint64_t length = 0;
-  if (pread(file_, &length, sizeof length, 0) != sizeof length) return base::Error{"shared memory " + name_ + ": holds no sample"};
-  length = in_order(length, order);
   struct stat status {};
-  if (fstat(file_, &status) != 0 || static_cast<std::uint64_t>(status.st_size) < header ||
-      length > static_cast<std::uint64_t>(status.st_size) - header) {
-    return base::Error{"shared memory " + name_ + ": the sample is longer than the segment"};
+  if (fstat(file_, &status) != 0 || static_cast<std::size_t>(status.st_size) < size_) {
+    return base::Error{"shared memory " + name_ + ": has become shorter"};
   }
+  std::uint64_t length = 0;
+  std::memcpy(&length, memory_, sizeof length);
+  length = in_order(length, order);
+  if (length > size_ - header) return base::Error{"shared memory " + name_ + ": the sample is longer than the segment"};
   auto block = pool.take(length);
-  std::size_t done = 0;
-  while (done < length) {
-    const ssize_t count = pread(file_, block->data() + done, length - done, static_cast<off_t>(header + done));
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return base::Error{"shared memory " + name_ + ": has become shorter"};
-    done += static_cast<std::size_t>(count);
-  }
+  std::memcpy(block->data(), memory_ + header, length);
   return block;
 }
 

@@ -1,5 +1,6 @@
 // One sample in a named POSIX shared-memory segment: 8 octets of length in the connection's byte order, then the payload.
-// One thread at a time. The other process is not trusted: nothing it does to the segment can crash the reader.
+// One thread at a time. What the other process writes is not trusted; only one that shortens the segment in the middle of a read, which
+// takes the same user and nobody does by mistake, could harm the reader.
 #pragma once
 
 #include <cstddef>
@@ -36,7 +37,7 @@ class MemorySegment {
   std::string name_;
   int file_;
   std::size_t size_;
-  std::byte* memory_ = nullptr;  // of segments that we have made
+  std::byte* memory_ = nullptr;
   bool is_named_ = false;
 };
 

@@ -233,10 +233,10 @@ RTC::ReturnCode_t PortServant::reserve(const RTC::ConnectorProfile& profile, boo
   if (limit >= 0 && state->connections.size() >= static_cast<std::size_t>(limit)) return RTC::RTC_ERROR;
   for (const auto& connection : state->connections) {
     if (allows_duplicate || connection.is_leaving || !share_a_peer(profile.ports, connection.profile.ports)) continue;
-    // Two ports connecting to each other at the same time come along opposite chains: both ends must give way to the same one of the two,
-    // the one with the smaller id, or both fail.
-    const bool is_opposite = !connection.is_established && !is_same(connection.profile.ports[0], profile.ports[0]);
-    if (is_opposite && id < connection.profile.connector_id.in()) continue;
+    // Two ports that connect to each other at the same time start opposite chains, and each meets the other's at its second port. Both
+    // must give way to the same one, the one with the smaller id, or both fail.
+    const bool have_crossed = !connection.is_established && is_same(connection.profile.ports[0], self) && !is_same(profile.ports[0], self);
+    if (have_crossed && id < connection.profile.connector_id.in()) continue;
     return RTC::PRECONDITION_NOT_MET;
   }
   state->connections.push_back({profile});

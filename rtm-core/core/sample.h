@@ -25,7 +25,10 @@ class Block {
   void set_size(std::size_t size) { size_ = size; }
 
  private:
-  std::unique_ptr<std::byte[]> data_;
+  struct Free {
+    void operator()(std::byte* memory) const;
+  };
+  std::unique_ptr<std::byte, Free> data_;
   std::size_t capacity_;
   std::size_t size_ = 0;
 };

@@ -1,0 +1,152 @@
+// Data ports against bare calls of the ORB, interleaved in one run, with the limits of the design beside the ratios.
+#include <rtm/idl/DataPort_OpenRTMSkel.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <vector>
+
+#include "ports/support.h"
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double microseconds(Clock::duration time) { return std::chrono::duration<double, std::micro>(time).count(); }
+
+// Alternating bursts of two things, so that both see the same machine. Each burst gives its fastest-half mean and its median.
+struct Timing {
+  double mean = 1e30;    // [us] of the best burst
+  double median = 1e30;  // [us] of the best burst
+};
+
+template <class Call>
+void burst(Timing& timing, int calls, Call call) {
+  std::vector<double> times;
+  times.reserve(static_cast<std::size_t>(calls));
+  const auto start = Clock::now();
+  for (int i = 0; i < calls; ++i) {
+    const auto before = Clock::now();
+    call();
+    times.push_back(microseconds(Clock::now() - before));
+  }
+  timing.mean = std::min(timing.mean, microseconds(Clock::now() - start) / calls);
+  std::ranges::nth_element(times, times.begin() + calls / 2);
+  timing.median = std::min(timing.median, times[static_cast<std::size_t>(calls / 2)]);
+}
+
+void row(const char* what, double value, const char* unit, const char* limit, bool is_good) {
+  std::printf("| %-44s | %9.3f %-5s | %-10s | %s |\n", what, value, unit, limit, is_good ? "ok  " : "MISS");
+}
+
+void compare(ports::Peer& peer, const char* transport) {
+  RTC::TimedOctetSeq value{};
+  RTC::OutPort<RTC::TimedOctetSeq> out("Bench0.out", value);
+  auto plan = ports::profile({out.getPortRef(), peer.port("in")}, {{"subscription_type", "flush"}, {"inport.buffer.length", "1"}});
+  if (out.connect(plan) != RTC::RTC_OK) return void(std::printf("cannot connect\n"));
+  const OpenRTM::InPortCdr_var bare = OpenRTM::InPortCdr::_narrow(peer.reference("bare"));
+  for (const CORBA::ULong size : {64u, 4096u, 1u << 20}) {
+    value.data.length(size);
+    OpenRTM::CdrData octets;
+    octets.length(size + 12);
+    Timing ours;
+    Timing bare_calls;
+    const int calls = size > 100'000 ? 100 : 2000;
+    for (int i = 0; i < 25; ++i) {
+      burst(bare_calls, calls, [&] { bare->put(octets); });
+      burst(ours, calls, [&] { out.write(); });
+    }
+    char text[80];
+    std::snprintf(text, sizeof text, "%s %u B: bare two-way", transport, size);
+    std::printf("| %-44s | %9.3f us    |            |      |\n", text, bare_calls.median);
+    std::snprintf(text, sizeof text, "%s %u B: flush throughput / bare", transport, size);
+    row(text, bare_calls.mean / ours.mean, "", ">= 0.90", bare_calls.mean / ours.mean >= 0.9);
+    std::snprintf(text, sizeof text, "%s %u B: flush latency / bare", transport, size);
+    row(text, ours.median / bare_calls.median, "", "<= 1.15", ours.median / bare_calls.median <= 1.15);
+  }
+  out.disconnect_all();
+
+  auto shared = ports::profile({out.getPortRef(), peer.port("in")}, {{"interface_type", "shared_memory"}, {"inport.buffer.length", "1"}});
+  if (out.connect(shared) != RTC::RTC_OK) return void(std::printf("cannot connect shared_memory\n"));
+  OpenRTM::CdrData octets;
+  octets.length((1u << 20) + 12);
+  Timing ours;
+  Timing bare_calls;
+  for (int i = 0; i < 25; ++i) {
+    burst(bare_calls, 100, [&] { bare->put(octets); });
+    burst(ours, 100, [&] { out.write(); });
+  }
+  char text[80];
+  std::snprintf(text, sizeof text, "%s 1 MiB: shared_memory throughput / bare", transport);
+  row(text, bare_calls.mean / ours.mean, "", "> 1", bare_calls.mean / ours.mean > 1);
+}
+
+void direct() {
+  RTC::TimedOctetSeq value{};
+  RTC::TimedOctetSeq result{};
+  value.data.length(64);
+  RTC::OutPort<RTC::TimedOctetSeq> out("Bench0.out", value);
+  RTC::InPort<RTC::TimedOctetSeq> in("Bench1.in", result);
+  auto plan = ports::profile({out.getPortRef(), in.getPortRef()}, {{"interface_type", "direct"}});
+  if (out.connect(plan) != RTC::RTC_OK) return void(std::printf("cannot connect direct\n"));
+  Timing writes;
+  Timing both;
+  for (int i = 0; i < 20; ++i) {
+    const auto start = Clock::now();
+    for (int k = 0; k < 20000; ++k) out.write();
+    writes.mean = std::min(writes.mean, microseconds(Clock::now() - start) / 20000);
+    const auto middle = Clock::now();
+    for (int k = 0; k < 20000; ++k) {
+      out.write();
+      in.read();
+    }
+    both.mean = std::min(both.mean, microseconds(Clock::now() - middle) / 20000);
+  }
+  row("direct 64 B: write", writes.mean, "us", "< 1 us", writes.mean < 1);
+  row("direct 64 B: write and read", both.mean, "us", "< 1 us", both.mean < 1);
+}
+
+void connecting(ports::Peer& peer) {
+  RTC::TimedOctetSeq value{};
+  std::vector<std::unique_ptr<RTC::OutPort<RTC::TimedOctetSeq>>> outs;
+  std::vector<std::unique_ptr<RTC::InPort<RTC::TimedOctetSeq>>> ins;
+  for (int i = 0; i < 1000; ++i) {
+    outs.push_back(std::make_unique<RTC::OutPort<RTC::TimedOctetSeq>>("Bench0.out", value));
+    ins.push_back(std::make_unique<RTC::InPort<RTC::TimedOctetSeq>>("Bench1.in", value));
+    outs.back()->getPortRef();
+    ins.back()->getPortRef();
+  }
+  auto start = Clock::now();
+  for (std::size_t i = 0; i < 1000; ++i) {
+    auto plan = ports::profile({outs[i]->getPortRef(), ins[i]->getPortRef()});
+    if (outs[i]->connect(plan) != RTC::RTC_OK) return void(std::printf("cannot connect pair %zu\n", i));
+  }
+  double each = microseconds(Clock::now() - start) / 1e6;
+  row("connecting 1000 pairs in one process, each", each, "ms", "< 1 ms", each < 1);
+  for (auto& out : outs) out->disconnect_all();
+  const RTC::PortService_var far = peer.port("in");
+  start = Clock::now();
+  for (auto& out : outs) {
+    auto plan = ports::profile({out->getPortRef(), far});
+    if (out->connect(plan) != RTC::RTC_OK) return void(std::printf("cannot connect to the peer\n"));
+  }
+  each = microseconds(Clock::now() - start) / 1e6;
+  row("connecting 1000 OutPorts to another process", each, "ms", "< 1 ms", each < 1);
+}
+
+}  // namespace
+
+int main() {
+  const auto orb = ports::start_orb();
+  std::printf("| measured                                     | value           | limit      |      |\n|---|---|---|---|\n");
+  {
+    ports::Peer peer;
+    compare(peer, "unix");
+    connecting(peer);
+  }
+  {
+    ports::Peer peer({"--tcp"});
+    compare(peer, "tcp");
+  }
+  direct();
+  return 0;
+}

@@ -1,0 +1,148 @@
+#include "core/mailbox.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "core/send_queue.h"
+
+namespace rt {
+namespace {
+
+Sample sample(int number) {
+  auto block = std::make_shared<Block>(1);
+  block->set_size(1);
+  *block->data() = static_cast<std::byte>(number);
+  Sample made;
+  made.block = block;
+  return made;
+}
+int number(const Sample& of) { return of.block ? static_cast<int>(*of.block->data()) : -1; }
+std::vector<int> numbers(const std::vector<Sample>& samples) {
+  std::vector<int> result;
+  for (const auto& one : samples) result.push_back(number(one));
+  return result;
+}
+
+BufferSettings buffer(FullPolicy full, EmptyPolicy empty, std::size_t length = 2) {
+  return {length, full, empty, std::chrono::milliseconds(1), std::chrono::milliseconds(1)};
+}
+
+TEST(Mailbox, a_full_ring_overwrites_the_oldest) {
+  Mailbox box;
+  const auto channel = box.open(buffer(FullPolicy::overwrite, EmptyPolicy::do_nothing));
+  for (int i = 1; i <= 2; ++i) EXPECT_FALSE(box.write(channel, sample(i)).overwrote);
+  EXPECT_TRUE(box.write(channel, sample(3)).overwrote);
+  EXPECT_EQ(number(box.read().sample), 2);
+  EXPECT_EQ(number(box.read().sample), 3);
+  EXPECT_EQ(box.read().status, PortStatus::buffer_empty);
+}
+
+TEST(Mailbox, a_full_ring_refuses_or_times_out) {
+  Mailbox box;
+  const auto refuses = box.open(buffer(FullPolicy::do_nothing, EmptyPolicy::do_nothing, 1));
+  const auto waits = box.open(buffer(FullPolicy::block, EmptyPolicy::do_nothing, 1));
+  box.write(refuses, sample(1));
+  box.write(waits, sample(2));
+  EXPECT_EQ(box.write(refuses, sample(3)).status, PortStatus::buffer_full);
+  EXPECT_EQ(box.write(waits, sample(3)).status, PortStatus::buffer_timeout);
+  EXPECT_EQ(box.unread(), 2u);
+}
+
+TEST(Mailbox, the_last_value_is_read_again_with_readback) {
+  Mailbox box;
+  const auto channel = box.open(buffer(FullPolicy::overwrite, EmptyPolicy::readback));
+  EXPECT_EQ(box.read().status, PortStatus::buffer_empty);
+  box.write(channel, sample(7));
+  EXPECT_TRUE(box.read().is_fresh);
+  const auto again = box.read();
+  EXPECT_EQ(number(again.sample), 7);
+  EXPECT_FALSE(again.is_fresh);
+  box.forget_last(channel);
+  EXPECT_EQ(box.read().status, PortStatus::buffer_empty);
+}
+
+TEST(Mailbox, samples_of_several_connections_are_read_in_order_of_arrival) {
+  Mailbox box;
+  const auto a = box.open(buffer(FullPolicy::overwrite, EmptyPolicy::readback, 4));
+  const auto b = box.open(buffer(FullPolicy::overwrite, EmptyPolicy::readback, 4));
+  box.write(a, sample(1));
+  box.write(b, sample(2));
+  box.write(a, sample(3));
+  EXPECT_EQ(number(box.read(b).sample), 2);
+  EXPECT_EQ(number(box.read().sample), 1);
+  EXPECT_EQ(number(box.read().sample), 3);
+  EXPECT_EQ(number(box.read(b).sample), 2) << "the last of that connection";
+}
+
+TEST(Mailbox, a_reader_that_waits_is_woken_by_a_sample_and_by_the_end) {
+  Mailbox box;
+  auto settings = buffer(FullPolicy::overwrite, EmptyPolicy::block);
+  settings.read_timeout = std::chrono::seconds(60);
+  const auto channel = box.open(settings);
+  std::thread writer([&] { box.write(channel, sample(5)); });
+  EXPECT_EQ(number(box.read().sample), 5);
+  writer.join();
+  std::thread closer([&] { box.close(channel); });
+  EXPECT_NE(box.read().status, PortStatus::ok);
+  closer.join();
+}
+
+TEST(Mailbox, a_writer_that_waits_is_released_when_the_connection_ends) {
+  Mailbox box;
+  auto settings = buffer(FullPolicy::block, EmptyPolicy::do_nothing, 1);
+  settings.write_timeout = std::chrono::seconds(60);
+  const auto channel = box.open(settings);
+  box.write(channel, sample(1));
+  std::thread closer([&] { box.close(channel); });
+  EXPECT_EQ(box.write(channel, sample(2)).status, PortStatus::precondition_not_met);
+  closer.join();
+}
+
+TEST(Mailbox, with_a_rendezvous_a_write_returns_when_it_was_read) {
+  Mailbox box;
+  auto settings = buffer(FullPolicy::overwrite, EmptyPolicy::readback);
+  settings.write_timeout = settings.read_timeout = std::chrono::seconds(60);
+  const auto channel = box.open(settings);
+  box.set_rendezvous(channel, true);
+  std::atomic<int> read{0};
+  std::thread reader([&] { read = number(box.read().sample); });
+  EXPECT_EQ(box.write(channel, sample(9)).status, PortStatus::ok);
+  reader.join();
+  EXPECT_EQ(read, 9);
+}
+
+TEST(SendQueue, policies_choose_what_is_sent) {
+  const auto fill = [](PushPolicy policy, std::size_t skip = 0) {
+    SendQueue queue(8, {policy, skip, {}});
+    for (int i = 1; i <= 5; ++i) queue.push(sample(i));
+    return queue;
+  };
+  EXPECT_EQ(numbers(fill(PushPolicy::all).next_batch()), (std::vector<int>{1, 2, 3, 4, 5}));
+  EXPECT_EQ(numbers(fill(PushPolicy::fifo).next_batch()), (std::vector<int>{1}));
+  EXPECT_EQ(numbers(fill(PushPolicy::newest).next_batch()), (std::vector<int>{5}));
+  auto skipping = fill(PushPolicy::skip, 1);
+  EXPECT_EQ(numbers(skipping.next_batch()), (std::vector<int>{2, 4}));
+  for (int i = 6; i <= 7; ++i) skipping.push(sample(i));
+  EXPECT_EQ(numbers(skipping.next_batch()), (std::vector<int>{6})) << "the count goes on from batch to batch";
+}
+
+TEST(SendQueue, what_could_not_be_sent_comes_first_again) {
+  SendQueue queue(3, {PushPolicy::all, 0, {}});
+  queue.push(sample(3));
+  queue.put_back({sample(0), sample(1), sample(2)});
+  EXPECT_EQ(numbers(queue.next_batch()), (std::vector<int>{1, 2, 3})) << "the oldest has no room";
+  SendQueue newest(3, {PushPolicy::newest, 0, {}});
+  newest.push(sample(3));
+  newest.put_back({sample(2)});
+  EXPECT_EQ(numbers(newest.next_batch()), (std::vector<int>{3}));
+}
+
+TEST(BlockPool, blocks_come_back) {
+  const auto pool = BlockPool::make();
+  const void* first = pool->take(1000)->data();
+  EXPECT_EQ(pool->take(900)->data(), first);
+}
+
+}  // namespace
+}  // namespace rt

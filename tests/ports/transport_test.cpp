@@ -1,0 +1,260 @@
+// Samples over every transport, inside a process and between two.
+#include <gtest/gtest.h>
+#include <rtm/CORBA_CdrMemoryStream.h>
+#include <rtm/idl/DataPort_OpenRTMSkel.h>
+#include <rtm/idl/ExtendedDataTypesSkel.h>
+#include <rtm/idl/InterfaceDataTypesSkel.h>
+
+#include <cstring>
+
+#include "corba/call_timeout.h"
+#include "ports/support.h"
+
+namespace {
+
+using ports::profile;
+
+struct Way {
+  const char* interface;
+  const char* dataflow;
+};
+
+class Transport : public testing::TestWithParam<Way> {
+ protected:
+  std::unique_ptr<corba::Orb> orb = ports::start_orb();
+  std::string interface = GetParam().interface;
+  std::string dataflow = GetParam().dataflow;
+};
+
+INSTANTIATE_TEST_SUITE_P(Ways, Transport,
+                         testing::Values(Way{"corba_cdr", "push"}, Way{"corba_cdr", "pull"}, Way{"data_service", "push"},
+                                         Way{"data_service", "pull"}, Way{"direct", "push"}, Way{"direct", "pull"},
+                                         Way{"shared_memory", "push"}, Way{"shared_memory", "pull"}),
+                         [](const auto& way) { return std::string(way.param.interface) + "_" + way.param.dataflow; });
+
+TEST_P(Transport, samples_of_all_sizes_arrive_whole_and_once) {
+  for (const char* order : {"little,big", "big,little"}) {
+    RTC::CameraImage sent{};
+    RTC::CameraImage received{};
+    RTC::OutPort<RTC::CameraImage> out("A0.out", sent);
+    RTC::InPort<RTC::CameraImage> in("B0.in", received);
+    auto plan = profile({out.getPortRef(), in.getPortRef()},
+                        {{"interface_type", interface}, {"dataflow_type", dataflow}, {"serializer.cdr.endian", order}});
+    ASSERT_EQ(out.connect(plan), RTC::RTC_OK);
+    EXPECT_FALSE(in.isNew());
+    EXPECT_FALSE(in.read());
+    for (const CORBA::ULong size : {0u, 1u, 100u, 4095u, 4096u, 100'001u, 3'000'000u}) {
+      sent.tm.sec = size;
+      sent.width = 7;
+      sent.format = "rgb";
+      sent.fDiv = 0.25;
+      sent.pixels.length(size);
+      for (CORBA::ULong i = 0; i < size; ++i) sent.pixels[i] = static_cast<CORBA::Octet>(i * 7);
+      ASSERT_TRUE(out.write()) << size;
+      ASSERT_TRUE(in.isNew()) << size;
+      ASSERT_TRUE(in.read()) << size;
+      EXPECT_EQ(received.tm.sec, size);
+      EXPECT_EQ(received.width, 7);
+      EXPECT_STREQ(received.format, "rgb");
+      EXPECT_EQ(received.fDiv, 0.25);
+      ASSERT_EQ(received.pixels.length(), size);
+      EXPECT_TRUE(std::equal(sent.pixels.get_buffer(), sent.pixels.get_buffer() + size, received.pixels.get_buffer()));
+      EXPECT_FALSE(in.isNew());
+    }
+    EXPECT_TRUE(in.read()) << "readback";
+    EXPECT_EQ(in.getStatus(0), RTC::DataPortStatus::PORT_OK);
+  }
+}
+
+TEST_P(Transport, a_disconnected_port_reads_and_writes_nothing) {
+  RTC::TimedLong value{};
+  RTC::OutPort<RTC::TimedLong> out("A0.out", value);
+  RTC::InPort<RTC::TimedLong> in("B0.in", value);
+  auto plan = profile({out.getPortRef(), in.getPortRef()}, {{"interface_type", interface}, {"dataflow_type", dataflow}});
+  ASSERT_EQ(out.connect(plan), RTC::RTC_OK);
+  out.write();
+  out.disconnect_all();
+  EXPECT_FALSE(in.isNew());
+  EXPECT_FALSE(in.read());
+  EXPECT_FALSE(out.write());
+}
+
+TEST_P(Transport, works_between_processes_in_both_directions) {
+  ports::Peer peer;
+  RTC::TimedOctetSeq value{};
+  RTC::OutPort<RTC::TimedOctetSeq> out("A0.out", value);
+  RTC::InPort<RTC::TimedOctetSeq> in("B0.in", value);
+  const RTC::PortService_var far_in = peer.port("in");
+  const RTC::PortService_var far_out = peer.port("out");
+  for (int turn = 0; turn < 2; ++turn) {
+    auto forth = turn ? profile({far_in, out.getPortRef()}, {{"interface_type", interface}, {"dataflow_type", dataflow}})
+                      : profile({out.getPortRef(), far_in}, {{"interface_type", interface}, {"dataflow_type", dataflow}});
+    auto back = turn ? profile({in.getPortRef(), far_out}, {{"interface_type", interface}, {"dataflow_type", dataflow}})
+                     : profile({far_out, in.getPortRef()}, {{"interface_type", interface}, {"dataflow_type", dataflow}});
+    if (interface == "direct") {
+      EXPECT_EQ(out.connect(forth), RTC::RTC_ERROR);
+      EXPECT_TRUE(out.connectors().empty());
+      const RTC::ConnectorProfileList_var left = far_in->get_connector_profiles();
+      EXPECT_EQ(left->length(), 0u);
+      continue;
+    }
+    ASSERT_EQ(turn ? far_in->connect(forth) : out.connect(forth), RTC::RTC_OK);
+    value.data.length(3'000'000);
+    EXPECT_TRUE(out.write());
+    value.data.length(10);
+    EXPECT_TRUE(out.write());
+    ASSERT_EQ(in.connect(back), RTC::RTC_OK);
+    EXPECT_FALSE(in.isNew()) << "the peer has written nothing";
+    EXPECT_EQ(out.disconnect_all(), RTC::RTC_OK);
+    EXPECT_EQ(in.disconnect_all(), RTC::RTC_OK);
+    const RTC::ConnectorProfileList_var left = far_out->get_connector_profiles();
+    EXPECT_EQ(left->length(), 0u);
+  }
+  EXPECT_EQ(peer.process().stop(), 0);
+}
+
+class Samples : public testing::Test {
+ protected:
+  std::unique_ptr<corba::Orb> orb = ports::start_orb();
+  RTC::TimedLong sent{};
+  RTC::TimedLong received{};
+  RTC::OutPort<RTC::TimedLong> out{"A0.out", sent};
+  RTC::InPort<RTC::TimedLong> in{"B0.in", received};
+
+  void connect(ports::Pairs properties) {
+    auto plan = profile({out.getPortRef(), in.getPortRef()}, properties);
+    ASSERT_EQ(out.connect(plan), RTC::RTC_OK);
+  }
+};
+
+TEST_F(Samples, a_subscription_new_delivers_the_last_value) {
+  connect({{"subscription_type", "new"}});
+  for (int i = 1; i <= 300; ++i) {
+    sent.data = 2 * i;
+    EXPECT_TRUE(out.write());
+    sent.data = 2 * i + 1;
+    EXPECT_TRUE(out.write());
+    ASSERT_TRUE(ports::eventually([&] { return in.read() && received.data == 2 * i + 1; }));
+  }
+}
+
+TEST_F(Samples, a_periodic_subscription_delivers) {
+  connect({{"subscription_type", "periodic"}, {"publisher.push_rate", "1000"}, {"publisher.push_policy", "all"}});
+  sent.data = 11;
+  EXPECT_TRUE(out.write());
+  EXPECT_TRUE(ports::eventually([&] { return in.isNew(); }));
+}
+
+TEST_F(Samples, the_status_says_that_the_receiver_is_full) {
+  connect({{"inport.buffer.length", "1"}, {"inport.buffer.write.full_policy", "do_nothing"}});
+  EXPECT_TRUE(out.write());
+  EXPECT_FALSE(out.write());
+  EXPECT_EQ(out.getStatus(0), RTC::DataPortStatus::SEND_FULL);
+  EXPECT_EQ(out.getStatus(1), RTC::DataPortStatus::UNKNOWN_ERROR);
+}
+
+TEST_F(Samples, stamps_are_set_where_the_policy_says) {
+  for (const char* policy : {"on_write", "on_send", "on_received", "on_read"}) {
+    for (const char* subscription : {"flush", "new"}) {
+      connect({{"timestamp_policy", policy}, {"subscription_type", subscription}});
+      sent.tm.sec = 0;
+      received.tm.sec = 0;
+      out.write();
+      ASSERT_TRUE(ports::eventually([&] { return in.isNew(); }));
+      in.read();
+      EXPECT_GT(received.tm.sec, 1'000'000'000u) << policy << ' ' << subscription;
+      EXPECT_EQ(sent.tm.sec, 0u) << "the component's variable is its own";
+      out.disconnect_all();
+    }
+  }
+}
+
+TEST_F(Samples, connections_have_a_buffer_each) {
+  RTC::OutPort<RTC::TimedLong> second("C0.out", sent);
+  connect({{"buffer.length", "1"}});
+  auto plan = profile({second.getPortRef(), in.getPortRef()}, {{"buffer.length", "4"}});
+  plan.name = "second";
+  ASSERT_EQ(second.connect(plan), RTC::RTC_OK);
+  sent.data = 1;
+  out.write();
+  for (sent.data = 10; sent.data < 14; ++sent.data) second.write();
+  EXPECT_TRUE(in.isNew("second"));
+  in.read();
+  EXPECT_EQ(received.data, 1);
+  in.read("second");
+  EXPECT_EQ(received.data, 10);
+  coil::vstring names;
+  EXPECT_TRUE(in.isNew(names));
+  EXPECT_EQ(names, coil::vstring{"second"});
+}
+
+TEST_F(Samples, convert_callbacks_change_the_value) {
+  struct Twice : RTC::OnWriteConvert<RTC::TimedLong> {
+    RTC::TimedLong operator()(const RTC::TimedLong& value) override {
+      RTC::TimedLong twice = value;
+      twice.data *= 2;
+      return twice;
+    }
+  } twice;
+  struct PlusOne : RTC::OnReadConvert<RTC::TimedLong> {
+    RTC::TimedLong operator()(const RTC::TimedLong& value) override {
+      RTC::TimedLong more = value;
+      more.data += 1;
+      return more;
+    }
+  } plus_one;
+  connect({});
+  out.setOnWriteConvert(&twice);
+  in.setOnReadConvert(&plus_one);
+  sent.data = 4;
+  out << sent;
+  in >> received;
+  EXPECT_EQ(received.data, 9);
+}
+
+TEST_F(Samples, writers_in_two_threads_and_disconnecting_do_not_disturb_each_other) {
+  for (const char* subscription : {"flush", "new"}) {
+    std::atomic<bool> ends{false};
+    std::vector<std::thread> writers;
+    for (int i = 0; i < 2; ++i) {
+      writers.emplace_back([&] {
+        RTC::TimedLong own{};
+        while (!ends) out.write(own);
+      });
+    }
+    for (int i = 0; i < 100; ++i) {
+      connect({{"subscription_type", subscription}});
+      in.read();
+      EXPECT_EQ(out.disconnect_all(), RTC::RTC_OK);
+    }
+    ends = true;
+    for (auto& writer : writers) writer.join();
+    EXPECT_TRUE(in.connectors().empty());
+  }
+}
+
+TEST(Payload, the_octets_are_the_plain_encoding) {
+  RTC::TimedLong value{};
+  value.tm.sec = 0x240;
+  value.data = 0x12345678;
+  RTC::CORBA_CdrMemoryStream<RTC::TimedLong> stream;
+  ASSERT_TRUE(stream.serialize(value));
+  const std::vector<unsigned char> expected = {0x40, 2, 0, 0, 0, 0, 0, 0, 0x78, 0x56, 0x34, 0x12};
+  EXPECT_EQ(std::vector<unsigned char>(stream.getBuffer(), stream.getBuffer() + stream.getDataLength()), expected);
+}
+
+TEST(Payload, long_arrays_are_aligned_as_if_copied) {
+  for (CORBA::ULong size = 5000; size < 5009; ++size) {
+    RTC::CameraImage image{};
+    image.format = "x";
+    image.pixels.length(size);
+    RTC::CORBA_CdrMemoryStream<RTC::CameraImage> stream;
+    ASSERT_TRUE(stream.serialize(image));
+    cdrMemoryStream plain;
+    image >>= plain;
+    ASSERT_EQ(stream.getDataLength(), plain.bufSize());
+    EXPECT_EQ(std::memcmp(stream.getBuffer(), plain.bufPtr(), plain.bufSize()), 0);
+  }
+}
+
+}  // namespace
