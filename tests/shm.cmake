@@ -8,3 +8,5 @@ rtmsim_test(shm_faults_test shm/faults_test.cpp LIBRARIES simshm LABELS processe
 add_dependencies(shm_faults_test shm_helper)
 rtmsim_test(shm_c_header_test shm/c_header_test.cpp shm/c_client.c LIBRARIES simshm simshm_c)
 set_source_files_properties(shm/c_client.c PROPERTIES COMPILE_OPTIONS "-std=c11")
+
+add_test(NAME shm.the_page_on_shared_memory_is_true COMMAND ${PROJECT_SOURCE_DIR}/docs/make_shared_memory.py --check)

@@ -1,0 +1,87 @@
+#!/usr/bin/env python3
+"""Writes docs/shared-memory.md: the tables come from sim-server/shm/rtmsim_layout.h, offsets and sizes from the C compiler.
+    docs/make_shared_memory.py            writes the page
+    docs/make_shared_memory.py --check    exit code 1 when the page is not what it would write"""
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+here = pathlib.Path(__file__).resolve().parent
+header = here.parent / "sim-server" / "shm" / "rtmsim_layout.h"
+page = here / "shared-memory.md"
+text = header.read_text()
+
+
+def clean(comment):
+    return " ".join(comment.replace("|", "\\|").split())
+
+
+structs = []
+for match in re.finditer(r"((?:/\*(?:(?!\*/).)*\*/\n)?)typedef struct \{\n(.*?)\n\} (rtmsim_\w+);", text, re.S):
+    intro, body, name = match.groups()
+    fields = []
+    for part in re.finditer(r"^\s*(?!/\*)([\w ]+?)\s+([^;/]+);[ \t]*(?:/\*(.*?)\*/)?", body, re.M | re.S):
+        kind, names, comment = part.groups()
+        for one in re.findall(r"(\w+)(\[\w+\])?", names):
+            fields.append((kind, one[0], one[1], clean(comment or "")))
+    structs.append((name, clean(re.sub(r"^/\*|\*/\s*$", "", intro.strip()).strip()) if intro.strip() else "", fields))
+
+program = '#include <stddef.h>\n#include <stdio.h>\n#include "%s"\nint main(void) {\n' % header
+for name, _, fields in structs:
+    program += f'  printf("{name} %zu\\n", sizeof({name}));\n'
+    for kind, field, _, _ in fields:
+        program += f'  printf("{name}.{field} %zu %zu\\n", offsetof({name}, {field}), sizeof((({name}*)0)->{field}));\n'
+program += "  return 0;\n}\n"
+with tempfile.TemporaryDirectory() as folder:
+    source = pathlib.Path(folder) / "layout.c"
+    source.write_text(program)
+    subprocess.run(["cc", "-o", folder + "/layout", str(source)], check=True)
+    numbers = dict(line.split(" ", 1) for line in subprocess.run([folder + "/layout"], check=True, capture_output=True, text=True).stdout.splitlines())
+
+out = """# Shared memory, byte for byte
+
+Every device of a simulated world is an *iface*: a segment of POSIX shared memory named
+
+    rtmsim-<uid>-<server>.<type>.<iface name>
+
+with the type in words (`laser`, `position2d`, ...) and the iface name as model names joined by `::`, then the sensor or plugin name. The file
+`sim-server/shm/rtmsim_layout.h` (C11 and C++) is the authority; the tables below are made from it by `docs/make_shared_memory.py`. `simctl dump IFACE` shows a living one.
+For C there are functions in `sim-server/shm/rtmsim_iface.h`, for C++ in `sim-server/shm/client.h`.
+
+All numbers are little endian; areas start at multiples of 64. Units: m, rad, s, kg, N; times are int64 nanoseconds; x forward, y left, z up,
+counter-clockwise positive; quaternions are (w, x, y, z). Fields marked [atomic] are written while others read them.
+
+## Rules
+
+- **Reading a sample.** Sample *n* lies in cell *n* mod `count` of the area `cells`: a lock word, then the sample. Read `sequence`, the lock, the sample (by atomic words), the lock again;
+  the copy is whole when both locks are 2 n + 2. The writer never waits for readers.
+- **Waiting.** Set `waiting` to 1, look at `sequence` again, then sleep on `wake_word` (futex, shared). With nobody waiting the writer makes no system call.
+- **Subscribing.** Take a lease by changing `owner` from 0, set the flag. A sensor works as long as one lease has the flag; leases of dead processes are taken back.
+- **Frames.** Put slot + 1 into a `holds` word of the own lease, then check that the slot's `lock` still is the frame; the writer leaves held slots alone and counts what it must drop.
+- **Commands** lie in the leases; `command_latest` names the one in force. When its owner dies or lets go, the robot stops.
+- **Requests** go through a slot of one's own: `idle` - `asked` - `replying` - `replied`; texts longer than a piece travel in several rounds of the same id.
+- **Stale segments** (pid, start time, boot id of the server) are replaced by the next server; a living server's name is refused. Mode 0600 unless `--shm-mode` or `--shm-group` say otherwise.
+- The server keeps private copies of every size and index: what a client scribbles cannot make it read or write elsewhere.
+
+"""
+for title, pattern in (("Iface types", r"/\* Iface types;.*?\*/\s*enum \{\n(.*?)\};"), ("Areas", r"/\* Areas of a segment.*?\*/\s*enum \{\n(.*?)\};")):
+    out += f"## {title}\n\n| value | name | meaning |\n| --- | --- | --- |\n"
+    for name, value, comment in re.findall(r"(\w+) = (\d+),?\s*(?:/\*(.*?)\*/)?", re.search(pattern, text, re.S).group(1), re.S):
+        out += f"| {value} | `{name}` | {clean(comment)} |\n"
+    out += "\n"
+out += "## Structures\n\n"
+for name, intro, fields in structs:
+    out += f"### `{name}`, {numbers[name]} bytes\n\n" + (intro + "\n\n" if intro else "") + "| offset | size | field | type | meaning |\n| ---: | ---: | --- | --- | --- |\n"
+    for kind, field, array, comment in fields:
+        offset, size = numbers[f"{name}.{field}"].split()
+        out += f"| {offset} | {size} | `{field}` | {kind}{array} | {comment} |\n"
+    out += "\n"
+out = out.rstrip() + "\n"
+
+if "--check" in sys.argv:
+    if not page.exists() or page.read_text() != out:
+        sys.exit("docs/shared-memory.md is not what docs/make_shared_memory.py writes: run it")
+else:
+    page.write_text(out)
