@@ -67,6 +67,7 @@ void PlainInit(RTC::Manager* manager) {
 }
 
 RTC::Manager& started(std::vector<std::string> settings = {}) {
+  destroyed = 0;
   settings.insert(settings.begin(), {"naming.enable:NO", "manager.shutdown_on_nortcs:NO"});
   std::vector<std::string> words{"test", "-i", "-f", "none.conf"};
   for (const auto& setting : settings) words.insert(words.end(), {"-o", setting});
@@ -106,8 +107,8 @@ TEST(Manager, can_be_started_again_after_its_end) {
     auto& manager = started();
     EXPECT_NE(manager.createComponent("Plain"), nullptr) << i;
     manager.shutdown();
+    EXPECT_EQ(destroyed, 1);
   }
-  EXPECT_EQ(destroyed, 3);
 }
 
 TEST(Manager, a_failing_initialisation_leaves_nothing) {
