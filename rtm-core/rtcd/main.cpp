@@ -1,7 +1,6 @@
 // rtcd: hosts components. See `rtcd --help`.
 #include <rtm/Manager.h>
 #include <rtm/ManagerConfig.h>
-#include <rtm/version.h>
 
 #include <algorithm>
 #include <iostream>
@@ -9,30 +8,31 @@
 #include <string>
 #include <vector>
 
+#include "base/command_line.h"
 #include "base/text.h"
 #include "core/manager_arguments.h"
 #include "name_service.h"
 
 namespace {
 
-constexpr const char* help = R"(rtcd - hosts RT components
-
-usage: rtcd [options] [MODULE...]
-
-  MODULE              a library, or its name in manager.modules.load_path: load it and create one component of each type in it;
-                      Type?key=value&...: create a component, loading Type.so if need be
-
-  -f FILE             read this file instead of $RTC_MANAGER_CONFIG, ./rtc.conf, /etc/rtc.conf, ...
-  -i                  go on when the file of -f does not exist
-  -o KEY:VALUE        set a key of rtc.conf, over the file (many)
-  -p PORT             listen on this port (of the loopback interface)
-  -d                  be the master manager: listen on the port of corba.master_manager, stay without components
-  -a                  without the manager's own CORBA object
-  --with-naming       start omniNames when the first of corba.nameservers does not answer, stop it at the end
-  --help, --version
-
-exit code: 0 ended as asked, 1 failed, 2 wrong command line
-)";
+// The options for --help, --completion and --man; they are read by the manager, as those of every component program.
+struct Description {
+  CLI::App app{"rtcd: hosts RT components"};
+  Description() {
+    base::add_standard_options(app, "rtcd", RTMSIM_VERSION);
+    app.add_option("MODULE")->description(
+        "A library, or its name in manager.modules.load_path: load it and create one component of each type in it; "
+        "Type?key=value&...: create a component, loading Type.so if need be");
+    app.add_option("-f")->description("Read this file instead of $RTC_MANAGER_CONFIG, ./rtc.conf, /etc/rtc.conf, ...")->type_name("FILE");
+    app.add_flag("-i")->description("Go on when the file of -f does not exist");
+    app.add_option("-o")->description("Set a key of rtc.conf, over the file (many)")->type_name("KEY:VALUE");
+    app.add_option("-p")->description("Listen on this port (of the loopback interface)")->type_name("PORT");
+    app.add_flag("-d")->description("Be the master manager: listen on the port of corba.master_manager");
+    app.add_flag("-a")->description("Without the manager's own CORBA object");
+    app.add_flag("--with-naming")->description("Start omniNames when the first of corba.nameservers does not answer, stop it at the end");
+    app.footer("Exit code: 0 ended as asked, 1 failed, 2 wrong command line");
+  }
+};
 
 int fail(int code, const std::string& message) {
   std::cerr << "rtcd: " << message << '\n';
@@ -51,13 +51,13 @@ bool take(std::vector<char*>& arguments, std::string_view option) {
 
 int main(int argc, char** argv) {
   std::vector<char*> arguments(argv, argv + argc);
-  if (take(arguments, "--help") || take(arguments, "-h")) {
-    std::cout << help;
-    return 0;
-  }
-  if (take(arguments, "--version")) {
-    std::cout << "rtcd (rtm-sim), API of " << RTC::openrtm_name << '\n';
-    return 0;
+  for (std::size_t i = 1; i < arguments.size(); ++i) {
+    const std::string_view word = arguments[i];
+    if (word != "--help" && word != "-h" && word != "--version" && word != "--man" && !word.starts_with("--completion")) continue;
+    Description description;
+    const bool has_value = word == "--completion" && i + 1 < arguments.size();
+    const char* words[] = {"rtcd", arguments[i], has_value ? arguments[i + 1] : nullptr};
+    return base::parse_command_line(description.app, "rtcd", has_value ? 3 : 2, words).value_or(0);
   }
   const bool with_naming = take(arguments, "--with-naming");
   const int count = static_cast<int>(arguments.size());

@@ -2,11 +2,11 @@
 #include <signal.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <thread>
 
+#include "base/command_line.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "server/server_loop.h"
@@ -137,7 +137,7 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app("Loads an SDFormat world and runs it. Every device is an iface in shared memory; simctl shows and controls all of it.",
                "sim-server");
-  app.set_version_flag("--version", std::string("sim-server ") + RTMSIM_VERSION);
+  base::add_standard_options(app, "sim-server", RTMSIM_VERSION);
   app.add_option("WORLD", options.world, "SDFormat world file")->required();
   app.add_option("-s,--server-id", options.server_id, "number that clients name this server by (0)")->check(CLI::Range(0, 9999));
   app.add_flag("-u,--paused", options.is_paused, "start paused");
@@ -161,13 +161,7 @@ int main(int argc, char** argv) {
   app.add_option("--shm-mode", options.shm_mode, "access mode of the ifaces (0600)");
   app.add_option("--shm-group", options.shm_group, "group of the ifaces");
   app.add_option("-v", options.verbosity, "0 errors, 1 normal, 2 notes, 3 debug (1)")->check(CLI::Range(0, 3));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return app.exit(e);
-    std::fprintf(stderr, "sim-server: %s\n", e.what());
-    return 2;
-  }
+  if (const auto end = base::parse_command_line(app, "sim-server", argc, argv)) return *end;
   const base::Level levels[] = {base::Level::error, base::Level::info, base::Level::info, base::Level::debug};
   base::set_log_level(levels[options.verbosity]);
   Signals signals;
