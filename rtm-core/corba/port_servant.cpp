@@ -15,6 +15,9 @@ namespace {
 // Every name the protocol needs is far shorter; longer ones only fill the memory of all peers.
 constexpr std::size_t longest_id = 64 * 1024;
 
+// For others to let go of a port that dies. They do at once, unless the POA was destroyed before.
+constexpr auto longest_wait = std::chrono::seconds(10);
+
 bool has_nil(const RTC::PortServiceList& ports) {
   for (CORBA::ULong i = 0; i < ports.length(); ++i) {
     if (CORBA::is_nil(ports[i])) return true;
@@ -52,6 +55,22 @@ void PortServant::deactivate() {
 void PortServant::shut() {
   deactivate();
   gate_.close();
+  // A caller has its answer a little before the POA is done with the call.
+  auto holders = holders_.lock();
+  holders.wait_for(released_, longest_wait, [&] { return *holders <= 1; });
+}
+
+void PortServant::_add_ref() { ++*holders_.lock(); }
+
+void PortServant::_remove_ref() {
+  bool is_last = false;
+  {
+    // Notified under the lock: the one who waits destroys us.
+    auto holders = holders_.lock();
+    is_last = --*holders == 0;
+    released_.notify_all();
+  }
+  if (is_last) delete this;  // the owner has given up its own count, as owners of servants on the heap do
 }
 
 bool PortServant::is_same(CORBA::Object_ptr a, CORBA::Object_ptr b) {

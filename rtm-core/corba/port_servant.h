@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,10 @@ class PortServant : public virtual POA_RTC::PortService, public virtual Portable
   // The same, and none is running when it returns. Connections stay. Classes that end the line of derivation call it
   // first in their destructors. Not to be called from inside a hook.
   void shut();
+
+  // Counts those who hold the servant besides its owner: the POA until the last call has wholly ended, and whoever looks it up there.
+  void _add_ref() override;
+  void _remove_ref() override;
 
   // Removes the connection on this side without calling anyone, because the other end is gone. False if it is not there (any more).
   bool drop_connection(const char* connector_id);
@@ -116,6 +121,8 @@ class PortServant : public virtual POA_RTC::PortService, public virtual Portable
   base::Guarded<State, base::Rank::port> state_;
   std::atomic<int> connection_limit_{-1};
   Gate gate_;
+  base::Guarded<int, base::Rank::registry> holders_{1};
+  std::condition_variable released_;
 };
 
 }  // namespace corba

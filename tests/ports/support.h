@@ -8,6 +8,7 @@
 #include <rtm/OutPort.h>
 #include <rtm/idl/BasicDataTypeSkel.h>
 
+#include <atomic>
 #include <chrono>
 #include <initializer_list>
 #include <string>
@@ -54,9 +55,16 @@ class Local final : public Servant {
       const PortableServer::ObjectId_var id = poa->servant_to_id(this);
       poa->deactivate_object(id);
     } catch (const CORBA::Exception&) {
-      // Nobody has asked for its reference.
+      return;  // nobody has asked for its reference
     }
+    // A caller has its answer a little before the POA is done with the call.
+    while (holders_ > 1) std::this_thread::yield();
   }
+  void _add_ref() override { ++holders_; }
+  void _remove_ref() override { --holders_; }
+
+ private:
+  std::atomic<int> holders_{1};
 };
 
 // Waits for what another thread or process does; false when the watchdog bites.
