@@ -1,0 +1,106 @@
+// Octets from a peer, decoded as values of several types: any octets must end in a value or a refusal. Mutates good payloads; prints its
+// seed.
+//   ports_fuzz [--runs N] [--seed N]
+#include <rtm/idl/BasicDataTypeSkel.h>
+#include <rtm/idl/ExtendedDataTypesSkel.h>
+#include <rtm/idl/InterfaceDataTypesSkel.h>
+
+#include <cstdio>
+#include <cstring>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "corba/cdr.h"
+#include "corba/event_data.h"
+
+namespace {
+
+using Octets = std::vector<std::byte>;
+
+template <class T>
+void add(std::vector<std::pair<const corba::TypeOps*, Octets>>& seeds, const T& value) {
+  const auto block = corba::encode(corba::type_ops<T>(), &value, rt::ByteOrder::little);
+  seeds.emplace_back(&corba::type_ops<T>(), Octets(block->octets().begin(), block->octets().end()));
+}
+
+std::vector<std::pair<const corba::TypeOps*, Octets>> make_seeds() {
+  std::vector<std::pair<const corba::TypeOps*, Octets>> seeds;
+  add(seeds, RTC::TimedLong{});
+  RTC::TimedStringSeq strings{};
+  strings.data.length(3);
+  for (CORBA::ULong i = 0; i < 3; ++i) strings.data[i] = "text";
+  add(seeds, strings);
+  RTC::CameraImage image{};
+  image.format = "rgb";
+  image.pixels.length(100);
+  add(seeds, image);
+  RTC::TimedWString wide{};
+  wide.data = CORBA::wstring_dup(L"wide");
+  add(seeds, wide);
+  RTC::RangeData range{};
+  range.ranges.length(10);
+  add(seeds, range);
+  RTC::Path2D path{};
+  path.waypoints.length(2);
+  add(seeds, path);
+  return seeds;
+}
+
+void mutate(Octets& octets, std::mt19937& random) {
+  const auto any_place = [&] { return random() % octets.size(); };
+  for (unsigned n = random() % 4 + 1; n > 0 && !octets.empty(); --n) {
+    switch (random() % 5) {
+      case 0:
+        octets[any_place()] = static_cast<std::byte>(random());
+        break;
+      case 1:
+        octets.resize(any_place());
+        break;
+      case 2:
+        octets.resize(octets.size() + random() % 16, static_cast<std::byte>(random()));
+        break;
+      default: {  // a length
+        const std::uint32_t lengths[] = {0,          1,          0x7fffffff, 0x80000000,
+                                         0xffffffff, 0xfffffffc, 1u << 20,   static_cast<std::uint32_t>(random())};
+        const std::size_t at = any_place() / 4 * 4;
+        if (at + 4 <= octets.size()) std::memcpy(&octets[at], &lengths[random() % 8], 4);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  unsigned long runs = 100'000;
+  unsigned seed = std::random_device()();
+  for (int i = 1; i + 1 < argc; i += 2) {
+    if (std::strcmp(argv[i], "--runs") == 0) runs = std::stoul(argv[i + 1]);
+    if (std::strcmp(argv[i], "--seed") == 0) seed = static_cast<unsigned>(std::stoul(argv[i + 1]));
+  }
+  std::printf("seed %u\n", seed);
+  std::fflush(stdout);
+  std::mt19937 random(seed);
+  int no_arguments = 0;
+  const CORBA::ORB_var orb = CORBA::ORB_init(no_arguments, nullptr);  // brings the code sets of strings
+  omniORB::traceLevel = 0;                                            // it tells of every bad string
+  const auto seeds = make_seeds();
+  unsigned long good = 0;
+  for (unsigned long run = 0; run < runs; ++run) {
+    const auto& [ops, original] = seeds[random() % seeds.size()];
+    Octets octets = original;
+    mutate(octets, random);
+    const auto order = random() % 2 ? rt::ByteOrder::little : rt::ByteOrder::big;
+    const auto value = ops->make();
+    if (!corba::decode_safely(*ops, value->address(), octets, order)) continue;
+    ++good;
+    corba::EventData data(*ops, value->address(), order);
+    if (data.octets().empty() && !octets.empty() && !ops->has_wide_text) {
+      std::printf("a %s that was decoded cannot be encoded\n", ops->type_id.c_str());
+      return 1;
+    }
+  }
+  std::printf("%lu of %lu payloads were values\n", good, runs);
+  return 0;
+}
