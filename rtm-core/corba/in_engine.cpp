@@ -113,7 +113,8 @@ rt::PortStatus InConnection::fetch(bool only_new) {
 InEngine::InEngine(const TypeOps& ops) : ops_(ops), connections_(std::make_shared<const Connections>()) {}
 
 InEngine::~InEngine() {
-  for (const auto& connection : *connections()) close(connection->id());
+  const auto all = connections();
+  for (const auto& connection : *all) close(connection->id());
 }
 
 std::shared_ptr<const InEngine::Connections> InEngine::connections() const { return connections_.snapshot(); }

@@ -213,7 +213,8 @@ OutEngine::OutEngine(const TypeOps& ops, std::function<void(const std::string& i
 
 OutEngine::~OutEngine() {
   loss_->close();
-  for (const auto& connection : *connections()) close(connection->id());
+  const auto all = connections();
+  for (const auto& connection : *all) close(connection->id());
 }
 
 std::shared_ptr<const OutEngine::Connections> OutEngine::connections() const { return connections_.snapshot(); }

@@ -62,6 +62,7 @@ class EventInPort : public InPortBase {
  public:
   EventInPort(const char* name, FsmType& machine, int = 64, bool = false, bool = false, int = 0, int = 0)
       : InPortBase(name, detail::any_type_ops()), machine_(machine) {}
+  ~EventInPort() override { retire(); }
 
   // Nothing: events go to the machine as they arrive.
   bool read(std::string = "") override { return true; }

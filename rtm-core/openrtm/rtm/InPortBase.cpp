@@ -18,7 +18,9 @@ InPortBase::InPortBase(const char* name, const corba::TypeOps& type)
   for (const auto& [key, value] : detail::advertised_keys(side, type.type_id)) addProperty(key, value);
 }
 
-InPortBase::~InPortBase() { shut(); }
+InPortBase::~InPortBase() { retire(); }
+
+void InPortBase::retire() { shut(); }
 
 bool InPortBase::isNew() { return isNew(std::string()); }
 
@@ -60,7 +62,8 @@ DataPortStatusList InPortBase::getStatusList() const { return detail::to_classic
 
 InPortBase::ConnectorList InPortBase::connectors() const {
   ConnectorList list;
-  for (const auto& connection : *engine_->connections()) list.push_back(static_cast<InPortConnector*>(&connection->events()));
+  const auto all = engine_->connections();  // kept alive during the loop
+  for (const auto& connection : *all) list.push_back(static_cast<InPortConnector*>(&connection->events()));
   return list;
 }
 

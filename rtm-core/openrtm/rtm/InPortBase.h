@@ -65,6 +65,8 @@ class InPortBase : public PortBase, public DataPortStatus {
   corba::InEngine& engine() { return *engine_; }
 
  protected:
+  // Returns when no other thread is in the port any more. The destructor of the last class in line calls it first.
+  void retire();
   // Decodes the oldest unread sample (of that connection) into `value`, or the last one again.
   bool readValue(const std::string& connector_name, void* value);
 

@@ -18,7 +18,9 @@ OutPortBase::OutPortBase(const char* name, const corba::TypeOps& type)
   for (const auto& [key, value] : detail::advertised_keys(side, type.type_id)) addProperty(key, value);
 }
 
-OutPortBase::~OutPortBase() {
+OutPortBase::~OutPortBase() { retire(); }
+
+void OutPortBase::retire() {
   engine_->stop_telling();
   shut();
 }
@@ -46,7 +48,8 @@ DataPortStatusList OutPortBase::getStatusList() const { return detail::to_classi
 
 OutPortBase::ConnectorList OutPortBase::connectors() const {
   ConnectorList list;
-  for (const auto& connection : *engine_->connections()) list.push_back(static_cast<OutPortConnector*>(&connection->events()));
+  const auto all = engine_->connections();  // kept alive during the loop
+  for (const auto& connection : *all) list.push_back(static_cast<OutPortConnector*>(&connection->events()));
   return list;
 }
 

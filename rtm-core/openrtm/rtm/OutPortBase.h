@@ -54,6 +54,8 @@ class OutPortBase : public PortBase, public DataPortStatus {
   ConnectorListeners& getListeners() { return *listeners_; }
 
  protected:
+  // Returns when no other thread is in the port any more. The destructor of the last class in line calls it first.
+  void retire();
   bool writeValue(const void* value);
 
   void complete_profile(ConnectorProfile& profile) override;
