@@ -4,8 +4,9 @@
 
 namespace iface {
 
+// The component's other handle of the same iface says when it is lost and found.
 Commander::Commander(shm::IfaceType type, Say say)
-    : link_(type, say), say_(std::move(say)), values_(type == shm::IfaceType::position3d ? 6 : 3) {}
+    : link_(type, [](bool, const std::string&) {}), say_(std::move(say)), values_(type == shm::IfaceType::position3d ? 6 : 3) {}
 
 base::Result<void> Commander::attach(const Device& device) {
   const std::scoped_lock lock(mutex_);

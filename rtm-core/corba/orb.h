@@ -21,7 +21,7 @@ struct OrbSettings {
   bool unix_socket = true;                                // a further end point for processes of this host
   std::chrono::milliseconds call_timeout{10'000};         // of every call to another process; 0: none
   std::size_t max_message_size = std::size_t{128} << 20;  // [byte]
-  std::vector<std::string> arguments{};                     // further -ORB... arguments; they win over the settings above
+  std::vector<std::string> arguments{};                   // further -ORB... arguments; they win over the settings above
 };
 
 class Orb {

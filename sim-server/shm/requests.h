@@ -58,11 +58,11 @@ struct ScreenshotRequest {
   std::string path;                         // absolute; written atomically
   std::uint32_t width = 800, height = 600;  // 1..8192
   enum class View { whole, top, follow, from, camera } view = View::whole;
-  bool with_scans = false;      // fans of range finders, trails and names over the picture
+  bool with_scans = false;       // fans of range finders, trails and names over the picture
   bool with_collisions = false;  // the shapes that collide instead of those that are seen
-  std::string follow;         // model; iface for `camera`
-  Pose pose = identity_pose;  // camera for `from`, centre for `top`
-  double span = 0;            // hfov [rad], or metres across for `top`; 0 = a good one
+  std::string follow;            // model; iface for `camera`
+  Pose pose = identity_pose;     // camera for `from`, centre for `top`
+  double span = 0;               // hfov [rad], or metres across for `top`; 0 = a good one
 };
 struct StatsRequest {};
 struct ResetOdometryRequest {

@@ -382,7 +382,14 @@ enum {
 };
 
 /* Views of a screenshot. Without TOP and FOLLOW the camera's pose is in values; none given: one that shows the whole world. */
-enum { RTMSIM_VIEW_TOP = 1, RTMSIM_VIEW_FOLLOW = 2, RTMSIM_VIEW_FROM = 4, RTMSIM_VIEW_SCANS = 8, RTMSIM_VIEW_CAMERA = 16, RTMSIM_VIEW_COLLISIONS = 32 };
+enum {
+  RTMSIM_VIEW_TOP = 1,
+  RTMSIM_VIEW_FOLLOW = 2,
+  RTMSIM_VIEW_FROM = 4,
+  RTMSIM_VIEW_SCANS = 8,
+  RTMSIM_VIEW_CAMERA = 16,
+  RTMSIM_VIEW_COLLISIONS = 32
+};
 
 enum {
   RTMSIM_STATUS_OK = 0,
