@@ -9,6 +9,18 @@ namespace {
 
 constexpr std::size_t cheap_copy = 4096;  // [octets]
 
+// Reads octets where they are. The ORB's own check multiplies with 32 bits, by which a made-up length of 2^29 doubles passes.
+class DecodingStream final : public cdrMemoryStream {
+ public:
+  DecodingStream(void* octets, std::size_t size) : cdrMemoryStream(octets, size), size_(size) {}
+  _CORBA_Boolean checkInputOverrun(_CORBA_ULong item_size, _CORBA_ULong items, omni::alignment_t align = omni::ALIGN_1) override {
+    return std::uint64_t{item_size} * items <= size_ && cdrMemoryStream::checkInputOverrun(item_size, items, align);
+  }
+
+ private:
+  std::size_t size_;
+};
+
 }  // namespace
 
 bool has_wide_text(CORBA::TypeCode_ptr code) {
@@ -66,7 +78,7 @@ bool decode(const TypeOps& ops, void* value, std::span<const std::byte> octets, 
   }
   try {
     static std::byte nothing[8];
-    cdrMemoryStream stream(octets.empty() ? nothing : const_cast<std::byte*>(octets.data()), octets.size());
+    DecodingStream stream(octets.empty() ? nothing : const_cast<std::byte*>(octets.data()), octets.size());
     stream.setByteSwapFlag(order == rt::ByteOrder::little);
     ops.decode(value, stream);
     return true;

@@ -10,6 +10,7 @@
 namespace {
 
 TEST(NVUtil, lists_and_properties_are_the_same_strings) {
+  const auto orb = ports::start_orb();  // values of `any` need one
   coil::Properties properties;
   properties.setProperty("a.b", "1");
   properties.setProperty("c", "2");
@@ -20,6 +21,7 @@ TEST(NVUtil, lists_and_properties_are_the_same_strings) {
 }
 
 TEST(NVUtil, values_that_are_no_strings_are_left_out) {
+  const auto orb = ports::start_orb();  // values of `any` need one
   SDOPackage::NVList list;
   CORBA_SeqUtil::push_back(list, NVUtil::newNV("number", CORBA::Long(5)));
   EXPECT_FALSE(NVUtil::isString(list, "number"));
@@ -31,6 +33,7 @@ TEST(NVUtil, values_that_are_no_strings_are_left_out) {
 }
 
 TEST(NVUtil, a_comma_list_has_each_value_once) {
+  const auto orb = ports::start_orb();  // values of `any` need one
   SDOPackage::NVList list;
   NVUtil::appendStringValue(list, "types", "a");
   NVUtil::appendStringValue(list, "types", "b");

@@ -243,7 +243,20 @@ TEST(Payload, the_octets_are_the_plain_encoding) {
   EXPECT_EQ(std::vector<unsigned char>(stream.getBuffer(), stream.getBuffer() + stream.getDataLength()), expected);
 }
 
+TEST(Payload, lengths_that_overflow_32_bits_are_refused) {
+  const auto orb = ports::start_orb();
+  RTC::TimedDoubleSeq value{};
+  value.data.length(2);
+  for (const CORBA::ULong length : {0x20000000u, 0x20000001u, 0x80000000u, 0xffffffffu}) {
+    alignas(8) std::byte octets[64] = {};
+    std::memcpy(octets + 8, &length, 4);
+    EXPECT_FALSE(corba::decode_safely(corba::type_ops<RTC::TimedDoubleSeq>(), &value, octets, rt::ByteOrder::little)) << length;
+    EXPECT_EQ(value.data.length(), 2u);
+  }
+}
+
 TEST(Payload, long_arrays_are_aligned_as_if_copied) {
+  const auto orb = ports::start_orb();  // brings the code sets of strings
   for (CORBA::ULong size = 5000; size < 5009; ++size) {
     RTC::CameraImage image{};
     image.format = "x";
