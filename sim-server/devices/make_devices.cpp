@@ -84,6 +84,38 @@ void make_sonars(Makers& m) {
   for (const auto& [scope, transducers] : rings) m.take(SonarRing::make(m.world, iface_name(def.name, scope, "sonar"), scope, transducers));
 }
 
+// The way points that a drive of the same (nested) model follows while nobody commands it.
+std::optional<Path> path_of(Makers& m, const std::string& scope) {
+  for (const auto& plugin : m.world.physics.def(m.model).plugins) {
+    if (plugin.scope != scope || kind_of(plugin) != PluginKind::trajectory_follower) continue;
+    auto path = Path::of(plugin, m.world.physics.model_pose(m.model));
+    if (path) return std::move(*path);
+    m.notes.push_back(path.error().message);
+  }
+  return {};
+}
+
+// A model with way points and no drive of its own.
+void make_follower(Makers& m, const PluginDef& plugin) {
+  const auto& plugins = m.world.physics.def(m.model).plugins;
+  for (const auto& other : plugins) {
+    if (other.scope != plugin.scope) continue;
+    if (kind_of(other) == PluginKind::velocity_control) return;  // which flies them
+    if (&other != &plugin && kind_of(other) == PluginKind::trajectory_follower && &other < &plugin) {
+      m.notes.push_back(
+          fmt::format("{}: plugin {}: the model follows the way points of {} already", plugin.source, plugin.name, other.name));
+      return;
+    }
+  }
+  if (m.world.physics.is_static(m.model)) {
+    m.notes.push_back(fmt::format("{}: plugin {}: the model is static and cannot move", plugin.source, plugin.name));
+    return;
+  }
+  auto path = Path::of(plugin, m.world.physics.model_pose(m.model));
+  if (!path) return m.notes.push_back(path.error().message);
+  m.take(Position3d::make(m.world, m.model, plugin, std::move(*path)));
+}
+
 void make_plugin(Makers& m, const PluginDef& plugin) {
   switch (kind_of(plugin)) {
     case PluginKind::differential_drive:
@@ -99,8 +131,9 @@ void make_plugin(Makers& m, const PluginDef& plugin) {
         m.notes.push_back(fmt::format("{}: plugin {}: the model is static and cannot move", plugin.source, plugin.name));
         return;
       }
-      return m.take(Position3d::make(m.world, m.model, plugin));
+      return m.take(Position3d::make(m.world, m.model, plugin, path_of(m, plugin.scope)));
     case PluginKind::trajectory_follower:
+      return make_follower(m, plugin);
     case PluginKind::implied:
     case PluginKind::unknown:  // the loader has said so
       return;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "base/text.h"
+#include "world/plugin_kind.h"
 
 namespace sim {
 namespace {
@@ -21,7 +22,8 @@ Eigen::Vector3d three(const std::optional<std::string>& text) {
 
 }  // namespace
 
-base::Result<std::unique_ptr<Device>> Position3d::make(DeviceWorld& world, ModelId model, const PluginDef& plugin) {
+base::Result<std::unique_ptr<Device>> Position3d::make(DeviceWorld& world, ModelId model, const PluginDef& plugin,
+                                                       std::optional<Path> path) {
   const ModelDef& def = world.physics.def(model);
   shm::Position3dInfo info{};
   info.drive = RTMSIM_DRIVE_HOLONOMIC;
@@ -32,33 +34,60 @@ base::Result<std::unique_ptr<Device>> Position3d::make(DeviceWorld& world, Model
   shm::set_text(info.model, scoped_model(def, plugin.scope));
   auto writer = world.shm.create(shm::position3d_spec(iface_name(def.name, plugin.scope, "position3d"), info));
   if (!writer) return writer.error();
-  return std::unique_ptr<Device>(new Position3d(world, model, plugin, std::move(*writer)));
+  return std::unique_ptr<Device>(new Position3d(world, model, plugin, std::move(path), std::move(*writer)));
 }
 
-Position3d::Position3d(DeviceWorld& world, ModelId model, const PluginDef& plugin, std::unique_ptr<shm::IfaceWriter> writer)
-    : world_(world), model_(model), writer_(std::move(writer)) {
+Position3d::Position3d(DeviceWorld& world, ModelId model, const PluginDef& plugin, std::optional<Path> path,
+                       std::unique_ptr<shm::IfaceWriter> writer)
+    : world_(world), model_(model), path_(std::move(path)), writer_(std::move(writer)) {
   const ParameterNode& p = plugin.parameters;
   const auto limit = [](std::optional<double> value, double otherwise) { return value && *value > 0 ? *value : otherwise; };
-  max_speed_ = limit(p.number_of({"max_speed", "max_linear_velocity"}), 100);
+  max_speed_ = limit(p.number_of({"max_speed", "max_linear_velocity"}), path_ ? 2 * path_->speed() : 100);
   max_yaw_rate_ = limit(p.number_of({"max_yaw_rate", "max_angular_velocity"}), 10);
   max_acceleration_ = limit(p.number_of({"max_acceleration", "max_linear_acceleration"}), 5);
   max_yaw_acceleration_ = limit(p.number_of({"max_yaw_acceleration", "max_angular_acceleration"}), 5);
   initial_command_.head<3>() = three(p.text_of({"initial_linear"}));
   initial_command_[3] = three(p.text_of({"initial_angular"})).z();
+  is_kinematic_ = kind_of(plugin) == PluginKind::trajectory_follower;
   reset();
 }
 
-Eigen::Vector4d Position3d::to_goal(const Eigen::Isometry3d& pose) const {
-  const Eigen::Isometry3d odometry = odometry_origin_ * pose;
-  const double yaw = yaw_of(odometry);
-  const Eigen::Vector3d error = Eigen::AngleAxisd(-yaw, Eigen::Vector3d::UnitZ()) * (goal_->head<3>() - odometry.translation());
-  Eigen::Vector4d v;
-  // As fast as allows to stop there.
-  v.head<3>() = error.norm() > 1e-9
-                    ? (error.normalized() * std::min(1.5 * error.norm(), std::sqrt(max_acceleration_ * error.norm()))).eval()
-                    : Eigen::Vector3d(0, 0, 0);
-  v[3] = 1.5 * wrapped((*goal_)[3] - yaw);
+// As fast as allows to stop there.
+Eigen::Vector4d Position3d::towards(const Eigen::Isometry3d& pose, const Eigen::Vector3d& place, double yaw) const {
+  const double heading = yaw_of(pose);
+  const Eigen::Vector3d error = Eigen::AngleAxisd(-heading, Eigen::Vector3d::UnitZ()) * (place - pose.translation());
+  Eigen::Vector4d v(0, 0, 0, 1.5 * wrapped(yaw - heading));
+  if (error.norm() > 1e-9) v.head<3>() = error.normalized() * std::min(1.5 * error.norm(), std::sqrt(max_acceleration_ * error.norm()));
   return v;
+}
+
+Eigen::Vector4d Position3d::to_goal(const Eigen::Isometry3d& pose) const {
+  return towards(odometry_origin_ * pose, goal_->head<3>(), (*goal_)[3]);
+}
+
+void Position3d::move(const Eigen::Isometry3d& pose, const Eigen::Vector3d& velocity, double yaw_rate) {
+  // Level again after a bump: turn the body's up towards the world's.
+  const Eigen::Vector3d up = pose.linear().col(2);
+  Twist twist;
+  twist.angular = 2 * up.cross(Eigen::Vector3d::UnitZ()) + Eigen::Vector3d(0, 0, yaw_rate);
+  const Eigen::Vector3d arm = world_.physics.link_pose(world_.physics.canonical_link(model_)).translation() - pose.translation();
+  twist.linear = velocity + twist.angular.cross(arm);
+  (void)world_.physics.set_model_twist(model_, twist);  // values are within the limits
+}
+
+// Moves to where the path is at the end of the step; false when that is further than the path goes in a step: it was pushed or led away.
+bool Position3d::keep_to_path(const Moment& moment, const Eigen::Isometry3d& pose) {
+  const Eigen::Isometry3d next = path_->at(path_time_ + moment.dt);
+  const Eigen::Vector3d way = next.translation() - pose.translation();
+  const double turn = wrapped(yaw_of(next) - yaw_of(pose));
+  if (way.norm() > 2 * path_->speed() * moment.dt + 1e-3) return false;
+  if (std::abs(turn) > 2 * std::max(path_->turn_rate(), path_->speed()) * moment.dt + 0.02) return false;
+  path_time_ += moment.dt;
+  const Eigen::Vector3d velocity = way / moment.dt;
+  velocity_.head<3>() = Eigen::AngleAxisd(-yaw_of(pose), Eigen::Vector3d::UnitZ()) * velocity;
+  velocity_[3] = turn / moment.dt;
+  move(pose, velocity, velocity_[3]);
+  return true;
 }
 
 void Position3d::before_step(const Moment& moment) {
@@ -82,21 +111,20 @@ void Position3d::before_step(const Moment& moment) {
   }
   if (!motors_enabled_) return;
   const Eigen::Isometry3d pose = world_.physics.model_pose(model_);
+  const bool is_on_the_way = path_ && !is_commanded_;
+  if (is_on_the_way && keep_to_path(moment, pose)) return;
   Eigen::Vector4d wanted = goal_ ? to_goal(pose) : command_;
+  if (is_on_the_way) {
+    const Eigen::Isometry3d back = path_->at(path_time_);
+    wanted = towards(pose, back.translation(), yaw_of(back));
+  }
   if (const double speed = wanted.head<3>().norm(); speed > max_speed_) wanted.head<3>() *= max_speed_ / speed;
   wanted[3] = std::clamp(wanted[3], -max_yaw_rate_, max_yaw_rate_);
   const Eigen::Vector3d change = wanted.head<3>() - velocity_.head<3>();
   const double most = max_acceleration_ * moment.dt;
   velocity_.head<3>() += change.norm() > most ? (change * (most / change.norm())).eval() : change;
   velocity_[3] += std::clamp(wanted[3] - velocity_[3], -max_yaw_acceleration_ * moment.dt, max_yaw_acceleration_ * moment.dt);
-  // Level again after a bump: turn the body's up towards the world's.
-  const Eigen::Vector3d up = pose.linear().col(2);
-  Twist twist;
-  twist.angular = 2 * up.cross(Eigen::Vector3d::UnitZ()) + Eigen::Vector3d(0, 0, velocity_[3]);
-  const Eigen::Vector3d at_origin = Eigen::AngleAxisd(yaw_of(pose), Eigen::Vector3d::UnitZ()) * velocity_.head<3>();
-  const Eigen::Vector3d arm = world_.physics.link_pose(world_.physics.canonical_link(model_)).translation() - pose.translation();
-  twist.linear = at_origin + twist.angular.cross(arm);
-  (void)world_.physics.set_model_twist(model_, twist);  // values are within the limits
+  move(pose, Eigen::AngleAxisd(yaw_of(pose), Eigen::Vector3d::UnitZ()) * velocity_.head<3>(), velocity_[3]);
 }
 
 void Position3d::measure(const Moment&) {
@@ -120,9 +148,11 @@ void Position3d::measure(const Moment&) {
 
 void Position3d::reset() {
   world_.physics.set_gravity(model_, false);
+  if (is_kinematic_) world_.physics.make_kinematic(model_);
   command_ = initial_command_;
   velocity_.setZero();
   goal_.reset();
+  path_time_ = 0;
   motors_enabled_ = true;
   odometry_origin_ = world_.physics.model_pose(model_).inverse();
 }
@@ -130,6 +160,7 @@ void Position3d::reset() {
 void Position3d::add_to(StateHash& hash) const {
   hash.add(writer_->name());
   for (int i = 0; i < 4; ++i) hash.add(velocity_[i]), hash.add(command_[i]);
+  if (path_) hash.add(path_time_);
 }
 
 bool Position3d::set_odometry(const Eigen::Isometry3d& pose) {

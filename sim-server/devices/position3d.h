@@ -1,14 +1,16 @@
 // Robots that fly (or glide) by velocity commands, whatever drives them: helicopters and the like. The body follows vx vy vz and the yaw
-// rate in its own, level frame within its limits of acceleration, keeps level and holds its height. See device.h for the thread rule.
+// rate in its own, level frame within its limits of acceleration, keeps level and holds its height. With way points (path.h) it flies along
+// them while nobody commands it; a model that has way points and no drive moves whatever it touches. See device.h for the thread rule.
 #pragma once
 
 #include "devices/device.h"
+#include "devices/path.h"
 
 namespace sim {
 
 class Position3d final : public Device {
  public:
-  static base::Result<std::unique_ptr<Device>> make(DeviceWorld& world, ModelId model, const PluginDef& plugin);
+  static base::Result<std::unique_ptr<Device>> make(DeviceWorld& world, ModelId model, const PluginDef& plugin, std::optional<Path> path);
 
   shm::IfaceWriter& iface() override { return *writer_; }
   ModelId model() const override { return model_; }
@@ -22,8 +24,12 @@ class Position3d final : public Device {
   bool set_motors(bool enabled) override;
 
  private:
-  Position3d(DeviceWorld& world, ModelId model, const PluginDef& plugin, std::unique_ptr<shm::IfaceWriter> writer);
+  Position3d(DeviceWorld& world, ModelId model, const PluginDef& plugin, std::optional<Path> path,
+             std::unique_ptr<shm::IfaceWriter> writer);
+  Eigen::Vector4d towards(const Eigen::Isometry3d& pose, const Eigen::Vector3d& place, double yaw) const;
   Eigen::Vector4d to_goal(const Eigen::Isometry3d& pose) const;
+  bool keep_to_path(const Moment& moment, const Eigen::Isometry3d& pose);
+  void move(const Eigen::Isometry3d& pose, const Eigen::Vector3d& velocity, double yaw_rate);
 
   DeviceWorld& world_;
   ModelId model_;
@@ -33,7 +39,9 @@ class Position3d final : public Device {
   Eigen::Vector4d velocity_{0, 0, 0, 0};                               // that it flies with now
   std::optional<Eigen::Vector4d> goal_;                                // x y z yaw in odometry, for position commands
   Eigen::Isometry3d odometry_origin_ = Eigen::Isometry3d::Identity();  // odometry = origin * true pose
-  bool motors_enabled_ = true, is_commanded_ = false;
+  std::optional<Path> path_;
+  double path_time_ = 0;  // how far along the path it is; stands still while it is off the path
+  bool motors_enabled_ = true, is_commanded_ = false, is_kinematic_ = false;
   std::unique_ptr<shm::IfaceWriter> writer_;
 };
 

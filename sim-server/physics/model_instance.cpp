@@ -286,7 +286,7 @@ void ModelInstance::enter(dWorldID world, const PhysicsDef& physics) {
     dMassSetParameters(&mass, assembly.mass, 0, 0, 0, i(0, 0), i(1, 1), i(2, 2), i(0, 1), i(0, 2), i(1, 2));
     dBodySetMass(body, &mass);
     dBodySetGravityMode(body, assembly.has_gravity && gravity_ ? 1 : 0);
-    if (assembly.is_kinematic) dBodySetKinematic(body);
+    if (assembly.is_kinematic || is_kinematic_) dBodySetKinematic(body);
     dBodySetLinearDamping(body, std::clamp(assembly.linear_damping, 0.0, 1.0));
     dBodySetAngularDamping(body, std::clamp(assembly.angular_damping, 0.0, 1.0));
     dBodySetLinearDampingThreshold(body, 0);
@@ -550,6 +550,15 @@ void ModelInstance::set_gravity(bool on) {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     if (bodies_[i].id() != nullptr) dBodySetGravityMode(bodies_[i].id(), on && blueprint_->assemblies[i].has_gravity ? 1 : 0);
   }
+}
+
+bool ModelInstance::make_kinematic() {
+  if (!joints_.empty()) return false;
+  is_kinematic_ = true;
+  for (const auto& body : bodies_) {
+    if (body.id() != nullptr) dBodySetKinematic(body.id());
+  }
+  return true;
 }
 
 bool ModelInstance::is_sane() const {

@@ -109,6 +109,7 @@ class ModelInstance {
   const Aabb& update_boxes();
   const Aabb& moving_box() const { return moving_box_; }
   void set_gravity(bool on);
+  bool make_kinematic();
   void set_drive(JointInstance& joint, int axis, double velocity, double effort);
   // False when a number has become infinite or a body is faster than anything should be.
   bool is_sane() const;
@@ -138,7 +139,7 @@ class ModelInstance {
   std::vector<ShapeInstance> shapes_;
   std::vector<Eigen::Isometry3d> shape_in_body_;
   bool has_springs_ = false;
-  bool gravity_ = true;
+  bool gravity_ = true, is_kinematic_ = false;
   Aabb moving_box_;
 };
 

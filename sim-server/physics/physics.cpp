@@ -406,6 +406,7 @@ base::Result<void> Physics::add_wrench(LinkId link, const Eigen::Vector3d& force
 }
 
 void Physics::set_gravity(ModelId model, bool on) { impl_->at(model).set_gravity(on); }
+bool Physics::make_kinematic(ModelId model) { return impl_->at(model).make_kinematic(); }
 
 JointState Physics::joint_state(JointId joint, int axis) const {
   JointInstance* instance = impl_->at(joint.model).joint(joint.joint);

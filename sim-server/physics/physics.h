@@ -108,6 +108,8 @@ class Physics {
   // For the next step only, at the centre of mass of the link's body.
   base::Result<void> add_wrench(LinkId link, const Eigen::Vector3d& force, const Eigen::Vector3d& torque);
   void set_gravity(ModelId model, bool on);
+  // Moves as it is told from now on, whatever it touches. For models without joints that move; false for others.
+  bool make_kinematic(ModelId model);
 
   JointState joint_state(JointId joint, int axis = 0) const;
   // The motor of the joint turns it with `velocity` and at most `effort` [N m or N] until it is set again. Effort 0: runs free.

@@ -44,6 +44,11 @@ bool may_touch_itself(const ModelInstance& model, const ShapeInstance& a, const 
   return !are_joined(model, a.assembly, b.assembly);
 }
 
+bool can_be_pushed(dGeomID geom) {
+  const dBodyID body = dGeomGetBody(geom);
+  return body != nullptr && dBodyIsKinematic(body) == 0;
+}
+
 }  // namespace
 
 Shard::Shard(const PhysicsDef& physics) : physics_(physics), contact_joints_(dJointGroupCreate(0)) {
@@ -194,7 +199,8 @@ void Shard::add_contact(ModelInstance& model_a, ShapeInstance& a, ModelInstance*
     model_b->contacts.push_back(contact);
     ++model_b->contacts_so_far;
   }
-  if (!has_force) return;
+  // Nothing to push: ODE's solvers would divide by masses that are not there.
+  if (!has_force || (!can_be_pushed(a.geom.id()) && !can_be_pushed(b.geom.id()))) return;
   dContact joint_contact{};
   joint_contact.surface = surface;
   joint_contact.geom = geometry;

@@ -1,0 +1,56 @@
+#!/usr/bin/env python3
+"""Writes farm.sdf: a pasture with a cow that walks her round, a field with crop rows, a barn, trees, and a helicopter above with a camera that looks down."""
+import math
+import pathlib
+
+cow_speed, helicopter_height = 0.8, 9
+centre = (-1, 0)
+cow_way = [(-4.5, -2.5), (2, -3), (3, 1), (0.5, 3.2), (-4.5, 2.5)]
+corner = 1.5
+
+
+def include(model, name, x, y, z=0.0, yaw=0.0, more=""):
+    return f"    <include><uri>model://{model}</uri><name>{name}</name><pose>{x:g} {y:g} {z:g} 0 0 {yaw:.4g}</pose>{more}</include>"
+
+
+def way(points, speed, radius):
+    text = "".join(f"<waypoint>{' '.join(f'{c:g}' for c in point)}</waypoint>" for point in points)
+    return (f'\n      <plugin name="gz::sim::systems::TrajectoryFollower" filename="gz-sim-trajectory-follower-system"><loop>true</loop><speed>{speed:g}</speed>'
+            f"<corner_radius>{radius:g}</corner_radius><waypoints>{text}</waypoints></plugin>\n    ")
+
+
+# The helicopter flies the same round at half the size and half the speed, so it is always near the cow, who walks about in its picture.
+flight = [(centre[0] + (x - centre[0]) / 2, centre[1] + (y - centre[1]) / 2, helicopter_height) for x, y in cow_way]
+heading = math.atan2(cow_way[1][1] - cow_way[0][1], cow_way[1][0] - cow_way[0][0])
+
+lines = [include("cow", "cow", *cow_way[0], yaw=heading, more=way(cow_way, cow_speed, corner)),
+         include("helicopter", "helicopter", *flight[0], yaw=heading, more=way(flight, cow_speed / 2, corner / 2)),
+         include("barn", "barn", -12, 10, yaw=-0.5)]
+panels = [(x, y, 0) for y in (-6, 6) for x in (-6, -2, 2)] + [(x, y, math.pi / 2) for x in (-8, 4) for y in (-4, 0, 4)]
+panels.remove((2, 6, 0))  # the gate
+lines += [include("fence", f"fence_{n}", x, y, 0, yaw) for n, (x, y, yaw) in enumerate(panels)]
+lines += [include("crop_row", f"crop_row_{n}", 10, -5.4 + 1.2 * n) for n in range(10)]
+trees = [(-14, -3, 0.3), (-12, -8, 1.9), (-4, 11, 0.9), (1, 12.5, 2.6), (7, 11, 1.2), (15, 10, 0.4), (-2, -11, 2.1), (8, -11, 0)]
+lines += [include("tree", f"tree_{n}", x, y, 0, yaw) for n, (x, y, yaw) in enumerate(trees)]
+
+newline = "\n"
+pathlib.Path(__file__).resolve().with_name("farm.sdf").write_text(f"""<?xml version="1.0"?>
+<!-- Written by worlds/make_farm.py. -->
+<sdf version="1.9">
+  <world name="farm">
+    <physics name="default" type="ode">
+      <max_step_size>0.001</max_step_size>
+      <real_time_factor>1</real_time_factor>
+    </physics>
+    <scene>
+      <ambient>0.55 0.55 0.58 1</ambient>
+      <background>0.62 0.78 0.94 1</background>
+      <sky/>
+      <shadows>true</shadows>
+    </scene>
+    <include><uri>model://sun</uri></include>
+    <include><uri>model://field</uri></include>
+{newline.join(lines)}
+  </world>
+</sdf>
+""")
