@@ -3,7 +3,7 @@
 import math
 import pathlib
 
-cow_speed, helicopter_height = 0.8, 9
+cow_speed, helicopter_height, share = 0.8, 7, 0.6
 centre = (-1, 0)
 cow_way = [(-4.5, -2.5), (2, -3), (3, 1), (0.5, 3.2), (-4.5, 2.5)]
 corner = 1.5
@@ -19,12 +19,12 @@ def way(points, speed, radius):
             f"<corner_radius>{radius:g}</corner_radius><waypoints>{text}</waypoints></plugin>\n    ")
 
 
-# The helicopter flies the same round at half the size and half the speed, so it is always near the cow, who walks about in its picture.
-flight = [(centre[0] + (x - centre[0]) / 2, centre[1] + (y - centre[1]) / 2, helicopter_height) for x, y in cow_way]
+# The helicopter flies the same round, smaller and slower by the same share, so it is always near the cow, who walks about in its picture.
+flight = [(centre[0] + (x - centre[0]) * share, centre[1] + (y - centre[1]) * share, helicopter_height) for x, y in cow_way]
 heading = math.atan2(cow_way[1][1] - cow_way[0][1], cow_way[1][0] - cow_way[0][0])
 
 lines = [include("cow", "cow", *cow_way[0], yaw=heading, more=way(cow_way, cow_speed, corner)),
-         include("helicopter", "helicopter", *flight[0], yaw=heading, more=way(flight, cow_speed / 2, corner / 2)),
+         include("helicopter", "helicopter", *flight[0], yaw=heading, more=way(flight, cow_speed * share, corner * share)),
          include("barn", "barn", -12, 10, yaw=-0.5)]
 panels = [(x, y, 0) for y in (-6, 6) for x in (-6, -2, 2)] + [(x, y, math.pi / 2) for x in (-8, 4) for y in (-4, 0, 4)]
 panels.remove((2, 6, 0))  # the gate

@@ -112,6 +112,7 @@ Result<void> write_png(const Picture& picture, const std::string& file) {
   image.width = static_cast<png_uint_32>(picture.width);
   image.height = static_cast<png_uint_32>(picture.height);
   image.format = PNG_FORMAT_RGB;
+  image.flags = PNG_IMAGE_FLAG_FAST;  // every frame of a stream is written: three times the speed for a tenth more bytes
   if (png_image_write_to_file(&image, file.c_str(), 0, picture.rgb.data(), 0, nullptr) == 0)
     return Error{"file " + base::in_quotes(file) + ": " + image.message};
   return {};

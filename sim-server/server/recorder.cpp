@@ -44,6 +44,7 @@ void Recorder::record(std::chrono::nanoseconds time, const Physics& physics) {
     file_ << fmt::format("{:.3f} {} {} {} {} {} {} {} {}\n", seconds, physics.def(id).name, p.x(), p.y(), p.z(), q.w(), q.x(), q.y(),
                          q.z());
   }
+  file_.flush();  // who reads along, or after a kill, finds whole lines
   if (!file_) base::log(base::Level::error, "sim-server", "record {}: {}; recording stops", path_, std::strerror(errno));
 }
 
