@@ -1,6 +1,5 @@
 # The farm in lock step: a helicopter flies its round above a cow, RTCCamera sends what its camera sees, VideoPlayer writes the frames. The cow is in every picture,
 # with her colour and where the poses of both say, for a whole round. Then the helicopter obeys velocity commands that come through its port, and holds its height.
-import json
 import math
 import os
 import signal
@@ -95,7 +94,7 @@ def projected(cow, helicopter):
 
 
 def height():
-    return json.loads(simctl("--json", "echo", "helicopter::position3d", "-n", "1"))["true_pose"]["z"]
+    return float(simctl("pose", "helicopter").split()[2])
 
 
 try:
@@ -138,14 +137,22 @@ try:
     assert turn > 6.2, f"the cow turned by {turn} rad: that is no round"
 
     before = height()
-    rtse("inject", "RTCPosition3d0:velocity", '{"data": {"vx": 0, "vy": 0, "vz": 0.5, "vr": 0, "vp": 0, "va": 0}}')
-    simctl("step", "800")
+    pilot = start(f"{bin_dir}/rtse", "--ns", names, "inject", "RTCPosition3d0:velocity", "-n", "0", "-r", "20", '{"data": {"vz": 0.5}}')
+
+    def climbs():
+        simctl("step", "200")
+        assert height() > before + 0.05
+
+    await_("a command that arrives", climbs)
+    before = height()
+    simctl("step", "1000")
     climbed = height() - before
-    assert 0.2 < climbed < 0.5, f"climbed {climbed} m in 0.8 s at 0.5 m/s"
-    rtse("inject", "RTCPosition3d0:velocity", '{"data": {"vx": 0, "vy": 0, "vz": 0, "vr": 0, "vp": 0, "va": 0}}')
-    simctl("step", "600")
+    assert abs(climbed - 0.5) < 0.05, f"climbed {climbed} m in 1 s at 0.5 m/s"
+    pilot.send_signal(signal.SIGINT)
+    pilot.wait(20)
+    simctl("step", "2000")  # it waits a second for the next command, then stops
     held = height()
-    simctl("step", "300")
+    simctl("step", "2000")
     assert abs(height() - held) < 1e-3, "it does not hold its height"
 finally:
     for process in reversed(running):
