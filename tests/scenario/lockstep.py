@@ -1,0 +1,225 @@
+# Many processes in lock step with one simulator, and what happens to the rest when one of them fails: lockstep.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
+import re
+import signal
+import subprocess
+import sys
+import time
+
+from system import System, is_stopped
+
+case, bin_dir, lib_dir, source = sys.argv[1:]
+empty = f"{source}/worlds/empty.sdf"
+rtcd_line = re.compile(r"\[(\d+\.\d+)\] INFO: (\w+): relay activated")
+
+
+def relay(name, **options):
+    words = {"exec_cxt.periodic.rate": 100, "instance_name": name, **options}
+    return "Relay?" + "&".join(f"{key}={value}" for key, value in words.items())
+
+
+def join(s, count, *, server_id=None):
+    s.until(f"{count} participants", lambda: len(s.participants(server_id)) == count)
+
+
+def goes_on(s, server_id=None):
+    before = s.seconds(server_id)
+    s.until("time that passes", lambda: s.seconds(server_id) > before + 0.5)
+
+
+def stands_still(s):
+    before = s.seconds()
+    s.until("a hanging participant that is late", lambda: any(p["late"] for p in s.participants()))
+    assert s.seconds() - before < 0.5, "time did not wait"
+    at = s.seconds()
+    assert s.seconds() == at and s.seconds() == at, "time passes without the participant"
+
+
+def journal(path):
+    return [(float(time_text), int(value)) for time_text, value in (line.split() for line in open(path))]
+
+
+# Five relays, each a process of its own, phases as given: value v, made in tick v, is seen by relay k as many ticks later as phases went back on the way.
+def chain(s, phases, rate, ticks):
+    s.naming()
+    s.server(empty, "--lockstep", "--paused", "--rtf", "0", "--wait-for", "5")
+    names = [f"Relay{k}" for k in range(5)]
+    hosts = []
+    for k, name in enumerate(names):
+        hosts.append(s.host(relay(name, **{"exec_cxt.sim_time.phase": phases[k], "exec_cxt.periodic.rate": rate, "conf.default.source": int(k == 0),
+                                           "conf.default.journal": f"{s.work}/{name}.txt"})))
+    s.rtse("wait", *(f"{name}" for name in names), "--state", "any", "--timeout", "60")
+    for a, b in zip(names, names[1:]):
+        s.rtse("con", f"{a}:out", f"{b}:in", "-p", "dataport.subscription_type=flush")
+    s.rtse("act", *names)
+    join(s, 5)
+    s.simctl("step", str(int(ticks / rate * 1000) + 1))
+    seen = [journal(f"{s.work}/{name}.txt") for name in names]
+    first = seen[0][0][0]
+    period = [round(-(-(1000 * n) // rate)) / 1000 for n in range(ticks + 2)]  # the first step at or after each due time
+    start = period.index(first)
+    delay = 0
+    for k in range(5):
+        if k > 0 and phases[k] <= phases[k - 1]:
+            delay += 1
+        assert len(seen[k]) >= ticks - delay - 1, f"{names[k]}: {len(seen[k])} values in {ticks} ticks"
+        for n, (at, value) in enumerate(seen[k]):
+            assert value == n + 1, f"{names[k]}: value {value} where {n + 1} was expected"
+            assert at == period[start + n + delay], f"{names[k]}: value {value} at {at}, expected at {period[start + n + delay]} (delay {delay} ticks)"
+    for name, host in zip(names, hosts):
+        said = rtcd_line.search(s.log(host))
+        assert said and said[2] == name, f"no log line with simulated time: {s.log(host)}"
+
+
+with System(bin_dir, lib_dir) as s:
+    if case == "chain_forward":
+        chain(s, (0, 1, 2, 3, 4), rate=100, ticks=300)
+    elif case == "chain_backward":
+        chain(s, (4, 3, 2, 1, 0), rate=100, ticks=300)
+    elif case == "chain_mixed_at_a_rate_that_is_no_multiple_of_the_step":
+        chain(s, (0, 2, 1, 3, 2), rate=30, ticks=300)
+
+    elif case == "killed":
+        s.naming()
+        s.server(empty, "--lockstep", "--rtf", "0")
+        s.host(relay("Stays"))
+        for n in range(10):
+            victim = s.host(relay(f"Victim{n}"))
+            join(s, 2)
+            goes_on(s)
+            time.sleep(0.003 * n)  # another point of a tick each time
+            victim.send_signal(signal.SIGKILL)
+            victim.wait()
+            join(s, 1)
+            goes_on(s)
+
+    elif case == "stopped":
+        s.naming()
+        server = s.server(empty, "--lockstep", "--rtf", "0")
+        s.host(relay("Stays"))
+        victim = s.host(relay("Victim"))
+        join(s, 2)
+        for n in (1, 2):
+            victim.send_signal(signal.SIGSTOP)
+            s.until("a stopped process", lambda: is_stopped(victim))
+            stands_still(s)
+            s.until("a line that names it", lambda: len(re.findall(r"warn.*Victim", s.log(server))) == n)
+            victim.send_signal(signal.SIGCONT)
+            goes_on(s)
+        join(s, 2)
+
+    elif case == "dropped":
+        s.naming()
+        server = s.server(empty, "--lockstep", "--rtf", "0", "--participant-timeout", "1.5")
+        s.host(relay("Stays"))
+        victim = s.host(relay("Victim"))
+        join(s, 2)
+        victim.send_signal(signal.SIGSTOP)
+        s.until("a stopped process", lambda: is_stopped(victim))
+        join(s, 1)
+        goes_on(s)
+        victim.send_signal(signal.SIGCONT)
+        join(s, 2)  # it takes part again
+        goes_on(s)
+
+    elif case == "hanging_component":
+        s.naming()
+        server = s.server(empty, "--lockstep", "--rtf", "0", "--participant-timeout", "1.5")
+        s.host(relay("Stays"))
+        s.host(relay("Hangs", **{"conf.default.hang_at": 20}))
+        s.rtse("wait", "Stays", "Hangs", "--state", "any", "--timeout", "60")
+        join(s, 2)
+        s.rtse("act", "Hangs")
+        join(s, 1)
+        goes_on(s)
+        assert re.search(r"warn.*Hangs", s.log(server)), s.log(server)
+
+    elif case == "server_restarted":
+        s.naming()
+        hosts = [s.host(relay("One", **{"conf.default.source": 1, "conf.default.journal": f"{s.work}/one.txt"})), s.host(relay("Two"))]
+        for kind in (signal.SIGKILL, signal.SIGTERM, signal.SIGKILL):
+            server = s.server(empty, "--lockstep", "--rtf", "0", "--wait-for", "2")
+            s.rtse("wait", "One", "Two", "--state", "any", "--timeout", "60")
+            s.rtse("act", "One", "Two")
+            join(s, 2)
+            goes_on(s)
+            server.send_signal(kind)
+            server.wait()
+        s.server(empty, "--lockstep", "--rtf", "0")
+        join(s, 2)
+        goes_on(s)
+        s.rtse("wait", "One", "Two", "--state", "Active", "--timeout", "60")
+        for host in hosts:
+            waiting = s.log(host).count("waiting for the simulator")
+            assert waiting <= 2 * 4, f"said {waiting} times that it waits, in four outages"
+
+    elif case == "two_servers":
+        other = str(int(s.server_id) + 1)
+        s.naming()
+        first = s.server(empty, "--lockstep", "--rtf", "0")
+        s.server(empty, "--lockstep", "--rtf", "0", server_id=other)
+        s.host(relay("One"), relay("Other", **{"exec_cxt.sim_time.server_id": other}))
+        s.host(relay("Third"), RTMSIM_SERVER_ID=other)
+        join(s, 1)
+        join(s, 2, server_id=other)
+        goes_on(s)
+        goes_on(s, other)
+        first.send_signal(signal.SIGKILL)
+        first.wait()
+        goes_on(s, other)
+        s.server(empty, "--lockstep", "--rtf", "0")
+        join(s, 1)
+        goes_on(s)
+        goes_on(s, other)
+
+    elif case == "come_and_go":
+        s.naming()
+        s.server(empty, "--lockstep", "--rtf", "0")
+        s.host(relay("Stays"))
+        host = s.host(relay("Seed"))
+        join(s, 2)
+        manager = s.until("its manager", lambda: [name for name in s.rtse("ls", "-R").split() if name.endswith(".mgr")])
+        for n in range(60):
+            s.rtse("act", "Seed")
+            s.rtse("deact", "Seed")
+            join(s, 2)
+        host.terminate()
+        host.wait()
+        join(s, 1)
+        goes_on(s)
+
+    elif case == "reset":
+        system = f"{source}/worlds/systems/obstacle_avoidance.xml"
+        s.naming()
+        s.server(f"{source}/worlds/obstacle_course.sdf", "--lockstep", "--paused", "--rtf", "0")
+        for name in ("RTCLaser", "LaserObstacleAvoid", "RTCPosition2d"):
+            s.host(f"{name}?exec_cxt.periodic.rate=10")
+        names = ("RTCLaser0", "LaserObstacleAvoid0", "RTCPosition2d0")
+        s.rtse("wait", *names, "--state", "any", "--timeout", "60")
+        s.rtse("load", system)
+        for name in ("RTCLaser0", "RTCPosition2d0"):
+            s.rtse("conf", name, "set", "server_id", s.server_id)
+        s.rtse("act", *names)
+        join(s, 3)
+        hashes = []
+        for _ in range(3):
+            s.simctl("step", "20000")
+            hashes.append(s.stats()["hash"])
+            s.simctl("reset")
+            assert s.seconds() == 0
+        assert len(set(hashes)) == 1, f"the runs differ: {hashes}"
+
+    elif case == "loaded":
+        # The same run on a machine that has better things to do.
+        system, course = f"{source}/worlds/systems/obstacle_avoidance.xml", f"{source}/worlds/obstacle_course.sdf"
+
+        def state(*more):
+            run = s.call(f"{bin_dir}/rtse", "--json", "run", system, "--world", course, "--duration", "60", "--seed", "3", *more)
+            return re.search(r'"state_hash": *"(\w+)"', run)[1]
+
+        quiet = {state(), state("--one-process-each")}
+        for _ in range(4):
+            s.start(sys.executable, "-c", "while True: pass")
+        busy = {state(), state("--one-process-each"), state("--one-process-each")}
+        assert len(quiet | busy) == 1, f"{quiet} on a quiet machine, {busy} on a loaded one"
+    else:
+        sys.exit(f"lockstep.py: no case {case}")

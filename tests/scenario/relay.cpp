@@ -1,0 +1,86 @@
+// Relay: sends on what it receives, or counts its own ticks when source is 1, and writes "time value" for each value to the file `journal`.
+// Ticks of a chain of relays show how long data is on the way. hang_at: the tick in which it sleeps for ever (0: never).
+#include <rtm/DataFlowComponentBase.h>
+#include <rtm/DataInPort.h>
+#include <rtm/DataOutPort.h>
+#include <rtm/Manager.h>
+#include <rtm/idl/BasicDataTypeSkel.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
+#include <string>
+
+class Relay : public RTC::DataFlowComponentBase {
+ public:
+  explicit Relay(RTC::Manager* manager) : RTC::DataFlowComponentBase(manager), in_("in", received_), out_("out", sent_) {}
+
+  RTC::ReturnCode_t onInitialize() override {
+    addInPort("in", in_);
+    addOutPort("out", out_);
+    bindParameter("source", source_, "0");
+    bindParameter("journal", journal_, "");
+    bindParameter("hang_at", hang_at_, "0");
+    return RTC::RTC_OK;
+  }
+
+  RTC::ReturnCode_t onActivated(RTC::UniqueId) override {
+    ticks_ = 0;
+    RTC_INFO(("relay activated"));
+    return RTC::RTC_OK;
+  }
+
+  RTC::ReturnCode_t onExecute(RTC::UniqueId) override {
+    ++ticks_;
+    while (hang_at_ > 0 && ticks_ == hang_at_) pause();
+    if (source_ != 0) {
+      sent_.data = ticks_;
+    } else {
+      if (!in_.isNew()) return RTC::RTC_OK;
+      in_.read();
+      sent_.data = received_.data;
+    }
+    setTimestamp(sent_);
+    if (!journal_.empty()) {
+      char line[64];
+      std::snprintf(line, sizeof line, "%u.%09u %d\n", static_cast<unsigned>(sent_.tm.sec), static_cast<unsigned>(sent_.tm.nsec),
+                    static_cast<int>(sent_.data));
+      std::ofstream(journal_, std::ios::app) << line;
+    }
+    out_.write();
+    return RTC::RTC_OK;
+  }
+
+ private:
+  RTC::TimedLong received_{}, sent_{};
+  RTC::InPort<RTC::TimedLong> in_;
+  RTC::OutPort<RTC::TimedLong> out_;
+  int source_ = 0, hang_at_ = 0, ticks_ = 0;
+  std::string journal_;
+};
+
+// clang-format off
+static const char* const relay_spec[] = {
+    "implementation_id", "Relay",
+    "type_name", "Relay",
+    "description", "Sends on what it receives and says when",
+    "version", "1.0.0",
+    "vendor", "rtm-sim",
+    "category", "test",
+    "activity_type", "PERIODIC",
+    "kind", "DataFlowComponent",
+    "max_instance", "0",
+    "language", "C++",
+    "lang_type", "compile",
+    "conf.default.source", "0",
+    "conf.default.journal", "",
+    "conf.default.hang_at", "0",
+    ""};
+// clang-format on
+
+extern "C" {
+void RelayInit(RTC::Manager* manager) {
+  coil::Properties profile(relay_spec);
+  manager->registerFactory(profile, RTC::Create<Relay>, RTC::Delete<Relay>);
+}
+}

@@ -1,0 +1,115 @@
+# Processes of a whole system for the scenarios: a naming service, simulators and hosts of components, each run with ports and server ids of its own. Everything
+# that was started has ended and no segment is left when a `with System(...)` is over.
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+
+watchdog = 60  # [s]; a bound on hanging, not on speed
+
+
+class System:
+    def __init__(self, bin_dir, lib_dir):
+        self.bin_dir, self.lib_dir = bin_dir, lib_dir
+        self.server_id = str(1000 + 2 * (os.getpid() % 4000))
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            self.names = f"127.0.0.1:{probe.getsockname()[1]}"
+        self.folder = tempfile.TemporaryDirectory()
+        self.work = self.folder.name
+        self.running = []
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, *_):
+        for process in reversed(self.running):
+            if process.poll() is None:
+                process.send_signal(signal.SIGCONT)
+                process.terminate()
+        hung = []
+        for process in self.running:
+            try:
+                process.wait(20)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+                hung.append(process.args)
+        if kind:
+            for process in self.running:
+                print(f"--- {process.args}\n{self.log(process)[-3000:]}", file=sys.stderr)
+        self.folder.cleanup()
+        if not kind:
+            assert not hung, f"did not end: {hung}"
+            for server_id in (self.server_id, str(int(self.server_id) + 1)):
+                left = [name for name in os.listdir("/dev/shm") if name.startswith(f"rtmsim-{os.getuid()}-{server_id}.")]
+                assert not left, left
+
+    def start(self, *words, **environment):
+        log = f"{self.work}/{len(self.running)}.log"
+        process = subprocess.Popen(words, stdout=open(log, "w"), stderr=subprocess.STDOUT, env={**os.environ, "RTMSIM_SERVER_ID": self.server_id, **environment})
+        process.log_file = log
+        self.running.append(process)
+        return process
+
+    def log(self, process):
+        with open(process.log_file) as file:
+            return file.read()
+
+    def call(self, *words):
+        done = subprocess.run(words, capture_output=True, text=True, timeout=2 * watchdog)
+        assert done.returncode == 0, f"{words}: {done.stderr}"
+        return done.stdout
+
+    def naming(self):
+        return self.start("omniNames", "-start", self.names.split(":")[1], "-datadir", self.work, "-ORBendPoint", f"giop:tcp:{self.names}")
+
+    def server(self, world, *options, server_id=None):
+        server_id = server_id or self.server_id
+        process = self.start(f"{self.bin_dir}/sim-server", world, "-s", server_id, *options)
+        self.until("simulator", lambda: self.simctl("stats", server_id=server_id))
+        return process
+
+    # A host of components "Name?option=value&...", on simulated time.
+    def host(self, *components, **environment):
+        return self.start(f"{self.bin_dir}/rtcd", "-o", f"corba.nameservers:{self.names}", "-o", f"manager.modules.load_path:{self.lib_dir}",
+                          "-o", "manager.modules.preload:SimTimeContext.so", "-o", "exec_cxt.periodic.type:SimTimeContext", "-o", "manager.shutdown_auto:NO",
+                          *components, **environment)
+
+    def rtse(self, *words):
+        return self.call(f"{self.bin_dir}/rtse", "--ns", self.names, *words)
+
+    def simctl(self, *words, server_id=None):
+        return self.call(f"{self.bin_dir}/simctl", "-s", server_id or self.server_id, *words)
+
+    def stats(self, server_id=None):
+        return json.loads(self.simctl("--json", "stats", server_id=server_id))
+
+    def seconds(self, server_id=None):
+        return float(self.stats(server_id)["sim_time"])
+
+    def participants(self, server_id=None):
+        return json.loads(self.simctl("--json", "participants", server_id=server_id))
+
+    # The first true answer; an assertion that fails means "not yet".
+    def until(self, what, ready):
+        end = time.monotonic() + watchdog
+        while True:
+            why = ""
+            try:
+                answer = ready()
+                if answer or answer == "":
+                    return answer
+            except (AssertionError, KeyError, ValueError, FileNotFoundError) as error:
+                why = str(error)
+            assert time.monotonic() < end, f"{what}: not within {watchdog} s; {why}"
+            time.sleep(0.02)
+
+
+def is_stopped(process):
+    with open(f"/proc/{process.pid}/stat") as file:
+        return file.read().rsplit(")", 1)[1].split()[0] == "T"
