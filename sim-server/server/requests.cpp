@@ -23,6 +23,17 @@ void put(double* values, const shm::Pose& p) {
   std::copy(all, all + 7, values);
 }
 
+template <class... Kinds>
+bool is_one_of(const shm::Request& request) {
+  return (std::holds_alternative<Kinds>(request) || ...);
+}
+
+// May be served in the middle of a tick: the run goes on as without it.
+bool leaves_the_world_alone(const shm::Request& request) {
+  return is_one_of<shm::PauseRequest, shm::RunRequest, shm::GetPoseRequest, shm::GetVelocityRequest, shm::ListRequest, shm::TreeRequest, shm::StatsRequest,
+                   shm::SetRtfRequest, shm::ContactsRequest, shm::DropParticipantRequest>(request);
+}
+
 Eigen::Vector3d vector(const double* v) { return {v[0], v[1], v[2]}; }
 
 }  // namespace
@@ -182,14 +193,23 @@ shm::Reply ServerLoop::handle(const shm::Request& request, const shm::RequestTic
   return std::visit(Handler{*this, ticket}, request);
 }
 
-void ServerLoop::handle_requests() {
-  for (const auto& asked : board_.poll()) {
-    base::log(base::Level::debug, "sim-server", "request {} of pid {}", shm::request_name(asked.request), asked.pid);
-    shm::Reply reply = handle(asked.request, asked.ticket);
-    if (std::holds_alternative<shm::StepRequest>(asked.request) && reply.status == shm::RequestStatus::ok) continue;
+void ServerLoop::handle_requests(When when) {
+  auto asked = board_.poll();
+  if (!postponed_.empty()) {
+    asked.insert(asked.begin(), std::make_move_iterator(postponed_.begin()), std::make_move_iterator(postponed_.end()));
+    postponed_.clear();
+  }
+  for (auto& one : asked) {
+    if (when == When::in_tick && !leaves_the_world_alone(one.request)) {
+      postponed_.push_back(std::move(one));
+      continue;
+    }
+    base::log(base::Level::debug, "sim-server", "request {} of pid {}", shm::request_name(one.request), one.pid);
+    shm::Reply reply = handle(one.request, one.ticket);
+    if (std::holds_alternative<shm::StepRequest>(one.request) && reply.status == shm::RequestStatus::ok) continue;
     reply.sim_time_ns = simulation_.time().count();
     reply.steps = simulation_.steps();
-    board_.reply(asked.ticket, reply);
+    board_.reply(one.ticket, reply);
   }
 }
 

@@ -37,6 +37,7 @@ ServerLoop::ServerLoop(Simulation& simulation, shm::Server& server, shm::IfaceWr
   barrier.on_event = [this](const shm::BarrierEvent& event) { on_barrier_event(event); };
   barrier.on_waiting = [this] {
     server_.tend();
+    handle_requests(When::in_tick);
     return !is_stopping_.load(std::memory_order_acquire);  // pairs with the release in stop
   };
   barrier_ = std::make_unique<shm::Barrier>(iface, server, barrier);
@@ -76,9 +77,10 @@ void ServerLoop::run() {
   start_pace();
   while (!is_stopping_.load(std::memory_order_acquire)) {  // pairs with the release in stop
     times_.begin_step(simulation_.steps());
-    handle_requests();
+    handle_requests(When::between_steps);
     server_.tend();
-    if (is_fresh_moment_) {
+    // Not while time stands still: who subscribes or joins before it moves has its sample and its tick at time 0, as after a reset.
+    if (is_fresh_moment_ && (!is_paused_ || steps_to_do_ > 0)) {
       is_fresh_moment_ = false;
       if (!finish_moment()) break;
     }
@@ -102,7 +104,7 @@ void ServerLoop::wait_for_participants() {
   if (options_.wait_for == 0) return;
   base::log(base::Level::info, "sim-server", "waiting for {} participant{}", options_.wait_for, options_.wait_for == 1 ? "" : "s");
   while (!is_stopping_.load(std::memory_order_acquire)) {  // pairs with the release in stop
-    handle_requests();
+    handle_requests(When::between_steps);
     const auto there = static_cast<std::uint32_t>(barrier_->refresh());
     const std::uint32_t missing = there < options_.wait_for ? options_.wait_for - there : 0;
     if (missing != missing_) missing_ = missing, publish_clock();
@@ -219,7 +221,7 @@ void ServerLoop::pace() {
     if (now < due) {
       server_.tend();
       const auto was_at = simulation_.time();
-      handle_requests();
+      handle_requests(When::between_steps);
       if (is_paused_ || steps_to_do_ > 0 || simulation_.time() != was_at || is_fresh_moment_) return;
     }
   }

@@ -42,7 +42,9 @@ class ServerLoop {
   void stop();
 
  private:
-  void handle_requests();
+  // In a tick that waits for a participant only what changes nothing in the world is served; the rest waits for the end of the tick.
+  enum class When { between_steps, in_tick };
+  void handle_requests(When when);
   shm::Reply handle(const shm::Request& request, const shm::RequestTicket& ticket);
   struct Handler;
 
@@ -75,6 +77,7 @@ class ServerLoop {
   bool is_fresh_moment_ = true;  // the moment at time 0 has not been published yet
   std::uint64_t steps_to_do_ = 0;
   std::optional<shm::RequestTicket> step_ticket_;
+  std::vector<shm::RequestBoard::Asked> postponed_;
   std::map<ModelId, std::uint64_t> contacts_told_;
   std::uint64_t last_hash_ = 0, last_hash_steps_ = 0;
   std::uint32_t missing_ = 0;  // participants

@@ -87,6 +87,7 @@ struct Barrier::State {
   std::uint32_t seen_epoch = 0;
   std::uint64_t seen_deaths = 0;
   bool has_scanned = false;
+  bool is_ticking = false, has_gone = false;  // gone: members with owner 0 are to be removed after the tick
   std::int64_t last_now = -1;
   std::int64_t earliest_due = 0;
   std::uint32_t resets = 0;
@@ -312,19 +313,21 @@ bool Barrier::tick(nanoseconds now, std::uint64_t steps) {
   if (now.count() < state.earliest_due) return true;
   std::array<State::Member*, 256> due;  // no allocation in the loop; there are fewer slots than that
   std::size_t begin = 0;
-  bool is_complete = true, has_gone = false;
+  bool is_complete = true;
+  state.is_ticking = true;
   while (begin < state.members.size() && is_complete) {
     const std::uint32_t phase = state.members[begin].phase;
     std::size_t end = begin, count = 0;
     for (; end < state.members.size() && state.members[end].phase == phase; ++end) {
-      if (state.members[end].next_due <= now.count() && count < due.size()) due[count++] = &state.members[end];
+      if (state.members[end].owner != 0 && state.members[end].next_due <= now.count() && count < due.size()) due[count++] = &state.members[end];
     }
     const std::span<State::Member*> group(due.data(), count);
     if (count > 0) is_complete = state.run_phase(group, now.count(), steps);
-    for (const auto* member : group) has_gone = has_gone || member->owner == 0;
+    for (const auto* member : group) state.has_gone = state.has_gone || member->owner == 0;
     begin = end;
   }
-  if (has_gone) std::erase_if(state.members, [](const State::Member& member) { return member.owner == 0; });
+  state.is_ticking = false;
+  if (std::exchange(state.has_gone, false)) std::erase_if(state.members, [](const State::Member& member) { return member.owner == 0; });
   state.schedule_all();
   return is_complete;
 }
@@ -344,13 +347,21 @@ void Barrier::rewind(nanoseconds now, std::uint32_t resets) {
 void Barrier::set_lockstep(bool is_lockstep) { state_->options.is_lockstep = is_lockstep; }
 
 bool Barrier::drop(const std::string& name) {
-  const auto erased = std::erase_if(state_->members, [&](const State::Member& member) {
-    if (member.name != name) return false;
-    state_->drop(member, RTMSIM_DROPPED_ASKED);
-    return true;
-  });
-  state_->schedule_all();
-  return erased > 0;
+  State& state = *state_;
+  bool is_found = false;
+  for (auto& member : state.members) {
+    if (member.owner == 0 || member.name != name) continue;
+    state.drop(member, RTMSIM_DROPPED_ASKED);
+    member.owner = 0;
+    is_found = true;
+  }
+  if (!is_found) return false;
+  state.has_gone = true;
+  if (state.is_ticking) return true;  // asked by on_waiting: the tick removes it
+  state.has_gone = false;
+  std::erase_if(state.members, [](const State::Member& member) { return member.owner == 0; });
+  state.schedule_all();
+  return true;
 }
 
 namespace {

@@ -53,8 +53,8 @@ struct BarrierOptions {
   std::chrono::nanoseconds participant_timeout = std::chrono::nanoseconds(0);  // 0 = never dropped
   // Called from the stepping thread.
   std::function<void(const BarrierEvent&)> on_event;
-  // Called at least ten times a second while a tick waits; false ends the tick early (the server is asked to end). Must not call the
-  // barrier.
+  // Called at least ten times a second while a tick waits; false ends the tick early (the server is asked to end). Of the barrier
+  // it may call records() and drop().
   std::function<bool()> on_waiting;
 };
 
