@@ -145,7 +145,8 @@ class CameraDevice final : public Device, public CameraPlaceSource {
     std::vector<bool> wanted;
     for (const auto& channel : channels_) wanted.push_back(channel.writer->is_subscribed());
     if (std::find(wanted.begin(), wanted.end(), true) == wanted.end()) return false;
-    // In its own time: while a picture is drawn the next one stays due.
+    // In its own time: while a picture is drawn the next one stays due. Time that waits for pictures waits for that one, too.
+    if (world_.pictures->is_synchronous()) worker_.wait();
     if (!worker_.is_idle()) return false;
     job_ = Job{world_.pictures->snapshot(moment.time), mount_.in_world(world_.physics), moment.time, std::move(wanted)};
     return true;

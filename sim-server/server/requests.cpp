@@ -30,8 +30,8 @@ bool is_one_of(const shm::Request& request) {
 
 // May be served in the middle of a tick: the run goes on as without it.
 bool leaves_the_world_alone(const shm::Request& request) {
-  return is_one_of<shm::PauseRequest, shm::RunRequest, shm::GetPoseRequest, shm::GetVelocityRequest, shm::ListRequest, shm::TreeRequest, shm::StatsRequest,
-                   shm::SetRtfRequest, shm::ContactsRequest, shm::DropParticipantRequest>(request);
+  return is_one_of<shm::PauseRequest, shm::RunRequest, shm::GetPoseRequest, shm::GetVelocityRequest, shm::ListRequest, shm::TreeRequest,
+                   shm::StatsRequest, shm::SetRtfRequest, shm::ContactsRequest, shm::DropParticipantRequest>(request);
 }
 
 Eigen::Vector3d vector(const double* v) { return {v[0], v[1], v[2]}; }

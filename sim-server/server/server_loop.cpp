@@ -116,13 +116,13 @@ void ServerLoop::wait_for_participants() {
 
 void ServerLoop::step() {
   times_.mark(Part::requests);
-  // Nobody waits for the wall clock: pictures must not be late in simulated time.
-  simulation_.pictures().set_synchronous(options_.is_lockstep || options_.rtf <= 0 || steps_to_do_ > 0);
   simulation_.step(times_);
   for (const auto& complaint : simulation_.physics().take_complaints()) base::log(base::Level::warn, "sim-server", "{}", complaint);
 }
 
 bool ServerLoop::finish_moment() {
+  // Nobody waits for the wall clock: pictures must not be late in simulated time.
+  simulation_.pictures().set_synchronous(options_.is_lockstep || options_.rtf <= 0 || steps_to_do_ > 0);
   simulation_.sense(times_);
   if (recorder_) recorder_->record(simulation_.time(), simulation_.physics());
   publish_clock();

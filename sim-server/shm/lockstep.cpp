@@ -319,7 +319,8 @@ bool Barrier::tick(nanoseconds now, std::uint64_t steps) {
     const std::uint32_t phase = state.members[begin].phase;
     std::size_t end = begin, count = 0;
     for (; end < state.members.size() && state.members[end].phase == phase; ++end) {
-      if (state.members[end].owner != 0 && state.members[end].next_due <= now.count() && count < due.size()) due[count++] = &state.members[end];
+      if (state.members[end].owner != 0 && state.members[end].next_due <= now.count() && count < due.size())
+        due[count++] = &state.members[end];
     }
     const std::span<State::Member*> group(due.data(), count);
     if (count > 0) is_complete = state.run_phase(group, now.count(), steps);
