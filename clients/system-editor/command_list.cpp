@@ -296,18 +296,20 @@ void tree(Editor& editor, const std::string& path) {
 void cat(Editor& editor, const std::string& path, bool is_long) {
   const auto address = parse_address(path, working_path());
   if (!address) return editor.fail(address.error());
-  const auto names = editor.tree(path);
+  const auto names = editor.tree(path, true);
   if (!names) return editor.fail(names.error());
   const auto entry = names->find(*address);
   if (!entry) return editor.fail(entry.error());
   if ((*entry)->kind == EntryKind::manager) return cat_manager(editor, **entry);
   const auto found = names->find_component(*address);
   if (!found) return editor.fail(found.error());
-  // The other components are read too, to say by name what a port is connected to.
-  auto all = read_components(*names, {}, editor.limit());
   const CallLimit limited(editor.limit());
   const auto component = read_component(**found, {.contexts = true, .connectors = true, .configuration = true, .members = true});
   if (!component.problem.empty()) return editor.fail({"component " + component.path + " " + component.problem});
+  // The other components are read too, to say by name what a port is connected to.
+  std::vector<ComponentView> all;
+  if (std::ranges::any_of(component.ports, [](const PortView& port) { return !port.connectors.empty(); }))
+    all = read_components(*names, {}, editor.limit());
   if (address->port.empty()) {
     if (editor.json()) return editor.print(to_json(component, all));
     return print_component(component, all, is_long);

@@ -34,7 +34,12 @@ bool is_reference(const std::string& key, const std::string& value) {
   return value.starts_with("IOR:") || key.ends_with("_ior") || key.ends_with("_ref");
 }
 
-SavedComponent to_saved(const ComponentView& component) {
+std::string reference_text(CORBA::ORB_ptr orb, CORBA::Object_ptr object) {
+  const CORBA::String_var text = orb->object_to_string(object);
+  return text.in();
+}
+
+SavedComponent to_saved(CORBA::ORB_ptr orb, const ComponentView& component) {
   SavedComponent saved;
   saved.id = component.profile_id();
   saved.path_uri = path_uri(component);
@@ -46,9 +51,11 @@ SavedComponent to_saved(const ComponentView& component) {
     if (!set.id.starts_with("_")) saved.configuration_sets.push_back({set.id, set.values});
   }
   for (const auto& context : component.contexts) {
-    if (context.is_owned) saved.contexts.push_back({std::to_string(context.handle), kind_text(context.kind), rate_text(context.rate)});
+    if (!context.is_owned) continue;
+    saved.contexts.push_back({std::to_string(context.handle), kind_text(context.kind), rate_text(context.rate), state_text(context.state)});
   }
   saved.participants = component.members;
+  saved.properties.emplace_back("IOR", reference_text(orb, component.object));  // the format wants it; nothing of ours reads it
   return saved;
 }
 
@@ -180,6 +187,27 @@ bool same_connection(const ConnectorView& connector, const PortView& source, con
   return has_source && has_target;
 }
 
+// A connection that a dead process has left behind at the port that lives; one whose other ports live, or hang, is somebody's.
+bool is_leftover(const ConnectorView& connector, const PortView& port) {
+  for (CORBA::ULong i = 0; i < connector.ports.length(); ++i) {
+    try {
+      if (connector.ports[i]->_is_equivalent(port.object)) continue;
+      if (connector.ports[i]->_non_existent()) return true;
+    } catch (const CORBA::Exception& e) {
+      if (!is_time_out(e)) return true;
+    }
+  }
+  return false;
+}
+
+Result<void> clear_leftovers(const PortView& port, const std::string& id) {
+  for (const auto& connector : port.connectors) {
+    if (connector.id != id || !is_leftover(connector, port)) continue;
+    if (const auto done = disconnect_connector(port, id); !done) return done;
+  }
+  return {};
+}
+
 Result<void> restore_connection(const Matched& matched, const SavedConnector& saved, bool dry_run) {
   const auto* source = matched.port(saved.source);
   const auto* target = matched.port(saved.target);
@@ -193,6 +221,9 @@ Result<void> restore_connection(const Matched& matched, const SavedConnector& sa
   if (dry_run) {
     std::cout << "connect " + source->full_name + " to " + target->full_name + "\n";
     return {};
+  }
+  for (const auto* port : {source, target}) {
+    if (const auto done = clear_leftovers(*port, saved.id); !done) return done;
   }
   return connect_ports({source, target}, saved.id, saved.name, connect_properties(saved));
 }
@@ -211,6 +242,47 @@ Result<void> restore_configuration(const Matched& matched, const SavedComponent&
   const auto active = saved.active_set.empty() ? component->active_set : saved.active_set;
   if (active.empty() || dry_run) return {};
   return use_set(*component, active);
+}
+
+int context_index(const ComponentView& component, const std::string& context_id) {
+  const auto handle = base::parse_integer(context_id).value_or(0);
+  for (std::size_t i = 0; i < component.contexts.size(); ++i) {
+    if (component.contexts[i].handle == handle) return static_cast<int>(i);
+  }
+  return 0;
+}
+
+// The transitions that lead from one state to the other. An error cannot be restored: the component would have to fail again.
+std::vector<Transition> way(const std::string& from, const std::string& to) {
+  std::vector<Transition> steps;
+  const bool is_in_error = base::equal_ignoring_case(from, "Error");
+  if (is_in_error) steps.push_back(Transition::reset);
+  if (base::equal_ignoring_case(to, "Active")) steps.push_back(Transition::activate);
+  if (base::equal_ignoring_case(to, "Inactive") && !is_in_error) steps.push_back(Transition::deactivate);
+  return steps;
+}
+
+Result<void> restore_states(const Matched& matched, const SavedComponent& saved, bool dry_run) {
+  const auto* component = matched.find(saved.path_uri, saved.instance);
+  if (!component || !component->problem.empty()) return {};
+  for (const auto& context : saved.contexts) {
+    const auto index = context_index(*component, context.id);
+    if (component->contexts.empty()) return Error{"component " + component->path + ": takes part in no execution context"};
+    const auto now = state_text(component->contexts[static_cast<std::size_t>(index)].state);
+    if (context.state.empty() || base::equal_ignoring_case(now, context.state)) continue;
+    const auto steps = way(now, context.state);
+    if (steps.empty()) return Error{"component " + component->path + ": state " + context.state + " cannot be restored, it is " + now};
+    if (dry_run) {
+      std::cout << "bring " + component->path + " from " + now + " to " + context.state + "\n";
+      continue;
+    }
+    auto view = *component;
+    for (const auto step : steps) {
+      if (const auto done = change_state(view, step, index); !done) return done;
+      view.contexts[static_cast<std::size_t>(index)].state = RTC::INACTIVE_STATE;  // what a second step starts from
+    }
+  }
+  return {};
 }
 
 // The order of a StartUp or ShutDown list; components that it does not name come last, in file order.
@@ -242,17 +314,12 @@ void move_all(Editor& editor, const std::string& file, bool dry_run, Transition 
   const auto step = [&](const SavedTurn& turn) -> Result<void> {
     const auto* component = matched->find(turn.path_uri, turn.instance);
     if (!component || !component->problem.empty()) return {};
-    const auto handle = base::parse_integer(turn.context_id).value_or(0);
-    int index = 0;
-    for (std::size_t i = 0; i < component->contexts.size(); ++i) {
-      if (component->contexts[i].handle == handle) index = static_cast<int>(i);
-    }
     if (dry_run) {
       std::cout << (transition == Transition::activate ? "activate " : "deactivate ") + component->path + " in context " + turn.context_id +
                        "\n";
       return {};
     }
-    return change_state(*component, transition, index);
+    return change_state(*component, transition, context_index(*component, turn.context_id));
   };
   const bool ordered = !(transition == Transition::activate ? system->start_up : system->shut_down).empty();
   if (!ordered && !dry_run) return for_all(editor, order, step);
@@ -277,7 +344,7 @@ void save(Editor& editor, const SaveOptions& options) {
       editor.fail({"component " + component.path + " " + component.problem + "; it is left out"});
       continue;
     }
-    system.components.push_back(to_saved(component));
+    system.components.push_back(to_saved(editor.orb(), component));
   }
   collect_connectors(editor, components, system);
   if (options.yaml && options.file == "-") {
@@ -287,10 +354,10 @@ void save(Editor& editor, const SaveOptions& options) {
   if (const auto written = write_system(system, options.file); !written) editor.fail(written.error());
 }
 
-void load(Editor& editor, const std::string& file, bool dry_run) {
+void load(Editor& editor, const std::string& file, bool dry_run, bool with_states) {
   const auto system = read_system(file);
   if (!system) return editor.fail(system.error());
-  const auto matched = Matched::read(editor, *system, {.connectors = true, .configuration = true});
+  const auto matched = Matched::read(editor, *system, {.contexts = with_states, .connectors = true, .configuration = true});
   if (!matched) return editor.fail(matched.error());
   for (const auto& missing : matched->missing()) editor.fail(missing);
   if (!matched->missing().empty()) return;
@@ -303,6 +370,8 @@ void load(Editor& editor, const std::string& file, bool dry_run) {
     return restore_connection(*matched, saved, dry_run);
   });
   for_all(editor, system->components, [&](const SavedComponent& saved) { return restore_configuration(*matched, saved, dry_run); });
+  if (!with_states || editor.failed()) return;
+  for_all(editor, system->components, [&](const SavedComponent& saved) { return restore_states(*matched, saved, dry_run); });
 }
 
 void start(Editor& editor, const std::string& file, bool dry_run) { move_all(editor, file, dry_run, Transition::activate); }
@@ -315,12 +384,15 @@ void teardown(Editor& editor, const std::string& file, bool dry_run) {
   if (!matched) return editor.fail(matched.error());
   for (const auto& missing : matched->missing()) editor.fail(missing);
   for_all(editor, system->connectors, [&](const SavedConnector& saved) -> Result<void> {
-    const auto* port = matched->port(saved.source);
-    if (!port) port = matched->port(saved.target);
-    if (!port) return Error{"connection " + saved.id + ": there is no port " + saved.source.port_name};
-    const bool stands =
-        std::any_of(port->connectors.begin(), port->connectors.end(), [&](const auto& connector) { return connector.id == saved.id; });
-    if (!stands) return Error{"connection " + saved.id + ": port " + port->full_name + " does not have it"};
+    const auto* source = matched->port(saved.source);
+    const auto* target = matched->port(saved.target);
+    if (!source && !target) return Error{"connection " + saved.id + ": there is no port " + saved.source.port_name};
+    const auto has = [&](const PortView* port) {
+      return port &&
+             std::any_of(port->connectors.begin(), port->connectors.end(), [&](const auto& connector) { return connector.id == saved.id; });
+    };
+    const auto* port = has(source) ? source : has(target) ? target : nullptr;
+    if (!port) return Error{"connection " + saved.id + ": " + (source ? source : target)->full_name + " does not have it"};
     if (!dry_run) return disconnect_connector(*port, saved.id);
     std::cout << "disconnect " + saved.id + " of " + port->full_name + "\n";
     return {};
@@ -376,9 +448,16 @@ void check_component(Editor& editor, const Matched& matched, const SavedComponen
   }
   if (state.empty() || base::equal_ignoring_case(state, "any")) return;
   for (const auto& context : component->contexts) {
-    if (context.is_owned && !base::equal_ignoring_case(state_text(context.state), state)) {
+    if (!context.is_owned) continue;
+    auto wanted = state;
+    if (base::equal_ignoring_case(state, "saved")) {
+      const auto handle = std::to_string(context.handle);
+      const auto same = std::find_if(saved.contexts.begin(), saved.contexts.end(), [&](const auto& one) { return one.id == handle; });
+      wanted = same == saved.contexts.end() ? "" : same->state;
+    }
+    if (!wanted.empty() && !base::equal_ignoring_case(state_text(context.state), wanted)) {
       editor.fail({"component " + component->path + ": is " + state_text(context.state) + " in context " + std::to_string(context.handle) +
-                   ", expected " + state});
+                   ", expected " + wanted});
     }
   }
 }

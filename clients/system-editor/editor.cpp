@@ -20,17 +20,17 @@ std::string working_path() {
 Editor::Editor(CORBA::ORB_ptr orb, std::string server, bool json, std::chrono::milliseconds limit)
     : orb_(CORBA::ORB::_duplicate(orb)), server_(std::move(server)), json_(json), limit_(limit) {}
 
-Result<NamingTree> Editor::tree(const std::string& path) const {
+Result<NamingTree> Editor::tree(const std::string& path, bool only) const {
   auto address = parse_address(path, working_path());
   if (!address) return address.error();
   const bool elsewhere = address->is_absolute && !address->segments.empty();
-  return NamingTree::read(orb_, elsewhere ? address->segments.front() : server_, limit_);
+  return NamingTree::read(orb_, elsewhere ? address->segments.front() : server_, limit_, only ? &*address : nullptr);
 }
 
 Result<ComponentView> Editor::component(const std::string& path, Detail detail) const {
   auto address = parse_address(path, working_path());
   if (!address) return address.error();
-  auto names = tree(path);
+  auto names = tree(path, true);
   if (!names) return names.error();
   auto entry = names->find_component(*address);
   if (!entry) return entry.error();

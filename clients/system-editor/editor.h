@@ -24,7 +24,8 @@ class Editor {
   std::chrono::milliseconds limit() const { return limit_; }
 
   // Reads the name server that `path` speaks of: its own for absolute paths, else the default.
-  Result<NamingTree> tree(const std::string& path = "") const;
+  // With `only`, what the path cannot mean is listed and not asked whether it lives.
+  Result<NamingTree> tree(const std::string& path = "", bool only = false) const;
   Result<ComponentView> component(const std::string& path, Detail detail) const;
   struct Port {
     ComponentView component;
@@ -115,10 +116,11 @@ struct SaveOptions {
   bool yaml = false;
 };
 void save(Editor& editor, const SaveOptions& options);
-void load(Editor& editor, const std::string& file, bool dry_run);
+void load(Editor& editor, const std::string& file, bool dry_run, bool with_states = false);
 void start(Editor& editor, const std::string& file, bool dry_run);
 void stop(Editor& editor, const std::string& file, bool dry_run);
 void teardown(Editor& editor, const std::string& file, bool dry_run);
+// State: that of every component; "any": not compared; "saved": as the file says.
 void check_system(Editor& editor, const std::string& file, const std::string& state);
 
 struct ManagerOptions {

@@ -194,7 +194,16 @@ void add_systems(CLI::App& app, Work& work) {
     command->add_flag("--dry-run", *dry_run, "Say what would be done");
     command->callback([&work, file, dry_run, function] { work = [=](Editor& e) { function(e, *file, *dry_run); }; });
   };
-  add("load", "Restore connections and configuration of a saved system", editor::load);
+  auto* load = app.add_subcommand("load", "Restore connections and configuration of a saved system");
+  auto load_file = std::make_shared<std::string>();
+  auto load_dry_run = std::make_shared<bool>(false);
+  auto load_states = std::make_shared<bool>(false);
+  load->add_option("FILE", *load_file, "RTSProfile, XML or YAML; -: standard input")->required();
+  load->add_flag("--dry-run", *load_dry_run, "Say what would be done");
+  load->add_flag("--states", *load_states, "The components' states too: activate, deactivate and reset as saved");
+  load->callback([&work, load_file, load_dry_run, load_states] {
+    work = [=](Editor& e) { editor::load(e, *load_file, *load_dry_run, *load_states); };
+  });
   add("start", "Activate the components of a saved system", editor::start);
   add("stop", "Deactivate the components of a saved system", editor::stop);
   add("teardown", "Remove the connections of a saved system", editor::teardown);
@@ -203,7 +212,7 @@ void add_systems(CLI::App& app, Work& work) {
   auto file = std::make_shared<std::string>();
   auto state = std::make_shared<std::string>("any");
   check->add_option("FILE", *file, "RTSProfile, XML or YAML")->required();
-  check->add_option("-s,--state", *state, "State that every component should be in")->capture_default_str();
+  check->add_option("-s,--state", *state, "State that every component should be in; saved: each in its own")->capture_default_str();
   check->callback([&work, file, state] { work = [=](Editor& e) { editor::check_system(e, *file, *state); }; });
 }
 

@@ -135,7 +135,7 @@ std::vector<const Entry*> living(std::vector<const Entry*> found) {
 std::string Entry::name() const { return kind_text.empty() ? escape_name(id) : escape_name(id) + "." + escape_name(kind_text); }
 std::string Entry::path() const { return "/" + base::join(segments, "/"); }
 
-Result<NamingTree> NamingTree::read(CORBA::ORB_ptr orb, const std::string& server, std::chrono::milliseconds limit) {
+Result<NamingTree> NamingTree::read(CORBA::ORB_ptr orb, const std::string& server, std::chrono::milliseconds limit, const Address* only) {
   NamingTree tree;
   tree.root_.kind = EntryKind::context;
   tree.root_.segments = {server};
@@ -153,6 +153,11 @@ Result<NamingTree> NamingTree::read(CORBA::ORB_ptr orb, const std::string& serve
   if (CORBA::is_nil(context)) return Error{"name server " + server + ": answers, but is no naming service"};
   std::vector<Entry*> objects;
   collect(tree.root_, objects);
+  if (only) {
+    const auto meant = tree.candidates(*only);
+    if (!meant) return meant.error();
+    std::erase_if(objects, [&](const Entry* object) { return std::find(meant->begin(), meant->end(), object) == meant->end(); });
+  }
   in_parallel(objects.size(), limit, [&](std::size_t i) { probe(*objects[i]); });
   return tree;
 }
@@ -163,9 +168,9 @@ std::vector<const Entry*> NamingTree::objects() const {
   return objects;
 }
 
-Result<const Entry*> NamingTree::find(const Address& address) const {
-  if (address.segments.empty()) return &root_;
+Result<std::vector<const Entry*>> NamingTree::candidates(const Address& address) const {
   std::vector<const Entry*> found;
+  if (address.segments.empty()) return std::vector<const Entry*>{&root_};
   if (address.is_absolute) {
     if (!same_server(address.segments.front(), server())) return Error{"path " + address.text() + ": is not on name server " + server()};
     find_absolute(root_, address.segments, 1, found);
@@ -173,7 +178,13 @@ Result<const Entry*> NamingTree::find(const Address& address) const {
     if (same_server(address.segments.front(), server())) find_absolute(root_, address.segments, 1, found);
     if (found.empty()) find_tail(root_, address.segments, found);
   }
-  found = living(std::move(found));
+  return found;
+}
+
+Result<const Entry*> NamingTree::find(const Address& address) const {
+  auto meant = candidates(address);
+  if (!meant) return meant.error();
+  const auto found = living(std::move(*meant));
   if (found.size() == 1) return found.front();
   std::vector<std::string> names;
   if (found.empty()) {

@@ -32,8 +32,10 @@ struct Entry {
 
 class NamingTree {
  public:
-  // `server` as HOST or HOST:PORT. Fails when it cannot be reached or is no naming service.
-  static Result<NamingTree> read(CORBA::ORB_ptr orb, const std::string& server, std::chrono::milliseconds limit);
+  // `server` as HOST or HOST:PORT. Fails when it cannot be reached or is no naming service. With `only`, no more objects are asked for
+  // their health than the address may mean: one that hangs elsewhere costs nothing.
+  static Result<NamingTree> read(CORBA::ORB_ptr orb, const std::string& server, std::chrono::milliseconds limit,
+                                 const Address* only = nullptr);
 
   const Entry& root() const { return root_; }
   const std::string& server() const { return root_.segments.front(); }
@@ -44,6 +46,8 @@ class NamingTree {
   Result<const Entry*> find_component(const Address& address) const;
 
  private:
+  Result<std::vector<const Entry*>> candidates(const Address& address) const;
+
   Entry root_;
 };
 

@@ -10,6 +10,9 @@
 
 namespace editor {
 
+// The format has no place for states: they are kept as a property of the execution context, which other readers leave alone.
+inline constexpr const char* state_property = "state";
+
 using NamedValues = std::vector<std::pair<std::string, std::string>>;
 
 struct SavedPort {
@@ -25,6 +28,7 @@ struct SavedContext {
   std::string id = "0";
   std::string kind = "PERIODIC";
   std::string rate = "1000.0";
+  std::string state;  // Active, Inactive, Error: the component's when it was saved; empty: not known
 };
 
 struct SavedComponent {

@@ -59,7 +59,11 @@ SavedComponent component_of(const pugi::xml_node& node) {
     component.configuration_sets.push_back(std::move(saved));
   });
   each(node, "ExecutionContexts", [&](const auto& child) {
-    component.contexts.push_back({attribute(child, "id", "0"), attribute(child, "kind", "PERIODIC"), attribute(child, "rate", "1000.0")});
+    component.contexts.push_back(
+        {attribute(child, "id", "0"), attribute(child, "kind", "PERIODIC"), attribute(child, "rate", "1000.0"), ""});
+    for (const auto& [key, value] : properties_of(child)) {
+      if (key == state_property) component.contexts.back().state = value;
+    }
   });
   each(node, "Participants", [&](const auto& child) {
     const auto inner = first(child, "Participant");
@@ -155,6 +159,7 @@ void put_component(pugi::xml_node root, const SavedComponent& component) {
     put(child, "rts:id", context.id);
     put(child, "rts:kind", context.kind);
     put(child, "rts:rate", context.rate);
+    if (!context.state.empty()) put_properties(child, {{state_property, context.state}});
   }
   for (const auto& participant : component.participants) {
     auto child = node.append_child("rts:Participants").append_child("rts:Participant");

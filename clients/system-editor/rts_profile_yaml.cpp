@@ -72,7 +72,10 @@ SavedComponent component_of(const YAML::Node& node) {
     component.configuration_sets.push_back(std::move(set));
   });
   each(node, "executionContexts", [&](const YAML::Node& entry) {
-    component.contexts.push_back({text(entry, "id", "0"), text(entry, "kind", "PERIODIC"), text(entry, "rate", "1000.0")});
+    component.contexts.push_back({text(entry, "id", "0"), text(entry, "kind", "PERIODIC"), text(entry, "rate", "1000.0"), ""});
+    for (const auto& [key, value] : properties_of(entry)) {
+      if (key == state_property) component.contexts.back().state = value;
+    }
   });
   each(node, "participants", [&](const YAML::Node& entry) {
     const auto inner = child(entry, "participant");
@@ -201,6 +204,7 @@ YAML::Node from_component(const SavedComponent& component) {
     entry["id"] = context.id;
     entry["kind"] = context.kind;
     entry["rate"] = bare(context.rate);
+    if (!context.state.empty()) entry["rtsExt::properties"] = from_properties({{state_property, context.state}});
     node["executionContexts"].push_back(entry);
   }
   for (const auto& participant : component.participants) {
