@@ -30,7 +30,8 @@ class Orb {
     const char* options[][2] = {{"endPoint", "giop:tcp:127.0.0.1:"},
                                 {"giopMaxMsgSize", "268435456"},
                                 {"supportPerThreadTimeOut", "1"},
-                                {"clientConnectTimeOutPeriod", "2000"},
+                                // No limit of its own for new connections: it would replace the limit of the first call over each.
+                                {"clientCallTimeOutPeriod", "30000"},
                                 {nullptr, nullptr}};
     int argc = 0;
     orb_ = CORBA::ORB_init(argc, nullptr, "omniORB4", options);
