@@ -356,6 +356,11 @@ void ManagerImpl::end() {
   if (servant != nullptr) servant->leave_masters();
   exit_all_components();
   naming->unbindAll();
+  if (state.lock()->has_abandoned) {
+    RTC_ERROR(("the process ends while a callback runs that does not return"));
+    std::fflush(nullptr);
+    std::_Exit(EXIT_FAILURE);  // anything more would be taken away under its hands
+  }
   RTM::LocalServiceAdmin::instance().finalize();
   if (servant != nullptr) servant->deactivate();
   timer->stop();

@@ -447,10 +447,16 @@ void ManagerImpl::destroy(std::uint64_t id) {
     const std::scoped_lock lock(numbering_mutex);
     if (numbering != nullptr) numbering->onDelete(record.component);
   }
-  if (record.factory) record.factory->destroy(record.component);
+  const bool is_held = record.component->isHeldByCallback();
+  if (is_held) {
+    RTC_ERROR(("%s: does not return from its callback; it is gone for others but stays in memory", record.instance_name.c_str()));
+  } else if (record.factory) {
+    record.factory->destroy(record.component);
+  }
   bool is_last = false;
   {
     auto locked = state.lock();
+    locked->has_abandoned = locked->has_abandoned || is_held;
     locked->reserved_names.erase(record.instance_name);
     locked->records.erase(id);
     is_last = locked->records.empty() && locked->had_components && locked->activated && locked->phase == Phase::active;

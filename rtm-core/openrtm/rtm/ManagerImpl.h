@@ -66,6 +66,7 @@ class ManagerImpl {
     bool activating = false;  // a thread is in activate
     bool activated = false;   // everything that the configuration names has been made
     bool had_components = false;
+    bool has_abandoned = false;  // a component was left in memory because a thread is still in one of its callbacks
     std::chrono::steady_clock::time_point empty_since = std::chrono::steady_clock::now();
   };
 

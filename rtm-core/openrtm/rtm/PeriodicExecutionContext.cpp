@@ -63,7 +63,7 @@ RTC::ReturnCode_t PeriodicExecutionContext::onStarted() {
 RTC::ReturnCode_t PeriodicExecutionContext::onStopping() {
   worker_->stop();
   if (!waitForQuiet(10s)) {
-    RTC_ERROR(("a component has not returned from its callback for 10 s; the context goes on when it does"));
+    RTC_ERROR(("a component has not returned from its callback for 10 s; the context cannot stop"));
     worker_->reset();
     return RTC::RTC_ERROR;
   }

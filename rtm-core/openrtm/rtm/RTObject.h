@@ -176,6 +176,8 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   ReturnCode_t reset(RTC::UniqueId ec_id);
   // The contexts that this process has made for the component.
   std::vector<ExecutionContextBase*> getOwnContexts() const;
+  // After exit(): a thread is still in a callback that does not return; the component must not be deleted.
+  bool isHeldByCallback() const;
 
   // SDO services.
   bool addSdoServiceProvider(const SDOPackage::ServiceProfile& prof, SdoServiceProviderBase* provider);

@@ -129,6 +129,11 @@ void RTObject_impl::finalizeContexts() {
   for (ExecutionContextBase* context : contexts) {
     if (NamedContexts::instance().release(context)) {
       context->stop();
+      // A thread cannot be taken out of a callback that does not return, so what it works on must stay.
+      if (!context->waitForQuiet(std::chrono::nanoseconds(0))) {
+        impl_->shared.lock()->is_held = true;
+        continue;
+      }
       context->unbindComponent(this);
       destroyExecutionContext(context);
     } else {
@@ -139,6 +144,8 @@ void RTObject_impl::finalizeContexts() {
   data->own.clear();
   data->foreign.clear();
 }
+
+bool RTObject_impl::isHeldByCallback() const { return impl_->shared.lock()->is_held; }
 
 CORBA::Boolean RTObject_impl::is_alive(ExecutionContext_ptr exec_context) { return get_context_handle(exec_context) >= 0; }
 

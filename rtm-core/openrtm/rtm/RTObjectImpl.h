@@ -31,6 +31,7 @@ struct RTObject_impl::Impl {
     std::vector<ExecutionContext_var> own{};      // by handle
     std::vector<ExecutionContext_var> foreign{};  // by handle - foreign_offset; nil where one has left
     std::vector<ExecutionContextBase*> contexts{};
+    bool is_held = false;  // see isHeldByCallback
     std::vector<Port> ports{};
     std::set<UniqueId> active_in{};  // contexts in which the component is active: ports work while there is one
     std::vector<SDOPackage::Organization_var> organizations{};
