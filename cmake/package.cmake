@@ -51,11 +51,28 @@ install(DIRECTORY idl/ DESTINATION ${package_include}/rtm/idl FILES_MATCHING PAT
 install(DIRECTORY idl/ext/ DESTINATION ${package_include}/rtm/ext FILES_MATCHING PATTERN "*.idl")
 
 install(TARGETS base rt_core rt_corba openrtm coil rtm_idl LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+# Manual page and completion of each program, printed by the program itself.
+set(package_share ${PROJECT_BINARY_DIR}/share)
+set(package_pages)
 foreach(program rtcd rtse sim-server simctl player-gateway)
   if(TARGET ${program})
     install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+    set(page ${package_share}/man/man1/${program}.1)
+    set(bash ${package_share}/bash-completion/completions/${program})
+    set(zsh ${package_share}/zsh/site-functions/_${program})
+    add_custom_command(OUTPUT ${page} ${bash} ${zsh}
+      COMMAND ${CMAKE_COMMAND} -E make_directory ${package_share}/man/man1 ${package_share}/bash-completion/completions ${package_share}/zsh/site-functions
+      COMMAND $<TARGET_FILE:${program}> --man > ${page}
+      COMMAND $<TARGET_FILE:${program}> --completion bash > ${bash}
+      COMMAND $<TARGET_FILE:${program}> --completion zsh > ${zsh}
+      DEPENDS ${program} VERBATIM)
+    list(APPEND package_pages ${page})
+    install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+    install(FILES ${bash} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+    install(FILES ${zsh} DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
   endif()
 endforeach()
+add_custom_target(manuals ALL DEPENDS ${package_pages})
 if(EXISTS ${PROJECT_SOURCE_DIR}/worlds)
   install(DIRECTORY worlds/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rtm-sim/worlds)
 endif()

@@ -26,3 +26,11 @@ endforeach()
 
 add_test(NAME package.new_component_builds COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/new_component ${PROJECT_BINARY_DIR})
 set_tests_properties(package.new_component_builds PROPERTIES LABELS package TIMEOUT 300)
+
+foreach(shell bash zsh)
+  find_program(shell_${shell} ${shell})
+  if(shell_${shell})
+    add_test(NAME package.completion_${shell} COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/completion ${shell} ${PROJECT_BINARY_DIR})
+    set_tests_properties(package.completion_${shell} PROPERTIES LABELS package TIMEOUT 300)
+  endif()
+endforeach()

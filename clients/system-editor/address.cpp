@@ -54,7 +54,16 @@ base::Result<Address> parse_address(std::string_view text, std::string_view work
   auto segments = split_path(trimmed);
   const bool is_directory = trimmed.ends_with('/');
   // A colon in the last segment separates the port, but "/host:2809/" and "/host:2809" name a server.
-  const bool only_server = address.is_absolute && segments.size() == 1;
+  bool only_server = address.is_absolute && segments.size() == 1;
+  // "host:2809" without a slash names a server too: no port of a component is called by a number of TCP's size, and no server ends in .rtc.
+  if (!address.is_absolute && !is_directory && segments.size() == 1) {
+    const auto& name = segments.front();
+    const auto colon = name.rfind(':');
+    const auto number = colon == std::string::npos ? std::string() : name.substr(colon + 1);
+    only_server =
+        number.size() >= 4 && number.find_first_not_of("0123456789") == std::string::npos && !name.substr(0, colon).ends_with(".rtc");
+    address.is_absolute = only_server;
+  }
   if (!segments.empty() && !is_directory && !only_server) {
     auto& last = segments.back();
     if (const auto colon = find_unescaped(last, ':'); colon != std::string::npos) {

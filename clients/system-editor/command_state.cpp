@@ -103,6 +103,7 @@ void exit_components(Editor& editor, const std::vector<std::string>& paths) {
 }
 
 void delete_bindings(Editor& editor, const std::vector<std::string>& paths, bool zombies) {
+  if (paths.empty() && !zombies) return editor.fail({"del: expected names, or -z for all whose object is gone"});
   const auto names = editor.tree(paths.empty() ? "" : paths.front());
   if (!names) return editor.fail(names.error());
   if (zombies) {

@@ -31,6 +31,33 @@ std::vector<const CLI::App*> subcommands(const CLI::App& app) {
   return all;
 }
 
+// 'NAME:DESCRIPTION' as zsh's _describe wants it: one line, colons of the name escaped, in single quotes.
+std::string zsh_entry(const std::string& name, const std::string& description) {
+  std::string entry = "'";
+  const auto append = [&](const std::string& text, bool is_name) {
+    for (const char c : text) {
+      if (c == '\'') entry += "'\\''";
+      if (c == ':' && is_name) entry += "\\:";
+      if (c == '\n') entry += ' ';
+      if (c != '\'' && c != '\n' && (c != ':' || !is_name)) entry += c;
+    }
+  };
+  append(name, true);
+  if (!description.empty()) entry += ":";
+  append(description, false);
+  return entry + "'";
+}
+
+std::string zsh_options(const CLI::App& app) {
+  std::string entries;
+  for (const auto* option : app.get_options([](const CLI::Option* candidate) { return candidate->nonpositional(); })) {
+    if (option->get_group().empty()) continue;
+    for (const auto& name : option->get_lnames()) entries += " " + zsh_entry("--" + name, option->get_description());
+    for (const auto& name : option->get_snames()) entries += " " + zsh_entry("-" + name, option->get_description());
+  }
+  return entries;
+}
+
 // Troff takes a leading dot or quote for a request, and a bare hyphen for a typographic one.
 std::string troff(const std::string& text) {
   std::string result;
@@ -53,12 +80,36 @@ void append_options(std::string& page, const CLI::App& app) {
 
 }  // namespace
 
+namespace {
+
+// A file _NAME of the function path, which zsh loads by its first line; also good to be sourced.
+std::string zsh_completion(const CLI::App& app, const std::string& name) {
+  const auto commands = subcommands(app);
+  std::string script = "#compdef " + name + "\n_" + name + "() {\n  local -a options commands\n  local command=\"\" word\n";
+  script += "  options=(" + zsh_options(app) + ")\n";
+  if (!commands.empty()) {
+    script += "  commands=(";
+    for (const auto* command : commands) script += " " + zsh_entry(command->get_name(), command->get_description());
+    script += ")\n  for word in ${words[2,CURRENT-1]}; do\n    case $word in\n";
+    for (const auto* command : commands) script += "      " + command->get_name() + ") command=$word; break;;\n";
+    script += "    esac\n  done\n  case $command in\n";
+    for (const auto* command : commands) script += "    " + command->get_name() + ") options+=(" + zsh_options(*command) + ");;\n";
+    script += "  esac\n";
+  }
+  script += "  if [[ ${words[CURRENT]} == -* ]]; then\n    _describe -o option options\n";
+  if (!commands.empty()) script += "  elif [[ -z $command ]]; then\n    _describe command commands\n";
+  script += "  else\n    _files\n  fi\n}\n";
+  return script + "if [[ ${funcstack[1]} == _" + name + " ]]; then\n  _" + name + " \"$@\"\nelse\n  compdef _" + name + " " + name +
+         "\nfi\n";
+}
+
+}  // namespace
+
 std::string completion_script(const CLI::App& app, const std::string& name, const std::string& shell) {
+  if (shell == "zsh") return zsh_completion(app, name);
   std::string function = "_" + name + "_completion";
   for (char& c : function) c = c == '-' ? '_' : c;
-  std::string script;
-  if (shell == "zsh") script += "autoload -U +X bashcompinit && bashcompinit\n";
-  script += function + "() {\n  local words=\"" + join(option_names(app), " ") + "\"\n  local command=\"\"\n  local word\n";
+  auto script = function + "() {\n  local words=\"" + join(option_names(app), " ") + "\"\n  local command=\"\"\n  local word\n";
   std::vector<std::string> names;
   for (const auto* command : subcommands(app)) names.push_back(command->get_name());
   if (!names.empty()) {

@@ -13,7 +13,7 @@ void add_standard_options(CLI::App& app, const std::string& name, const std::str
 // Parses; the exit code when the program is to end now: 0 after --help and the like, 2 after a wrong command line (one line on stderr).
 std::optional<int> parse_command_line(CLI::App& app, const std::string& name, int argc, const char* const* argv);
 
-// The completion script, for bash and (through bashcompinit) zsh, and the manual page, from the same declarations as --help.
+// The completion script for bash or zsh, and the manual page, from the same declarations as --help.
 std::string completion_script(const CLI::App& app, const std::string& name, const std::string& shell);
 std::string manual_page(const CLI::App& app, const std::string& name, const std::string& version);
 
