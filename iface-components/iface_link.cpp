@@ -27,6 +27,7 @@ base::Result<void> IfaceLink::attach(const Device& device, bool subscribe) {
   subscribe_ = subscribe;
   lost_ = false;
   last_ = 0;
+  ++attachments_;
   return {};
 }
 
@@ -54,6 +55,7 @@ shm::Iface* IfaceLink::live() {
   if (!iface_->reopen()) return nullptr;
   last_ = 0;
   lost_ = false;
+  ++attachments_;
   say_(false, "iface " + device_.device_id + " of server " + std::to_string(device_.server_id) + " is there again");
   return &*iface_;
 }

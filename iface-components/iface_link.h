@@ -29,6 +29,8 @@ class IfaceLink {
   base::Result<void> attach(const Device& device, bool subscribe);
   void detach();
   const Device& device() const { return device_; }
+  // How often it has attached, also by itself to a simulator that came back: what was told to the one before is forgotten.
+  std::uint64_t attachments() const { return attachments_; }
 
   // The iface while it lives; nullptr while it is lost. Looks for it again now and then.
   shm::Iface* live();
@@ -49,6 +51,7 @@ class IfaceLink {
   std::optional<shm::Iface> iface_;
   bool subscribe_ = false;
   bool lost_ = false;
+  std::uint64_t attachments_ = 0;
   std::uint64_t last_ = 0;
   Clock::time_point next_try_{};
 };

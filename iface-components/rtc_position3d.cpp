@@ -1,9 +1,6 @@
 #include "rtc_position3d.h"
 
-#include <array>
-
 #include "conversions.h"
-#include "sim_clock.h"
 
 // clang-format off
 static const char* const rtcposition3d_spec[] = {
@@ -37,83 +34,21 @@ static const char* const rtcposition3d_spec[] = {
     ""};
 // clang-format on
 
-namespace {
-
-// Linear, then angular; the standard type calls the rates of roll, pitch and yaw vr, vp, va.
-std::array<double, 6> values_of(const RTC::TimedVelocity3D& velocity) {
-  const auto& v = velocity.data;
-  return {v.vx, v.vy, v.vz, v.vr, v.vp, v.va};
-}
-
-class Received : public RTC::ConnectorDataListenerT<RTC::TimedVelocity3D> {
- public:
-  explicit Received(iface::Commander& commander) : commander_(commander) {}
-  USE_CONNLISTENER_STATUS;
-  ReturnCode operator()(RTC::ConnectorInfo&, RTC::TimedVelocity3D& velocity) override {
-    commander_.received(values_of(velocity));
-    return NO_CHANGE;
-  }
-
- private:
-  iface::Commander& commander_;
-};
-
-}  // namespace
-
 RTCPosition3d::RTCPosition3d(RTC::Manager* manager)
-    : IfaceComponent(manager, shm::IfaceType::position3d, true),
-      velocity_in_("velocity", velocity_),
+    : DriveComponent(manager, shm::IfaceType::position3d),
       pose_out_("pose", pose_),
-      actual_velocity_out_("actual_velocity", actual_velocity_),
-      commander_(shm::IfaceType::position3d, say()),
-      errand_(say()) {}
+      actual_velocity_out_("actual_velocity", actual_velocity_) {}
 
 RTC::ReturnCode_t RTCPosition3d::onInitialize() {
-  addInPort("velocity", velocity_in_);
+  addVelocityPort();
   addOutPort("pose", pose_out_);
   addOutPort("actual_velocity", actual_velocity_out_);
-  velocity_in_.addConnectorDataListener(RTC::ConnectorDataListenerType::ON_RECEIVED, new Received(commander_));
-  bindDevice("helicopter::position3d");
-  bindParameter("motors_enabled", motors_enabled_, "1");
-  bindParameter("command_timeout", command_timeout_, "1.0");
+  bindDrive("helicopter::position3d");
   return RTC::RTC_OK;
 }
 
-void RTCPosition3d::attached(const iface::Device& device) {
-  if (const auto done = commander_.attach(device); !done) RTC_ERROR(("%s", done.error().message.c_str()));
-  motors_ = true;  // as a new drive is
-}
-
-void RTCPosition3d::detaching() { commander_.detach(); }
-
-RTC::ReturnCode_t RTCPosition3d::onExecute(RTC::UniqueId) {
-  if (!follow_configuration()) return RTC::RTC_ERROR;
-  const bool simulated = iface::in_simulated_time();
-  commander_.set_simulated_time(simulated);
-  if (velocity_in_.isNew()) {
-    velocity_in_.read();
-    // In real time the listener has driven the robot already.
-    if (simulated) commander_.drive(values_of(velocity_));
-  }
-  switch_motors();
-  publish();
-  return RTC::RTC_OK;
-}
-
-void RTCPosition3d::switch_motors() {
-  if (motors_ == motors_enabled_) return;
-  motors_ = motors_enabled_;
-  const auto& device = link().device();
-  errand_.post(device.server_id, shm::SetMotorsRequest{device.device_id, motors_enabled_});
-}
-
-void RTCPosition3d::publish() {
-  auto* robot = link().fresh(iface::wait_limit());
-  if (!robot) return;
-  const auto& sample = robot->sample<shm::Position3dSample>();
-  if (watch_.expired(commander_, sample.stamp.sim_time_ns, command_timeout_))
-    RTC_WARN(("no velocity for %g s: the robot stops", command_timeout_));
-  if (!sample.stamp.valid) return;
+void RTCPosition3d::publish(const shm::Iface& robot) {
+  const auto& sample = robot.sample<shm::Position3dSample>();
   pose_.tm = iface::to_time(sample.stamp.sim_time_ns);
   pose_.data = iface::to_pose(sample.odometry);
   pose_out_.write();

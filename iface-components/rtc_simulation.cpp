@@ -94,6 +94,7 @@ RTC::ReturnCode_t RTCSimulation::onInitialize() {
   simulation_port_.registerProvider("simulation", "rtmsim::SimulationService", service_);
   addPort(simulation_port_);
   bindParameter("server_id", server_id_, "0");
+  service_.set_server(server_id_);
   return RTC::RTC_OK;
 }
 
@@ -109,13 +110,18 @@ RTC::ReturnCode_t RTCSimulation::ask(const shm::Request& request) {
   return RTC::RTC_ERROR;
 }
 
-RTC::ReturnCode_t RTCSimulation::onActivated(RTC::UniqueId) {
+RTC::ReturnCode_t RTCSimulation::attach() {
   service_.set_server(server_id_);
   if (const auto done = link_.attach({server_id_, "world"}, false); !done) {
     RTC_ERROR(("%s", done.error().message.c_str()));
     return RTC::RTC_ERROR;
   }
-  return ask(shm::RunRequest{});
+  return RTC::RTC_OK;
+}
+
+RTC::ReturnCode_t RTCSimulation::onActivated(RTC::UniqueId) {
+  const auto attached = attach();
+  return attached == RTC::RTC_OK ? ask(shm::RunRequest{}) : attached;
 }
 
 RTC::ReturnCode_t RTCSimulation::onDeactivated(RTC::UniqueId) {
@@ -126,6 +132,7 @@ RTC::ReturnCode_t RTCSimulation::onDeactivated(RTC::UniqueId) {
 RTC::ReturnCode_t RTCSimulation::onReset(RTC::UniqueId) { return ask(shm::ResetRequest{}); }
 
 RTC::ReturnCode_t RTCSimulation::onExecute(RTC::UniqueId) {
+  if (link_.device().server_id != server_id_ && attach() != RTC::RTC_OK) return RTC::RTC_ERROR;
   auto* clock = link_.fresh(iface::wait_limit());
   if (!clock) return RTC::RTC_OK;
   const auto& sample = clock->sample<shm::SimulationSample>();

@@ -44,6 +44,7 @@ class RTCSimulation : public RTC::DataFlowComponentBase {
   RTC::ReturnCode_t onReset(RTC::UniqueId ec_id) override;
 
  private:
+  RTC::ReturnCode_t attach();
   RTC::ReturnCode_t ask(const shm::Request& request);
 
   int server_id_ = 0;

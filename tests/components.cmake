@@ -1,3 +1,11 @@
 rtmsim_test(avoidance_test unit/avoidance_test.cpp LIBRARIES avoidance)
 rtmsim_test(iface_components_test unit/conversions_test.cpp LIBRARIES iface_link)
 rtmsim_test(video_test unit/picture_test.cpp LIBRARIES video)
+
+# Every interface component against a living simulator, in real processes.
+rtmsim_component(SimulationProbe scenario/simulation_probe.cpp)
+foreach(case sonar imu gps bumper simulation motors wrong_device)
+  add_test(NAME components.${case}
+    COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/components.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+  set_tests_properties(components.${case} PROPERTIES LABELS integration TIMEOUT 300)
+endforeach()

@@ -1,0 +1,40 @@
+#include "drive_component.h"
+
+namespace iface {
+
+Drive::Drive(RTC::Manager* manager, shm::IfaceType type) : IfaceComponent(manager, type, true), commander_(type, say()), errand_(say()) {}
+
+void Drive::bindDrive(const char* default_device) {
+  bindDevice(default_device);
+  bindParameter("motors_enabled", motors_enabled_, "1");
+  bindParameter("command_timeout", command_timeout_, "1.0");
+}
+
+void Drive::attached(const Device& device) {
+  if (const auto done = commander_.attach(device); !done) RTC_ERROR(("%s", done.error().message.c_str()));
+}
+
+void Drive::detaching() { commander_.detach(); }
+
+void Drive::switch_motors() {
+  if (!link().live()) return;
+  if (told_attachment_ != link().attachments()) {
+    told_attachment_ = link().attachments();
+    motors_ = true;  // as a new drive is
+  }
+  if (motors_ == motors_enabled_) return;
+  motors_ = motors_enabled_;
+  const auto& device = link().device();
+  errand_.post(device.server_id, shm::SetMotorsRequest{device.device_id, motors_enabled_});
+}
+
+void Drive::watch_and_publish() {
+  auto* robot = link().fresh(wait_limit());
+  if (!robot) return;
+  const auto& stamp = robot->sample<shm::Stamp>();
+  if (watch_.expired(commander_, stamp.sim_time_ns, command_timeout_))
+    RTC_WARN(("no velocity for %g s: the robot stops", command_timeout_));
+  if (stamp.valid) publish(*robot);
+}
+
+}  // namespace iface

@@ -1,0 +1,99 @@
+// What RTCPosition2d and RTCPosition3d have in common: the InPort `velocity` drives the robot, the motors are switched by configuration,
+// and the robot stops when velocities stop coming. Configuration: server_id, device_id, motors_enabled; command_timeout [s of simulated
+// time]: the robot stops when no velocity has come for so long (0: never).
+//
+// Threads: in real time a velocity goes to the robot on the thread that brings it; in simulated time in onExecute, in the context's phase.
+#pragma once
+
+#include <rtm/DataInPort.h>
+#include <rtm/idl/ExtendedDataTypesSkel.h>
+
+#include <array>
+
+#include "commander.h"
+#include "errand.h"
+#include "iface_component.h"
+#include "sim_clock.h"
+
+namespace iface {
+
+// In the order of the iface's command values: linear, then angular. The standard type calls the rates of roll, pitch and yaw vr, vp, va.
+inline std::array<double, 3> values_of(const RTC::TimedVelocity2D& velocity) {
+  return {velocity.data.vx, velocity.data.vy, velocity.data.va};
+}
+inline std::array<double, 6> values_of(const RTC::TimedVelocity3D& velocity) {
+  const auto& v = velocity.data;
+  return {v.vx, v.vy, v.vz, v.vr, v.vp, v.va};
+}
+
+// The part that does not depend on the type of the velocity.
+class Drive : public IfaceComponent {
+ public:
+  Drive(RTC::Manager* manager, shm::IfaceType type);
+
+ protected:
+  void bindDrive(const char* default_device);
+  void attached(const Device& device) override;
+  void detaching() override;
+  // Carries the newest sample of the iface to the ports.
+  virtual void publish(const shm::Iface& robot) = 0;
+
+  void switch_motors();
+  void watch_and_publish();
+  Commander& commander() { return commander_; }
+
+ private:
+  bool motors_enabled_ = true;
+  double command_timeout_ = 1;
+  Commander commander_;  // shared with the threads that bring velocities
+  CommandWatch watch_;
+  bool motors_ = true;  // as told to the simulator
+  std::uint64_t told_attachment_ = 0;
+  Errand errand_;
+};
+
+template <class Velocity>
+class DriveComponent : public Drive {
+ public:
+  DriveComponent(RTC::Manager* manager, shm::IfaceType type) : Drive(manager, type), velocity_in_("velocity", velocity_) {}
+
+  RTC::ReturnCode_t onExecute(RTC::UniqueId) override {
+    if (!follow_configuration()) return RTC::RTC_ERROR;
+    const bool simulated = in_simulated_time();
+    commander().set_simulated_time(simulated);
+    if (velocity_in_.isNew()) {
+      velocity_in_.read();
+      // In real time the listener has driven the robot already.
+      if (simulated) commander().drive(values_of(velocity_));
+    }
+    switch_motors();
+    watch_and_publish();
+    return RTC::RTC_OK;
+  }
+
+ protected:
+  // To be called in onInitialize.
+  void addVelocityPort() {
+    addInPort("velocity", velocity_in_);
+    velocity_in_.addConnectorDataListener(RTC::ConnectorDataListenerType::ON_RECEIVED, new Received(commander()));
+  }
+
+ private:
+  class Received : public RTC::ConnectorDataListenerT<Velocity> {
+   public:
+    USE_CONNLISTENER_STATUS;
+    explicit Received(Commander& commander) : commander_(commander) {}
+    ReturnCode operator()(RTC::ConnectorInfo&, Velocity& velocity) override {
+      commander_.received(values_of(velocity));
+      return this->NO_CHANGE;
+    }
+
+   private:
+    Commander& commander_;
+  };
+
+  Velocity velocity_;
+  RTC::InPort<Velocity> velocity_in_;
+};
+
+}  // namespace iface
