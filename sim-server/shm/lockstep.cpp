@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstring>
+#include <thread>
 #include <utility>
 
 #include "base/text.h"
@@ -17,9 +19,19 @@ using std::chrono::nanoseconds;
 using std::chrono::steady_clock;
 
 constexpr std::uint32_t max_phase = 15;
+constexpr nanoseconds spin_limit = std::chrono::microseconds(50);
 constexpr nanoseconds server_slice = std::chrono::milliseconds(10);
 constexpr nanoseconds client_slice = std::chrono::milliseconds(100);
 constexpr std::int64_t longest_period = std::int64_t{1} << 60;
+
+// Between two looks of a thread that spins.
+void relax() {
+#if defined(__x86_64__)
+  __builtin_ia32_pause();
+#else
+  std::atomic_signal_fence(std::memory_order_seq_cst);
+#endif
+}
 
 ParticipantSlot& slot_at(const Segment& segment, std::size_t index) { return segment.as<ParticipantSlot>(AreaIndex::participants, index); }
 std::size_t slot_count(const Segment& segment) { return segment.area(AreaIndex::participants).count; }
@@ -87,6 +99,7 @@ struct Barrier::State {
   std::uint32_t seen_epoch = 0;
   std::uint64_t seen_deaths = 0;
   bool has_scanned = false;
+  const bool has_processors = std::thread::hardware_concurrency() > 1;
   bool is_ticking = false, has_gone = false;  // gone: members with owner 0 are to be removed after the tick
   std::int64_t last_now = -1;
   std::int64_t earliest_due = 0;
@@ -256,14 +269,26 @@ bool Barrier::State::wait_for(std::span<Member*> group) {
       if (member->owner != 0 && !is_done(*member) && remove_if_gone(*member)) member->owner = 0;
     }
   };
+  const auto all_done = [&] {
+    return std::all_of(group.begin(), group.end(), [this](const Member* m) { return m->owner == 0 || is_done(*m); });
+  };
+  // The tick of one is often over before a sleep and the waking from it would be. Several need the processors themselves.
+  if (group.size() == 1 && has_processors) {
+    for (const auto end = steady_clock::now() + spin_limit; steady_clock::now() < end;) {
+      if (all_done()) {
+        for (Member* member : group) member->is_hanging = false;
+        return true;
+      }
+      for (int i = 0; i < 16; ++i) relax();
+    }
+  }
   while (true) {
     const std::uint32_t seen = load(shared.server_word, std::memory_order_seq_cst);
     if (const std::uint64_t deaths_now = server.watch().deaths(); deaths_now != deaths) {
       deaths = deaths_now;
       let_go();
     }
-    const bool is_over = std::all_of(group.begin(), group.end(), [this](const Member* m) { return m->owner == 0 || is_done(*m); });
-    if (is_over) break;
+    if (all_done()) break;
     // The clock is read only when one sleep was not enough.
     if (++sleeps == 2) {
       start = last_look = steady_clock::now();
