@@ -1,2 +1,7 @@
 rtmsim_test(component_core_test unit/execution_context_test.cpp unit/configuration_test.cpp LIBRARIES rt_core LABELS core)
 rtmsim_test(component_test corba/component_test.cpp corba/component_context_test.cpp corba/component_service_test.cpp LIBRARIES openrtm LABELS corba)
+add_executable(component_peer corba/component_peer.cpp)
+target_link_libraries(component_peer PRIVATE openrtm GTest::gtest rtmsim_settings)
+target_include_directories(component_peer PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+rtmsim_test(component_process_test corba/component_process_test.cpp LIBRARIES openrtm LABELS process)
+add_dependencies(component_process_test component_peer)

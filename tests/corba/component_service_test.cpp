@@ -1,9 +1,13 @@
 // What tools attach to components in this process, and composites.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <rtm/InPort.h>
+#include <rtm/NVUtil.h>
+#include <rtm/OutPort.h>
 #include <rtm/PeriodicECOrganization.h>
 #include <rtm/StaticFSM.h>
 #include <rtm/SystemLogger.h>
+#include <rtm/idl/BasicDataTypeSkel.h>
 #include <rtm/idl/ComponentObserverSkel.h>
 #include <rtm/idl/FsmComponentObserverSkel.h>
 #include <rtm/idl/LoggerSkel.h>
@@ -41,6 +45,50 @@ class Observer : public Skeleton {
 };
 using OldObserver = Observer<POA_OpenRTM::ComponentObserver, OpenRTM::StatusKind>;
 using NewObserver = Observer<POA_RTC::ComponentObserver, RTC::StatusKind>;
+
+// --- state machines
+
+std::vector<std::string> steps;
+
+FSM_TOP(Door) {
+  FSM_STATE(Door);
+  virtual void open() {}
+  virtual void close() {}
+  virtual void lock(int) {}
+  RTC::ReturnCode_t onInit() override;
+};
+FSM_SUBSTATE(Shut, Door) {
+  struct Box {
+    int turns = 0;
+  };
+  FSM_STATE(Shut);
+  void open() override;
+  void lock(int n) override;
+  RTC::ReturnCode_t onEntry() override { return steps.push_back("enter Shut"), RTC::RTC_OK; }
+  RTC::ReturnCode_t onExit() override { return steps.push_back("leave Shut"), RTC::RTC_OK; }
+};
+FSM_SUBSTATE(Locked, Shut) {
+  FSM_STATE(Locked);
+  void open() override { steps.push_back("locked " + std::to_string(data().turns)); }
+  RTC::ReturnCode_t onEntry() override { return steps.push_back("enter Locked"), RTC::RTC_OK; }
+  RTC::ReturnCode_t onExit() override { return steps.push_back("leave Locked"), RTC::RTC_OK; }
+};
+FSM_SUBSTATE(Ajar, Door) {
+  FSM_STATE(Ajar);
+  void close() override { setStateHistory<Shut>(); }
+  RTC::ReturnCode_t onEntry() override { return steps.push_back("enter Ajar"), RTC::RTC_OK; }
+};
+RTC::ReturnCode_t Door::onInit() {
+  setState<Shut>();
+  return RTC::RTC_OK;
+}
+void Shut::open() { setState<Ajar>(); }
+void Shut::lock(int n) {
+  data().turns += n;
+  setState<Locked>();
+}
+
+// --- observers and loggers
 
 TEST_F(ComponentServiceTest, tells_an_observer_of_the_first_version_everything) {
   probe->initialize();
@@ -95,6 +143,69 @@ TEST_F(ComponentServiceTest, tells_an_observer_of_the_second_version_only_what_i
   EXPECT_TRUE(observer->wait_for(RTC::RTC_STATUS, "ACTIVATED:0"));
   std::lock_guard lock(observer->mutex);
   for (const auto& [kind, hint] : observer->heard) EXPECT_NE(kind, RTC::CONFIGURATION) << hint;
+}
+
+TEST_F(ComponentServiceTest, tells_observers_what_changes_in_ports_profile_and_state_machine) {
+  RTC::TimedLong value{};
+  RTC::InPort<RTC::TimedLong> in("in", value);
+  RTC::OutPort<RTC::TimedLong> out("out", value);
+  probe->addInPort("in", in);
+  probe->addOutPort("out", out);
+  probe->initialize();
+  SDOPackage::Configuration_var configuration = probe->get_configuration();
+  Served<OldObserver> old_observer;
+  Served<NewObserver> observer;
+  ASSERT_TRUE(configuration->add_service_profile(service_profile("old", "IDL:OpenRTM/ComponentObserver:1.0", old_observer.reference())));
+  ASSERT_TRUE(configuration->add_service_profile(service_profile("new", "IDL:omg.org/RTC/ComponentObserver:1.0", observer.reference(),
+                                                                 {{"rtc_heartbeat.enable", "YES"}, {"rtc_heartbeat.interval", "0.02"}})));
+  EXPECT_TRUE(observer->wait_for(RTC::RTC_HEARTBEAT, ""));
+
+  RTC::ConnectorProfile profile;
+  profile.ports.length(2);
+  profile.ports[0] = RTC::PortService::_duplicate(out.getPortRef());
+  profile.ports[1] = RTC::PortService::_duplicate(in.getPortRef());
+  NVUtil::setStringValue(profile.properties, "dataport.interface_type", "corba_cdr");
+  NVUtil::setStringValue(profile.properties, "dataport.dataflow_type", "push");
+  ASSERT_EQ(out.connect(profile), RTC::RTC_OK);
+  out.write();
+  for (const char* hint : {"CONNECT:Probe0.in", "CONNECT:Probe0.out", "SEND:OutPort:out", "RECEIVE:InPort:in"}) {
+    EXPECT_TRUE(old_observer->wait_for(OpenRTM::PORT_PROFILE, hint)) << hint;
+    EXPECT_TRUE(observer->wait_for(RTC::PORT_PROFILE, hint)) << hint;
+  }
+  EXPECT_EQ(out.disconnect_all(), RTC::RTC_OK);
+  EXPECT_TRUE(observer->wait_for(RTC::PORT_PROFILE, "DISCONNECT:Probe0.in"));
+  EXPECT_TRUE(observer->wait_for(RTC::PORT_PROFILE, "DISCONNECT:Probe0.out"));
+  RTC::InPort<RTC::TimedLong> late("late", value);
+  probe->addInPort("late", late);
+  EXPECT_TRUE(observer->wait_for(RTC::PORT_PROFILE, "ADD:Probe0.late"));
+  profile.connector_id = "";
+  profile.ports[1] = RTC::PortService::_duplicate(late.getPortRef());
+  ASSERT_EQ(out.connect(profile), RTC::RTC_OK);
+  out.write();
+  EXPECT_TRUE(observer->wait_for(RTC::PORT_PROFILE, "RECEIVE:InPort:late"));
+  probe->removeInPort(late);
+  EXPECT_TRUE(observer->wait_for(RTC::PORT_PROFILE, "REMOVE:Probe0.late"));
+
+  probe->setInstanceName("Probe1");
+  EXPECT_TRUE(old_observer->wait_for(OpenRTM::COMPONENT_PROFILE, "Probe1"));
+  EXPECT_TRUE(observer->wait_for(RTC::COMPONENT_PROFILE, "Probe1"));
+  probe->notifyObservers(RTC::RTObject_impl::Status::user_defined, "low battery");
+  EXPECT_TRUE(observer->wait_for(RTC::USER_DEFINED, "low battery"));
+  {
+    RTC::Machine<Door> machine(&*probe);
+    machine.add_event_profile("open", "");
+    EXPECT_TRUE(observer->wait_for(RTC::FSM_PROFILE, "open"));
+    EXPECT_TRUE(observer->wait_for(RTC::FSM_STRUCTURE, "Door"));
+    machine->open();
+    EXPECT_TRUE(observer->wait_for(RTC::FSM_STATUS, "Shut PRE_ONEXIT"));
+    EXPECT_TRUE(observer->wait_for(RTC::FSM_STATUS, "Ajar POST_ONENTRY"));
+  }
+  {
+    std::lock_guard lock(old_observer->mutex);
+    for (const auto& [kind, hint] : old_observer->heard) EXPECT_LT(kind, OpenRTM::HEARTBEAT) << hint;
+  }
+  probe->removeInPort(in);
+  probe->removeOutPort(out);
 }
 
 class LogReader : public POA_OpenRTM::Logger {
@@ -190,46 +301,6 @@ TEST_F(ComponentServiceTest, members_of_a_composite_run_in_its_context_and_follo
 }
 
 // --- state machines
-
-std::vector<std::string> steps;
-
-FSM_TOP(Door) {
-  FSM_STATE(Door);
-  virtual void open() {}
-  virtual void close() {}
-  virtual void lock(int) {}
-  RTC::ReturnCode_t onInit() override;
-};
-FSM_SUBSTATE(Shut, Door) {
-  struct Box {
-    int turns = 0;
-  };
-  FSM_STATE(Shut);
-  void open() override;
-  void lock(int n) override;
-  RTC::ReturnCode_t onEntry() override { return steps.push_back("enter Shut"), RTC::RTC_OK; }
-  RTC::ReturnCode_t onExit() override { return steps.push_back("leave Shut"), RTC::RTC_OK; }
-};
-FSM_SUBSTATE(Locked, Shut) {
-  FSM_STATE(Locked);
-  void open() override { steps.push_back("locked " + std::to_string(data().turns)); }
-  RTC::ReturnCode_t onEntry() override { return steps.push_back("enter Locked"), RTC::RTC_OK; }
-  RTC::ReturnCode_t onExit() override { return steps.push_back("leave Locked"), RTC::RTC_OK; }
-};
-FSM_SUBSTATE(Ajar, Door) {
-  FSM_STATE(Ajar);
-  void close() override { setStateHistory<Shut>(); }
-  RTC::ReturnCode_t onEntry() override { return steps.push_back("enter Ajar"), RTC::RTC_OK; }
-};
-RTC::ReturnCode_t Door::onInit() {
-  setState<Shut>();
-  return RTC::RTC_OK;
-}
-void Shut::open() { setState<Ajar>(); }
-void Shut::lock(int n) {
-  data().turns += n;
-  setState<Locked>();
-}
 
 TEST_F(ComponentServiceTest, shows_its_state_machine_to_tools) {
   probe->initialize();

@@ -7,6 +7,7 @@
 #include <rtm/idl/ComponentObserverSkel.h>
 #include <rtm/idl/FsmComponentObserverSkel.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <set>
@@ -155,6 +156,56 @@ std::string short_name(const std::string& port_name) {
   return dot == std::string::npos ? port_name : port_name.substr(dot + 1);
 }
 
+// The sample listeners of one observer at the ports of one component. Ports come and go while it observes; one that has left may be
+// destroyed, and takes its listener with it.
+class SampleListeners {
+ public:
+  void follow(RTObject_impl& component, const std::shared_ptr<Link>& link) {
+    const std::vector<InPortBase*> in = component.getInPorts();
+    const std::vector<OutPortBase*> out = component.getOutPorts();
+    auto data = shared_.lock();
+    if (data->has_left) return;
+    update(data->in, in, ON_RECEIVED, "RECEIVE:InPort:", link);
+    update(data->out, out, ON_SEND, "SEND:OutPort:", link);
+  }
+
+  void leave(RTObject_impl& component) {
+    const std::vector<InPortBase*> in = component.getInPorts();
+    const std::vector<OutPortBase*> out = component.getOutPorts();
+    auto data = shared_.lock();
+    data->has_left = true;
+    for (InPortBase* port : in)
+      if (data->in.count(port) != 0) port->removeConnectorDataListener(ON_RECEIVED, data->in[port]);
+    for (OutPortBase* port : out)
+      if (data->out.count(port) != 0) port->removeConnectorDataListener(ON_SEND, data->out[port]);
+    data->in.clear();
+    data->out.clear();
+  }
+
+ private:
+  template <class Port>
+  using Listened = std::map<Port*, SampleListener*>;
+
+  template <class Port>
+  static void update(Listened<Port>& listened, const std::vector<Port*>& ports, ConnectorDataListenerType type, const char* event,
+                     const std::shared_ptr<Link>& link) {
+    std::erase_if(listened, [&](const auto& entry) { return std::find(ports.begin(), ports.end(), entry.first) == ports.end(); });
+    for (Port* port : ports) {
+      const auto [it, is_new] = listened.try_emplace(port, nullptr);
+      if (!is_new) continue;
+      it->second = new SampleListener(link, event + short_name(port->getName()));
+      port->addConnectorDataListener(type, it->second);
+    }
+  }
+
+  struct Data {
+    Listened<InPortBase> in{};
+    Listened<OutPortBase> out{};
+    bool has_left = false;
+  };
+  base::Guarded<Data, base::Rank::registry> shared_;
+};
+
 // The listeners of one observer at one component.
 class Listeners {
  public:
@@ -164,6 +215,7 @@ class Listeners {
     listen_to_ports();
     listen_to_configuration();
     listen_to_state_machine();
+    listen_to_status();
   }
   ~Listeners() {
     for (const auto& undo : undo_) undo();
@@ -203,8 +255,9 @@ class Listeners {
 
   void listen_to_ports() {
     for (const auto& [type, event] : {std::pair(ADD_PORT, "ADD:"), std::pair(REMOVE_PORT, "REMOVE:")}) {
-      auto function = [link = link_, event = event](const PortProfile& profile) {
+      auto function = [&component = component_, samples = samples_, link = link_, event = event](const PortProfile& profile) {
         link->tell(Kind::port_profile, event + std::string(profile.name));
+        samples->follow(component, link);
       };
       auto* listener = new Calls<PortActionListener, decltype(function), const PortProfile&>(std::move(function));
       component_.addPortActionListener(type, listener);
@@ -219,16 +272,8 @@ class Listeners {
       component_.addPortConnectRetListener(type, listener);
       undo_.push_back([this, type = type, listener] { component_.removePortConnectRetListener(type, listener); });
     }
-    for (InPortBase* port : component_.getInPorts()) {
-      auto* listener = new SampleListener(link_, "RECEIVE:InPort:" + short_name(port->getName()));
-      port->addConnectorDataListener(ON_RECEIVED, listener);
-      undo_.push_back([port, listener] { port->removeConnectorDataListener(ON_RECEIVED, listener); });
-    }
-    for (OutPortBase* port : component_.getOutPorts()) {
-      auto* listener = new SampleListener(link_, "SEND:OutPort:" + short_name(port->getName()));
-      port->addConnectorDataListener(ON_SEND, listener);
-      undo_.push_back([port, listener] { port->removeConnectorDataListener(ON_SEND, listener); });
-    }
+    samples_->follow(component_, link_);
+    undo_.push_back([this] { samples_->leave(component_); });
   }
 
   void listen_to_configuration() {
@@ -279,8 +324,25 @@ class Listeners {
     }
   }
 
+  void listen_to_status() {
+    const int number = component_.addStatusListener([link = link_](RTObject_impl::Status status, const std::string& hint) {
+      switch (status) {
+        case RTObject_impl::Status::component_profile:
+          return link->tell(Kind::component_profile, hint);
+        case RTObject_impl::Status::fsm_profile:
+          return link->tell(Kind::fsm_profile, hint);
+        case RTObject_impl::Status::fsm_structure:
+          return link->tell(Kind::fsm_structure, hint);
+        case RTObject_impl::Status::user_defined:
+          return link->tell(Kind::user_defined, hint);
+      }
+    });
+    undo_.push_back([this, number] { component_.removeStatusListener(number); });
+  }
+
   RTObject_impl& component_;
   std::shared_ptr<Link> link_;
+  const std::shared_ptr<SampleListeners> samples_ = std::make_shared<SampleListeners>();
   std::vector<std::function<void()>> undo_;
 };
 

@@ -85,6 +85,7 @@ std::string seconds(std::chrono::nanoseconds time) { return base::format_number(
 struct ExecutionContextBase::Impl {
   struct Data {
     std::vector<Member> members{};
+    std::vector<RTC::LightweightRTObject_var> joining{};  // asked to attach, no members yet
     RTC::ExecutionContextService_var reference{};
     RTC::RTObject_var owner{};
     RTC::ExecutionKind kind = RTC::PERIODIC;
@@ -213,9 +214,38 @@ RTC::ReturnCode_t ExecutionContextBase::setRate(CORBA::Double rate) {
   return onSetRate(wanted);
 }
 
+// One caller at a time brings a component in: it is no member until it has answered.
+class ExecutionContextBase::Joining {
+ public:
+  Joining(base::Guarded<Impl::Data, base::Rank::component>& shared, RTC::LightweightRTObject_ptr component)
+      : shared_(shared), component_(RTC::LightweightRTObject::_duplicate(component)) {
+    auto data = shared_.lock();
+    for (const auto& other : data->joining)
+      if (RTC::LightweightRTObject_var(other)->_is_equivalent(component)) return;
+    data->joining.push_back(component_);
+    is_first_ = true;
+  }
+  ~Joining() {
+    if (!is_first_) return;
+    auto data = shared_.lock();
+    const auto it =
+        std::find_if(data->joining.begin(), data->joining.end(), [&](const auto& other) { return other.in() == component_.in(); });
+    if (it != data->joining.end()) data->joining.erase(it);
+  }
+  Joining(const Joining&) = delete;
+  Joining& operator=(const Joining&) = delete;
+  explicit operator bool() const { return is_first_; }
+
+ private:
+  base::Guarded<Impl::Data, base::Rank::component>& shared_;
+  RTC::LightweightRTObject_var component_;
+  bool is_first_ = false;
+};
+
 RTC::ReturnCode_t ExecutionContextBase::addComponent(RTC::LightweightRTObject_ptr comp) {
   if (CORBA::is_nil(comp)) return RTC::BAD_PARAMETER;
-  if (impl_->find(comp)) return RTC::PRECONDITION_NOT_MET;
+  const Joining joining(impl_->shared, comp);
+  if (!joining || impl_->find(comp)) return RTC::PRECONDITION_NOT_MET;
   if (const auto code = onAddingComponent(comp); code != RTC::RTC_OK) return code;
   RTC::ExecutionContextService_var self = getObjRef();
   Member member;

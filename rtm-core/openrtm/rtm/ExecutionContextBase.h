@@ -137,6 +137,7 @@ class ExecutionContextBase {
 
  private:
   struct Impl;
+  class Joining;
   std::unique_ptr<Impl> impl_;
 };
 

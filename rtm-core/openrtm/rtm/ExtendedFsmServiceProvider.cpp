@@ -32,14 +32,23 @@ ExtendedFsmServiceProvider* ExtendedFsmServiceProvider::offer(RTObject_impl& com
 }
 
 char* ExtendedFsmServiceProvider::get_current_state() {
-  auto data = shared_.lock();
-  return CORBA::string_dup(data->current_state ? data->current_state().c_str() : "");
+  const corba::Gate::Visit visit(gate_);
+  if (!visit) throw CORBA::OBJECT_NOT_EXIST();
+  const auto current_state = shared_.lock()->current_state;
+  return CORBA::string_dup(current_state ? current_state().c_str() : "");
 }
 
 ReturnCode_t ExtendedFsmServiceProvider::set_fsm_structure(const FsmStructure& fsm_structure) {
-  auto data = shared_.lock();
-  if (std::string(fsm_structure.name) != data->structure.name.in()) return BAD_PARAMETER;
-  data->structure = fsm_structure;
+  const corba::Gate::Visit visit(gate_);
+  if (!visit) throw CORBA::OBJECT_NOT_EXIST();
+  RTObject_impl* component = nullptr;
+  {
+    auto data = shared_.lock();
+    if (std::string(fsm_structure.name) != data->structure.name.in()) return BAD_PARAMETER;
+    data->structure = fsm_structure;
+    component = data->component;
+  }
+  if (component) component->notifyObservers(RTObject_impl::Status::fsm_structure, fsm_structure.name.in());
   return RTC_OK;
 }
 
@@ -48,7 +57,8 @@ ReturnCode_t ExtendedFsmServiceProvider::get_fsm_structure(FsmStructure_out fsm_
   return RTC_OK;
 }
 
-bool ExtendedFsmServiceProvider::init(RTObject_impl&, const SDOPackage::ServiceProfile& profile) {
+bool ExtendedFsmServiceProvider::init(RTObject_impl& component, const SDOPackage::ServiceProfile& profile) {
+  shared_.lock()->component = &component;
   profile_ = profile;
   return true;
 }
@@ -58,6 +68,6 @@ bool ExtendedFsmServiceProvider::reinit(const SDOPackage::ServiceProfile& profil
   return true;
 }
 
-void ExtendedFsmServiceProvider::finalize() { shared_.lock()->current_state = nullptr; }
+void ExtendedFsmServiceProvider::finalize() { gate_.close(); }
 
 }  // namespace RTC

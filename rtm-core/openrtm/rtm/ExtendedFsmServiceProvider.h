@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/guarded.h"
+#include "corba/gate.h"
 
 namespace RTC {
 
@@ -34,10 +35,12 @@ class ExtendedFsmServiceProvider : public SdoServiceProviderBase, public virtual
 
  private:
   struct Data {
-    std::function<std::string()> current_state{};  // empty once the machine is gone
+    std::function<std::string()> current_state{};
+    RTObject_impl* component = nullptr;
     FsmStructure structure{};
   };
   base::Guarded<Data, base::Rank::component> shared_;
+  corba::Gate gate_;  // closed before the machine and the component go
   SDOPackage::ServiceProfile profile_;
 };
 

@@ -367,22 +367,30 @@ void RTObject_impl::shutdown() {
 // --- what it is
 
 void RTObject_impl::setInstanceName(const char* instance_name) {
-  profile_.instance_name = instance_name ? instance_name : "";
-  m_properties["instance_name"] = profile_.instance_name;
+  {
+    const auto turn = impl_->properties_turn.lock();
+    profile_.instance_name = instance_name ? instance_name : "";
+    m_properties["instance_name"] = profile_.instance_name;
+  }
   rtclog.setName(profile_.instance_name.c_str());
   const std::vector<Port> ports = impl_->shared.lock()->ports;
   for (const Port& port : ports)
     if (port.local) port.local->setName(portNameOf(port.name).c_str());
+  notifyObservers(Status::component_profile, profile_.instance_name);
 }
 
 void RTObject_impl::takeNames() {
-  const auto take = [this](const char* key, std::string& name) { name = m_properties.getProperty(key, name); };
-  take("type_name", profile_.type_name);
-  take("description", profile_.description);
-  take("version", profile_.version);
-  take("vendor", profile_.vendor);
-  take("category", profile_.category);
-  const std::string instance = m_properties.getProperty("instance_name");
+  std::string instance;
+  {
+    const auto turn = impl_->properties_turn.lock();
+    const auto take = [this](const char* key, std::string& name) { name = m_properties.getProperty(key, name); };
+    take("type_name", profile_.type_name);
+    take("description", profile_.description);
+    take("version", profile_.version);
+    take("vendor", profile_.vendor);
+    take("category", profile_.category);
+    instance = m_properties.getProperty("instance_name");
+  }
   if (!instance.empty() && instance != profile_.instance_name) setInstanceName(instance.c_str());
 }
 
@@ -393,10 +401,27 @@ void RTObject_impl::setObjRef(const RTObject_ptr rtobj) { impl_->shared.lock()->
 RTObject_ptr RTObject_impl::getObjRef() const { return RTC::RTObject::_duplicate(impl_->shared.lock()->reference); }
 
 void RTObject_impl::setProperties(const coil::Properties& prop) {
-  m_properties << prop;
+  {
+    const auto turn = impl_->properties_turn.lock();
+    m_properties << prop;
+  }
   takeNames();
   prepareBinding();
+  notifyObservers(Status::component_profile, profile_.instance_name);
 }
+
+void RTObject_impl::notifyObservers(Status status, const std::string& hint) {
+  const std::map<int, StatusListener> listeners = impl_->shared.lock()->status_listeners;
+  for (const auto& [number, listener] : listeners) listener(status, hint);
+}
+
+int RTObject_impl::addStatusListener(StatusListener listener) {
+  auto data = impl_->shared.lock();
+  data->status_listeners.emplace(data->next_status_listener, std::move(listener));
+  return data->next_status_listener++;
+}
+
+void RTObject_impl::removeStatusListener(int number) { impl_->shared.lock()->status_listeners.erase(number); }
 
 // While the component is made, its configuration sets follow its properties.
 void RTObject_impl::prepareBinding() {
@@ -407,12 +432,17 @@ void RTObject_impl::prepareBinding() {
 
 ComponentProfile* RTObject_impl::get_component_profile() {
   ComponentProfile_var profile = new ComponentProfile();
-  profile->instance_name = profile_.instance_name.c_str();
-  profile->type_name = profile_.type_name.c_str();
-  profile->description = profile_.description.c_str();
-  profile->version = profile_.version.c_str();
-  profile->vendor = profile_.vendor.c_str();
-  profile->category = profile_.category.c_str();
+  coil::Properties properties;
+  {
+    const auto turn = impl_->properties_turn.lock();
+    properties = m_properties;
+    profile->instance_name = profile_.instance_name.c_str();
+    profile->type_name = profile_.type_name.c_str();
+    profile->description = profile_.description.c_str();
+    profile->version = profile_.version.c_str();
+    profile->vendor = profile_.vendor.c_str();
+    profile->category = profile_.category.c_str();
+  }
   const std::vector<Port> ports = impl_->shared.lock()->ports;
   CORBA::ULong n = 0;
   profile->port_profiles.length(static_cast<CORBA::ULong>(ports.size()));
@@ -426,7 +456,6 @@ ComponentProfile* RTObject_impl::get_component_profile() {
     }
   }
   profile->port_profiles.length(n);
-  coil::Properties properties = m_properties;
   coil::Properties& conf = properties.getNode("conf");
   for (const coil::Properties& set : m_configsets.getConfigurationSets()) {
     if (set.getLeaf().empty()) continue;

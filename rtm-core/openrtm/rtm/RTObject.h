@@ -16,6 +16,7 @@
 #include <rtm/idl/OpenRTMSkel.h>
 
 // Authors rely on some of these headers without naming them: coil/Time.h, CORBA_SeqUtil.h, NVUtil.h, iostream.
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -118,6 +119,14 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   RTObject_ptr getObjRef() const;
   // Merges; the values become those of the profile and of the configuration sets.
   void setProperties(const coil::Properties& prop);
+  // Tells the component observers that ask for this kind; those of the first version know component_profile only. The hint of the runtime
+  // itself is what has changed: the instance name, the event, or the state machine. Authors say what they like. Any thread.
+  enum class Status { component_profile, fsm_profile, fsm_structure, user_defined };
+  void notifyObservers(Status status, const std::string& hint);
+  using StatusListener = std::function<void(Status, const std::string&)>;
+  // Returns its number. A listener may be called a little longer than until it is removed.
+  int addStatusListener(StatusListener listener);
+  void removeStatusListener(int number);
   // For onInitialize and the constructor; no other thread may read the profile meanwhile.
   coil::Properties& getProperties() { return m_properties; }
   Manager* getManager() const { return m_pManager; }

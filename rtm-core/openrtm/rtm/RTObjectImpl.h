@@ -7,6 +7,7 @@
 #include <rtm/SdoServiceAdmin.h>
 
 #include <condition_variable>
+#include <map>
 #include <set>
 #include <thread>
 
@@ -37,12 +38,17 @@ struct RTObject_impl::Impl {
     std::vector<SDOPackage::Organization_var> organizations{};
     std::vector<SDOPackage::Organization_impl*> owned_organizations{};  // servants, one reference each
     SDOPackage::DeviceProfile device{};
+    std::map<int, StatusListener> status_listeners{};
+    int next_status_listener = 1;
     bool reads_all = false, reads_on = false, writes_all = false, writes_on = false;
   };
 
   explicit Impl(RTObject_impl& component) : services(component) {}
 
   base::Guarded<Data, base::Rank::component> shared;
+  // Held while the runtime reads or writes m_properties and profile_, which are the author's and no members of ours.
+  struct Turn {};
+  base::Guarded<Turn, base::Rank::registry> properties_turn;
   SdoServiceAdmin services;
   SDOPackage::Configuration_impl* configuration = nullptr;  // a servant; one reference
   std::thread exiter;                                       // runs exit() when a callback asked for it

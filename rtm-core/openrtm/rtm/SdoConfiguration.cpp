@@ -20,6 +20,16 @@ void check_name(const char* what, const char* name) {
   if (std::strlen(name) > longest_name) throw InvalidParameter((std::string(what) + " is too long").c_str());
 }
 
+class Inside {
+ public:
+  explicit Inside(corba::Gate& gate) : visit_(gate) {
+    if (!visit_) throw CORBA::OBJECT_NOT_EXIST();
+  }
+
+ private:
+  corba::Gate::Visit visit_;
+};
+
 coil::Properties to_properties(const ConfigurationSet& set) {
   check_name("id of the configuration set", set.id);
   for (CORBA::ULong i = 0; i < set.configuration_data.length(); ++i)
@@ -44,30 +54,30 @@ Configuration_impl::Configuration_impl(RTC::RTObject_impl& component, RTC::Confi
     : component_(component), configuration_(configuration), services_(services) {}
 
 CORBA::Boolean Configuration_impl::set_device_profile(const DeviceProfile& profile) {
-  const corba::CallGate::Inside inside(gate_);
+  const Inside inside(gate_);
   component_.setDeviceProfile(profile);
   return true;
 }
 
 CORBA::Boolean Configuration_impl::add_service_profile(const ServiceProfile& profile) {
-  const corba::CallGate::Inside inside(gate_);
+  const Inside inside(gate_);
   return services_.addSdoServiceConsumer(profile);
 }
 
 CORBA::Boolean Configuration_impl::add_organization(Organization_ptr organization) {
-  const corba::CallGate::Inside inside(gate_);
+  const Inside inside(gate_);
   if (CORBA::is_nil(organization)) throw InvalidParameter("the organization is nil");
   return component_.addOrganization(organization);
 }
 
 CORBA::Boolean Configuration_impl::remove_service_profile(const char* id) {
-  const corba::CallGate::Inside inside(gate_);
+  const Inside inside(gate_);
   if (id[0] == '\0') throw InvalidParameter("the id is empty");
   return services_.removeSdoServiceConsumer(id);
 }
 
 CORBA::Boolean Configuration_impl::remove_organization(const char* organization_id) {
-  const corba::CallGate::Inside inside(gate_);
+  const Inside inside(gate_);
   if (organization_id[0] == '\0') throw InvalidParameter("the id is empty");
   return component_.removeOrganization(organization_id);
 }
@@ -87,7 +97,7 @@ CORBA::Boolean Configuration_impl::set_configuration_parameter(const char* name,
 }
 
 ConfigurationSetList* Configuration_impl::get_configuration_sets() {
-  const corba::CallGate::Inside inside(gate_);
+  const Inside inside(gate_);
   const std::vector<coil::Properties> nodes = configuration_.getConfigurationSets();
   ConfigurationSetList_var sets = new ConfigurationSetList();
   sets->length(static_cast<CORBA::ULong>(nodes.size()));
@@ -96,35 +106,35 @@ ConfigurationSetList* Configuration_impl::get_configuration_sets() {
 }
 
 ConfigurationSet* Configuration_impl::get_configuration_set(const char* id) {
-  const corba::CallGate::Inside inside(gate_);
+  const Inside inside(gate_);
   if (!configuration_.haveConfig(id)) throw InternalError(("no configuration set " + base::in_quotes(id)).c_str());
   return new ConfigurationSet(to_set(configuration_.getConfigurationSet(id)));
 }
 
 CORBA::Boolean Configuration_impl::set_configuration_set_values(const ConfigurationSet& set) {
-  const corba::CallGate::Inside inside(gate_);
+  const Inside inside(gate_);
   return configuration_.setConfigurationSetValues(to_properties(set));
 }
 
 ConfigurationSet* Configuration_impl::get_active_configuration_set() {
-  const corba::CallGate::Inside inside(gate_);
+  const Inside inside(gate_);
   if (!configuration_.isActive()) throw NotAvailable("a set has changed and none has been activated since");
   return new ConfigurationSet(to_set(configuration_.getActiveConfigurationSet()));
 }
 
 CORBA::Boolean Configuration_impl::add_configuration_set(const ConfigurationSet& set) {
-  const corba::CallGate::Inside inside(gate_);
+  const Inside inside(gate_);
   return configuration_.addConfigurationSet(to_properties(set));
 }
 
 CORBA::Boolean Configuration_impl::remove_configuration_set(const char* id) {
-  const corba::CallGate::Inside inside(gate_);
+  const Inside inside(gate_);
   if (id[0] == '\0') throw InvalidParameter("the id is empty");
   return configuration_.removeConfigurationSet(id);
 }
 
 CORBA::Boolean Configuration_impl::activate_configuration_set(const char* id) {
-  const corba::CallGate::Inside inside(gate_);
+  const Inside inside(gate_);
   if (id[0] == '\0') throw InvalidParameter("the id is empty");
   if (!configuration_.activateConfigurationSet(id))
     throw InvalidParameter(("no configuration set " + base::in_quotes(id) + " that can be active").c_str());

@@ -3,7 +3,7 @@
 
 #include <rtm/idl/SDOPackageSkel.h>
 
-#include "corba/call_gate.h"
+#include "corba/gate.h"
 
 namespace RTC {
 class ConfigAdmin;
@@ -40,7 +40,7 @@ class Configuration_impl : public virtual POA_SDOPackage::Configuration, public 
   CORBA::Boolean activate_configuration_set(const char* id) override;
 
  private:
-  corba::CallGate gate_;
+  corba::Gate gate_;
   RTC::RTObject_impl& component_;
   RTC::ConfigAdmin& configuration_;
   RTC::SdoServiceAdmin& services_;

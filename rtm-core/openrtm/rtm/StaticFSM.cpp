@@ -124,6 +124,7 @@ void Engine::add_event_profile(const std::string& name, const std::string& data_
   structure_.event_profiles[n].name = name.c_str();
   structure_.event_profiles[n].data_type = data_type.c_str();
   if (service_) service_->set_fsm_structure(structure_);
+  if (component_) component_->notifyObservers(RTObject_impl::Status::fsm_profile, name);
 }
 
 }  // namespace RTC::fsm
