@@ -134,7 +134,7 @@ void add_configuration(CLI::App& app, Work& work) {
   auto options = std::make_shared<editor::ConfigurationOptions>();
   conf->add_option("PATH", options->path, "Component")->required();
   conf->add_option("ACTION", options->action, "list, get, set or use")->check(CLI::IsMember({"list", "get", "set", "use", "act"}));
-  conf->add_option("ARGUMENT", options->arguments, "Parameter, value or set");
+  conf->add_option("ARGUMENT", options->arguments, "Parameter, value or set")->allow_extra_args(false);
   conf->add_option("-s,--set", options->set, "The set to read or change; default: the active one");
   conf->add_flag("-a,--all", options->all, "Hidden sets too");
   conf->callback([&work, options] { work = [options](Editor& e) { editor::configure(e, *options); }; });
@@ -170,7 +170,8 @@ void add_data(CLI::App& app, Work& work) {
   auto* inject = app.add_subcommand("inject", "Write values to an InPort");
   auto values = std::make_shared<editor::InjectOptions>();
   inject->add_option("PORT", values->port, "InPort")->required();
-  inject->add_option("VALUE", values->values, "JSON, or RTC.TimedLong({time}, 42)")->required();
+  // Without extra arguments CLI11 leaves values in brackets as they are.
+  inject->add_option("VALUE", values->values, "JSON, or RTC.TimedLong({time}, 42)")->required()->allow_extra_args(false);
   inject->add_option("-n,--count", values->count, "How often; 0: until stopped")->check(CLI::NonNegativeNumber)->capture_default_str();
   inject->add_option("-r,--rate", values->rate, "How often a second")->check(CLI::Range(1e-3, 1e5))->capture_default_str();
   inject->callback([&work, values] { work = [values](Editor& e) { editor::inject(e, *values); }; });

@@ -26,6 +26,14 @@ TEST(Address, a_colon_in_the_only_segment_of_an_absolute_path_belongs_to_the_ser
   }
 }
 
+TEST(Address, a_server_without_slashes_is_no_component_with_a_port) {
+  const auto a = address("127.0.0.1:2898");
+  EXPECT_TRUE(a.is_absolute);
+  EXPECT_EQ(a.segments, std::vector<std::string>{"127.0.0.1:2898"});
+  EXPECT_EQ(address("Laser0.rtc:2898").port, "2898");
+  EXPECT_EQ(address("Laser0:12").port, "12");
+}
+
 TEST(Address, tails_name_a_component_and_its_port) {
   const auto a = address("Laser0:range");
   EXPECT_FALSE(a.is_absolute);

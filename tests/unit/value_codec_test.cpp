@@ -52,6 +52,22 @@ TEST(ValueCodec, what_is_encoded_reads_back_the_same) {
   }
 }
 
+TEST(ValueCodec, every_type_of_ports_has_a_default_that_reads_back_the_same) {
+  const auto ids = known_data_types();
+  EXPECT_GE(ids.size(), 126u);
+  for (const auto& id : ids) {
+    for (const bool little : {true, false}) {
+      const auto payload = encode(type_code_of(id), Json(), little);
+      ASSERT_TRUE(payload.ok()) << payload.error().message;
+      const auto value = decode(type_code_of(id), *payload, little);
+      ASSERT_TRUE(value.ok()) << value.error().message;
+      EXPECT_EQ(*encode(type_code_of(id), *value, little), *payload) << id;
+      // What print writes is what inject takes.
+      EXPECT_EQ(*parse_value(type_code_of(id), value->dump(), 0), *value) << id;
+    }
+  }
+}
+
 TEST(ValueCodec, payloads_cut_anywhere_are_refused) {
   for (const auto& entry : golden()) {
     const auto type = type_code_of(entry["type"].get<std::string>());
