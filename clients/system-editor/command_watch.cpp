@@ -3,6 +3,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <utility>
 
 #include "base/text.h"
 #include "editor.h"
@@ -58,6 +62,8 @@ class Page {
     }
     ++line_;
   }
+  // So many lines are left below the first shown one.
+  int rest() const { return line_; }
 
  private:
   int line_;
@@ -75,18 +81,43 @@ std::string peers_of(const PortView& port, const std::vector<ComponentView>& all
   return base::join(names, ", ");
 }
 
-void draw_component(Page& page, const ComponentView& component, const std::vector<ComponentView>& all) {
-  const auto state = component.problem.empty() ? state_text(component.state()) : component.problem;
-  std::string rate;
-  std::string load;
-  if (!component.contexts.empty()) {
-    rate = base::format_number(component.contexts.front().rate) + " Hz";
-    for (const auto& [key, value] : component.contexts.front().properties) {
-      if (key.starts_with("statistics.") || key.starts_with("measurement.")) load += "  " + key.substr(key.find('.') + 1) + " " + value;
-    }
+double number(const Properties& properties, const std::string& key) { return base::parse_number(property(properties, key)).value_or(0); }
+
+// What the contexts have really done between two looks.
+class Rates {
+ public:
+  // "1000 Hz asked, 998.7 done, 0.02 ms each, 1.2 at most, 3 missed"; less where a runtime has no statistics.
+  std::string text(const ComponentView& component) {
+    if (component.contexts.empty()) return "";
+    const auto& context = component.contexts.front();
+    auto text = base::format_number(context.rate) + " Hz";
+    if (!context.properties.contains("statistics.cycles")) return text;
+    const Look now{number(context.properties, "statistics.cycles"), Clock::now()};
+    const auto before = std::exchange(looks_[component.path], now);
+    const auto passed = std::chrono::duration<double>(now.time - before.time).count();
+    char more[120] = "";
+    if (before.time != Clock::time_point{} && now.cycles >= before.cycles && passed > 0)
+      std::snprintf(more, sizeof more, " asked, %.1f done", (now.cycles - before.cycles) / passed);
+    text += more;
+    std::snprintf(
+        more, sizeof more, ", %.3g ms each, %.3g at most, %.0f missed", 1000 * number(context.properties, "statistics.mean_execution_time"),
+        1000 * number(context.properties, "statistics.max_execution_time"), number(context.properties, "statistics.missed_cycles"));
+    return text + more;
   }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Look {
+    double cycles = 0;
+    Clock::time_point time;
+  };
+  std::map<std::string, Look> looks_;  // by the component's path
+};
+
+void draw_component(Page& page, const ComponentView& component, const std::vector<ComponentView>& all, Rates& rates) {
+  const auto state = component.problem.empty() ? state_text(component.state()) : component.problem;
   char line[512];
-  std::snprintf(line, sizeof line, "%-24s %-10s %-10s%s", component.instance.c_str(), state.c_str(), rate.c_str(), load.c_str());
+  std::snprintf(line, sizeof line, "%-24s %-10s %s", component.instance.c_str(), state.c_str(), rates.text(component).c_str());
   page.write(line, colour_of(component));
   for (const auto& port : component.ports) {
     const auto mark = port.port_type() == "DataInPort" ? "->" : port.port_type() == "DataOutPort" ? "<-" : "<>";
@@ -102,6 +133,7 @@ void draw_component(Page& page, const ComponentView& component, const std::vecto
 void watch(Editor& editor, const std::string& path) {
   if (!isatty(1)) return editor.fail({"watch: standard output is no terminal; use: rtse ls -l"});
   const Screen screen;
+  Rates rates;
   int first = 0;
   for (int key = 0; key != 'q' && key != 'Q';) {
     const auto names = editor.tree(path);
@@ -112,13 +144,15 @@ void watch(Editor& editor, const std::string& path) {
       page.write(names.error().message, COLOR_PAIR(2));
     } else {
       const auto components = read_components(*names, {.contexts = true, .connectors = true}, editor.limit());
-      for (const auto& component : components) draw_component(page, component, components);
+      for (const auto& component : components) draw_component(page, component, components, rates);
     }
     refresh();
     key = getch();
+    const int before = first;
     if (key == KEY_DOWN) ++first;
     if (key == KEY_UP) first = std::max(0, first - 1);
     if (key == KEY_NPAGE) first += LINES - 2;
+    if (key == KEY_DOWN || key == KEY_NPAGE) first = std::min(first, std::max(0, before + page.rest() - 1));  // the last line stays
     if (key == KEY_PPAGE) first = std::max(0, first - LINES + 2);
   }
 }

@@ -134,10 +134,15 @@ void add_configuration(CLI::App& app, Work& work) {
   auto options = std::make_shared<editor::ConfigurationOptions>();
   conf->add_option("PATH", options->path, "Component")->required();
   conf->add_option("ACTION", options->action, "list, get, set or use")->check(CLI::IsMember({"list", "get", "set", "use", "act"}));
-  conf->add_option("ARGUMENT", options->arguments, "Parameter, value or set")->allow_extra_args(false);
+  conf->add_option("ARGUMENT", options->arguments, "Parameter, value or set");
   conf->add_option("-s,--set", options->set, "The set to read or change; default: the active one");
   conf->add_flag("-a,--all", options->all, "Hidden sets too");
-  conf->callback([&work, options] { work = [options](Editor& e) { editor::configure(e, *options); }; });
+  conf->callback([&work, options] {
+    for (auto& argument : options->arguments) {
+      if (argument.starts_with(" [")) argument.erase(0, 1);  // see words_of
+    }
+    work = [options](Editor& e) { editor::configure(e, *options); };
+  });
 }
 
 void add_connections(CLI::App& app, Work& work) {
@@ -170,8 +175,7 @@ void add_data(CLI::App& app, Work& work) {
   auto* inject = app.add_subcommand("inject", "Write values to an InPort");
   auto values = std::make_shared<editor::InjectOptions>();
   inject->add_option("PORT", values->port, "InPort")->required();
-  // Without extra arguments CLI11 leaves values in brackets as they are.
-  inject->add_option("VALUE", values->values, "JSON, or RTC.TimedLong({time}, 42)")->required()->allow_extra_args(false);
+  inject->add_option("VALUE", values->values, "JSON, or RTC.TimedLong({time}, 42)")->required();
   inject->add_option("-n,--count", values->count, "How often; 0: until stopped")->check(CLI::NonNegativeNumber)->capture_default_str();
   inject->add_option("-r,--rate", values->rate, "How often a second")->check(CLI::Range(1e-3, 1e5))->capture_default_str();
   inject->callback([&work, values] { work = [values](Editor& e) { editor::inject(e, *values); }; });
@@ -254,6 +258,19 @@ void add_managers(CLI::App& app, Work& work) {
 
 }  // namespace
 
+namespace {
+
+// CLI11 takes a word in brackets apart at its commas; with a blank before it stays one value, which JSON does not mind.
+std::vector<std::string> words_of(int argc, char** argv) {
+  std::vector<std::string> words(argv, argv + argc);
+  for (auto& word : words) {
+    if (word.starts_with('[') && word.ends_with(']')) word.insert(0, " ");
+  }
+  return words;
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   CLI::App app{
       "rtse: list, wire, configure, start and save systems of RT components\n"
@@ -278,7 +295,10 @@ int main(int argc, char** argv) {
   add_managers(app, work);
   add_run(app, work);
   editor::add_new_command(app, code);
-  if (const auto end = base::parse_command_line(app, "rtse", argc, argv)) return *end;
+  const auto words = words_of(argc, argv);
+  std::vector<const char*> arguments;
+  for (const auto& word : words) arguments.push_back(word.c_str());
+  if (const auto end = base::parse_command_line(app, "rtse", argc, arguments.data())) return *end;
   if (!work) return code;  // done without an ORB
   try {
     const Orb orb;

@@ -221,6 +221,7 @@ def connect_demo():
     for number, (source, sink) in enumerate(pairs):
         options = ["-p", f"subscription_type={kinds[number % 3]}", "-p", "push_rate=25", "-p", f"push_policy={('all', 'skip', 'new')[number % 3]}", "-p", "skip_count=2"]
         rig.rtse("con", f"SourceAll0:{source}", f"SinkAll0:{sink}", "-i", f"connection {number}", "-n", f"{source} to {sink} <&\">", *options)
+    rig.rtse("inject", "SinkAll0:long_seq", "[1,2]", "[]", "{\"data\": [3]}")  # arrays and several values reach the port whole
     services = {name: [p["name"] for p in json.loads(rig.rtse("--json", "cat", name))["ports"] if p["type"] == "CorbaPort"] for name in ("EchoConsumer0", "EchoProvider0")}
     rig.rtse("con", f"EchoConsumer0:{services['EchoConsumer0'][0]}", f"EchoProvider0:{services['EchoProvider0'][0]}", "-i", "echo")
 
@@ -228,6 +229,8 @@ def connect_demo():
 def change_configuration():
     sets = json.loads(rig.rtse("--json", "cat", "ConfigDemo0"))["configuration"]
     names = [name for name in sets if not name.startswith("_")]
+    rig.rtse("conf", "ConfigDemo0", "-s", names[-1], "set", "mode", "[a,b]")
+    assert rig.rtse("conf", "ConfigDemo0", "-s", names[-1], "get", "mode").strip() == "[a,b]"
     text = next(key for key in sets[names[0]] if "weights" in key)
     rig.rtse("conf", "ConfigDemo0", "-s", names[0], "set", text, "7, 8.25,-1e-3")
     rig.rtse("conf", "ConfigDemo0", "use", names[-1])
