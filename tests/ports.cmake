@@ -6,3 +6,4 @@ rtmsim_test(ports_core_test ports/connector_settings_test.cpp ports/mailbox_test
 rtmsim_test(ports_wire_test ports/connect_test.cpp ports/transport_test.cpp ports/fault_test.cpp ports/service_port_test.cpp
   ports/listener_test.cpp ports/nv_util_test.cpp LIBRARIES openrtm LABELS corba)
 add_dependencies(ports_wire_test ports_peer)
+rtmsim_test(ports_golden_test ports/golden_test.cpp LIBRARIES openrtm nlohmann_json::nlohmann_json LABELS corba)
