@@ -7,6 +7,7 @@
 #include <iostream>
 #include <memory>
 #include <pugixml.hpp>
+#include <set>
 
 #include "base/text.h"
 #include "skeleton.h"
@@ -88,6 +89,14 @@ Result<NewComponent> read_yaml(const std::string& file) {
     const auto root = YAML::LoadFile(file);
     if (!root.IsMap())
       return Error{"file " + base::in_quotes(file) + ": must hold a map with name, in_ports, out_ports, parameters, services"};
+    static const std::set<std::string> known{"name", "description", "version",   "vendor",     "category",
+                                             "rate", "in_ports",    "out_ports", "parameters", "services"};
+    for (const auto& entry : root) {
+      const auto key = entry.first.Scalar();
+      if (!known.contains(key))
+        return Error{"file " + base::in_quotes(file) + ":" + std::to_string(entry.first.Mark().line + 1) + ": unknown key " +
+                     base::in_quotes(key) + ", expected one of " + base::join({known.begin(), known.end()}, ", ")};
+    }
     NewComponent component;
     component.name = text(root, "name");
     component.description = text(root, "description", component.description);
