@@ -265,19 +265,36 @@ ReturnCode_t RTObject_impl::finalize() {
 }
 
 ReturnCode_t RTObject_impl::exit() {
+  bool is_first = false;
   {
     auto data = impl_->shared.lock();
-    if (data->phase != Impl::Phase::alive) return PRECONDITION_NOT_MET;
-    data->phase = Impl::Phase::exiting;
+    is_first = data->phase == Impl::Phase::alive;
+    if (is_first) data->phase = Impl::Phase::exiting;
+  }
+  if (!is_first) {
+    if (callback_depth == 0) waitForExiter();
+    return PRECONDITION_NOT_MET;
   }
   if (callback_depth == 0) return exitNow();
   // A context cannot be stopped from inside one of its callbacks. The thread holds a reference: the component may be given back meanwhile.
   _add_ref();
+  const std::scoped_lock lock(impl_->exiter_mutex);
   impl_->exiter = std::thread([this] {
     exitNow();
     _remove_ref();
   });
   return RTC_OK;
+}
+
+// Who takes the component away after it has left by itself must not do so while it is still leaving.
+void RTObject_impl::waitForExiter() {
+  std::thread exiter;
+  {
+    const std::scoped_lock lock(impl_->exiter_mutex);
+    if (impl_->exiter.get_id() == std::this_thread::get_id()) return;
+    exiter.swap(impl_->exiter);
+  }
+  if (exiter.joinable()) exiter.join();
 }
 
 ReturnCode_t RTObject_impl::exitNow() {

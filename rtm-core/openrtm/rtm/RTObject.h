@@ -365,6 +365,7 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   void leaveOrganizations();
   void leaveContexts();
   ReturnCode_t exitNow();
+  void waitForExiter();
   // Calls the author's function; what it throws is logged and RTC_ERROR.
   template <class Function>
   ReturnCode_t callUser(const char* name, Function function);

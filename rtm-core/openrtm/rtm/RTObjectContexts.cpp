@@ -128,9 +128,10 @@ void RTObject_impl::finalizeContexts() {
   contexts.swap(impl_->shared.lock()->contexts);
   for (ExecutionContextBase* context : contexts) {
     if (NamedContexts::instance().release(context)) {
-      context->stop();
-      // A thread cannot be taken out of a callback that does not return, so what it works on must stay.
-      if (!context->waitForQuiet(std::chrono::nanoseconds(0))) {
+      // A thread cannot be taken out of a callback that does not return, so what it works on must stay. stop() has waited already when it
+      // fails.
+      const bool has_failed = context->stop() == RTC::RTC_ERROR;
+      if (!context->waitForQuiet(has_failed ? std::chrono::seconds(0) : std::chrono::seconds(10))) {
         impl_->shared.lock()->is_held = true;
         continue;
       }

@@ -8,6 +8,7 @@
 
 #include <condition_variable>
 #include <map>
+#include <mutex>
 #include <set>
 #include <thread>
 
@@ -52,6 +53,7 @@ struct RTObject_impl::Impl {
   SdoServiceAdmin services;
   SDOPackage::Configuration_impl* configuration = nullptr;  // a servant; one reference
   std::thread exiter;                                       // runs exit() when a callback asked for it
+  std::mutex exiter_mutex;
 };
 
 inline constexpr ExecutionContextHandle_t foreign_offset = 1000;
