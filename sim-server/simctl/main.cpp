@@ -85,8 +85,14 @@ void add_control(CLI::App& app, Work& work) {
   auto options = option_value<simctl::SpawnOptions>();
   spawn->add_option("FILE", options->file, "SDF file, model folder, model://NAME, or SDF text")->required();
   spawn->add_option("--name", options->name, "Name; default: the file's, with a number when it is taken");
-  spawn->add_option("--pose", options->pose, "X Y YAW, X Y Z YAW, or X Y Z ROLL PITCH YAW")->expected(3, 6);
-  spawn->callback([&work, options] { work = [options](Control& c) { simctl::spawn(c, *options); }; });
+  spawn->add_option("--pose", options->pose, "X Y YAW, X Y Z YAW, or X Y Z ROLL PITCH YAW; words or one")->expected(1, 6)->delimiter(' ');
+  spawn->callback([&work, options] {
+    if (const auto n = options->pose.size(); n == 1 || n == 2 || n == 5 || n > 6) {
+      throw CLI::ValidationError("--pose",
+                                 "expected X Y YAW, X Y Z YAW or X Y Z ROLL PITCH YAW [m, rad], got " + std::to_string(n) + " numbers");
+    }
+    work = [options](Control& c) { simctl::spawn(c, *options); };
+  });
 
   auto* remove = app.add_subcommand("delete", "Remove a model");
   auto gone = option_value<std::string>();
@@ -103,7 +109,8 @@ void add_pictures(CLI::App& app, Work& work) {
   auto* screenshot = app.add_subcommand("screenshot", "Write a picture of the world");
   auto options = option_value<simctl::ScreenshotOptions>();
   screenshot->add_option("FILE", options->file, "PNG")->required();
-  auto* from = screenshot->add_option("--from", options->from, "Camera at X Y Z ROLL PITCH YAW")->expected(6);
+  auto* from =
+      screenshot->add_option("--from", options->from, "Camera at X Y Z ROLL PITCH YAW, six words or one")->expected(1, 6)->delimiter(' ');
   auto* follow = screenshot->add_option("--follow", options->follow, "From behind a model");
   auto* top = screenshot->add_flag("--top", options->from_top, "From above");
   auto* camera = screenshot->add_option("--camera", options->camera, "As a camera of the world sees it");
@@ -118,7 +125,13 @@ void add_pictures(CLI::App& app, Work& work) {
       ->check(CLI::IsMember({"visuals", "collisions"}))
       ->each([options](const std::string& what) { options->with_collisions = what == "collisions"; });
   screenshot->add_option("--span", options->span, "Metres across (--top) or field of view [rad]")->check(CLI::Range(0.0, 1e6));
-  screenshot->callback([&work, options] { work = [options](Control& c) { simctl::screenshot(c, *options); }; });
+  screenshot->callback([&work, options, from] {
+    if (from->count() > 0 && options->from.size() != 6) {
+      throw CLI::ValidationError("--from",
+                                 "expected 6 numbers, X Y Z ROLL PITCH YAW [m, rad], got " + std::to_string(options->from.size()));
+    }
+    work = [options](Control& c) { simctl::screenshot(c, *options); };
+  });
 
   auto* record = app.add_subcommand("record", "Record a camera as film (.mp4) or as PNG files in a folder");
   auto camera_name = option_value<std::string>();

@@ -136,6 +136,8 @@ def bad_requests():
                   ["info", "nobody"], ["velocity", "nobody", "1", "0", "0"], ["pose", robot, "nan", "0", "0"], ["pose", robot, "inf", "0", "0"],
                   ["velocity", f"{robot}::position2d", "nan", "0", "0"], ["spawn", "<sdf version='1.9'><model"], ["spawn", "/no/such/file.sdf"]):
         refused(*words)
+    refused("screenshot", f"{work.name}/x.png", "--from", "1 2 3", code=2, says="expected 6 numbers")
+    refused("spawn", course, "--pose", "1 2", code=2, says="expected X Y YAW")
     refused("pose", robot, "1", code=2)
     refused("step", "-1", code=2)
     refused("step", "many", code=2)
