@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 #include <thread>
+#include <utility>
 
 namespace {
 
@@ -65,12 +66,14 @@ std::shared_ptr<shm::Participant> SimTimeContext::join() {
   options.period = getPeriod();
   auto joined = shm::Participant::join(static_cast<std::uint32_t>(server_id_), options);
   if (!joined) {
-    say_once("waiting for the simulator: " + joined.error().message);
+    // Once for each time that it is away, however the reason changes meanwhile.
+    if (!std::exchange(is_waiting_, true)) say_once("waiting for the simulator: " + joined.error().message);
     return nullptr;
   }
   auto simulation = shm::Iface::open(static_cast<std::uint32_t>(server_id_), shm::IfaceType::simulation, "world");
   if (!simulation) return nullptr;
   simulation_.emplace(std::move(*simulation));
+  is_waiting_ = false;
   say_once("ticking at " + base::format_number(getRate()) + " Hz of simulated time, phase " + std::to_string(phase_) + " of simulator " +
            std::to_string(server_id_));
   auto participant = std::make_shared<shm::Participant>(std::move(*joined));
@@ -101,6 +104,7 @@ void SimTimeContext::run(shm::Participant& participant) {
       case shm::Participant::State::dropped:
         return say_once("the simulator has dropped this context from the lock step; joining again");
       case shm::Participant::State::closed:
+        is_waiting_ = true;
         return say_once("the simulator is gone; waiting for it");
     }
   }

@@ -46,6 +46,7 @@ class SimTimeContext : public RTC::PeriodicExecutionContext {
   int server_id_ = 0;
   std::uint32_t phase_ = 1;
   std::string said_;                      // the last line, not to be said again
+  bool is_waiting_ = false;               // and has said so
   std::optional<shm::Iface> simulation_;  // of the ticking thread
   std::mutex mutex_;                      // of participant_
   std::shared_ptr<shm::Participant> participant_;
