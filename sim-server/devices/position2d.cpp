@@ -100,6 +100,7 @@ base::Result<DriveSettings> DriveSettings::of(const ModelDef& model, const Plugi
       0.0, p.number_of({"max_wheel_acceleration", "max_linear_acceleration", "max_acceleration", "wheelAcceleration", "wheel_acceleration"})
                .value_or(0));
   s.max_yaw_acceleration = std::max(0.0, p.number_of({"max_angular_acceleration", "max_yaw_acceleration"}).value_or(0));
+  s.rate = std::max(0.0, p.number_of({"odom_publish_frequency", "update_rate", "updateRate"}).value_or(0));
   return s;
 }
 
