@@ -7,6 +7,9 @@ target_sources(openrtm PRIVATE
   rtm/Manager.cpp
   rtm/ManagerComponents.cpp
   rtm/ManagerConfig.cpp
+  rtm/ManagerConnections.cpp
+  rtm/ManagerCreation.cpp
+  rtm/ManagerLife.cpp
   rtm/ManagerServant.cpp
   rtm/ModuleManager.cpp
   rtm/NamingManager.cpp

@@ -1,26 +1,19 @@
 #include "rtm/Manager.h"
 
-#include <signal.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
 
 #include "base/log.h"
 #include "base/text.h"
-#include "core/name_format.h"
 #include "rtm/ECFactory.h"
-#include "rtm/FactoryInit.h"
-#include "rtm/LocalServiceAdmin.h"
-#include "rtm/LogstreamBase.h"
 #include "rtm/ManagerConfig.h"
 #include "rtm/ManagerImpl.h"
 #include "rtm/ManagerServant.h"
 #include "rtm/ModuleManager.h"
 #include "rtm/NamingManager.h"
-#include "rtm/RTObject.h"
 
 namespace RTM::detail {
 
@@ -39,43 +32,8 @@ void log_listener_exception() {
 namespace RTC {
 namespace {
 
-using std::chrono::steady_clock;
-
 std::recursive_mutex the_mutex;  // guards the_manager; held while it starts, and what starts asks for it
 Manager* the_manager = nullptr;  // lives until the process ends: components' and the ORB's threads may outlive main()
-
-std::chrono::milliseconds to_milliseconds(double seconds) {
-  constexpr double longest = 1e9;  // 30 years
-  return std::chrono::milliseconds(static_cast<std::int64_t>(std::clamp(seconds, 0.0, longest) * 1000.0));
-}
-
-std::vector<std::string> split_arguments(const std::string& text) {
-  std::vector<std::string> words;
-  std::string word;
-  char quote = '\0';
-  bool has_word = false;
-  for (const char c : text) {
-    if (quote != '\0') {
-      if (c == quote) {
-        quote = '\0';
-      } else {
-        word += c;
-      }
-    } else if (c == '"' || c == '\'') {
-      quote = c;
-      has_word = true;
-    } else if (c == ' ' || c == '\t') {
-      if (has_word) words.push_back(std::move(word));
-      word.clear();
-      has_word = false;
-    } else {
-      word += c;
-      has_word = true;
-    }
-  }
-  if (has_word) words.push_back(std::move(word));
-  return words;
-}
 
 std::string base_name(const char* path) {
   const std::string text(path != nullptr ? path : "rtm");
@@ -119,269 +77,6 @@ std::string ManagerImpl::value(const std::string& key) const {
 bool ManagerImpl::flag(const std::string& key, bool otherwise) const { return base::parse_bool(value(key)).value_or(otherwise); }
 double ManagerImpl::number(const std::string& key, double otherwise) const { return base::parse_number(value(key)).value_or(otherwise); }
 std::vector<std::string> ManagerImpl::list(const std::string& key) const { return base::split_list(value(key)); }
-
-// ---------------------------------------------------------------------------------------------- start
-
-base::Result<void> ManagerImpl::start(const ManagerConfig& configuration, const ManagerOptions& given) {
-  options = given;
-  home = std::this_thread::get_id();
-  configuration.configure(config);
-  start_logging();
-  for (const auto& warning : configuration.warnings()) RTC_WARN(("%s", warning.c_str()));
-  if (auto started = start_orb(); !started) return started.error();
-  timer = std::make_unique<rt::TaskRunner>("rtm-timer");
-  cleaner = std::make_unique<rt::TaskRunner>("rtm-cleaner");
-  modules = std::make_unique<ModuleManager>(&facade);
-  {
-    auto locked = state.lock();
-    locked->phase = Phase::started;
-    locked->empty_since = steady_clock::now();
-  }
-  FactoryInit(&facade);
-  const auto policy = value("manager.components.naming_policy");
-  auto& policies = RTM::NumberingPolicyFactory::instance();
-  numbering = policies.createObject(policy);
-  if (numbering == nullptr) {
-    RTC_WARN(("manager.components.naming_policy: unknown policy %s; process_unique is used", base::in_quotes(policy).c_str()));
-    numbering = policies.createObject("process_unique");
-  }
-  start_naming();
-  if (flag("manager.corba_servant", true)) {
-    servant = new RTM::ManagerServant(facade);
-    servant->activate();
-  }
-  {
-    const std::scoped_lock lock(config_mutex);
-    RTM::LocalServiceAdmin::instance().init(config.getNode("manager.local_service"));
-  }
-  start_timer_tasks();
-  signals = std::make_unique<rt::SignalWatcher>(std::vector<int>{SIGINT, SIGTERM}, [this](int number) {
-    request_end();
-    wait_until_ended();
-    // If nobody comes to runManager who would let the process end, the signal ends it.
-    constexpr std::chrono::seconds patience{2};
-    auto locked = state.lock();
-    if (!locked.wait_for(changed, patience, [&] { return locked->runners > 0; })) ::raise(number);
-  });
-  life = std::thread([this] { live(); });
-  return {};
-}
-
-void ManagerImpl::start_logging() {
-  LogSettings settings;
-  settings.enabled = flag("logger.enable", true);
-  settings.level = Logger::parseLevel(value("logger.log_level")).value_or(Logger::RTL_INFO);
-  settings.colored = flag("logger.escape_sequence_enable", false);
-  settings.date_format = value("logger.date_format");
-  settings.files.clear();
-  for (const auto& pattern : list("logger.file_name")) {
-    settings.files.push_back(rt::expand_format(pattern, [&](char c) -> std::optional<std::string> {
-      if (c == 'p') return std::to_string(getpid());
-      if (c == 'h') return value("os.hostname");
-      if (c == 'M' || c == 'n') return value("manager.name");
-      return std::nullopt;
-    }));
-  }
-  for (const auto& complaint : setLogSettings(settings)) RTC_ERROR(("%s", complaint.c_str()));
-}
-
-base::Result<void> ManagerImpl::start_orb() {
-  corba::OrbSettings settings;
-  settings.endpoints = list("corba.endpoints");
-  for (const auto& endpoint : list("corba.endpoint")) settings.endpoints.push_back(endpoint);
-  settings.arguments = split_arguments(value("corba.args"));
-  settings.unix_socket = flag("corba.unix_socket", true);
-  settings.call_timeout = to_milliseconds(number("corba.call_timeout", 10.0));
-  if (is_master() && settings.endpoints.empty()) {
-    const auto address = value("corba.master_manager");
-    const auto colon = address.rfind(':');
-    if (colon != std::string::npos) settings.endpoints.push_back(address.substr(colon));
-  }
-  auto started = corba::Orb::start(settings);
-  if (!started) return started.error();
-  orb = std::move(*started);
-  return {};
-}
-
-void ManagerImpl::start_naming() {
-  naming = std::make_unique<NamingManager>(&facade);
-  if (!flag("naming.enable", true)) return;
-  for (const auto& method : list("naming.type")) {
-    if (method != "corba") continue;
-    for (const auto& server : list("corba.nameservers")) naming->registerNameServer(method.c_str(), server.c_str());
-  }
-}
-
-void ManagerImpl::start_timer_tasks() {
-  if (!flag("timer.enable", true)) return;
-  if (flag("manager.shutdown_auto", true) && !is_master()) {
-    timer->add([this] { look_after_number_of_components(); }, std::chrono::seconds(1), std::chrono::seconds(1));
-  }
-  if (servant != nullptr && !is_master() && flag("corba.update_master_manager.enable", false)) {
-    const auto interval = std::max(to_milliseconds(number("corba.update_master_manager.interval", 10.0)), std::chrono::milliseconds(100));
-    timer->add([this] { servant->greet_master(); }, interval, {});
-  }
-}
-
-// ---------------------------------------------------------------------------------------------- activate
-
-bool ManagerImpl::activate() {
-  {
-    auto locked = state.lock();
-    if (locked->phase == Phase::active) return true;
-    if (locked->phase != Phase::started) return false;
-    locked->phase = Phase::active;
-    locked->activating = true;
-  }
-  const bool ok = activate_all();
-  auto locked = state.lock();
-  locked->empty_since = steady_clock::now();
-  locked->activating = false;
-  locked->activated = true;
-  changed.notify_all();
-  return ok && !locked->end_requested;
-}
-
-// What the configuration and the program name, in this order.
-bool ManagerImpl::activate_all() {
-  orb->activate();
-  if (servant != nullptr && (is_master() || options.bind_manager)) {
-    for (const auto& format : list("manager.naming_formats")) {
-      const auto name = rt::expand_format(format, [&](char c) -> std::optional<std::string> {
-        if (c == 'n') return rt::escape_name(value("manager.instance_name"));
-        if (c == 'h') return rt::escape_name(value("os.hostname"));
-        if (c == 'M') return rt::escape_name(value("manager.name"));
-        if (c == 'p') return std::to_string(getpid());
-        return std::nullopt;
-      });
-      naming->bindObject(name.c_str(), servant);
-    }
-  }
-
-  std::vector<std::string> preload = list("manager.modules.preload");
-  for (const auto& key : {"manager.preload.modules", "logger.plugins", "manager.local_service.modules"}) {
-    for (const auto& module : list(key)) preload.push_back(module);
-  }
-  for (const auto& module : preload) facade.load(module);
-  for (const auto& id : LogstreamFactory::instance().getIdentifiers()) {
-    auto* plugin = LogstreamFactory::instance().createObject(id);
-    coil::Properties node;
-    {
-      const std::scoped_lock lock(config_mutex);
-      if (const auto* found = config.findNode("logger.logstream." + id)) node = *found;
-    }
-    if (plugin == nullptr || node.size() == 0 || !plugin->init(node)) continue;
-    if (plugin->getStreamBuffer() != nullptr) addLogStreamBuffer(plugin->getStreamBuffer());
-    log_plugins.push_back(plugin);
-  }
-
-  if (init_proc != nullptr) {
-    try {
-      init_proc(&facade);
-    } catch (const std::exception& e) {
-      RTC_ERROR(("the module init function failed: %s", e.what()));
-    } catch (...) {
-      RTC_ERROR(("the module init function failed with an unknown exception"));
-    }
-  }
-  bool ok = true;
-  for (const auto& module : options.modules) ok = load_and_create(module) && ok;
-  for (const auto& argument : list("manager.components.precreate")) facade.createComponent(argument);
-  facade.connectPorts(value("manager.components.preconnect"));
-  facade.activateComponents(value("manager.components.preactivation"));
-  on_exit(&end_at_exit, nullptr);  // again: before what has been made meanwhile is destroyed
-  return ok;
-}
-
-// A manager that nobody ever gave a component ends after a while, so that forgotten processes go away.
-void ManagerImpl::look_after_number_of_components() {
-  if (!flag("manager.shutdown_on_nortcs", true) || is_master()) return;
-  const auto duration = to_milliseconds(number("manager.auto_shutdown_duration", 20.0));
-  bool is_over = false;
-  {
-    auto locked = state.lock();
-    if (!locked->records.empty() || locked->phase != Phase::active) locked->empty_since = steady_clock::now();
-    is_over = steady_clock::now() - locked->empty_since >= duration;
-  }
-  if (!is_over) return;
-  RTC_INFO(("no component for %g s: ending", static_cast<double>(duration.count()) / 1000.0));
-  request_end();
-}
-
-// ---------------------------------------------------------------------------------------------- end
-
-bool ManagerImpl::is_ending() const {
-  const auto phase = state.lock()->phase;
-  return phase == Phase::ending || phase == Phase::ended;
-}
-
-void ManagerImpl::request_end() {
-  state.lock()->end_requested = true;
-  changed.notify_all();
-}
-
-void ManagerImpl::wait_until_ended() {
-  while (!wait_until_ended(std::chrono::hours(1))) {
-  }
-}
-
-bool ManagerImpl::wait_until_ended(std::chrono::nanoseconds timeout) {
-  auto locked = state.lock();
-  return locked.wait_for(changed, timeout, [&] { return locked->life_is_over || locked->phase == Phase::created; });
-}
-
-// Waits for the request and does the work of ending: on a thread of its own because anybody may ask, also a component or the ORB.
-void ManagerImpl::live() {
-  pthread_setname_np(pthread_self(), "rtm-life");
-  for (bool ready = false; !ready;) {  // nothing is taken away under the hands of activate
-    auto locked = state.lock();
-    ready = locked.wait_for(changed, std::chrono::hours(1), [&] { return locked->end_requested && !locked->activating; });
-  }
-  try {
-    end();
-  } catch (const std::exception& e) {
-    RTC_ERROR(("ending failed: %s", e.what()));
-  } catch (...) {
-    RTC_ERROR(("ending failed with an unknown exception"));
-  }
-  auto locked = state.lock();
-  locked->phase = Phase::ended;
-  locked->life_is_over = true;
-  changed.notify_all();
-}
-
-void ManagerImpl::end() {
-  listeners.manager_.call(&RTM::ManagerActionListener::preShutdown);
-  state.lock()->phase = Phase::ending;
-  if (servant != nullptr) servant->leave_masters();
-  exit_all_components();
-  naming->unbindAll();
-  if (state.lock()->has_abandoned) {
-    RTC_ERROR(("the process ends while a callback runs that does not return"));
-    std::fflush(nullptr);
-    std::_Exit(EXIT_FAILURE);  // anything more would be taken away under its hands
-  }
-  RTM::LocalServiceAdmin::instance().finalize();
-  if (servant != nullptr) servant->deactivate();
-  timer->stop();
-  cleaner->drain();
-  cleaner->stop();
-  naming.reset();
-  {
-    const std::scoped_lock lock(numbering_mutex);
-    RTM::NumberingPolicyFactory::instance().deleteObject(numbering);
-  }
-  orb.reset();
-  if (servant != nullptr) servant->_remove_ref();
-  servant = nullptr;
-  listeners.manager_.call(&RTM::ManagerActionListener::postShutdown);
-  for (auto* plugin : log_plugins) {
-    if (plugin->getStreamBuffer() != nullptr) removeLogStreamBuffer(plugin->getStreamBuffer());
-    plugin->shutdown();
-    LogstreamFactory::instance().deleteObject(plugin);
-  }
-  log_plugins.clear();
-}
 
 // ---------------------------------------------------------------------------------------------- facade
 

@@ -73,7 +73,7 @@ class ManagerImpl {
   explicit ManagerImpl(Manager& facade);
   ~ManagerImpl();
 
-  // --- life (Manager.cpp)
+  // --- life (ManagerLife.cpp)
   // Starts ORB, threads and naming. One line on failure.
   base::Result<void> start(const ManagerConfig& config, const ManagerOptions& options);
   bool activate();
@@ -88,7 +88,7 @@ class ManagerImpl {
   std::vector<std::string> list(const std::string& key) const;
   bool is_master() const { return flag("manager.is_master", false); }
 
-  // --- components (ManagerComponents.cpp)
+  // --- components (ManagerCreation.cpp, ManagerComponents.cpp, ManagerConnections.cpp)
   bool register_factory(const coil::Properties& profile, RtcNewFunc create, RtcDeleteFunc destroy);
   std::optional<RegisteredFactory> find_factory(const rt::ComponentId& id) const;
   // How many components of the module exist; without any, its factories are removed.

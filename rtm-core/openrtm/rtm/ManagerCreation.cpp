@@ -1,0 +1,352 @@
+// How components come into being: factories, creation from an argument, names.
+#include <algorithm>
+
+#include "base/text.h"
+#include "core/config_file.h"
+#include "core/name_format.h"
+#include "rtm/ManagerImpl.h"
+#include "rtm/ModuleManager.h"
+#include "rtm/NamingManager.h"
+#include "rtm/RTObject.h"
+
+namespace RTC {
+namespace {
+
+rt::ComponentId id_of(const coil::Properties& profile) {
+  const auto first = [&](const char* a, const char* b) {
+    const auto& value = profile.getProperty(a);
+    return value.empty() ? profile.getProperty(b) : value;
+  };
+  return {profile.getProperty("vendor"), profile.getProperty("category"), first("implementation_id", "type_name"),
+          profile.getProperty("language"), profile.getProperty("version")};
+}
+
+std::string to_text(const rt::ComponentId& id) {
+  return "RTC:" + id.vendor + ":" + id.category + ":" + id.implementation_id + ":" + id.language + ":" + id.version;
+}
+
+// The nodes of the manager's configuration that every component starts from.
+constexpr const char* inherited_nodes[] = {"config.version",
+                                           "openrtm.name",
+                                           "openrtm.version",
+                                           "os.name",
+                                           "os.release",
+                                           "os.version",
+                                           "os.arch",
+                                           "os.hostname",
+                                           "corba.endpoint",
+                                           "corba.endpoints",
+                                           "corba.id",
+                                           "exec_cxt",
+                                           "ec",
+                                           "execution_contexts",
+                                           "periodic_task",
+                                           "logger.enable",
+                                           "logger.log_level",
+                                           "naming.enable",
+                                           "naming.type",
+                                           "naming.formats",
+                                           "port",
+                                           "sdo",
+                                           "config_file",
+                                           "manager.instance_name"};
+
+// Keys of a creation argument that say where and how to create, not what.
+bool is_directive(const std::string& key) { return key == "manager_name" || key == "manager_address" || key == "language"; }
+
+}  // namespace
+
+// ---------------------------------------------------------------------------------------------- factories
+
+bool ManagerImpl::register_factory(const coil::Properties& profile, RtcNewFunc create_function, RtcDeleteFunc destroy) {
+  const auto id = id_of(profile);
+  if (id.implementation_id.empty() || create_function == nullptr || destroy == nullptr) {
+    RTC_ERROR(("a factory without implementation_id or functions is not registered"));
+    return false;
+  }
+  bool is_known = false;
+  {
+    auto locked = state.lock();
+    is_known = std::any_of(locked->factories.begin(), locked->factories.end(),
+                           [&](const auto& registered) { return id_of(registered.factory->profile()) == id; });
+    if (!is_known) {
+      locked->factories.push_back({std::make_shared<FactoryCXX>(profile, create_function, destroy), current_module});
+    }
+  }
+  if (is_known) RTC_WARN(("factory %s is registered already", base::in_quotes(to_text(id)).c_str()));
+  return !is_known;
+}
+
+std::optional<ManagerImpl::RegisteredFactory> ManagerImpl::find_factory(const rt::ComponentId& id) const {
+  const auto locked = state.lock();
+  for (const auto& registered : locked->factories) {
+    if (rt::is_match(id, id_of(registered.factory->profile()))) return registered;
+  }
+  return std::nullopt;
+}
+
+std::size_t ManagerImpl::forget_module(const std::string& module) {
+  auto locked = state.lock();
+  const auto living = static_cast<std::size_t>(
+      std::count_if(locked->records.begin(), locked->records.end(), [&](const auto& entry) { return entry.second.module == module; }));
+  if (living == 0) std::erase_if(locked->factories, [&](const auto& registered) { return registered.module == module; });
+  return living;
+}
+
+bool Manager::registerFactory(coil::Properties& profile, RtcNewFunc new_func, RtcDeleteFunc delete_func) {
+  return impl_->register_factory(profile, new_func, delete_func);
+}
+
+std::vector<coil::Properties> Manager::getFactoryProfiles() {
+  std::vector<coil::Properties> profiles;
+  const auto factories = impl_->state.lock()->factories;
+  for (const auto& registered : factories) profiles.push_back(registered.factory->profile());
+  return profiles;
+}
+
+std::vector<std::string> Manager::getModulesFactories() {
+  std::vector<std::string> names;
+  for (const auto& profile : getFactoryProfiles()) names.push_back(id_of(profile).implementation_id);
+  return names;
+}
+
+// ---------------------------------------------------------------------------------------------- creation
+
+base::Result<RTObject_impl*> ManagerImpl::create(std::string argument) {
+  {
+    auto locked = state.lock();
+    const bool is_running = (locked->phase == Phase::started || locked->phase == Phase::active) && !locked->end_requested;
+    if (!is_running) return base::Error{"component " + base::in_quotes(argument) + ": the manager is not running"};
+  }
+  listeners.rtclifecycle_.call(&RTM::RtcLifecycleActionListener::preCreate, argument);
+  const auto parsed = rt::parse_component_argument(argument);
+  if (!parsed) return parsed.error();
+
+  auto source = find_factory(parsed->id);
+  if (!source && flag("manager.modules.search_auto", true)) {
+    const auto file = modules->findFile(parsed->id.implementation_id);
+    if (!file.empty() && facade.load(file) == RTC_OK) source = find_factory(parsed->id);
+  }
+  if (!source) {
+    return base::Error{"component " + base::in_quotes(argument) +
+                       ": no factory of that type is registered and no module of that name is in " + value("manager.modules.load_path")};
+  }
+  auto* component = source->factory->create(&facade);
+  if (component == nullptr) return base::Error{"component " + base::in_quotes(argument) + ": its factory made none"};
+  std::uint64_t id = 0;
+  {
+    auto locked = state.lock();
+    id = ++locked->last_id;
+    auto& record = locked->records[id];
+    record.id = id;
+    record.component = component;
+    record.factory = source->factory;
+    record.module = source->module;
+  }
+  auto result = finish_creation(id, *source, *parsed);
+  if (!result) {
+    destroy(id);
+    return base::Error{"component " + base::in_quotes(argument) + ": " + result.error().message};
+  }
+  listeners.rtclifecycle_.call(&RTM::RtcLifecycleActionListener::postCreate, component);
+  return result;
+}
+
+coil::Properties ManagerImpl::inherited_properties() const {
+  coil::Properties properties;
+  const std::scoped_lock lock(config_mutex);
+  for (const auto* path : inherited_nodes) {
+    const auto* node = config.findNode(path);
+    if (node == nullptr) continue;
+    if (*node->getValue() != '\0' || *node->getDefaultValue() != '\0') {
+      properties.setProperty(path, *node->getValue() != '\0' ? node->getValue() : node->getDefaultValue());
+    }
+    for (const auto& name : node->propertyNames()) {
+      const auto& text = static_cast<const coil::Properties&>(*node).getProperty(name);
+      if (!text.empty()) properties.setProperty(std::string(path) + "." + name, text);
+    }
+  }
+  return properties;
+}
+
+// What rtc.conf says in line about a type or an instance, and the file it names.
+coil::Properties ManagerImpl::configured_properties(const std::string& category, const std::string& name) {
+  coil::Properties properties;
+  if (category.empty() || name.empty()) return properties;
+  coil::Properties in_line;
+  {
+    const std::scoped_lock lock(config_mutex);
+    if (const auto* node = config.findNode(category + "." + name)) in_line = *node;
+  }
+  const std::string file = in_line.getProperty("config_file");
+  if (!file.empty()) {
+    const auto text = rt::read_text_file(file);
+    if (!text) {
+      RTC_WARN(("%s.%s.config_file: %s", category.c_str(), name.c_str(), text.error().message.c_str()));
+    } else {
+      const auto parsed = rt::parse_config(*text);
+      for (const auto& finding : parsed.findings) RTC_WARN(("%s:%d: %s", file.c_str(), finding.line, finding.text.c_str()));
+      for (const auto& entry : parsed.entries) properties.setProperty(entry.key, entry.value);
+    }
+  }
+  for (const auto& key : in_line.propertyNames()) {
+    properties.setProperty(key, static_cast<const coil::Properties&>(in_line).getProperty(key));
+  }
+  return properties;
+}
+
+base::Result<std::string> ManagerImpl::name_component(RTObject_impl* component, const rt::ComponentArgument& argument, bool& numbered) {
+  std::string name;
+  for (const auto& [key, text] : argument.properties) {
+    if (key == "instance_name") name = text;
+  }
+  const bool is_given =
+      std::any_of(argument.properties.begin(), argument.properties.end(), [](const auto& p) { return p.first == "instance_name"; });
+  if (is_given) {
+    if (auto checked = rt::check_instance_name(name); !checked) return checked.error();
+  } else {
+    const std::scoped_lock lock(numbering_mutex);
+    name = component->getTypeName() + numbering->onCreate(component);
+    numbered = true;
+  }
+  auto locked = state.lock();
+  if (!locked->reserved_names.insert(name).second) return base::Error{"instance name " + base::in_quotes(name) + " exists already"};
+  return name;
+}
+
+std::vector<std::string> ManagerImpl::naming_names(RTObject_impl* component, const coil::Properties& properties) const {
+  std::vector<std::string> names;
+  if (!base::parse_bool(properties.getProperty("naming.enable")).value_or(true)) return names;
+  const auto text_of = [&](char c) -> std::optional<std::string> {
+    switch (c) {
+      case 'n':
+        return rt::escape_name(component->getInstanceName());
+      case 't':
+      case 'm':
+        return rt::escape_name(component->getTypeName());
+      case 'v':
+        return rt::escape_name(component->getVersion());
+      case 'V':
+        return rt::escape_name(component->getVendor());
+      case 'c':
+        return rt::escape_name(component->getCategory());
+      case 'i':
+        return rt::escape_name(properties.getProperty("implementation_id"));
+      case 'N':
+        return std::string(rt::number_suffix(component->getInstanceName()));
+      case 'h':
+        return rt::escape_name(value("os.hostname"));
+      case 'M':
+        return rt::escape_name(value("manager.name"));
+      case 'p':
+        return value("manager.pid");
+      default:
+        return std::nullopt;
+    }
+  };
+  for (const auto& format : base::split_list(properties.getProperty("naming.formats"))) names.push_back(rt::expand_format(format, text_of));
+  return names;
+}
+
+base::Result<RTObject_impl*> ManagerImpl::finish_creation(std::uint64_t id, const RegisteredFactory& source,
+                                                          const rt::ComponentArgument& argument) {
+  auto* component = state.lock()->records[id].component;
+  // What counts more comes later: the manager's settings, the type's specification, rtc.conf on the type, on the instance, the argument.
+  coil::Properties properties = source.factory->profile();
+  component->setProperties(properties);
+  bool numbered = false;
+  const auto name = name_component(component, argument, numbered);
+  if (!name) return name.error();
+  {
+    auto locked = state.lock();
+    locked->records[id].instance_name = *name;
+    locked->records[id].numbered = numbered;
+  }
+  component->setInstanceName(name->c_str());
+  const std::string category = component->getCategory();
+  for (const auto& inherited = inherited_properties(); const auto& key : inherited.propertyNames()) {
+    if (properties.findNode(key) == nullptr || properties.getProperty(key).empty()) properties.setProperty(key, inherited.getProperty(key));
+  }
+  properties << configured_properties(category, component->getTypeName());
+  properties << configured_properties(category, *name);
+  for (const auto& [key, text] : argument.properties) {
+    if (is_directive(key)) continue;
+    properties.setProperty(key, text);
+    if (key == "exported_ports") properties.setProperty("conf.default.exported_ports", text);
+  }
+  properties.setProperty("instance_name", *name);
+  listeners.rtclifecycle_.call(&RTM::RtcLifecycleActionListener::preConfigure, properties);
+  const auto names = naming_names(component, properties);
+  properties.setProperty("naming.names", base::join(names, ","));
+  component->setProperties(properties);
+  listeners.rtclifecycle_.call(&RTM::RtcLifecycleActionListener::postConfigure, properties);
+
+  listeners.rtclifecycle_.call(&RTM::RtcLifecycleActionListener::preInitialize);
+  const auto code = component->initialize();
+  listeners.rtclifecycle_.call(&RTM::RtcLifecycleActionListener::postInitialize);
+  if (code != RTC_OK) {
+    component->exit();
+    return base::Error{"its initialisation failed"};
+  }
+  Record record;
+  {
+    auto locked = state.lock();
+    auto& entry = locked->records[id];
+    entry.listed = true;
+    entry.names = names;
+    entry.object_key = category + "." + *name;
+    locked->had_components = true;
+    record = entry;
+  }
+  publish(record);
+  return component;
+}
+
+void ManagerImpl::publish(const Record& record) {
+  coil::vstring names = record.names;
+  listeners.naming_.call(&RTM::NamingActionListener::preBind, record.component, names);
+  for (const auto& name : names) naming->bindObject(name.c_str(), record.component);
+  RTObject_var reference = record.component->getObjRef();
+  if (orb && !CORBA::is_nil(reference)) orb->publish(record.object_key, reference);
+  listeners.naming_.call(&RTM::NamingActionListener::postBind, record.component, names);
+}
+
+void ManagerImpl::withdraw(const Record& record) {
+  if (!record.listed) return;
+  coil::vstring names = record.names;
+  listeners.naming_.call(&RTM::NamingActionListener::preUnbind, record.component, names);
+  if (naming) {
+    for (const auto& name : names) naming->unbindObject(name.c_str());
+  }
+  if (orb) orb->withdraw(record.object_key);
+  listeners.naming_.call(&RTM::NamingActionListener::postUnbind, record.component, names);
+}
+
+RTObject_impl* Manager::createComponent(const std::string& comp_args) {
+  auto made = impl_->create(comp_args);
+  if (made) return *made;
+  auto& rtclog = impl_->rtclog;
+  RTC_ERROR(("%s", made.error().message.c_str()));
+  return nullptr;
+}
+
+RTObject_impl* Manager::createComponent(const char* comp_args) {
+  return createComponent(std::string(comp_args != nullptr ? comp_args : ""));
+}
+
+bool ManagerImpl::load_and_create(const std::string& module) {
+  const bool is_argument = module.find('?') != std::string::npos || module.starts_with("RTC:");
+  if (is_argument || find_factory(rt::ComponentId{{}, {}, module, {}, {}})) return facade.createComponent(module) != nullptr;
+  if (facade.load(module) != RTC_OK) return false;
+  const auto file = modules->findFile(module);
+  std::vector<std::string> types;
+  for (const auto& registered : state.lock()->factories) {
+    if (registered.module == file) types.push_back(to_text(id_of(registered.factory->profile())));
+  }
+  if (types.empty()) RTC_WARN(("module %s: registers no component", base::in_quotes(module).c_str()));
+  bool ok = true;
+  for (const auto& type : types) ok = facade.createComponent(type) != nullptr && ok;
+  return ok;
+}
+
+}  // namespace RTC
