@@ -218,14 +218,19 @@ class Bindings::Server {
     }
   }
 
+  CORBA::Object_ptr presented(const Entry& entry) const {
+    return settings_.present ? settings_.present(entry.object, address_) : CORBA::Object::_duplicate(entry.object);
+  }
+
   void bind_entry(const std::string& key, Entry& entry) {
     const bool is_first = !entry.bound;
+    CORBA::Object_var ours = presented(entry);
     CORBA::Object_var there = current(entry.name);
-    if (!CORBA::is_nil(there) && there->_is_equivalent(entry.object) && !settings_.always_rebind) {
+    if (!CORBA::is_nil(there) && there->_is_equivalent(ours) && !settings_.always_rebind) {
       entry.bound = true;
       return;
     }
-    if (!CORBA::is_nil(there) && !there->_is_equivalent(entry.object) && is_alive(there, settings_.call_timeout)) {
+    if (!CORBA::is_nil(there) && !there->_is_equivalent(ours) && is_alive(there, settings_.call_timeout)) {
       if (!entry.warned) {
         base::log(base::Level::warn, log_name, "{}: {} belongs to another living object; {}", address_, base::in_quotes(key),
                   is_first ? "it is ours now" : "it is left alone");
@@ -233,13 +238,14 @@ class Bindings::Server {
       entry.warned = true;
       if (!is_first) return;
     }
-    rebind_recursive(root_, entry.name, entry.object, &contexts_);
+    rebind_recursive(root_, entry.name, ours, &contexts_);
     entry.bound = true;
   }
 
   void unbind_entry(const Entry& entry) {
+    CORBA::Object_var ours = presented(entry);
     CORBA::Object_var there = current(entry.name);
-    if (CORBA::is_nil(there) || !there->_is_equivalent(entry.object)) return;
+    if (CORBA::is_nil(there) || !there->_is_equivalent(ours)) return;
     root_->unbind(entry.name);
   }
 

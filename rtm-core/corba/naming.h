@@ -37,6 +37,8 @@ struct BindingsSettings {
   std::chrono::milliseconds interval{10'000};     // every binding is looked after this often; also the pause between attempts; 0: never
   std::chrono::milliseconds call_timeout{1'000};  // of every call to a naming service
   bool always_rebind = false;                     // even when an entry is in order
+  // The reference to bind on the service of that address instead of the object's own; none: its own. Called on the service's thread.
+  std::function<CORBA::Object_ptr(CORBA::Object_ptr, const std::string& address)> present{};
 };
 
 // Keeps objects bound in any number of naming services, each looked after by a thread of its own: entries come back when a service was away

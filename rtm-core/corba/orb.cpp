@@ -126,6 +126,7 @@ base::Result<std::string> to_orb_endpoint(std::string_view endpoint) {
   if (text.starts_with("giop:")) return std::string(text);
   if (text.starts_with("iiop://")) text.remove_prefix(7);
   if (text == "all" || text == "ipv4") return std::string("giop:tcp:0.0.0.0:");
+  if (text == "ipv6") return std::string("giop:tcp:[::]:");
   const auto colon = text.rfind(':');
   const bool is_bare_ipv6 = text.ends_with(']');
   auto host = colon == std::string_view::npos || is_bare_ipv6 ? text : text.substr(0, colon);
@@ -146,7 +147,15 @@ base::Result<std::vector<std::string>> to_arguments(const OrbSettings& settings,
   std::vector<std::string> result{"rtm", "-ORBgiopMaxMsgSize", std::to_string(settings.max_message_size),
                                   // Connections from other processes stay open however seldom they are used.
                                   "-ORBinConScanPeriod", "0", "-ORBclientCallTimeOutPeriod", std::to_string(settings.call_timeout.count())};
-  auto endpoints = settings.endpoints;
+  std::vector<std::string> endpoints;
+  for (const auto& endpoint : settings.endpoints) {
+    if (base::trim(endpoint) != "all") {
+      endpoints.push_back(endpoint);
+      continue;
+    }
+    if (settings.ipv4) endpoints.emplace_back("ipv4");
+    if (settings.ipv6) endpoints.emplace_back("ipv6");
+  }
   if (endpoints.empty()) endpoints.emplace_back();
   const bool given_by_arguments = has_argument(settings.arguments, "-ORBendPoint");
   for (const auto& endpoint : endpoints) {
@@ -157,6 +166,10 @@ base::Result<std::vector<std::string>> to_arguments(const OrbSettings& settings,
     result.insert(result.end(), {"-ORBendPoint", *converted});
   }
   if (!unix_folder.empty()) result.insert(result.end(), {"-ORBendPoint", "giop:unix:" + unix_folder + "/socket"});
+  for (const auto& address : settings.further_addresses) {
+    const auto port = address.find(':') == std::string::npos ? ":2809" : "";
+    result.insert(result.end(), {"-ORBendPointNoListen", "giop:tcp:" + address + port});
+  }
   result.insert(result.end(), settings.arguments.begin(), settings.arguments.end());
   return result;
 }
@@ -243,6 +256,37 @@ void Orb::activate() {
   poa_manager_->activate();
   PortableServer::POAManager_var manager = ins_poa_->the_POAManager();
   manager->activate();
+}
+
+std::vector<std::string> Orb::addresses() const {
+  std::vector<std::string> result;
+  const auto add = [&](const IIOP::Address& address) {
+    const std::string host(address.host);
+    result.push_back((host.find(':') != std::string::npos ? "[" + host + "]" : host) + ":" + std::to_string(address.port));
+  };
+  try {
+    CORBA::Object_var reference = root_poa_->create_reference("IDL:omg.org/CORBA/Object:1.0");
+    const omniIOR_var ior = reference->_PR_getobj()->_getIOR();
+    for (CORBA::ULong i = 0; i < ior->iopProfiles().length(); ++i) {
+      const auto& profile = ior->iopProfiles()[i];
+      if (profile.tag != IOP::TAG_INTERNET_IOP) continue;
+      IIOP::ProfileBody body;
+      IIOP::unmarshalProfile(profile, body);
+      add(body.address);
+      for (CORBA::ULong k = 0; k < body.components.length(); ++k) {
+        if (body.components[k].tag != IOP::TAG_ALTERNATE_IIOP_ADDRESS) continue;
+        const auto& octets = body.components[k].component_data;
+        cdrEncapsulationStream stream(octets.get_buffer(), octets.length(), true);
+        IIOP::Address address;
+        address.host = stream.unmarshalRawString();
+        address.port <<= stream;
+        add(address);
+      }
+    }
+  } catch (const CORBA::Exception& e) {
+    base::log(base::Level::debug, "orb", "its own addresses are unknown: {}", to_text(e));
+  }
+  return result;
 }
 
 void Orb::publish(const std::string& key, CORBA::Object_ptr object) {

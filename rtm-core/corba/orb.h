@@ -18,6 +18,9 @@ struct OrbSettings {
   // Where to listen: "HOST:PORT", ":PORT" (loopback), "HOST", "all" (every interface), "unix" or an omniORB end point "giop:...". Empty:
   // any free port on loopback. An empty list is the same as one empty string.
   std::vector<std::string> endpoints{};
+  bool ipv4 = true;  // which families "all" stands for
+  bool ipv6 = false;
+  std::vector<std::string> further_addresses{};           // host:port, published beside the end points: where a router passes calls on
   bool unix_socket = true;                                // a further end point for processes of this host
   std::chrono::milliseconds call_timeout{10'000};         // of every call to another process; 0: none
   std::size_t max_message_size = std::size_t{128} << 20;  // [byte]
@@ -34,6 +37,9 @@ class Orb {
   Orb& operator=(const Orb&) = delete;
 
   void activate();
+
+  // Where other hosts reach this ORB: host:port, of the references that it makes.
+  std::vector<std::string> addresses() const;
 
   // Borrowed.
   CORBA::ORB_ptr orb() const { return orb_.in(); }

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "base/text.h"
+#include "core/component_argument.h"
+#include "core/preconnect.h"
 
 namespace rt {
 namespace {
@@ -20,21 +22,21 @@ constexpr ConfigKey keys[] = {
     {"corba.args", ""},
     {"corba.endpoint", ""},
     {"corba.endpoints", ""},
-    {"corba.endpoint_property", ""},
+    {"corba.endpoint_property", "ipv4", choices, "ipv4,ipv6"},
     {"corba.endpoints_ipv4", ""},
     {"corba.endpoints_ipv6", ""},
     {"corba.unix_socket", "YES", boolean},
     {"corba.call_timeout", "10", number},
     {"corba.id", "omniORB"},
-    {"corba.nameservers", "localhost"},
+    {"corba.nameservers", "localhost", addresses},
     {"corba.nameservice.replace_endpoint", "NO", boolean},
-    {"corba.master_manager", "localhost:2810"},
-    {"corba.update_master_manager.enable", "NO", boolean},
+    {"corba.master_manager", "localhost:2810", addresses},
+    {"corba.update_master_manager.enable", "YES", boolean},
     {"corba.update_master_manager.interval", "10.0", number},
-    {"corba.alternate_iiop_addresses", ""},
+    {"corba.alternate_iiop_addresses", "", addresses},
     {"corba.ssl.*", ""},
     {"naming.enable", "YES", boolean},
-    {"naming.type", "corba"},
+    {"naming.type", "corba", choices, "corba,manager"},
     {"naming.formats", "%h.host_cxt/%n.rtc"},
     {"naming.update.enable", "YES", boolean},
     {"naming.update.interval", "10.0", number},
@@ -47,7 +49,7 @@ constexpr ConfigKey keys[] = {
     {"logger.log_level", "INFO", level},
     {"logger.stream_lock", "NO", boolean},
     {"logger.master_logger", ""},
-    {"logger.clock_type", ""},
+    {"logger.clock_type", "", choices, "system,logical,adjusted"},
     {"logger.escape_sequence_enable", "NO", boolean},
     {"logger.plugins", ""},
     {"logger.logstream.*", ""},
@@ -55,6 +57,7 @@ constexpr ConfigKey keys[] = {
     {"manager.name", "manager"},
     {"manager.instance_name", "manager"},
     {"manager.naming_formats", "%h.host_cxt/%n.mgr"},
+    {"manager.nameservers", "", addresses},
     {"manager.pid", ""},
     {"manager.os.*", ""},
     {"manager.refstring_path", "/var/log/rtcmanager.ref"},
@@ -65,13 +68,13 @@ constexpr ConfigKey keys[] = {
     {"manager.shutdown_auto", "YES", boolean},
     {"manager.auto_shutdown_duration", "20.0", number},
     {"manager.termination_waittime", "0.5", number},
-    {"manager.cpu_affinity", ""},
+    {"manager.cpu_affinity", "", processors},
     {"manager.command", ""},
     {"manager.language", "C++"},
     {"manager.supported_languages", "C++"},
     {"manager.components.naming_policy", "process_unique"},
-    {"manager.components.precreate", ""},
-    {"manager.components.preconnect", ""},
+    {"manager.components.precreate", "", components},
+    {"manager.components.preconnect", "", connections},
     {"manager.components.preactivation", ""},
     {"manager.modules.load_path", "./"},
     {"manager.modules.config_path", ""},
@@ -95,7 +98,6 @@ constexpr ConfigKey keys[] = {
     {"manager.local_service.modules", ""},
     {"manager.local_service.*", ""},
     {"manager.loadable_modules.*", ""},
-    {"manager.topic.*", ""},
     {"execution_contexts", ""},
     {"exec_cxt.periodic.type", "PeriodicExecutionContext"},
     {"exec_cxt.periodic.rate", "1000", number},
@@ -109,7 +111,7 @@ constexpr ConfigKey keys[] = {
     {"exec_cxt.activation_timeout", "", number},
     {"exec_cxt.deactivation_timeout", "", number},
     {"exec_cxt.reset_timeout", "", number},
-    {"exec_cxt.cpu_affinity", ""},
+    {"exec_cxt.cpu_affinity", "", processors},
     {"exec_cxt.*", ""},
     {"ec.*", ""},
     {"periodic_task.*", ""},
@@ -163,22 +165,79 @@ std::string suggestion_for(std::string_view key) {
   return nearest.empty() ? std::string() : ", did you mean " + std::string(nearest) + "?";
 }
 
-std::optional<std::string> complain_about_value(const ConfigKey& key, std::string_view value) {
+bool is_address(std::string_view text) {
+  for (const std::string_view scheme : {"corbaloc:", "corbaname:", "IOR:"}) {
+    if (text.starts_with(scheme)) return text.size() > scheme.size();
+  }
+  if (text.find_first_of(" \t/?&") != std::string_view::npos) return false;
+  const auto colon = text.rfind(':');
+  if (colon == std::string_view::npos || text.ends_with(']')) return !text.empty();
+  const auto port = base::parse_integer(text.substr(colon + 1));
+  return port && *port > 0 && *port <= 65535;
+}
+
+bool is_processor(std::string_view text) {
+  const auto number = base::parse_integer(text);
+  return number && *number >= 0;
+}
+
+bool is_one_of(std::string_view text, std::string_view choices) {
+  for (const auto& choice : base::split_list(choices)) {
+    if (base::equal_ignoring_case(text, choice)) return true;
+  }
+  return false;
+}
+
+// Entries of a list that do not fit; the others count.
+template <class Fits>
+std::optional<Complaint> complain_about_entries(std::string_view value, const char* expectation, Fits fits) {
+  for (const auto& entry : base::split_list(value)) {
+    if (!fits(entry)) return Complaint{expectation + std::string(", got ") + base::in_quotes(entry), true};
+  }
+  return std::nullopt;
+}
+
+template <class Parse>
+std::optional<Complaint> complain_about_requests(std::string_view value, Parse parse) {
+  for (const auto& entry : base::split_list(value)) {
+    if (const auto parsed = parse(entry); !parsed) return Complaint{parsed.error().message, true};
+  }
+  return std::nullopt;
+}
+
+std::optional<Complaint> complain_about_value(const ConfigKey& key, std::string_view value) {
   if (value.empty()) return std::nullopt;
+  const auto used_instead = key.default_value.empty() ? std::string() : "; " + std::string(key.default_value) + " is used";
+  const auto wrong = [&](const std::string& expectation) {
+    return Complaint{expectation + ", got " + base::in_quotes(value) + used_instead, false};
+  };
   switch (key.kind) {
     case boolean:
-      if (!base::parse_bool(value)) return "must be YES or NO";
+      if (!base::parse_bool(value)) return wrong("must be YES or NO");
       break;
     case number: {
       const auto parsed = base::parse_number(value);
-      if (!parsed || *parsed < 0) return "must be a number that is not negative";
+      if (!parsed || *parsed < 0) return wrong("must be a number that is not negative");
       break;
     }
-    case level:
-      for (const auto known : {"SILENT", "FATAL", "ERROR", "WARN", "INFO", "NORMAL", "DEBUG", "TRACE", "VERBOSE", "PARANOID"}) {
-        if (base::equal_ignoring_case(value, known)) return std::nullopt;
+    case level: {
+      constexpr std::string_view levels = "SILENT,FATAL,ERROR,WARN,INFO,NORMAL,DEBUG,TRACE,VERBOSE,PARANOID";
+      if (!is_one_of(value, levels)) return wrong("must be one of SILENT, FATAL, ERROR, WARN, INFO, DEBUG, TRACE, VERBOSE, PARANOID");
+      break;
+    }
+    case choices:
+      for (const auto& entry : base::split_list(value)) {
+        if (!is_one_of(entry, key.choices)) return wrong("must be of " + base::join(base::split_list(key.choices), ", "));
       }
-      return "must be one of SILENT, FATAL, ERROR, WARN, INFO, DEBUG, TRACE, VERBOSE, PARANOID";
+      break;
+    case addresses:
+      return complain_about_entries(value, "must be host or host:port", is_address);
+    case processors:
+      return complain_about_entries(value, "must be numbers of processors", is_processor);
+    case connections:
+      return complain_about_requests(value, parse_connection);
+    case components:
+      return complain_about_requests(value, parse_component_argument);
     case text:
       break;
   }
@@ -189,19 +248,18 @@ std::optional<std::string> complain_about_value(const ConfigKey& key, std::strin
 
 std::span<const ConfigKey> config_keys() { return keys; }
 
-std::optional<std::string> complain_about(std::string_view key, std::string_view value) {
+std::optional<Complaint> complain_about(std::string_view key, std::string_view value) {
   const auto* const known = std::find_if(std::begin(keys), std::end(keys), [&](const auto& k) { return matches(k, key); });
   if (known != std::end(keys)) {
-    const auto complaint = complain_about_value(*known, value);
-    if (!complaint) return std::nullopt;
-    return std::string(key) + " " + *complaint + ", got " + base::in_quotes(value) +
-           (known->default_value.empty() ? "" : "; " + std::string(known->default_value) + " is used");
+    auto complaint = complain_about_value(*known, value);
+    if (complaint) complaint->text.insert(0, std::string(key) + (known->kind == connections || known->kind == components ? ": " : " "));
+    return complaint;
   }
   const bool is_group =
       std::any_of(std::begin(keys), std::end(keys), [&](const auto& k) { return first_part(k.name) == first_part(key) && k.name != key; });
   const bool is_component_key = !is_group && std::count(key.begin(), key.end(), '.') >= 2;
   if (is_component_key) return std::nullopt;
-  return "unknown key " + base::in_quotes(key) + suggestion_for(key);
+  return Complaint{"unknown key " + base::in_quotes(key) + suggestion_for(key), true};
 }
 
 }  // namespace rt

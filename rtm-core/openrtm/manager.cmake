@@ -11,6 +11,7 @@ target_sources(openrtm PRIVATE
   rtm/ManagerCreation.cpp
   rtm/ManagerLife.cpp
   rtm/ManagerServant.cpp
+  rtm/ManagerTopics.cpp
   rtm/ModuleManager.cpp
   rtm/NamingManager.cpp
   rtm/NumberingPolicy.cpp

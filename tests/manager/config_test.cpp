@@ -13,6 +13,12 @@ namespace {
 
 std::vector<ConfigEntry> entries_of(std::string_view text) { return parse_config(text).entries; }
 
+// Empty if nothing is wrong.
+std::string complaint_about(std::string_view key, std::string_view value) {
+  const auto complaint = complain_about(key, value);
+  return complaint ? complaint->text : std::string();
+}
+
 TEST(ConfigFile, keys_and_values_are_separated_by_colon_or_equals_sign) {
   EXPECT_EQ(entries_of("a.b: 1\nc = two words \n"), (std::vector<ConfigEntry>{{"a.b", "1", 1}, {"c", "two words", 2}}));
 }
@@ -55,21 +61,62 @@ TEST(ConfigFile, a_missing_file_and_a_folder_are_named) {
 TEST(ConfigKeys, known_keys_and_component_keys_draw_no_complaint) {
   for (const auto* key : {"corba.nameservers", "manager.modules.load_path", "port.inport.dataport.push_policy",
                           "example.ConsoleIn0.conf.default.x", "sdo.service.provider.enabled_services", "exec_cxt.periodic.rate"}) {
-    EXPECT_EQ(complain_about(key, ""), std::nullopt) << key;
+    EXPECT_EQ(complaint_about(key, ""), "");
   }
 }
 
 TEST(ConfigKeys, an_unknown_key_gets_a_suggestion) {
-  EXPECT_EQ(complain_about("corba.nameserver", "x").value_or(""), "unknown key \"corba.nameserver\", did you mean corba.nameservers?");
+  EXPECT_EQ(complaint_about("corba.nameserver", "x"), "unknown key \"corba.nameserver\", did you mean corba.nameservers?");
   EXPECT_TRUE(complain_about("speed", "1").has_value());
 }
 
 TEST(ConfigKeys, a_malformed_value_is_named_with_what_is_used_instead) {
-  EXPECT_EQ(complain_about("naming.update.interval", "soon").value_or(""),
+  EXPECT_EQ(complaint_about("naming.update.interval", "soon"),
             "naming.update.interval must be a number that is not negative, got \"soon\"; 10.0 is used");
   EXPECT_TRUE(complain_about("manager.is_master", "perhaps").has_value());
   EXPECT_TRUE(complain_about("logger.log_level", "LOUD").has_value());
   EXPECT_TRUE(complain_about("exec_cxt.periodic.rate", "nan").has_value());
+}
+
+TEST(ConfigKeys, every_kind_of_value_is_checked) {
+  struct Case {
+    const char* key;
+    const char* good;
+    const char* bad;
+    const char* text;  // in the complaint
+    bool takes_value;
+  };
+  for (const auto& [key, good, bad, text, takes_value] : std::initializer_list<Case>{
+           {"naming.type", "corba, manager", "corba,dns", "must be of corba, manager, got \"corba,dns\"; corba is used", false},
+           {"corba.endpoint_property", "ipv4,ipv6", "ipx", "must be of ipv4, ipv6", false},
+           {"logger.clock_type", "logical", "sundial", "must be of system, logical, adjusted", false},
+           {"corba.nameservers", "localhost,[::1]:2809,corbaloc::a:1/NameService", "a:2809,b:x", "must be host or host:port, got \"b:x\"",
+            true},
+           {"corba.master_manager", "localhost:2810", "a b", "must be host or host:port", true},
+           {"manager.nameservers", "localhost:2810", "a:70000", "must be host or host:port", true},
+           {"corba.alternate_iiop_addresses", "10.0.0.1:5555", "x:0", "must be host or host:port", true},
+           {"manager.cpu_affinity", "0,1", "first", "must be numbers of processors", true},
+           {"exec_cxt.cpu_affinity", "0", "-1", "must be numbers of processors", true},
+           {"manager.components.precreate", "A, B?instance_name=x", "A,B?=1", "expected key=value", true},
+           {"manager.components.preconnect", "A.x?port=B.y", "A.x?port=B.y,A.z", "expected port=", true},
+           {"logger.log_level", "paranoid", "LOUD", "must be one of SILENT", false},
+           {"manager.is_master", "on", "perhaps", "must be YES or NO", false},
+           {"timer.tick", "0.01", "-1", "must be a number", false},
+       }) {
+    EXPECT_EQ(complaint_about(key, good), "");
+    const auto complaint = complain_about(key, bad);
+    ASSERT_TRUE(complaint.has_value()) << key;
+    EXPECT_NE(complaint->text.find(text), std::string::npos) << complaint->text;
+    EXPECT_TRUE(complaint->text.starts_with(key)) << complaint->text;
+    EXPECT_EQ(complaint->takes_value, takes_value) << key;
+  }
+}
+
+TEST(ConfigKeys, every_default_fits_its_kind) {
+  for (const auto& key : config_keys()) {
+    if (key.name.ends_with('*')) continue;
+    EXPECT_EQ(complaint_about(key.name, key.default_value), "");
+  }
 }
 
 TEST(ManagerArguments, options_may_be_joined_and_repeated) {

@@ -2,91 +2,17 @@
 #include <gtest/gtest.h>
 #include <rtm/CORBA_RTCUtil.h>
 #include <rtm/NVUtil.h>
-#include <rtm/idl/ManagerStub.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
-#include <functional>
-#include <set>
 
-#include "corba/naming.h"
-#include "corba/orb.h"
-#include "support/naming_service.h"
+#include "manager/rtcd_fixture.h"
 
+namespace manager_test {
 namespace {
 
 using namespace std::chrono_literals;
-
-bool eventually(const std::function<bool()>& holds) {
-  const auto deadline = std::chrono::steady_clock::now() + support::watchdog;
-  while (!holds()) {
-    if (std::chrono::steady_clock::now() > deadline) return false;
-    std::this_thread::sleep_for(5ms);
-  }
-  return true;
-}
-
-const std::string program = std::string(RTMSIM_BIN_DIR) + "/rtcd";
-const std::string modules = std::string(RTMSIM_BIN_DIR) + "/../lib";
-
-// A naming service, an ORB to look at it with, and what every rtcd here is started with.
-class Rtcd : public testing::Test {
- protected:
-  Rtcd() : orb_(corba::Orb::start({.call_timeout = 20s}).value()) {}
-
-  std::vector<std::string> command(const std::vector<std::string>& further) const {
-    std::vector<std::string> words{program, "-i", "-f", "none.conf"};
-    for (const auto& setting :
-         {"corba.nameservers:" + names_.address(), std::string("naming.formats:%n.rtc"), "manager.modules.load_path:" + modules,
-          std::string("manager.naming_formats:%n.mgr"), std::string("naming.update.interval:0.1")}) {
-      words.insert(words.end(), {"-o", setting});
-    }
-    words.insert(words.end(), further.begin(), further.end());
-    return words;
-  }
-
-  std::set<std::string> entries() const {
-    std::set<std::string> result;
-    auto root = corba::root_context(orb_->orb(), names_.address(), 5s);
-    if (!root) return result;
-    try {
-      for (const auto& name : corba::find_names(root->in(), [](const auto&) { return true; })) result.insert(corba::to_text(name));
-    } catch (const CORBA::Exception&) {
-      result.clear();
-    }
-    return result;
-  }
-  bool has(const std::string& name) const { return entries().contains(name); }
-
-  RTC::RTObject_var component(const std::string& name) const {
-    auto root = corba::root_context(orb_->orb(), names_.address(), 5s);
-    try {
-      CORBA::Object_var object = (*root)->resolve(*corba::parse_name(name));
-      return RTC::RTObject::_narrow(object);
-    } catch (const CORBA::Exception&) {
-      return RTC::RTObject::_nil();
-    }
-  }
-
-  // By its object key; waits until it answers.
-  RTM::Manager_var manager_at(int port) const {
-    CORBA::Object_var object = orb_->orb()->string_to_object(("corbaloc:iiop:127.0.0.1:" + std::to_string(port) + "/manager").c_str());
-    RTM::Manager_var manager;
-    eventually([&] {
-      try {
-        manager = RTM::Manager::_narrow(object);
-        return !CORBA::is_nil(manager);
-      } catch (const CORBA::Exception&) {
-        return false;
-      }
-    });
-    return manager;
-  }
-
-  support::NamingService names_;
-  std::unique_ptr<corba::Orb> orb_;
-};
 
 TEST_F(Rtcd, makes_connects_and_activates_what_its_configuration_names_and_leaves_nothing) {
   support::Process rtcd(command({"-o", "manager.components.precreate:SourceAll, SinkAll?instance_name=Sink", "-o",
@@ -229,7 +155,7 @@ TEST_F(Rtcd, the_manager_answers_every_operation) {
   EXPECT_EQ(managers->length(), 0u);
   CORBA::Object_var service = manager->get_service("none");
   EXPECT_TRUE(CORBA::is_nil(service));
-  EXPECT_EQ(manager->fork(), RTC::UNSUPPORTED);
+  EXPECT_EQ(manager->fork(), RTC::RTC_OK);
   EXPECT_EQ(manager->shutdown(), RTC::RTC_OK);
   EXPECT_EQ(rtcd.wait(), 0);
   EXPECT_TRUE(entries().empty());
@@ -378,3 +304,4 @@ TEST_F(Rtcd, ns_unique_numbers_go_on_behind_those_of_other_processes) {
 }
 
 }  // namespace
+}  // namespace manager_test

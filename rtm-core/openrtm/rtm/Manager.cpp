@@ -78,6 +78,11 @@ bool ManagerImpl::flag(const std::string& key, bool otherwise) const { return ba
 double ManagerImpl::number(const std::string& key, double otherwise) const { return base::parse_number(value(key)).value_or(otherwise); }
 std::vector<std::string> ManagerImpl::list(const std::string& key) const { return base::split_list(value(key)); }
 
+std::string ManagerImpl::where(const std::string& key) const {
+  const auto at = origins.find(key);
+  return at == origins.end() ? std::string() : at->second + ": ";
+}
+
 // ---------------------------------------------------------------------------------------------- facade
 
 Manager::Manager() : impl_(std::make_unique<ManagerImpl>(*this)) {}

@@ -128,6 +128,10 @@ class Manager {
   // Makes `<comp>.<port>?port=...` connections and activations as the keys preconnect and preactivation do.
   void connectPorts(const std::string& preconnect);
   void activateComponents(const std::string& preactivation);
+  // What createComponent does with ports that have a topic (port properties publish_topic, subscribe_topic, rendezvous_point): binds them,
+  // and connects them with those that others have bound. For ports that are added later.
+  void publishPorts(RTObject_impl* comp);
+  void subscribePorts(RTObject_impl* comp);
 
   // --- listeners; with autoclean the manager deletes them
   void addManagerActionListener(RTM::ManagerActionListener* listener, bool autoclean = true);
@@ -163,6 +167,7 @@ class Manager {
  private:
   friend class ManagerImpl;
   friend class ModuleManager;
+  friend class NamingManager;
   friend class RTM::ManagerServant;
   Manager();
   ~Manager();

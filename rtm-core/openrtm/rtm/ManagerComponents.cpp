@@ -23,6 +23,31 @@ std::optional<ManagerImpl::Record> ManagerImpl::record_of(const RTObject_impl* c
   return std::nullopt;
 }
 
+std::vector<ManagerImpl::Held> ManagerImpl::held_components() const {
+  std::vector<Held> components;
+  const auto locked = state.lock();
+  for (const auto& [id, record] : locked->records) {
+    if (!record.listed || record.finalized) continue;
+    record.component->_add_ref();  // the Held takes it over
+    components.emplace_back(record.component);
+  }
+  return components;
+}
+
+ManagerImpl::Held ManagerImpl::held_component(const std::string& instance_name) const {
+  for (const auto& component : held_components()) {
+    if (instance_name == component->getInstanceName()) return component;
+  }
+  return {};
+}
+
+ManagerImpl::Held ManagerImpl::held_component(const RTObject_impl* wanted) const {
+  for (const auto& component : held_components()) {
+    if (component.in() == wanted) return component;
+  }
+  return {};
+}
+
 bool Manager::registerComponent(RTObject_impl* comp) {
   if (comp == nullptr || impl_->record_of(comp)) return false;
   ManagerImpl::Record record;
@@ -136,16 +161,16 @@ void ManagerImpl::exit_all_components() {
 }
 
 void Manager::deleteComponent(RTObject_impl* comp) {
-  if (comp == nullptr || !impl_->record_of(comp)) return;
-  const auto code = comp->exit();
+  const auto component = impl_->held_component(comp);
+  if (component.in() == nullptr) return;
+  const auto code = component->exit();
   auto& rtclog = impl_->rtclog;
-  if (code != RTC_OK) RTC_WARN(("%s: exit answered %d", comp->getInstanceName(), static_cast<int>(code)));
+  if (code != RTC_OK) RTC_WARN(("%s: exit answered %d", component->getInstanceName(), static_cast<int>(code)));
 }
 
 ReturnCode_t Manager::deleteComponent(const char* instance_name) {
-  auto* component = getComponent(instance_name);
-  if (component == nullptr) return BAD_PARAMETER;
-  return component->exit();
+  const auto component = impl_->held_component(std::string(instance_name != nullptr ? instance_name : ""));
+  return component.in() != nullptr ? component->exit() : BAD_PARAMETER;
 }
 
 void Manager::notifyFinalized(RTObject_impl* comp) { impl_->finalized(comp); }

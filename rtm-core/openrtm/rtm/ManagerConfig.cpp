@@ -86,9 +86,11 @@ bool ManagerConfig::init(int argc, char** argv, bool strict) {
     for (const auto& finding : parsed.findings) warnings_.push_back(file_ + ":" + std::to_string(finding.line) + ": " + finding.text);
     for (const auto& entry : parsed.entries) {
       const auto complaint = rt::complain_about(entry.key, entry.value);
-      if (complaint) warnings_.push_back(file_ + ":" + std::to_string(entry.line) + ": " + *complaint);
-      // A malformed value of a known key is not taken; an unknown key is kept: plug-ins may read it.
-      if (!complaint || complaint->starts_with("unknown key")) properties_.setProperty(entry.key, entry.value);
+      const auto where = file_ + ":" + std::to_string(entry.line);
+      if (complaint) warnings_.push_back(where + ": " + complaint->text);
+      if (complaint && !complaint->takes_value) continue;
+      properties_.setProperty(entry.key, entry.value);
+      origins_[entry.key] = where;
     }
     properties_.setProperty("config_file", file_);
   }
@@ -97,9 +99,10 @@ bool ManagerConfig::init(int argc, char** argv, bool strict) {
   if (arguments->is_master) properties_.setProperty("manager.is_master", "YES");
   for (const auto& [key, value] : arguments->overrides) {
     const auto complaint = rt::complain_about(key, value);
-    if (complaint && !complaint->starts_with("unknown key")) return fail(2, "option -o: " + *complaint);
-    if (complaint) warnings_.push_back("option -o: " + *complaint);
+    if (complaint && !complaint->takes_value) return fail(2, "option -o: " + complaint->text);
+    if (complaint) warnings_.push_back("option -o: " + complaint->text);
     properties_.setProperty(key, value);
+    origins_[key] = "option -o";
   }
   if (arguments->port) properties_.setProperty("corba.endpoints", ":" + std::to_string(*arguments->port));
   if (arguments->without_servant) properties_.setProperty("manager.corba_servant", "NO");

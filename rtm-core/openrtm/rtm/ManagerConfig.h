@@ -3,6 +3,7 @@
 
 #include <coil/Properties.h>
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ class ManagerConfig {
   const std::string& configFile() const { return file_; }
   // One line per unknown or malformed key, with file and line.
   const std::vector<std::string>& warnings() const { return warnings_; }
+  // Where each key that somebody has set comes from: `file:line` or `option -o`.
+  const std::map<std::string, std::string>& origins() const { return origins_; }
 
  private:
   coil::Properties properties_;
@@ -33,6 +36,7 @@ class ManagerConfig {
   std::string error_;
   int exit_code_ = 0;
   std::vector<std::string> warnings_;
+  std::map<std::string, std::string> origins_;
 };
 
 }  // namespace RTC

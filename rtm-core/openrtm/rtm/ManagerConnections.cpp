@@ -10,7 +10,7 @@ namespace RTC {
 
 RTObject_var ManagerImpl::find_component(const std::string& name) {
   RTObject_var result;
-  if (auto* local = facade.getComponent(name)) {
+  if (const auto local = held_component(name); local.in() != nullptr) {
     result = local->getObjRef();
   } else if (naming) {
     const auto found = naming->string_to_component(name);
@@ -53,17 +53,24 @@ base::Result<void> ManagerImpl::activate_component(const std::string& name) {
   return {};
 }
 
+// What the configuration names is complained about with the place where it does.
+std::string ManagerImpl::where_if(const std::string& text, const std::string& key) const {
+  return text == value(key) ? where(key) : std::string();
+}
+
 void Manager::connectPorts(const std::string& preconnect) {
   auto& rtclog = impl_->rtclog;
+  const auto where = impl_->where_if(preconnect, "manager.components.preconnect");
   for (const auto& request : base::split_list(preconnect)) {
-    if (auto connected = impl_->connect(request); !connected) RTC_ERROR(("%s", connected.error().message.c_str()));
+    if (auto connected = impl_->connect(request); !connected) RTC_ERROR(("%s%s", where.c_str(), connected.error().message.c_str()));
   }
 }
 
 void Manager::activateComponents(const std::string& preactivation) {
   auto& rtclog = impl_->rtclog;
+  const auto where = impl_->where_if(preactivation, "manager.components.preactivation");
   for (const auto& name : base::split_list(preactivation)) {
-    if (auto activated = impl_->activate_component(name); !activated) RTC_ERROR(("%s", activated.error().message.c_str()));
+    if (auto activated = impl_->activate_component(name); !activated) RTC_ERROR(("%s%s", where.c_str(), activated.error().message.c_str()));
   }
 }
 

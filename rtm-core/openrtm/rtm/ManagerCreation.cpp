@@ -124,8 +124,8 @@ base::Result<RTObject_impl*> ManagerImpl::create(std::string argument) {
 
   auto source = find_factory(parsed->id);
   if (!source && flag("manager.modules.search_auto", true)) {
-    const auto file = modules->findFile(parsed->id.implementation_id);
-    if (!file.empty() && facade.load(file) == RTC_OK) source = find_factory(parsed->id);
+    const auto& name = parsed->id.implementation_id;
+    if (!modules->findFile(name).empty() && facade.load(name) == RTC_OK) source = find_factory(parsed->id);
   }
   if (!source) {
     return base::Error{"component " + base::in_quotes(argument) +
@@ -169,6 +169,21 @@ coil::Properties ManagerImpl::inherited_properties() const {
   return properties;
 }
 
+// The settings in a component's own file; what is wrong with it is logged.
+coil::Properties ManagerImpl::properties_of_file(const std::string& named_by, const std::string& file) {
+  coil::Properties properties;
+  if (file.empty()) return properties;
+  const auto text = rt::read_text_file(file);
+  if (!text) {
+    RTC_WARN(("%s: %s", named_by.c_str(), text.error().message.c_str()));
+    return properties;
+  }
+  const auto parsed = rt::parse_config(*text);
+  for (const auto& finding : parsed.findings) RTC_WARN(("%s:%d: %s", file.c_str(), finding.line, finding.text.c_str()));
+  for (const auto& entry : parsed.entries) properties.setProperty(entry.key, entry.value);
+  return properties;
+}
+
 // What rtc.conf says in line about a type or an instance, and the file it names.
 coil::Properties ManagerImpl::configured_properties(const std::string& category, const std::string& name) {
   coil::Properties properties;
@@ -178,17 +193,8 @@ coil::Properties ManagerImpl::configured_properties(const std::string& category,
     const std::scoped_lock lock(config_mutex);
     if (const auto* node = config.findNode(category + "." + name)) in_line = *node;
   }
-  const std::string file = in_line.getProperty("config_file");
-  if (!file.empty()) {
-    const auto text = rt::read_text_file(file);
-    if (!text) {
-      RTC_WARN(("%s.%s.config_file: %s", category.c_str(), name.c_str(), text.error().message.c_str()));
-    } else {
-      const auto parsed = rt::parse_config(*text);
-      for (const auto& finding : parsed.findings) RTC_WARN(("%s:%d: %s", file.c_str(), finding.line, finding.text.c_str()));
-      for (const auto& entry : parsed.entries) properties.setProperty(entry.key, entry.value);
-    }
-  }
+  const auto file_key = category + "." + name + ".config_file";
+  properties << properties_of_file(where(file_key) + file_key, in_line.getProperty("config_file"));
   for (const auto& key : in_line.propertyNames()) {
     properties.setProperty(key, static_cast<const coil::Properties&>(in_line).getProperty(key));
   }
@@ -251,7 +257,8 @@ std::vector<std::string> ManagerImpl::naming_names(RTObject_impl* component, con
 base::Result<RTObject_impl*> ManagerImpl::finish_creation(std::uint64_t id, const RegisteredFactory& source,
                                                           const rt::ComponentArgument& argument) {
   auto* component = state.lock()->records[id].component;
-  // What counts more comes later: the manager's settings, the type's specification, rtc.conf on the type, on the instance, the argument.
+  // What counts more comes later: the manager's settings, the type's specification, rtc.conf on the type, on the instance, the file that
+  // the argument names, the argument.
   coil::Properties properties = source.factory->profile();
   component->setProperties(properties);
   bool numbered = false;
@@ -269,6 +276,9 @@ base::Result<RTObject_impl*> ManagerImpl::finish_creation(std::uint64_t id, cons
   }
   properties << configured_properties(category, component->getTypeName());
   properties << configured_properties(category, *name);
+  for (const auto& [key, text] : argument.properties) {
+    if (key == "config_file") properties << properties_of_file("component " + base::in_quotes(*name) + ": config_file", text);
+  }
   for (const auto& [key, text] : argument.properties) {
     if (is_directive(key)) continue;
     properties.setProperty(key, text);
@@ -299,6 +309,8 @@ base::Result<RTObject_impl*> ManagerImpl::finish_creation(std::uint64_t id, cons
     record = entry;
   }
   publish(record);
+  publish_ports(component);
+  subscribe_ports(component);
   return component;
 }
 
@@ -317,6 +329,7 @@ void ManagerImpl::withdraw(const Record& record) {
   listeners.naming_.call(&RTM::NamingActionListener::preUnbind, record.component, names);
   if (naming) {
     for (const auto& name : names) naming->unbindObject(name.c_str());
+    for (const auto& name : record.port_names) naming->unbindObject(name.c_str());
   }
   if (orb) orb->withdraw(record.object_key);
   listeners.naming_.call(&RTM::NamingActionListener::postUnbind, record.component, names);

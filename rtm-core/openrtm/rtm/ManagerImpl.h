@@ -19,6 +19,7 @@
 #include "rtm/Manager.h"
 #include "rtm/ManagerActionListener.h"
 #include "rtm/NumberingPolicyBase.h"
+#include "rtm/RTObject.h"
 
 namespace RTM {
 class ManagerServant;
@@ -47,7 +48,8 @@ class ManagerImpl {
     std::shared_ptr<FactoryBase> factory;  // none for components that others registered
     std::string module;
     std::string instance_name;
-    std::vector<std::string> names;  // in the naming service
+    std::vector<std::string> names;       // in the naming service
+    std::vector<std::string> port_names;  // those of ports with a topic
     std::string object_key;
     bool listed = false;     // getComponents shows it
     bool numbered = false;   // the numbering policy knows it
@@ -86,9 +88,13 @@ class ManagerImpl {
   bool flag(const std::string& key, bool otherwise) const;
   double number(const std::string& key, double otherwise) const;
   std::vector<std::string> list(const std::string& key) const;
+  // Where the key was set, as the beginning of a message: `rtc.conf:12: `; empty when nobody has set it.
+  std::string where(const std::string& key) const;
+  std::string where_if(const std::string& text, const std::string& key) const;  // empty unless the key has that value
   bool is_master() const { return flag("manager.is_master", false); }
 
-  // --- components (ManagerCreation.cpp, ManagerComponents.cpp, ManagerConnections.cpp)
+  // --- components (ManagerCreation.cpp, ManagerComponents.cpp, ManagerConnections.cpp,
+  // ManagerTopics.cpp)
   bool register_factory(const coil::Properties& profile, RtcNewFunc create, RtcDeleteFunc destroy);
   std::optional<RegisteredFactory> find_factory(const rt::ComponentId& id) const;
   // How many components of the module exist; without any, its factories are removed.
@@ -102,16 +108,25 @@ class ManagerImpl {
   void withdraw(const Record& record);
   std::vector<Record> records() const;
   std::optional<Record> record_of(const RTObject_impl* component) const;
+  // Components in the list, each with a reference, so that none is deleted while it is used. By name: nil if there is none.
+  using Held = PortableServer::Servant_var<RTObject_impl>;
+  std::vector<Held> held_components() const;
+  Held held_component(const std::string& instance_name) const;
+  Held held_component(const RTObject_impl* component) const;
   base::Result<void> connect(const std::string& request);
   base::Result<void> activate_component(const std::string& name);
   // By instance name here, else by URL; nil if there is none.
   RTObject_var find_component(const std::string& name);
+  // Binds the component's ports that have a topic and connects them with the others that have it.
+  void publish_ports(RTObject_impl* component);
+  void subscribe_ports(RTObject_impl* component);
   bool load_and_create(const std::string& module);
 
   Manager& facade;
   Logger rtclog{"manager"};
   mutable std::mutex config_mutex;  // guards config against our own writers; components read it as they like
   coil::Properties config;
+  std::map<std::string, std::string> origins;  // of ManagerConfig
   ManagerOptions options;
   ModuleInitProc init_proc = nullptr;
   RTM::ManagerActionListeners listeners;
@@ -130,6 +145,7 @@ class ManagerImpl {
 
  private:
   bool activate_all();
+  void bind_to_processors();
   base::Result<void> start_orb();
   void start_naming();
   void start_logging();
@@ -140,6 +156,7 @@ class ManagerImpl {
 
   coil::Properties inherited_properties() const;
   coil::Properties configured_properties(const std::string& category, const std::string& name);
+  coil::Properties properties_of_file(const std::string& named_by, const std::string& file);
   base::Result<std::string> name_component(RTObject_impl* component, const rt::ComponentArgument& argument, bool& numbered);
   std::vector<std::string> naming_names(RTObject_impl* component, const coil::Properties& properties) const;
   base::Result<RTObject_impl*> finish_creation(std::uint64_t id, const RegisteredFactory& source, const rt::ComponentArgument& argument);

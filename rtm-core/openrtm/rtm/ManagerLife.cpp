@@ -1,4 +1,5 @@
 // The life of the manager: what start, activation and end do, in this order.
+#include <sched.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -65,8 +66,10 @@ base::Result<void> ManagerImpl::start(const ManagerConfig& configuration, const 
   options = given;
   home = std::this_thread::get_id();
   configuration.configure(config);
+  origins = configuration.origins();
   start_logging();
   for (const auto& warning : configuration.warnings()) RTC_WARN(("%s", warning.c_str()));
+  bind_to_processors();
   if (auto started = start_orb(); !started) return started.error();
   timer = std::make_unique<rt::TaskRunner>("rtm-timer");
   cleaner = std::make_unique<rt::TaskRunner>("rtm-cleaner");
@@ -81,7 +84,8 @@ base::Result<void> ManagerImpl::start(const ManagerConfig& configuration, const 
   auto& policies = RTM::NumberingPolicyFactory::instance();
   numbering = policies.createObject(policy);
   if (numbering == nullptr) {
-    RTC_WARN(("manager.components.naming_policy: unknown policy %s; process_unique is used", base::in_quotes(policy).c_str()));
+    RTC_WARN(("%smanager.components.naming_policy: unknown policy %s; process_unique is used",
+              where("manager.components.naming_policy").c_str(), base::in_quotes(policy).c_str()));
     numbering = policies.createObject("process_unique");
   }
   start_naming();
@@ -112,6 +116,7 @@ void ManagerImpl::start_logging() {
   settings.level = Logger::parseLevel(value("logger.log_level")).value_or(Logger::RTL_INFO);
   settings.colored = flag("logger.escape_sequence_enable", false);
   settings.date_format = value("logger.date_format");
+  settings.clock = base::to_lower(value("logger.clock_type"));
   settings.files.clear();
   for (const auto& pattern : list("logger.file_name")) {
     settings.files.push_back(rt::expand_format(pattern, [&](char c) -> std::optional<std::string> {
@@ -124,10 +129,27 @@ void ManagerImpl::start_logging() {
   for (const auto& complaint : setLogSettings(settings)) RTC_ERROR(("%s", complaint.c_str()));
 }
 
+// All threads of the process, because they are started later.
+void ManagerImpl::bind_to_processors() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  const auto wanted = list("manager.cpu_affinity");
+  for (const auto& text : wanted) {
+    const auto number = base::parse_integer(text);
+    if (number && *number >= 0 && *number < CPU_SETSIZE) CPU_SET(static_cast<std::size_t>(*number), &set);
+  }
+  if (wanted.empty() || (CPU_COUNT(&set) > 0 && sched_setaffinity(0, sizeof set, &set) == 0)) return;
+  RTC_WARN(("%smanager.cpu_affinity names no processor of this machine", where("manager.cpu_affinity").c_str()));
+}
+
 base::Result<void> ManagerImpl::start_orb() {
   corba::OrbSettings settings;
   settings.endpoints = list("corba.endpoints");
   for (const auto& endpoint : list("corba.endpoint")) settings.endpoints.push_back(endpoint);
+  settings.further_addresses = list("corba.alternate_iiop_addresses");
+  const auto families = base::to_lower(value("corba.endpoint_property"));
+  settings.ipv6 = families.find("ipv6") != std::string::npos;
+  settings.ipv4 = !settings.ipv6 || families.find("ipv4") != std::string::npos;
   settings.arguments = split_arguments(value("corba.args"));
   settings.unix_socket = flag("corba.unix_socket", true);
   settings.call_timeout = to_milliseconds(number("corba.call_timeout", 10.0));
@@ -139,6 +161,12 @@ base::Result<void> ManagerImpl::start_orb() {
   auto started = corba::Orb::start(settings);
   if (!started) return started.error();
   orb = std::move(*started);
+  std::vector<std::string> ipv4;
+  std::vector<std::string> ipv6;
+  for (auto& address : orb->addresses()) (address.starts_with('[') ? ipv6 : ipv4).push_back(std::move(address));
+  const std::scoped_lock lock(config_mutex);
+  config.setProperty("corba.endpoints_ipv4", base::join(ipv4, ","));
+  config.setProperty("corba.endpoints_ipv6", base::join(ipv6, ","));
   return {};
 }
 
@@ -146,8 +174,10 @@ void ManagerImpl::start_naming() {
   naming = std::make_unique<NamingManager>(&facade);
   if (!flag("naming.enable", true)) return;
   for (const auto& method : list("naming.type")) {
-    if (method != "corba") continue;
-    for (const auto& server : list("corba.nameservers")) naming->registerNameServer(method.c_str(), server.c_str());
+    const bool by_managers = base::equal_ignoring_case(method, "manager");
+    auto servers = list(by_managers ? "manager.nameservers" : "corba.nameservers");
+    if (by_managers && !is_master()) servers.push_back(value("corba.master_manager"));
+    for (const auto& server : servers) naming->registerNameServer(by_managers ? "manager" : "corba", server.c_str());
   }
 }
 
@@ -156,7 +186,7 @@ void ManagerImpl::start_timer_tasks() {
   if (flag("manager.shutdown_auto", true) && !is_master()) {
     timer->add([this] { look_after_number_of_components(); }, std::chrono::seconds(1), std::chrono::seconds(1));
   }
-  if (servant != nullptr && !is_master() && flag("corba.update_master_manager.enable", false)) {
+  if (servant != nullptr && !is_master() && flag("corba.update_master_manager.enable", true)) {
     const auto interval = std::max(to_milliseconds(number("corba.update_master_manager.interval", 10.0)), std::chrono::milliseconds(100));
     timer->add([this] { servant->greet_master(); }, interval, {});
   }

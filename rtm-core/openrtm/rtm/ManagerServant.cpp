@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::size_t longest_name = std::size_t{64} << 10;
 constexpr std::chrono::seconds peer_timeout{2};
+constexpr std::chrono::seconds creation_timeout{10};
 
 template <class Sequence, class Element>
 void append(Sequence& sequence, const Element& element) {
@@ -25,12 +26,75 @@ void append(Sequence& sequence, const Element& element) {
   sequence[length] = element;
 }
 
-template <class List, class Profile>
-List* to_profiles(const std::vector<coil::Properties>& modules) {
-  auto list = std::make_unique<List>();
+// The reference is nil when the component has just been finalized.
+void append_component(RTC::RTCList& list, const RTC::RTObject_impl& component) {
+  RTC::RTObject_var reference = component.getObjRef();
+  if (!CORBA::is_nil(reference)) append(list, reference);
+}
+
+RTM::ModuleProfileList_var to_profiles(const std::vector<coil::Properties>& modules) {
+  RTM::ModuleProfileList_var list = new RTM::ModuleProfileList;
   list->length(static_cast<CORBA::ULong>(modules.size()));
-  for (CORBA::ULong i = 0; i < list->length(); ++i) NVUtil::copyFromProperties((*list)[i].properties, modules[i]);
-  return list.release();
+  for (CORBA::ULong i = 0; i < list->length(); ++i) NVUtil::copyFromProperties(list[i].properties, modules[i]);
+  return list;
+}
+
+struct Request {
+  std::string argument;         // without the two below
+  std::string manager_name;     // empty: any
+  std::string manager_address;  // host:port; empty: here
+};
+
+Request take_manager(const std::string& text) {
+  Request request;
+  const auto question = text.find('?');
+  request.argument = text.substr(0, question);
+  if (question == std::string::npos) return request;
+  std::vector<std::string> rest;
+  for (auto& piece : base::split_list(std::string_view(text).substr(question + 1), '&')) {
+    const auto equals = piece.find('=');
+    const auto key = base::trim(std::string_view(piece).substr(0, equals));
+    const auto value = equals == std::string::npos ? std::string_view() : base::trim(std::string_view(piece).substr(equals + 1));
+    if (key == "manager_name") {
+      request.manager_name = value;
+    } else if (key == "manager_address") {
+      request.manager_address = value;
+    } else {
+      rest.push_back(std::move(piece));
+    }
+  }
+  if (!rest.empty()) request.argument += "?" + base::join(rest, "&");
+  return request;
+}
+
+RTC::RTObject_ptr create_at(RTM::Manager_ptr manager, const std::string& argument) {
+  try {
+    RTM::Manager_var patient = RTM::Manager::_duplicate(manager);
+    corba::set_call_timeout(patient, creation_timeout);
+    return patient->create_component(argument.c_str());
+  } catch (const CORBA::Exception& e) {
+    base::log(base::Level::error, "manager", "component {}: another manager fails: {}", base::in_quotes(argument), corba::to_text(e));
+    return RTC::RTObject::_nil();
+  }
+}
+
+std::string name_of(RTM::Manager_ptr manager) {
+  try {
+    RTM::ManagerProfile_var profile = manager->get_profile();
+    return NVUtil::toString(profile->properties, "instance_name");
+  } catch (const CORBA::Exception&) {  // as good as nameless
+    return {};
+  }
+}
+
+// A reference by object key (corbaloc) is equivalent to one by IOR only after its first call has been sent on.
+void settle(RTM::Manager_ptr manager) {
+  try {
+    RTM::Manager_var brief = RTM::Manager::_duplicate(manager);
+    corba::set_call_timeout(brief, peer_timeout);
+    brief->_non_existent();
+  } catch (const CORBA::Exception&) {  // it stays as it is
+  }
 }
 
 // Adds the reference unless an equivalent one is there.
@@ -76,21 +140,66 @@ void ManagerServant::deactivate() {
 RTC::ReturnCode_t ManagerServant::load_module(const char* pathname, const char* initfunc) { return manager_.load(pathname, initfunc); }
 RTC::ReturnCode_t ManagerServant::unload_module(const char* pathname) { return manager_.unload(pathname); }
 
+// What every living slave answers, appended.
+template <class List, class Ask>
+void ManagerServant::append_from_slaves(List& list, Ask ask) {
+  for (const auto& slave : living_slaves()) {
+    try {
+      auto theirs = ask(slave.in());
+      for (CORBA::ULong i = 0; i < theirs->length(); ++i) append(list, theirs[i]);
+    } catch (const CORBA::Exception&) {  // gone meanwhile
+      continue;
+    }
+  }
+}
+
 RTM::ModuleProfileList* ManagerServant::get_loadable_modules() {
-  return to_profiles<RTM::ModuleProfileList, RTM::ModuleProfile>(manager_.getLoadableModules());
+  auto list = to_profiles(manager_.getLoadableModules());
+  append_from_slaves(list.inout(), [](RTM::Manager_ptr slave) { return RTM::ModuleProfileList_var(slave->get_loadable_modules()); });
+  return list._retn();
 }
+
 RTM::ModuleProfileList* ManagerServant::get_loaded_modules() {
-  return to_profiles<RTM::ModuleProfileList, RTM::ModuleProfile>(manager_.getLoadedModules());
+  auto list = to_profiles(manager_.getLoadedModules());
+  append_from_slaves(list.inout(), [](RTM::Manager_ptr slave) { return RTM::ModuleProfileList_var(slave->get_loaded_modules()); });
+  return list._retn();
 }
+
 RTM::ModuleProfileList* ManagerServant::get_factory_profiles() {
-  return to_profiles<RTM::ModuleProfileList, RTM::ModuleProfile>(manager_.getFactoryProfiles());
+  auto list = to_profiles(manager_.getFactoryProfiles());
+  append_from_slaves(list.inout(), [](RTM::Manager_ptr slave) { return RTM::ModuleProfileList_var(slave->get_factory_profiles()); });
+  return list._retn();
 }
 
 // ---------------------------------------------------------------------------------------------- components
 
+// Here, unless the argument names another manager: manager_address=host:port any, manager_name=instance name a slave. Slaves are also asked
+// for what cannot be made here.
 RTC::RTObject_ptr ManagerServant::create_component(const char* module_name) {
-  auto* component = manager_.createComponent(module_name);
-  return component != nullptr ? component->getObjRef() : RTC::RTObject::_nil();
+  const auto [argument, name, address] = take_manager(module_name);
+  if (!address.empty()) {
+    RTM::Manager_var other = manager_at(address);
+    if (CORBA::is_nil(other)) {
+      base::log(base::Level::error, "manager", "component {}: no manager answers at {}", base::in_quotes(argument),
+                base::in_quotes(address));
+      return RTC::RTObject::_nil();
+    }
+    return create_at(other, argument);
+  }
+  const auto slaves = living_slaves();
+  const bool is_own_name = name == manager_.configValue("manager.instance_name");
+  for (const auto& slave : slaves) {
+    if (!name.empty() && !is_own_name && name_of(slave) == name) return create_at(slave, argument);
+  }
+  if (auto* made = manager_.createComponent(argument)) {
+    const auto component = manager_.impl_->held_component(made);
+    return component.in() != nullptr ? component->getObjRef() : RTC::RTObject::_nil();
+  }
+  for (const auto& slave : slaves) {
+    RTC::RTObject_var made = create_at(slave, argument);
+    if (!CORBA::is_nil(made)) return made._retn();
+  }
+  return RTC::RTObject::_nil();
 }
 
 RTC::ReturnCode_t ManagerServant::delete_component(const char* instance_name) {
@@ -108,35 +217,18 @@ RTC::ReturnCode_t ManagerServant::delete_component(const char* instance_name) {
 
 RTC::RTCList* ManagerServant::get_components() {
   RTC::RTCList_var list = new RTC::RTCList;
-  for (const auto* component : manager_.getComponents()) {
-    RTC::RTObject_var reference = component->getObjRef();
-    append(list.inout(), reference);
-  }
-  for (const auto& slave : living_slaves()) {
-    try {
-      RTC::RTCList_var theirs = slave->get_components();
-      for (CORBA::ULong i = 0; i < theirs->length(); ++i) append(list.inout(), theirs[i]);
-    } catch (const CORBA::Exception&) {  // gone meanwhile
-      continue;
-    }
-  }
+  for (const auto& component : manager_.impl_->held_components()) append_component(list.inout(), *component.in());
+  append_from_slaves(list.inout(), [](RTM::Manager_ptr slave) { return RTC::RTCList_var(slave->get_components()); });
   return list._retn();
 }
 
 RTC::ComponentProfileList* ManagerServant::get_component_profiles() {
   RTC::ComponentProfileList_var list = new RTC::ComponentProfileList;
-  for (auto* component : manager_.getComponents()) {
+  for (const auto& component : manager_.impl_->held_components()) {
     RTC::ComponentProfile_var profile = component->get_component_profile();
     append(list.inout(), profile.in());
   }
-  for (const auto& slave : living_slaves()) {
-    try {
-      RTC::ComponentProfileList_var theirs = slave->get_component_profiles();
-      for (CORBA::ULong i = 0; i < theirs->length(); ++i) append(list.inout(), theirs[i]);
-    } catch (const CORBA::Exception&) {  // gone meanwhile
-      continue;
-    }
-  }
+  append_from_slaves(list.inout(), [](RTM::Manager_ptr slave) { return RTC::ComponentProfileList_var(slave->get_component_profiles()); });
   return list._retn();
 }
 
@@ -148,10 +240,8 @@ RTC::RTCList* ManagerServant::get_components_by_name(const char* name) {
   const auto slash = text.rfind('/');
   const auto category = slash == std::string::npos ? std::string() : text.substr(0, slash);
   const auto instance = slash == std::string::npos ? text : text.substr(slash + 1);
-  for (const auto* component : manager_.getComponents()) {
-    if (!is_listed(*component, category, instance)) continue;
-    RTC::RTObject_var reference = component->getObjRef();
-    append(list.inout(), reference);
+  for (const auto& component : manager_.impl_->held_components()) {
+    if (is_listed(*component.in(), category, instance)) append_component(list.inout(), *component.in());
   }
   return list._retn();
 }
@@ -187,7 +277,7 @@ RTC::ReturnCode_t ManagerServant::set_configuration(const char* name, const char
     return RTC::BAD_PARAMETER;
   }
   const auto complaint = rt::complain_about(key, value);
-  if (complaint && !complaint->starts_with("unknown key")) return RTC::BAD_PARAMETER;
+  if (complaint && !complaint->takes_value) return RTC::BAD_PARAMETER;
   const std::scoped_lock lock(manager_.impl_->config_mutex);
   manager_.impl_->config.setProperty(key, value);
   return RTC::RTC_OK;
@@ -203,13 +293,16 @@ RTM::ManagerList* ManagerServant::get_master_managers() {
 }
 
 RTC::ReturnCode_t ManagerServant::add_master_manager(RTM::Manager_ptr mgr) {
-  if (CORBA::is_nil(mgr) || mgr->_is_equivalent(reference_)) return RTC::BAD_PARAMETER;
+  if (CORBA::is_nil(mgr)) return RTC::BAD_PARAMETER;
+  settle(mgr);
+  if (mgr->_is_equivalent(reference_)) return RTC::BAD_PARAMETER;
   const std::scoped_lock lock(mutex_);
   return add_unique(masters_, mgr) ? RTC::RTC_OK : RTC::BAD_PARAMETER;
 }
 
 RTC::ReturnCode_t ManagerServant::remove_master_manager(RTM::Manager_ptr mgr) {
   if (CORBA::is_nil(mgr)) return RTC::BAD_PARAMETER;
+  settle(mgr);
   const std::scoped_lock lock(mutex_);
   return std::erase_if(masters_, [&](const auto& known) { return known->_is_equivalent(mgr); }) > 0 ? RTC::RTC_OK : RTC::BAD_PARAMETER;
 }
@@ -217,13 +310,16 @@ RTC::ReturnCode_t ManagerServant::remove_master_manager(RTM::Manager_ptr mgr) {
 RTM::ManagerList* ManagerServant::get_slave_managers() { return to_list(living_slaves()); }
 
 RTC::ReturnCode_t ManagerServant::add_slave_manager(RTM::Manager_ptr mgr) {
-  if (CORBA::is_nil(mgr) || mgr->_is_equivalent(reference_)) return RTC::BAD_PARAMETER;
+  if (CORBA::is_nil(mgr)) return RTC::BAD_PARAMETER;
+  settle(mgr);
+  if (mgr->_is_equivalent(reference_)) return RTC::BAD_PARAMETER;
   const std::scoped_lock lock(mutex_);
   return add_unique(slaves_, mgr) ? RTC::RTC_OK : RTC::BAD_PARAMETER;
 }
 
 RTC::ReturnCode_t ManagerServant::remove_slave_manager(RTM::Manager_ptr mgr) {
   if (CORBA::is_nil(mgr)) return RTC::BAD_PARAMETER;
+  settle(mgr);
   const std::scoped_lock lock(mutex_);
   return std::erase_if(slaves_, [&](const auto& known) { return known->_is_equivalent(mgr); }) > 0 ? RTC::RTC_OK : RTC::BAD_PARAMETER;
 }
@@ -245,29 +341,40 @@ std::vector<RTM::Manager_var> ManagerServant::living_slaves() {
       }
     } catch (const CORBA::Exception&) {  // as good as gone
     }
-    remove_slave_manager(slave);
+    const std::scoped_lock lock(mutex_);
+    std::erase_if(slaves_, [&](const auto& known) { return known->_is_equivalent(slave); });
   }
   return living;
 }
 
-void ManagerServant::greet_master() {
-  const auto url = "corbaloc:iiop:" + manager_.configValue("corba.master_manager") + "/" + manager_.configValue("manager.name");
+// Nil if nothing that is a manager answers there.
+RTM::Manager_var ManagerServant::manager_at(const std::string& address) {
+  const auto url = "corbaloc:iiop:" + address + "/" + manager_.configValue("manager.name");
   try {
     CORBA::Object_var object = manager_.getORB()->string_to_object(url.c_str());
     corba::set_call_timeout(object, peer_timeout);
-    RTM::Manager_var master = RTM::Manager::_narrow(object);
-    if (CORBA::is_nil(master) || master->_is_equivalent(reference_)) return;
-    corba::set_call_timeout(master, peer_timeout);
-    {
-      const std::scoped_lock lock(mutex_);
-      masters_.clear();
-      masters_.push_back(master);
-    }
-    master->add_slave_manager(reference_);  // BAD_PARAMETER: it knows us
-  } catch (const CORBA::Exception&) {       // no master now
-    const std::scoped_lock lock(mutex_);
-    masters_.clear();
+    RTM::Manager_var manager = RTM::Manager::_narrow(object);
+    if (!CORBA::is_nil(manager)) corba::set_call_timeout(manager, peer_timeout);
+    return manager;
+  } catch (const CORBA::Exception&) {
+    return RTM::Manager::_nil();
   }
+}
+
+void ManagerServant::greet_master() {
+  RTM::Manager_var master = manager_at(manager_.configValue("corba.master_manager"));
+  try {
+    // A manager that is no master has that address because the port was free; it may be this one.
+    if (!CORBA::is_nil(master) && master->is_master()) {
+      add_master_manager(master);             // BAD_PARAMETER: it is in the list
+      master->add_slave_manager(reference_);  // BAD_PARAMETER: it knows us
+      greeted_ = master;
+      return;
+    }
+  } catch (const CORBA::Exception&) {  // gone meanwhile
+  }
+  if (!CORBA::is_nil(greeted_)) remove_master_manager(greeted_);
+  greeted_ = RTM::Manager::_nil();
 }
 
 void ManagerServant::leave_masters() {
@@ -296,9 +403,9 @@ void ManagerServant::leave_masters() {
 
 // ---------------------------------------------------------------------------------------------- the process
 
-// A copy of a process with threads, connections and devices is nothing anybody could use.
-RTC::ReturnCode_t ManagerServant::fork() { return RTC::UNSUPPORTED; }
-RTC::ReturnCode_t ManagerServant::restart() { return RTC::UNSUPPORTED; }
+// Nothing happens, as tools know it from every manager: neither a copy nor a new start of a process with threads and devices is possible.
+RTC::ReturnCode_t ManagerServant::fork() { return RTC::RTC_OK; }
+RTC::ReturnCode_t ManagerServant::restart() { return RTC::RTC_OK; }
 
 RTC::ReturnCode_t ManagerServant::shutdown() {
   manager_.terminate();

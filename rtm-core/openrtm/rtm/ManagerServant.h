@@ -56,12 +56,16 @@ class ManagerServant final : public POA_RTM::Manager {
 
  private:
   std::vector<RTM::Manager_var> living_slaves();
+  RTM::Manager_var manager_at(const std::string& address);
+  template <class List, class Ask>
+  void append_from_slaves(List& list, Ask ask);
 
   RTC::Manager& manager_;
   RTM::Manager_var reference_;
   std::mutex mutex_;  // guards the two lists
   std::vector<RTM::Manager_var> masters_;
   std::vector<RTM::Manager_var> slaves_;
+  RTM::Manager_var greeted_;  // the master of corba.master_manager; the timer's thread only
 };
 
 }  // namespace RTM

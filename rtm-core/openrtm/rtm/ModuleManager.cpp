@@ -141,6 +141,29 @@ struct ModuleManager::Impl {
     return folders;
   }
 
+  // With the dot.
+  std::vector<std::string> suffixes() const {
+    auto list = base::split_list(manager->configValue("manager.modules.C++.suffixes"));
+    for (auto& suffix : list) {
+      if (!suffix.starts_with('.')) suffix.insert(0, ".");
+    }
+    return list.empty() ? std::vector<std::string>{".so"} : list;
+  }
+
+  std::string init_function(const std::string& file) const {
+    const auto suffix = manager->configValue("manager.modules.init_func_suffix");
+    const auto name = ModuleManager::initFunction(file);
+    const auto base_name = name.substr(0, name.size() - std::string_view("Init").size());
+    return manager->configValue("manager.modules.init_func_prefix") + base_name + (suffix.empty() ? "Init" : suffix);
+  }
+
+  // The program that prints the profiles in a module, and its arguments.
+  std::vector<std::string> profile_command() const {
+    const auto given = base::split_list(manager->configValue("manager.modules.C++.profile_cmd"), ' ');
+    const bool is_own = given.empty() || (given.size() == 1 && (given[0] == profile_program || given[0] == "rtcprof2"));
+    return is_own ? std::vector<std::string>{profile_program_path()} : given;
+  }
+
   std::optional<Module> find(const std::string& name, const std::string& file) const {
     const std::scoped_lock lock(mutex);
     for (const auto& module : modules) {
@@ -160,7 +183,9 @@ struct ModuleManager::Impl {
       const auto at = known_profiles.find(file.string());
       if (at != known_profiles.end() && at->second.time == profile.time && at->second.size == profile.size) return at->second.profiles;
     }
-    const auto output = output_of({profile_program_path(), file.string()}, std::chrono::seconds(10));
+    auto command = profile_command();
+    command.push_back(file.string());
+    const auto output = output_of(command, std::chrono::seconds(10));
     std::string block;
     std::string_view rest = output ? std::string_view(*output) : std::string_view();
     while (!rest.empty()) {
@@ -195,8 +220,11 @@ std::string ModuleManager::findFile(const std::string& name) const {
     if (given.is_absolute()) return {};
   }
   for (const auto& folder : impl_->load_path()) {
-    for (const auto& file : {name, name + ".so", "lib" + name + ".so"}) {
-      if (is_file(folder / file)) return real_path(folder / file);
+    if (is_file(folder / name)) return real_path(folder / name);
+    for (const auto& suffix : impl_->suffixes()) {
+      for (const auto& file : {name + suffix, "lib" + name + suffix}) {
+        if (is_file(folder / file)) return real_path(folder / file);
+      }
     }
   }
   return {};
@@ -221,7 +249,7 @@ ReturnCode_t ModuleManager::load(const std::string& text, const std::string& ini
     return complain("absolute paths are not allowed by manager.modules.abs_path_allowed"), PRECONDITION_NOT_MET;
   }
   if (impl_->find({}, file)) return RTC_OK;
-  if (function.empty()) function = initFunction(file);
+  if (function.empty()) function = impl_->init_function(file);
 
   void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr) {
@@ -295,10 +323,12 @@ std::vector<coil::Properties> ModuleManager::getLoadedModules() const {
 std::vector<coil::Properties> ModuleManager::getLoadableModules() {
   std::vector<coil::Properties> result;
   std::vector<std::string> seen;
+  const auto suffixes = impl_->suffixes();
   for (const auto& folder : impl_->load_path()) {
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(folder, error)) {
-      if (entry.path().extension() != ".so" || !is_file(entry.path())) continue;
+      const auto extension = entry.path().extension().string();
+      if (std::find(suffixes.begin(), suffixes.end(), extension) == suffixes.end() || !is_file(entry.path())) continue;
       const auto file = real_path(entry.path());
       if (std::find(seen.begin(), seen.end(), file) != seen.end()) continue;
       seen.push_back(file);

@@ -27,7 +27,8 @@ class NamingManager {
   NamingManager(const NamingManager&) = delete;
   NamingManager& operator=(const NamingManager&) = delete;
 
-  // method: "corba". name_server: host, host:port or a corbaloc URL.
+  // method: "corba"; name_server: host, host:port or a corbaloc URL. Or "manager": names are looked for at the manager there and its
+  // slaves; nothing is bound on it.
   void registerNameServer(const char* method, const char* name_server);
   // Binds under `name` on every naming service, now or when it comes (back).
   void bindObject(const char* name, const RTObject_impl* rtobj);
@@ -39,9 +40,13 @@ class NamingManager {
   // Looks after all bindings soon; the timer does it anyway.
   void update();
 
-  // The components that a name stands for: an instance name of this process, `rtcname://host:port/path/instance`, `rtcname://*/instance`,
-  // `rtcloc://host:port/category/instance`.
+  // The components that a name stands for: an instance name of this process, or of the managers that are registered,
+  // `rtcname://host:port/path/instance`, `rtcname://*/instance`, `rtcloc://host:port/category/instance`.
   RTCList string_to_component(const std::string& name);
+  // What is bound with that kind below a context, on all naming services that answer.
+  std::vector<CORBA::Object_var> list(const std::string& context, const std::string& kind);
+  // The components of the managers that are registered.
+  RTCList componentsOfManagers();
   // The object bound under a full name on any of the naming services; nil if there is none that answers.
   CORBA::Object_ptr resolve(const std::string& name);
   // True if something alive that is not ours is bound under an entry of that instance name, under this host's name or anywhere.

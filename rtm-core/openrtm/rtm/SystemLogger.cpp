@@ -10,6 +10,8 @@
 #include <mutex>
 #include <streambuf>
 
+#include <coil/ClockManager.h>
+
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/text.h"
@@ -127,6 +129,10 @@ class Router {
       const std::scoped_lock lock(mutex_);
       settings = settings_;
       sinks = sinks_;
+    }
+    if (!settings->clock.empty()) {
+      const auto time = coil::ClockManager::instance().getClock(settings->clock).gettime();
+      record.time = std::chrono::seconds(time.sec()) + std::chrono::microseconds(time.usec());
     }
     if (settings->enabled && (wanted || level <= settings->level)) {
       const auto line = format_line(*settings, record);

@@ -46,6 +46,7 @@ struct LogSettings {
   std::vector<std::string> files = {"stderr"};    // "stderr", "stdout", else names of files (appended to)
   std::string date_format = "%b %d %H:%M:%S.%Q";  // strftime; %Q milliseconds, %q microseconds
   bool colored = false;
+  std::string clock{};  // of coil::ClockManager: "logical", "adjusted"; else the system's
 };
 // Replaces the settings of the whole process. Returns one line per file that cannot be written.
 std::vector<std::string> setLogSettings(const LogSettings& settings);

@@ -1,0 +1,304 @@
+// RTM::Manager over the wire, operation by operation: what tools ask of a manager, a master and a slave.
+#include <gtest/gtest.h>
+#include <rtm/CORBA_RTCUtil.h>
+#include <rtm/NVUtil.h>
+
+#include <algorithm>
+#include <fstream>
+#include <future>
+
+#include "manager/rtcd_fixture.h"
+
+namespace manager_test {
+namespace {
+
+using namespace std::chrono_literals;
+using Strings = std::set<std::string>;
+
+Strings values_of(const RTM::ModuleProfileList& modules, const char* key) {
+  Strings values;
+  for (CORBA::ULong i = 0; i < modules.length(); ++i) values.insert(NVUtil::toString(modules[i].properties, key));
+  return values;
+}
+
+Strings instance_names(RTM::Manager_ptr manager) {
+  RTC::ComponentProfileList_var profiles = manager->get_component_profiles();
+  Strings names;
+  for (CORBA::ULong i = 0; i < profiles->length(); ++i) names.insert(profiles[i].instance_name.in());
+  return names;
+}
+
+std::string property_of(RTC::RTObject_ptr component, const std::string& key) {
+  const auto properties = CORBA_RTCUtil::get_component_profile(component);
+  return std::as_const(properties).getProperty(key);
+}
+
+class Servant : public Rtcd {
+ protected:
+  std::vector<std::string> at_port(int port, const std::vector<std::string>& further) const {
+    std::vector<std::string> words{"-p", std::to_string(port)};
+    words.insert(words.end(), further.begin(), further.end());
+    return command(words);
+  }
+  std::vector<std::string> slave_of(int master, int port, const std::string& name, const std::vector<std::string>& further) const {
+    auto words = at_port(port, {"-o", "corba.master_manager:127.0.0.1:" + std::to_string(master), "-o",
+                                "corba.update_master_manager.interval:0.1", "-o", "manager.instance_name:" + name});
+    words.insert(words.end(), further.begin(), further.end());
+    return words;
+  }
+  RTC::RTObject_var make(RTM::Manager_ptr manager, const std::string& argument) const {
+    return manager->create_component(argument.c_str());
+  }
+};
+
+TEST_F(Servant, every_value_of_profile_and_configuration_is_a_string) {
+  const int port = support::free_port();
+  support::Process rtcd(at_port(port, {"-o", "manager.instance_name:me", "-o", "test.Any.conf.default.x:1"}));
+  RTM::Manager_var manager = manager_at(port);
+  ASSERT_FALSE(CORBA::is_nil(manager)) << rtcd.output();
+  RTM::ManagerProfile_var profile = manager->get_profile();
+  EXPECT_EQ(NVUtil::toString(profile->properties, "instance_name"), "me");
+  EXPECT_EQ(NVUtil::toString(profile->properties, "is_master"), "NO");
+  EXPECT_LT(NVUtil::find_index(profile->properties, "corba.id"), 0);  // the subtree alone
+  RTM::NVList_var configuration = manager->get_configuration();
+  EXPECT_EQ(NVUtil::toString(configuration, "manager.instance_name"), "me");
+  EXPECT_EQ(NVUtil::toString(configuration, "test.Any.conf.default.x"), "1");
+  EXPECT_EQ(NVUtil::toString(configuration, "corba.endpoints"), ":" + std::to_string(port));
+  for (CORBA::ULong i = 0; i < configuration->length(); ++i) {
+    CORBA::TypeCode_var type = configuration[i].value.type();
+    EXPECT_EQ(type->kind(), CORBA::tk_string) << configuration[i].name;
+  }
+  EXPECT_EQ(manager->set_configuration("test.Any.conf.default.x", "2"), RTC::RTC_OK);
+  configuration = manager->get_configuration();
+  EXPECT_EQ(NVUtil::toString(configuration, "test.Any.conf.default.x"), "2");
+  EXPECT_FALSE(manager->is_master());
+  EXPECT_EQ(manager->fork(), RTC::RTC_OK);
+  EXPECT_EQ(manager->restart(), RTC::RTC_OK);
+  CORBA::Object_var service = manager->get_service("any");
+  EXPECT_TRUE(CORBA::is_nil(service));
+  EXPECT_TRUE(rtcd.running());
+}
+
+TEST_F(Servant, modules_are_shown_with_what_tools_look_for) {
+  const int port = support::free_port();
+  support::Process rtcd(at_port(port, {}));
+  RTM::Manager_var manager = manager_at(port);
+  ASSERT_FALSE(CORBA::is_nil(manager)) << rtcd.output();
+  RTM::ModuleProfileList_var list = manager->get_loaded_modules();
+  EXPECT_EQ(list->length(), 0u);
+  ASSERT_EQ(manager->load_module("FailOnRequest.so", ""), RTC::RTC_OK);
+  list = manager->get_loaded_modules();
+  ASSERT_EQ(list->length(), 1u);
+  const auto file = NVUtil::toString(list[0].properties, "file_path");
+  EXPECT_TRUE(file.starts_with("/") && file.ends_with("/FailOnRequest.so")) << file;
+  EXPECT_EQ(NVUtil::toString(list[0].properties, "init_func"), "FailOnRequestInit");
+  EXPECT_EQ(NVUtil::toString(list[0].properties, "language"), "C++");
+  list = manager->get_loadable_modules();
+  EXPECT_TRUE(values_of(list, "module_file_name").contains("FailOnRequest.so"));
+  EXPECT_TRUE(values_of(list, "module_file_path").contains(file));
+  for (CORBA::ULong i = 0; i < list->length(); ++i) {
+    for (const auto* key : {"implementation_id", "type_name", "category", "vendor", "version", "language", "description"}) {
+      EXPECT_NE(NVUtil::toString(list[i].properties, key), "") << NVUtil::toString(list[i].properties, "module_file_name") << ' ' << key;
+    }
+  }
+  list = manager->get_factory_profiles();
+  EXPECT_EQ(values_of(list, "implementation_id"), (Strings{"FailOnRequest", "PeriodicECSharedComposite"}));
+  EXPECT_EQ(manager->unload_module(file.c_str()), RTC::RTC_OK);
+  list = manager->get_factory_profiles();
+  EXPECT_EQ(values_of(list, "implementation_id"), Strings{"PeriodicECSharedComposite"});
+}
+
+TEST_F(Servant, create_component_understands_every_form_of_its_argument) {
+  support::TemporaryFolder folder;
+  const auto file = (folder.path() / "own.conf").string();
+  std::ofstream(file) << "conf.default.how: throw\nconf.special.how: throw_number\nexec_cxt.periodic.rate: 25\n";
+  const int port = support::free_port();
+  support::Process rtcd(at_port(port, {"-o", "manager.shutdown_on_nortcs:NO"}));
+  RTM::Manager_var manager = manager_at(port);
+  ASSERT_FALSE(CORBA::is_nil(manager)) << rtcd.output();
+
+  for (const auto& [argument, name] : std::vector<std::pair<std::string, std::string>>{
+           {"FailOnRequest", "FailOnRequest0"},
+           {"FailOnRequest?", "FailOnRequest1"},
+           {"FailOnRequest?&instance_name=A", "A"},
+           {"RTC:::FailOnRequest:", ""},    // five fields
+           {"RTC::::FailOnRequest::", ""},  // too many
+           {"RTC:rtm-sim:example:FailOnRequest:C++:1.0.0", "FailOnRequest2"},
+           {"RTC:::FailOnRequest::?instance_name=B", "B"},
+           {"RTC:rtm-sim::FailOnRequest::?instance_name=C&conf.default.how=throw", "C"},
+           {"RTC:someone:example:FailOnRequest:C++:1.0.0", ""},
+           {"RTC:rtm-sim:example:FailOnRequest:Python:1.0.0", ""},
+           {"RTC:rtm-sim:example:FailOnRequest:C++:9.9", ""},
+           {"FailOnRequest?manager_name=me&instance_name=D", "D"},
+           {"FailOnRequest?manager_name=nobody&instance_name=E", "E"},
+           {"FailOnRequest?instance_name=A", ""},  // there is one
+       }) {
+    RTC::RTObject_var made = make(manager, argument);
+    if (CORBA::is_nil(made)) {
+      EXPECT_EQ(name, "") << argument;
+      continue;
+    }
+    CORBA::String_var id = made->get_sdo_id();
+    EXPECT_EQ(id.in(), name) << argument;
+  }
+
+  RTC::RTObject_var by_file = make(manager, "FailOnRequest?instance_name=F&config_file=" + file + "&conf.special.how=return&my.own=x");
+  ASSERT_FALSE(CORBA::is_nil(by_file)) << rtcd.output();
+  EXPECT_EQ(property_of(by_file, "conf.default.how"), "throw");
+  EXPECT_EQ(property_of(by_file, "conf.special.how"), "return");  // the argument beats the file
+  EXPECT_EQ(property_of(by_file, "my.own"), "x");
+  EXPECT_EQ(property_of(by_file, "exec_cxt.periodic.rate"), "25");
+  EXPECT_EQ(property_of(by_file, "manager_name"), "");
+  EXPECT_EQ(CORBA_RTCUtil::get_current_rate(by_file, 0), 25);
+
+  RTC::RTObject_var source = make(manager, "SourceAll?instance_name=S");
+  ASSERT_FALSE(CORBA::is_nil(source));
+  RTC::RTObject_var composite =
+      make(manager, "PeriodicECSharedComposite?instance_name=Both&conf.default.members=S,F&exported_ports=S.long");
+  ASSERT_FALSE(CORBA::is_nil(composite));
+  RTC::PortService_var port_of_composite = CORBA_RTCUtil::get_port_by_name(composite, "S.long");
+  EXPECT_FALSE(CORBA::is_nil(port_of_composite)) << rtcd.output();
+}
+
+TEST_F(Servant, a_master_shows_and_uses_what_its_slaves_have) {
+  const int master_port = support::free_port();
+  support::TemporaryFolder nothing;
+  auto words = at_port(master_port, {"-d", "-o", "manager.modules.load_path:" + nothing.path().string()});
+  support::Process master_process(words);
+  RTM::Manager_var master = manager_at(master_port);
+  ASSERT_FALSE(CORBA::is_nil(master)) << master_process.output();
+  const int slave_port = support::free_port();
+  support::Process slave_process(slave_of(master_port, slave_port, "helper", {"FailOnRequest"}));
+  RTM::Manager_var slave = manager_at(slave_port);
+  const auto slaves = [&] {
+    RTM::ManagerList_var list = master->get_slave_managers();
+    return list->length();
+  };
+  ASSERT_TRUE(eventually([&] { return slaves() == 1 && instance_names(master) == Strings{"FailOnRequest0"}; })) << slave_process.output();
+  RTM::ManagerList_var masters = slave->get_master_managers();
+  ASSERT_EQ(masters->length(), 1u);
+  EXPECT_TRUE(RTM::Manager_var(masters[0])->is_master());
+
+  RTM::ModuleProfileList_var list = master->get_loaded_modules();
+  EXPECT_EQ(list->length(), 1u);
+  list = master->get_loadable_modules();
+  EXPECT_TRUE(values_of(list, "implementation_id").contains("SinkAll"));
+  list = master->get_factory_profiles();
+  EXPECT_TRUE(values_of(list, "implementation_id").contains("FailOnRequest"));
+
+  RTC::RTObject_var made = make(master, "SinkAll");  // the master has no module of it
+  EXPECT_FALSE(CORBA::is_nil(made));
+  made = make(master, "PeriodicECSharedComposite?instance_name=There&manager_name=helper");
+  EXPECT_FALSE(CORBA::is_nil(made));
+  made = make(master, "PeriodicECSharedComposite?instance_name=Also&manager_address=127.0.0.1:" + std::to_string(slave_port));
+  EXPECT_FALSE(CORBA::is_nil(made));
+  made = make(master, "PeriodicECSharedComposite?instance_name=Here");
+  EXPECT_FALSE(CORBA::is_nil(made));
+  made = make(master, "PeriodicECSharedComposite?manager_address=127.0.0.1:" + std::to_string(support::free_port()));
+  EXPECT_TRUE(CORBA::is_nil(made));
+  EXPECT_EQ(instance_names(slave), (Strings{"FailOnRequest0", "SinkAll0", "There", "Also"}));
+  EXPECT_EQ(instance_names(master), (Strings{"FailOnRequest0", "SinkAll0", "There", "Also", "Here"}));
+  RTC::RTCList_var local = master->get_components_by_name("SinkAll0");
+  EXPECT_EQ(local->length(), 0u);
+  local = master->get_components_by_name("*/Here");
+  EXPECT_EQ(local->length(), 1u);
+  EXPECT_EQ(master->delete_component("There"), RTC::RTC_OK);
+  EXPECT_EQ(master->delete_component("There"), RTC::BAD_PARAMETER);
+
+  EXPECT_EQ(master->add_slave_manager(slave), RTC::BAD_PARAMETER);  // it is one
+  EXPECT_EQ(slave->shutdown(), RTC::RTC_OK);
+  EXPECT_EQ(slave_process.wait(), 0);
+  EXPECT_EQ(slaves(), 0u);
+  EXPECT_EQ(instance_names(master), Strings{"Here"});
+  EXPECT_EQ(master->shutdown(), RTC::RTC_OK);
+  EXPECT_EQ(master_process.wait(), 0);
+  EXPECT_TRUE(entries().empty());
+}
+
+TEST_F(Servant, masters_and_slaves_are_listed_once_and_forgotten_when_told) {
+  const int port = support::free_port();
+  const int other_port = support::free_port();
+  support::Process rtcd(at_port(port, {"-o", "corba.update_master_manager.enable:NO"}));
+  support::Process other_process(at_port(other_port, {"-o", "corba.update_master_manager.enable:NO"}));
+  RTM::Manager_var manager = manager_at(port);
+  RTM::Manager_var other = manager_at(other_port);
+  ASSERT_FALSE(CORBA::is_nil(manager) || CORBA::is_nil(other));
+  EXPECT_EQ(manager->add_master_manager(other), RTC::RTC_OK);
+  EXPECT_EQ(manager->add_master_manager(other), RTC::BAD_PARAMETER);
+  EXPECT_EQ(manager->add_slave_manager(other), RTC::RTC_OK);
+  EXPECT_EQ(manager->add_slave_manager(other), RTC::BAD_PARAMETER);
+  RTM::ManagerList_var list = manager->get_master_managers();
+  EXPECT_EQ(list->length(), 1u);
+  list = manager->get_slave_managers();
+  EXPECT_EQ(list->length(), 1u);
+  EXPECT_EQ(manager->remove_master_manager(other), RTC::RTC_OK);
+  EXPECT_EQ(manager->remove_master_manager(other), RTC::BAD_PARAMETER);
+  EXPECT_EQ(manager->remove_slave_manager(other), RTC::RTC_OK);
+  EXPECT_EQ(manager->remove_slave_manager(other), RTC::BAD_PARAMETER);
+  EXPECT_EQ(manager->add_master_manager(RTM::Manager::_nil()), RTC::BAD_PARAMETER);
+}
+
+TEST_F(Servant, a_master_that_a_tool_has_named_stays_when_the_configured_one_is_away) {
+  const int port = support::free_port();
+  const int other_port = support::free_port();
+  support::Process rtcd(slave_of(support::free_port(), port, "lonely", {"-o", "corba.update_master_manager.interval:0.1"}));
+  support::Process other_process(at_port(other_port, {}));
+  RTM::Manager_var manager = manager_at(port);
+  RTM::Manager_var other = manager_at(other_port);
+  ASSERT_FALSE(CORBA::is_nil(manager) || CORBA::is_nil(other));
+  EXPECT_EQ(manager->add_master_manager(other), RTC::RTC_OK);
+  std::this_thread::sleep_for(300ms);  // three looks for the configured one; nothing tells when they are over
+  RTM::ManagerList_var list = manager->get_master_managers();
+  EXPECT_EQ(list->length(), 1u);
+}
+
+TEST_F(Servant, master_and_slave_end_together_without_waiting_for_each_other) {
+  for (int i = 0; i < 5; ++i) {
+    const int port = support::free_port();
+    support::Process master_process(at_port(port, {"-d", "FailOnRequest?instance_name=M"}));
+    RTM::Manager_var master = manager_at(port);
+    ASSERT_FALSE(CORBA::is_nil(master)) << master_process.output();
+    support::Process slave_process(slave_of(port, support::free_port(), "slave", {"FailOnRequest?instance_name=S"}));
+    ASSERT_TRUE(eventually([&] { return instance_names(master) == Strings{"M", "S"}; })) << slave_process.output();
+    master_process.signal(SIGTERM);
+    slave_process.signal(SIGTERM);
+    EXPECT_EQ(master_process.wait(), 0) << master_process.output();
+    EXPECT_EQ(slave_process.wait(), 0) << slave_process.output();
+    EXPECT_TRUE(entries().empty());
+  }
+}
+
+TEST_F(Servant, tools_may_look_while_components_come_and_go) {
+  const int port = support::free_port();
+  support::Process rtcd(at_port(port, {"-o", "manager.shutdown_on_nortcs:NO"}));
+  RTM::Manager_var manager = manager_at(port);
+  ASSERT_FALSE(CORBA::is_nil(manager)) << rtcd.output();
+  std::atomic<bool> ended = false;
+  std::atomic<int> looks = 0;
+  std::vector<std::future<void>> tools;
+  for (int i = 0; i < 2; ++i) {
+    tools.push_back(std::async(std::launch::async, [&] {
+      while (!ended) {
+        RTC::ComponentProfileList_var profiles = manager->get_component_profiles();
+        RTC::RTCList_var components = manager->get_components_by_name("Brief");
+        components = manager->get_components();
+        ++looks;
+      }
+    }));
+  }
+  for (int i = 0; i < 100; ++i) {
+    RTC::RTObject_var made = make(manager, "FailOnRequest?instance_name=Brief");
+    ASSERT_TRUE(eventually([&] {  // the name is free when the one before has been deleted
+      if (CORBA::is_nil(made)) made = make(manager, "FailOnRequest?instance_name=Brief");
+      return !CORBA::is_nil(made);
+    }));
+    EXPECT_EQ(manager->delete_component("Brief"), RTC::RTC_OK);
+  }
+  ended = true;
+  for (auto& tool : tools) EXPECT_NO_THROW(tool.get());
+  EXPECT_GT(looks, 0);
+  EXPECT_EQ(rtcd.stop(), 0) << rtcd.output();
+}
+
+}  // namespace
+}  // namespace manager_test
