@@ -50,7 +50,8 @@ shm::Iface* IfaceLink::live() {
     if (status == shm::Status::live) return &*iface_;
     lose(status == shm::Status::dead ? "the simulator died" : "the simulator has closed it");
   }
-  if (Clock::now() < next_try_) return nullptr;
+  // Simulated time goes on only when this returns: a wait by the clock on the wall could last for all of a run.
+  if (!in_simulated_time() && Clock::now() < next_try_) return nullptr;
   next_try_ = Clock::now() + retry_period;
   if (!iface_->reopen()) return nullptr;
   last_ = 0;

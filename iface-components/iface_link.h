@@ -32,7 +32,8 @@ class IfaceLink {
   // How often it has attached, also by itself to a simulator that came back: what was told to the one before is forgotten.
   std::uint64_t attachments() const { return attachments_; }
 
-  // The iface while it lives; nullptr while it is lost. Looks for it again now and then.
+  // The iface while it lives; nullptr while it is lost. Looks for it again now and then, in simulated time
+  // at every tick.
   shm::Iface* live();
   // Waits up to `limit` for a sample newer than the last one that this returned; nullptr when there is none or the iface is lost. The
   // sample is in the iface then.

@@ -45,7 +45,8 @@ void SimTimeContext::init(coil::Properties& properties) {
 void SimTimeContext::say_once(const std::string& line) {
   if (line == said_) return;
   said_ = line;
-  RTC_INFO(("%s", line.c_str()));
+  const base::ScopedClock clock(clock_);  // for the log
+  RTC_INFO(("%s: %s", participant_name().c_str(), line.c_str()));
 }
 
 std::string SimTimeContext::participant_name() const {
@@ -74,8 +75,10 @@ std::shared_ptr<shm::Participant> SimTimeContext::join() {
   if (!simulation) return nullptr;
   simulation_.emplace(std::move(*simulation));
   is_waiting_ = false;
+  const auto step = std::chrono::nanoseconds(simulation_->info<shm::SimulationInfo>().step_ns);
   say_once("ticking at " + base::format_number(getRate()) + " Hz of simulated time, phase " + std::to_string(phase_) + " of simulator " +
-           std::to_string(server_id_));
+           std::to_string(server_id_) +
+           (options.period < step ? "; that is once a step, " + base::format_number(1e9 / static_cast<double>(step.count())) + " Hz" : ""));
   auto participant = std::make_shared<shm::Participant>(std::move(*joined));
   const std::scoped_lock lock(mutex_);
   participant_ = participant;

@@ -3,18 +3,20 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
+#include <utility>
 
-#include "base/id.h"
 #include "base/text.h"
+#include "interrupt.h"
 
 namespace editor {
 namespace {
@@ -23,6 +25,15 @@ using base::Error;
 using base::Result;
 
 constexpr std::chrono::milliseconds ending_limit{5000};
+constexpr std::chrono::milliseconds killing_limit{5000};  // the kernel takes its time only when memory or a disk is stuck
+
+// Until the process ends, the handle can be read, a signal comes or the time is up.
+void wait_for_event(pid_t pid, int handle, std::chrono::milliseconds limit) {
+  const int process = static_cast<int>(syscall(SYS_pidfd_open, pid, 0));
+  pollfd events[2] = {{process, POLLIN, 0}, {handle, POLLIN, 0}};
+  poll(events, 2, static_cast<int>(std::min<std::int64_t>(limit.count() + 1, 60'000)));
+  if (process >= 0) close(process);
+}
 
 int code_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
 
@@ -47,9 +58,10 @@ int code_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 +
 }  // namespace
 
 Result<ChildProcess> ChildProcess::start(const ProgramCall& call) {
-  const auto file = call.output.empty() ? "/dev/null" : call.output.c_str();
-  const int output = open(file, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
-  if (output < 0) return Error{"program " + call.words[0] + ": its output file " + base::in_quotes(file) + " cannot be written"};
+  const bool collects = call.output.empty();
+  const int output =
+      collects ? memfd_create("output", MFD_CLOEXEC) : open(call.output.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
+  if (output < 0) return Error{"program " + call.words[0] + ": its output file " + base::in_quotes(call.output) + " cannot be written"};
   std::vector<std::string> variables;
   for (char** entry = environ; *entry; ++entry) {
     const std::string text = *entry;
@@ -65,18 +77,27 @@ Result<ChildProcess> ChildProcess::start(const ProgramCall& call) {
   const pid_t parent = getpid();
   const pid_t child = fork();
   if (child == 0) become(words.data(), environment.data(), output, parent);
-  close(output);
+  if (!collects || child < 0) close(output);
   if (child < 0) return Error{"program " + call.words[0] + ": no process can be made"};
-  return ChildProcess(child, std::filesystem::path(call.words[0]).filename().string());
+  setpgid(child, child);  // as it does itself: whoever comes first
+  return ChildProcess(child, collects ? output : -1, std::filesystem::path(call.words[0]).filename().string());
 }
 
 ChildProcess::ChildProcess(ChildProcess&& other) noexcept
-    : pid_(std::exchange(other.pid_, -1)), exit_code_(other.exit_code_), program_(std::move(other.program_)) {}
+    : pid_(std::exchange(other.pid_, -1)),
+      started_(other.started_),
+      is_told_(other.is_told_),
+      collected_(std::exchange(other.collected_, -1)),
+      exit_code_(other.exit_code_),
+      program_(std::move(other.program_)) {}
 
 ChildProcess& ChildProcess::operator=(ChildProcess&& other) noexcept {
   if (this == &other) return *this;
   end();
   pid_ = std::exchange(other.pid_, -1);
+  started_ = other.started_;
+  is_told_ = other.is_told_;
+  collected_ = std::exchange(other.collected_, -1);
   exit_code_ = other.exit_code_;
   program_ = std::move(other.program_);
   return *this;
@@ -86,49 +107,90 @@ ChildProcess::~ChildProcess() { end(); }
 
 bool ChildProcess::is_running() { return !wait(std::chrono::milliseconds(0)); }
 
-bool ChildProcess::wait(std::chrono::milliseconds limit) {
-  if (pid_ < 0) return true;
-  const int handle = static_cast<int>(syscall(SYS_pidfd_open, pid_, 0));
-  if (handle >= 0) {
-    pollfd ended{handle, POLLIN, 0};
-    poll(&ended, 1, static_cast<int>(limit.count()));
-    close(handle);
-  }
+// Takes note of its end, if it has ended, and ends what it has left behind in its process group.
+bool ChildProcess::reap() {
+  siginfo_t info{};
+  if (waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid != pid_) return false;
+  kill(-pid_, SIGKILL);  // while its number cannot belong to anybody else
   int status = 0;
-  if (waitpid(pid_, &status, WNOHANG) != pid_) return false;
+  waitpid(pid_, &status, 0);
   pid_ = -1;
   exit_code_ = code_of(status);
   return true;
 }
 
+bool ChildProcess::wait(std::chrono::milliseconds limit) {
+  const auto deadline = std::chrono::steady_clock::now() + limit;
+  for (;;) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+    if (pid_ < 0 || reap()) return true;
+    if (left.count() < 0) return false;
+    wait_for_event(pid_, -1, left);
+  }
+}
+
+Ending ChildProcess::wait_or_interrupt(std::chrono::milliseconds limit) {
+  const auto deadline = std::chrono::steady_clock::now() + limit;
+  for (;;) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+    if (pid_ < 0 || reap()) return Ending::ended;
+    if (is_interrupted()) return Ending::interrupted;
+    if (left.count() < 0) return Ending::timed_out;
+    wait_for_event(pid_, interrupt_handle(), left);
+  }
+}
+
 void ChildProcess::terminate() {
-  if (pid_ > 0) kill(pid_, SIGTERM);
+  if (pid_ > 0 && !std::exchange(is_told_, true)) kill(pid_, SIGTERM);
+}
+
+std::string ChildProcess::how_it_ended() const {
+  if (exit_code_ < 128) return "ended with exit code " + std::to_string(exit_code_);
+  return "was killed by signal " + std::to_string(exit_code_ - 128) + " (" + strsignal(exit_code_ - 128) + ")";
+}
+
+std::string ChildProcess::said() const {
+  std::string text;
+  char buffer[4096];
+  for (off_t at = 0; collected_ >= 0;) {
+    const auto count = pread(collected_, buffer, sizeof buffer, at);
+    if (count <= 0) break;
+    text.append(buffer, static_cast<std::size_t>(count));
+    at += count;
+  }
+  return text;
 }
 
 void ChildProcess::end() {
-  if (pid_ < 0) return;
-  terminate();
-  if (wait(ending_limit)) return;
-  kill(pid_, SIGKILL);
-  waitpid(pid_, nullptr, 0);
-  pid_ = -1;
+  if (pid_ >= 0) {
+    terminate();
+    if (!wait(ending_limit)) {
+      kill(pid_, SIGKILL);
+      wait(killing_limit);
+    }
+  }
+  if (collected_ >= 0) close(std::exchange(collected_, -1));
+}
+
+Result<std::string> output_of(const ChildProcess& ended) {
+  auto text = ended.said();
+  if (ended.exit_code() == 0) return text;
+  auto lines = base::split_list(text, '\n');
+  return Error{lines.empty() ? "program " + ended.program() + ": " + ended.how_it_ended() : lines.back()};
 }
 
 Result<std::string> output_of(const ProgramCall& call, std::chrono::milliseconds limit) {
-  const auto file = std::filesystem::temp_directory_path() / ("rtse-" + base::make_uuid());
-  auto with_file = call;
-  with_file.output = file.string();
-  auto started = ChildProcess::start(with_file);
+  auto started = ChildProcess::start(call);
   if (!started) return started.error();
-  const bool ended = started->wait(limit);
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  std::filesystem::remove(file);
-  if (!ended) return Error{"program " + started->program() + ": did not end within " + std::to_string(limit.count() / 1000) + " s"};
-  if (started->exit_code() == 0) return text.str();
-  auto last = base::split_list(text.str(), '\n');
-  return Error{last.empty() ? "program " + started->program() + ": failed with exit code " + std::to_string(started->exit_code())
-                            : last.back()};
+  switch (started->wait_or_interrupt(limit)) {
+    case Ending::ended:
+      return output_of(*started);
+    case Ending::interrupted:
+      return Error{"interrupted"};
+    case Ending::timed_out:
+      break;
+  }
+  return Error{"program " + started->program() + ": did not end within " + std::to_string(limit.count() / 1000) + " s"};
 }
 
 std::string own_program(const std::string& name) {

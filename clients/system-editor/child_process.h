@@ -1,5 +1,5 @@
 // A program that runs beside us and never outlives us: it is told to end when its owner goes, and killed by the kernel when we are killed.
-// One thread at a time.
+// What it has started itself and left behind ends with it. One thread at a time.
 #pragma once
 
 #include <sys/types.h>
@@ -16,8 +16,10 @@ namespace editor {
 struct ProgramCall {
   std::vector<std::string> words;                  // program and arguments
   std::map<std::string, std::string> environment;  // added to ours
-  std::string output;                              // file for its standard output and error
+  std::string output;                              // file for its standard output and error; empty: they are collected, see said()
 };
+
+enum class Ending { ended, timed_out, interrupted };
 
 class ChildProcess {
  public:
@@ -26,24 +28,38 @@ class ChildProcess {
   ChildProcess& operator=(ChildProcess&& other) noexcept;
   ~ChildProcess();  // SIGTERM, and SIGKILL after five seconds
 
+  pid_t pid() const { return started_; }
   bool is_running();
   // Of an ended program: its exit code, or 128 + signal.
   int exit_code() const { return exit_code_; }
+  // Of an ended program: "ended with exit code 3", "was killed by signal 11 (Segmentation fault)".
+  std::string how_it_ended() const;
   // False when it still runs after the time.
   bool wait(std::chrono::milliseconds limit);
+  // The same, but an interrupt ends the wait; see interrupt.h.
+  Ending wait_or_interrupt(std::chrono::milliseconds limit);
   void terminate();
+  // What it has written so far, if it has no output file.
+  std::string said() const;
   const std::string& program() const { return program_; }
 
  private:
-  ChildProcess(pid_t pid, std::string program) : pid_(pid), program_(std::move(program)) {}
+  ChildProcess(pid_t pid, int collected, std::string program)
+      : pid_(pid), started_(pid), collected_(collected), program_(std::move(program)) {}
+  bool reap();
   void end();
-  pid_t pid_ = -1;
+  pid_t pid_ = -1;  // -1: it has ended
+  pid_t started_ = -1;
+  bool is_told_ = false;  // to end: programs may take a second time for impatience
+  int collected_ = -1;
   int exit_code_ = -1;
   std::string program_;
 };
 
-// Runs a program to its end, at most `limit`, and returns what it wrote to standard output. An error when it fails: the last line it wrote.
+// Runs a program to its end, at most `limit`, and returns what it wrote. An error when it fails: the last line it wrote.
 base::Result<std::string> output_of(const ProgramCall& call, std::chrono::milliseconds limit);
+// The same of one that was started by the caller and has ended.
+base::Result<std::string> output_of(const ChildProcess& ended);
 
 // One of our own programs: beside this one, else from the path.
 std::string own_program(const std::string& name);

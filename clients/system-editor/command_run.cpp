@@ -1,15 +1,15 @@
 // run: one run, or one for each of several seeds, some of them at a time.
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "base/text.h"
 #include "child_process.h"
+#include "interrupt.h"
 #include "run_system.h"
 
 namespace editor {
@@ -17,7 +17,144 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// "3", "1..20".
+constexpr std::chrono::seconds ending_limit{60};  // of a run that was interrupted
+
+Json to_json(const RunResult& result) {
+  Json json{{"seed", result.seed},   {"passed", result.is_passed()},    {"problem", result.problem}, {"logs", result.logs},
+            {"notes", result.notes}, {"state_hash", result.state_hash}, {"path", result.path_m},     {"simulated", result.simulated_s},
+            {"wall", result.wall_s}, {"expectations", Json::array()}};
+  for (const auto& verdict : result.verdicts)
+    json["expectations"].push_back({{"expectation", verdict.expectation}, {"problem", verdict.problem}});
+  return json;
+}
+
+RunResult from_json(const Json& json, std::uint64_t seed) {
+  RunResult result;
+  result.seed = seed;
+  result.problem = json.value("problem", "");
+  result.logs = json.value("logs", "");
+  result.notes = json.value("notes", std::vector<std::string>());
+  result.state_hash = json.value("state_hash", "");
+  result.path_m = json.value("path", 0.0);
+  result.simulated_s = json.value("simulated", 0.0);
+  result.wall_s = json.value("wall", 0.0);
+  for (const auto& entry : json.value("expectations", Json::array()))
+    result.verdicts.push_back({entry.value("expectation", ""), entry.value("problem", "")});
+  return result;
+}
+
+// A line on standard output; what is wrong on standard error, with the seed before it when there are several.
+void report(Editor& editor, const RunResult& result, bool names_seed) {
+  if (editor.json()) {
+    std::cout << to_json(result).dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+  } else {
+    std::printf("%s  seed %llu  %.1f s simulated in %.1f s (%.1f x real time)  path %.2f m  state %s\n",
+                result.is_passed() ? "passed" : "FAILED", static_cast<unsigned long long>(result.seed), result.simulated_s, result.wall_s,
+                result.wall_s > 0 ? result.simulated_s / result.wall_s : 0, result.path_m,
+                result.state_hash.empty() ? "-" : result.state_hash.c_str());
+  }
+  std::fflush(stdout);
+  const std::string seed = names_seed ? "seed " + std::to_string(result.seed) + ": " : "";
+  for (const auto& note : result.notes) std::fprintf(stderr, "rtse: %s%s\n", seed.c_str(), note.c_str());
+  if (!result.problem.empty()) editor.fail({seed + result.problem});
+  for (const auto& verdict : result.verdicts) {
+    if (!verdict.problem.empty()) editor.fail({seed + verdict.expectation + ": " + verdict.problem});
+  }
+}
+
+// "out/picture.png" -> "out/picture-7.png"
+std::string for_seed(const std::string& file, std::uint64_t seed) {
+  const std::filesystem::path path(file);
+  return (path.parent_path() / (path.stem().string() + "-" + std::to_string(seed) + path.extension().string())).string();
+}
+
+// Each seed in a process of its own, so that one that fails takes no other with it.
+RunResult run_apart(const RunOptions& options, std::uint64_t seed) {
+  RunResult failed;
+  failed.seed = seed;
+  ProgramCall call{{own_program("rtse"), "--json", "run", options.system, "--world", options.world, "--duration",
+                    base::format_number(options.duration_s), "--seed", std::to_string(seed), "--hang-timeout",
+                    base::format_number(options.hang_timeout_s)},
+                   {},
+                   ""};
+  const auto add = [&](std::initializer_list<std::string> words) { call.words.insert(call.words.end(), words); };
+  if (!options.expectations.empty()) add({"--expect", options.expectations});
+  if (options.one_process_each) add({"--one-process-each"});
+  if (options.in_real_time) add({"--realtime"});
+  if (!options.picture.empty()) add({"--picture", for_seed(options.picture, seed)});
+  if (!options.keep.empty()) add({"--keep", (std::filesystem::path(options.keep) / ("seed-" + std::to_string(seed))).string()});
+  for (const auto& property : options.properties) add({"--property", property});
+  for (const auto& path : options.module_paths) add({"--module-path", path});
+  for (const auto& path : options.resource_paths) add({"--resource-path", path});
+  auto child = ChildProcess::start(call);
+  if (!child) {
+    failed.problem = child.error().message;
+    return failed;
+  }
+  // A run that is interrupted takes its processes down and says so itself.
+  if (child->wait_or_interrupt(std::chrono::hours(24 * 365)) == Ending::interrupted) {
+    child->terminate();
+    child->wait(ending_limit);
+  }
+  const auto lines = base::split_list(child->said(), '\n');
+  for (const auto& line : lines) {
+    const auto json = Json::parse(line, nullptr, false);
+    if (json.is_object()) return from_json(json, seed);
+  }
+  failed.problem = "rtse " + child->how_it_ended() + (lines.empty() ? "" : ": " + lines.back());
+  return failed;
+}
+
+// Said before the run, since it would be a pity afterwards.
+Result<void> check_writable(const std::string& file) {
+  if (file.empty()) return {};
+  const std::filesystem::path path(file);
+  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) return Error{"file " + base::in_quotes(file) + ": is a folder"};
+  if (!std::filesystem::is_directory(folder, error))
+    return Error{"file " + base::in_quotes(file) + ": there is no folder " + folder.string()};
+  if (access(std::filesystem::exists(path, error) ? path.c_str() : folder.c_str(), W_OK) != 0)
+    return Error{"file " + base::in_quotes(file) + ": cannot be written"};
+  return {};
+}
+
+std::vector<RunResult> run_seeds(Editor& editor, const RunOptions& options, const std::vector<std::uint64_t>& seeds, int jobs) {
+  std::vector<RunResult> results;
+  std::mutex mutex;
+  std::size_t passed = 0;
+  const bool shows = !options.quiet && isatty(2);
+  const auto show = [&] {
+    constexpr std::size_t width = 30;
+    const auto done = results.size() * width / seeds.size();
+    std::fprintf(stderr, "\r[%s%s] %zu of %zu", std::string(done, '#').c_str(), std::string(width - done, '.').c_str(), results.size(),
+                 seeds.size());
+  };
+  const auto hide = [] { std::fprintf(stderr, "\r%60s\r", ""); };
+  if (shows) show();
+  in_parallel(
+      seeds.size(), editor.limit(),
+      [&](std::size_t i) {
+        if (is_interrupted()) return;
+        auto result = run_apart(options, seeds[i]);
+        const std::scoped_lock lock(mutex);
+        passed += result.is_passed() ? 1U : 0U;
+        if (shows) hide();
+        report(editor, result, true);
+        results.push_back(std::move(result));
+        if (shows) show();
+      },
+      static_cast<std::size_t>(jobs));
+  if (shows) hide();
+  if (!editor.json()) std::printf("%zu of %zu seeds passed\n", passed, seeds.size());
+  if (results.size() < seeds.size())
+    editor.fail({"run: interrupted after " + std::to_string(results.size()) + " of " + std::to_string(seeds.size()) + " seeds"});
+  std::ranges::sort(results, {}, &RunResult::seed);
+  return results;
+}
+
+}  // namespace
+
 Result<std::vector<std::uint64_t>> parse_seeds(const std::string& text) {
   const auto dots = text.find("..");
   const auto first = base::parse_integer(text.substr(0, dots));
@@ -29,99 +166,29 @@ Result<std::vector<std::uint64_t>> parse_seeds(const std::string& text) {
   return seeds;
 }
 
-Json to_json(const RunResult& result, std::uint64_t seed) {
-  Json json{{"seed", seed},
-            {"passed", result.is_passed()},
-            {"state_hash", result.state_hash},
-            {"path", result.path_m},
-            {"simulated", result.simulated_s},
-            {"wall", result.wall_s},
-            {"expectations", Json::array()}};
-  for (const auto& verdict : result.verdicts)
-    json["expectations"].push_back({{"expectation", verdict.expectation}, {"problem", verdict.problem}});
-  return json;
+Result<ComponentProperty> parse_property(const std::string& text) {
+  const auto colon = text.find(':');
+  const auto equals = text.find('=', colon == std::string::npos ? 0 : colon);
+  if (colon == 0 || colon == std::string::npos || equals == std::string::npos || equals == colon + 1 || text.find('&') != std::string::npos)
+    return Error{"property " + base::in_quotes(text) + ": expected INSTANCE:KEY=VALUE"};
+  return ComponentProperty{text.substr(0, colon), text.substr(colon + 1, equals - colon - 1), text.substr(equals + 1)};
 }
 
-RunResult from_json(const Json& json) {
-  RunResult result;
-  result.state_hash = json.value("state_hash", "");
-  result.path_m = json.value("path", 0.0);
-  result.simulated_s = json.value("simulated", 0.0);
-  result.wall_s = json.value("wall", 0.0);
-  for (const auto& entry : json.value("expectations", Json::array()))
-    result.verdicts.push_back({entry.value("expectation", ""), entry.value("problem", "")});
-  return result;
-}
-
-void report(Editor& editor, const RunResult& result, std::uint64_t seed) {
-  if (editor.json()) {
-    std::cout << to_json(result, seed).dump() << '\n';
-  } else {
-    std::printf("%s  seed %llu  %.1f s simulated in %.1f s (%.1f x real time)  path %.2f m  state %s\n",
-                result.is_passed() ? "passed" : "FAILED", static_cast<unsigned long long>(seed), result.simulated_s, result.wall_s,
-                result.simulated_s / result.wall_s, result.path_m, result.state_hash.c_str());
+void run(Editor& editor, const RunOptions& options, const std::optional<std::string>& seeds_text, int jobs) {
+  for (const auto& file : {options.junit, options.picture}) {
+    if (const auto writable = check_writable(file); !writable) return editor.fail(writable.error());
   }
-  std::fflush(stdout);
-  for (const auto& verdict : result.verdicts) {
-    if (!verdict.problem.empty()) editor.fail({verdict.expectation + ": " + verdict.problem});
-  }
-}
-
-// Each seed in a process of its own, so that one that fails takes no other with it.
-Result<RunResult> run_apart(const RunOptions& options, std::uint64_t seed) {
-  ProgramCall call{{own_program("rtse"), "--json", "run", options.system, "--world", options.world, "--duration",
-                    base::format_number(options.duration_s), "--seed", std::to_string(seed)},
-                   {},
-                   ""};
-  if (!options.expectations.empty()) call.words.insert(call.words.end(), {"--expect", options.expectations});
-  if (options.one_process_each) call.words.emplace_back("--one-process-each");
-  for (const auto& path : options.module_paths) call.words.insert(call.words.end(), {"--module-path", path});
-  for (const auto& path : options.resource_paths) call.words.insert(call.words.end(), {"--resource-path", path});
-  const auto file = std::filesystem::temp_directory_path() / ("rtse-seed-" + std::to_string(getpid()) + "-" + std::to_string(seed));
-  call.output = file.string();
-  auto child = ChildProcess::start(call);
-  if (!child) return child.error();
-  const bool ended = child->wait(std::chrono::hours(2));
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  std::filesystem::remove(file);
-  if (!ended) return Error{"seed " + std::to_string(seed) + ": did not end within two hours"};
-  for (const auto& line : base::split_list(text.str(), '\n')) {
-    const auto json = Json::parse(line, nullptr, false);
-    if (json.is_object()) return from_json(json);
-  }
-  const auto lines = base::split_list(text.str(), '\n');
-  return Error{"seed " + std::to_string(seed) + ": " + (lines.empty() ? "said nothing" : lines.back())};
-}
-
-}  // namespace
-
-void run(Editor& editor, const RunOptions& options, const std::string& seeds_text, int jobs) {
+  catch_interrupts();
   std::vector<RunResult> results;
-  if (seeds_text.empty()) {
-    auto result = run_system(editor.orb(), options);
-    if (!result) return editor.fail(result.error());
-    report(editor, *result, options.seed);
-    results.push_back(std::move(*result));
-  } else {
-    const auto seeds = parse_seeds(seeds_text);
+  if (seeds_text) {
+    const auto seeds = parse_seeds(*seeds_text);
     if (!seeds) return editor.fail(seeds.error());
-    std::mutex mutex;
-    std::size_t passed = 0;
-    std::size_t finished = 0;
-    in_parallel(
-        seeds->size(), editor.limit(),
-        [&](std::size_t i) {
-          auto result = run_apart(options, (*seeds)[i]);
-          const std::scoped_lock lock(mutex);
-          ++finished;
-          if (!result) return editor.fail(result.error());
-          passed += result->is_passed();
-          report(editor, *result, (*seeds)[i]);
-          results.push_back(std::move(*result));
-        },
-        static_cast<std::size_t>(jobs));
-    if (!editor.json()) std::printf("%zu of %zu seeds passed\n", passed, finished);
+    results = run_seeds(editor, options, *seeds, jobs);
+  } else {
+    results.push_back(run_system(editor.orb(), options));
+    report(editor, results.back(), false);
+    if (!results.back().problem.empty() && options.keep.empty() && !editor.json())
+      std::fprintf(stderr, "rtse: --keep DIR keeps the logs of all processes\n");
   }
   if (options.junit.empty()) return;
   if (const auto written = write_junit(options.junit, options, results); !written) editor.fail(written.error());

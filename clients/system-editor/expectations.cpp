@@ -3,9 +3,13 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fstream>
+#include <iomanip>
+#include <set>
 #include <sstream>
+#include <utility>
 
 #include "base/text.h"
 
@@ -20,6 +24,13 @@ const std::map<std::string, Kind> kinds = {{"path_length", Kind::path_length}, {
                                            {"no_contact", Kind::no_contact},   {"value", Kind::value}, {"state", Kind::state},
                                            {"command", Kind::command}};
 
+const std::map<Kind, std::set<std::string>> keys = {
+    {Kind::path_length, {"model", "min", "max"}},    {Kind::reach, {"model", "region", "within"}},
+    {Kind::stay, {"model", "region", "within"}},     {Kind::no_contact, {"model", "except"}},
+    {Kind::value, {"port", "member", "min", "max"}}, {Kind::state, {"component", "is"}}};
+
+const std::set<std::string> states = {"Created", "Inactive", "Active", "Error"};
+
 struct Failure {
   std::string message;
 };
@@ -27,8 +38,24 @@ struct Failure {
 std::optional<double> number(const YAML::Node& node, const char* key) {
   if (!node[key]) return std::nullopt;
   const auto value = base::parse_number(node[key].Scalar());
-  if (!value) throw Failure{std::string(key) + " must be a number, got " + base::in_quotes(node[key].Scalar())};
+  if (!value) throw Failure{std::string(key) + " must be a finite number, got " + base::in_quotes(node[key].Scalar())};
   return value;
+}
+
+void check_keys(const YAML::Node& node, const std::string& name, Kind kind) {
+  const auto& known = keys.at(kind);
+  std::set<std::string> seen;
+  for (const auto& entry : node) {
+    const auto& key = entry.first.Scalar();
+    if (!known.contains(key))
+      throw Failure{name + " has no key " + base::in_quotes(key) + "; it has " +
+                    base::join(std::vector<std::string>(known.begin(), known.end()), ", ")};
+    if (!seen.insert(key).second) throw Failure{name + " has " + key + " twice"};
+  }
+}
+
+std::string without_kind(const std::string& component) {
+  return component.ends_with(".rtc") ? component.substr(0, component.size() - 4) : component;
 }
 
 std::string text(const YAML::Node& node, const char* key) {
@@ -41,7 +68,7 @@ void read_region(const YAML::Node& node, Expectation& expectation) {
   if (!region || !region.IsSequence() || region.size() != 4) throw Failure{"needs region: [x1, y1, x2, y2]"};
   for (std::size_t i = 0; i < 4; ++i) {
     const auto value = base::parse_number(region[i].Scalar());
-    if (!value) throw Failure{"region must hold numbers, got " + base::in_quotes(region[i].Scalar())};
+    if (!value) throw Failure{"region must hold finite numbers, got " + base::in_quotes(region[i].Scalar())};
     expectation.region[i] = *value;
   }
   if (expectation.region[0] > expectation.region[2]) std::swap(expectation.region[0], expectation.region[2]);
@@ -64,15 +91,22 @@ Expectation read_one(const std::string& name, const YAML::Node& node) {
     return expectation;
   }
   if (!node.IsMap()) throw Failure{name + " needs a map"};
+  check_keys(node, name, expectation.kind);
   expectation.min = number(node, "min");
   expectation.max = number(node, "max");
+  if (expectation.min && expectation.max && *expectation.min > *expectation.max) throw Failure{"min must not be more than max"};
   expectation.within = number(node, "within").value_or(0);
+  if (node["within"] && expectation.within <= 0) throw Failure{"within must be more than 0, got " + node["within"].Scalar()};
   if (expectation.kind == Kind::value) {
     expectation.port = text(node, "port");
     expectation.member = text(node, "member");
+    if (const auto path = member_path(expectation.member); !path) throw Failure{path.error().message};
   } else if (expectation.kind == Kind::state) {
-    expectation.component = text(node, "component");
+    expectation.component = without_kind(text(node, "component"));
     expectation.state = text(node, "is");
+    const auto is_it = [&](const std::string& state) { return base::equal_ignoring_case(state, expectation.state); };
+    if (std::none_of(states.begin(), states.end(), is_it))
+      throw Failure{"is must be Created, Inactive, Active or Error, got " + base::in_quotes(expectation.state)};
   } else {
     expectation.model = text(node, "model");
   }
@@ -80,7 +114,13 @@ Expectation read_one(const std::string& name, const YAML::Node& node) {
   if (expectation.kind == Kind::no_contact) {
     expectation.except = {"ground_plane"};
     if (node["except"]) expectation.except.clear();
-    for (const auto& other : node["except"]) expectation.except.push_back(other.Scalar());
+    const auto except = node["except"];
+    if (except && !except.IsScalar() && !except.IsSequence()) throw Failure{"except must be a model or a list of models"};
+    if (except && except.IsScalar()) expectation.except = {except.Scalar()};
+    for (std::size_t i = 0; except && except.IsSequence() && i < except.size(); ++i) {
+      if (!except[i].IsScalar()) throw Failure{"except must be a model or a list of models"};
+      expectation.except.push_back(except[i].Scalar());
+    }
   }
   const bool bounded = expectation.kind == Kind::path_length || expectation.kind == Kind::value;
   if (bounded && !expectation.min && !expectation.max) throw Failure{name + " needs min or max"};
@@ -124,10 +164,40 @@ std::string contact_problem(const Expectation& e, const Record& record) {
   return "";
 }
 
+template <class Map>
+std::string names_in(const Map& map) {
+  std::vector<std::string> names;
+  for (const auto& entry : map) names.push_back(entry.first);
+  return names.empty() ? "none" : base::join(names, ", ");
+}
+
+std::string value_problem(const Expectation& e, const Seen& seen) {
+  const auto found = seen.values.find(e.port + " " + e.member);
+  if (found == seen.values.end()) return "no sample came";
+  const auto& value = found->second;
+  if (value.samples == 0) return value.problem.empty() ? "no sample came" : value.problem;
+  if (value.not_numbers > 0)
+    return "it was not a number (NaN) in " + std::to_string(value.not_numbers) + " of " + std::to_string(value.samples) + " samples";
+  const bool fits = (!e.min || value.lowest >= *e.min) && (!e.max || value.highest <= *e.max);
+  return fits
+             ? ""
+             : "it ran from " + base::format_number(value.lowest) + " to " + base::format_number(value.highest) + ", expected " + bounds(e);
+}
+
+std::string command_problem(const Expectation& e, const Seen& seen) {
+  const auto found = seen.commands.find(e.command);
+  if (found == seen.commands.end()) return "it was not run";
+  const auto& command = found->second;
+  if (!command.exit_code) return command.text;
+  if (*command.exit_code == 0) return "";
+  return "it ended with exit code " + std::to_string(*command.exit_code) + (command.text.empty() ? "" : ": " + command.text);
+}
+
 std::string problem_of(const Expectation& e, const Seen& seen) {
   const bool about_model = e.kind == Kind::path_length || e.kind == Kind::reach || e.kind == Kind::stay || e.kind == Kind::no_contact;
   const auto poses = seen.record.poses.find(e.model);
-  if (about_model && poses == seen.record.poses.end()) return "the world has no moving model " + base::in_quotes(e.model);
+  if (about_model && poses == seen.record.poses.end())
+    return "the world has no moving model " + base::in_quotes(e.model) + "; moving models: " + names_in(seen.record.poses);
   switch (e.kind) {
     case Kind::path_length: {
       const double length = path_length(poses->second);
@@ -139,24 +209,15 @@ std::string problem_of(const Expectation& e, const Seen& seen) {
       return region_problem(e, poses->second);
     case Kind::no_contact:
       return contact_problem(e, seen.record);
-    case Kind::value: {
-      const auto value = seen.values.find(e.port + " " + e.member);
-      if (value == seen.values.end() || value->second.samples == 0) return "no sample came";
-      const bool fits = (!e.min || value->second.lowest >= *e.min) && (!e.max || value->second.highest <= *e.max);
-      return fits ? ""
-                  : "it ran from " + base::format_number(value->second.lowest) + " to " + base::format_number(value->second.highest) +
-                        ", expected " + bounds(e);
-    }
+    case Kind::value:
+      return value_problem(e, seen);
     case Kind::state: {
       const auto state = seen.states.find(e.component);
-      if (state == seen.states.end()) return "there is no such component";
+      if (state == seen.states.end()) return "there is no such component; components: " + names_in(seen.states);
       return base::equal_ignoring_case(state->second, e.state) ? "" : "it is " + state->second;
     }
-    case Kind::command: {
-      const auto code = seen.exit_codes.find(e.command);
-      if (code == seen.exit_codes.end()) return "it was not run";
-      return code->second == 0 ? "" : "it ended with exit code " + std::to_string(code->second);
-    }
+    case Kind::command:
+      return command_problem(e, seen);
   }
   return "";
 }
@@ -196,18 +257,60 @@ Result<Record> read_record(const std::string& file) {
     if (first == "#" || first.empty()) continue;
     if (first == "contact") {
       RecordedContact contact;
-      words >> contact.time >> contact.model >> contact.other;
+      words >> contact.time >> std::quoted(contact.model) >> std::quoted(contact.other);
       if (words) record.contacts.push_back(contact);
       continue;
     }
     const auto time = base::parse_number(first);
     RecordedPose pose{time.value_or(0), 0, 0, 0};
     std::string model;
-    words >> model >> pose.x >> pose.y >> pose.z;
+    words >> std::quoted(model) >> pose.x >> pose.y >> pose.z;
     if (!time || !words) return Error{"record " + base::in_quotes(file) + ": line " + base::in_quotes(line) + " is no pose"};
     record.poses[model].push_back(pose);
   }
   return record;
+}
+
+Result<std::vector<std::string>> member_path(const std::string& member) {
+  std::vector<std::string> steps;
+  std::string step;
+  const auto flush = [&] {
+    if (step.empty()) return false;
+    steps.push_back(std::exchange(step, ""));
+    return true;
+  };
+  const Error wrong{"member " + base::in_quotes(member) + ": expected a path like data.vx or ranges[0]"};
+  for (std::size_t i = 0; i < member.size(); ++i) {
+    const char c = member[i];
+    if (c == '.' || c == '[') {
+      const bool after_index = i > 0 && member[i - 1] == ']';
+      if (!flush() && !after_index) return wrong;
+    }
+    if (c == '[') {
+      const auto end = member.find(']', i);
+      const auto index = end == std::string::npos ? std::nullopt : base::parse_integer(member.substr(i + 1, end - i - 1));
+      if (!index || *index < 0) return wrong;
+      steps.push_back(std::to_string(*index));
+      i = end;
+    } else if (c != '.') {
+      if (c != '_' && !std::isalnum(static_cast<unsigned char>(c))) return wrong;
+      if (i > 0 && member[i - 1] == ']') return wrong;
+      step += c;
+    }
+  }
+  if (!flush() && !member.ends_with(']')) return wrong;
+  return steps;
+}
+
+void SeenValue::take(double number) {
+  ++samples;
+  if (std::isnan(number)) {
+    ++not_numbers;
+    return;
+  }
+  const bool is_first = samples - not_numbers == 1;
+  lowest = is_first ? number : std::min(lowest, number);
+  highest = is_first ? number : std::max(highest, number);
 }
 
 double path_length(const std::vector<RecordedPose>& poses) {

@@ -3,11 +3,13 @@
 //   - path_length: {model: pioneer2dx, min: 10, max: 40}                      metres
 //   - reach: {model: pioneer2dx, region: [3, 3, 5, 5], within: 60}            corners x1 y1 x2 y2; seconds of simulated time
 //   - stay: {model: pioneer2dx, region: [-6, -6, 6, 6]}
-//   - no_contact: {model: pioneer2dx, except: [ground_plane]}                 what it may touch; default: ground_plane
+//   - no_contact: {model: pioneer2dx, except: [ground_plane]}                 what it may touch: a name or a list; default: ground_plane
 //   - value: {port: "LaserObstacleAvoid0:velocity", member: data.vx, min: -0.2, max: 0.2}
 //   - state: {component: RTCLaser0, is: Active}
-//   - command: "./my-check.sh"                                                exit code 0; it finds RTMSIM_RECORD, RTMSIM_SERVER_ID and
-//   RTCTREE_NAMESERVERS
+//   - command: "./my-check.sh"                                                exit code 0 within 60 s of real time; it finds RTMSIM_RECORD,
+//                                                                             RTMSIM_SERVER_ID and RTCTREE_NAMESERVERS
+//
+// A `member` is a path in the sample, data.vx or ranges[0]; true and false count as 1 and 0.
 #pragma once
 
 #include <map>
@@ -49,11 +51,22 @@ struct Record {
 };
 // What sim-server --record writes.
 base::Result<Record> read_record(const std::string& file);
+// "data.vx", "ranges[0]" -> its steps; the error says what is wrong with it.
+base::Result<std::vector<std::string>> member_path(const std::string& member);
 double path_length(const std::vector<RecordedPose>& poses);
 
 struct SeenValue {
-  std::size_t samples = 0;
+  std::size_t samples = 0;      // that had the member as a number
+  std::size_t not_numbers = 0;  // of these: NaN
   double lowest = 0, highest = 0;
+  std::string problem;  // why other samples did not count
+  void take(double number);
+};
+
+// How a command of the user's ended; `text` is what it said last, or why it has no exit code.
+struct SeenCommand {
+  std::optional<int> exit_code;
+  std::string text;
 };
 
 // All that a run has shown.
@@ -61,7 +74,7 @@ struct Seen {
   Record record;
   std::map<std::string, SeenValue> values;    // by "port member"
   std::map<std::string, std::string> states;  // by component
-  std::map<std::string, int> exit_codes;      // by command
+  std::map<std::string, SeenCommand> commands;
 };
 
 struct Verdict {

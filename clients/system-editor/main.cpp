@@ -124,7 +124,7 @@ void add_states(CLI::App& app, Work& work) {
   wait->add_option("--state", *state, "Inactive, Active, Error, any (is there), gone")
       ->capture_default_str()
       ->check(CLI::IsMember({"created", "inactive", "active", "error", "any", "gone"}, CLI::ignore_case));
-  wait->add_option("--timeout", *timeout, "Seconds")->capture_default_str()->check(CLI::Range(0.0, 1e6));
+  wait->add_option("--timeout", *timeout, "Seconds")->capture_default_str()->check(base::number_between(0.0, 1e6));
   wait->callback(
       [&work, wait_paths, state, timeout] { work = [=](Editor& e) { editor::wait_for_state(e, *wait_paths, *state, *timeout); }; });
 }
@@ -168,8 +168,8 @@ void add_data(CLI::App& app, Work& work) {
   auto options = std::make_shared<editor::PrintOptions>();
   print->add_option("PORT", options->ports, "OutPorts")->required();
   print->add_option("-n,--count", options->count, "End after so many samples")->check(CLI::NonNegativeNumber);
-  print->add_option("-t,--timeout", options->timeout_s, "End after so many seconds")->check(CLI::Range(0.0, 1e9));
-  print->add_option("-r,--rate", options->rate, "At most so many samples a second")->check(CLI::Range(0.0, 1e6));
+  print->add_option("-t,--timeout", options->timeout_s, "End after so many seconds")->check(base::number_between(0.0, 1e9));
+  print->add_option("-r,--rate", options->rate, "At most so many samples a second")->check(base::number_between(0.0, 1e6));
   print->callback([&work, options] { work = [options](Editor& e) { editor::print_ports(e, *options); }; });
 
   auto* inject = app.add_subcommand("inject", "Write values to an InPort");
@@ -177,7 +177,7 @@ void add_data(CLI::App& app, Work& work) {
   inject->add_option("PORT", values->port, "InPort")->required();
   inject->add_option("VALUE", values->values, "JSON, or RTC.TimedLong({time}, 42)")->required();
   inject->add_option("-n,--count", values->count, "How often; 0: until stopped")->check(CLI::NonNegativeNumber)->capture_default_str();
-  inject->add_option("-r,--rate", values->rate, "How often a second")->check(CLI::Range(1e-3, 1e5))->capture_default_str();
+  inject->add_option("-r,--rate", values->rate, "How often a second")->check(base::number_between(1e-3, 1e5))->capture_default_str();
   inject->callback([&work, values] { work = [values](Editor& e) { editor::inject(e, *values); }; });
 }
 
@@ -225,19 +225,34 @@ void add_systems(CLI::App& app, Work& work) {
 void add_run(CLI::App& app, Work& work) {
   auto* run = app.add_subcommand("run", "Run a saved system against a simulated world in lock step, and judge it");
   auto options = std::make_shared<editor::RunOptions>();
-  auto seeds = std::make_shared<std::string>();
+  auto seeds = std::make_shared<std::optional<std::string>>();
   auto jobs = std::make_shared<int>(1);
   run->add_option("SYSTEM", options->system, "RTSProfile, XML or YAML")->required()->check(CLI::ExistingFile);
   run->add_option("-w,--world", options->world, "SDFormat world")->required()->check(CLI::ExistingFile);
-  run->add_option("-d,--duration", options->duration_s, "Simulated seconds")->check(CLI::Range(0.001, 1e7))->capture_default_str();
+  run->add_option("-d,--duration", options->duration_s, "Simulated seconds")
+      ->check(base::number_between(0.001, 1e7))
+      ->capture_default_str();
   run->add_option("-x,--expect", options->expectations, "Expectations, YAML")->check(CLI::ExistingFile);
-  run->add_option("--seed", options->seed, "Seed of the world's noise")->capture_default_str();
-  run->add_option("--seeds", *seeds, "A run for each seed FIRST..LAST");
+  auto* seed =
+      run->add_option("--seed", options->seed, "Seed of the world's noise")->capture_default_str()->check(base::number_between(0, 1e18));
+  run->add_option("--seeds", *seeds, "A run for each seed FIRST..LAST")->excludes(seed)->check([](const std::string& text) {
+    const auto parsed = editor::parse_seeds(text);
+    return parsed ? std::string() : parsed.error().message;
+  });
   run->add_option("-j,--jobs", *jobs, "So many seeds at a time")->check(CLI::Range(1, 64))->capture_default_str();
   run->add_flag("--one-process-each", options->one_process_each, "A process for every component instead of one for all");
   run->add_flag("--realtime", options->in_real_time, "No faster than real time");
   run->add_option("--module-path", options->module_paths, "Folder with modules of components")->allow_extra_args(false);
   run->add_option("--resource-path", options->resource_paths, "Folder with models")->allow_extra_args(false);
+  run->add_option("--property", options->properties, "INSTANCE:KEY=VALUE, a property that a component is created with")
+      ->allow_extra_args(false)
+      ->check([](const std::string& text) {
+        const auto parsed = editor::parse_property(text);
+        return parsed ? std::string() : parsed.error().message;
+      });
+  run->add_option("--hang-timeout", options->hang_timeout_s, "Seconds of real time that one tick may take")
+      ->check(base::number_between(0.1, 1e6))
+      ->capture_default_str();
   run->add_option("--junit", options->junit, "Write the verdicts as JUnit XML");
   run->add_option("--picture", options->picture, "Write the world at the end as PNG");
   run->add_option("--keep", options->keep, "Keep logs and the record in this folder");
@@ -282,7 +297,7 @@ int main(int argc, char** argv) {
   app.add_option("--ns", settings.server, "Name server HOST[:PORT]; default: the first of $RTCTREE_NAMESERVERS, else localhost:2809");
   app.add_flag("--json", settings.json, "Print JSON");
   app.add_option("--call-timeout", settings.limit_s, "Seconds that one call to another process may take")
-      ->check(CLI::Range(0.01, 600.0))
+      ->check(base::number_between(0.01, 600.0))
       ->capture_default_str();
   Work work;
   int code = 0;

@@ -2,7 +2,9 @@
 // trace. One thread at a time.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,8 @@ struct RunOptions {
   std::uint64_t seed = 0;
   bool one_process_each = false;  // a host for every component, instead of one for all
   bool in_real_time = false;
+  double hang_timeout_s = 30;           // of real time, that one tick may take
+  std::vector<std::string> properties;  // "INSTANCE:key=value", of the component when it is created
   std::vector<std::string> module_paths;
   std::vector<std::string> resource_paths;
   std::string junit;    // file to write
@@ -29,18 +33,32 @@ struct RunOptions {
 };
 
 struct RunResult {
+  std::uint64_t seed = 0;
+  std::string problem;             // why the system could not be started or run to the end; empty: it was
+  std::string logs;                // last lines of all processes, when there was a problem
+  std::vector<std::string> notes;  // what is not as the world's file says
   std::vector<Verdict> verdicts;
   std::string state_hash;
   double simulated_s = 0;
   double wall_s = 0;
-  double path_m = 0;  // of the first model that moved
+  double path_m = 0;  // of the model that went farthest
   bool is_passed() const;
 };
 
-// Fails when the system could not be started or run; expectations that are not met are in the result.
-Result<RunResult> run_system(CORBA::ORB_ptr orb, const RunOptions& options);
-// The command: prints one line per run and one per unmet expectation. `seeds`: "", or FIRST..LAST, `jobs` of them at a time.
-void run(Editor& editor, const RunOptions& options, const std::string& seeds, int jobs);
+// Returns when everything that it started has ended. catch_interrupts() first: an interrupt is a problem like others.
+RunResult run_system(CORBA::ORB_ptr orb, const RunOptions& options);
+
+struct ComponentProperty {
+  std::string instance, key, value;
+};
+Result<ComponentProperty> parse_property(const std::string& text);
+// "3", "1..20".
+Result<std::vector<std::uint64_t>> parse_seeds(const std::string& text);
+// The command: prints one line per run and one per unmet expectation. Without `seeds` one run with the seed of the options, else one for
+// each, `jobs` of them at a time.
+void run(Editor& editor, const RunOptions& options, const std::optional<std::string>& seeds, int jobs);
+
+// The verdicts as JUnit XML: a test case for each run and for each of its expectations; a run with a problem is an error.
 Result<void> write_junit(const std::string& file, const RunOptions& options, const std::vector<RunResult>& results);
 
 }  // namespace editor

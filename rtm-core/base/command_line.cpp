@@ -159,6 +159,16 @@ void add_standard_options(CLI::App& app, const std::string& name, const std::str
       ->trigger_on_parse();
 }
 
+CLI::Validator number_between(double low, double high) {
+  const auto range = format_number(low) + " - " + format_number(high);
+  return CLI::Validator(
+      [=](const std::string& text) {
+        const auto value = parse_number(text);
+        return value && *value >= low && *value <= high ? std::string() : "must be a number in [" + range + "], got " + text;
+      },
+      "FLOAT in [" + range + "]");
+}
+
 std::optional<int> parse_command_line(CLI::App& app, const std::string& name, int argc, const char* const* argv) {
   try {
     app.parse(argc, argv);

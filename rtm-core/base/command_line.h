@@ -10,6 +10,9 @@ namespace base {
 // Adds --version (prints "<name> <version>"), and --completion bash|zsh and --man, which print what their names say and end the program.
 void add_standard_options(CLI::App& app, const std::string& name, const std::string& version);
 
+// For options with numbers: from `low` to `high`, and no NaN.
+CLI::Validator number_between(double low, double high);
+
 // Parses; the exit code when the program is to end now: 0 after --help and the like, 2 after a wrong command line (one line on stderr).
 std::optional<int> parse_command_line(CLI::App& app, const std::string& name, int argc, const char* const* argv);
 

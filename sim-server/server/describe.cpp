@@ -2,6 +2,8 @@
 
 #include <unistd.h>
 
+#include <unistd.h>
+
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -139,10 +141,12 @@ std::string stats_text(Simulation& simulation, const LoopState& loop) {
                             {"late", p.is_late}});
   }
   return text({{"world", simulation.world().name},
+               {"pid", getpid()},
                {"sim_time", static_cast<double>(simulation.time().count()) * 1e-9},
                {"steps", simulation.steps()},
                {"step", simulation.world().physics.step},
                {"paused", loop.is_paused},
+               {"waiting_for", loop.waiting_for},
                {"rtf_wanted", loop.rtf_wanted},
                {"rtf", loop.rtf_reached},
                {"load", loop.load},

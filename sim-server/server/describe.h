@@ -12,6 +12,7 @@ namespace sim {
 // What the loop knows besides.
 struct LoopState {
   bool is_paused = false;
+  std::uint32_t waiting_for = 0;  // participants that must join before time starts
   double rtf_wanted = 1, rtf_reached = 0, load = 0;
   std::vector<shm::ParticipantRecord> participants;
   const PartTimes* times = nullptr;

@@ -31,7 +31,7 @@ struct Options {
 std::filesystem::path installed_worlds() {
   std::error_code error;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  const auto beside = program.parent_path().parent_path() / "share" / "rtmsim" / "worlds";
+  const auto beside = program.parent_path().parent_path() / "share" / "rtm-sim" / "worlds";
   return std::filesystem::is_directory(beside, error) ? beside : std::filesystem::path(RTMSIM_WORLDS_DIR);
 }
 
@@ -139,14 +139,16 @@ int main(int argc, char** argv) {
                "sim-server");
   base::add_standard_options(app, "sim-server", RTMSIM_VERSION);
   app.add_option("WORLD", options.world, "SDFormat world file")->required();
-  app.add_option("-s,--server-id", options.server_id, "number that clients name this server by (0)")->check(CLI::Range(0, 9999));
+  app.add_option("-s,--server-id", options.server_id, "number that clients name this server by (0)")
+      ->check(CLI::Range(0, 9999))
+      ->envname("RTMSIM_SERVER_ID");
   app.add_flag("-u,--paused", options.is_paused, "start paused");
-  app.add_option("--rtf", options.rtf, "simulated seconds per second (1); 0: as fast as possible")->check(CLI::Range(0.0, 1e6));
+  app.add_option("--rtf", options.rtf, "simulated seconds per second (1); 0: as fast as possible")->check(base::number_between(0.0, 1e6));
   app.add_flag("--lockstep", options.is_lockstep, "time passes only when all participants have finished their tick");
   app.add_option("--wait-for", options.wait_for, "participants that must join before time starts (0)")->check(CLI::Range(0, 64));
   app.add_option("--participant-timeout", options.participant_timeout, "seconds after which a hanging participant is dropped (0: never)")
-      ->check(CLI::Range(0.0, 1e6));
-  app.add_option("--duration", options.duration, "end after so many simulated seconds")->check(CLI::Range(0.0, 1e9));
+      ->check(base::number_between(0.0, 1e6));
+  app.add_option("--duration", options.duration, "end after so many simulated seconds")->check(base::number_between(0.0, 1e9));
   app.add_option("--seed", options.seed, "of all noise (1)");
   app.add_option("--resource-path", options.resource_paths,
                  "folder with models; repeatable (also RTMSIM_RESOURCE_PATH, GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH)")

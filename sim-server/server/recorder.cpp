@@ -3,10 +3,23 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <iomanip>
+#include <sstream>
 
 #include "base/log.h"
 
 namespace sim {
+namespace {
+
+// Names with blanks, quotes or backslashes stand in double quotes, with a backslash before quotes and backslashes.
+std::string as_word(const std::string& name) {
+  if (!name.empty() && name.find_first_of(" \t\r\n\"\\") == std::string::npos) return name;
+  std::ostringstream quoted;
+  quoted << std::quoted(name);
+  return quoted.str();
+}
+
+}  // namespace
 
 base::Result<Recorder> Recorder::open(const std::string& path, const std::string& world) {
   std::ofstream file(path);
@@ -24,7 +37,7 @@ void Recorder::record_contacts(double seconds, const Physics& physics) {
       if (other == id || !physics.exists(other)) continue;
       const auto pair = std::minmax(id, other);
       if (!now.insert(pair).second || touching_.contains(pair)) continue;
-      file_ << fmt::format("contact {:.3f} {} {}\n", seconds, physics.def(id).name, physics.def(other).name);
+      file_ << fmt::format("contact {:.3f} {} {}\n", seconds, as_word(physics.def(id).name), as_word(physics.def(other).name));
     }
   }
   touching_ = std::move(now);
@@ -41,8 +54,8 @@ void Recorder::record(std::chrono::nanoseconds time, const Physics& physics) {
     const Eigen::Isometry3d pose = physics.model_pose(id);
     const Eigen::Vector3d p = pose.translation();
     const Eigen::Quaterniond q(pose.linear());
-    file_ << fmt::format("{:.3f} {} {} {} {} {} {} {} {}\n", seconds, physics.def(id).name, p.x(), p.y(), p.z(), q.w(), q.x(), q.y(),
-                         q.z());
+    file_ << fmt::format("{:.3f} {} {} {} {} {} {} {} {}\n", seconds, as_word(physics.def(id).name), p.x(), p.y(), p.z(), q.w(), q.x(),
+                         q.y(), q.z());
   }
   file_.flush();  // who reads along, or after a kill, finds whole lines
   if (!file_) base::log(base::Level::error, "sim-server", "record {}: {}; recording stops", path_, std::strerror(errno));

@@ -1,7 +1,9 @@
 // What the server does for each request. Decoding has checked all numbers and names; what can fail here is the world's answer.
 #include <cmath>
+#include <utility>
 
 #include "base/log.h"
+#include "base/text.h"
 #include "server/picture.h"
 #include "server/server_loop.h"
 #include "world/world_loader.h"
@@ -34,6 +36,11 @@ bool leaves_the_world_alone(const shm::Request& request) {
                    shm::StatsRequest, shm::SetRtfRequest, shm::ContactsRequest, shm::DropParticipantRequest>(request);
 }
 
+// How long a request that needs the world to stand between two steps waits for a tick to end. Clients wait for ten seconds.
+constexpr std::chrono::seconds patience{3};
+
+using Clock = std::chrono::steady_clock;
+
 Eigen::Vector3d vector(const double* v) { return {v[0], v[1], v[2]}; }
 
 }  // namespace
@@ -46,6 +53,7 @@ struct ServerLoop::Handler {
   Physics& physics = loop.simulation_.physics();
 
   shm::Reply operator()(const shm::PauseRequest&) {
+    loop.end_steps("another client has paused the simulation");
     loop.is_paused_ = true;
     loop.publish_clock();
     return {};
@@ -65,6 +73,7 @@ struct ServerLoop::Handler {
     return {};
   }
   shm::Reply operator()(const shm::ResetRequest& request) {
+    loop.end_steps("another client has reset the world");
     loop.reset(request.poses_only);
     return {};
   }
@@ -194,23 +203,35 @@ shm::Reply ServerLoop::handle(const shm::Request& request, const shm::RequestTic
 }
 
 void ServerLoop::handle_requests(When when) {
-  auto asked = board_.poll();
-  if (!postponed_.empty()) {
-    asked.insert(asked.begin(), std::make_move_iterator(postponed_.begin()), std::make_move_iterator(postponed_.end()));
-    postponed_.clear();
-  }
-  for (auto& one : asked) {
-    if (when == When::in_tick && !leaves_the_world_alone(one.request)) {
-      postponed_.push_back(std::move(one));
+  auto waiting = std::exchange(postponed_, {});
+  for (auto& asked : board_.poll()) waiting.push_back({std::move(asked), Clock::now()});
+  for (auto& [asked, since] : waiting) {
+    // What its client was told has failed must not happen later.
+    if (!board_.is_awaited(asked.ticket)) continue;
+    if (when == When::in_tick && !leaves_the_world_alone(asked.request)) {
+      if (Clock::now() - since < patience) {
+        postponed_.push_back({std::move(asked), since});
+      } else {
+        board_.reply(asked.ticket,
+                     refused(shm::RequestStatus::failed, "time stands still: " + late_participants() + " has not ended its tick"));
+      }
       continue;
     }
-    base::log(base::Level::debug, "sim-server", "request {} of pid {}", shm::request_name(one.request), one.pid);
-    shm::Reply reply = handle(one.request, one.ticket);
-    if (std::holds_alternative<shm::StepRequest>(one.request) && reply.status == shm::RequestStatus::ok) continue;
+    base::log(base::Level::debug, "sim-server", "request {} of pid {}", shm::request_name(asked.request), asked.pid);
+    shm::Reply reply = handle(asked.request, asked.ticket);
+    if (std::holds_alternative<shm::StepRequest>(asked.request) && reply.status == shm::RequestStatus::ok) continue;
     reply.sim_time_ns = simulation_.time().count();
     reply.steps = simulation_.steps();
-    board_.reply(one.ticket, reply);
+    board_.reply(asked.ticket, reply);
   }
+}
+
+std::string ServerLoop::late_participants() const {
+  std::vector<std::string> names;
+  for (const auto& record : barrier_->records()) {
+    if (record.is_late) names.push_back(record.name);
+  }
+  return names.empty() ? "a participant" : base::join(names, ", ");
 }
 
 }  // namespace sim

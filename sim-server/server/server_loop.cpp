@@ -94,6 +94,7 @@ void ServerLoop::run() {
     step();
     if (!finish_moment()) break;
     if (steps_to_do_ > 0 && --steps_to_do_ == 0) finish_step_request();
+    if (step_ticket_ && !board_.is_awaited(*step_ticket_)) end_steps("the client has gone");
     pace();
     watch_rate();
   }
@@ -240,6 +241,17 @@ void ServerLoop::finish_step_request() {
   step_ticket_.reset();
 }
 
+void ServerLoop::end_steps(const std::string& why) {
+  if (!step_ticket_) return;
+  shm::Reply reply;
+  reply.status = shm::RequestStatus::failed;
+  reply.message = why + ", " + std::to_string(steps_to_do_) + " steps before the last";
+  steps_to_do_ = 0;
+  board_.reply(*step_ticket_, reply);
+  step_ticket_.reset();
+  publish_clock();
+}
+
 void ServerLoop::reset(bool poses_only) {
   if (poses_only) {
     simulation_.reset_poses();
@@ -261,7 +273,7 @@ void ServerLoop::reset(bool poses_only) {
 }
 
 LoopState ServerLoop::state() const {
-  return {is_paused_ && steps_to_do_ == 0, options_.rtf, rtf_reached_, load_, barrier_->records(), &times_};
+  return {is_paused_ && steps_to_do_ == 0, missing_, options_.rtf, rtf_reached_, load_, barrier_->records(), &times_};
 }
 
 }  // namespace sim

@@ -55,6 +55,9 @@ class ServerLoop {
   void publish_clock();
   void reset(bool poses_only);
   void finish_step_request();
+  std::string late_participants() const;
+  // Ends the steps that a client has asked for before they are all done, and tells it why.
+  void end_steps(const std::string& why);
   // Sleeps until simulated time may go on; requests are served meanwhile.
   void pace();
   void start_pace();
@@ -77,7 +80,11 @@ class ServerLoop {
   bool is_fresh_moment_ = true;  // the moment at time 0 has not been published yet
   std::uint64_t steps_to_do_ = 0;
   std::optional<shm::RequestTicket> step_ticket_;
-  std::vector<shm::RequestBoard::Asked> postponed_;
+  struct Postponed {
+    shm::RequestBoard::Asked asked;
+    std::chrono::steady_clock::time_point since;
+  };
+  std::vector<Postponed> postponed_;  // until the tick is over
   std::map<ModelId, std::uint64_t> contacts_told_;
   std::uint64_t last_hash_ = 0, last_hash_steps_ = 0;
   std::uint32_t missing_ = 0;  // participants

@@ -39,7 +39,13 @@ Control& control_of(const Segment& segment) { return segment.as<Control>(AreaInd
 
 ProcessMark mark_of(const ParticipantSlot& slot) { return {owner_pid(load(slot.owner)), load(slot.pid_namespace), load(slot.start_time)}; }
 
-std::string name_of(const ParticipantSlot& slot) { return std::string(slot.name, strnlen(slot.name, sizeof slot.name)); }
+// Whatever a client has written there, it is one line of text for people.
+std::string name_of(const ParticipantSlot& slot) {
+  std::string name(slot.name, strnlen(slot.name, sizeof slot.name));
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+  return name;
+}
 
 void free_slot(ParticipantSlot& slot, std::uint64_t owner) {
   store(slot.state, static_cast<std::uint32_t>(RTMSIM_PARTICIPANT_FREE));
@@ -506,7 +512,8 @@ base::Result<Participant> Participant::join(std::uint32_t server_id, const Parti
   if (options.name.empty()) return fail("needs a name");
   if (options.phase > max_phase) return fail("phase must be 0 to 15, got " + std::to_string(options.phase));
   if (options.period.count() <= 0 || options.period.count() >= longest_period) {
-    return fail("period must be positive, got " + std::to_string(options.period.count()) + " ns");
+    return fail("period must be more than 0 and less than " + std::to_string(longest_period / 1'000'000'000) + " s, got " +
+                std::to_string(options.period.count()) + " ns");
   }
   auto simulation = Iface::open(server_id, IfaceType::simulation, "world");
   if (!simulation) return simulation.error();

@@ -200,6 +200,11 @@ void RequestBoard::reply(const RequestTicket& ticket, const Reply& reply) {
   state.end_reply(ticket.slot);
 }
 
+bool RequestBoard::is_awaited(const RequestTicket& ticket) const {
+  const RequestSlot& slot = slot_at(state_->segment, ticket.slot);
+  return load(slot.owner) == ticket.owner && load(slot.id) == ticket.id && load(slot.state) == RTMSIM_SLOT_ASKED;
+}
+
 void RequestBoard::wait(std::chrono::steady_clock::time_point deadline) {
   Control& control = state_->control();
   if (load(control.attention) != state_->seen_attention) return;

@@ -37,6 +37,8 @@ class RequestBoard {
   std::vector<Asked> poll();
   // Once per request, now or later. Does nothing when the client has given up or died in between.
   void reply(const RequestTicket& ticket, const Reply& reply);
+  // False once its client has given up or died, as far as poll() has noticed.
+  bool is_awaited(const RequestTicket& ticket) const;
 
   // Sleeps until a client asks for something, joins or leaves, or wake() was called, or the deadline passes.
   void wait(std::chrono::steady_clock::time_point deadline);

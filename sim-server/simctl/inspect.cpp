@@ -330,14 +330,19 @@ void echo(Control& control, const std::string& name, int count) {
   }
 }
 
+static std::string state_text(const Json& stats) {
+  const auto missing = stats.value("waiting_for", 0U);
+  if (missing > 0) return "waiting for " + std::to_string(missing) + (missing == 1 ? " participant" : " participants");
+  return stats.value("paused", false) ? "paused" : "running";
+}
+
 void stats(Control& control) {
   const auto reply = control.ask(shm::StatsRequest{});
   if (!reply) return;
   const auto json = Json::parse(reply->text, nullptr, false);
   if (control.json() || !json.is_object()) return control.print(json);
   std::printf("world %s  %.3f s  %llu steps of %g s  %s\n", json.value("world", "?").c_str(), json.value("sim_time", 0.0),
-              static_cast<unsigned long long>(json.value("steps", 0ULL)), json.value("step", 0.0),
-              json.value("paused", false) ? "paused" : "running");
+              static_cast<unsigned long long>(json.value("steps", 0ULL)), json.value("step", 0.0), state_text(json).c_str());
   std::printf("real-time factor %.2f (wanted %g)  load %.0f %%  state hash %s\n", json.value("rtf", 0.0), json.value("rtf_wanted", 0.0),
               100 * json.value("load", 0.0), json.value("hash", "?").c_str());
   std::printf("%d models, %d bodies (%d awake), %d joints, %d contacts, %d ifaces (%d subscribed), %.0f MiB\n\n", json.value("models", 0),

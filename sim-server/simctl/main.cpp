@@ -78,7 +78,7 @@ void add_control(CLI::App& app, Work& work) {
   auto seconds = option_value(0.0);
   velocity->add_option("IFACE", *robot, "position2d or position3d iface")->required();
   velocity->add_option("NUMBERS", *speeds, "VX VY VA [m/s, rad/s]; position3d: VX VY VZ YAWRATE")->required()->expected(3, 6);
-  velocity->add_option("--for", *seconds, "Simulated seconds; default: until interrupted")->check(CLI::Range(0.0, 1e9));
+  velocity->add_option("--for", *seconds, "Simulated seconds; default: until interrupted")->check(base::number_between(0.0, 1e9));
   velocity->callback([&work, robot, speeds, seconds] { work = [=](Control& c) { simctl::velocity(c, *robot, *speeds, *seconds); }; });
 
   auto* spawn = app.add_subcommand("spawn", "Add a model");
@@ -124,7 +124,7 @@ void add_pictures(CLI::App& app, Work& work) {
   screenshot->add_option("--show", "visuals or collisions")
       ->check(CLI::IsMember({"visuals", "collisions"}))
       ->each([options](const std::string& what) { options->with_collisions = what == "collisions"; });
-  screenshot->add_option("--span", options->span, "Metres across (--top) or field of view [rad]")->check(CLI::Range(0.0, 1e6));
+  screenshot->add_option("--span", options->span, "Metres across (--top) or field of view [rad]")->check(base::number_between(0.0, 1e6));
   screenshot->callback([&work, options, from] {
     if (from->count() > 0 && options->from.size() != 6) {
       throw CLI::ValidationError("--from",
@@ -141,7 +141,7 @@ void add_pictures(CLI::App& app, Work& work) {
   record->add_option("CAMERA", *camera_name, "camera iface")->required();
   record->add_option("TARGET", *target, "File.mp4 or folder")->required();
   record->add_option("-n,--count", *frames, "End after so many frames")->check(CLI::NonNegativeNumber);
-  record->add_option("--for", *seconds, "End after so many simulated seconds")->check(CLI::Range(0.0, 1e9));
+  record->add_option("--for", *seconds, "End after so many simulated seconds")->check(base::number_between(0.0, 1e9));
   record->callback([&work, camera_name, target, frames, seconds] {
     work = [=](Control& c) { simctl::record(c, *camera_name, *target, *frames, *seconds); };
   });
@@ -156,7 +156,10 @@ int main(int argc, char** argv) {
   app.fallthrough();
   std::uint32_t server_id = 0;
   bool json = false;
-  app.add_option("-s,--server-id", server_id, "Which server")->check(CLI::Range(0, 9999))->capture_default_str();
+  app.add_option("-s,--server-id", server_id, "Which server")
+      ->check(CLI::Range(0, 9999))
+      ->envname("RTMSIM_SERVER_ID")
+      ->capture_default_str();
   app.add_flag("--json", json, "Print JSON");
   Work work;
   add_looks(app, work);

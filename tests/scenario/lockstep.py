@@ -214,6 +214,72 @@ with System(bin_dir, lib_dir) as s:
             assert s.seconds() == 0
         assert len(set(hashes)) == 1, f"the runs differ: {hashes}"
 
+    elif case == "active_over_restarts":
+        # Components that stay active find each new simulator in its first tick: every run of it is the same, and the robot drives.
+        system, course = f"{source}/worlds/systems/obstacle_avoidance.xml", f"{source}/worlds/obstacle_course.sdf"
+        s.naming()
+        first = s.server(course, "--lockstep", "--paused")
+        for name in ("RTCLaser", "LaserObstacleAvoid", "RTCPosition2d"):
+            s.host(f"{name}?exec_cxt.periodic.rate=10")
+        names = ("RTCLaser0", "LaserObstacleAvoid0", "RTCPosition2d0")
+        s.rtse("wait", *names, "--state", "any", "--timeout", "60")
+        s.rtse("load", system)
+        for name in ("RTCLaser0", "RTCPosition2d0"):
+            s.rtse("conf", name, "set", "server_id", s.server_id)
+        s.rtse("act", *names)
+        join(s, 3)
+        first.send_signal(signal.SIGKILL)
+        first.wait()
+        hashes = []
+        for n in range(5):
+            record = f"{s.work}/record-{n}.txt"
+            out = s.call(f"{bin_dir}/sim-server", course, "-s", s.server_id, "--lockstep", "--rtf", "0", "--wait-for", "3", "--duration", "20", "--hash", "--record", record)
+            hashes.append(re.search(r"\b([0-9a-f]{16})\b", out)[1])
+            poses = [line.split() for line in open(record) if line.split()[1:2] == ["pioneer2dx"]]
+            way = sum(abs(float(a[2]) - float(b[2])) + abs(float(a[3]) - float(b[3])) for a, b in zip(poses, poses[1:]))
+            assert way > 1, f"run {n}: the robot has moved by {way} m"
+        assert len(set(hashes)) == 1, f"the runs differ: {hashes}"
+
+    elif case == "steps_end":
+        # Steps end with the client that wants them, and when somebody pauses or resets.
+        s.server(empty, "--paused")
+        for kind in (signal.SIGINT, signal.SIGKILL):
+            stepper = s.start(f"{bin_dir}/simctl", "-s", s.server_id, "step", "1000000000")
+            goes_on(s)
+            stepper.send_signal(kind)
+            stepper.wait()
+            s.until("the end of the steps", lambda: s.stats()["paused"])
+            before = s.stats()["steps"]
+            s.simctl("step", "3")
+            assert s.stats()["steps"] == before + 3
+        for command, why in (("pause", "has paused"), ("reset", "has reset")):
+            stepper = s.start(f"{bin_dir}/simctl", "-s", s.server_id, "step", "1000000000")
+            goes_on(s)
+            s.simctl(command)
+            assert stepper.wait(60) == 1 and why in s.log(stepper), s.log(stepper)
+            before = s.stats()["steps"]
+            s.simctl("step", "3")
+            assert s.stats()["steps"] == before + 3 and s.stats()["paused"]
+
+    elif case == "refused_in_a_hang":
+        # What needs the world to stand between two steps is refused with the name of who hangs, and does not happen later.
+        s.naming()
+        s.server(empty, "--lockstep", "--rtf", "0", "--wait-for", "1")
+        host = s.host(relay("Hangs"))
+        s.rtse("wait", "Hangs", "--state", "any", "--timeout", "60")
+        join(s, 1)
+        goes_on(s)
+        host.send_signal(signal.SIGSTOP)
+        s.until("a stopped process", lambda: is_stopped(host))
+        stands_still(s)
+        for words in (("reset",), ("step", "3")):
+            done = subprocess.run([f"{bin_dir}/simctl", "-s", s.server_id, *words], capture_output=True, text=True, timeout=60)
+            assert done.returncode == 1 and "Hangs" in done.stderr, (words, done.stderr)
+        at = s.seconds()
+        host.send_signal(signal.SIGCONT)
+        goes_on(s)
+        assert s.seconds() > at > 0.5 and not s.stats()["paused"], "the reset or the steps were done all the same"
+
     elif case == "loaded":
         # The same run on a machine that has better things to do.
         system, course = f"{source}/worlds/systems/obstacle_avoidance.xml", f"{source}/worlds/obstacle_course.sdf"

@@ -1,5 +1,6 @@
 // Relay: sends on what it receives, or counts its own ticks when source is 1, and writes "time value" for each value to the file `journal`.
-// Ticks of a chain of relays show how long data is on the way. hang_at: the tick in which it sleeps for ever (0: never).
+// Ticks of a chain of relays show how long data is on the way. hang_at, crash_at, nan_at: the tick in which it sleeps for ever, aborts, and
+// sends no number on its third port (0: never).
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/DataInPort.h>
 #include <rtm/DataOutPort.h>
@@ -7,13 +8,16 @@
 #include <rtm/idl/BasicDataTypeSkel.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <string>
 
 class Relay : public RTC::DataFlowComponentBase {
  public:
-  explicit Relay(RTC::Manager* manager) : RTC::DataFlowComponentBase(manager), in_("in", received_), out_("out", sent_) {}
+  explicit Relay(RTC::Manager* manager)
+      : RTC::DataFlowComponentBase(manager), in_("in", received_), out_("out", sent_), number_out_("number", number_) {}
 
   RTC::ReturnCode_t onInitialize() override {
     addInPort("in", in_);
@@ -21,6 +25,9 @@ class Relay : public RTC::DataFlowComponentBase {
     bindParameter("source", source_, "0");
     bindParameter("journal", journal_, "");
     bindParameter("hang_at", hang_at_, "0");
+    bindParameter("crash_at", crash_at_, "0");
+    bindParameter("nan_at", nan_at_, "0");
+    addOutPort("number", number_out_);
     return RTC::RTC_OK;
   }
 
@@ -33,6 +40,9 @@ class Relay : public RTC::DataFlowComponentBase {
   RTC::ReturnCode_t onExecute(RTC::UniqueId) override {
     ++ticks_;
     while (hang_at_ > 0 && ticks_ == hang_at_) pause();
+    if (crash_at_ > 0 && ticks_ == crash_at_) std::abort();
+    number_.data = ticks_ == nan_at_ ? std::nan("") : 1;
+    number_out_.write();
     if (source_ != 0) {
       sent_.data = ticks_;
     } else {
@@ -55,7 +65,9 @@ class Relay : public RTC::DataFlowComponentBase {
   RTC::TimedLong received_{}, sent_{};
   RTC::InPort<RTC::TimedLong> in_;
   RTC::OutPort<RTC::TimedLong> out_;
-  int source_ = 0, hang_at_ = 0, ticks_ = 0;
+  RTC::TimedDouble number_{};
+  RTC::OutPort<RTC::TimedDouble> number_out_;
+  int source_ = 0, hang_at_ = 0, crash_at_ = 0, nan_at_ = 0, ticks_ = 0;
   std::string journal_;
 };
 
@@ -75,6 +87,8 @@ static const char* const relay_spec[] = {
     "conf.default.source", "0",
     "conf.default.journal", "",
     "conf.default.hang_at", "0",
+    "conf.default.crash_at", "0",
+    "conf.default.nan_at", "0",
     ""};
 // clang-format on
 

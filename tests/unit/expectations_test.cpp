@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -38,7 +39,7 @@ class ExpectationsTest : public testing::Test {
     Seen seen;
     seen.record.poses["robot"] = {{0, 0, 0, 0}, {1, 3, 0, 0}, {2, 3, 4, 0}};
     seen.record.contacts = {{0.1, "robot", "ground_plane"}, {1.5, "box", "robot"}};
-    seen.values["A0:out data"] = {3, -1, 2};
+    for (const double number : {-1, 0, 2}) seen.values["A0:out data"].take(number);
     seen.states["A0"] = "Active";
     return seen;
   }();
@@ -63,6 +64,7 @@ TEST_F(ExpectationsTest, regions_are_reached_in_time_or_not) {
 TEST_F(ExpectationsTest, contacts_count_for_both_models_and_the_ground_does_not) {
   EXPECT_EQ(problem("- no_contact: {model: robot}"), "it touched box at 1.5 s");
   EXPECT_EQ(problem("- no_contact: {model: robot, except: [ground_plane, box]}"), "");
+  EXPECT_EQ(problem("- no_contact: {model: robot, except: box}"), "it touched ground_plane at 0.1 s");
 }
 
 TEST_F(ExpectationsTest, values_states_and_commands_are_judged_by_what_was_seen) {
@@ -72,6 +74,49 @@ TEST_F(ExpectationsTest, values_states_and_commands_are_judged_by_what_was_seen)
   EXPECT_EQ(problem("- state: {component: A0, is: active}"), "");
   EXPECT_EQ(problem("- state: {component: A0, is: Error}"), "it is Active");
   EXPECT_EQ(problem("- command: 'true'"), "it was not run");
+  seen_.commands["true"] = {0, "well"};
+  EXPECT_EQ(problem("- command: 'true'"), "");
+  seen_.commands["true"] = {3, "no such thing"};
+  EXPECT_EQ(problem("- command: 'true'"), "it ended with exit code 3: no such thing");
+  seen_.commands["true"] = {std::nullopt, "it did not end within 60 s"};
+  EXPECT_EQ(problem("- command: 'true'"), "it did not end within 60 s");
+}
+
+TEST_F(ExpectationsTest, what_is_no_number_is_within_no_bounds) {
+  seen_.values["A0:out data"].take(NAN);
+  EXPECT_EQ(problem("- value: {port: 'A0:out', member: data, min: -1, max: 2}"), "it was not a number (NaN) in 1 of 4 samples");
+  SeenValue first_is_nan;
+  for (const double number : {std::nan(""), 5.0, 6.0}) first_is_nan.take(number);
+  EXPECT_EQ(first_is_nan.lowest, 5);
+  EXPECT_EQ(first_is_nan.highest, 6);
+  seen_.values["A0:out data.x"].problem = "the samples have no number data.x; they have data";
+  EXPECT_EQ(problem("- value: {port: 'A0:out', member: data.x, min: 0}"), "the samples have no number data.x; they have data");
+}
+
+TEST_F(ExpectationsTest, members_are_paths) {
+  EXPECT_EQ(member_path("data.vx").value(), (std::vector<std::string>{"data", "vx"}));
+  EXPECT_EQ(member_path("ranges[12]").value(), (std::vector<std::string>{"ranges", "12"}));
+  EXPECT_EQ(member_path("a[0][1].b").value(), (std::vector<std::string>{"a", "0", "1", "b"}));
+  for (const char* wrong : {"", ".", "a.", ".a", "a..b", "a[", "a[x]", "a[-1]", "a[0]b", "a/~7x", "[", "a b"})
+    EXPECT_FALSE(member_path(wrong).ok()) << wrong;
+}
+
+TEST_F(ExpectationsTest, what_is_not_there_is_told_with_what_is) {
+  EXPECT_EQ(problem("- path_length: {model: nobody, min: 1}"), "the world has no moving model \"nobody\"; moving models: robot");
+  EXPECT_EQ(problem("- state: {component: B0, is: Active}"), "there is no such component; components: A0");
+  EXPECT_EQ(problem("- state: {component: A0.rtc, is: Active}"), "");
+}
+
+TEST_F(ExpectationsTest, what_would_be_ignored_is_refused) {
+  EXPECT_NE(refusal("- path_length: {model: robot, minimum: 5, max: 10}").find("no key \"minimum\"; it has max, min, model"),
+            std::string::npos);
+  EXPECT_NE(refusal("- path_length: {model: robot, min: 5, min: 6}").find("twice"), std::string::npos);
+  EXPECT_NE(refusal("- path_length: {model: robot, min: 5, max: 4}").find("more than max"), std::string::npos);
+  EXPECT_NE(refusal("- path_length: {model: robot, min: .nan}").find("finite"), std::string::npos);
+  EXPECT_NE(refusal("- reach: {model: robot, region: [0, 0, 1, 1], within: -5}").find("within"), std::string::npos);
+  EXPECT_NE(refusal("- state: {component: A0, is: Activ}").find("Activ"), std::string::npos);
+  EXPECT_NE(refusal("- value: {port: 'A0:out', member: 'data/~7x', min: 0}").find("data.vx"), std::string::npos);
+  EXPECT_NE(refusal("- no_contact: {model: robot, except: {a: b}}").find("except"), std::string::npos);
 }
 
 TEST_F(ExpectationsTest, what_cannot_be_judged_is_refused_with_its_line) {
@@ -89,6 +134,10 @@ TEST_F(ExpectationsTest, records_are_read_whole_or_refused) {
   EXPECT_EQ(record->poses.at("robot").at(0).z, 3);
   EXPECT_EQ(record->contacts.at(0).other, "box");
   EXPECT_FALSE(read_record(file("0.1 robot 1 x 3\n")).ok());
+  const auto quoted = read_record(file("0.1 \"my \\\"big\\\" box\" 1 2 3 1 0 0 0\ncontact 0.2 robot \"my box\"\n"));
+  ASSERT_TRUE(quoted.ok());
+  EXPECT_EQ(quoted->poses.begin()->first, "my \"big\" box");
+  EXPECT_EQ(quoted->contacts.at(0).other, "my box");
 }
 
 }  // namespace

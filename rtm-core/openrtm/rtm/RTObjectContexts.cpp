@@ -110,7 +110,8 @@ ReturnCode_t RTObject_impl::createContexts() {
       return made;
     });
     if (!context) {
-      RTC_ERROR(("no execution context of type %s", base::in_quotes(one.type).c_str()));
+      RTC_ERROR(("no execution context of type %s; a module that has it is loaded by manager.modules.preload",
+                 base::in_quotes(one.type).c_str()));
       return RTC_ERROR;
     }
     impl_->shared.lock()->contexts.push_back(context);

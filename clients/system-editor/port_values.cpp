@@ -1,0 +1,98 @@
+#include "port_values.h"
+
+#include <nlohmann/json.hpp>
+
+#include "base/text.h"
+#include "value_codec.h"
+
+namespace editor {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void add_numbers(const Json& json, const std::string& path, std::vector<std::string>& names) {
+  constexpr std::size_t enough = 12;
+  if (names.size() == enough) return;
+  if (json.is_object()) {
+    for (const auto& [key, value] : json.items()) add_numbers(value, path.empty() ? key : path + "." + key, names);
+  } else if (json.is_array()) {
+    if (!json.empty()) add_numbers(json.front(), path + "[0]", names);
+  } else if (json.is_number() || json.is_boolean()) {
+    names.push_back(path);
+  }
+}
+
+std::string numbers_of(const Json& json) {
+  std::vector<std::string> names;
+  add_numbers(json, "", names);
+  return names.empty() ? "none" : base::join(names, ", ");
+}
+
+const Json* find(const Json& sample, const std::vector<std::string>& path) {
+  const Json* at = &sample;
+  for (const auto& step : path) {
+    const auto index = base::parse_integer(step);
+    if (at->is_object() && at->contains(step)) {
+      at = &(*at)[step];
+    } else if (at->is_array() && index && static_cast<std::size_t>(*index) < at->size()) {
+      at = &(*at)[static_cast<std::size_t>(*index)];
+    } else {
+      return nullptr;
+    }
+  }
+  return at;
+}
+
+}  // namespace
+
+Result<void> PortValues::listen(CORBA::ORB_ptr orb, const Editor& editor, const std::vector<Expectation>& expectations) {
+  for (const auto& expectation : expectations) {
+    if (expectation.kind != Expectation::Kind::value) continue;
+    auto port = editor.port(expectation.port);
+    if (!port) return port.error();
+    const auto type = type_code_of(port->port.data_type());
+    if (CORBA::is_nil(type))
+      return Error{"port " + expectation.port + ": carries " + port->port.data_type() + ", which rtse does not know"};
+    const auto path = member_path(expectation.member);
+    if (!path) return path.error();
+    auto tap = Tap::connect(orb, port->port, {{"dataport.allow_dup_connection", "YES"}},
+                            [this, type, &expectation, path = *path](std::span<const unsigned char> payload, bool little) {
+                              take(type, expectation, path, payload, little);
+                            });
+    if (!tap) return tap.error();
+    taps_.push_back(std::move(*tap));
+  }
+  return {};
+}
+
+std::map<std::string, SeenValue> PortValues::end() {
+  taps_.clear();
+  const std::scoped_lock lock(mutex_);
+  return seen_;
+}
+
+void PortValues::take(CORBA::TypeCode_ptr type, const Expectation& expectation, const std::vector<std::string>& path,
+                      std::span<const unsigned char> payload, bool little) {
+  const auto sample = decode(type, payload, little);
+  const Json* member = sample ? find(*sample, path) : nullptr;
+  std::string problem;
+  double number = 0;
+  if (!sample) {
+    problem = "the samples cannot be decoded: " + sample.error().message;
+  } else if (member && member->is_boolean()) {
+    number = member->get<bool>() ? 1 : 0;
+  } else if (member && member->is_number()) {
+    number = member->get<double>();
+  } else {
+    problem = "the samples have no number " + expectation.member + "; they have " + numbers_of(*sample);
+  }
+  const std::scoped_lock lock(mutex_);
+  auto& seen = seen_[expectation.port + " " + expectation.member];
+  if (problem.empty()) {
+    seen.take(number);
+  } else {
+    seen.problem = problem;
+  }
+}
+
+}  // namespace editor

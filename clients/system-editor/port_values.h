@@ -1,0 +1,33 @@
+// Listens on the ports whose values are to be judged. One thread at a time; samples come in the ORB's threads.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "editor.h"
+#include "expectations.h"
+#include "tap.h"
+
+namespace editor {
+
+class PortValues {
+ public:
+  // `expectations` must live until end(). Others than those of values are left alone.
+  Result<void> listen(CORBA::ORB_ptr orb, const Editor& editor, const std::vector<Expectation>& expectations);
+  // What was seen, by "port member". Listens no more.
+  std::map<std::string, SeenValue> end();
+
+ private:
+  void take(CORBA::TypeCode_ptr type, const Expectation& expectation, const std::vector<std::string>& path,
+            std::span<const unsigned char> payload, bool little);
+
+  std::mutex mutex_;  // of seen_
+  std::map<std::string, SeenValue> seen_;
+  std::vector<std::unique_ptr<Tap>> taps_;
+};
+
+}  // namespace editor

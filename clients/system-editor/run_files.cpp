@@ -1,0 +1,86 @@
+#include "run_files.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <sstream>
+
+#include "base/id.h"
+#include "base/text.h"
+
+namespace editor {
+namespace {
+
+constexpr std::string_view prefix = "rtse-run-";
+
+// What runs left that were killed.
+void remove_leftovers() {
+  std::error_code ignored;  // others clean up at the same time
+  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::temp_directory_path(), ignored)) {
+    const auto name = entry.path().filename().string();
+    if (!name.starts_with(prefix)) continue;
+    const auto pid = base::parse_integer(name.substr(prefix.size(), name.find('-', prefix.size()) - prefix.size()));
+    if (pid && *pid > 0 && kill(static_cast<pid_t>(*pid), 0) != 0 && errno == ESRCH) std::filesystem::remove_all(entry.path(), ignored);
+  }
+}
+
+}  // namespace
+
+Workplace::Workplace(const std::string& keep) {
+  remove_leftovers();
+  scratch_ =
+      std::filesystem::temp_directory_path() / (std::string(prefix) + std::to_string(getpid()) + "-" + base::make_uuid().substr(0, 8));
+  std::filesystem::create_directories(scratch_ / "names");
+  std::filesystem::create_directories(scratch_ / "tmp");
+  files_ = keep.empty() ? scratch_ : std::filesystem::absolute(keep);
+  std::filesystem::create_directories(files_);
+}
+
+Workplace::~Workplace() {
+  std::error_code ignored;  // a file that cannot be removed from the temporary folder is no failure of the run
+  std::filesystem::remove_all(scratch_, ignored);
+}
+
+std::string Workplace::new_file(const std::string& name) const {
+  std::error_code ignored;  // then it cannot be opened either, which is said
+  std::filesystem::remove(files_ / name, ignored);
+  return file(name);
+}
+
+std::vector<std::string> lines_of(const std::string& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return base::split_list(text.str(), '\n');
+}
+
+LogLevel level_of(const std::string& line) {
+  const auto has = [&](const char* one, const char* other) {
+    return line.find(one) != std::string::npos || line.find(other) != std::string::npos;
+  };
+  if (has(" ERROR: ", " error: ")) return LogLevel::error;
+  if (has(" WARN: ", " warning: ")) return LogLevel::warning;
+  return has(" INFO: ", " info: ") ? LogLevel::info : LogLevel::none;
+}
+
+std::string telling_line(const std::string& file) {
+  const auto lines = lines_of(file);
+  std::string telling = lines.empty() ? "it said nothing" : lines.back();
+  for (const auto& line : lines) {
+    if (level_of(line) == LogLevel::error) return line;
+    if (level_of(line) == LogLevel::warning) telling = line;
+  }
+  return telling;
+}
+
+std::string last_lines(const std::string& file) {
+  constexpr std::size_t enough = 40;
+  const auto lines = lines_of(file);
+  if (lines.empty()) return "";
+  std::string text = "--- " + std::filesystem::path(file).filename().string() + "\n";
+  for (std::size_t i = lines.size() > enough ? lines.size() - enough : 0; i < lines.size(); ++i) text += lines[i] + "\n";
+  return text;
+}
+
+}  // namespace editor

@@ -1,0 +1,37 @@
+// Where a run keeps its files, and what its logs say. One thread at a time.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace editor {
+
+// A folder for what is to be looked at afterwards, and one for everything else, which is gone at the end.
+class Workplace {
+ public:
+  // `keep`: the folder for logs and records, made if need be; empty: the temporary one. Throws std::filesystem::filesystem_error.
+  explicit Workplace(const std::string& keep);
+  ~Workplace();
+  Workplace(const Workplace&) = delete;
+  Workplace& operator=(const Workplace&) = delete;
+
+  // A new file among those to be looked at.
+  std::string new_file(const std::string& name) const;
+  std::string file(const std::string& name) const { return (files_ / name).string(); }
+  std::string scratch(const std::string& name) const { return (scratch_ / name).string(); }
+
+ private:
+  std::filesystem::path scratch_, files_;
+};
+
+std::vector<std::string> lines_of(const std::string& file);
+// Of a line of a log of rtcd or sim-server.
+enum class LogLevel { none, info, warning, error };
+LogLevel level_of(const std::string& line);
+// The line of a log that tells most: the first error, else the last warning, else the last line.
+std::string telling_line(const std::string& file);
+// The last lines of a log under its name; nothing for one that is empty.
+std::string last_lines(const std::string& file);
+
+}  // namespace editor

@@ -1,0 +1,229 @@
+# `rtse run`: what it says of runs that go well, badly and not at all, in its exit code, on standard error and in JUnit; and that nothing of it stays.
+#
+# usage: runs.py CASE BIN_DIR LIB_DIR SOURCE_DIR
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import xml.etree.ElementTree
+
+case, bin_dir, lib_dir, source = sys.argv[1:]
+watchdog = 120  # [s]; a bound on hanging, not on speed
+rtse = f"{bin_dir}/rtse"
+avoidance = f"{source}/worlds/systems/obstacle_avoidance.xml"
+course = f"{source}/worlds/obstacle_course.sdf"
+empty = f"{source}/worlds/empty.sdf"
+
+
+class Place:
+    def __enter__(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.path = pathlib.Path(self.folder.name)
+        (self.path / "tmp").mkdir()
+        self.environment = {**os.environ, "TMPDIR": str(self.path / "tmp")}
+        return self
+
+    def __exit__(self, kind, *_):
+        left = list((self.path / "tmp").iterdir())
+        self.folder.cleanup()
+        assert kind or not left, f"left behind: {left}"
+
+    def write(self, name, text):
+        (self.path / name).write_text(text)
+        return str(self.path / name)
+
+    # A system of relays, name -> configuration.
+    def relays(self, **relays):
+        components = ""
+        for name, values in relays.items():
+            data = "".join(f'<rts:ConfigurationData rts:name="{key}" rts:data="{value}"/>' for key, value in values.items())
+            components += (f'<rts:Components xsi:type="rtsExt:component_ext" rts:id="RTC:rtm-sim:test:Relay:1.0.0" rts:pathUri="localhost/{name}.rtc" rts:instanceName="{name}" '
+                           f'rts:activeConfigurationSet="default" rts:compositeType="None" rts:isRequired="true"><rts:ConfigurationSets rts:id="default">{data}</rts:ConfigurationSets>'
+                           f'<rts:ExecutionContexts xsi:type="rtsExt:execution_context_ext" rts:id="0" rts:kind="PERIODIC" rts:rate="10.0"/></rts:Components>')
+        return self.write("system.xml", '<?xml version="1.0" encoding="UTF-8"?><rts:RtsProfile xmlns:rts="http://www.openrtp.org/namespaces/rts" '
+                          'xmlns:rtsExt="http://www.openrtp.org/namespaces/rts_ext" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" '
+                          f'rts:id="RTSystem:rtm-sim:Test:1" rts:version="0.2">{components}</rts:RtsProfile>')
+
+    def start(self, system, world, *options):
+        self.junit = self.path / "junit.xml"
+        return subprocess.Popen([rtse, "run", system, "--world", world, "--module-path", lib_dir, "--junit", str(self.junit), *options], text=True,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=self.environment, cwd=self.path)
+
+    # Exit code, standard output, standard error.
+    def run(self, *words):
+        process = self.start(*words)
+        out, err = process.communicate(timeout=watchdog)
+        return process.returncode, out, err
+
+    # name -> "" or what is wrong, of the only seed or of one of several.
+    def verdicts(self, seed=None):
+        suite = xml.etree.ElementTree.parse(self.junit).getroot()
+        cases = suite.findall("testcase")
+        wrong = [case for case in cases if case.find("failure") is not None or case.find("error") is not None]
+        assert int(suite.get("tests")) == len(cases) and int(suite.get("failures")) + int(suite.get("errors")) == len(wrong)
+        return {case.get("name"): next((problem.get("message") for problem in case if problem.tag in ("failure", "error")), "") for case in cases
+                if seed is None or case.get("classname").endswith(f".seed_{seed}")}
+
+
+def is_running(pid):
+    try:
+        return pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
+    except FileNotFoundError:
+        return False
+
+
+def expectations(*lines):
+    return "".join(f"- {line}\n" for line in lines)
+
+
+def of(verdicts, beginning):
+    found = [problem for name, problem in verdicts.items() if name.startswith(beginning)]
+    assert len(found) == 1, (beginning, verdicts)
+    return found[0]
+
+
+# Each kind of expectation, met and unmet.
+def kinds():
+    with Place() as place:
+        met = place.write("met.yaml", expectations(
+            "path_length: {model: pioneer2dx, min: 0.5, max: 5}", "reach: {model: pioneer2dx, region: [-6, -6, 6, 6], within: 1}",
+            "stay: {model: pioneer2dx, region: [-6, -6, 6, 6]}", "no_contact: {model: pioneer2dx}",
+            "value: {port: 'LaserObstacleAvoid0:velocity', member: data.vx, min: -0.3, max: 0.3}", "value: {port: 'RTCLaser0:range', member: 'ranges[0]', min: 0}",
+            "state: {component: RTCLaser0, is: Active}", "command: 'test -s \"$RTMSIM_RECORD\" && simctl_stats=$(\"" + bin_dir + "/simctl\" stats)'",
+            f"command: '\"{bin_dir}/rtse\" ls RTCLaser0.rtc'"))
+        code, out, err = place.run(avoidance, course, "--duration", "5", "--expect", met)
+        assert code == 0 and err == "" and out.startswith("passed"), (code, out, err)
+        verdicts = place.verdicts()
+        assert len(verdicts) == 11 and not any(verdicts.values()), verdicts
+
+        unmet = place.write("unmet.yaml", expectations(
+            "path_length: {model: pioneer2dx, max: 0.1}", "reach: {model: pioneer2dx, region: [50, 50, 60, 60]}", "stay: {model: pioneer2dx, region: [50, 50, 60, 60]}",
+            "no_contact: {model: pioneer2dx, except: []}", "value: {port: 'LaserObstacleAvoid0:velocity', member: data.vx, min: 5}",
+            "value: {port: 'RTCLaser0:range', member: data.nosuch, min: 0}", "state: {component: RTCLaser0, is: Inactive}", "command: 'echo that is why; exit 3'",
+            "path_length: {model: nobody, min: 1}"))
+        code, out, err = place.run(avoidance, course, "--duration", "5", "--expect", unmet)
+        assert code == 1 and out.startswith("FAILED"), (code, out, err)
+        verdicts = place.verdicts()
+        for beginning, text in {"path_length: {model: pioneer2dx": "expected at most 0.1", "reach": "no nearer than", "stay": "it was at", "no_contact": "it touched ground_plane",
+                                "value: {port: Laser": "expected at least 5", "value: {port: RTCL": "no number data.nosuch; they have", "state": "it is Active",
+                                "command": "exit code 3: that is why", "path_length: {model: nobody": "moving models: pioneer2dx"}.items():
+            assert text in of(verdicts, beginning), (beginning, verdicts)
+        assert len(err.splitlines()) == 9 and verdicts["runs for 5 s"] == "" and verdicts["no component ends in an error"] == "", (err, verdicts)
+
+
+# What is not a number is within no bounds.
+def not_a_number():
+    with Place() as place:
+        system = place.relays(Relay0={"source": 1, "nan_at": 10})
+        bounds = place.write("e.yaml", expectations("value: {port: 'Relay0:number', member: data, min: 0, max: 100}"))
+        code, out, err = place.run(system, empty, "--duration", "3", "--expect", bounds)
+        assert code == 1 and "NaN" in of(place.verdicts(), "value"), (code, err)
+
+
+# A run that cannot be judged is an error in the report, with the reason, and never an old or an empty report.
+def crash():
+    with Place() as place:
+        place.write("junit.xml", "<testsuite tests='0'/>")
+        code, out, err = place.run(place.relays(Relay0={"source": 1, "crash_at": 15}, Relay1={}), empty, "--duration", "10", "--one-process-each")
+        assert code == 1 and "host of Relay0 was killed by signal 6" in err and "--keep" in err, (code, err)
+        assert "killed by signal 6" in place.verdicts()["runs for 10 s"]
+        code, out, err = place.run(place.relays(Relay0={"source": 1, "crash_at": 15}), empty, "--duration", "10", "--seeds", "1..3", "-j", "2")
+        assert code == 1 and "0 of 3 seeds passed" in out and "seed 2: host of Relay0 was killed" in err, (code, out, err)
+        for seed in (1, 2, 3):
+            assert "killed by signal 6" in place.verdicts(seed)["runs for 10 s"]
+
+
+def hang():
+    with Place() as place:
+        code, out, err = place.run(place.relays(Relay0={"source": 1, "hang_at": 15}, Relay1={}), empty, "--duration", "10", "--hang-timeout", "2", "--one-process-each")
+        assert code == 1 and "Relay0: has not ended its tick" in err and "Relay1" not in err, (code, err)
+        assert "Relay0" in place.verdicts()["runs for 10 s"]
+
+
+def missing_module():
+    with Place() as place:
+        system = place.write("system.xml", pathlib.Path(avoidance).read_text().replace("RTCLaser:1.0.0", "NoSuchThing:1.0.0"))
+        code, out, err = place.run(system, course, "--duration", "1")
+        assert code == 1 and "NoSuchThing" in err and "killed" not in err, (code, err)
+        assert "NoSuchThing" in place.verdicts()["runs for 1 s"]
+
+
+# A world that is not whole is said to be so, and a component in its error state fails the run.
+def incomplete():
+    with Place() as place:
+        world = place.write("world.sdf", pathlib.Path(course).read_text().replace("</world>", "<include><uri>model://nosuchthing</uri></include></world>"))
+        environment = {**place.environment, "RTMSIM_RESOURCE_PATH": f"{source}/worlds"}
+        place.environment = environment
+        code, out, err = place.run(avoidance, world, "--duration", "1")
+        assert code == 0 and "nosuchthing" in err, (code, err)
+        code, out, err = place.run(place.write("system.xml", pathlib.Path(avoidance).read_text().replace("pioneer2dx::laser", "pioneer2dx::none")), course, "--duration", "1")
+        assert code == 1 and "pioneer2dx::none" in err, (code, err)
+
+
+def interrupted():
+    with Place() as place:
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            for delay in (0.05, 0.4, 1.5):
+                process = place.start(avoidance, course, "--duration", "12345")
+                time.sleep(delay)  # some moment of its life
+                for _ in range(3):
+                    process.send_signal(number)
+                    time.sleep(0.03)
+                out, err = process.communicate(timeout=watchdog)
+                # Before it can catch anything it may just end.
+                assert process.returncode == 1 and "interrupted" in err or process.returncode == -number and delay == 0.05, (number, delay, process.returncode, err)
+        process = place.start(avoidance, course, "--duration", "12345", "--seeds", "1..20", "-j", "2")
+        time.sleep(2)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=watchdog)
+        assert process.returncode == 1 and "interrupted after 2 of 20 seeds" in err, (process.returncode, out, err)
+        assert "interrupted" in place.verdicts(1)["runs for 12345 s"]
+
+
+# A simulator that has the id already is left alone.
+def foreign_simulator():
+    with Place() as place:
+        script = f'id=$((1000 + $$ * 7 % 9000)); "{bin_dir}/sim-server" -s $id --paused "{empty}" & echo $id $!; for i in $(seq 100); do "{bin_dir}/simctl" -s $id stats >/dev/null 2>&1 && break; ' \
+                 f'sleep 0.1; done; exec "{rtse}" run "{avoidance}" --world "{course}" --duration 2'
+        process = subprocess.Popen(["bash", "-c", script], text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=place.environment)
+        server_id, pid = process.stdout.readline().split()
+        try:
+            # Its output stays open in the simulator.
+            assert process.wait(watchdog) == 0, process.stderr.read()
+            stats = json.loads(subprocess.run([f"{bin_dir}/simctl", "-s", server_id, "--json", "stats"], capture_output=True, text=True, check=True).stdout)
+            assert stats["steps"] == 0 and stats["pid"] == int(pid), stats
+        finally:
+            os.kill(int(pid), signal.SIGTERM)
+        process.communicate(timeout=watchdog)
+
+
+# Commands that do not end, what they leave behind, names with blanks, and phases by property.
+def odds_and_ends():
+    with Place() as place:
+        world = place.write("world.sdf", pathlib.Path(empty).read_text().replace(
+            "</world>", "<model name='my \"big\" box'><pose>3 3 1 0 0 0</pose><link name='l'><collision name='c'><geometry><box><size>1 1 1</size></box></geometry></collision></link></model></world>"))
+        journal = place.path / "journal"
+        system = place.relays(Relay0={"source": 1}, Relay1={"journal": journal})
+        e = place.write("e.yaml", expectations("path_length: {model: 'my \"big\" box', max: 2}", "no_contact: {model: 'my \"big\" box'}", f"command: 'sleep 1000 & echo $! > {place.path}/pid'"))
+        code, out, err = place.run(system, world, "--duration", "2", "--expect", e, "--property", "Relay1:exec_cxt.sim_time.phase=5", "--keep", str(place.path / "kept"))
+        assert code == 0, (code, out, err)
+        pid = int((place.path / "pid").read_text())
+        assert not is_running(pid), "the command's child is still there"
+        kept = {path.name for path in (place.path / "kept").iterdir()}
+        assert {"record.txt", "rtcd-0.log", "sim-server.log", "system.xml"} <= kept, kept
+        assert "phase 5" in (place.path / "kept/rtcd-0.log").read_text()
+        for words in (["--property", "Nobody:a=b"], ["--property", "x"]):
+            code, out, err = place.run(system, world, "--duration", "1", *words)
+            assert code == (1 if words[1] != "x" else 2) and "property" in err, (code, err)
+        for words in (["--duration", "nan"], ["--seeds", ""], ["--seeds", "3..1"], ["--seed", "-5"], ["--seeds", "1..2", "--seed", "3"], ["--hang-timeout", "0"]):
+            code, out, err = place.run(system, world, *words)
+            assert code == 2 and len(err.splitlines()) == 1, (words, code, err)
+        code, out, err = place.run(system, world, "--picture", "/nonexistent/p.png")
+        assert code == 1 and "/nonexistent" in err, err
+
+
+globals()[case]()
