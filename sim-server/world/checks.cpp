@@ -55,6 +55,12 @@ const std::map<std::string_view, Rule>& rules() {
       {"joint/thread_pitch", {finite, ignore}},
       {"joint/screw_thread_pitch", {finite, ignore}},
       {"joint/gearbox_ratio", {finite, ignore}},
+      {"road/width", {positive, drop_owner}},
+      {"road/point", {vector3, drop_owner}},
+      {"population/model_count", {positive, drop_owner}},
+      {"distribution/rows", {positive, drop_owner}},
+      {"distribution/cols", {positive, drop_owner}},
+      {"distribution/step", {vector3, drop_owner}},
       {"world/gravity", {vector3, ignore}},
       {"world/magnetic_field", {vector3, ignore}},
       {"wind/linear_velocity", {vector3, ignore}},
@@ -176,7 +182,7 @@ bool is_one_of(std::string_view name, std::initializer_list<std::string_view> na
 pugi::xml_node owner_of(pugi::xml_node node) {
   for (pugi::xml_node at = node.parent(); at; at = at.parent()) {
     if (is_one_of(at.name(), {"collision", "visual", "sensor", "light", "joint", "frame", "waypoint", "include", "model", "actor", "gui",
-                              "scene", "physics"}))
+                              "scene", "physics", "road", "population"}))
       return at;
   }
   return {};
@@ -199,12 +205,22 @@ struct NumberCheck {
     }
   }
 
+  // Three numbers where a pose is expected are a place.
+  void mend_position(pugi::xml_node pose) {
+    const std::optional<std::vector<double>> numbers = parse_numbers(text_of(pose));
+    if (!numbers || numbers->size() != 3) return;
+    const bool is_quaternion = std::string_view(pose.attribute("rotation_format").value()) == "quat_xyzw";
+    complaints.warn(pose, "<pose> of " + describe_in_context(pose.parent()) + " has three numbers; it is taken without a rotation");
+    pose.text() = (text_of(pose) + (is_quaternion ? " 0 0 0 1" : " 0 0 0")).c_str();
+  }
+
   void walk(pugi::xml_node node) {
     const std::string parent = node.name();
     for (pugi::xml_node child : node.children()) {
       if (child.type() != pugi::node_element || is_one_of(child.name(), {"plugin", "state"})) continue;
       const std::string_view name = child.name();
       if (name == "pose") {
+        mend_position(child);
         const std::optional<Eigen::Isometry3d> pose = parse_pose(child);
         if (!pose || pose->translation().cwiseAbs().maxCoeff() > largest_length) {
           const bool is_quaternion = std::string_view(child.attribute("rotation_format").value()) == "quat_xyzw";

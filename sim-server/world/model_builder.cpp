@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "world/checks.h"
 #include "world/plugin_kind.h"
+#include "world/repairs.h"
 #include "world/xml_file.h"
 #include "world/xml_values.h"
 
@@ -215,6 +216,40 @@ Eigen::Matrix3d mended_inertia(const Eigen::Matrix3d& inertia, double mass, std:
   return solver.eigenvectors() * moments.asDiagonal() * solver.eigenvectors().transpose();
 }
 
+// Mass, centre and inertia from the volumes of the collisions; as it was, with a finding, when there is nothing to weigh.
+void take_automatic_inertia(LinkDef& link, pugi::xml_node inertial, BuildContext& context) {
+  constexpr double water = 1000;  // [kg/m^3]
+  const double usual = inertial.attribute(density_mark).as_double(water);
+  double mass = 0;
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  std::vector<std::pair<Eigen::Isometry3d, SolidProperties>> parts;
+  for (const CollisionDef& collision : link.collisions) {
+    const pugi::xml_node node = inertial.parent().find_child_by_attribute("collision", "name", collision.name.c_str());
+    const double density = node.attribute(density_mark).as_double(usual);
+    const std::optional<SolidProperties> solid = solid_properties(collision.geometry);
+    if (!solid || !(density > 0 && density < 1e9)) {
+      context.complaints.warn(node, "automatic inertia cannot weigh " + describe_in_context(node) + "; it is left out of account");
+      continue;
+    }
+    parts.emplace_back(collision.pose, SolidProperties{solid->volume * density, solid->moments * density});
+    mass += parts.back().second.volume;
+    moment += parts.back().second.volume * collision.pose.translation();
+  }
+  if (!(mass >= smallest_mass && mass <= largest_mass)) {
+    context.complaints.warn(inertial,
+                            "automatic inertia of " + describe_in_context(inertial.parent()) + " has nothing to weigh; 1 kg is taken");
+    return;
+  }
+  link.mass = mass;
+  link.center_of_mass = moment / mass;
+  link.inertia.setZero();
+  for (const auto& [pose, solid] : parts) {
+    const Eigen::Vector3d arm = pose.translation() - link.center_of_mass;
+    link.inertia += pose.linear() * solid.moments.asDiagonal() * pose.linear().transpose();
+    link.inertia += solid.volume * (arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose());
+  }
+}
+
 void build_inertial(LinkDef& link, pugi::xml_node node, bool is_static, BuildContext& context) {
   if (!node) return;
   const pugi::xml_node mass = node.child("mass");
@@ -312,6 +347,9 @@ class ModelBuilder {
         finish_sensor(*built, child, scope, &link);
         link.sensors.push_back(std::move(*built));
       }
+    }
+    if (const pugi::xml_node inertial = node.child("inertial"); inertial.attribute(automatic_mark) && !model_.is_static) {
+      take_automatic_inertia(link, inertial, context_);
     }
     for (const char* kind : {"projector", "audio_sink", "audio_source", "battery", "particle_emitter"}) {
       for (pugi::xml_node child : node.children(kind))

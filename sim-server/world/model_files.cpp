@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "world/checks.h"
+#include "world/repairs.h"
 #include "world/xml_file.h"
 #include "world/xml_values.h"
 
@@ -75,6 +76,7 @@ base::Result<pugi::xml_document> ModelFiles::open_text(const std::string& text, 
   }
   if (!sdf) return wrong_root(first_element(*parsed), file_name);
   check_name_lengths(sdf, complaints_);
+  repair_document(sdf, complaints_);
   const std::string version = sdf.attribute("version").value();
   const int number = version_number(version);
   if (number == 0 || number > newest_known) {
@@ -99,7 +101,9 @@ bool ModelFiles::complete(pugi::xml_node entity, const fs::path& folder) {
   library_.check(entity, complaints_);
   resolve_uris(entity, folder);
   const std::function<void(pugi::xml_node)> expand = [&](pugi::xml_node node) {
-    for (pugi::xml_node child : node.children("model")) expand(child);
+    for (const char* kind : {"model", "population"}) {
+      for (pugi::xml_node child : node.children(kind)) expand(child);
+    }
     if (std::string_view(node.name()) == "model") expand_includes(node, folder);
   };
   expand(entity);
@@ -249,7 +253,10 @@ void ModelFiles::apply_include(pugi::xml_node include, pugi::xml_node copy) {
     copy.remove_child("static");
     copy.append_copy(is_static);
   }
-  for (pugi::xml_node plugin : include.children("plugin")) copy.append_copy(plugin);
+  for (pugi::xml_node plugin : include.children("plugin")) {
+    pugi::xml_node added = copy.append_copy(plugin);
+    if (include.attribute(file_mark)) added.append_copy(include.attribute(file_mark));
+  }
 }
 
 namespace {

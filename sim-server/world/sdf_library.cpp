@@ -312,9 +312,15 @@ void SdfLibrary::State::check(pugi::xml_node node, const sdf::ElementPtr& descri
   for (pugi::xml_node child = node.first_child(), next; child; child = next) {
     next = child.next_sibling();
     if (child.type() != pugi::node_element) continue;
-    const std::string name = child.name();
+    std::string name = child.name();
     if (name.find(':') != std::string::npos || name.starts_with('_')) continue;
-    const sdf::ElementPtr known = description->GetElementDescription(name);
+    sdf::ElementPtr known = description->GetElementDescription(name);
+    if (const std::string lower = base::to_lower(name); !known && lower != name && description->GetElementDescription(lower)) {
+      complaints->warn(child, "<" + name.substr(0, 60) + "> in " + describe_in_context(node) + " is taken as <" + lower + ">");
+      child.set_name(lower.c_str());
+      known = description->GetElementDescription(lower);
+      name = lower;
+    }
     if (!known) {
       complaints->warn(child, "unknown element <" + base::in_quotes(name).substr(1, base::in_quotes(name).size() - 2) + "> in " +
                                   describe_in_context(node) + " is ignored");

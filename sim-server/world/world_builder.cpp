@@ -201,10 +201,6 @@ WorldDef build_world(pugi::xml_node node, const ResolvedWorld& resolved, BuildCo
   }
   for (pugi::xml_node child : node.children("plugin")) world.plugins.push_back(build_plugin(child, {}, context));
   if (const pugi::xml_node camera = child_at(node, "gui/camera/pose")) world.gui_camera = parse_pose(camera);
-  for (const char* kind : {"road", "audio", "joint"}) {
-    if (const pugi::xml_node child = node.child(kind))
-      context.complaints.drop(child, "<" + std::string(kind) + "> in a world is not simulated and left out");
-  }
   return world;
 }
 

@@ -1,5 +1,7 @@
 #include "world/world_def.h"
 
+#include <numbers>
+
 #include "base/text.h"
 
 namespace sim {
@@ -39,6 +41,32 @@ std::string_view kind_of(const GeometryDef& geometry) {
   static constexpr std::array<std::string_view, std::variant_size_v<GeometryDef>> words{
       "box", "sphere", "cylinder", "capsule", "ellipsoid", "plane", "mesh", "heightmap", "polyline"};
   return words[geometry.index()];
+}
+
+std::optional<SolidProperties> solid_properties(const GeometryDef& geometry) {
+  constexpr double pi = std::numbers::pi;
+  const auto box_like = [](double volume, const Eigen::Vector3d& squares, double divisor) {
+    return SolidProperties{
+        volume, volume / divisor * Eigen::Vector3d(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y())};
+  };
+  if (const auto* box = std::get_if<BoxShape>(&geometry)) return box_like(box->size.prod(), box->size.cwiseAbs2(), 12);
+  if (const auto* ball = std::get_if<SphereShape>(&geometry)) {
+    return box_like(4.0 / 3 * pi * ball->radius * ball->radius * ball->radius, Eigen::Vector3d::Constant(ball->radius * ball->radius), 5);
+  }
+  if (const auto* egg = std::get_if<EllipsoidShape>(&geometry))
+    return box_like(4.0 / 3 * pi * egg->radii.prod(), egg->radii.cwiseAbs2(), 5);
+  if (const auto* can = std::get_if<CylinderShape>(&geometry)) {
+    const double r2 = can->radius * can->radius, volume = pi * r2 * can->length;
+    const double side = volume * (3 * r2 + can->length * can->length) / 12;
+    return SolidProperties{volume, {side, side, volume * r2 / 2}};
+  }
+  if (const auto* pill = std::get_if<CapsuleShape>(&geometry)) {
+    const double r = pill->radius, r2 = r * r, l = pill->length;
+    const double tube = pi * r2 * l, ends = 4.0 / 3 * pi * r2 * r;
+    const double side = tube * (3 * r2 + l * l) / 12 + ends * (0.4 * r2 + l * l / 4 + 3.0 / 8 * l * r);
+    return SolidProperties{tube + ends, {side, side, tube * r2 / 2 + ends * 0.4 * r2}};
+  }
+  return std::nullopt;
 }
 
 std::string_view to_text(SensorKind kind) {

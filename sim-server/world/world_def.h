@@ -109,6 +109,14 @@ using GeometryDef =
 // Word for messages: "box", "mesh", ...
 std::string_view kind_of(const GeometryDef& geometry);
 
+// Volume [m^3] and principal moments about the middle for a density of 1 [m^5].
+struct SolidProperties {
+  double volume = 0;
+  Eigen::Vector3d moments{0, 0, 0};
+};
+// Empty for shapes without a volume that is known here (planes, meshes, height maps, polylines).
+std::optional<SolidProperties> solid_properties(const GeometryDef& geometry);
+
 // --- links
 // ----------------------------------------------------------------------------------------------------------------------------------
 

@@ -12,6 +12,8 @@
 #include "world/materials.h"
 #include "world/model_builder.h"
 #include "world/model_files.h"
+#include "world/population.h"
+#include "world/repairs.h"
 #include "world/sdf_library.h"
 #include "world/xml_file.h"
 #include "world/xml_values.h"
@@ -66,6 +68,7 @@ class Loader {
  private:
   void apply_state(pugi::xml_node world);
   void collect(pugi::xml_node world, const fs::path& folder);
+  void collect_population(pugi::xml_node population);
   void collect_include(pugi::xml_node world, pugi::xml_node include, const fs::path& folder);
   void add_instance(std::size_t distinct, pugi::xml_node named, pugi::xml_node pose_node, std::string name);
   std::size_t distinct_for(const std::string& key, pugi::xml_node node);
@@ -164,9 +167,32 @@ void Loader::collect(pugi::xml_node world, const fs::path& folder) {
       add_instance(distinct_for(key_of(child, {"pose"}), child), child, child.child("pose"), child.attribute("name").value());
     } else if (kind == "include") {
       collect_include(world, child, folder);
+    } else if (kind == "road") {
+      pugi::xml_node model = model_of_road(child, copies_);
+      model.append_copy(child.attribute(line_mark));
+      model.append_attribute(file_mark) = complaints_.add_file(complaints_.place_of(child).file);
+      add_instance(distinct_for(key_of(model, {}), model), child, {}, child.attribute("name").value());
     } else if (kind == "population") {
-      complaints_.drop(child, describe(child) + " is not supported and left out: write its models one by one");
+      collect_population(child);
     }
+  }
+}
+
+void Loader::collect_population(pugi::xml_node population) {
+  const pugi::xml_node model = population.child("model");
+  if (!model) return complaints_.drop(population, describe(population) + " has no <model> and is left out");
+  const std::vector<Eigen::Isometry3d> places = places_of(population, complaints_);
+  if (places.empty()) return;
+  const Eigen::Isometry3d own = pose_at(model, "pose"), around = pose_at(population, "pose");
+  const pugi::xml_attribute relative = population.child("pose").attribute("relative_to");
+  const std::size_t distinct = distinct_for(key_of(model, {"pose"}), model);
+  const std::string name = model.attribute("name").value();
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    // The frame graph reads poses from elements.
+    pugi::xml_node pose = copies_.append_child("place").append_child("pose");
+    pose.text() = pose_text(around * places[i] * own).c_str();
+    if (relative) pose.append_copy(relative);
+    add_instance(distinct, population, pose, places.size() == 1 ? name : name + "_" + std::to_string(i));
   }
 }
 

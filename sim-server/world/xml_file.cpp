@@ -1,11 +1,11 @@
 #include "world/xml_file.h"
 
 #include <algorithm>
-#include <cstring>
 #include <fstream>
 #include <vector>
 
 #include "base/text.h"
+#include "world/text_mender.h"
 
 namespace sim {
 
@@ -14,74 +14,6 @@ namespace {
 constexpr std::uintmax_t most_bytes = 64U << 20U;
 constexpr int most_depth = 100;
 constexpr std::size_t most_elements = 400000;
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
-
-// Copies text and puts quotes round attribute values that have none, without changing the number of lines.
-class AttributeMender {
- public:
-  explicit AttributeMender(const std::string& text) : text_(text) { mended_.reserve(text.size() + 64); }
-
-  std::string run() {
-    while (at_ < text_.size()) {
-      if (text_[at_] != '<') {
-        mended_ += text_[at_++];
-      } else if (!copy_through("<!--", "-->") && !copy_through("<![CDATA[", "]]>") && !copy_through("<?", "?>") &&
-                 !copy_through("<!", ">")) {
-        copy_tag();
-      }
-    }
-    return std::move(mended_);
-  }
-  std::size_t first_mended() const { return first_; }
-  bool has_mended() const { return first_ != std::string::npos; }
-
- private:
-  bool copy_through(const char* begin, const char* end) {
-    if (text_.compare(at_, std::strlen(begin), begin) != 0) return false;
-    const std::size_t stop = text_.find(end, at_);
-    const std::size_t next = stop == std::string::npos ? text_.size() : stop + std::strlen(end);
-    mended_.append(text_, at_, next - at_);
-    at_ = next;
-    return true;
-  }
-  bool is_tag_end() const { return text_[at_] == '>' || (text_[at_] == '/' && at_ + 1 < text_.size() && text_[at_ + 1] == '>'); }
-
-  void copy_tag() {
-    while (at_ < text_.size() && !is_blank(text_[at_]) && text_[at_] != '>') mended_ += text_[at_++];
-    while (at_ < text_.size() && text_[at_] != '>') {
-      if (text_[at_] == '=') {
-        copy_value();
-      } else {
-        mended_ += text_[at_++];
-      }
-    }
-  }
-
-  void copy_value() {
-    mended_ += text_[at_++];
-    while (at_ < text_.size() && is_blank(text_[at_])) mended_ += text_[at_++];
-    if (at_ >= text_.size()) return;
-    const char quote = text_[at_];
-    if (quote == '"' || quote == '\'') {
-      const std::size_t end = text_.find(quote, at_ + 1);
-      const std::size_t next = end == std::string::npos ? text_.size() : end + 1;
-      mended_.append(text_, at_, next - at_);
-      at_ = next;
-      if (at_ < text_.size() && !is_blank(text_[at_]) && !is_tag_end() && text_[at_] != '?') mended_ += ' ';
-      return;
-    }
-    if (first_ == std::string::npos) first_ = at_;
-    mended_ += '"';
-    while (at_ < text_.size() && !is_blank(text_[at_]) && !is_tag_end()) mended_ += text_[at_++];
-    mended_ += '"';
-  }
-
-  const std::string& text_;
-  std::string mended_;
-  std::size_t at_ = 0;
-  std::size_t first_ = std::string::npos;
-};
 
 class LineTable {
  public:
@@ -199,14 +131,12 @@ base::Result<pugi::xml_document> parse_xml(const std::string& text, const std::s
       document.load_buffer(text.data(), text.size(), pugi::parse_default, is_bytes ? pugi::encoding_utf8 : pugi::encoding_auto);
   LineTable lines(text);
   if (!parsed && is_bytes) {
-    AttributeMender mender(text);
-    const std::string mended = mender.run();
-    if (mender.has_mended()) {
-      parsed = document.load_buffer(mended.data(), mended.size(), pugi::parse_default, pugi::encoding_utf8);
-      lines = LineTable(mended);
-      if (parsed) {
-        complaints.add(Finding::Severity::warning, {file_name, LineTable(text).line_at(mender.first_mended())},
-                       "attribute values without quotes are mended");
+    const MendedText mended = mend_xml_text(text);
+    if (!mended.changes.empty()) {
+      parsed = document.load_buffer(mended.text.data(), mended.text.size(), pugi::parse_default, pugi::encoding_utf8);
+      lines = LineTable(mended.text);
+      for (const MendedText::Change& change : mended.changes) {
+        if (parsed) complaints.add(Finding::Severity::warning, {file_name, LineTable(text).line_at(change.offset)}, change.message);
       }
     }
   }

@@ -14,7 +14,7 @@ namespace sim {
 // The whole file. Fails for what is no regular file and for files that are larger than any world.
 base::Result<std::string> read_file(const std::filesystem::path& path);
 
-// Fails for what is not XML (after mending attributes without quotes), too deep, or has too many elements. Entities of a document type are
+// Fails for what is not XML (after mending quotes and stray end tags), too deep, or has too many elements. Entities of a document type are
 // not expanded.
 base::Result<pugi::xml_document> parse_xml(const std::string& text, const std::string& file_name, Complaints& complaints);
 

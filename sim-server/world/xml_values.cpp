@@ -61,6 +61,19 @@ std::optional<Eigen::Isometry3d> parse_pose(pugi::xml_node pose) {
   return out;
 }
 
+std::string pose_text(const Eigen::Isometry3d& pose) {
+  const Eigen::Vector3d p = pose.translation();
+  const Eigen::Matrix3d r = pose.linear();
+  const double pitch = std::atan2(-r(2, 0), std::hypot(r(0, 0), r(1, 0)));
+  // Looking straight up or down, roll and yaw turn the same way; all of it is yaw then.
+  const bool is_upright = std::hypot(r(0, 0), r(1, 0)) < 1e-9;
+  const double roll = is_upright ? 0 : std::atan2(r(2, 1), r(2, 2));
+  const double yaw = is_upright ? std::atan2(-r(0, 1), r(1, 1)) : std::atan2(r(1, 0), r(0, 0));
+  std::string text;
+  for (const double number : {p.x(), p.y(), p.z(), roll, pitch, yaw}) text += (text.empty() ? "" : " ") + base::format_number(number);
+  return text;
+}
+
 std::optional<double> number_at(pugi::xml_node node, std::string_view path) {
   const std::optional<std::vector<double>> numbers = parse_numbers(text_of(child_at(node, path)));
   if (!numbers || numbers->size() != 1 || std::isnan(numbers->front())) return std::nullopt;

@@ -16,6 +16,8 @@ namespace sim {
 std::optional<std::vector<double>> parse_numbers(std::string_view text);
 // Six numbers (or seven with rotation_format="quat_xyzw"), degrees="true" understood. Empty when they are not finite.
 std::optional<Eigen::Isometry3d> parse_pose(pugi::xml_node pose);
+// Six numbers that parse_pose reads back.
+std::string pose_text(const Eigen::Isometry3d& pose);
 
 // Each reads the element at the path below the node ("surface/bounce/threshold"); the fallback when it is absent, empty or of another form.
 double number_at(pugi::xml_node node, std::string_view path, double fallback);

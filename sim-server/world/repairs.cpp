@@ -1,0 +1,170 @@
+#include "world/repairs.h"
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/text.h"
+#include "world/xml_file.h"
+#include "world/xml_values.h"
+
+namespace sim {
+
+namespace {
+
+// Attributes of URDF that are elements in SDFormat. An empty element name: the text of the element itself.
+struct UrdfAttribute {
+  std::string_view owner, attribute, element;
+};
+constexpr std::array<UrdfAttribute, 24> urdf_attributes{{
+    {"inertia", "ixx", "ixx"},
+    {"inertia", "ixy", "ixy"},
+    {"inertia", "ixz", "ixz"},
+    {"inertia", "iyy", "iyy"},
+    {"inertia", "iyz", "iyz"},
+    {"inertia", "izz", "izz"},
+    {"box", "size", "size"},
+    {"cylinder", "radius", "radius"},
+    {"cylinder", "length", "length"},
+    {"sphere", "radius", "radius"},
+    {"capsule", "radius", "radius"},
+    {"capsule", "length", "length"},
+    {"mesh", "filename", "uri"},
+    {"mesh", "scale", "scale"},
+    {"mass", "value", ""},
+    {"parent", "link", ""},
+    {"child", "link", ""},
+    {"axis", "xyz", "xyz"},
+    {"limit", "lower", "lower"},
+    {"limit", "upper", "upper"},
+    {"limit", "effort", "effort"},
+    {"limit", "velocity", "velocity"},
+    {"dynamics", "damping", "damping"},
+    {"dynamics", "friction", "friction"},
+}};
+
+void take_urdf_attributes(pugi::xml_node node, Complaints& complaints) {
+  bool has_taken = false;
+  for (const UrdfAttribute& known : urdf_attributes) {
+    if (known.owner != node.name()) continue;
+    const pugi::xml_attribute attribute = node.attribute(std::string(known.attribute).c_str());
+    if (!attribute) continue;
+    pugi::xml_node target = node;
+    if (!known.element.empty()) {
+      const std::string name(known.element);
+      if (!node.child(name.c_str())) node.append_child(name.c_str());
+      target = node.child(name.c_str());
+    }
+    if (!target.first_child()) target.text() = attribute.value();
+    node.remove_attribute(attribute);
+    has_taken = true;
+  }
+  if (has_taken) complaints.warn(node, describe_in_context(node) + " has attributes as in URDF; they are taken as elements");
+}
+
+void take_urdf_origin(pugi::xml_node node, Complaints& complaints) {
+  const pugi::xml_node origin = node.child("origin");
+  if (!origin || (!origin.attribute("xyz") && !origin.attribute("rpy"))) return;
+  complaints.warn(origin, "<origin> of " + describe_in_context(node) + " is written as in URDF; it is taken as <pose>");
+  if (!node.child("pose")) {
+    const std::string xyz = origin.attribute("xyz").as_string("0 0 0"), rpy = origin.attribute("rpy").as_string("0 0 0");
+    pugi::xml_node pose = node.insert_child_before("pose", origin);
+    pose.append_copy(origin.attribute(line_mark));
+    pose.text() = (xyz + " " + rpy).c_str();
+  }
+  node.remove_child(origin);
+}
+
+// <inertial auto="true"> and <density> are newer than the version that is checked against.
+void mark_automatic_inertia(pugi::xml_node node) {
+  const std::string_view name = node.name();
+  if (name != "inertial" && name != "collision") return;
+  if (name == "inertial" && node.attribute("auto")) {
+    if (node.attribute("auto").as_bool()) node.append_attribute(automatic_mark) = true;
+    node.remove_attribute("auto");
+  }
+  if (const pugi::xml_node density = node.child("density")) {
+    node.append_attribute(density_mark) = text_of(density).c_str();
+    node.remove_child("density");
+  }
+  node.remove_child("auto_inertia_params");
+}
+
+void make_lower_case(pugi::xml_node node, const char* key) {
+  if (pugi::xml_attribute attribute = node.attribute(key)) attribute = base::to_lower(attribute.value()).c_str();
+}
+
+void repair(pugi::xml_node node, Complaints& complaints) {
+  for (pugi::xml_node child = node.first_child(), next; child; child = next) {
+    next = child.next_sibling();
+    if (child.type() != pugi::node_element) continue;
+    const std::string_view name = child.name();
+    if (name == "plugin" || name == "state") continue;
+    if (name.starts_with("xacro:")) {
+      complaints.warn(child, "<" + std::string(name.substr(0, 60)) + "> is left over from xacro, which has not been run; it is ignored");
+      node.remove_child(child);
+      continue;
+    }
+    if (name == "joint" || name == "light") make_lower_case(child, "type");
+    take_urdf_attributes(child, complaints);
+    take_urdf_origin(child, complaints);
+    mark_automatic_inertia(child);
+    repair(child, complaints);
+  }
+}
+
+}  // namespace
+
+void repair_document(pugi::xml_node sdf, Complaints& complaints) {
+  repair(sdf, complaints);
+  pugi::xml_node world = sdf.child("world");
+  for (pugi::xml_node joint = world.child("joint"); joint; joint = world.child("joint")) {
+    complaints.drop(joint, describe(joint) + " joins models; only joints in models are simulated, and it is left out");
+    world.remove_child(joint);
+  }
+  while (world.remove_child("audio")) {  // nothing here can hear it
+  }
+}
+
+pugi::xml_node model_of_road(pugi::xml_node road, pugi::xml_node parent) {
+  constexpr double thickness = 0.01;
+  const double width = number_at(road, "width", 1);
+  std::vector<Eigen::Vector3d> points;
+  for (pugi::xml_node point : road.children("point")) {
+    const std::optional<std::vector<double>> n = parse_numbers(text_of(point));
+    if (n && n->size() == 3) points.emplace_back((*n)[0], (*n)[1], (*n)[2]);
+  }
+  pugi::xml_node model = parent.append_child("model");
+  model.append_attribute("name") = road.attribute("name").value();
+  model.append_child("static").text() = true;
+  pugi::xml_node link = model.append_child("link");
+  link.append_attribute("name") = "link";
+  int count = 0;
+  const auto add = [&](const char* shape, const Eigen::Vector3d& middle, double pitch, double yaw) {
+    pugi::xml_node visual = link.append_child("visual");
+    visual.append_attribute("name") = ("strip_" + std::to_string(count++)).c_str();
+    std::string pose;
+    for (const double number : {middle.x(), middle.y(), middle.z() - thickness / 2, 0.0, pitch, yaw})
+      pose += base::format_number(number) + " ";
+    visual.append_child("pose").text() = pose.c_str();
+    visual.append_child("cast_shadows").text() = false;
+    if (const pugi::xml_node material = road.child("material")) visual.append_copy(material);
+    return visual.append_child("geometry").append_child(shape);
+  };
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    pugi::xml_node disc = add("cylinder", points[i], 0, 0);
+    disc.append_child("radius").text() = base::format_number(width / 2).c_str();
+    disc.append_child("length").text() = thickness;
+    if (i == 0) continue;
+    const Eigen::Vector3d along = points[i] - points[i - 1];
+    if (along.norm() < 1e-6) continue;
+    const double yaw = std::atan2(along.y(), along.x()), pitch = -std::atan2(along.z(), along.head<2>().norm());
+    add("box", (points[i] + points[i - 1]) / 2, pitch, yaw).append_child("size").text() =
+        (base::format_number(along.norm()) + " " + base::format_number(width) + " " + base::format_number(thickness)).c_str();
+  }
+  return model;
+}
+
+}  // namespace sim
