@@ -2,6 +2,9 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <numeric>
 #include <optional>
 
@@ -58,7 +61,8 @@ base::Result<void> check(const ModelDef& model) {
   }
   for (const auto& joint : model.joints) {
     bool is_finite = joint.pose_in_model.matrix().allFinite();
-    for (const auto& axis : joint.axes) is_finite = is_finite && axis.xyz.allFinite() && axis.xyz.norm() > 0.5;
+    for (const auto& axis : joint.axes)
+      is_finite = is_finite && axis.xyz.allFinite() && axis.xyz.norm() > 0.5 && std::isfinite(axis.initial_position);
     if (!is_finite) return base::Error{fmt::format("model {}: joint {}: pose or axis is not finite", model.name, joint.name)};
   }
   return {};
@@ -86,6 +90,7 @@ void add_masses(const ModelDef& model, Blueprint& blueprint, Assembly& assembly)
                         link.mass * (arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose());
     assembly.has_gravity = assembly.has_gravity || link.gravity;
     assembly.is_kinematic = assembly.is_kinematic || link.kinematic;
+    if (link.enable_wind) assembly.wind_mass += link.mass;
     damped_mass += link.mass * link.linear_damping;
     assembly.angular_damping = std::max(assembly.angular_damping, link.angular_damping);
     blueprint.link_in_body[i] = assembly.in_model.inverse() * link.pose;
@@ -94,7 +99,101 @@ void add_masses(const ModelDef& model, Blueprint& blueprint, Assembly& assembly)
   assembly.inertia = (0.5 * (assembly.inertia + assembly.inertia.transpose())).eval();
 }
 
+void note_limits_of_simulation(const ModelDef& model, const JointDef& joint, std::vector<std::string>& notes) {
+  const auto note = [&](const char* what) { notes.push_back(fmt::format("model {}: joint {}: {}", model.name, joint.name, what)); };
+  const bool turns =
+      joint.kind != JointDef::Kind::prismatic && joint.kind != JointDef::Kind::screw && joint.kind != JointDef::Kind::continuous;
+  const auto is_wide = [](double limit) { return std::isfinite(limit) && std::abs(limit) > std::numbers::pi && std::abs(limit) < 1e10; };
+  for (const auto& axis : joint.axes) {
+    if (turns && (is_wide(axis.lower) || is_wide(axis.upper))) note("limits beyond half a turn are not kept");
+  }
+  if (joint.kind == JointDef::Kind::revolute2 && (joint.suspension_cfm || joint.suspension_erp) && std::isfinite(joint.axes[1].upper)) {
+    note("limits of the second axis are not kept where the first one has a suspension");
+  }
+  if (joint.kind != JointDef::Kind::gearbox) return;
+  const auto [first, second] = gear_anchors(model, joint);
+  const Eigen::Vector3d a = joint.pose_in_model.linear() * joint.axes[0].xyz, b = joint.pose_in_model.linear() * joint.axes[1].xyz;
+  const bool is_one_line = a.cross(b).norm() < 1e-3 && a.cross(second - first).norm() < 1e-6;
+  if (is_one_line && std::abs(1 + (a.dot(b) < 0 ? -1 : 1) * joint.gearbox_ratio) > 1e-9) {
+    note("a gearbox between wheels on one axis is not simulated; they turn freely");
+  }
+}
+
+// How the child of a joint stands at its initial position, seen from where the file has it; in the model.
+Eigen::Isometry3d initial_motion(const JointDef& joint) {
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  for (const auto& axis : joint.axes) {
+    const double q = axis.initial_position;
+    if (joint.kind == JointDef::Kind::prismatic) {
+      motion.translate(q * axis.xyz);
+    } else {
+      motion.rotate(Eigen::AngleAxisd(q, axis.xyz));
+      if (joint.kind == JointDef::Kind::screw) motion.pretranslate(q * joint.thread_pitch / (2 * std::numbers::pi) * axis.xyz);
+    }
+  }
+  return joint.pose_in_model * motion * joint.pose_in_model.inverse();
+}
+
+void move_to_initial_positions(const ModelDef& model, Blueprint& blueprint) {
+  struct Move {
+    std::vector<bool> moved;  // by assembly
+    std::ptrdiff_t count = 0;
+    Eigen::Isometry3d motion;
+  };
+  std::vector<Move> moves;
+  const auto assembly_of = [&](const std::string& name) -> std::optional<std::uint32_t> {
+    const auto link = index_of_link(model, name);
+    return link ? std::optional(blueprint.assembly_of_link[*link]) : std::nullopt;
+  };
+  for (const auto j : blueprint.joints) {
+    const JointDef& joint = model.joints[j];
+    const auto child = assembly_of(joint.child), parent = assembly_of(joint.parent);
+    const bool is_moved = std::any_of(joint.axes.begin(), joint.axes.end(), [](const AxisDef& axis) { return axis.initial_position != 0; });
+    if (!is_moved || !child || joint.kind == JointDef::Kind::gearbox) continue;
+    Move move{std::vector<bool>(blueprint.assemblies.size()), 0, initial_motion(joint)};
+    move.moved[*child] = true;
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (const auto k : blueprint.joints) {
+        const auto a = assembly_of(model.joints[k].parent), b = assembly_of(model.joints[k].child);
+        if (k == j || !a || !b || move.moved[*a] == move.moved[*b] || model.joints[k].kind == JointDef::Kind::gearbox) continue;
+        move.moved[*a] = move.moved[*b] = changed = true;
+      }
+    }
+    move.count = std::count(move.moved.begin(), move.moved.end(), true);
+    if (parent && move.moved[*parent]) {
+      blueprint.notes.push_back(
+          fmt::format("model {}: joint {}: is part of a ring; its initial position is ignored", model.name, joint.name));
+      continue;
+    }
+    moves.push_back(std::move(move));
+  }
+  // From the tips to the root: what hangs on a joint moves before the joint itself is moved.
+  std::stable_sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) { return a.count < b.count; });
+  for (const Move& move : moves) {
+    for (std::size_t i = 0; i < move.moved.size(); ++i) {
+      Assembly& assembly = blueprint.assemblies[i];
+      if (move.moved[i]) assembly.moved_at_start = move.motion * assembly.moved_at_start.value_or(Eigen::Isometry3d::Identity());
+    }
+  }
+}
+
 }  // namespace
+
+std::pair<Eigen::Vector3d, Eigen::Vector3d> gear_anchors(const ModelDef& model, const JointDef& gearbox) {
+  const auto anchor = [&](const std::string& name) -> Eigen::Vector3d {
+    const JointDef* holder = nullptr;
+    for (const JointDef& joint : model.joints) {
+      if (joint.axes.size() != 1 || (joint.child != name && joint.parent != name)) continue;
+      const std::string& other = joint.child == name ? joint.parent : joint.child;
+      if (holder == nullptr || other == gearbox.gearbox_reference) holder = &joint;
+    }
+    if (holder != nullptr) return holder->pose_in_model.translation();
+    const LinkDef* link = model.link(name);
+    return link != nullptr ? link->pose * link->center_of_mass : gearbox.pose_in_model.translation();
+  };
+  return {anchor(gearbox.parent), anchor(gearbox.child)};
+}
 
 base::Result<std::shared_ptr<const Blueprint>> Blueprint::of(std::shared_ptr<const ModelDef> model_pointer) {
   const ModelDef& model = *model_pointer;
@@ -117,10 +216,7 @@ base::Result<std::shared_ptr<const Blueprint>> Blueprint::of(std::shared_ptr<con
     } else if (parent || child) {
       anchored[parent ? *parent : *child] = true;
     }
-    if (joint.kind == JointDef::Kind::screw) {
-      blueprint->notes.push_back(
-          fmt::format("model {}: joint {}: a screw is simulated as a prismatic joint, it does not turn", model.name, joint.name));
-    }
+    note_limits_of_simulation(model, joint, blueprint->notes);
   }
   blueprint->assembly_of_link.resize(count);
   blueprint->link_in_body.resize(count, Eigen::Isometry3d::Identity());
@@ -140,6 +236,7 @@ base::Result<std::shared_ptr<const Blueprint>> Blueprint::of(std::shared_ptr<con
     add_masses(model, *blueprint, assembly);
     if (!assembly.is_anchored) blueprint->is_static = false;
   }
+  move_to_initial_positions(model, *blueprint);
   blueprint->canonical = index_of_link(model, model.canonical_link).value_or(0);
   return std::shared_ptr<const Blueprint>(std::move(blueprint));
 }

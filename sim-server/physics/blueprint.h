@@ -4,7 +4,9 @@
 
 #include <Eigen/Geometry>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/result.h"
@@ -21,6 +23,9 @@ struct Assembly {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();       // about the body's origin, which is the centre of mass
   Eigen::Isometry3d in_model = Eigen::Isometry3d::Identity();  // the body's frame at the start
   double linear_damping = 0, angular_damping = 0;
+  double wind_mass = 0;  // of its links that the wind takes along
+  // Joints with an initial position move it, within the model, from where the file has it.
+  std::optional<Eigen::Isometry3d> moved_at_start;
 };
 
 struct Blueprint {
@@ -37,5 +42,8 @@ struct Blueprint {
   // Fails when a number is not finite or a mass or size cannot be simulated.
   static base::Result<std::shared_ptr<const Blueprint>> of(std::shared_ptr<const ModelDef> model);
 };
+
+// Points in the model on the axes about which a gearbox turns its parent and its child: those of the joints that hold them.
+std::pair<Eigen::Vector3d, Eigen::Vector3d> gear_anchors(const ModelDef& model, const JointDef& gearbox);
 
 }  // namespace sim

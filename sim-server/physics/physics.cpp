@@ -409,9 +409,8 @@ void Physics::set_gravity(ModelId model, bool on) { impl_->at(model).set_gravity
 bool Physics::make_kinematic(ModelId model) { return impl_->at(model).make_kinematic(); }
 
 JointState Physics::joint_state(JointId joint, int axis) const {
-  JointInstance* instance = impl_->at(joint.model).joint(joint.joint);
-  if (instance == nullptr) return {};
-  return {instance->sign * joint_position(instance->joint.id(), axis), instance->sign * joint_rate(instance->joint.id(), axis)};
+  const JointInstance* instance = impl_->at(joint.model).joint(joint.joint);
+  return instance == nullptr ? JointState{} : instance->state(axis);
 }
 
 void Physics::set_motor(JointId joint, int axis, double velocity, double effort) {
@@ -419,6 +418,11 @@ void Physics::set_motor(JointId joint, int axis, double velocity, double effort)
   JointInstance* instance = model.joint(joint.joint);
   if (instance == nullptr || !std::isfinite(velocity) || std::isnan(effort)) return;
   model.set_drive(*instance, axis, velocity, effort);
+}
+
+std::optional<Wrench> Physics::joint_load(JointId joint) const {
+  const JointInstance* instance = impl_->at(joint.model).joint(joint.joint);
+  return instance == nullptr ? std::nullopt : instance->load();
 }
 
 std::span<const Contact> Physics::contacts(ModelId model) const { return impl_->at(model).contacts; }
@@ -439,7 +443,7 @@ void Physics::add_to(StateHash& hash) const {
       hash.add(std::uint64_t{state.is_awake});
     }
     for (const auto& joint : model->joints()) {
-      for (const auto& drive : joint.drives) hash.add(drive.velocity), hash.add(drive.effort);
+      for (const int axis : {0, 1}) hash.add(joint.drive(axis).velocity), hash.add(joint.drive(axis).effort);
     }
   }
 }

@@ -42,8 +42,14 @@ struct Twist {
 };
 
 struct JointState {
-  double position = 0;  // [rad] within (-pi, pi] or [m]
+  double position = 0;  // [rad] within (-pi, pi] (of a screw with its whole turns) or [m]
   double velocity = 0;  // [rad/s] or [m/s]
+};
+
+// On a body, with the torque about a place in the world.
+struct Wrench {
+  Eigen::Vector3d force{0, 0, 0}, torque{0, 0, 0};
+  Eigen::Vector3d place{0, 0, 0};
 };
 
 struct Contact {
@@ -114,6 +120,10 @@ class Physics {
   JointState joint_state(JointId joint, int axis = 0) const;
   // The motor of the joint turns it with `velocity` and at most `effort` [N m or N] until it is set again. Effort 0: runs free.
   void set_motor(JointId joint, int axis, double velocity, double effort);
+
+  // What the joint put on its child link in the last step, about the child body's centre of mass. Measured for joints with sensors or
+  // <provide_feedback>; empty for others and for joints that are no more than a weld.
+  std::optional<Wrench> joint_load(JointId joint) const;
 
   // Contacts of the last step in which the model was awake.
   std::span<const Contact> contacts(ModelId model) const;

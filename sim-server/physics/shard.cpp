@@ -32,7 +32,7 @@ bool masks_match(const SurfaceDef& a, const SurfaceDef& b) {
 
 bool are_joined(const ModelInstance& model, std::uint32_t a, std::uint32_t b) {
   return std::any_of(model.joints().begin(), model.joints().end(), [&](const JointInstance& joint) {
-    const auto p = static_cast<std::uint32_t>(joint.parent), c = static_cast<std::uint32_t>(joint.child);
+    const auto p = static_cast<std::uint32_t>(joint.parent_assembly), c = static_cast<std::uint32_t>(joint.child_assembly);
     return (p == a && c == b) || (p == b && c == a);
   });
 }
@@ -100,7 +100,7 @@ void Shard::step(const std::vector<ShapeInstance*>& statics, std::uint64_t step_
   for (const auto& [a, b] : pairs) {
     if (a->moving_box().overlaps(b->moving_box()) && (a->is_awake() || b->is_awake() || !a->contacts.empty())) collide_pair(*a, *b);
   }
-  for (auto* model : models) model->apply_springs(physics_.step);
+  for (auto* model : models) model->apply_forces(contact_joints_.id(), physics_);
   const bool is_heap = contacts > exact_contacts || moving_contacts_ >= stacked_contacts;
   if (physics_.solver == PhysicsDef::Solver::iterative || (physics_.solver == PhysicsDef::Solver::automatic && is_heap)) {
     const std::lock_guard lock(shared_random());

@@ -93,7 +93,7 @@ const std::map<std::string_view, Rule>& rules() {
       {"attenuation/linear", {not_negative, ignore}},
       {"attenuation/quadratic", {not_negative, ignore}},
       {"light/intensity", {not_negative, ignore}},
-      {"light/direction", {direction, drop_owner}},
+      {"light/direction", {direction, ignore}},
       {"visual/transparency", {finite, ignore}},
       {"velocity_decay/linear", {not_negative, ignore}},
       {"velocity_decay/angular", {not_negative, ignore}},

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "base/text.h"
@@ -399,6 +400,7 @@ class ModelBuilder {
     };
     axis.effort = most("limit/effort");
     axis.velocity = most("limit/velocity");
+    axis.initial_position = node.attribute(initial_mark).as_double();
     axis.damping = number_at(node, "dynamics/damping", 0);
     axis.friction = number_at(node, "dynamics/friction", 0);
     axis.spring_reference = number_at(node, "dynamics/spring_reference", 0);
@@ -440,15 +442,9 @@ class ModelBuilder {
       const Eigen::Vector3d xyz = i < frames.axes.size() ? frames.axes[i] : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
       joint.axes.push_back(build_axis(node.child(i == 0 ? "axis" : "axis2"), xyz, joint.kind == JointDef::Kind::continuous));
     }
-    // The old element counts turns per metre the other way round.
-    const std::optional<double> pitch = number_at(node, "screw_thread_pitch"), old_pitch = number_at(node, "thread_pitch");
-    if (pitch) {
-      joint.thread_pitch = *pitch;
-    } else if (old_pitch && *old_pitch != 0) {
-      joint.thread_pitch = -2 * 3.14159265358979323846 / *old_pitch;
-    } else if (joint.kind == JointDef::Kind::screw) {
-      joint.thread_pitch = 1;
-    }
+    // The element counts radians per metre, left-handed ones positive; 0 stands for a nut that does not travel.
+    const double per_metre = number_at(node, "thread_pitch", -2 * std::numbers::pi);
+    if (joint.kind == JointDef::Kind::screw && per_metre != 0) joint.thread_pitch = -2 * std::numbers::pi / per_metre;
     joint.gearbox_ratio = number_at(node, "gearbox_ratio", 1);
     if (const std::string reference = text_at(node, "gearbox_reference_body"); !reference.empty())
       joint.gearbox_reference = scoped(scope, reference);

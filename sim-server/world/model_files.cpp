@@ -255,7 +255,12 @@ void ModelFiles::apply_include(pugi::xml_node include, pugi::xml_node copy) {
   }
   for (pugi::xml_node plugin : include.children("plugin")) {
     pugi::xml_node added = copy.append_copy(plugin);
-    if (include.attribute(file_mark)) added.append_copy(include.attribute(file_mark));
+    // Its lines are those of the including file.
+    for (pugi::xml_node at = include; at; at = at.parent()) {
+      if (!at.attribute(file_mark)) continue;
+      added.append_copy(at.attribute(file_mark));
+      break;
+    }
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -92,6 +94,34 @@ void mark_automatic_inertia(pugi::xml_node node) {
   node.remove_child("auto_inertia_params");
 }
 
+void mark_initial_position(pugi::xml_node node, Complaints& complaints) {
+  const std::string_view name = node.name();
+  const pugi::xml_node written = node.child("initial_position");
+  if (!written || (name != "axis" && name != "axis2")) return;
+  const std::optional<double> position = number_at(node, "initial_position");
+  if (position && std::abs(*position) < 1e6) {
+    node.append_attribute(initial_mark) = base::format_number(*position).c_str();
+  } else {
+    complaints.warn(written, "<initial_position> of " + describe_in_context(node.parent()) + " must be a number, got " +
+                                 base::in_quotes(text_of(written)) + "; 0 is taken");
+  }
+  node.remove_child(written);
+}
+
+// <screw_thread_pitch> of version 1.10 [m per turn] as the older <thread_pitch> [rad per metre, left-handed positive].
+void take_screw_pitch(pugi::xml_node joint) {
+  const pugi::xml_node written = joint.child("screw_thread_pitch");
+  const std::optional<double> pitch = number_at(joint, "screw_thread_pitch");
+  if (!written) return;
+  joint.remove_child("thread_pitch");
+  if (pitch && *pitch != 0) {
+    joint.append_child("thread_pitch").text() = base::format_number(-2 * std::numbers::pi / *pitch).c_str();
+  } else if (pitch) {
+    joint.append_child("thread_pitch").text() = "0";
+  }
+  joint.remove_child(written);
+}
+
 void make_lower_case(pugi::xml_node node, const char* key) {
   if (pugi::xml_attribute attribute = node.attribute(key)) attribute = base::to_lower(attribute.value()).c_str();
 }
@@ -108,9 +138,11 @@ void repair(pugi::xml_node node, Complaints& complaints) {
       continue;
     }
     if (name == "joint" || name == "light") make_lower_case(child, "type");
+    if (name == "joint") take_screw_pitch(child);
     take_urdf_attributes(child, complaints);
     take_urdf_origin(child, complaints);
     mark_automatic_inertia(child);
+    mark_initial_position(child, complaints);
     repair(child, complaints);
   }
 }

@@ -17,4 +17,7 @@ pugi::xml_node model_of_road(pugi::xml_node road, pugi::xml_node parent);
 inline constexpr const char* automatic_mark = "_auto";
 inline constexpr const char* density_mark = "_density";
 
+// The same for <initial_position> of an axis, which version 1.9 does not have any more.
+inline constexpr const char* initial_mark = "_initial";
+
 }  // namespace sim

@@ -339,6 +339,7 @@ struct AxisDef {
   double effort = infinite;                    // N m or N; largest the drive may use
   double velocity = infinite;                  // rad/s or m/s
   double damping = 0;                          // N m s/rad or N s/m
+  double initial_position = 0;                 // rad or m; the places of the links are those for 0
   double friction = 0;                         // N m or N
   double spring_reference = 0, spring_stiffness = 0;
   std::optional<double> limit_stiffness, limit_dissipation;  // soft stops

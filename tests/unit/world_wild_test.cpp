@@ -132,13 +132,13 @@ TEST(WildWorlds, saved_states_place_their_models) {
 TEST(WildWorlds, unknown_things_get_one_line_each) {
   const WorldFiles files;
   const LoadResult result = files.load(
-      "<model name='m'><link name='l'><glitter>1</glitter></link>\n<plugin name='p' filename='libMagic.so'/>\n</model>\n<road "
-      "name='r'><point>0 0 0</point></road>");
+      "<model name='m'><link name='l'><glitter>1</glitter></link>\n<plugin name='p' filename='libMagic.so'/>\n</model>\n<joint name='j' "
+      "type='fixed'><parent>m</parent><child>n</child></joint>");
   EXPECT_EQ(result.world.models.size(), 1U);
   ASSERT_EQ(result.findings.size(), 3U) << all_findings(result);
   EXPECT_EQ(findings_with(result, "w.sdf:3: unknown element <glitter> in link \"l\" of model \"m\" is ignored"), 1) << all_findings(result);
   EXPECT_EQ(findings_with(result, "w.sdf:4: unknown plugin \"libMagic.so\""), 1) << all_findings(result);
-  EXPECT_EQ(findings_with(result, "w.sdf:6: <road>"), 1) << all_findings(result);
+  EXPECT_EQ(findings_with(result, "w.sdf:6: joint \"j\" joins models"), 1) << all_findings(result);
 }
 
 TEST(Materials, scripts_with_inheritance_and_textures_are_read) {

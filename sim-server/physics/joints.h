@@ -1,0 +1,81 @@
+// One joint of a model in ODE, whatever its kind, in SDFormat's senses and units. Private to physics/. One thread at a time.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+
+#include "physics/ode.h"
+#include "physics/physics.h"
+
+namespace sim {
+
+// A tie between the motions of two bodies that ODE has no joint for, as one force along a line that is laid anew for each step. The force
+// does no work, so that it carries momentum and energy over as a thread or teeth do.
+struct Coupling {
+  Eigen::Vector3d anchor1, axis1;  // in the first body's frame (the parent), in the world without one
+  Eigen::Vector3d anchor2, axis2;  // in the second body's (the child)
+  double ratio = 1;                // gearbox: rate about axis1 = -ratio * rate about axis2; screw: metres per radian
+  bool is_screw = false;
+};
+
+class JointInstance {
+ public:
+  // Makes the joint between bodies at their places of the start. `frame` is the joint's in the world; either body may be null: the world.
+  JointInstance(dWorldID world, const PhysicsDef& physics, const JointDef& def, std::uint32_t index, const Eigen::Isometry3d& frame,
+                dBodyID parent, dBodyID child);
+
+  // A gearbox turns its bodies about the axes of the joints that hold them; each a point on the axis, in the world.
+  void set_gear_anchors(const Eigen::Vector3d& parent, const Eigen::Vector3d& child);
+
+  std::uint32_t index() const { return index_; }  // in ModelDef::joints
+  const JointDef& def() const { return *def_; }
+  int axis_count() const;
+  JointState state(int axis) const;
+  // Force and torque that the joint put on the child in the last step, at the child's centre of mass; empty while it is not measured.
+  std::optional<Wrench> load() const;
+
+  struct Drive {
+    double velocity = 0, effort = 0;
+    bool is_set = false;
+  };
+  const Drive& drive(int axis) const { return drives_[static_cast<std::size_t>(axis)]; }
+  void set_drive(int axis, double velocity, double effort);
+
+  bool has_forces() const { return has_forces_ || coupling_; }
+  // What must be done before each step: springs, the damping that ODE's motors cannot do, couplings.
+  void apply(dJointGroupID step_joints, double dt);
+
+  int parent_assembly = -1, child_assembly = -1;  // of the model, -1: the world
+
+ private:
+  void make(dWorldID world, const Eigen::Isometry3d& frame);
+  dBodyID or_stand_in(dBodyID body);
+  void make_universal(dWorldID world, const Eigen::Vector3d& place, const Eigen::Vector3d& first, const Eigen::Vector3d& second);
+  void make_gearbox(const Eigen::Isometry3d& frame);
+  void make_screw(dWorldID world, const Eigen::Isometry3d& frame);
+  void set_axis(int axis, double dt);
+  void set_stops(int axis, double dt);
+  void set_parameter(int axis, int base_parameter, double value);
+  bool turns(int axis) const;
+  bool is_asleep() const;
+  Eigen::Vector3d axis_in_world(int axis) const;
+  double inertia_along(int axis) const;
+  void add_effort(int axis, double effort);
+  void couple(dJointGroupID step_joints, double dt);
+
+  const JointDef* def_;
+  std::uint32_t index_;
+  dWorldID world_;
+  dBodyID parent_, child_;
+  ode::Body stand_in_;  // for the world, where ODE needs a body
+  ode::Joint joint_;    // empty for a gearbox
+  double sign_ = 1;     // of ODE's positions and rates against SDFormat's
+  std::array<Drive, 2> drives_;
+  std::array<double, 2> damping_{0, 0};  // that is not ODE's
+  bool has_forces_ = false;
+  std::optional<Coupling> coupling_;
+  std::unique_ptr<dJointFeedback> feedback_;
+};
+
+}  // namespace sim

@@ -1,0 +1,86 @@
+#include "physics/shapes.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace sim {
+
+Aabb box_of(dGeomID geom) {
+  dReal b[6];
+  dGeomGetAABB(geom, b);
+  return {{b[0], b[2], b[4]}, {b[1], b[3], b[5]}};
+}
+
+base::Result<std::shared_ptr<ShapeStore::Mesh>> ShapeStore::mesh(const GeometryDef& geometry) {
+  const auto triangles = triangles_.triangles(geometry);
+  if (!triangles) return triangles.error();
+  const bool is_cached = std::holds_alternative<MeshShape>(geometry);
+  if (const auto found = meshes_.find(triangles->get()); is_cached && found != meshes_.end()) return found->second;
+  auto mesh = std::make_shared<Mesh>();
+  mesh->vertices.reserve((*triangles)->vertices.size() * 3);
+  for (const auto& v : (*triangles)->vertices) mesh->vertices.insert(mesh->vertices.end(), {v.x(), v.y(), v.z()});
+  for (const auto& t : (*triangles)->triangles) mesh->indexes.insert(mesh->indexes.end(), {t[0], t[1], t[2]});
+  mesh->data = ode::TriMeshData(dGeomTriMeshDataCreate());
+  dGeomTriMeshDataBuildDouble(mesh->data.id(), mesh->vertices.data(), 3 * sizeof(double), static_cast<int>(mesh->vertices.size() / 3),
+                              mesh->indexes.data(), static_cast<int>(mesh->indexes.size()), 3 * sizeof(dTriIndex));
+  dGeomTriMeshDataPreprocess2(mesh->data.id(), 1U << dTRIDATAPREPROCESS_BUILD_FACE_ANGLES, nullptr);
+  if (is_cached) meshes_[triangles->get()] = mesh;
+  return mesh;
+}
+
+base::Result<std::shared_ptr<ShapeStore::Field>> ShapeStore::field(const HeightmapShape& shape) {
+  const auto grid = triangles_.heights(shape);
+  if (!grid) return grid.error();
+  if (const auto found = fields_.find(grid->get()); found != fields_.end()) return found->second;
+  auto field = std::make_shared<Field>();
+  field->grid = *grid;
+  field->data = ode::HeightfieldData(dGeomHeightfieldDataCreate());
+  const HeightGrid& g = **grid;
+  dGeomHeightfieldDataBuildSingle(field->data.id(), g.heights.data(), 0, g.width, g.depth, g.columns, g.rows, 1, 0, 10, 0);
+  const auto [low, high] = std::minmax_element(g.heights.begin(), g.heights.end());
+  dGeomHeightfieldDataSetBounds(field->data.id(), *low - 10, *high);
+  fields_[grid->get()] = field;
+  return field;
+}
+
+base::Result<ShapeInstance> make_shape(const CollisionDef& collision, ShapeStore& shapes) {
+  ShapeInstance shape;
+  shape.surface = &collision.surface;
+  const GeometryDef& geometry = collision.geometry;
+  if (const auto* box = std::get_if<BoxShape>(&geometry)) {
+    shape.geom = ode::Geom(dCreateBox(nullptr, box->size.x(), box->size.y(), box->size.z()));
+  } else if (const auto* sphere = std::get_if<SphereShape>(&geometry)) {
+    shape.geom = ode::Geom(dCreateSphere(nullptr, sphere->radius));
+  } else if (const auto* cylinder = std::get_if<CylinderShape>(&geometry)) {
+    shape.geom = ode::Geom(dCreateCylinder(nullptr, cylinder->radius, cylinder->length));
+  } else if (const auto* capsule = std::get_if<CapsuleShape>(&geometry)) {
+    shape.geom = ode::Geom(dCreateCapsule(nullptr, capsule->radius, capsule->length));
+  } else if (const auto* plane = std::get_if<PlaneShape>(&geometry)) {
+    shape.geom = ode::Geom(dCreatePlane(nullptr, plane->normal.x(), plane->normal.y(), plane->normal.z(), 0));
+  } else if (const auto* map = std::get_if<HeightmapShape>(&geometry)) {
+    auto field = shapes.field(*map);
+    if (!field) return field.error();
+    shape.geom = ode::Geom(dCreateHeightfield(nullptr, (*field)->data.id(), 1));
+    shape.data = *field;
+    shape.needs_lock = true;
+  } else {
+    auto mesh = shapes.mesh(geometry);
+    if (!mesh) return mesh.error();
+    shape.geom = ode::Geom(dCreateTriMesh(nullptr, (*mesh)->data.id(), nullptr, nullptr, nullptr));
+    shape.data = *mesh;
+    shape.needs_lock = true;
+  }
+  return shape;
+}
+
+// ODE's height fields point along y.
+Eigen::Isometry3d geom_in_collision(const GeometryDef& geometry) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  if (const auto* map = std::get_if<HeightmapShape>(&geometry)) {
+    pose.translation() = map->position;
+    pose.rotate(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX()));
+  }
+  return pose;
+}
+
+}  // namespace sim

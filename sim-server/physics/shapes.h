@@ -1,0 +1,61 @@
+// Collision shapes in ODE's form. Private to physics/. One thread at a time.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "physics/ode.h"
+#include "physics/physics.h"
+#include "world/triangles.h"
+
+namespace sim {
+
+// ODE's form of meshes and height maps, shared by all shapes made from them.
+class ShapeStore {
+ public:
+  explicit ShapeStore(TriangleCache& triangles) : triangles_(triangles) {}
+  struct Mesh {
+    ode::TriMeshData data;
+    std::vector<double> vertices;
+    std::vector<dTriIndex> indexes;
+  };
+  struct Field {
+    ode::HeightfieldData data;
+    std::shared_ptr<const HeightGrid> grid;
+  };
+  base::Result<std::shared_ptr<Mesh>> mesh(const GeometryDef& geometry);
+  base::Result<std::shared_ptr<Field>> field(const HeightmapShape& shape);
+
+ private:
+  TriangleCache& triangles_;
+  std::map<const TriangleMesh*, std::shared_ptr<Mesh>> meshes_;
+  std::map<const HeightGrid*, std::shared_ptr<Field>> fields_;
+};
+
+struct Aabb {
+  Eigen::Vector3d low{infinite, infinite, infinite}, high{-infinite, -infinite, -infinite};
+  void extend(const Aabb& o) { low = low.cwiseMin(o.low), high = high.cwiseMax(o.high); }
+  bool overlaps(const Aabb& o) const { return (low.array() <= o.high.array()).all() && (o.low.array() <= high.array()).all(); }
+  bool contains(const Aabb& o) const { return (low.array() <= o.low.array()).all() && (o.high.array() <= high.array()).all(); }
+  bool is_empty() const { return low.x() > high.x(); }
+};
+Aabb box_of(dGeomID geom);
+
+struct ShapeInstance {
+  ode::Geom geom;
+  LinkId link;
+  std::uint32_t collision = 0;
+  std::uint32_t assembly = 0;
+  const SurfaceDef* surface = nullptr;
+  bool needs_lock = false;  // ODE collides it through global buffers
+  Aabb box;
+  std::shared_ptr<void> data;
+};
+
+// The shape without a place and an owner. Fails when a file cannot be read.
+base::Result<ShapeInstance> make_shape(const CollisionDef& collision, ShapeStore& store);
+// Pose of the ODE geom in the frame of the collision.
+Eigen::Isometry3d geom_in_collision(const GeometryDef& geometry);
+
+}  // namespace sim

@@ -1,0 +1,460 @@
+// Every kind of joint against the closed forms of mechanics: motion, limits, friction, damping, springs, motors, places at the start.
+#include <gtest/gtest.h>
+
+#include "support/physics_fixture.h"
+
+namespace sim {
+namespace {
+
+using namespace test;
+
+constexpr double g = 9.8;
+
+// A model whose link `arm` (1 kg, moments 0.02, 0.03, 0.04, no shape) hangs on `base`, which is welded to the world or free. The joint's
+// frame is that of the arm, unless `pose` says otherwise.
+struct Rig {
+  std::string kind = "revolute";
+  std::string axes;        // <axis> and more
+  std::string joint_pose;  // in the arm
+  std::string arm_pose = "0 0 1 0 0 0";
+  std::string center;  // of mass in the arm
+  std::string gravity = "0 0 0";
+  std::string extra;  // links and joints
+  bool is_base_free = false;
+  bool is_base_parent = true;
+  std::string version = "1.9";
+};
+
+std::string inertial(const std::string& center = "0 0 0 0 0 0", double mass = 1, double scale = 1) {
+  const auto n = [&](double v) { return std::to_string(v * scale); };
+  return "<inertial><pose>" + center + "</pose><mass>" + std::to_string(mass) + "</mass><inertia><ixx>" + n(0.02) + "</ixx><iyy>" +
+         n(0.03) + "</iyy><izz>" + n(0.04) + "</izz></inertia></inertial>";
+}
+
+PhysicsFixture make(const Rig& rig) {
+  const std::string base = rig.is_base_free ? "" : "<joint name='held' type='fixed'><parent>world</parent><child>base</child></joint>";
+  const std::string parent = rig.is_base_parent ? "base" : "arm", child = rig.is_base_parent ? "arm" : "base";
+  WorldDef world = world_of_text(
+      "<gravity>" + rig.gravity + "</gravity><model name='m'><allow_auto_disable>false</allow_auto_disable><link name='base'>" +
+          inertial("0 0 0 0 0 0", 2, 2) + "</link><link name='arm'><pose>" + rig.arm_pose + "</pose>" +
+          inertial(rig.center.empty() ? "0 0 0 0 0 0" : rig.center) + "</link>" + base + "<joint name='j' type='" + rig.kind + "'>" +
+          (rig.joint_pose.empty() ? "" : "<pose>" + rig.joint_pose + "</pose>") + "<parent>" + parent + "</parent><child>" + child +
+          "</child>" + rig.axes + "</joint>" + rig.extra + "</model>",
+      rig.version);
+  return PhysicsFixture(std::move(world));
+}
+
+std::string axis(const std::string& xyz, const std::string& more = "", const std::string& name = "axis") {
+  return "<" + name + "><xyz>" + xyz + "</xyz>" + more + "</" + name + ">";
+}
+
+void spin(PhysicsFixture& f, const Eigen::Vector3d& rate, const std::string& link = "m::arm") {
+  const Eigen::Vector3d moments(0.02, 0.03, 0.04);
+  ASSERT_TRUE(f.physics.add_wrench(f.link(link), {0, 0, 0}, moments.cwiseProduct(rate) / f.physics.step_length()));
+  f.physics.step();
+}
+
+void push(PhysicsFixture& f, const Eigen::Vector3d& velocity) {
+  ASSERT_TRUE(f.physics.add_wrench(f.link("m::arm"), velocity / f.physics.step_length(), {0, 0, 0}));
+  f.physics.step();
+}
+
+double rate_of(const PhysicsFixture& f, int axis = 0) { return f.physics.joint_state(f.joint("m", "j"), axis).velocity; }
+double place_of(const PhysicsFixture& f, int axis = 0) { return f.physics.joint_state(f.joint("m", "j"), axis).position; }
+
+// --- revolute
+
+TEST(RevoluteJoint, swings_with_the_period_of_a_physical_pendulum) {
+  PhysicsFixture f = make({.axes = axis("0 1 0"), .center = "0 0 -0.5 0 0 0", .gravity = "0 0 -9.8"});
+  spin(f, {0, 0.1, 0});
+  // Half a swing between two passages of the lowest place.
+  std::vector<double> passages;
+  double before = place_of(f);
+  for (int i = 1; i < 4000; ++i) {
+    f.physics.step();
+    const double now = place_of(f);
+    if (before * now < 0) passages.push_back(0.001 * (i - now / (now - before)));
+    before = now;
+  }
+  ASSERT_GE(passages.size(), 3U);
+  const double period = 2 * std::numbers::pi * std::sqrt((0.03 + 0.25) / (g * 0.5));
+  EXPECT_NEAR(passages[2] - passages[0], period, 0.002 * period);
+}
+
+TEST(RevoluteJoint, damping_is_an_exponential_with_and_without_limits) {
+  for (const char* limits : {"", "<limit><lower>-3</lower><upper>3</upper></limit>"}) {
+    PhysicsFixture f = make({.axes = axis("0 0 1", std::string(limits) + "<dynamics><damping>0.08</damping></dynamics>")});
+    spin(f, {0, 0, 2});
+    const double start = rate_of(f);
+    f.run(0.5);
+    EXPECT_NEAR(rate_of(f), start * std::exp(-0.08 / 0.04 * 0.5), 0.005) << limits;
+  }
+}
+
+TEST(RevoluteJoint, friction_brakes_evenly_and_holds_in_the_end) {
+  PhysicsFixture f = make({.axes = axis("0 0 1", "<dynamics><friction>0.04</friction></dynamics>")});
+  spin(f, {0, 0, 2});
+  const double start = rate_of(f);
+  f.run(1);
+  EXPECT_NEAR(rate_of(f), start - 1, 1e-3);
+  f.run(2);
+  EXPECT_NEAR(rate_of(f), 0, 1e-9);
+  ASSERT_TRUE(f.physics.add_wrench(f.link("m::arm"), {0, 0, 0}, {0, 0, 0.039}));
+  f.physics.step();
+  EXPECT_NEAR(rate_of(f), 0, 1e-9) << "a torque below the friction moves nothing";
+}
+
+TEST(RevoluteJoint, stops_at_its_limits) {
+  PhysicsFixture f = make({.axes = axis("0 0 1", "<limit><lower>-0.3</lower><upper>0.5</upper></limit>")});
+  f.physics.set_motor(f.joint("m", "j"), 0, 2, 0.5);
+  f.run(2);
+  EXPECT_NEAR(place_of(f), 0.5, 0.01);
+  f.physics.set_motor(f.joint("m", "j"), 0, -2, 0.5);
+  f.run(2);
+  EXPECT_NEAR(place_of(f), -0.3, 0.01);
+}
+
+TEST(RevoluteJoint, a_spring_turns_it_with_its_period_about_its_reference) {
+  PhysicsFixture f =
+      make({.axes = axis("0 0 1", "<dynamics><spring_reference>0.4</spring_reference><spring_stiffness>1</spring_stiffness></dynamics>")});
+  double highest = 0;
+  int at = 0;
+  for (int i = 1; i < 1000; ++i) {
+    f.physics.step();
+    if (place_of(f) > highest) highest = place_of(f), at = i;
+  }
+  EXPECT_NEAR(highest, 0.8, 0.005);
+  EXPECT_NEAR(at * 0.001, std::numbers::pi * std::sqrt(0.04 / 1), 0.005);
+}
+
+TEST(RevoluteJoint, a_motor_keeps_its_rate_within_its_torque) {
+  PhysicsFixture f = make({.axes = axis("0 0 1")});
+  f.physics.set_motor(f.joint("m", "j"), 0, 3, 0.08);
+  f.run(0.5);
+  EXPECT_NEAR(rate_of(f), 0.08 / 0.04 * 0.5, 0.005) << "speeding up";
+  f.run(2);
+  EXPECT_NEAR(rate_of(f), 3, 1e-6);
+}
+
+TEST(RevoluteJoint, counts_the_same_way_whichever_end_is_the_world) {
+  for (const bool is_base_parent : {true, false}) {
+    PhysicsFixture f = make({.axes = axis("0 0 1"), .is_base_parent = is_base_parent});
+    spin(f, {0, 0, 0.5});
+    f.run(0.1);
+    const double sense = is_base_parent ? 1 : -1;  // the child turns against the parent
+    EXPECT_NEAR(rate_of(f), sense * 0.5, 1e-3);
+    EXPECT_NEAR(place_of(f), sense * 0.05, 1e-3);
+  }
+}
+
+TEST(RevoluteJoint, between_two_free_bodies_conserves_angular_momentum) {
+  PhysicsFixture f = make({.axes = axis("0 0 1"), .is_base_free = true});
+  f.physics.set_motor(f.joint("m", "j"), 0, 3, 1);
+  f.run(1);
+  EXPECT_NEAR(rate_of(f), 3, 1e-6);
+  EXPECT_NEAR(0.04 * f.physics.link_twist(f.link("m::arm")).angular.z() + 0.08 * f.physics.link_twist(f.link("m::base")).angular.z(), 0,
+              1e-9);
+}
+
+TEST(RevoluteJoint, a_resting_spring_gives_no_kick_after_a_long_sleep) {
+  WorldDef world =
+      world_of_text("<gravity>0 0 0</gravity><model name='m'><link name='arm'>" + inertial() +
+                    "</link><joint name='j' type='revolute'><parent>world</parent><child>arm</child><axis><xyz>0 0 "
+                    "1</xyz><dynamics><friction>1</friction>"
+                    "<spring_reference>0.5</spring_reference><spring_stiffness>1</spring_stiffness></dynamics></axis></joint></model>");
+  PhysicsFixture f(std::move(world));
+  f.run(20);
+  ASSERT_EQ(f.physics.statistics().awake, 0U) << "friction holds it";
+  ASSERT_TRUE(f.physics.add_wrench(f.link("m::arm"), {0, 0, 0}, {0, 0, 1e-6}));
+  f.physics.step();
+  EXPECT_NEAR(f.physics.link_twist(f.link("m::arm")).angular.norm(), 0, 1e-6);
+}
+
+// --- the axis
+
+TEST(JointAxis, is_in_the_joints_frame_unless_the_file_says_otherwise) {
+  const auto axis_of = [](const Rig& rig) {
+    PhysicsFixture f = make(rig);
+    f.physics.set_motor(f.joint("m", "j"), 0, 1, 10);
+    f.run(0.01);
+    return f.physics.link_twist(f.link("m::arm")).angular;
+  };
+  const std::string turned = "0 0 1 0 0 1.5707963267948966";
+  EXPECT_LT((axis_of({.axes = axis("1 0 0"), .arm_pose = turned}) - Eigen::Vector3d(0, 1, 0)).norm(), 1e-6);
+  EXPECT_LT(
+      (axis_of({.axes = "<axis><xyz expressed_in='__model__'>1 0 0</xyz></axis>", .arm_pose = turned}) - Eigen::Vector3d(1, 0, 0)).norm(),
+      1e-6);
+  EXPECT_LT((axis_of({.axes = "<axis><xyz expressed_in='base'>1 0 0</xyz></axis>", .arm_pose = turned}) - Eigen::Vector3d(1, 0, 0)).norm(),
+            1e-6);
+  EXPECT_LT((axis_of({.axes = axis("1 0 0"), .joint_pose = "0 0 0 0 0 -1.5707963267948966", .arm_pose = turned}) - Eigen::Vector3d(1, 0, 0))
+                .norm(),
+            1e-6);
+  // Older files: an element of its own, and in version 1.4 the model's frame by default.
+  EXPECT_LT((axis_of({.axes = axis("1 0 0", "<use_parent_model_frame>1</use_parent_model_frame>"), .arm_pose = turned, .version = "1.6"}) -
+             Eigen::Vector3d(1, 0, 0))
+                .norm(),
+            1e-6);
+  EXPECT_LT((axis_of({.axes = axis("1 0 0"), .arm_pose = turned, .version = "1.4"}) - Eigen::Vector3d(1, 0, 0)).norm(), 1e-6);
+  EXPECT_LT((axis_of({.axes = axis("1 0 0"), .arm_pose = turned, .version = "1.6"}) - Eigen::Vector3d(0, 1, 0)).norm(), 1e-6);
+}
+
+// --- prismatic
+
+TEST(PrismaticJoint, falls_as_gravity_along_its_axis_says) {
+  PhysicsFixture f = make({.kind = "prismatic", .axes = axis("0.6 0 0.8"), .gravity = "0 0 -9.8"});
+  f.run(1);
+  EXPECT_NEAR(rate_of(f), -g * 0.8, 1e-6);
+  EXPECT_NEAR(place_of(f), -g * 0.8 / 2, 0.01);
+  EXPECT_NEAR(f.physics.link_pose(f.link("m::arm")).translation().x(), 0.6 * place_of(f), 1e-6);
+}
+
+TEST(PrismaticJoint, damping_has_a_terminal_velocity) {
+  PhysicsFixture f = make({.kind = "prismatic", .axes = axis("0 0 1", "<dynamics><damping>5</damping></dynamics>"), .gravity = "0 0 -9.8"});
+  f.run(0.2);
+  EXPECT_NEAR(rate_of(f), -g / 5 * (1 - std::exp(-1.0)), 0.01);
+  f.run(3);
+  EXPECT_NEAR(rate_of(f), -g / 5, 1e-3);
+}
+
+TEST(PrismaticJoint, friction_takes_its_part_or_holds) {
+  PhysicsFixture sliding =
+      make({.kind = "prismatic", .axes = axis("0 0 1", "<dynamics><friction>4</friction></dynamics>"), .gravity = "0 0 -9.8"});
+  sliding.run(1);
+  EXPECT_NEAR(rate_of(sliding), -(g - 4), 1e-6);
+  PhysicsFixture holding =
+      make({.kind = "prismatic", .axes = axis("0 0 1", "<dynamics><friction>10</friction></dynamics>"), .gravity = "0 0 -9.8"});
+  holding.run(1);
+  EXPECT_NEAR(place_of(holding), 0, 1e-6);
+}
+
+TEST(PrismaticJoint, stops_at_hard_and_gives_at_soft_limits) {
+  PhysicsFixture hard =
+      make({.kind = "prismatic", .axes = axis("0 0 1", "<limit><lower>-0.4</lower><upper>1</upper></limit>"), .gravity = "0 0 -9.8"});
+  hard.run(2);
+  EXPECT_NEAR(place_of(hard), -0.4, 0.002);
+  PhysicsFixture soft = make(
+      {.kind = "prismatic",
+       .axes = axis("0 0 1", "<limit><lower>-0.4</lower><upper>1</upper><stiffness>98</stiffness><dissipation>20</dissipation></limit>"),
+       .gravity = "0 0 -9.8"});
+  soft.run(4);
+  EXPECT_NEAR(place_of(soft), -0.5, 0.002) << "9.8 N into a spring of 98 N/m";
+}
+
+// --- two axes
+
+TEST(UniversalJoint, turns_about_its_two_axes_and_not_about_the_third) {
+  for (const char* kind : {"universal", "revolute2"}) {
+    for (const bool is_base_parent : {true, false}) {
+      for (const int which : {0, 1}) {
+        PhysicsFixture f = make({.kind = kind, .axes = axis("1 0 0") + axis("0 1 0", "", "axis2"), .is_base_parent = is_base_parent});
+        f.physics.set_motor(f.joint("m", "j"), 0, which == 0 ? 1 : 0, 1e4);
+        f.physics.set_motor(f.joint("m", "j"), 1, which == 1 ? 1 : 0, 1e4);
+        f.run(0.2);
+        const double sense = is_base_parent ? 1 : -1;
+        const Eigen::Vector3d expected = sense * Eigen::Vector3d::Unit(which);
+        EXPECT_LT((f.physics.link_twist(f.link("m::arm")).angular - expected).norm(), 1e-3) << kind << which << is_base_parent;
+        EXPECT_NEAR(rate_of(f, which), 1, 1e-3) << kind << which << is_base_parent;
+        EXPECT_NEAR(place_of(f, which), 0.2, 2e-3) << kind << which << is_base_parent;
+        EXPECT_NEAR(place_of(f, 1 - which), 0, 1e-3) << kind << which << is_base_parent;
+      }
+      PhysicsFixture f = make({.kind = kind, .axes = axis("1 0 0") + axis("0 1 0", "", "axis2"), .is_base_parent = is_base_parent});
+      spin(f, {0, 0, 1});
+      f.run(0.1);
+      EXPECT_LT(f.physics.link_twist(f.link("m::arm")).angular.norm(), 1e-6) << kind;
+    }
+  }
+}
+
+TEST(UniversalJoint, keeps_limits_friction_and_damping_of_each_axis) {
+  for (const char* kind : {"universal", "revolute2"}) {
+    PhysicsFixture f = make({.kind = kind,
+                             .axes = axis("1 0 0", "<limit><lower>-0.2</lower><upper>0.6</upper></limit>") +
+                                     axis("0 1 0", "<dynamics><damping>0.06</damping></dynamics>", "axis2")});
+    f.physics.set_motor(f.joint("m", "j"), 0, 1, 1);
+    f.run(2);
+    EXPECT_NEAR(place_of(f, 0), 0.6, 0.01) << kind;
+    f.physics.set_motor(f.joint("m", "j"), 0, -1, 1);
+    f.run(2);
+    EXPECT_NEAR(place_of(f, 0), -0.2, 0.01) << kind;
+    PhysicsFixture damped = make({.kind = kind,
+                                  .axes = axis("1 0 0", "<dynamics><friction>1</friction></dynamics>") +
+                                          axis("0 1 0", "<dynamics><damping>0.06</damping></dynamics>", "axis2")});
+    spin(damped, {0, 1, 0});
+    const double start = rate_of(damped, 1);
+    damped.run(0.25);
+    EXPECT_NEAR(rate_of(damped, 1), start * std::exp(-0.06 / 0.03 * 0.25), 0.01) << kind;
+    EXPECT_NEAR(place_of(damped, 0), 0, 1e-6) << kind;
+  }
+}
+
+TEST(BallJoint, a_conical_pendulum_goes_round_in_its_time) {
+  const double length = 0.5, angle = 0.4;
+  PhysicsFixture f = make({.kind = "ball", .arm_pose = "0 0 1 0 -0.4 0", .center = "0 0 -0.5 0 0 0", .gravity = "0 0 -9.8"});
+  // A body that goes round without turning about its own axis in it: L = I w; moments about the anchor for the tilted body.
+  const Eigen::Matrix3d tilt = f.physics.link_pose(f.link("m::arm")).linear();
+  const Eigen::Matrix3d inertia = tilt * Eigen::Vector3d(0.02 + 0.25, 0.03 + 0.25, 0.04).asDiagonal() * tilt.transpose();
+  // Steady: w x (I w) = torque of gravity, w along z: w^2 (z x I z) = r x m g.
+  const Eigen::Vector3d z(0, 0, 1), arm = tilt * Eigen::Vector3d(0, 0, -length);
+  const Eigen::Vector3d torque = arm.cross(Eigen::Vector3d(0, 0, -g)), left = z.cross(inertia * z);
+  const double rate = std::sqrt(torque.norm() / left.norm());
+  EXPECT_GT(torque.dot(left), 0);
+  ASSERT_TRUE(f.physics.set_model_twist(f.id("m"), {rate * z.cross(Eigen::Vector3d::Zero().eval()), {0, 0, rate}}));
+  f.run(2 * std::numbers::pi / rate / 4);
+  const Eigen::Vector3d now = f.physics.center_of_mass(f.link("m::arm")) - Eigen::Vector3d(0, 0, 1);
+  const Eigen::Vector3d quarter = Eigen::AngleAxisd(std::numbers::pi / 2, z) * arm;
+  EXPECT_LT((now - quarter).norm(), 0.01) << "angle " << angle;
+}
+
+TEST(FixedJoint, that_is_measured_holds_like_a_weld_and_tells_its_load) {
+  PhysicsFixture f = make({.kind = "fixed", .arm_pose = "0.5 0 1 0 0 0", .gravity = "0 0 -9.8", .extra = ""});
+  WorldDef world = *f.world;
+  world.models[0].joints[1].provide_feedback = true;
+  PhysicsFixture measured(world);
+  measured.run(2);
+  EXPECT_LT((measured.physics.link_pose(measured.link("m::arm")).translation() - Eigen::Vector3d(0.5, 0, 1)).norm(), 1e-4);
+  const auto load = measured.physics.joint_load(measured.joint("m", "j"));
+  ASSERT_TRUE(load.has_value());
+  EXPECT_LT((load->force - Eigen::Vector3d(0, 0, g)).norm(), 1e-3);
+  EXPECT_FALSE(f.physics.joint_load(f.joint("m", "j")).has_value());
+}
+
+// --- screw
+
+TEST(ScrewJoint, turns_and_travels_together_and_falls_slowed_by_its_inertia) {
+  for (const double pitch : {0.2, -0.2, 0.02}) {
+    PhysicsFixture f = make({.kind = "screw",
+                             .axes = axis("0 0 1") + "<screw_thread_pitch>" + std::to_string(pitch) + "</screw_thread_pitch>",
+                             .gravity = "0 0 -9.8"});
+    EXPECT_TRUE(f.notes.empty());
+    const double lead = pitch / (2 * std::numbers::pi), acceleration = -g / (1 + 0.04 / (lead * lead));
+    f.run(2);
+    const double fallen = f.physics.link_pose(f.link("m::arm")).translation().z() - 1;
+    EXPECT_NEAR(fallen, acceleration * 2, std::abs(0.005 * acceleration * 2)) << pitch;
+    EXPECT_NEAR(place_of(f), fallen / lead, 1e-9) << "with its whole turns";
+    EXPECT_NEAR(f.physics.link_twist(f.link("m::arm")).angular.z() * lead, f.physics.link_twist(f.link("m::arm")).linear.z(), 2e-5)
+        << pitch;
+    const Eigen::Matrix3d turned = f.physics.link_pose(f.link("m::arm")).linear();
+    EXPECT_NEAR(std::remainder(std::atan2(turned(1, 0), turned(0, 0)) - fallen / lead, 2 * std::numbers::pi), 0, 1e-3) << pitch;
+  }
+}
+
+TEST(ScrewJoint, a_motor_drives_the_nut_along) {
+  PhysicsFixture f = make({.kind = "screw", .axes = axis("1 0 0") + "<screw_thread_pitch>0.1</screw_thread_pitch>", .gravity = "0 0 -9.8"});
+  f.physics.set_motor(f.joint("m", "j"), 0, 2 * std::numbers::pi, 5);
+  f.run(3);
+  EXPECT_NEAR(f.physics.link_pose(f.link("m::arm")).translation().x(), 0.3, 0.003);
+  EXPECT_NEAR(place_of(f), 6 * std::numbers::pi, 0.1);
+}
+
+TEST(ScrewJoint, keeps_limits_of_many_turns_and_friction_and_damping) {
+  PhysicsFixture f =
+      make({.kind = "screw",
+            .axes = axis("0 0 1", "<limit><lower>-10</lower><upper>20</upper></limit>") + "<screw_thread_pitch>0.1</screw_thread_pitch>"});
+  f.physics.set_motor(f.joint("m", "j"), 0, 10, 1);
+  f.run(4);
+  EXPECT_NEAR(place_of(f), 20, 0.1);
+  f.physics.set_motor(f.joint("m", "j"), 0, -10, 1);
+  f.run(5);
+  EXPECT_NEAR(place_of(f), -10, 0.1);
+  PhysicsFixture held =
+      make({.kind = "screw",
+            .axes = axis("0 0 1", "<dynamics><friction>0.2</friction></dynamics>") + "<screw_thread_pitch>0.1</screw_thread_pitch>",
+            .gravity = "0 0 -9.8"});
+  held.run(1);
+  EXPECT_NEAR(place_of(held), 0, 1e-6) << "9.8 N on a thread of 0.1 m are 0.156 N m";
+  PhysicsFixture damped =
+      make({.kind = "screw",
+            .axes = axis("0 0 1", "<dynamics><damping>0.1</damping></dynamics>") + "<screw_thread_pitch>0.1</screw_thread_pitch>",
+            .gravity = "0 0 -9.8"});
+  damped.run(5);
+  EXPECT_NEAR(rate_of(damped), -g * 0.1 / (2 * std::numbers::pi) / 0.1, 0.01);
+}
+
+TEST(ScrewJoint, between_free_bodies_conserves_momentum) {
+  PhysicsFixture f = make({.kind = "screw", .axes = axis("0 0 1") + "<screw_thread_pitch>0.5</screw_thread_pitch>", .is_base_free = true});
+  f.physics.set_motor(f.joint("m", "j"), 0, 3, 1);
+  f.run(1);
+  const Twist arm = f.physics.link_twist(f.link("m::arm")), base = f.physics.link_twist(f.link("m::base"));
+  EXPECT_NEAR(arm.angular.z() - base.angular.z(), 3, 1e-4);
+  EXPECT_NEAR(arm.linear.z() - base.linear.z(), 3 * 0.5 / (2 * std::numbers::pi), 1e-4);
+  EXPECT_LT((arm.linear + 2 * base.linear).norm(), 1e-9);
+  EXPECT_NEAR(0.04 * arm.angular.z() + 0.08 * base.angular.z(), 0, 1e-9);
+}
+
+// --- gearbox
+
+struct Gears {
+  Eigen::Vector3d place2{0.4, 0, 1};
+  std::string axis2 = "0 0 1";
+  double ratio = 2;
+};
+
+PhysicsFixture make(const Gears& gears) {
+  const auto n = [](double v) { return std::to_string(v); };
+  return PhysicsFixture(world_of_text(
+      "<gravity>0 0 0</gravity><model name='m'><allow_auto_disable>0</allow_auto_disable><link name='frame'/><link name='a'><pose>0 0 1 0 "
+      "0 0</pose>" +
+      inertial() + "</link><link name='b'><pose>" + n(gears.place2.x()) + " " + n(gears.place2.y()) + " " + n(gears.place2.z()) +
+      " 0 0 0</pose>" + inertial() +
+      "</link><joint name='held' type='fixed'><parent>world</parent><child>frame</child></joint><joint name='ja' "
+      "type='revolute'><parent>frame</parent><child>a</child>" +
+      axis("0 0 1") + "</joint><joint name='jb' type='continuous'><parent>frame</parent><child>b</child>" + axis(gears.axis2) +
+      "</joint><joint name='j' "
+      "type='gearbox'><parent>a</parent><child>b</child><gearbox_reference_body>frame</gearbox_reference_body><gearbox_ratio>" +
+      n(gears.ratio) + "</gearbox_ratio>" + axis("0 0 1") + axis(gears.axis2, "", "axis2") + "</joint></model>"));
+}
+
+TEST(GearboxJoint, keeps_its_ratio_and_carries_torque_over) {
+  for (const Gears& gears :
+       {Gears{}, Gears{{0.4, 0, 1}, "0 0 1", -3}, Gears{{0.4, 0.1, 1.5}, "0 0 -1", 1}, Gears{{0.4, 0.3, 1.2}, "1 0 0", 2},
+        Gears{{0.1, 0, 1}, "0 0.6 0.8", -0.5}, Gears{{0.2, 0, 1}, "0 0 1", -1}, Gears{{0, 0, 1.5}, "0 0 1", -1}}) {
+    PhysicsFixture f = make(gears);
+    EXPECT_TRUE(f.notes.empty()) << f.notes.front();
+    const double inertia2 = gears.axis2 == "1 0 0" ? 0.02 : gears.axis2 == "0 0.6 0.8" ? 0.36 * 0.03 + 0.64 * 0.04 : 0.04;
+    const double torque = 0.05, acceleration = torque / (0.04 + inertia2 / (gears.ratio * gears.ratio));
+    f.physics.set_motor(f.joint("m", "ja"), 0, 1000, torque);
+    f.run(1);
+    const double first = f.physics.joint_state(f.joint("m", "ja")).velocity, second = f.physics.joint_state(f.joint("m", "jb")).velocity;
+    EXPECT_NEAR(first, acceleration, 0.002 * acceleration) << gears.axis2 << " " << gears.ratio;
+    EXPECT_NEAR(first, -gears.ratio * second, 1e-6) << gears.axis2 << " " << gears.ratio;
+    f.physics.set_motor(f.joint("m", "ja"), 0, 0, 0);
+    f.run(20);
+    EXPECT_NEAR(f.physics.joint_state(f.joint("m", "ja")).velocity, first, 5e-4 * std::abs(first)) << "no loss";
+  }
+  EXPECT_EQ(make(Gears{{0, 0, 1.5}, "0 0 1", 2}).notes.size(), 1U) << "on one line";
+}
+
+// --- the start
+
+TEST(InitialPosition, of_joints_moves_all_that_hangs_on_them) {
+  PhysicsFixture f(world_of_text(
+      "<gravity>0 0 0</gravity><model name='m'><link name='base'/><link name='upper'><pose>0 0 1 0 0 0</pose></link><link "
+      "name='lower'><pose>1 0 1 0 0 0</pose></link>"
+      "<link name='slide'><pose>1.5 0 1 0 0 0</pose></link><joint name='held' "
+      "type='fixed'><parent>world</parent><child>base</child></joint>"
+      "<joint name='shoulder' type='revolute'><parent>base</parent><child>upper</child>" +
+          axis("0 0 1", "<initial_position>1.5707963267948966</initial_position><limit><lower>-2</lower><upper>2</upper></limit>") +
+          "</joint><joint name='elbow' type='revolute'><parent>upper</parent><child>lower</child>" +
+          axis("0 1 0", "<initial_position>-1.5707963267948966</initial_position>") +
+          "</joint><joint name='rail' type='prismatic'><parent>lower</parent><child>slide</child>" +
+          axis("1 0 0", "<initial_position>0.25</initial_position>") + "</joint></model>",
+      "1.6"));
+  const auto check = [&](const char* when) {
+    EXPECT_LT((f.physics.link_pose(f.link("m::lower")).translation() - Eigen::Vector3d(0, 1, 1)).norm(), 1e-6) << when;
+    EXPECT_LT((f.physics.link_pose(f.link("m::slide")).translation() - Eigen::Vector3d(0, 1, 1.75)).norm(), 1e-6) << when;
+    EXPECT_NEAR(f.physics.joint_state(f.joint("m", "shoulder")).position, std::numbers::pi / 2, 1e-6) << when;
+    EXPECT_NEAR(f.physics.joint_state(f.joint("m", "elbow")).position, -std::numbers::pi / 2, 1e-6) << when;
+    EXPECT_NEAR(f.physics.joint_state(f.joint("m", "rail")).position, 0.25, 1e-6) << when;
+  };
+  check("at the start");
+  f.run(1);
+  check("at rest");
+  f.physics.set_motor(f.joint("m", "shoulder"), 0, 3, 10);
+  f.run(1);
+  EXPECT_NEAR(f.physics.joint_state(f.joint("m", "shoulder")).position, 2, 0.01) << "limits count from zero, not from the start";
+  f.physics.reset();
+  check("after a reset");
+}
+
+}  // namespace
+}  // namespace sim
