@@ -71,6 +71,22 @@ for title, pattern in (("Iface types", r"/\* Iface types;.*?\*/\s*enum \{\n(.*?)
     for name, value, comment in re.findall(r"(\w+) = (\d+),?\s*(?:/\*(.*?)\*/)?", re.search(pattern, text, re.S).group(1), re.S):
         out += f"| {value} | `{name}` | {clean(comment)} |\n"
     out += "\n"
+out += "## Formats of frames\n\n| value | name | bytes of a pixel |\n| --- | --- | --- |\n"
+for name, value, comment in re.findall(r"(\w+) = (\d+),?\s*(?:/\*(.*?)\*/)?", re.search(r"enum \{\n(\s*RTMSIM_FORMAT_.*?)\};", text, re.S).group(1), re.S):
+    out += f"| {value} | `{name}` | {clean(comment)} |\n"
+out += """
+- Rows run from the top down, pixels from left to right; `stride` bytes from one row to the next, now without padding. Colours are sRGB.
+- A camera publishes the format that its world names: `R8G8B8`, `B8G8R8`, `L8`, `L16`, `BAYER_RGGB8`, `BAYER_BGGR8`, `BAYER_GBRG8`, `BAYER_GRBG8`, `RGBA_INT8`, `BGRA_INT8`, and the other
+  spellings of the same (`RGB_INT8`, `L_INT8`, ...). A format that is not known is said once, and the camera publishes `R8G8B8`. Depth and points are float whatever the world says (`R_FLOAT32`).
+- Luminance is 0.299 R + 0.587 G + 0.114 B of the sRGB values; 16 bits hold 257 times that of 8 bits, with its fractions.
+- Depth is measured along the optical axis. Where nothing is between the clip planes it is +infinity; the point there is NaN NaN NaN. Clouds are organised: point i belongs to pixel i of the depth
+  image of the same time, x forward, y left, z up in the sensor. Of a distorting lens the points lie on the rays that its pixels really see.
+- A pixel at column u, row v has its centre at (u + 0.5, v + 0.5); a point (x, y, z) of the sensor is seen at u = cx - fx y / x, v = cy - fy z / x. With `distortion` those tangents are first
+  bent by k1 k2 p1 p2 k3 as in OpenCV.
+- The cameras of a set (`multicamera`) are ifaces `sensor::camera`, taken at the same time; the base line of a stereo pair is the difference of their `pose`s.
+- `dropped` counts frames that found every slot of the ring held by readers; a reader that is merely late misses the sequence numbers in between.
+
+"""
 out += "## Structures\n\n"
 for name, intro, fields in structs:
     out += f"### `{name}`, {numbers[name]} bytes\n\n" + (intro + "\n\n" if intro else "") + "| offset | size | field | type | meaning |\n| ---: | ---: | --- | --- | --- |\n"

@@ -15,9 +15,10 @@ class JpegEncoder {
   JpegEncoder(const JpegEncoder&) = delete;
   JpegEncoder& operator=(const JpegEncoder&) = delete;
 
-  // RGB or grey rows from top to bottom, `stride` bytes apart; quality 1..100. The result stays valid until the next call.
-  base::Result<std::span<const unsigned char>> encode(std::span<const std::byte> pixels, int width, int height, int stride, bool is_grey,
-                                                      int quality);
+  enum class Pixels { rgb, bgr, rgba, bgra, grey };
+
+  // Rows from top to bottom without gaps, a byte per colour; quality 1..100. The result stays valid until the next call.
+  base::Result<std::span<const unsigned char>> encode(std::span<const std::byte> pixels, int width, int height, Pixels kind, int quality);
 
  private:
   void* handle_;

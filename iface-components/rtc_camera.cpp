@@ -63,17 +63,36 @@ RTC::ReturnCode_t RTCCamera::onInitialize() {
   return RTC::RTC_OK;
 }
 
+RTC::ReturnCode_t RTCCamera::onActivated(RTC::UniqueId ec_id) {
+  sent_ = missed_ = last_ = 0;
+  said_.clear();
+  return IfaceComponent::onActivated(ec_id);
+}
+
+RTC::ReturnCode_t RTCCamera::onDeactivated(RTC::UniqueId ec_id) {
+  RTC_INFO(("%s frames sent, %s missed", std::to_string(sent_).c_str(), std::to_string(missed_).c_str()));
+  return IfaceComponent::onDeactivated(ec_id);
+}
+
+// Frames that the camera took while a receiver kept this component waiting are missed.
+void RTCCamera::count(std::uint64_t sequence) {
+  if (attachments_ == link().attachments() && last_ > 0 && sequence > last_) missed_ += sequence - last_ - 1;
+  attachments_ = link().attachments();
+  last_ = sequence;
+  ++sent_;
+}
+
 RTC::ReturnCode_t RTCCamera::onExecute(RTC::UniqueId) {
   if (!follow_configuration()) return RTC::RTC_ERROR;
   const auto frame = link().fresh_frame(iface::wait_limit());
   auto* camera = link().live();
   if (!frame || !camera || !frame->head().stamp.valid) return RTC::RTC_OK;
+  count(frame->sequence());
   const auto& head = frame->head();
-  auto pixels = frame->data();
+  auto pixels = iface::packed(head, frame->data(), packed_);
   const bool is_jpeg = encoding_ == "jpeg";
   if (is_jpeg) {
-    const auto encoded = jpeg_.encode(pixels, static_cast<int>(head.width), static_cast<int>(head.height), static_cast<int>(head.stride),
-                                      head.format == RTMSIM_FORMAT_MONO8, quality_);
+    const auto encoded = iface::to_jpeg(jpeg_, head, pixels, quality_, converted_);
     if (!encoded) {
       if (said_ != encoded.error().message) RTC_ERROR(("%s", encoded.error().message.c_str()));
       said_ = encoded.error().message;
@@ -81,34 +100,32 @@ RTC::ReturnCode_t RTCCamera::onExecute(RTC::UniqueId) {
     }
     pixels = std::as_bytes(*encoded);
   }
-  send_image(*frame, pixels, is_jpeg);
-  if (!timed_image_out_.connectors().empty()) send_timed_image(camera->info<shm::CameraInfo>(), *frame, pixels, is_jpeg);
+  send_image(head, pixels, is_jpeg);
+  if (!timed_image_out_.connectors().empty()) send_timed_image(camera->info<shm::CameraInfo>(), head, pixels, is_jpeg);
   return RTC::RTC_OK;
 }
 
-void RTCCamera::send_image(const shm::HeldFrame& frame, std::span<const std::byte> pixels, bool is_jpeg) {
-  const auto& head = frame.head();
-  const bool is_grey = head.format == RTMSIM_FORMAT_MONO8;
+void RTCCamera::send_image(const shm::FrameHead& head, std::span<const std::byte> pixels, bool is_jpeg) {
+  const auto format = iface::image_format(static_cast<shm::Format>(head.format));
   image_.tm = iface::to_time(head.stamp.sim_time_ns);
   image_.width = static_cast<CORBA::UShort>(head.width);
   image_.height = static_cast<CORBA::UShort>(head.height);
-  image_.bpp = is_grey ? 8 : 24;
-  image_.format = CORBA::string_dup(is_jpeg ? "JPEG" : is_grey ? "MONO8" : "RGB8");
+  image_.bpp = format.bits;
+  image_.format = CORBA::string_dup(is_jpeg ? "JPEG" : format.name);
   image_.fDiv = 1;
   borrow(image_.pixels, pixels);
   image_out_.write();
   give_back(image_.pixels);
 }
 
-void RTCCamera::send_timed_image(const shm::CameraInfo& info, const shm::HeldFrame& frame, std::span<const std::byte> pixels,
-                                 bool is_jpeg) {
-  const auto& head = frame.head();
+void RTCCamera::send_timed_image(const shm::CameraInfo& info, const shm::FrameHead& head, std::span<const std::byte> pixels, bool is_jpeg) {
+  const auto format = static_cast<shm::Format>(head.format);
   auto& camera = timed_image_.data;
   timed_image_.tm = camera.captured_time = iface::to_time(head.stamp.sim_time_ns);
   camera.image.width = static_cast<CORBA::Long>(head.width);
   camera.image.height = static_cast<CORBA::Long>(head.height);
-  camera.image.format = is_jpeg ? Img::CF_JPEG : head.format == RTMSIM_FORMAT_MONO8 ? Img::CF_GRAY : Img::CF_RGB;
-  borrow(camera.image.raw_data, pixels);
+  camera.image.format = is_jpeg ? Img::CF_JPEG : iface::image_format(format).img;
+  borrow(camera.image.raw_data, is_jpeg ? pixels : iface::for_img(format, pixels, converted_));
   // Order of the elements: fx, skew, cx, fy, cy.
   const double intrinsic[5] = {info.fx, 0, info.cx, info.fy, info.cy};
   for (int i = 0; i < 5; ++i) camera.intrinsic.matrix_element[i] = intrinsic[i];

@@ -1,5 +1,6 @@
 #include "picture.h"
 
+#include <base/bayer.h>
 #include <base/text.h>
 #include <png.h>
 #include <turbojpeg.h>
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <optional>
 
 namespace video {
 namespace {
@@ -17,26 +19,45 @@ using base::Result;
 
 constexpr int largest_side = 16384;
 
+enum class Kind { colors, depth, bayer, wide_grey };
+
 struct Layout {
-  std::size_t octets;    // of a pixel
-  int red, green, blue;  // offsets in it
-  bool is_depth = false;
+  std::size_t octets;                // of a pixel
+  int red = 0, green = 0, blue = 0;  // offsets in it
+  Kind kind = Kind::colors;
+  base::BayerOrder order = {};
 };
+
+// By the bits of a pixel; 0 bits: by the octets that came.
+std::optional<Layout> nameless_layout(const RTC::CameraImage& image, bool is_bgr) {
+  const std::size_t count = static_cast<std::size_t>(image.width) * image.height;
+  const std::size_t octets = image.bpp > 0 ? image.bpp / 8U : count > 0 ? image.pixels.length() / count : 0;
+  if (octets == 3) return is_bgr ? Layout{3, 2, 1, 0} : Layout{3, 0, 1, 2};
+  if (octets == 4) return is_bgr ? Layout{4, 2, 1, 0} : Layout{4, 0, 1, 2};
+  if (octets == 1) return Layout{1};
+  return std::nullopt;
+}
 
 Result<Layout> layout_of(const RTC::CameraImage& image) {
   const auto format = base::to_lower(image.format.in());
   const auto is = [&](std::initializer_list<const char*> names) { return std::find(names.begin(), names.end(), format) != names.end(); };
   if (is({"rgb8", "rgb", "r8g8b8", "rgb888"})) return Layout{3, 0, 1, 2};
-  if (is({"bgr8", "bgr", "bgr888"})) return Layout{3, 2, 1, 0};
+  if (is({"bgr8", "bgr", "b8g8r8", "bgr888"})) return Layout{3, 2, 1, 0};
   if (is({"rgba8", "rgba", "rgb32"})) return Layout{4, 0, 1, 2};
   if (is({"bgra8", "bgra"})) return Layout{4, 2, 1, 0};
-  if (is({"mono8", "mono", "gray", "grey", "gray8", "grey8", "l8", "y8"})) return Layout{1, 0, 0, 0};
-  if (is({"depth32f"})) return Layout{4, 0, 0, 0, true};
-  if (format.empty() && image.bpp == 24) return Layout{3, 0, 1, 2};
-  if (format.empty() && image.bpp == 32) return Layout{4, 0, 1, 2};
-  if (format.empty() && image.bpp == 8) return Layout{1, 0, 0, 0};
-  return Error{"image format " + base::in_quotes(image.format.in()) + " with " + std::to_string(image.bpp) +
-               " bits per pixel is not known, expected RGB8, BGR8, RGBA8, MONO8, DEPTH32F or JPEG"};
+  if (is({"mono8", "mono", "gray", "grey", "gray8", "grey8", "l8", "y8"})) return Layout{1};
+  if (is({"mono16", "gray16", "grey16", "l16", "y16"})) return Layout{2, 1, 1, 1, Kind::wide_grey};
+  if (is({"depth32f"})) return Layout{4, 0, 0, 0, Kind::depth};
+  if (format.starts_with("bayer_") && format.size() >= 10 && (format.size() == 10 || format.substr(10) == "8")) {
+    if (const auto order = base::parse_bayer_order(format.substr(6, 4))) return Layout{1, 0, 0, 0, Kind::bayer, *order};
+  }
+  // Components with OpenCV inside send its memory, blue first, as "bitmap".
+  if (format.empty() || format == "bitmap") {
+    if (const auto layout = nameless_layout(image, !format.empty())) return *layout;
+  }
+  return Error{
+      "image format " + base::in_quotes(image.format.in()) + " with " + std::to_string(image.bpp) +
+      " bits per pixel is not known, expected RGB8, BGR8, RGBA8, BGRA8, MONO8, MONO16, BAYER_RGGB8 and its like, DEPTH32F or JPEG"};
 }
 
 Result<Picture> from_jpeg(const RTC::CameraImage& image) {
@@ -92,12 +113,20 @@ Result<Picture> to_picture(const RTC::CameraImage& image) {
                  " octets, got " + std::to_string(image.pixels.length())};
   }
   picture.rgb.resize(3 * count);
-  if (layout->is_depth) {
+  const auto* from = image.pixels.get_buffer();
+  auto* to = picture.rgb.data();
+  if (layout->kind == Kind::depth) {
     depth_to_grey(image, picture);
     return picture;
   }
-  const auto* from = image.pixels.get_buffer();
-  auto* to = picture.rgb.data();
+  if (layout->kind == Kind::bayer) {
+    base::demosaic({from, count}, picture.width, picture.height, image.width, layout->order, picture.rgb);
+    return picture;
+  }
+  if (layout->octets == 3 && layout->red == 0) {
+    std::memcpy(to, from, wanted);
+    return picture;
+  }
   for (std::size_t i = 0; i < count; ++i, from += layout->octets, to += 3) {
     to[0] = from[layout->red];
     to[1] = from[layout->green];

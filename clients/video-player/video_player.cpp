@@ -69,6 +69,7 @@ RTC::ReturnCode_t VideoPlayer::onInitialize() {
 
 RTC::ReturnCode_t VideoPlayer::onActivated(RTC::UniqueId) {
   frames_ = saved_ = refused_ = frames_at_title_ = 0;
+  is_paused_ = false;
   dropped_.store(0, std::memory_order_relaxed);
   title_time_ = Clock::now();
   said_.clear();
@@ -79,6 +80,7 @@ RTC::ReturnCode_t VideoPlayer::onActivated(RTC::UniqueId) {
       RTC_ERROR(("record_dir %s cannot be made: %s", base::in_quotes(record_dir_).c_str(), error.message().c_str()));
       return RTC::RTC_ERROR;
     }
+    times_ = std::ofstream(std::filesystem::path(record_dir_) / "times.txt");
   }
   if (window_wanted_ == 0) return RTC::RTC_OK;
   auto opened = video::Window::open(getInstanceName());
@@ -118,10 +120,10 @@ void VideoPlayer::wait_for_frame() {
   has_arrived_ = false;
 }
 
-RTC::ReturnCode_t VideoPlayer::onExecute(RTC::UniqueId) {
+RTC::ReturnCode_t VideoPlayer::onExecute(RTC::UniqueId ec_id) {
   if (in_real_time() && !image_in_.isNew()) wait_for_frame();
   while (image_in_.isNew() && image_in_.read()) take(image_);
-  if (window_) handle_events();
+  if (window_) handle_events(ec_id);
   update_title();
   return RTC::RTC_OK;
 }
@@ -137,24 +139,46 @@ void VideoPlayer::take(const RTC::CameraImage& image) {
   if (!picture) return refuse(picture.error().message);
   ++frames_;
   if (is_paused_) return;
-  picture_ = std::move(*picture);
+  picture_ = std::make_shared<const video::Picture>(std::move(*picture));
   if (window_) window_->show(picture_);
-  if (!record_dir_.empty()) save(record_dir_, "frame");
+  if (!record_dir_.empty()) record();
 }
 
-void VideoPlayer::save(const std::string& folder, const char* prefix) {
-  if (picture_.rgb.empty()) return;
+// The file's name; empty when there is none.
+std::string VideoPlayer::save(const std::string& folder, const char* prefix) {
+  if (picture_->rgb.empty()) return {};
   char name[64];
   std::snprintf(name, sizeof name, "%s-%06llu.png", prefix, static_cast<unsigned long long>(++saved_));
   const auto file = (std::filesystem::path(folder) / name).string();
-  if (const auto written = video::write_png(picture_, file); !written) refuse(written.error().message);
+  if (const auto written = video::write_png(*picture_, file); !written) {
+    if (said_ != written.error().message) RTC_ERROR(("%s", written.error().message.c_str()));
+    said_ = written.error().message;
+    return {};
+  }
+  return name;
 }
 
-void VideoPlayer::handle_events() {
+void VideoPlayer::record() {
+  const auto name = save(record_dir_, "frame");
+  char time[32];
+  std::snprintf(time, sizeof time, "%u.%09u", static_cast<unsigned>(image_.tm.sec), static_cast<unsigned>(image_.tm.nsec));
+  if (!name.empty()) times_ << name << ' ' << time << std::endl;
+}
+
+void VideoPlayer::handle_events(RTC::UniqueId ec_id) {
   const auto events = window_->events();
-  if (events.toggle_pause) is_paused_ = !is_paused_;
+  if (!events.problem.empty() && events.problem != said_) RTC_ERROR(("%s", events.problem.c_str()));
+  if (!events.problem.empty()) said_ = events.problem;
   if (events.save) save(record_dir_.empty() ? "." : record_dir_, "picture");
-  if (events.close) window_.reset();
+  if (events.toggle_pause) {
+    is_paused_ = !is_paused_;
+    write_title();
+  }
+  if (!events.close) return;
+  window_.reset();
+  if (!record_dir_.empty()) return;
+  RTC_INFO(("the window was closed"));
+  deactivate(ec_id);
 }
 
 void VideoPlayer::update_title() {
@@ -163,10 +187,14 @@ void VideoPlayer::update_title() {
   rate_ = static_cast<double>(frames_ - frames_at_title_) / std::chrono::duration<double>(now - title_time_).count();
   title_time_ = now;
   frames_at_title_ = frames_;
+  write_title();
+}
+
+void VideoPlayer::write_title() {
   if (!window_) return;
   char title[200];
-  std::snprintf(title, sizeof title, "%s  %dx%d  %.1f frames/s  t = %.2f s  dropped %llu%s", getInstanceName(), picture_.width,
-                picture_.height, rate_, image_.tm.sec + image_.tm.nsec * 1e-9,
+  std::snprintf(title, sizeof title, "%s  %dx%d  %.1f frames/s  t = %.2f s  dropped %llu%s", getInstanceName(), picture_->width,
+                picture_->height, rate_, image_.tm.sec + image_.tm.nsec * 1e-9,
                 static_cast<unsigned long long>(dropped_.load(std::memory_order_relaxed)), is_paused_ ? "  paused" : "");
   window_->set_title(title);
 }

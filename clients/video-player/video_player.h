@@ -1,6 +1,8 @@
 // VideoPlayer: shows what comes to the InPort `image` (RTC::CameraImage) in a window, with frame rate, simulated time and dropped frames in
-// its title; space pauses, s saves a PNG, q closes the window. Without a display it says so and needs a record_dir.
-// Configuration: record_dir: a folder for a PNG of every frame (empty: none); window 0 or 1.
+// its title; space pauses, s saves a PNG (in record_dir, or where the process works), q, escape or the window's button close it. A player
+// without window and record_dir has nothing left to do then: it deactivates itself; active again it has a new window. Without a display it
+// says so and writes to record_dir.
+// Configuration: record_dir: a folder for a PNG of every frame, and times.txt with the simulated time of each (empty: none); window 0 or 1.
 #pragma once
 
 #include <rtm/DataFlowComponentBase.h>
@@ -12,6 +14,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <fstream>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -38,9 +41,11 @@ class VideoPlayer : public RTC::DataFlowComponentBase {
 
   void wait_for_frame();
   void take(const RTC::CameraImage& image);
-  void handle_events();
+  void handle_events(RTC::UniqueId ec_id);
   void update_title();
-  void save(const std::string& folder, const char* prefix);
+  void write_title();
+  std::string save(const std::string& folder, const char* prefix);
+  void record();
   void refuse(const std::string& line);
 
   std::string record_dir_;
@@ -49,7 +54,7 @@ class VideoPlayer : public RTC::DataFlowComponentBase {
   RTC::InPort<RTC::CameraImage> image_in_;
 
   std::unique_ptr<video::Window> window_;
-  video::Picture picture_;
+  std::shared_ptr<const video::Picture> picture_ = std::make_shared<video::Picture>();
   bool is_paused_ = false;
   std::uint64_t frames_ = 0;
   std::uint64_t saved_ = 0;
@@ -59,6 +64,7 @@ class VideoPlayer : public RTC::DataFlowComponentBase {
   Clock::time_point title_time_{};
   double rate_ = 0;  // [frames/s of real time]
   std::string said_;
+  std::ofstream times_;  // of the recorded frames
 
   std::mutex mutex_;
   std::condition_variable arrived_;

@@ -1,73 +1,243 @@
 #include "window.h"
 
 #include <SDL.h>
+#include <base/guarded.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <functional>
+#include <future>
+#include <mutex>
+#include <thread>
+#include <utility>
+#include <vector>
 
 namespace video {
 
-struct Window::Impl {
-  SDL_Window* window = nullptr;
-  SDL_Renderer* renderer = nullptr;
-  SDL_Texture* texture = nullptr;
-  int width = 0;
-  int height = 0;
-
-  ~Impl() {
-    if (texture) SDL_DestroyTexture(texture);
-    if (renderer) SDL_DestroyRenderer(renderer);
-    if (window) SDL_DestroyWindow(window);
-    SDL_QuitSubSystem(SDL_INIT_VIDEO);
-  }
+// What a window's owner and the thread of the display tell each other.
+struct Window::Shared {
+  struct State {
+    std::shared_ptr<const Picture> picture;  // to be shown; empty: nothing new
+    std::string title;                       // the same
+    Events events;
+  };
+  base::Guarded<State, base::Rank::buffer> state;
 };
 
-Window::Window() : impl_(std::make_unique<Impl>()) {}
-Window::~Window() = default;
+// A window as SDL knows it. The thread of the display only.
+class Window::Pane {
+ public:
+  static base::Result<std::unique_ptr<Pane>> open(std::shared_ptr<Shared> shared, const std::string& title) {
+    std::unique_ptr<Pane> pane(new Pane(std::move(shared)));
+    pane->window_ = SDL_CreateWindow(title.c_str(), SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED, 640, 480, SDL_WINDOW_RESIZABLE);
+    if (!pane->window_) return base::Error{std::string("the window cannot be made: ") + SDL_GetError()};
+    pane->renderer_ = SDL_CreateRenderer(pane->window_, -1, SDL_RENDERER_SOFTWARE);
+    if (!pane->renderer_) return base::Error{std::string("the window cannot be drawn to: ") + SDL_GetError()};
+    pane->draw();
+    return pane;
+  }
+  ~Pane() {
+    if (texture_) SDL_DestroyTexture(texture_);
+    if (renderer_) SDL_DestroyRenderer(renderer_);
+    if (window_) SDL_DestroyWindow(window_);
+  }
+  Pane(const Pane&) = delete;
+  Pane& operator=(const Pane&) = delete;
+
+  const Shared* shared() const { return shared_.get(); }
+  bool has(std::uint32_t id) const { return SDL_GetWindowID(window_) == id; }
+
+  void take(const SDL_Event& event) {
+    auto state = shared_->state.lock();
+    if (event.type == SDL_WINDOWEVENT) {
+      if (event.window.event == SDL_WINDOWEVENT_CLOSE) state->events.close = true;
+      if (event.window.event == SDL_WINDOWEVENT_EXPOSED || event.window.event == SDL_WINDOWEVENT_SIZE_CHANGED) is_stale_ = true;
+    }
+    if (event.type != SDL_KEYDOWN || event.key.repeat != 0) return;
+    const auto key = event.key.keysym.sym;
+    if (key == SDLK_SPACE) state->events.toggle_pause = !state->events.toggle_pause;
+    if (key == SDLK_s) state->events.save = true;
+    if (key == SDLK_q || key == SDLK_ESCAPE) state->events.close = true;
+  }
+
+  void refresh() {
+    std::shared_ptr<const Picture> picture;
+    std::string title;
+    {
+      auto state = shared_->state.lock();
+      picture = std::exchange(state->picture, nullptr);
+      title = std::exchange(state->title, {});
+    }
+    if (!title.empty()) SDL_SetWindowTitle(window_, title.c_str());
+    if (picture) put(*picture);
+    if (picture || is_stale_) draw();
+  }
+
+ private:
+  explicit Pane(std::shared_ptr<Shared> shared) : shared_(std::move(shared)) {}
+
+  void put(const Picture& picture) {
+    if (picture.width != width_ || picture.height != height_ || !texture_) fit(picture.width, picture.height);
+    if (!texture_) return fail("cannot be shown");
+    if (SDL_UpdateTexture(texture_, nullptr, picture.rgb.data(), 3 * picture.width) != 0) fail("cannot be shown");
+  }
+  void fit(int width, int height) {
+    if (texture_) SDL_DestroyTexture(texture_);
+    texture_ = SDL_CreateTexture(renderer_, SDL_PIXELFORMAT_RGB24, SDL_TEXTUREACCESS_STREAMING, width, height);
+    width_ = width;
+    height_ = height;
+    SDL_Rect screen{0, 0, width, height};
+    SDL_GetDisplayUsableBounds(std::max(SDL_GetWindowDisplayIndex(window_), 0), &screen);
+    const double shrink = std::min({1.0, static_cast<double>(screen.w) / width, static_cast<double>(screen.h) / height});
+    SDL_SetWindowSize(window_, std::max(1, static_cast<int>(width * shrink)), std::max(1, static_cast<int>(height * shrink)));
+    SDL_RenderSetLogicalSize(renderer_, width, height);
+  }
+  void draw() {
+    SDL_SetRenderDrawColor(renderer_, 0, 0, 0, 255);
+    SDL_RenderClear(renderer_);
+    if (texture_) SDL_RenderCopy(renderer_, texture_, nullptr, nullptr);
+    SDL_RenderPresent(renderer_);
+    is_stale_ = false;
+  }
+  void fail(const std::string& what) {
+    shared_->state.lock()->events.problem =
+        "picture of " + std::to_string(width_) + "x" + std::to_string(height_) + " " + what + ": " + SDL_GetError();
+  }
+
+  std::shared_ptr<Shared> shared_;
+  SDL_Window* window_ = nullptr;
+  SDL_Renderer* renderer_ = nullptr;
+  SDL_Texture* texture_ = nullptr;
+  int width_ = 0, height_ = 0;
+  bool is_stale_ = false;  // what is on the display
+};
+
+// The thread of the display. One per process, as SDL is.
+class Window::Screen {
+ public:
+  static Screen& one() {
+    static Screen screen;
+    return screen;
+  }
+
+  ~Screen() {
+    if (panes_open_ > 0) end();  // the process ends with its windows open
+  }
+
+  base::Result<void> open(const std::shared_ptr<Shared>& shared, const std::string& title) {
+    const std::scoped_lock lock(turnstile_);
+    if (panes_open_ == 0) {
+      if (auto started = start(); !started) return started;
+    }
+    base::Result<void> opened;
+    run_there([&] {
+      auto pane = Pane::open(shared, title);
+      if (!pane) {
+        opened = pane.error();
+      } else {
+        panes_.push_back(std::move(*pane));
+      }
+    });
+    if (opened) ++panes_open_;
+    if (panes_open_ == 0) end();
+    return opened;
+  }
+  void close(const Shared* shared) {
+    const std::scoped_lock lock(turnstile_);
+    run_there([&] { std::erase_if(panes_, [&](const auto& pane) { return pane->shared() == shared; }); });
+    if (--panes_open_ == 0) end();
+  }
+  // Only while a window is open.
+  void wake() const {
+    SDL_Event event{};
+    event.type = wake_event_;
+    SDL_PushEvent(&event);
+  }
+
+ private:
+  base::Result<void> start() {
+    std::promise<base::Result<void>> started;
+    is_ending_ = false;
+    thread_ = std::jthread([&] { run(started); });
+    auto result = started.get_future().get();
+    if (!result) thread_.join();
+    return result;
+  }
+  void end() {
+    run_there([this] { is_ending_ = true; });
+    thread_.join();
+  }
+  void run_there(const std::function<void()>& work) {
+    std::promise<void> done;
+    tasks_.lock()->push_back([&] {
+      work();
+      done.set_value();
+    });
+    wake();
+    done.get_future().wait();
+  }
+
+  void run(std::promise<base::Result<void>>& started) {
+    SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");  // the manager ends the process, not the window
+    SDL_SetHint(SDL_HINT_VIDEO_ALLOW_SCREENSAVER, "1");
+    // Without this SDL would rather draw where nobody can see it than fail. The variable SDL_VIDEODRIVER still wins.
+    SDL_SetHint(SDL_HINT_VIDEODRIVER, "x11,wayland");
+    if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0)
+      return started.set_value(base::Error{std::string("the display cannot be used: ") + SDL_GetError()});
+    if (wake_event_ == 0) wake_event_ = SDL_RegisterEvents(1);
+    started.set_value({});
+    while (!is_ending_) {
+      SDL_Event event;
+      if (SDL_WaitEvent(&event) == 0) {
+        SDL_Delay(10);  // a display that has gone: do not spin, but open and close are still answered
+      } else {
+        do handle(event);
+        while (SDL_PollEvent(&event) != 0);
+      }
+      const auto tasks = std::exchange(*tasks_.lock(), {});
+      for (const auto& task : tasks) task();
+      for (auto& pane : panes_) pane->refresh();
+    }
+    SDL_QuitSubSystem(SDL_INIT_VIDEO);
+  }
+  void handle(const SDL_Event& event) {
+    if (event.type != SDL_WINDOWEVENT && event.type != SDL_KEYDOWN) return;
+    const auto id = event.type == SDL_WINDOWEVENT ? event.window.windowID : event.key.windowID;
+    for (auto& pane : panes_) {
+      if (pane->has(id)) pane->take(event);
+    }
+  }
+
+  std::mutex turnstile_;  // whoever opens or closes goes through here, one at a time, and waits for the display meanwhile
+  int panes_open_ = 0;
+  std::uint32_t wake_event_ = 0;
+  base::Guarded<std::vector<std::function<void()>>, base::Rank::buffer> tasks_;
+  std::vector<std::unique_ptr<Pane>> panes_;  // the thread's, like what follows
+  bool is_ending_ = false;
+  std::jthread thread_;
+};
+
+Window::Window(std::shared_ptr<Shared> shared) : shared_(std::move(shared)) {}
+Window::~Window() { Screen::one().close(shared_.get()); }
 
 base::Result<std::unique_ptr<Window>> Window::open(const std::string& title) {
-  if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY") && !std::getenv("SDL_VIDEODRIVER"))
-    return base::Error{"there is no display"};
-  SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");  // the manager ends the process, not the window
-  if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) return base::Error{std::string("the display cannot be used: ") + SDL_GetError()};
-  std::unique_ptr<Window> window(new Window);
-  auto& impl = *window->impl_;
-  impl.window = SDL_CreateWindow(title.c_str(), SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED, 640, 480, SDL_WINDOW_RESIZABLE);
-  if (!impl.window) return base::Error{std::string("the window cannot be made: ") + SDL_GetError()};
-  impl.renderer = SDL_CreateRenderer(impl.window, -1, SDL_RENDERER_SOFTWARE);
-  if (!impl.renderer) return base::Error{std::string("the window cannot be drawn to: ") + SDL_GetError()};
-  return window;
+  const auto has = [](const char* name) { return std::getenv(name) != nullptr && *std::getenv(name) != '\0'; };
+  if (!has("DISPLAY") && !has("WAYLAND_DISPLAY") && !has("SDL_VIDEODRIVER")) return base::Error{"there is no display"};
+  auto shared = std::make_shared<Shared>();
+  if (auto opened = Screen::one().open(shared, title); !opened) return opened.error();
+  return std::unique_ptr<Window>(new Window(std::move(shared)));
 }
 
-void Window::show(const Picture& picture) {
-  auto& impl = *impl_;
-  if (picture.width != impl.width || picture.height != impl.height || !impl.texture) {
-    if (impl.texture) SDL_DestroyTexture(impl.texture);
-    impl.texture = SDL_CreateTexture(impl.renderer, SDL_PIXELFORMAT_RGB24, SDL_TEXTUREACCESS_STREAMING, picture.width, picture.height);
-    impl.width = picture.width;
-    impl.height = picture.height;
-    SDL_SetWindowSize(impl.window, picture.width, picture.height);
-    SDL_RenderSetLogicalSize(impl.renderer, picture.width, picture.height);
-  }
-  if (!impl.texture) return;
-  SDL_UpdateTexture(impl.texture, nullptr, picture.rgb.data(), 3 * picture.width);
-  SDL_RenderClear(impl.renderer);
-  SDL_RenderCopy(impl.renderer, impl.texture, nullptr, nullptr);
-  SDL_RenderPresent(impl.renderer);
+void Window::show(std::shared_ptr<const Picture> picture) {
+  shared_->state.lock()->picture = std::move(picture);
+  Screen::one().wake();
 }
 
-void Window::set_title(const std::string& title) { SDL_SetWindowTitle(impl_->window, title.c_str()); }
-
-Events Window::events() {
-  Events events;
-  SDL_Event event;
-  while (SDL_PollEvent(&event) != 0) {
-    if (event.type == SDL_QUIT) events.close = true;
-    if (event.type != SDL_KEYDOWN) continue;
-    if (event.key.keysym.sym == SDLK_SPACE) events.toggle_pause = true;
-    if (event.key.keysym.sym == SDLK_s) events.save = true;
-    if (event.key.keysym.sym == SDLK_q) events.close = true;
-  }
-  return events;
+void Window::set_title(const std::string& title) {
+  shared_->state.lock()->title = title;
+  Screen::one().wake();
 }
+
+Events Window::events() { return std::exchange(shared_->state.lock()->events, {}); }
 
 }  // namespace video

@@ -1,4 +1,6 @@
-// A window that shows pictures, by SDL2. All calls from the thread that opened it.
+// A window that shows pictures, by SDL2. SDL wants every call from the thread that opened the display, and has one queue of events for the
+// whole process; so the windows of a process share a thread of their own, which lives while there is one. Any thread may open, use and
+// close a window, several at the same time; nothing but open and the destructor waits for the display.
 #pragma once
 
 #include <base/result.h>
@@ -10,10 +12,12 @@
 
 namespace video {
 
+// What happened since the last look.
 struct Events {
   bool toggle_pause = false;  // space
   bool save = false;          // s
-  bool close = false;         // the window's button, or q
+  bool close = false;         // the window's button, q or escape
+  std::string problem;        // a picture that could not be shown: why
 };
 
 class Window {
@@ -24,15 +28,18 @@ class Window {
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  // Fits the picture into the window; the first one, and each of another size, sets the window's size.
-  void show(const Picture& picture);
+  // Soon; a picture that comes before the last one was drawn takes its place. Fits the picture into the window; the first one, and each of
+  // another size, sets the window's size as far as the display allows.
+  void show(std::shared_ptr<const Picture> picture);
   void set_title(const std::string& title);
   Events events();
 
  private:
-  Window();
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  struct Shared;
+  class Pane;
+  class Screen;
+  explicit Window(std::shared_ptr<Shared> shared);
+  std::shared_ptr<Shared> shared_;
 };
 
 }  // namespace video

@@ -41,6 +41,7 @@ class CameraWorker {
   }
 
   bool is_idle() const { return !state_.lock()->is_busy; }
+  std::uint64_t drawn() const { return state_.lock()->drawn; }
   // Only when idle.
   void start(Job job) {
     if (!thread_.joinable()) thread_ = std::jthread([this] { run(); });
@@ -62,13 +63,18 @@ class CameraWorker {
     std::optional<Job> job;
     bool is_busy = false;
     bool is_ending = false;
+    std::uint64_t drawn = 0;
   };
 
   void run() {
     while (auto job = next()) {
       draw(*job);
       job.reset();  // the snapshot may be large; nobody needs it now
-      state_.lock()->is_busy = false;
+      {
+        auto state = state_.lock();
+        state->is_busy = false;
+        ++state->drawn;
+      }
       changed_.notify_all();
     }
     renderer_.reset();  // in the thread that it belongs to
@@ -139,6 +145,7 @@ class CameraDevice final : public Device, public CameraPlaceSource {
   ModelId model() const override { return mount_.link.model; }
   Eigen::Isometry3d camera_pose() const override { return mount_.in_world(world_.physics); }
   const CameraDef& camera_def() const override { return def_; }
+  std::uint64_t pictures_drawn() const override { return worker_.drawn(); }
 
   bool wants_sample(const Moment& moment) override {
     if (!schedule_.is_due(moment.time)) return false;
@@ -194,8 +201,8 @@ shm::CameraInfo info_of(const Camera& camera, const DeviceWorld& world, const Mo
   info.near_clip = def.near_clip;
   info.far_clip = def.far_clip;
   info.fx = info.fy = camera.focal_length();
-  info.cx = 0.5 * def.width;
-  info.cy = 0.5 * def.height;
+  info.cx = camera.principal_point().x();
+  info.cy = camera.principal_point().y();
   if (def.distortion) {
     const DistortionDef& d = *def.distortion;
     const double terms[5] = {d.k1, d.k2, d.p1, d.p2, d.k3};
@@ -211,7 +218,30 @@ shm::CameraInfo info_of(const Camera& camera, const DeviceWorld& world, const Mo
 shm::Format format_of(shm::IfaceType type, const Camera& camera) {
   if (type == shm::IfaceType::depth) return shm::Format::depth_float;
   if (type == shm::IfaceType::points) return shm::Format::points_float;
-  return camera.is_mono() ? shm::Format::mono8 : shm::Format::rgb8;
+  switch (camera.def().format) {
+    case PixelFormat::rgb8:
+    case PixelFormat::float32:
+      return shm::Format::rgb8;
+    case PixelFormat::bgr8:
+      return shm::Format::bgr8;
+    case PixelFormat::rgba8:
+      return shm::Format::rgba8;
+    case PixelFormat::bgra8:
+      return shm::Format::bgra8;
+    case PixelFormat::mono8:
+      return shm::Format::mono8;
+    case PixelFormat::mono16:
+      return shm::Format::mono16;
+    case PixelFormat::bayer_rggb8:
+      return shm::Format::bayer_rggb8;
+    case PixelFormat::bayer_bggr8:
+      return shm::Format::bayer_bggr8;
+    case PixelFormat::bayer_gbrg8:
+      return shm::Format::bayer_gbrg8;
+    case PixelFormat::bayer_grbg8:
+      return shm::Format::bayer_grbg8;
+  }
+  return shm::Format::rgb8;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // while somebody subscribes. The frame of time t shows the world at t, and its pose is the camera's at t. See device.h for the thread rule.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -16,6 +17,7 @@ class CameraPlaceSource {
   virtual ~CameraPlaceSource() = default;
   virtual Eigen::Isometry3d camera_pose() const = 0;  // in the world, now
   virtual const CameraDef& camera_def() const = 0;
+  virtual std::uint64_t pictures_drawn() const = 0;  // so far; none while nobody subscribes
 };
 
 // The devices of one sensor: one for each iface. A camera has a `camera` iface, a depth camera `depth` and `points`, an rgbd camera all

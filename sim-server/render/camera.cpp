@@ -1,34 +1,34 @@
 #include "render/camera.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
+#include "render/formats.h"
 #include "render/pixels.h"
 
 namespace sim {
 namespace {
 
-bool is_mono_format(const std::string& format) {
-  static constexpr std::array<std::string_view, 6> names = {"L8", "L16", "L_INT8", "L_INT16", "INTENSITY8", "MONO8"};
-  return std::find(names.begin(), names.end(), format) != names.end();
-}
-
 constexpr double widest_pinhole = 3.1;  // [rad]
 
 }  // namespace
 
-Camera::Camera(const CameraDef& def, Output output, std::uint64_t seed)
-    : def_(def), output_(output), seed_(seed), is_mono_(is_mono_format(def.format)), lens_(Lens::make(def)) {
+Camera::Camera(const CameraDef& def, Output output, std::uint64_t seed) : def_(def), output_(output), seed_(seed), lens_(Lens::make(def)) {
   def_.horizontal_fov = lens_ ? def_.horizontal_fov : std::min(def_.horizontal_fov, widest_pinhole);
   if (output != Output::depth) rgba_.resize(pixels() * 4);
   if (output != Output::color) depth_.resize(pixels());
 }
 
 std::size_t Camera::pixels() const { return static_cast<std::size_t>(def_.width) * static_cast<std::size_t>(def_.height); }
-std::size_t Camera::color_bytes() const { return pixels() * (is_mono_ ? 1 : 3); }
+std::size_t Camera::color_bytes() const { return pixels() * bytes_per_pixel(def_.format); }
 double Camera::focal_length() const { return 0.5 * def_.width / std::tan(0.5 * std::min(def_.horizontal_fov, widest_pinhole)); }
+
+// Of a distorting lens: the point that it leaves where it is.
+Eigen::Vector2d Camera::principal_point() const {
+  const Eigen::Vector2d middle = lens_ && def_.distortion ? def_.distortion->center : Eigen::Vector2d(0.5, 0.5);
+  return {middle.x() * def_.width, middle.y() * def_.height};
+}
 
 base::Result<void> Camera::take(Renderer& renderer, const std::shared_ptr<const Scene>& scene, std::span<const Eigen::Isometry3d> poses,
                                 const Eigen::Isometry3d& pose, std::int64_t time, Output wanted) {
@@ -70,17 +70,16 @@ void Camera::add_depth_noise() {
 
 void Camera::write_color(std::span<std::uint8_t> out) const {
   out = out.first(std::min(out.size(), color_bytes()));
-  if (is_mono_)
-    rgba_to_mono(rgba_, out);
-  else
-    rgba_to_rgb(rgba_, out);
+  convert_rgba(rgba_, def_.width, def_.format, out);
   if (def_.noise.kind == NoiseDef::Kind::none) return;
-  NoiseStream(mix_seed(seed_, static_cast<std::uint64_t>(time_))).add(out, def_.noise.mean, def_.noise.stddev);
+  add_noise(mix_seed(seed_, static_cast<std::uint64_t>(time_)), def_.noise.mean, def_.noise.stddev, def_.format, out);
 }
 
 void Camera::write_points(std::span<float> out) const {
+  if (lens_) return lens_->points(depth_, out);
   const double f = focal_length();
-  depth_to_points(depth_, def_.width, f, f, 0.5 * def_.width, 0.5 * def_.height, out);
+  const Eigen::Vector2d c = principal_point();
+  depth_to_points(depth_, def_.width, f, f, c.x(), c.y(), out);
 }
 
 }  // namespace sim

@@ -1,8 +1,8 @@
 // One camera of a world: takes pictures with a renderer and hands them out in the formats of sensors. One thread at a time.
 //
 // Pictures are the same for the same scene, poses, seed and time, whatever was taken before. Rows run from the top down, pixels from left
-// to right, without padding. Colour: red, green, blue, one byte each, sRGB. Mono: one byte of luminance (cameras of formats L8, L16,
-// INTENSITY8). Depth: one float [m] along the axis, native byte order, +infinity where nothing is between the clip planes.
+// to right, without padding. Colour: in the format of the definition (world/pixel_format.h), sRGB. Depth: one float [m] along the axis,
+// native byte order, +infinity where nothing is between the clip planes.
 #pragma once
 
 #include <cstdint>
@@ -27,12 +27,12 @@ class Camera {
 
   const CameraDef& def() const { return def_; }
   Output output() const { return output_; }
-  bool is_mono() const { return is_mono_; }
   std::size_t color_bytes() const;  // of a picture in its format
   std::size_t pixels() const;
 
   // Pinhole model [pixel]; of a distorting lens before its distortion.
   double focal_length() const;
+  Eigen::Vector2d principal_point() const;
 
   // `pose`: of the camera in the world. `time` [ns] only chooses the noise. `wanted`: within the camera's output; depth alone is cheaper.
   base::Result<void> take(Renderer& renderer, const std::shared_ptr<const Scene>& scene, std::span<const Eigen::Isometry3d> poses,
@@ -56,7 +56,6 @@ class Camera {
   Output output_;
   std::uint64_t seed_;
   std::int64_t time_ = 0;
-  bool is_mono_;
   std::optional<Lens> lens_;
   std::vector<std::uint8_t> rgba_, face_rgba_;
   std::vector<float> depth_, face_depth_;

@@ -202,4 +202,19 @@ void Lens::map_depth(std::span<const float> source, std::span<float> out) const 
   }
 }
 
+void Lens::points(std::span<const float> depth, std::span<float> out) const {
+  constexpr float none = std::numeric_limits<float>::quiet_NaN();
+  const Face& face = faces_[0];
+  const std::size_t count = std::min({sources_.size(), depth.size(), out.size() / 3});
+  for (std::size_t i = 0; i < count; ++i) {
+    const Source& from = sources_[i];
+    const bool is_hit = from.face == 0 && std::isfinite(depth[i]);
+    const double right = face.left + (from.x + 0.5) / face.width * (face.right - face.left);
+    const double up = face.top - (from.y + 0.5) / face.height * (face.top - face.bottom);
+    out[3 * i] = is_hit ? depth[i] : none;
+    out[3 * i + 1] = is_hit ? static_cast<float>(-right * depth[i]) : none;
+    out[3 * i + 2] = is_hit ? static_cast<float>(up * depth[i]) : none;
+  }
+}
+
 }  // namespace sim

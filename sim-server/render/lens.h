@@ -24,6 +24,8 @@ class Lens {
   void map_rgba(std::size_t view, std::span<const std::uint8_t> source, std::span<std::uint8_t> out) const;
   // The nearest depth; for lenses with one view only.
   void map_depth(std::span<const float> source, std::span<float> out) const;
+  // x forward, y left, z up in the camera for each pixel of a picture that map_depth filled; NaN where its depth is infinite.
+  void points(std::span<const float> depth, std::span<float> out) const;
 
  private:
   struct Face {

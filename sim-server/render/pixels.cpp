@@ -127,6 +127,17 @@ void NoiseStream::add(std::span<std::uint8_t> bytes, double mean, double deviati
   }
 }
 
+void NoiseStream::add16(std::span<std::uint8_t> bytes, double mean, double deviation) {
+  const auto& table = gaussian_table();
+  for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
+    const double noise = mean + deviation * static_cast<double>(table[next() & (table_size - 1)]);
+    const double value = bytes[i] + 256.0 * bytes[i + 1] + 65535 * noise;
+    const auto rounded = static_cast<std::uint32_t>(std::lround(std::clamp(value, 0.0, 65535.0)));
+    bytes[i] = static_cast<std::uint8_t>(rounded);
+    bytes[i + 1] = static_cast<std::uint8_t>(rounded >> 8);
+  }
+}
+
 void NoiseStream::add(std::span<float> metres, double mean, double deviation) {
   const auto& table = gaussian_table();
   const auto m = static_cast<float>(mean), d = static_cast<float>(deviation);

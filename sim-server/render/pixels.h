@@ -18,6 +18,8 @@ class NoiseStream {
 
   // Adds Gaussian noise to every byte, `mean` and `deviation` as shares of full scale (0..1); clamps.
   void add(std::span<std::uint8_t> bytes, double mean, double deviation);
+  // The same for values of 16 bits, low byte first.
+  void add16(std::span<std::uint8_t> bytes, double mean, double deviation);
   // The same for metres; infinities stay.
   void add(std::span<float> metres, double mean, double deviation);
 

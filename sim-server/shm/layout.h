@@ -101,15 +101,32 @@ enum class Format : std::uint32_t {
   depth_float = RTMSIM_FORMAT_DEPTH_FLOAT,
   points_float = RTMSIM_FORMAT_POINTS_FLOAT,
   points_intensity_float = RTMSIM_FORMAT_POINTS_INTENSITY_FLOAT,
+  bgr8 = RTMSIM_FORMAT_BGR8,
+  rgba8 = RTMSIM_FORMAT_RGBA8,
+  bgra8 = RTMSIM_FORMAT_BGRA8,
+  mono16 = RTMSIM_FORMAT_MONO16,
+  bayer_rggb8 = RTMSIM_FORMAT_BAYER_RGGB8,
+  bayer_bggr8 = RTMSIM_FORMAT_BAYER_BGGR8,
+  bayer_gbrg8 = RTMSIM_FORMAT_BAYER_GBRG8,
+  bayer_grbg8 = RTMSIM_FORMAT_BAYER_GRBG8,
 };
 // Bytes of a pixel or point; 0 for an unknown format.
 constexpr std::uint32_t bytes_per_pixel(Format format) {
   switch (format) {
     case Format::rgb8:
+    case Format::bgr8:
       return 3;
     case Format::mono8:
+    case Format::bayer_rggb8:
+    case Format::bayer_bggr8:
+    case Format::bayer_gbrg8:
+    case Format::bayer_grbg8:
       return 1;
+    case Format::mono16:
+      return 2;
     case Format::depth_float:
+    case Format::rgba8:
+    case Format::bgra8:
       return 4;
     case Format::points_float:
       return 12;

@@ -259,21 +259,31 @@ typedef struct {
 } rtmsim_position3d_sample;
 
 enum {
-  RTMSIM_FORMAT_RGB8 = 1, /* r g b */
-  RTMSIM_FORMAT_MONO8 = 2,
-  RTMSIM_FORMAT_DEPTH_FLOAT = 3,           /* metres along the optical axis; +infinity: nothing */
-  RTMSIM_FORMAT_POINTS_FLOAT = 4,          /* x y z [m] in the sensor's frame, three floats per point; NaN: no point */
-  RTMSIM_FORMAT_POINTS_INTENSITY_FLOAT = 5 /* x y z and intensity, four floats per point */
+  RTMSIM_FORMAT_RGB8 = 1,                   /* r g b, a byte each */
+  RTMSIM_FORMAT_MONO8 = 2,                  /* luminance, a byte */
+  RTMSIM_FORMAT_DEPTH_FLOAT = 3,            /* metres along the optical axis; +infinity: nothing */
+  RTMSIM_FORMAT_POINTS_FLOAT = 4,           /* x y z [m] in the sensor's frame, three floats per point; NaN: no point */
+  RTMSIM_FORMAT_POINTS_INTENSITY_FLOAT = 5, /* x y z and intensity, four floats per point */
+  RTMSIM_FORMAT_BGR8 = 6,                   /* b g r, a byte each */
+  RTMSIM_FORMAT_RGBA8 = 7,                  /* r g b 255 */
+  RTMSIM_FORMAT_BGRA8 = 8,                  /* b g r 255 */
+  RTMSIM_FORMAT_MONO16 = 9,                 /* luminance 0..65535, two bytes, the low one first */
+  RTMSIM_FORMAT_BAYER_RGGB8 = 10,           /* a byte per pixel: even rows r g r g ..., odd rows g b g b ... */
+  RTMSIM_FORMAT_BAYER_BGGR8 = 11,           /* even rows b g b g ..., odd rows g r g r ... */
+  RTMSIM_FORMAT_BAYER_GBRG8 = 12,           /* even rows g b g b ..., odd rows r g r g ... */
+  RTMSIM_FORMAT_BAYER_GRBG8 = 13            /* even rows g r g r ..., odd rows b g b g ... */
 };
 
 /* Of camera, depth and points. Rows from top to bottom, pixels from left to right; a cloud without image order has height 1. */
 typedef struct {
-  uint32_t width, height, format, stride; /* stride: bytes from one row to the next */
-  uint64_t frame_size;                    /* bytes of a full frame */
-  double hfov;                            /* horizontal field of view [rad] */
-  double near_clip, far_clip;             /* [m] */
-  double fx, fy, cx, cy;                  /* pinhole model [pixel] */
-  double distortion[5];                   /* k1 k2 p1 p2 k3 */
+  uint32_t width, height;     /* [pixel] */
+  uint32_t format;            /* RTMSIM_FORMAT_* */
+  uint32_t stride;            /* bytes from one row to the next */
+  uint64_t frame_size;        /* bytes of a full frame */
+  double hfov;                /* horizontal field of view [rad] */
+  double near_clip, far_clip; /* [m] */
+  double fx, fy, cx, cy;      /* pinhole model [pixel] */
+  double distortion[5];       /* k1 k2 p1 p2 k3 */
   double rate, noise;
   rtmsim_pose pose; /* on the model; the camera looks along its x axis, y is left, z is up */
   char model[128];
@@ -281,11 +291,11 @@ typedef struct {
 
 /* Head of a slot of the frame ring; the data follow at once. */
 typedef struct {
-  uint64_t lock;      /* [atomic] sequence number of the frame in the slot; 0 while it is empty or written */
-  rtmsim_stamp stamp; /* stamp.sequence == lock */
-  rtmsim_pose pose;   /* true pose of the sensor in the world at the stamp */
-  uint32_t width, height, format, stride;
-  uint64_t size; /* bytes of data that follow */
+  uint64_t lock;                          /* [atomic] sequence number of the frame in the slot; 0 while it is empty or written */
+  rtmsim_stamp stamp;                     /* stamp.sequence == lock */
+  rtmsim_pose pose;                       /* true pose of the sensor in the world at the stamp */
+  uint32_t width, height, format, stride; /* as in the info */
+  uint64_t size;                          /* bytes of data that follow */
   uint64_t reserved;
 } rtmsim_frame;
 

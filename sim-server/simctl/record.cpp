@@ -6,26 +6,78 @@
 
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <vector>
 
+#include "base/bayer.h"
 #include "base/text.h"
 #include "simctl.h"
 
 namespace simctl {
 namespace {
 
-// Rows are packed first: the ring may pad them.
+std::optional<png_uint_32> png_format(shm::Format format) {
+  switch (format) {
+    case shm::Format::rgb8:
+      return PNG_FORMAT_RGB;
+    case shm::Format::bgr8:
+      return PNG_FORMAT_BGR;
+    case shm::Format::rgba8:
+      return PNG_FORMAT_RGBA;
+    case shm::Format::bgra8:
+      return PNG_FORMAT_BGRA;
+    case shm::Format::mono8:
+      return PNG_FORMAT_GRAY;
+    default:
+      return std::nullopt;
+  }
+}
+
+std::optional<base::BayerOrder> bayer_order(shm::Format format) {
+  switch (format) {
+    case shm::Format::bayer_rggb8:
+      return base::BayerOrder{0, 0};
+    case shm::Format::bayer_grbg8:
+      return base::BayerOrder{0, 1};
+    case shm::Format::bayer_gbrg8:
+      return base::BayerOrder{1, 0};
+    case shm::Format::bayer_bggr8:
+      return base::BayerOrder{1, 1};
+    default:
+      return std::nullopt;
+  }
+}
+
+// Mosaics become colours, 16 bits of grey their high bytes.
 base::Result<void> write_frame(const shm::HeldFrame& frame, const std::string& file) {
   const auto& head = frame.head();
   const auto format = static_cast<shm::Format>(head.format);
-  if (format != shm::Format::rgb8 && format != shm::Format::mono8) return base::Error{"record: only rgb and mono cameras can be recorded"};
+  const auto* data = reinterpret_cast<const std::uint8_t*>(frame.data().data());
+  if (frame.data().size() < static_cast<std::size_t>(head.stride) * head.height) return base::Error{"record: the frame is cut short"};
+  std::vector<std::uint8_t> scratch;
+  std::size_t stride = head.stride;
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   image.width = head.width;
   image.height = head.height;
-  image.format = format == shm::Format::rgb8 ? PNG_FORMAT_RGB : PNG_FORMAT_GRAY;
-  if (frame.data().size() < static_cast<std::size_t>(head.stride) * head.height) return base::Error{"record: the frame is cut short"};
-  if (png_image_write_to_file(&image, file.c_str(), 0, frame.data().data(), static_cast<png_int_32>(head.stride), nullptr) == 0)
+  if (const auto known = png_format(format)) {
+    image.format = *known;
+  } else if (const auto order = bayer_order(format)) {
+    image.format = PNG_FORMAT_RGB;
+    stride = std::size_t{3} * head.width;
+    scratch.resize(stride * head.height);
+    base::demosaic({data, frame.data().size()}, static_cast<int>(head.width), static_cast<int>(head.height), head.stride, *order, scratch);
+  } else if (format == shm::Format::mono16) {
+    image.format = PNG_FORMAT_GRAY;
+    stride = head.width;
+    for (std::size_t row = 0; row < head.height; ++row) {
+      for (std::size_t column = 0; column < head.width; ++column) scratch.push_back(data[row * head.stride + 2 * column + 1]);
+    }
+  } else {
+    return base::Error{"record: frames of this format cannot be recorded"};
+  }
+  const void* rows = scratch.empty() ? data : scratch.data();
+  if (png_image_write_to_file(&image, file.c_str(), 0, rows, static_cast<png_int_32>(stride), nullptr) == 0)
     return base::Error{"file " + base::in_quotes(file) + ": " + image.message};
   return {};
 }

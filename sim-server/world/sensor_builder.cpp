@@ -119,7 +119,18 @@ std::optional<RayDef> build_ray(pugi::xml_node sensor, BuildContext& context) {
   return std::nullopt;
 }
 
-std::optional<CameraDef> build_camera(pugi::xml_node sensor, pugi::xml_node node, BuildContext& context) {
+// Depth is always float, and colours never are; models that were copied from one kind to the other say nothing wrong.
+PixelFormat format_at(pugi::xml_node sensor, pugi::xml_node node, SensorKind kind, BuildContext& context) {
+  const std::string name = text_at(node, "image/format", "R8G8B8");
+  const auto format = parse_pixel_format(name);
+  const bool is_color_only = kind == SensorKind::camera || kind == SensorKind::multi_camera;
+  if (format && (*format != PixelFormat::float32 || !is_color_only)) return *format == PixelFormat::float32 ? PixelFormat::rgb8 : *format;
+  context.complaints.warn(child_at(node, "image/format"), "image format " + base::in_quotes(name) + " of " + describe_in_context(sensor) +
+                                                              (format ? " is for depth cameras" : " is not known") + "; R8G8B8 is taken");
+  return PixelFormat::rgb8;
+}
+
+std::optional<CameraDef> build_camera(pugi::xml_node sensor, pugi::xml_node node, SensorKind kind, BuildContext& context) {
   CameraDef camera;
   camera.name = node.attribute("name").value();
   if (camera.name.empty()) camera.name = sensor.attribute("name").value();
@@ -127,7 +138,7 @@ std::optional<CameraDef> build_camera(pugi::xml_node sensor, pugi::xml_node node
   camera.horizontal_fov = number_at(node, "horizontal_fov", 1.047);
   camera.width = integer_at(node, "image/width", 320);
   camera.height = integer_at(node, "image/height", 240);
-  camera.format = text_at(node, "image/format", "R8G8B8");
+  camera.format = format_at(sensor, node, kind, context);
   camera.near_clip = number_at(node, "clip/near", 0.1);
   camera.far_clip = number_at(node, "clip/far", 100);
   if (const pugi::xml_node depth = child_at(node, "depth_camera/clip")) {
@@ -170,7 +181,7 @@ std::optional<CameraDef> build_camera(pugi::xml_node sensor, pugi::xml_node node
 std::optional<CameraSetDef> build_cameras(pugi::xml_node sensor, SensorKind kind, BuildContext& context) {
   CameraSetDef set;
   for (pugi::xml_node node : sensor.children("camera")) {
-    std::optional<CameraDef> camera = build_camera(sensor, node, context);
+    std::optional<CameraDef> camera = build_camera(sensor, node, kind, context);
     if (!camera) return std::nullopt;
     set.cameras.push_back(std::move(*camera));
     if (kind != SensorKind::multi_camera) break;

@@ -15,6 +15,8 @@
 #include <variant>
 #include <vector>
 
+#include "world/pixel_format.h"
+
 namespace sim {
 
 inline constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -235,7 +237,7 @@ struct CameraDef {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // in the sensor; looks along +x, z up
   double horizontal_fov = 1.047;
   int width = 320, height = 240;
-  std::string format = "R8G8B8";  // R8G8B8, B8G8R8, L8, L16, R_FLOAT32, BAYER_*
+  PixelFormat format = PixelFormat::rgb8;  // of the colours; depth is always float
   double near_clip = 0.1, far_clip = 100;
   std::optional<std::pair<double, double>> depth_clip;  // depth and rgbd cameras
   NoiseDef noise;

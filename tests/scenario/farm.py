@@ -114,7 +114,7 @@ try:
 
     lap = 32  # s, a little more than a round
     simctl("step", str(lap * 1000))
-    shown = sorted(os.listdir(frames))
+    shown = sorted(name for name in os.listdir(frames) if name.endswith(".png"))
     assert abs(len(shown) - 5 * lap) <= 1, f"{len(shown)} frames in {lap} s at 5 Hz"
     poses = {}
     for line in open(record):

@@ -9,7 +9,7 @@ import sys
 import tempfile
 import time
 
-watchdog = 60  # [s]; a bound on hanging, not on speed
+watchdog = 6  # [s]; a bound on hanging, not on speed
 
 
 class System:
@@ -49,9 +49,9 @@ class System:
                 left = [name for name in os.listdir("/dev/shm") if name.startswith(f"rtmsim-{os.getuid()}-{server_id}.")]
                 assert not left, left
 
-    def start(self, *words, **environment):
+    def start(self, *words, input=None, **environment):
         log = f"{self.work}/{len(self.running)}.log"
-        process = subprocess.Popen(words, stdout=open(log, "w"), stderr=subprocess.STDOUT, env={**os.environ, "RTMSIM_SERVER_ID": self.server_id, **environment})
+        process = subprocess.Popen(words, stdin=input, stdout=open(log, "w"), stderr=subprocess.STDOUT, env={**os.environ, "RTMSIM_SERVER_ID": self.server_id, **environment})
         process.log_file = log
         self.running.append(process)
         return process

@@ -101,7 +101,7 @@ TEST(Camera, publishes_red_green_blue_from_the_top_left_on) {
 TEST(Camera, mono_formats_publish_one_byte_a_pixel) {
   Set set(grey_world());
   CameraDef def;
-  def.format = "L8";
+  def.format = PixelFormat::mono8;
   Camera camera(def, Camera::Output::color, 1);
   const auto mono = set.color(camera);
   EXPECT_EQ(mono.size(), 320U * 240U);

@@ -22,6 +22,12 @@ TEST(Picture, every_order_of_colours_becomes_rgb) {
   EXPECT_EQ(to_picture(image("bgr8", 24, {3, 2, 1, 6, 5, 4}))->rgb, wanted);
   EXPECT_EQ(to_picture(image("RGBA8", 32, {1, 2, 3, 9, 4, 5, 6, 9}))->rgb, wanted);
   EXPECT_EQ(to_picture(image("", 24, {1, 2, 3, 4, 5, 6}))->rgb, wanted);
+  EXPECT_EQ(to_picture(image("BGRA8", 32, {3, 2, 1, 9, 6, 5, 4, 9}))->rgb, wanted);
+  EXPECT_EQ(to_picture(image("", 0, {1, 2, 3, 4, 5, 6}))->rgb, wanted);
+  EXPECT_EQ(to_picture(image("bitmap", 0, {3, 2, 1, 6, 5, 4}))->rgb, wanted);
+  EXPECT_EQ(to_picture(image("MONO16", 16, {99, 7, 99, 8}))->rgb, (std::vector<unsigned char>{7, 7, 7, 8, 8, 8}));
+  EXPECT_EQ(to_picture(image("BAYER_GRBG8", 8, {20, 10, 30, 20}, 2, 2))->rgb,
+            (std::vector<unsigned char>{10, 20, 30, 10, 20, 30, 10, 20, 30, 10, 20, 30}));
   EXPECT_EQ(to_picture(image("MONO8", 8, {7, 8}))->rgb, (std::vector<unsigned char>{7, 7, 7, 8, 8, 8}));
 }
 
@@ -39,6 +45,11 @@ TEST(Picture, images_that_do_not_fit_their_size_are_refused_with_both_numbers) {
   ASSERT_FALSE(short_one.ok());
   EXPECT_NE(short_one.error().message.find("6 octets, got 3"), std::string::npos) << short_one.error().message;
   EXPECT_FALSE(to_picture(image("RGB8", 24, {}, 0, 0)).ok());
+  EXPECT_FALSE(to_picture(image("RGB8", 24, {}, 65535, 65535)).ok());
+  EXPECT_FALSE(to_picture(image("RGB8", 24, std::vector<unsigned char>(65535 * 3), 65535, 1)).ok());
+  EXPECT_FALSE(to_picture(image("BAYER_RGBG8", 8, {1, 2})).ok());
+  EXPECT_FALSE(to_picture(image("", 0, {1, 2, 3})).ok());
+  EXPECT_FALSE(to_picture(image("", 12, {1, 2, 3})).ok());
   EXPECT_FALSE(to_picture(image("HSV", 24, {1, 2, 3, 4, 5, 6})).ok());
   EXPECT_FALSE(to_picture(image("JPEG", 24, {1, 2, 3, 4, 5, 6})).ok());
   EXPECT_FALSE(to_picture(image("JPEG", 24, {})).ok());

@@ -205,7 +205,7 @@ TEST(WorldSensors, cameras_are_read) {
     EXPECT_EQ(eye.name, "eye");
     EXPECT_EQ(eye.width, 640);
     EXPECT_EQ(eye.height, 480);
-    EXPECT_EQ(eye.format, "L8");
+    EXPECT_EQ(eye.format, PixelFormat::mono8);
     EXPECT_EQ(eye.horizontal_fov, 1.2);
     EXPECT_EQ(eye.far_clip, 50);
     EXPECT_EQ(eye.noise.stddev, 0.01);
@@ -213,6 +213,42 @@ TEST(WorldSensors, cameras_are_read) {
     EXPECT_EQ(eye.pose.translation().z(), 1);
   }
   EXPECT_EQ(std::get<CameraSetDef>(sensor_of("multicamera", camera + "<camera name='other'/>").data).cameras.size(), 2U);
+}
+
+TEST(WorldSensors, formats_of_images_are_known_by_all_their_names_and_others_are_said_once) {
+  const auto load = [](const std::string& type, const std::string& format) {
+    return WorldFiles().load("<model name='m'><link name='l'><sensor name='s' type='" + type + "'><camera><image><format>" + format +
+                             "</format></image></camera></sensor></link></model>");
+  };
+  const auto format_of = [](const LoadResult& result) {
+    return std::get<CameraSetDef>(result.world.models.at(0).links.at(0).sensors.at(0).data).cameras.at(0).format;
+  };
+  for (const auto& [name, format] : {std::pair{"R8G8B8", PixelFormat::rgb8},
+                                     {"RGB_INT8", PixelFormat::rgb8},
+                                     {"B8G8R8", PixelFormat::bgr8},
+                                     {"BGR_INT8", PixelFormat::bgr8},
+                                     {"L8", PixelFormat::mono8},
+                                     {"L_INT8", PixelFormat::mono8},
+                                     {"L16", PixelFormat::mono16},
+                                     {"L_INT16", PixelFormat::mono16},
+                                     {"RGBA_INT8", PixelFormat::rgba8},
+                                     {"BGRA_INT8", PixelFormat::bgra8},
+                                     {"BAYER_RGGB8", PixelFormat::bayer_rggb8},
+                                     {"BAYER_BGGR8", PixelFormat::bayer_bggr8},
+                                     {"BAYER_GBRG8", PixelFormat::bayer_gbrg8},
+                                     {"BAYER_GRBG8", PixelFormat::bayer_grbg8}}) {
+    const auto result = load("camera", name);
+    EXPECT_EQ(format_of(result), format) << name;
+    EXPECT_TRUE(result.findings.empty()) << name;
+  }
+  EXPECT_TRUE(load("depth_camera", "R_FLOAT32").findings.empty());
+  for (const char* name : {"R_FLOAT32", "YUV422", "RGB_INT32"}) {
+    const auto result = load("camera", name);
+    EXPECT_EQ(format_of(result), PixelFormat::rgb8);
+    ASSERT_EQ(result.findings.size(), 1U) << name;
+    EXPECT_NE(result.findings[0].text().find(name), std::string::npos) << result.findings[0].text();
+    EXPECT_NE(result.findings[0].text().find("R8G8B8 is taken"), std::string::npos) << result.findings[0].text();
+  }
 }
 
 TEST(WorldSensors, the_other_kinds_are_read) {

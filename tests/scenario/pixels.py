@@ -1,0 +1,48 @@
+# Pictures of tests: rows of RGB bytes from PNG files with plain or filtered rows, and from PPM files.
+import zlib
+
+
+def unfiltered(kind, row, above, pixel):
+    out = bytearray(row)
+    for i in range(len(out)):
+        left, up, corner = (out[i - pixel] if i >= pixel else 0), above[i], (above[i - pixel] if i >= pixel else 0)
+        if kind == 1:
+            out[i] = (out[i] + left) & 255
+        elif kind == 2:
+            out[i] = (out[i] + up) & 255
+        elif kind == 3:
+            out[i] = (out[i] + (left + up) // 2) & 255
+        elif kind == 4:
+            guess = left + up - corner
+            near = min((abs(guess - left), 0, left), (abs(guess - up), 1, up), (abs(guess - corner), 2, corner))[2]
+            out[i] = (out[i] + near) & 255
+    return bytes(out)
+
+
+def png(path):
+    """Width, height and the bytes of an 8-bit RGB picture."""
+    with open(path, "rb") as file:
+        data = file.read()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n", f"{path}: no PNG"
+    at, packed = 8, b""
+    while at < len(data):
+        length, kind = int.from_bytes(data[at : at + 4], "big"), data[at + 4 : at + 8]
+        body = data[at + 8 : at + 8 + length]
+        if kind == b"IHDR":
+            width, height = int.from_bytes(body[:4], "big"), int.from_bytes(body[4:8], "big")
+            assert body[8:10] == b"\x08\x02", f"{path}: expected 8-bit RGB"
+        if kind == b"IDAT":
+            packed += body
+        at += length + 12
+    raw, step, rows = zlib.decompress(packed), 3 * width + 1, [bytes(3 * width)]
+    for y in range(height):
+        rows.append(unfiltered(raw[y * step], raw[y * step + 1 : (y + 1) * step], rows[-1], 3))
+    return width, height, b"".join(rows[1:])
+
+
+def ppm(path):
+    with open(path, "rb") as file:
+        head, size, _, body = file.read().split(b"\n", 3)
+    assert head == b"P6"
+    width, height = map(int, size.split())
+    return width, height, body
