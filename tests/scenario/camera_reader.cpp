@@ -68,10 +68,6 @@ int main(int argc, char** argv) {
       std::puts("back");
     }
     if (what != shm::Wait::fresh) continue;
-    while (kept.size() >= keep) {
-      if (crc32(kept.front().frame.data()) != kept.front().crc) std::puts("torn");
-      kept.pop_front();
-    }
     auto frame = iface->hold();
     if (!frame) continue;
     last = frame->sequence();
@@ -80,7 +76,10 @@ int main(int argc, char** argv) {
                 static_cast<long long>(frame->head().stamp.sim_time_ns), crc, frame->head().stamp.resets,
                 static_cast<unsigned long long>(shm::load(iface->segment().header().dropped)));
     kept.push_back({std::move(*frame), crc});
-    if (kept.size() == keep) std::this_thread::sleep_for(pause);
+    if (kept.size() < keep) continue;
+    std::this_thread::sleep_for(pause);
+    if (crc32(kept.front().frame.data()) != kept.front().crc) std::puts("torn");
+    kept.pop_front();
   }
   return 0;
 }

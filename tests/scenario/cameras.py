@@ -94,7 +94,7 @@ def slow_reader():
 # Nobody looks: nothing is drawn, there is no thread for it. Killed readers count as nobody.
 def only_for_readers():
     server = system.server(world)
-    threads = lambda: len(os.listdir(f"/proc/{server.pid}/task"))
+    threads = lambda: sum(open(f"/proc/{server.pid}/task/{task}/comm").read().strip() == "sim-server" for task in os.listdir(f"/proc/{server.pid}/task"))
     alone = threads()
     at = system.seconds()
     system.until("a second", lambda: system.seconds() > at + 1)
