@@ -98,4 +98,23 @@ void to_gps_data(const shm::GpsInfo& info, const shm::GpsSample& sample, RTC::GP
   data.fixType = sample.stamp.valid ? RTC::GPS_FIX_NORMAL : RTC::GPS_FIX_NONE;
 }
 
+PixelRay to_ray(const shm::CameraInfo& info, double u, double v) {
+  const double x = (u - info.cx) / info.fx, y = (v - info.cy) / info.fy;
+  const auto& d = info.distortion;  // k1 k2 p1 p2 k3
+  if (std::all_of(std::begin(d), std::end(d), [](double term) { return term == 0; })) return {x, y};
+  // The lens maps rays to pixels; the way back is found by damped steps.
+  PixelRay ray{x, y};
+  for (int i = 0; i < 60; ++i) {
+    const double r2 = ray.right * ray.right + ray.down * ray.down;
+    const double radial = 1 + r2 * (d[0] + r2 * (d[1] + r2 * d[4]));
+    const double off_x = ray.right * radial + 2 * d[2] * ray.right * ray.down + d[3] * (r2 + 2 * ray.right * ray.right) - x;
+    const double off_y = ray.down * radial + d[2] * (r2 + 2 * ray.down * ray.down) + 2 * d[3] * ray.right * ray.down - y;
+    ray.right -= 0.7 * off_x;
+    ray.down -= 0.7 * off_y;
+    if (off_x * off_x + off_y * off_y < 1e-16) break;
+    if (!(std::hypot(ray.right, ray.down) < 20)) return {x, y};  // beyond what the polynomial describes
+  }
+  return ray;
+}
+
 }  // namespace iface

@@ -26,4 +26,12 @@ void to_range_data(const shm::LaserInfo& info, const shm::ScanView& scan, std::u
 void to_range_data(const shm::SonarInfo& info, std::span<const shm::Pose> poses, const shm::SonarView& scan, RTC::RangeData& data);
 void to_gps_data(const shm::GpsInfo& info, const shm::GpsSample& sample, RTC::GPSData& data);
 
+// Where the ray of a pixel goes, per metre of depth: to the right and down. u, v [pixel]: 0.5 is the middle of the first. Lenses that
+// distort are taken into account.
+struct PixelRay {
+  double right = 0;
+  double down = 0;
+};
+PixelRay to_ray(const shm::CameraInfo& info, double u, double v);
+
 }  // namespace iface

@@ -98,8 +98,8 @@ void RTCDepthCamera::send_points(const shm::CameraInfo& info, const shm::HeldFra
       const double depth = depth_at(frame, row, column);
       if (depth <= 0) continue;
       auto& point = points_.points[count++];
-      // Pixel centres lie at half numbers.
-      point.point = {depth, -(column + 0.5 - info.cx) / info.fx * depth, -(row + 0.5 - info.cy) / info.fy * depth};
+      const auto ray = iface::to_ray(info, column + 0.5, row + 0.5);
+      point.point = {depth, -ray.right * depth, -ray.down * depth};
       point.colour = {1, 1, 1};
     }
   }

@@ -6,7 +6,8 @@ rtmsim_test(video_test unit/picture_test.cpp unit/window_test.cpp LIBRARIES vide
 
 # Every interface component against a living simulator, in real processes.
 rtmsim_component(SimulationProbe scenario/simulation_probe.cpp)
-foreach(case sonar imu gps bumper simulation motors wrong_device)
+foreach(case sonar imu gps bumper simulation motors wrong_device camera_formats camera_parameters camera_jpeg depth_camera drone
+    wrong_camera_device restarted_server)
   add_test(NAME components.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/components.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(components.${case} PROPERTIES LABELS integration TIMEOUT 300)

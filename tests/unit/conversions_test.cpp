@@ -90,5 +90,24 @@ TEST(Conversions, courses_run_clockwise_from_north) {
   EXPECT_EQ(data.fixType, RTC::GPS_FIX_NORMAL);
 }
 
+TEST(Conversions, rays_of_pixels_go_back_through_the_lens) {
+  shm::CameraInfo info{};
+  info.fx = info.fy = 200;
+  info.cx = 160;
+  info.cy = 120;
+  EXPECT_NEAR(to_ray(info, 210, 70).right, 0.25, 1e-12);
+  EXPECT_NEAR(to_ray(info, 210, 70).down, -0.25, 1e-12);
+  const double terms[5] = {-0.2, 0.05, 0.003, -0.002, 0.01};
+  std::copy(std::begin(terms), std::end(terms), info.distortion);
+  for (const double u : {0.5, 100.0, 160.0, 319.5}) {
+    for (const double v : {0.5, 120.0, 239.5}) {
+      const auto ray = to_ray(info, u, v);
+      const double x = ray.right, y = ray.down, r2 = x * x + y * y, radial = 1 + r2 * (-0.2 + r2 * (0.05 + r2 * 0.01));
+      EXPECT_NEAR(160 + 200 * (x * radial + 2 * 0.003 * x * y - 0.002 * (r2 + 2 * x * x)), u, 1e-4);
+      EXPECT_NEAR(120 + 200 * (y * radial + 0.003 * (r2 + 2 * y * y) - 2 * 0.002 * x * y), v, 1e-4);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace iface
