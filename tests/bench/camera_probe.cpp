@@ -4,6 +4,7 @@
 //   camera_probe SERVER_ID CAMERA COUNT [options of rtcd]
 #include <rtm/InPortBase.h>
 #include <rtm/Manager.h>
+#include <rtm/RTObject.h>
 #include <rtm/idl/InterfaceDataTypesSkel.h>
 
 #include <algorithm>
