@@ -37,7 +37,7 @@ def measure(interface):
         s.rtse("act", "VideoPlayer0", "RTCCamera0")
         s.until("the frames", lambda: player.poll() is not None)
         assert player.returncode == 0, s.log(player)
-        return tuple(map(float, s.log(player).splitlines()[-1].split()))
+        return tuple(map(float, next(line for line in s.log(player).splitlines() if line.startswith("latency ")).split()[1:]))
 
 
 for interface, limit in (("corba_cdr", 2000), ("shared_memory", 500)):

@@ -1,5 +1,5 @@
 // A host of VideoPlayer that measures how long a frame takes from its publication by the simulator until it is in the player's buffer:
-// prints median and 90th percentile [us] of COUNT frames, then ends.
+// prints "latency MEDIAN P90" [us] of COUNT frames, then ends.
 //
 //   camera_probe SERVER_ID CAMERA COUNT [options of rtcd]
 #include <rtm/InPortBase.h>
@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
   if (is_complete) {
     std::vector<double> times(measured.times.begin() + warm_up, measured.times.end());
     std::ranges::sort(times);
-    std::printf("%.1f %.1f\n", times[times.size() / 2], times[times.size() * 9 / 10]);
+    std::printf("latency %.1f %.1f\n", times[times.size() / 2], times[times.size() * 9 / 10]);
     std::fflush(stdout);
   }
   manager->shutdown();
