@@ -1,0 +1,6 @@
+find_path(OSMESA_INCLUDE_DIR GL/osmesa.h REQUIRED)
+find_library(OSMESA_LIBRARY OSMesa REQUIRED)
+add_executable(render_bench render_bench.cpp bare_gl.cpp)
+target_include_directories(render_bench PRIVATE ${PROJECT_SOURCE_DIR}/tests ${OSMESA_INCLUDE_DIR})
+target_link_libraries(render_bench PRIVATE simserver simrender rtmsim_settings ${OSMESA_LIBRARY})
+target_compile_definitions(render_bench PRIVATE RTMSIM_WORLDS_DIR="${PROJECT_SOURCE_DIR}/worlds")
