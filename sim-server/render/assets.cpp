@@ -58,6 +58,20 @@ std::string key_of(const HeightmapShape& shape) {
   return fmt::format("{}|{},{},{}|{}", shape.path, shape.size.x(), shape.size.y(), shape.size.z(), shape.sampling);
 }
 
+// Between the points of a grid; u and v from 0 to 1, from its upper left corner.
+double height_at(const HeightGrid& grid, double u, double v) {
+  const double x = u * (grid.columns - 1), y = v * (grid.rows - 1);
+  const int column = std::min(static_cast<int>(x), grid.columns - 2), row = std::min(static_cast<int>(y), grid.rows - 2);
+  const auto at = [&](int c, int r) {
+    return static_cast<double>(
+        grid.heights[static_cast<std::size_t>(r) * static_cast<std::size_t>(grid.columns) + static_cast<std::size_t>(c)]);
+  };
+  const double fx = x - column, fy = y - row;
+  const double upper = at(column, row) + fx * (at(column + 1, row) - at(column, row));
+  const double lower = at(column, row + 1) + fx * (at(column + 1, row + 1) - at(column, row + 1));
+  return upper + fy * (lower - upper);
+}
+
 // The weight of each layer at a height: a layer fades in over its distance from its minimum height on, and hides those below.
 std::vector<double> layer_weights(const HeightmapShape& shape, double height) {
   std::vector<double> weights(shape.textures.size(), 0.0);
@@ -81,11 +95,12 @@ Assets::Assets()
   Mesh missing = make_box();
   for (auto& vertex : missing.vertices)
     for (auto& coordinate : vertex.position) coordinate *= 0.3F;
-  missing.bounds = Eigen::AlignedBox3f(0.3F * missing.bounds.min(), 0.3F * missing.bounds.max());
+  finish(missing);
   missing.parts[0].material.diffuse = {1, 0, 1, 1};
   missing.is_stand_in = true;
   missing_mesh_ = std::make_shared<Mesh>(std::move(missing));
   missing_texture_ = std::make_shared<Texture>(make_texture(chequer()));
+  white_ = std::make_shared<Texture>(Texture{{Image{1, 1, {255, 255, 255, 255}}}, false});
   flat_normals_ = std::make_shared<Texture>(Texture{{Image{1, 1, {128, 128, 255, 255}}}, false});
 }
 
@@ -129,6 +144,7 @@ Eigen::Affine3d Assets::placement_of(const GeometryDef& geometry) {
 }
 
 std::shared_ptr<const Mesh> Assets::load(const MeshShape& shape) {
+  if (shape.path == missing_file) return missing_mesh_;
   auto& kept = meshes_[key_of(shape)];
   if (kept) return kept;
   auto file = read_mesh_file(shape);
@@ -141,6 +157,7 @@ std::shared_ptr<const Mesh> Assets::load(const MeshShape& shape) {
 }
 
 std::shared_ptr<const Mesh> Assets::load(const HeightmapShape& shape) {
+  if (shape.path == missing_file) return missing_mesh_;
   auto& kept = meshes_[key_of(shape)];
   if (kept) return kept;
   auto grid = triangles_.heights(shape);
@@ -167,6 +184,7 @@ base::Result<Image> Assets::image(const std::string& path) {
 }
 
 std::shared_ptr<const Texture> Assets::texture(const std::string& path) {
+  if (path == missing_file) return missing_texture_;
   auto& kept = textures_[path];
   if (kept) return kept;
   auto picture = image(path);
@@ -201,7 +219,7 @@ std::shared_ptr<const Texture> Assets::height_texture(const HeightmapShape& shap
   if (const auto kept = textures_.find(key); kept != textures_.end()) return kept->second;
   std::vector<Image> layers;
   for (const auto& layer : shape.textures) {
-    auto picture = layer.diffuse.empty() ? base::Result<Image>(chequer()) : image(layer.diffuse);
+    auto picture = layer.diffuse.empty() || layer.diffuse == missing_file ? base::Result<Image>(chequer()) : image(layer.diffuse);
     if (!picture) complaints_.push_back(picture.error().message + "; a chequer stands in");
     layers.push_back(picture ? std::move(*picture) : chequer());
   }
@@ -211,10 +229,8 @@ std::shared_ptr<const Texture> Assets::height_texture(const HeightmapShape& shap
   Image out{side, side, std::vector<std::uint8_t>(static_cast<std::size_t>(side) * side * 4, 255)};
   for (int y = 0; y < side; ++y) {
     for (int x = 0; x < side; ++x) {
-      const HeightGrid& g = **grid;
-      const auto column = static_cast<std::size_t>(x * (g.columns - 1) / (side - 1));
-      const auto row = static_cast<std::size_t>(y * (g.rows - 1) / (side - 1));
-      const auto weights = layer_weights(shape, g.heights[row * static_cast<std::size_t>(g.columns) + column]);
+      const auto weights =
+          layer_weights(shape, height_at(**grid, static_cast<double>(x) / (side - 1), static_cast<double>(y) / (side - 1)));
       std::array<double, 3> sum{};
       for (std::size_t k = 0; k < layers.size(); ++k) {
         if (weights[k] <= 0) continue;

@@ -34,6 +34,8 @@ class Assets {
   std::shared_ptr<const Texture> texture(const std::string& path);
   // Bumps: bytes are used as they are.
   std::shared_ptr<const Texture> normal_map(const std::string& path);
+  // One white pixel.
+  std::shared_ptr<const Texture> white() const { return white_; }
   // The layers of a height map blended by height into one picture that covers it; null when it has no readable layer.
   std::shared_ptr<const Texture> height_texture(const HeightmapShape& shape);
 
@@ -47,7 +49,7 @@ class Assets {
   base::Result<Image> image(const std::string& path);
 
   std::shared_ptr<const Mesh> box_, sphere_, cylinder_, plane_, missing_mesh_;
-  std::shared_ptr<const Texture> missing_texture_, flat_normals_;
+  std::shared_ptr<const Texture> missing_texture_, flat_normals_, white_;
   TriangleCache triangles_;
   std::map<std::string, std::shared_ptr<const Mesh>> meshes_;
   std::map<std::string, std::shared_ptr<const Texture>> textures_;

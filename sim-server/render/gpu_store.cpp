@@ -73,7 +73,8 @@ SurfaceProgram::SurfaceProgram(GpuProgram built) : program(std::move(built)) {
                                                 {&shadow_lift, "shadow_lift"},
                                                 {&shadow_texel, "shadow_texel"},
                                                 {&albedo_map, "albedo_map"},
-                                                {&bump_map, "bump_map"}};
+                                                {&bump_map, "bump_map"},
+                                                {&glow_map, "glow_map"}};
   for (const auto& [place, name] : all) *place = program.uniform(name);
 }
 
@@ -130,6 +131,7 @@ void GpuStore::keep_only(const Scene& scene) {
     used.insert(drawable.mesh.get());
     used.insert(drawable.material.texture.get());
     used.insert(drawable.material.normal_map.get());
+    used.insert(drawable.material.emissive_map.get());
   }
   std::erase_if(meshes_, [&](const auto& entry) { return !used.contains(entry.first.get()); });
   std::erase_if(textures_, [&](const auto& entry) { return !used.contains(entry.first.get()); });

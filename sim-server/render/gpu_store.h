@@ -37,7 +37,7 @@ struct SurfaceProgram {
   GLint albedo, emissive, shine, ambient, fog_color, fog_range, eye;
   GLint sun_direction, sun_color, sun_specular;
   GLint lamp_position, lamp_color, lamp_specular, lamp_reach, spot_axis, spot_cone;
-  GLint shadow_map, shadow_matrix, shadow_lift, shadow_texel, albedo_map, bump_map;
+  GLint shadow_map, shadow_matrix, shadow_lift, shadow_texel, albedo_map, bump_map, glow_map;
   std::uint64_t frame = 0;  // of the last picture whose view and lights it was told
 };
 

@@ -21,10 +21,9 @@ void add_quad(Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, std
   mesh.indices.insert(mesh.indices.end(), {a, b, c, a, c, d});
 }
 
-void finish(Mesh& mesh) {
-  mesh.bounds.setEmpty();
-  for (const auto& v : mesh.vertices) mesh.bounds.extend(Eigen::Vector3f(v.position[0], v.position[1], v.position[2]));
-  mesh.parts.assign(1, {0, static_cast<std::uint32_t>(mesh.indices.size()), MaterialDef{}});
+void finish_shape(Mesh& mesh) {
+  mesh.parts.assign(1, {0, static_cast<std::uint32_t>(mesh.indices.size()), MaterialDef{}, {}, false});
+  finish(mesh);
 }
 
 // A surface of revolution about z. Profile points run from the top to the bottom.
@@ -75,6 +74,21 @@ void add_disc(Mesh& mesh, double radius, double z, bool is_up, int segments) {
 
 }  // namespace
 
+void finish(Mesh& mesh) {
+  mesh.bounds.setEmpty();
+  for (auto& part : mesh.parts) {
+    const std::span<const std::uint32_t> indices(mesh.indices.data() + part.first_index, part.index_count);
+    part.bounds.setEmpty();
+    for (const auto index : indices)
+      part.bounds.extend(Eigen::Vector3f(Eigen::Map<const Eigen::Vector3f>(mesh.vertices[index].position.data())));
+    mesh.bounds.extend(part.bounds);
+    const auto normal = [&](std::size_t i) { return Eigen::Map<const Eigen::Vector3f>(mesh.vertices[indices[i]].normal.data()); };
+    part.is_faceted = true;
+    for (std::size_t i = 0; i + 2 < indices.size() && part.is_faceted; i += 3)
+      part.is_faceted = normal(i).dot(normal(i + 1)) > 0.999999F && normal(i).dot(normal(i + 2)) > 0.999999F;
+  }
+}
+
 Mesh make_box() {
   Mesh mesh;
   // For each face its normal, and which way the image's u and v run on it.
@@ -91,7 +105,8 @@ Mesh make_box() {
     add_vertex(mesh, corner + u, normal, 1, 0);
     add_quad(mesh, first, first + 1, first + 2, first + 3);
   }
-  finish(mesh);
+  mesh.is_closed = true;
+  finish_shape(mesh);
   return mesh;
 }
 
@@ -105,7 +120,8 @@ Mesh make_sphere(int rings, int segments) {
     profile.push_back({radius, 0.5 * normal.y(), normal, static_cast<double>(r) / rings});
   }
   add_lathe(mesh, profile, segments);
-  finish(mesh);
+  mesh.is_closed = true;
+  finish_shape(mesh);
   return mesh;
 }
 
@@ -114,7 +130,8 @@ Mesh make_cylinder(int segments) {
   add_lathe(mesh, {{0.5, 0.5, {1, 0}, 0}, {0.5, -0.5, {1, 0}, 1}}, segments);
   add_disc(mesh, 0.5, 0.5, true, segments);
   add_disc(mesh, 0.5, -0.5, false, segments);
-  finish(mesh);
+  mesh.is_closed = true;
+  finish_shape(mesh);
   return mesh;
 }
 
@@ -125,7 +142,7 @@ Mesh make_plane() {
   add_vertex(mesh, {0.5, -0.5, 0}, {0, 0, 1}, 1, 1);
   add_vertex(mesh, {0.5, 0.5, 0}, {0, 0, 1}, 1, 0);
   add_quad(mesh, 0, 1, 2, 3);
-  finish(mesh);
+  finish_shape(mesh);
   return mesh;
 }
 
@@ -143,7 +160,8 @@ Mesh make_capsule(double radius, double length, int rings, int segments) {
     }
   }
   add_lathe(mesh, profile, segments);
-  finish(mesh);
+  mesh.is_closed = true;
+  finish_shape(mesh);
   return mesh;
 }
 
@@ -170,7 +188,7 @@ Mesh make_height_grid(int columns, int rows, double width, double depth, std::sp
       mesh.indices.insert(mesh.indices.end(), {a, below, a + 1, a + 1, below, below + 1});
     }
   }
-  finish(mesh);
+  finish_shape(mesh);
   return mesh;
 }
 
@@ -189,7 +207,7 @@ Mesh make_flat(std::span<const Eigen::Vector3d> vertices, std::span<const std::a
       add_vertex(mesh, p, normal, along, is_level ? -p.y() : -p.z());
     }
   }
-  finish(mesh);
+  finish_shape(mesh);
   return mesh;
 }
 

@@ -24,6 +24,9 @@ struct MeshPart {
   std::uint32_t first_index = 0;
   std::uint32_t index_count = 0;
   MaterialDef material;  // the file's own; plain grey for generated shapes
+  // Told by finish():
+  Eigen::AlignedBox3f bounds;  // of what the triangles use
+  bool is_faceted = false;     // every triangle has one normal
 };
 
 // Three indices a triangle, counter-clockwise seen from outside.
@@ -31,9 +34,13 @@ struct Mesh {
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;
   std::vector<MeshPart> parts;
-  Eigen::AlignedBox3f bounds;
-  bool is_stand_in = false;  // for a mesh that could not be read; keeps its warning colour
+  Eigen::AlignedBox3f bounds;  // of what the triangles use
+  bool is_closed = false;      // seen from outside only: its back faces never show and are not needed for its shadow
+  bool is_stand_in = false;    // for a mesh that could not be read; keeps its warning colour
 };
+
+// Fills in what follows from triangles and parts: bounds and facets.
+void finish(Mesh& mesh);
 
 // A picture inside a mesh file, by the name that the materials of the mesh use for it.
 struct EmbeddedImage {

@@ -43,7 +43,9 @@ class Reader {
   MeshFile read() {
     collect(*scene_.mRootNode, aiMatrix4x4(), false);
     for (auto& [index, indices] : indices_by_material_) {
-      MeshPart part{static_cast<std::uint32_t>(out_.mesh.indices.size()), static_cast<std::uint32_t>(indices.size()), material(index)};
+      mend_normals(indices);
+      MeshPart part{
+          static_cast<std::uint32_t>(out_.mesh.indices.size()), static_cast<std::uint32_t>(indices.size()), material(index), {}, false};
       out_.mesh.indices.insert(out_.mesh.indices.end(), indices.begin(), indices.end());
       out_.mesh.parts.push_back(std::move(part));
     }
@@ -77,10 +79,45 @@ class Reader {
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
       if (face.mNumIndices != 3 || indices.size() >= most_triangles * 3) continue;
-      if (!is_finite(first + face.mIndices[0]) || !is_finite(first + face.mIndices[1]) || !is_finite(first + face.mIndices[2])) continue;
+      const std::uint32_t corners[3] = {first + face.mIndices[0], first + face.mIndices[1], first + face.mIndices[2]};
+      if (!is_triangle(corners)) continue;
       indices.push_back(first + face.mIndices[0]);
       indices.push_back(first + face.mIndices[is_mirrored ? 2 : 1]);
       indices.push_back(first + face.mIndices[is_mirrored ? 1 : 2]);
+    }
+  }
+
+  // False for what has no area or no place.
+  bool is_triangle(const std::uint32_t (&corners)[3]) const {
+    if (!is_finite(corners[0]) || !is_finite(corners[1]) || !is_finite(corners[2])) return false;
+    const auto& a = out_.mesh.vertices[corners[0]].position;
+    const auto& b = out_.mesh.vertices[corners[1]].position;
+    const auto& c = out_.mesh.vertices[corners[2]].position;
+    return a != b && b != c && c != a;
+  }
+
+  // Normals that the file, or its triangles without area, left useless are made from the triangles about them.
+  void mend_normals(const std::vector<std::uint32_t>& indices) {
+    auto& vertices = out_.mesh.vertices;
+    const auto is_bad = [&](std::uint32_t i) {
+      const Eigen::Map<const Eigen::Vector3f> n(vertices[i].normal.data());
+      return !n.allFinite() || std::abs(n.squaredNorm() - 1) > 0.1F;
+    };
+    std::map<std::uint32_t, Eigen::Vector3f> sums;
+    for (const auto i : indices)
+      if (is_bad(i)) sums.emplace(i, Eigen::Vector3f::Zero());
+    if (sums.empty()) return;
+    for (std::size_t t = 0; t + 2 < indices.size(); t += 3) {
+      const auto at = [&](std::size_t k) {
+        return Eigen::Vector3f(Eigen::Map<const Eigen::Vector3f>(vertices[indices[t + k]].position.data()));
+      };
+      const Eigen::Vector3f cross = (at(1) - at(0)).cross(at(2) - at(0));
+      for (std::size_t k = 0; k < 3; ++k)
+        if (const auto found = sums.find(indices[t + k]); found != sums.end()) found->second += cross;
+    }
+    for (const auto& [i, sum] : sums) {
+      const Eigen::Vector3f n = sum.norm() > 0 ? Eigen::Vector3f(sum.normalized()) : Eigen::Vector3f(0, 0, 1);
+      vertices[i].normal = {n.x(), n.y(), n.z()};
     }
   }
 
@@ -139,8 +176,7 @@ class Reader {
     if (shape_.scale.prod() < 0) {
       for (std::size_t i = 0; i + 2 < out_.mesh.indices.size(); i += 3) std::swap(out_.mesh.indices[i + 1], out_.mesh.indices[i + 2]);
     }
-    for (const auto index : out_.mesh.indices)
-      out_.mesh.bounds.extend(Eigen::Map<const Eigen::Vector3f>(out_.mesh.vertices[index].position.data()));
+    finish(out_.mesh);
   }
 
   const aiScene& scene_;

@@ -11,9 +11,9 @@ Eigen::Vector3f linear(const Color& color) { return {to_linear(color.r), to_line
 
 Material to_material(const MaterialDef& in, double transparency, Assets& assets) {
   Material out;
-  const Eigen::Vector3f albedo = linear(in.diffuse);
   const float alpha = in.diffuse.a * static_cast<float>(1 - std::clamp(transparency, 0.0, 1.0));
-  out.albedo << albedo, alpha;
+  out.albedo.head<3>() = linear(in.diffuse);
+  out.albedo.w() = alpha;
   out.emissive = linear(in.emissive);
   out.specular = linear(in.specular);
   out.shininess = in.shininess;
@@ -22,13 +22,20 @@ Material to_material(const MaterialDef& in, double transparency, Assets& assets)
     const float roughness = std::clamp(in.roughness, 0.08F, 1.0F);
     out.shininess = 2.0F / std::pow(roughness, 4.0F) - 2.0F;
     const float peak = (out.shininess + 8.0F) / 25.0F;
-    const Eigen::Vector3f reflected = Eigen::Vector3f::Constant(0.04F) + in.metalness * (albedo - Eigen::Vector3f::Constant(0.04F));
+    const Eigen::Vector3f reflected =
+        Eigen::Vector3f::Constant(0.04F) + in.metalness * (Eigen::Vector3f(out.albedo.head<3>()) - Eigen::Vector3f::Constant(0.04F));
     out.specular = reflected * std::min(peak, 20.0F);
     out.albedo.head<3>() *= 1.0F - 0.8F * in.metalness;
   }
   if (out.shininess <= 0) out.specular.setZero();
   if (!in.texture.empty()) out.texture = assets.texture(in.texture);
   if (!in.normal_map.empty()) out.normal_map = assets.normal_map(in.normal_map);
+  if (!in.emissive_map.empty()) {
+    out.emissive_map = assets.texture(in.emissive_map);
+    if (out.emissive.isZero()) out.emissive.setOnes();
+  }
+  // All maps of a surface lie on it as its colours do.
+  if (!out.texture && (out.normal_map || out.emissive_map)) out.texture = assets.white();
   out.repeat = in.texture_scale.cast<float>();
   out.is_lit = in.lighting;
   out.is_double_sided = in.double_sided || (out.texture && out.texture->has_holes);
@@ -96,6 +103,23 @@ class Builder {
     scene_.models.push_back(std::move(entry));
   }
 
+  // A large level sheet of something static, with nothing below it, is ground: it could only shade itself.
+  void mark_grounds() {
+    constexpr double smallest = 20, thickest = 0.05, deepest = 0.5;  // [m]
+    std::vector<Eigen::AlignedBox3d> boxes;
+    double lowest = infinite;
+    for (const auto& drawable : scene_.drawables) {
+      boxes.push_back(drawable.bounds_at(scene_.links[drawable.link].start));
+      if (!drawable.is_ground) lowest = std::min(lowest, boxes.back().min().z());
+    }
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      const Eigen::Vector3d size = boxes[i].sizes();
+      if (scene_.links[scene_.drawables[i].link].is_static && std::min(size.x(), size.y()) >= smallest && size.z() <= thickest &&
+          boxes[i].max().z() < lowest + deepest)
+        scene_.drawables[i].is_ground = true;
+    }
+  }
+
   Scene& scene() { return scene_; }
 
  private:
@@ -117,12 +141,12 @@ class Builder {
         }
       }
       drawable.casts_shadow = visual.cast_shadows && plane == nullptr && visual.transparency < 0.9;
-      drawable.is_ground = plane != nullptr;
+      drawable.is_ground = drawable.has_grid = plane != nullptr;
       drawable.is_mirrored = drawable.in_link.linear().determinant() < 0;
       drawable.visibility_flags = visual.visibility_flags;
-      const Eigen::Vector3d centre = mesh->bounds.center().cast<double>();
-      drawable.centre = drawable.in_link * centre;
-      drawable.radius = (drawable.in_link.linear() * (0.5 * mesh->bounds.sizes().cast<double>()).asDiagonal()).rowwise().norm().norm();
+      const Eigen::AlignedBox3d box = drawable.bounds();
+      drawable.centre = drawable.in_link * box.center();
+      drawable.radius = (drawable.in_link.linear() * (0.5 * box.sizes()).asDiagonal()).rowwise().norm().norm();
       scene_.drawables.push_back(std::move(drawable));
     }
   }
@@ -134,7 +158,7 @@ class Builder {
       const Eigen::Isometry3d& pose = scene_.links[drawable.link].start;
       model.radius = std::max(model.radius, (pose * drawable.centre - origin.translation()).norm() + drawable.radius);
       const Eigen::Matrix3d turned = pose.linear() * drawable.in_link.linear();
-      const double half = (turned * (0.5 * drawable.mesh->bounds.sizes().cast<double>()).asDiagonal()).row(2).cwiseAbs().sum();
+      const double half = (turned * (0.5 * drawable.bounds().sizes()).asDiagonal()).row(2).cwiseAbs().sum();
       model.height = std::max(model.height, (pose * drawable.centre - origin.translation()).z() + half);
     }
   }
@@ -146,12 +170,21 @@ class Builder {
 
 }  // namespace
 
+Eigen::AlignedBox3d Drawable::bounds() const { return mesh->parts[part].bounds.cast<double>(); }
+
+Eigen::AlignedBox3d Drawable::bounds_at(const Eigen::Isometry3d& link_pose) const {
+  const Eigen::Vector3d middle = link_pose * centre;
+  const Eigen::Vector3d half = (link_pose.linear() * in_link.linear() * (0.5 * bounds().sizes()).asDiagonal()).cwiseAbs().rowwise().sum();
+  return {Eigen::Vector3d(middle - half), Eigen::Vector3d(middle + half)};
+}
+
 std::shared_ptr<const Scene> Scene::build(const Parts& parts, Assets& assets, Content content) {
   Builder builder(assets, content);
   builder.scene().look = parts.look;
   for (const auto* light : parts.lights) builder.scene().lights.push_back({*light, -1});
   for (const auto* model : parts.models) builder.add(*model);
   for (const auto* actor : parts.actors) builder.add(*actor);
+  builder.mark_grounds();
   return std::make_shared<Scene>(std::move(builder.scene()));
 }
 
@@ -174,11 +207,7 @@ Eigen::AlignedBox3d Scene::bounds(std::span<const Eigen::Isometry3d> poses) cons
   Eigen::AlignedBox3d box;
   for (const auto& drawable : drawables) {
     if (drawable.is_ground || drawable.link >= poses.size()) continue;
-    const Eigen::Matrix3d linear = poses[drawable.link].linear() * drawable.in_link.linear();
-    const Eigen::Vector3d centre = poses[drawable.link] * drawable.centre;
-    const Eigen::Vector3d half = (linear * (0.5 * drawable.mesh->bounds.sizes().cast<double>()).asDiagonal()).cwiseAbs().rowwise().sum();
-    box.extend(Eigen::Vector3d(centre - half));
-    box.extend(Eigen::Vector3d(centre + half));
+    box.extend(drawable.bounds_at(poses[drawable.link]));
   }
   return box;
 }

@@ -20,8 +20,8 @@ struct Material {
   Eigen::Vector3f emissive{0, 0, 0};
   Eigen::Vector3f specular{0, 0, 0};
   float shininess = 0;
-  std::shared_ptr<const Texture> texture, normal_map;  // may be null
-  Eigen::Vector2f repeat{1, 1};                        // of the texture along u and v
+  std::shared_ptr<const Texture> texture, normal_map, emissive_map;  // may be null
+  Eigen::Vector2f repeat{1, 1};                                      // of the texture along u and v
   bool is_lit = true;
   bool is_double_sided = false;
   bool is_transparent = false;  // drawn after all others, from far to near
@@ -36,9 +36,13 @@ struct Drawable {
   Eigen::Vector3d centre{0, 0, 0};  // of the bounding sphere, in the link
   double radius = 0;
   bool casts_shadow = true;
-  bool is_ground = false;    // an infinite plane: never in the shadow pass
+  bool is_ground = false;    // a plane or a large level sheet below everything: never in the shadow pass
+  bool has_grid = false;     // a plane: shows metre lines when a view asks for them
   bool is_mirrored = false;  // in_link turns the outside in
   std::uint32_t visibility_flags = 0xffffffff;
+
+  Eigen::AlignedBox3d bounds() const;                                       // of the part, in the mesh
+  Eigen::AlignedBox3d bounds_at(const Eigen::Isometry3d& link_pose) const;  // in the world, with its link there
 };
 
 struct SceneLink {

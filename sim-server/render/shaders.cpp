@@ -8,10 +8,27 @@ std::string define(const char* name, int value) { return "#define " + std::strin
 std::string header(const Features& f) {
   std::string out = "#version 330 core\n";
   out += define("DEPTH_ONLY", f.depth_only) + define("TEXTURE", f.texture) + define("HOLES", f.holes) + define("NORMAL_MAP", f.normal_map);
+  out += define("EMISSIVE_MAP", f.emissive_map);
   out += define("LIT", f.lit) + define("SPECULAR", f.specular) + define("DOUBLE_SIDED", f.double_sided) + define("GRID", f.grid);
   out += define("FOG", static_cast<int>(f.fog)) + define("SHADOW_TAPS", f.shadow_taps);
   out += define("DIRECTIONAL", f.directional) + define("POINTS", f.points) + define("SPOTS", f.spots);
+  out += define("FACETED", f.faceted) + define("SHINE", f.shine);
+  // Where the shadow map is looked at is linear over a triangle, but for surfaces with a back whose normal turns round.
+  out += define("SHADOW_AT_VERTEX", f.shadow_taps > 0 && !f.double_sided);
+  out += define("POSITION", !f.depth_only && (f.specular || f.points + f.spots > 0 || f.fog != FogKind::none || f.normal_map || f.grid ||
+                                              (f.shadow_taps > 0 && f.double_sided)));
   return out;
+}
+
+// x^(SHINE / 2): a few multiplications for whole exponents, which nearly all are.
+std::string power_source(int shine) {
+  if (shine == 0) return "float power(float x) { return pow(x, 0.5 * shine.w); }\n";
+  std::string out = "float power(float x) {\n  float p = " + std::string((shine & 1) != 0 ? "sqrt(x)" : "1.0") + ";\n";
+  for (int rest = shine / 2; rest > 0; rest /= 2) {
+    if ((rest & 1) != 0) out += "  p *= x;\n";
+    if (rest > 1) out += "  x *= x;\n";
+  }
+  return out + "  return p;\n}\n";
 }
 
 // sRGB of linear light: two square roots, within 0.1/255 of the exact curve and much cheaper than a power.
@@ -32,18 +49,33 @@ uniform mat4 model;          // to camera-relative world axes
 uniform mat3 normal_matrix;
 uniform mat4 view_projection;
 uniform vec2 repeat;
-#if !DEPTH_ONLY
+#if POSITION
 out vec3 v_position;
+#endif
+#if LIT && !DEPTH_ONLY
+#if FACETED
+flat
+#endif
 out vec3 v_normal;
+#endif
+#if SHADOW_AT_VERTEX
+uniform mat4 shadow_matrix;  // camera-relative to the map's [0, 1]
+uniform float shadow_lift;   // along the normal [m]
+out vec3 v_shadow;
 #endif
 #if TEXTURE
 out vec2 v_uv;
 #endif
 void main() {
   vec4 p = model * vec4(position, 1.0);
-#if !DEPTH_ONLY
+#if POSITION
   v_position = p.xyz;
-  v_normal = normal_matrix * normal;
+#endif
+#if LIT && !DEPTH_ONLY
+  v_normal = normalize(normal_matrix * normal);
+#endif
+#if SHADOW_AT_VERTEX
+  v_shadow = (shadow_matrix * vec4(p.xyz + v_normal * shadow_lift, 1.0)).xyz;
 #endif
 #if TEXTURE
   v_uv = uv * repeat;
@@ -64,8 +96,15 @@ void main() {
 #endif
 }
 #else
+#if POSITION
 in vec3 v_position;
+#endif
+#if LIT
+#if FACETED
+flat
+#endif
 in vec3 v_normal;
+#endif
 out vec4 picture;
 uniform vec4 albedo;
 uniform vec3 emissive;
@@ -91,19 +130,38 @@ uniform vec3 spot_cone[SPOTS];  // cos(outer / 2), 1 / (cos(inner / 2) - cos(out
 #endif
 #if SHADOW_TAPS
 uniform sampler2DShadow shadow_map;
-uniform mat4 shadow_matrix;  // camera-relative to the map's [0, 1]
-uniform float shadow_lift;   // along the normal [m]
+#if SHADOW_AT_VERTEX
+in vec3 v_shadow;
+#else
+uniform mat4 shadow_matrix;
+uniform float shadow_lift;
+#endif
 uniform float shadow_texel;  // size of one in the map's [0, 1]
 #endif
 #if NORMAL_MAP
 uniform sampler2D bump_map;
 #endif
+#if EMISSIVE_MAP
+uniform sampler2D glow_map;
+#endif
 )";
 
 constexpr const char* surface_functions = R"(
+#if SPECULAR
+// max(0, n.h)^shininess, from its square: h need not be made a unit vector.
+float lobe(vec3 n, vec3 l, float distance) {
+  vec3 h = l * distance - v_position;
+  float c = max(dot(n, h), 0.0);
+  return power(c * c / dot(h, h));
+}
+#endif
 #if SHADOW_TAPS
-float shade(vec3 p, vec3 n) {
-  vec3 s = (shadow_matrix * vec4(p + n * shadow_lift, 1.0)).xyz;
+float shade(vec3 n) {
+#if SHADOW_AT_VERTEX
+  vec3 s = v_shadow;
+#else
+  vec3 s = (shadow_matrix * vec4(v_position + n * shadow_lift, 1.0)).xyz;
+#endif
   s.z = min(s.z, 1.0);
 #if SHADOW_TAPS == 1
   return texture(shadow_map, s);
@@ -138,6 +196,11 @@ float lines(vec2 p, vec2 pixel, float step, float width) {
 #endif
 void main() {
   vec4 base = albedo;
+  vec3 glow = emissive;
+#if EMISSIVE_MAP
+  vec3 glow_texel = texture(glow_map, v_uv).rgb;
+  glow *= glow_texel * glow_texel;
+#endif
 #if TEXTURE
   vec4 texel = texture(albedo_map, v_uv);
 #if HOLES
@@ -154,7 +217,11 @@ void main() {
   base.rgb *= 1.0 - near * (0.22 * lines(ground, pixel, 1.0, 0.006) + 0.2 * lines(ground, pixel, 5.0, 0.012));
 #endif
 #if LIT
+#if FACETED
+  vec3 n = v_normal;
+#else
   vec3 n = normalize(v_normal);
+#endif
 #if DOUBLE_SIDED
   if (!gl_FrontFacing) n = -n;
 #endif
@@ -164,19 +231,18 @@ void main() {
   vec3 diffuse = ambient * (1.0 + 0.25 * n.z);
   vec3 specular = vec3(0.0);
 #if SPECULAR
-  vec3 v = normalize(-v_position);
+  float reach_v = length(v_position);
 #endif
 #if DIRECTIONAL
   for (int i = 0; i < DIRECTIONAL; ++i) {
     float d = max(dot(n, sun_direction[i]), 0.0);
     float open = 1.0;
 #if SHADOW_TAPS
-    if (i == 0) open = shade(v_position, n);
+    if (i == 0) open = shade(n);
 #endif
     diffuse += d * open * sun_color[i];
 #if SPECULAR
-    float s = max(dot(n, normalize(sun_direction[i] + v)), 0.0);
-    specular += (d > 0.0 ? pow(s, shine.w) * open : 0.0) * sun_specular[i];
+    specular += (d > 0.0 ? lobe(n, sun_direction[i], reach_v) * open : 0.0) * sun_specular[i];
 #endif
   }
 #endif
@@ -197,17 +263,16 @@ void main() {
     float d = max(dot(n, l), 0.0) * strength;
     diffuse += d * lamp_color[i];
 #if SPECULAR
-    float s = max(dot(n, normalize(l + v)), 0.0);
-    specular += (d > 0.0 ? pow(s, shine.w) * strength : 0.0) * lamp_specular[i];
+    specular += (d > 0.0 ? lobe(n, l, reach_v) * strength : 0.0) * lamp_specular[i];
 #endif
   }
 #endif
-  vec3 light = emissive + base.rgb * diffuse;
+  vec3 light = glow + base.rgb * diffuse;
 #if SPECULAR
   light += specular * shine.rgb;
 #endif
 #else
-  vec3 light = emissive + base.rgb;
+  vec3 light = glow + base.rgb;
 #endif
 #if FOG
   float distance = length(v_position);
@@ -230,7 +295,8 @@ void main() {
 std::string surface_vertex_source(const Features& features) { return header(features) + surface_vertex; }
 std::string surface_fragment_source(const Features& features) {
   // The functions close the conditional that the declarations open: without colour there is nothing else.
-  return header(features) + surface_fragment + encode_source + surface_functions;
+  const std::string power = features.specular ? power_source(features.shine) : std::string();
+  return header(features) + surface_fragment + power + encode_source + surface_functions;
 }
 
 std::string sky_vertex_source() {

@@ -29,10 +29,13 @@ struct Features {
   bool texture = false;
   bool holes = false;  // of the texture: cut out
   bool normal_map = false;
+  bool emissive_map = false;
   bool lit = true;
   bool specular = false;
+  int shine = 0;  // the exponent when it is a whole number up to 128, else 0
   bool double_sided = false;
-  bool grid = false;  // metre lines on the ground
+  bool faceted = false;  // every triangle has one normal
+  bool grid = false;     // metre lines on the ground
   FogKind fog = FogKind::none;
   int shadow_taps = 0;  // a side; 0: no shadow
   int directional = 0, points = 0, spots = 0;

@@ -35,10 +35,8 @@ void ShadowMap::allocate(int size) {
     gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, size, size, 0, GL_DEPTH_COMPONENT, GL_FLOAT, nullptr);
     gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
     gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
-    const float lit[4] = {1, 1, 1, 1};
-    gl_.TexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, lit);
+    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
     gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
   }
@@ -117,19 +115,23 @@ base::Result<void> ShadowMap::update(const Scene& scene, std::span<const Eigen::
   gl_.DrawBuffer(GL_NONE);
   gl_.ReadBuffer(GL_NONE);
   gl_.Viewport(0, 0, size_, size_);
+  // The outermost pixels stay lit: beyond them there is no shadow.
+  gl_.Enable(GL_SCISSOR_TEST);
+  gl_.Scissor(1, 1, size_ - 2, size_ - 2);
   gl_.Enable(GL_DEPTH_TEST);
   gl_.Enable(GL_DEPTH_CLAMP);
   gl_.DepthMask(GL_TRUE);
   gl_.DepthFunc(GL_LEQUAL);
   gl_.Disable(GL_BLEND);
-  gl_.FrontFace(GL_CCW);
-  gl_.Disable(GL_CULL_FACE);
+  gl_.CullFace(GL_BACK);
   if (!is_kept) {
     is_valid_ = false;
     fit(scene, poses, to_light, focus);
     for (const auto& map : {&kept_, &working_}) {
       gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, map->name(), 0);
+      gl_.Disable(GL_SCISSOR_TEST);
       gl_.Clear(GL_DEPTH_BUFFER_BIT);
+      gl_.Enable(GL_SCISSOR_TEST);
       if (auto done = draw(scene, poses, true); !done) return done;
     }
     dirty_.clear();
@@ -140,6 +142,7 @@ base::Result<void> ShadowMap::update(const Scene& scene, std::span<const Eigen::
   gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, working_.name(), 0);
   if (auto done = draw(scene, poses, false); !done) return done;
   gl_.Disable(GL_DEPTH_CLAMP);
+  gl_.Disable(GL_SCISSOR_TEST);
   poses_.assign(poses.begin(), poses.end());
   is_valid_ = true;
   return {};
@@ -187,6 +190,13 @@ base::Result<void> ShadowMap::draw(const Scene& scene, std::span<const Eigen::Is
       gl_.Uniform1i(current->albedo_map, 0);
       gl_.Uniform2f(current->repeat, drawable.material.repeat.x(), drawable.material.repeat.y());
     }
+    // Of closed shapes the sides to the light are enough.
+    if (drawable.mesh->is_closed) {
+      gl_.Enable(GL_CULL_FACE);
+    } else {
+      gl_.Disable(GL_CULL_FACE);
+    }
+    gl_.FrontFace(drawable.is_mirrored ? GL_CW : GL_CCW);
     const MeshPart& part = drawable.mesh->parts[drawable.part];
     gl_.BindVertexArray(store_.mesh(drawable.mesh).vertex_array.name());
     gl_.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(part.index_count), GL_UNSIGNED_INT,

@@ -270,8 +270,9 @@ std::optional<MaterialDef> Materials::from_script(pugi::xml_node script, const s
         return material;
       }
     }
-    complaints_.warn(script, "texture " + base::in_quotes(material.texture) + " of material " + base::in_quotes(name) + " is not found");
-    material.texture.clear();
+    complaints_.warn(script, "texture " + base::in_quotes(material.texture) + " of material " + base::in_quotes(name) +
+                                 " is not found; a chequer stands in");
+    material.texture = missing_file;
     return material;
   }
   return built_in_material(name);

@@ -132,14 +132,22 @@ void ModelFiles::resolve_uris(pugi::xml_node entity, const fs::path& folder) {
     }
     if (is_shape) {
       const pugi::xml_node owner = node.parent().parent().parent();
+      const bool is_seen = std::string_view(owner.name()) == "visual";
       complaints_.drop(node, std::string(parent) + " file " + base::in_quotes(uri) + " of " + describe_in_context(owner) +
-                                 " is not found; the " + owner.name() + " is left out");
-      lost.push_back(owner);
+                                 " is not found; " +
+                                 (is_seen ? "a magenta box stands in" : std::string("the ") + owner.name() + " is left out"));
+      if (is_seen)
+        node.text() = missing_file;
+      else
+        lost.push_back(owner);
     } else if (is_script) {
       // The materials of Gazebo itself are built in.
       if (uri.find("gazebo.material") == std::string::npos)
         complaints_.warn(node, "material script " + base::in_quotes(uri) + " is not found");
       lost.push_back(node);
+    } else if (name == "albedo_map" || name == "diffuse") {
+      complaints_.warn(node, "texture " + base::in_quotes(uri) + " is not found; a chequer stands in");
+      node.text() = missing_file;
     } else {
       complaints_.warn(node, (is_figure ? "animation or skin " : "texture ") + base::in_quotes(uri) + " is not found");
       lost.push_back(node);

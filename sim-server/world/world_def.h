@@ -149,6 +149,9 @@ struct CollisionDef {
 };
 
 // Fully resolved: scripts and built-in Gazebo colours are already colours and texture paths.
+// In place of the path of a mesh, height map or picture that was not found, and of which a line has told: pictures show a stand-in.
+inline constexpr const char* missing_file = "missing:";
+
 struct MaterialDef {
   Color ambient{0.7F, 0.7F, 0.7F, 1};
   Color diffuse{0.7F, 0.7F, 0.7F, 1};

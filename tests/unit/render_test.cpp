@@ -12,102 +12,12 @@
 #include <random>
 #include <thread>
 
-#include "support/scene_maker.h"
+#include "support/studio.h"
 
 namespace sim {
 namespace {
 
-using test::at;
-using test::glowing_material;
-using test::one_visual_model;
-using test::plain_material;
-
-std::unique_ptr<Renderer> open_renderer() {
-  auto opened = Renderer::open();
-  if (!opened) throw std::runtime_error(opened.error().message);
-  return std::move(*opened);
-}
-// Compiling shaders takes a while; most tests can share one.
-Renderer& shared_renderer() {
-  static const std::unique_ptr<Renderer> renderer = open_renderer();
-  return *renderer;
-}
-
-struct Studio {
-  Assets assets;
-  Renderer* renderer;
-  std::shared_ptr<const Scene> scene;
-  std::vector<Eigen::Isometry3d> poses;
-
-  explicit Studio(const WorldDef& world, Renderer& with = shared_renderer())
-      : renderer(&with), scene(Scene::build(world, assets)), poses(scene->start_poses()) {}
-  Image picture(const View& view, const Overlay* overlay = nullptr) {
-    const auto drawn = renderer->draw(scene, poses, view, overlay);
-    if (!drawn) throw std::runtime_error(drawn.error().message);
-    Image image{view.width, view.height, {}};
-    image.rgba.resize(image.size_bytes());
-    renderer->read_rgba(image.rgba);
-    return image;
-  }
-  std::vector<float> depth(View view) {
-    view.wants_color = false;
-    const auto drawn = renderer->draw(scene, poses, view);
-    if (!drawn) throw std::runtime_error(drawn.error().message);
-    std::vector<float> out(static_cast<std::size_t>(view.width * view.height));
-    renderer->read_depth(out);
-    return out;
-  }
-};
-
-std::array<int, 3> pixel(const Image& image, int x, int y) {
-  const std::uint8_t* p = &image.rgba[static_cast<std::size_t>(y * image.width + x) * 4];
-  return {p[0], p[1], p[2]};
-}
-
-double decode(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
-double encode(double l) {
-  l = std::clamp(l, 0.0, 1.0);
-  return l <= 0.0031308 ? 12.92 * l : 1.055 * std::pow(l, 1 / 2.4) - 0.055;
-}
-
-::testing::AssertionResult is_near(const std::array<int, 3>& got, const Eigen::Vector3d& linear, double tolerance) {
-  for (std::size_t c = 0; c < 3; ++c) {
-    const double expected = encode(linear[static_cast<Eigen::Index>(c)]) * 255;
-    if (std::abs(got[c] - expected) > tolerance)
-      return ::testing::AssertionFailure() << "component " << c << " is " << got[c] << ", expected " << expected;
-  }
-  return ::testing::AssertionSuccess();
-}
-
-Eigen::Vector3d linear_of(const Color& c) { return {decode(c.r), decode(c.g), decode(c.b)}; }
-
-const Eigen::Isometry3d looking_down = at(0, 0, 5, 0, M_PI / 2);
-
-TEST(Render, markers_appear_where_a_pinhole_camera_sees_them) {
-  std::mt19937 random(7);
-  std::uniform_real_distribution<double> unit(-1, 1);
-  const Eigen::Isometry3d camera = at(0.3, -0.7, 1.1, 0.8, 0.3, 0.2);
-  const View view = View::pinhole(camera, 1.2, 320, 240);
-  const double focal = 160 / std::tan(0.6);
-  for (int i = 0; i < 20; ++i) {
-    const double depth = 3 + 2 * unit(random);
-    const Eigen::Vector3d local(depth, depth * 0.55 * unit(random), depth * 0.4 * unit(random));
-    WorldDef world = test::dark_world();
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.translation() = camera * local;
-    world.models.push_back(one_visual_model("marker", SphereShape{0.06}, pose, glowing_material({1, 1, 1, 1})));
-    Studio studio(world);
-    const Image image = studio.picture(view);
-    Eigen::Vector2d sum(0, 0);
-    int count = 0;
-    for (int y = 0; y < 240; ++y)
-      for (int x = 0; x < 320; ++x)
-        if (pixel(image, x, y)[0] > 128) sum += Eigen::Vector2d(x + 0.5, y + 0.5), ++count;
-    ASSERT_GT(count, 4);
-    const Eigen::Vector2d expected(160 - focal * local.y() / local.x(), 120 - focal * local.z() / local.x());
-    EXPECT_LT((sum / count - expected).norm(), 0.5) << "marker " << i << " at " << local.transpose();
-  }
-}
+using namespace test;
 
 // Distance along the ray to a box at the origin of `pose`, or infinity.
 double ray_to_box(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Isometry3d& pose,
@@ -150,114 +60,6 @@ WorldDef world_of(const std::vector<Box>& boxes) {
     world.models.push_back(
         one_visual_model("box" + std::to_string(i), BoxShape{boxes[i].size}, boxes[i].pose, plain_material({0.5F, 0.5F, 0.5F, 1}), false));
   return world;
-}
-
-TEST(Render, depth_agrees_with_exact_ray_casts) {
-  for (unsigned seed = 1; seed <= 3; ++seed) {
-    std::mt19937 random(seed);
-    const auto boxes = random_boxes(random, 12);
-    Studio studio(world_of(boxes));
-    const Eigen::Isometry3d camera = at(-6, 1, 2, 0.1, 0.25, 0.05);
-    View view = View::pinhole(camera, 1.1, 320, 240);
-    view.near_clip = 0.05;
-    view.far_clip = 60;
-    const auto depth = studio.depth(view);
-    const double focal = 160 / std::tan(0.55);
-    const auto exact = [&](double x, double y) {
-      const Eigen::Vector3d local(1, (160 - x) / focal, (120 - y) / focal);
-      return nearest(boxes, camera.translation(), camera.linear() * local);  // in units of depth, as local.x is 1
-    };
-    int compared = 0;
-    for (int y = 0; y < 240; y += 6) {
-      for (int x = 0; x < 320; x += 6) {
-        const double expected = exact(x + 0.5, y + 0.5);
-        const float got = depth[static_cast<std::size_t>(y * 320 + x)];
-        // An edge may fall to either side of a pixel's centre by the rasteriser's fixed point.
-        const double slope = std::max({std::abs(exact(x + 0.45, y + 0.5) - expected), std::abs(exact(x + 0.55, y + 0.5) - expected),
-                                       std::abs(exact(x + 0.5, y + 0.45) - expected), std::abs(exact(x + 0.5, y + 0.55) - expected)});
-        if (!(slope < 0.02 * expected) && std::isfinite(expected)) continue;
-        ++compared;
-        if (expected > 60) {
-          EXPECT_TRUE(std::isinf(got)) << x << ' ' << y << ' ' << got;
-        } else {
-          EXPECT_NEAR(got, expected, 0.001 + 0.001 * expected) << "seed " << seed << " pixel " << x << ' ' << y;
-        }
-      }
-    }
-    EXPECT_GT(compared, 1700);
-  }
-}
-
-TEST(Render, lit_flat_surfaces_have_the_colours_of_the_formula) {
-  std::mt19937 random(11);
-  std::uniform_real_distribution<float> unit(0, 1);
-  for (int i = 0; i < 25; ++i) {
-    WorldDef world = test::dark_world();
-    world.scene.ambient = {0.5F * unit(random), 0.5F * unit(random), 0.5F * unit(random), 1};
-    const Color diffuse{unit(random), unit(random), unit(random), 1};
-    const Color light{unit(random), unit(random), unit(random), 1};
-    const double tilt = 0.6 * unit(random);
-    const Eigen::Vector3d direction(unit(random) - 0.5, unit(random) - 0.5, -1);
-    world.lights.push_back(test::sun(direction, light, false));
-    world.lights.back().intensity = 0.9;
-    world.models.push_back(one_visual_model("plate", BoxShape{{2, 2, 0.2}}, at(0, 0, 0, 0, tilt), plain_material(diffuse)));
-    Studio studio(world);
-    const Image image = studio.picture(View::pinhole(looking_down, 0.8, 64, 64));
-    const Eigen::Vector3d normal(std::sin(tilt), 0, std::cos(tilt));
-    const Eigen::Vector3d received = linear_of(world.scene.ambient) * (1 + 0.25 * normal.z()) +
-                                     0.9 * std::max(0.0, -normal.dot(direction.normalized())) * Eigen::Vector3d(light.r, light.g, light.b);
-    EXPECT_TRUE(is_near(pixel(image, 32, 32), linear_of(diffuse).cwiseProduct(received), 1.0)) << "sample " << i;
-  }
-}
-
-TEST(Render, point_and_spot_lights_follow_their_reach) {
-  WorldDef world = test::dark_world();
-  LightDef lamp;
-  lamp.kind = LightDef::Kind::point;
-  lamp.pose = at(1, 0.5, 2);
-  lamp.diffuse = {0.8F, 0.9F, 0.7F, 1};
-  lamp.range = 20;
-  lamp.constant_attenuation = 0.5;
-  lamp.linear_attenuation = 0.1;
-  lamp.quadratic_attenuation = 0.05;
-  world.lights.push_back(lamp);
-  LightDef spot = lamp;
-  spot.kind = LightDef::Kind::spot;
-  spot.pose = at(-0.5, 0, 3);
-  spot.inner_angle = 0.3;
-  spot.outer_angle = 0.9;
-  spot.falloff = 1;
-  world.lights.push_back(spot);
-  world.models.push_back(one_visual_model("floor", PlaneShape{{0, 0, 1}, {20, 20}}, at(0, 0, 0), plain_material({0.9F, 0.9F, 0.9F, 1})));
-  Studio studio(world);
-  const Image image = studio.picture(View::pinhole(looking_down, 1.2, 200, 200));
-  const double focal = 100 / std::tan(0.6);
-  for (const auto& [x, y] : {std::pair(100, 100), std::pair(40, 90), std::pair(120, 160), std::pair(100, 112), std::pair(10, 10)}) {
-    // Looking down with yaw 0: the picture's up is x of the world, its left is y.
-    const Eigen::Vector3d p(5 * (99.5 - y) / focal, 5 * (99.5 - x) / focal, 0);
-    Eigen::Vector3d received(0, 0, 0);
-    for (const auto& light : world.lights) {
-      const Eigen::Vector3d to = light.pose.translation() - p;
-      const double r = to.norm();
-      double strength = 1 / (0.5 + 0.1 * r + 0.05 * r * r);
-      if (light.kind == LightDef::Kind::spot) {
-        const double cosine = to.z() / r;
-        strength *= std::clamp((cosine - std::cos(0.45)) / (std::cos(0.15) - std::cos(0.45)), 0.0, 1.0);
-      }
-      received += strength * to.z() / r * Eigen::Vector3d(light.diffuse.r, light.diffuse.g, light.diffuse.b);
-    }
-    EXPECT_TRUE(is_near(pixel(image, x, y), received * decode(0.9), 1.5)) << x << ' ' << y;
-  }
-}
-
-TEST(Render, fog_hides_what_is_far) {
-  WorldDef world = test::dark_world();
-  world.scene.fog = FogDef{"linear", {0.8F, 0.7F, 0.6F, 1}, 2, 10, 1};
-  world.models.push_back(one_visual_model("wall", BoxShape{{0.1, 20, 20}}, at(6.05, 0, 0), glowing_material({0.2F, 0.3F, 0.9F, 1})));
-  Studio studio(world);
-  const Image image = studio.picture(View::pinhole(at(0, 0, 0), 0.8, 64, 64));
-  const Eigen::Vector3d wall = linear_of({0.2F, 0.3F, 0.9F, 1}), fog = linear_of(world.scene.fog->color);
-  EXPECT_TRUE(is_near(pixel(image, 32, 32), wall + 0.5 * (fog - wall), 1.0));
 }
 
 TEST(Render, shadows_fall_where_rays_to_the_sun_are_blocked) {
@@ -363,7 +165,7 @@ TEST(Render, a_missing_texture_and_a_missing_mesh_are_named_and_shown_in_magenta
   EXPECT_NE(complaints[0].find("/nowhere/brick.png"), std::string::npos);
   EXPECT_NE(complaints[1].find("/nowhere/cow.dae"), std::string::npos);
   EXPECT_TRUE(studio.assets.take_complaints().empty());
-  const Image image = studio.picture(View::pinhole(looking_down, 1.4, 128, 128));
+  const Image image = studio.picture(View::pinhole(looking_down(), 1.4, 128, 128));
   int magenta = 0;
   for (int y = 0; y < 128; ++y)
     for (int x = 0; x < 128; ++x) {
@@ -384,7 +186,7 @@ TEST(Render, a_texture_keeps_its_colours) {
   material.lighting = false;
   world.models.push_back(one_visual_model("plate", BoxShape{{2, 2, 0.2}}, at(0, 0, 0), material));
   Studio studio(world);
-  const Image image = studio.picture(View::pinhole(looking_down, 0.3, 32, 32));
+  const Image image = studio.picture(View::pinhole(looking_down(), 0.3, 32, 32));
   std::filesystem::remove(file);
   EXPECT_TRUE(studio.assets.take_complaints().empty());
   EXPECT_TRUE(is_near(pixel(image, 16, 16), linear_of({120 / 255.0F, 33 / 255.0F, 205 / 255.0F, 1}), 1.0));
@@ -409,7 +211,7 @@ TEST(Render, overlays_show_fans_trails_and_names) {
   overlay.fans.push_back({{0, 0, 0}, {{1, 1, 0}, {1, 0, 0}, {1, -1, 0}}, overlay_color(0)});
   overlay.trails.push_back({{{-1, -1, 0}, {-1, 1, 0}}, overlay_color(1), 3});
   overlay.labels.push_back({{-1.5, 0, 0}, "robot", {1, 0, 0, 1}, 12});
-  const Image image = studio.picture(View::pinhole(looking_down, 1.0, 200, 200), &overlay);
+  const Image image = studio.picture(View::pinhole(looking_down(), 1.0, 200, 200), &overlay);
   int blue = 0, green = 0, red = 0;
   for (int y = 0; y < 200; ++y)
     for (int x = 0; x < 200; ++x) {
@@ -437,7 +239,7 @@ TEST(Render, a_mesh_file_is_drawn_with_its_own_materials) {
   model.links[0].visuals[0].material.reset();
   world.models.push_back(model);
   Studio studio(world);
-  const Image image = studio.picture(View::pinhole(looking_down, 0.5, 64, 64));
+  const Image image = studio.picture(View::pinhole(looking_down(), 0.5, 64, 64));
   std::filesystem::remove_all(folder);
   // Up in the picture is +x, left is +y: the first triangle lies to the upper right.
   EXPECT_EQ(pixel(image, 50, 20), (std::array<int, 3>{255, 0, 0}));

@@ -1,0 +1,45 @@
+// The lights and the sky of one picture, as the shaders take them: linear, relative to the camera. Values; any thread.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <span>
+#include <vector>
+
+#include "render/renderer.h"
+
+namespace sim {
+
+struct Sun {
+  Eigen::Vector3f to_light, color, specular;
+};
+struct Lamp {
+  Eigen::Vector3f position, color, specular;
+  Eigen::Vector4f reach;  // constant, linear, quadratic attenuation, range
+  bool is_spot = false;
+  Eigen::Vector3f axis, cone;
+  double strength = 0;  // to choose by
+};
+
+struct Lights {
+  std::vector<Sun> suns;  // the one with the shadow first
+  bool has_shadow = false;
+  Eigen::Vector3d to_shadow_light{0, 0, 1};
+  std::vector<Lamp> lamps;  // points, then spots; at most most_lamps, the strongest at the camera's place
+  int points = 0, spots = 0;
+};
+
+inline constexpr int most_lamps = 8;
+
+Lights collect_lights(const Scene& scene, std::span<const Eigen::Isometry3d> poses, const View& view);
+
+struct SkyColors {
+  Eigen::Vector3f zenith, horizon, ground, glow;
+};
+
+// Day, dusk and night by the hour of the scene.
+SkyColors sky_colors(const SkyDef& sky);
+
+// Linear light of an sRGB colour.
+Eigen::Vector3f linear(const Color& color);
+
+}  // namespace sim
