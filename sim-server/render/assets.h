@@ -18,7 +18,8 @@ namespace sim {
 // multiplication in the shader, and no shade that sRGB tells apart is lost.
 struct Texture {
   std::vector<Image> levels;
-  bool has_holes = false;  // some alpha is below one half: drawn with the holes cut out
+  bool has_holes = false;       // some alpha is below one half: drawn with the holes cut out
+  bool is_translucent = false;  // most of what is not opaque is neither open: mixed with what is behind
 };
 
 class Assets {

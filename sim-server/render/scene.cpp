@@ -39,7 +39,7 @@ Material to_material(const MaterialDef& in, double transparency, Assets& assets)
   out.repeat = in.texture_scale.cast<float>();
   out.is_lit = in.lighting;
   out.is_double_sided = in.double_sided || (out.texture && out.texture->has_holes);
-  out.is_transparent = alpha < 0.999F;
+  out.is_transparent = alpha < 0.999F || (out.texture && out.texture->is_translucent);
   return out;
 }
 

@@ -1,5 +1,7 @@
 #include "server/picture.h"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -13,7 +15,7 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-constexpr double usual_fov = 1.0;  // [rad]
+constexpr double usual_fov = 1.0, widest_fov = 2.8;  // [rad]
 
 // A camera that looks from one place to another, level.
 Isometry3d look_at(const Vector3d& from, const Vector3d& to) {
@@ -92,18 +94,25 @@ base::Result<View> view_of(Simulation& simulation, const Snapshot& world, const 
   const int width = static_cast<int>(request.width), height = static_cast<int>(request.height);
   const Eigen::AlignedBox3d box = bounds_of(world);
   const Vector3d middle = box.center();
+  const bool has_angle = request.view == Kind::from || request.view == Kind::follow;
+  if (has_angle && request.span > widest_fov)
+    return base::Error{fmt::format("screenshot: field of view {}, expected at most {} rad", request.span, widest_fov)};
   if (request.view == Kind::camera) {
     const auto* camera = find_camera(simulation, request.follow);
     if (camera == nullptr) return base::Error{"screenshot: no camera " + request.follow};
-    return View::pinhole(camera->camera_pose(), std::min(camera->camera_def().horizontal_fov, 2.8), width, height);
+    const CameraDef& def = camera->camera_def();
+    View view = View::pinhole(camera->camera_pose(), std::min(def.horizontal_fov, widest_fov), width, height);
+    view.near_clip = def.near_clip;
+    view.far_clip = def.far_clip;
+    view.visibility_mask = def.visibility_mask;
+    return view;
   }
-  if (request.view == Kind::from)
-    return View::pinhole(from_pose(request.pose), request.span > 0 ? std::min(request.span, 2.8) : usual_fov, width, height);
+  if (request.view == Kind::from) return View::pinhole(from_pose(request.pose), request.span > 0 ? request.span : usual_fov, width, height);
   if (request.view == Kind::follow) {
     const auto found =
         std::find_if(world.scene->models.begin(), world.scene->models.end(), [&](const auto& m) { return m.name == request.follow; });
     if (found == world.scene->models.end()) return base::Error{"screenshot: no model " + request.follow};
-    return behind((*world.poses)[found->canonical_link], found->radius, std::min(request.span, 2.8), width, height);
+    return behind((*world.poses)[found->canonical_link], found->radius, request.span, width, height);
   }
   if (request.view == Kind::top) {
     const bool has_middle = request.span > 0;
@@ -156,7 +165,7 @@ base::Result<Image> draw_picture(Simulation& simulation, const shm::ScreenshotRe
   const Snapshot world = simulation.pictures().snapshot(simulation.time(), content);
   auto view = view_of(simulation, world, request);
   if (!view) return view.error();
-  if (!view->is_parallel) {
+  if (!view->is_parallel && request.view != shm::ScreenshotRequest::View::camera) {
     view->near_clip = 0.05;
     view->far_clip = std::max(200.0, 3 * bounds_of(world).diagonal().norm());
   }

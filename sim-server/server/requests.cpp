@@ -150,7 +150,9 @@ struct ServerLoop::Handler {
     return {};
   }
   shm::Reply operator()(const shm::ScreenshotRequest& request) {
-    if (request.view == shm::ScreenshotRequest::View::follow && !physics.find(request.follow)) return no_model(request.follow);
+    const auto& actors = simulation.world().actors;
+    const bool is_actor = std::any_of(actors.begin(), actors.end(), [&](const ActorDef& a) { return a.name == request.follow; });
+    if (request.view == shm::ScreenshotRequest::View::follow && !is_actor && !physics.find(request.follow)) return no_model(request.follow);
     const auto image = draw_picture(simulation, request);
     if (!image) return failed(image.error());
     const auto written = write_png(*image, request.path);

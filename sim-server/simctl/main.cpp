@@ -1,4 +1,6 @@
 // simctl: shows and controls a running simulation. See --help.
+#include <algorithm>
+#include <cmath>
 #include <iostream>
 
 #include "base/command_line.h"
@@ -124,8 +126,14 @@ void add_pictures(CLI::App& app, Work& work) {
   screenshot->add_option("--show", "visuals or collisions")
       ->check(CLI::IsMember({"visuals", "collisions"}))
       ->each([options](const std::string& what) { options->with_collisions = what == "collisions"; });
-  screenshot->add_option("--span", options->span, "Metres across (--top) or field of view [rad]")->check(base::number_between(0.0, 1e6));
-  screenshot->callback([&work, options, from] {
+  auto* span = screenshot->add_option("--span", options->span, "Metres across (--top) or field of view in rad (--from, --follow)")
+                   ->check(base::number_between(1e-3, 1e6));
+  span->excludes(camera);
+  screenshot->callback([&work, options, from, top, follow, span] {
+    if (span->count() > 0 && from->count() + top->count() + follow->count() == 0)
+      throw CLI::ValidationError("--span", "goes with --top, --from or --follow");
+    if (!std::all_of(options->from.begin(), options->from.end(), [](double v) { return std::isfinite(v); }))
+      throw CLI::ValidationError("--from", "expected finite numbers");
     if (from->count() > 0 && options->from.size() != 6) {
       throw CLI::ValidationError("--from",
                                  "expected 6 numbers, X Y Z ROLL PITCH YAW [m, rad], got " + std::to_string(options->from.size()));

@@ -1,11 +1,14 @@
-// record: the frames of a camera as PNG files, or as a film when an encoder is installed.
+// record: the frames of a camera as PNG files, or as a film when an encoder (ffmpeg) is installed.
 #include <png.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
@@ -15,6 +18,8 @@
 
 namespace simctl {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 std::optional<png_uint_32> png_format(shm::Format format) {
   switch (format) {
@@ -82,18 +87,76 @@ base::Result<void> write_frame(const shm::HeldFrame& frame, const std::string& f
   return {};
 }
 
+constexpr const char* encoder = "ffmpeg";
+
+bool has_encoder() {
+  const char* path = std::getenv("PATH");
+  for (const auto& folder : base::split_list(path != nullptr ? path : "", ':')) {
+    if (::access((std::string(folder) + "/" + encoder).c_str(), X_OK) == 0) return true;
+  }
+  return false;
+}
+
 bool encode(const std::string& folder, double rate, const std::string& target) {
-  const std::string frames = folder + "/frame-%06d.png";
-  const std::string rate_text = base::format_number(rate);
-  std::vector<std::string> words = {"ffmpeg", "-loglevel", "error",    "-y",      "-framerate", rate_text,
-                                    "-i",     frames,      "-pix_fmt", "yuv420p", target};
+  // Players want even sizes.
+  std::vector<std::string> words = {encoder,      "-loglevel",
+                                    "error",      "-y",
+                                    "-framerate", base::format_number(rate),
+                                    "-i",         folder + "/frame-%06d.png",
+                                    "-vf",        "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+                                    "-pix_fmt",   "yuv420p",
+                                    target};
   std::vector<char*> arguments;
   for (auto& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   pid_t child = 0;
-  if (posix_spawnp(&child, "ffmpeg", nullptr, nullptr, arguments.data(), environ) != 0) return false;
+  if (posix_spawnp(&child, encoder, nullptr, nullptr, arguments.data(), environ) != 0) return false;
   int status = 0;
   return waitpid(child, &status, 0) == child && status == 0;
+}
+
+// An empty text when the folder is there and holds no frames yet.
+std::string prepare(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return "folder " + base::in_quotes(folder) + ": cannot be made: " + error.message();
+  if (std::filesystem::exists(folder + "/frame-000001.png", error)) return "folder " + base::in_quotes(folder) + ": holds frames already";
+  return {};
+}
+
+struct Film {
+  int frames = 0;
+  std::uint64_t missed = 0;
+  std::int64_t first_ns = 0, last_ns = 0;
+
+  // Frames a simulated second, as they came.
+  double rate(double usual) const {
+    return frames > 1 && last_ns > first_ns ? (frames - 1) * 1e9 / static_cast<double>(last_ns - first_ns) : usual;
+  }
+};
+
+// Until enough has been taken, an interrupt, or the end of the simulator.
+base::Result<Film> take_frames(shm::Iface& camera, const std::string& folder, int frames, double seconds) {
+  Film film;
+  std::uint64_t last = 0;
+  while (!is_interrupted() && (frames <= 0 || film.frames < frames)) {
+    const auto what = camera.wait(last, std::chrono::milliseconds(200));
+    if (what == shm::Wait::closed)
+      return film.frames > 0 ? base::Result<Film>(film) : base::Error{"iface " + camera.name() + ": the simulator is gone"};
+    if (what == shm::Wait::timed_out) continue;
+    const auto frame = camera.hold();
+    if (!frame) continue;
+    const auto now = frame->head().stamp.sim_time_ns;
+    if (film.frames == 0) film.first_ns = now;
+    if (seconds > 0 && static_cast<double>(now - film.first_ns) * 1e-9 > seconds) break;
+    if (film.frames > 0) film.missed += frame->sequence() - last - 1;
+    last = frame->sequence();
+    film.last_ns = now;
+    char file[32];
+    std::snprintf(file, sizeof file, "/frame-%06d.png", ++film.frames);
+    if (const auto written = write_frame(*frame, folder + file); !written) return written.error();
+  }
+  return film;
 }
 
 }  // namespace
@@ -103,39 +166,22 @@ void record(Control& control, const std::string& name, const std::string& target
   if (!camera) return;
   if (camera->type() != shm::IfaceType::camera)
     return control.fail("iface " + name + ": is a " + std::string(shm::to_text(camera->type())) + ", record takes a camera");
-  if (const auto done = camera->subscribe(); !done) return control.fail(done.error().message);
-  const bool is_film = target.ends_with(".mp4");
+  const bool is_film = target.ends_with(".mp4"), is_encoded = is_film && has_encoder();
   const auto folder = is_film ? target + ".frames" : target;
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) return control.fail("folder " + base::in_quotes(folder) + ": cannot be made: " + error.message());
+  if (const auto trouble = prepare(folder); !trouble.empty()) return control.fail(trouble);
+  if (is_film && !is_encoded) std::cerr << "simctl: no encoder (" << encoder << ") is installed; the frames go to " << folder << '\n';
+  if (const auto done = camera->subscribe(); !done) return control.fail(done.error().message);
   catch_interrupts();
-  std::uint64_t last = 0;
-  std::int64_t first_ns = -1;
-  int taken = 0;
-  while (!is_interrupted() && (frames <= 0 || taken < frames)) {
-    const auto what = camera->wait(last, std::chrono::milliseconds(200));
-    if (what == shm::Wait::closed) {
-      control.fail("iface " + name + ": the simulator is gone");
-      break;
-    }
-    if (what == shm::Wait::timed_out) continue;
-    const auto frame = camera->hold();
-    if (!frame) continue;
-    last = frame->sequence();
-    const auto now = frame->head().stamp.sim_time_ns;
-    if (first_ns < 0) first_ns = now;
-    if (seconds > 0 && static_cast<double>(now - first_ns) * 1e-9 > seconds) break;
-    char file[32];
-    std::snprintf(file, sizeof file, "/frame-%06d.png", ++taken);
-    if (const auto written = write_frame(*frame, folder + file); !written) return control.fail(written.error().message);
-  }
-  if (!is_film) return;
-  if (encode(folder, camera->info<shm::CameraInfo>().rate, target)) {
+  const auto film = take_frames(*camera, folder, frames, seconds);
+  if (!film) return control.fail(film.error().message);
+  if (is_encoded && film->frames > 0) {
+    if (!encode(folder, film->rate(camera->info<shm::CameraInfo>().rate), target))
+      return control.fail("record: " + std::string(encoder) + " could not write " + target + "; the frames are in " + folder);
+    std::error_code error;
     std::filesystem::remove_all(folder, error);
-  } else {
-    control.fail("record: no encoder (ffmpeg) could write " + target + "; the frames are in " + folder);
   }
+  if (control.json()) return control.print(Json{{"frames", film->frames}, {"missed", film->missed}, {"rate", film->rate(0)}});
+  std::cout << film->frames << " frames, " << film->missed << " missed\n";
 }
 
 }  // namespace simctl

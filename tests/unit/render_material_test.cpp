@@ -210,6 +210,15 @@ TEST(RenderMaterial, holes_are_cut_out_and_alpha_lets_through) {
   EXPECT_EQ(hole, 0) << "through the hole in the lid one sees the bottom from inside, which has the same hole";
 }
 
+TEST(RenderMaterial, half_transparent_textures_are_mixed_with_what_is_behind) {
+  WorldFiles files;
+  write_picture(files, "glass.png", 8, [](int, int) { return Pixel{255, 0, 0, 102}; });
+  const std::string below = "</visual><visual name='w'><pose>0 0 -1 0 0 0</pose>" + plate("<diffuse>1 1 1 1</diffuse>");
+  Table table(files, {plate("<pbr><metal><albedo_map>glass.png</albedo_map><roughness>1</roughness></metal></pbr>") + below});
+  // Two walls of the plate would both let through; only the outer ones show.
+  EXPECT_TRUE(is_bytes(table.colors()[0], {255, 153, 153}, 2));
+}
+
 TEST(RenderMaterial, broken_scripts_cost_one_line_and_keep_the_rest) {
   WorldFiles files;
   const auto uri =
