@@ -152,7 +152,7 @@ constexpr const char* surface_functions = R"(
 float lobe(vec3 n, vec3 l, float distance) {
   vec3 h = l * distance - v_position;
   float c = max(dot(n, h), 0.0);
-  return power(c * c / dot(h, h));
+  return power(c * c / max(dot(h, h), 1e-12));
 }
 #endif
 #if SHADOW_TAPS

@@ -160,8 +160,6 @@ material Unlit { technique { pass { lighting off
   EXPECT_EQ(all_findings(table.loaded), "");
   EXPECT_TRUE(table.complaints.empty());
   const Image image = table.picture();
-  // Seen with x up and y to the left, the picture's upper left corner is the plate's corner at -x, -y... the texture lies on the box with u
-  // along x and v against y: read from the four quarters of the plate.
   const auto quarter = [&](int i, int right, int down) { return pixel(image, 40 * i + 10 + 20 * right, 10 + 20 * down); };
   std::vector<std::array<int, 3>> seen;
   for (int i = 0; i < 4; ++i) seen.push_back(quarter(0, i & 1, i >> 1));
@@ -181,7 +179,7 @@ material Unlit { technique { pass { lighting off
   for (int i = 0; i < 4; ++i) {
     const auto p = quarter(2, i & 1, i >> 1);
     tinted_white +=
-        bool(is_near(p, Eigen::Vector3d(decode(0.5) * decode(white[0] / 255.0), decode(white[1] / 255.0), decode(white[2] / 255.0)), 1.5));
+        bool(is_near(p, Eigen::Vector3d(decode(0.5) * decode(white[0] / 255.0), decode(white[1] / 255.0), decode(white[2] / 255.0)), 2));
   }
   EXPECT_EQ(tinted_white, 1);
   EXPECT_TRUE(is_bytes(quarter(3, 0, 0), {51, 102, 204}));
@@ -207,7 +205,7 @@ TEST(RenderMaterial, holes_are_cut_out_and_alpha_lets_through) {
       hole += pixel(image, x, y) == std::array<int, 3>{0, 0, 0} ? 1 : 0;
     }
   EXPECT_GT(green, 350);
-  EXPECT_EQ(hole, 0) << "through the hole in the lid one sees the bottom from inside, which has the same hole";
+  EXPECT_GT(hole, 350);
 }
 
 TEST(RenderMaterial, half_transparent_textures_are_mixed_with_what_is_behind) {
@@ -215,7 +213,6 @@ TEST(RenderMaterial, half_transparent_textures_are_mixed_with_what_is_behind) {
   write_picture(files, "glass.png", 8, [](int, int) { return Pixel{255, 0, 0, 102}; });
   const std::string below = "</visual><visual name='w'><pose>0 0 -1 0 0 0</pose>" + plate("<diffuse>1 1 1 1</diffuse>");
   Table table(files, {plate("<pbr><metal><albedo_map>glass.png</albedo_map><roughness>1</roughness></metal></pbr>") + below});
-  // Two walls of the plate would both let through; only the outer ones show.
   EXPECT_TRUE(is_bytes(table.colors()[0], {255, 153, 153}, 2));
 }
 
@@ -390,7 +387,7 @@ TEST(RenderMaterial, collada_files_bring_their_materials) {
           "<library_visual_scenes><visual_scene id='s'><node id='o'><instance_geometry url='#g'><bind_material><technique_common>"
           "<instance_material symbol='a' target='#m1'/><instance_material symbol='b' target='#m2'/></technique_common></bind_material>"
           "</instance_geometry></node></visual_scene></library_visual_scenes><scene><instance_visual_scene url='#s'/></scene></COLLADA>");
-  // The mesh is two metres long in y; it begins on the second place and ends on the first.
+  // The mesh is two metres long in y: it lies on the second place and on the first.
   Table table(files, {"<geometry><box><size>0.01 0.01 0.01</size></box></geometry>",
                       "<geometry><mesh><uri>meshes/two.dae</uri></mesh></geometry>"});
   EXPECT_TRUE(table.complaints.empty()) << table.complaints.front();
@@ -423,7 +420,7 @@ TEST(RenderMaterial, broken_meshes_are_told_and_the_usable_triangles_are_drawn) 
 
 TEST(RenderMaterial, negative_scales_mirror_and_keep_the_outside_out) {
   WorldFiles files;
-  // An upright L of one box corner: a tetrahedron with its long arm along +x and its short one along +y.
+  // A corner with a long arm along +x and a short one along +y.
   files.write("arm.obj", "v 0 0 0\nv 0.4 0 0\nv 0 0.2 0\nv 0 0 0.3\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
   const auto mesh = [](const std::string& scale) {
     return "<geometry><mesh><uri>arm.obj</uri><scale>" + scale +
