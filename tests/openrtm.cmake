@@ -2,6 +2,9 @@ include(${PROJECT_SOURCE_DIR}/cmake/headers_alone.cmake)
 
 rtmsim_headers_alone(openrtm_headers_alone ROOT ${PROJECT_SOURCE_DIR}/rtm-core/openrtm FOLDER rtm LIBRARIES openrtm)
 
+# What authors use, name by name.
+rtmsim_test(classic_api_test classic-api/surface_test.cpp LIBRARIES openrtm)
+
 # Component sources in the style of every version of the API; that they compile is the test. LINKED: also as module and program.
 add_subdirectory(classic-api)
 

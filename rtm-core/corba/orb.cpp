@@ -258,6 +258,8 @@ void Orb::activate() {
   manager->activate();
 }
 
+std::string Orb::folder() const { return folder_ ? folder_->path() : std::string(); }
+
 std::vector<std::string> Orb::addresses() const {
   std::vector<std::string> result;
   const auto add = [&](const IIOP::Address& address) {

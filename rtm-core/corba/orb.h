@@ -38,6 +38,8 @@ class Orb {
 
   void activate();
 
+  // Of the unix socket; it goes with this object. Empty if there is none.
+  std::string folder() const;
   // Where other hosts reach this ORB: host:port, of the references that it makes.
   std::vector<std::string> addresses() const;
 

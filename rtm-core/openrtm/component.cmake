@@ -16,6 +16,7 @@ target_sources(openrtm PRIVATE
   rtm/PeriodicExecutionContext.cpp
   rtm/RTObject.cpp
   rtm/RTObjectContexts.cpp
+  rtm/RTObjectOrphans.cpp
   rtm/RTObjectPorts.cpp
   rtm/RTObjectSdo.cpp
   rtm/RTObjectStateMachine.cpp

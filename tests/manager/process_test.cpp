@@ -281,6 +281,33 @@ TEST_F(Rtcd, brings_a_naming_service_along_and_takes_it_away_again) {
   }
 }
 
+// Everything that it has made: omniNames, sockets, folders.
+TEST_F(Rtcd, leaves_nothing_behind_whatever_ends_it) {
+  struct Case {
+    int signal;
+    const char* component;
+    int exit_code;
+  };
+  for (const auto& [signal, component, exit_code] :
+       {Case{SIGTERM, "FailOnRequest", 0}, Case{SIGINT, "FailOnRequest", 0}, Case{SIGTERM, "Hangs", 1}}) {
+    support::TemporaryFolder folder;
+    const int port = support::free_port();
+    support::Process rtcd(
+        {program, "-i", "-f", "none.conf", "--with-naming", "-o", "corba.nameservers:127.0.0.1:" + std::to_string(port), "-o",
+         "manager.modules.load_path:" + modules, "-o", "manager.components.preactivation:" + std::string(component) + "0", component},
+        {"TMPDIR=" + folder.path().string(), "XDG_RUNTIME_DIR=" + folder.path().string()});
+    const auto files = [&] { return std::distance(std::filesystem::directory_iterator(folder.path()), {}); };
+    if (std::string_view(component) == "Hangs") {
+      ASSERT_TRUE(rtcd.wait_for_output("hanging")) << rtcd.output();
+    } else {
+      ASSERT_TRUE(eventually([&] { return support::is_listening(port) && files() == 2; })) << rtcd.output();
+    }
+    rtcd.signal(signal);
+    EXPECT_EQ(rtcd.wait(), exit_code) << rtcd.output();
+    EXPECT_TRUE(eventually([&] { return !support::is_listening(port) && files() == 0; })) << component << ' ' << signal;
+  }
+}
+
 TEST_F(Rtcd, a_name_of_another_living_process_is_taken_with_a_warning_and_given_back_by_nobody_else) {
   support::Process first(command({"FailOnRequest"}));
   ASSERT_TRUE(eventually([&] { return has("FailOnRequest0.rtc"); }));

@@ -108,6 +108,17 @@ TEST_F(Servant, modules_are_shown_with_what_tools_look_for) {
   EXPECT_EQ(values_of(list, "implementation_id"), Strings{"PeriodicECSharedComposite"});
 }
 
+TEST_F(Servant, the_log_follows_the_configuration_at_once) {
+  const int port = support::free_port();
+  support::Process rtcd(at_port(port, {}));
+  RTM::Manager_var manager = manager_at(port);
+  ASSERT_FALSE(CORBA::is_nil(manager)) << rtcd.output();
+  EXPECT_EQ(manager->set_configuration("logger.log_level", "LOUD"), RTC::BAD_PARAMETER);
+  EXPECT_EQ(manager->set_configuration("logger.log_level", "DEBUG"), RTC::RTC_OK);
+  EXPECT_EQ(manager->load_module("FailOnRequest.so", ""), RTC::RTC_OK);
+  EXPECT_TRUE(rtcd.wait_for_output("DEBUG: manager: module FailOnRequest.so loaded")) << rtcd.output();
+}
+
 TEST_F(Servant, create_component_understands_every_form_of_its_argument) {
   support::TemporaryFolder folder;
   const auto file = (folder.path() / "own.conf").string();

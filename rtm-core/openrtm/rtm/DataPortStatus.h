@@ -41,7 +41,7 @@ using DataPortStatusList = std::vector<DataPortStatus>;
 
 }  // namespace RTC
 
-// For classes written against 1.x that name the outcomes without a scope.
+// For classes written against 1.x that name the outcomes without a scope; it is written with or without a semicolon after it.
 #define DATAPORTSTATUS_ENUM                                                                                    \
   typedef ::RTC::DataPortStatus::Enum ReturnCode;                                                              \
   static const ::RTC::DataPortStatus::Enum PORT_OK = ::RTC::DataPortStatus::PORT_OK;                           \
@@ -57,4 +57,4 @@ using DataPortStatusList = std::vector<DataPortStatus>;
   static const ::RTC::DataPortStatus::Enum INVALID_ARGS = ::RTC::DataPortStatus::INVALID_ARGS;                 \
   static const ::RTC::DataPortStatus::Enum PRECONDITION_NOT_MET = ::RTC::DataPortStatus::PRECONDITION_NOT_MET; \
   static const ::RTC::DataPortStatus::Enum CONNECTION_LOST = ::RTC::DataPortStatus::CONNECTION_LOST;           \
-  static const ::RTC::DataPortStatus::Enum UNKNOWN_ERROR = ::RTC::DataPortStatus::UNKNOWN_ERROR
+  static const ::RTC::DataPortStatus::Enum UNKNOWN_ERROR = ::RTC::DataPortStatus::UNKNOWN_ERROR;

@@ -54,9 +54,10 @@ thread_local std::string ManagerImpl::current_module;
 void ManagerImpl::end_at_exit(int status, void*) {
   constexpr std::chrono::seconds patience{10};
   const Manager* manager = Manager::instance_if_any();
-  if (manager == nullptr || !manager->impl_->life.joinable()) return;
+  if (manager == nullptr) return;
   manager->impl_->request_end();
   if (manager->impl_->wait_until_ended(patience)) return;
+  manager->impl_->remove_files();
   std::fflush(nullptr);
   _exit(status);
 }

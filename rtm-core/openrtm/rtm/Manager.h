@@ -113,6 +113,8 @@ class Manager {
   // Components that others made. False if one of that name exists.
   bool registerComponent(RTObject_impl* comp);
   bool unregisterComponent(RTObject_impl* comp);
+  // 1.x: gives a component that has no execution context yet its own; true also when it has one. initialize() does it by itself.
+  bool bindExecutionContext(RTObject_impl* comp);
   // Finalizes it (RTObject::exit); it is deleted a little later.
   void deleteComponent(RTObject_impl* comp);
   // BAD_PARAMETER if there is none of that name.

@@ -77,6 +77,11 @@ bool Manager::unregisterComponent(RTObject_impl* comp) {
   return true;
 }
 
+bool Manager::bindExecutionContext(RTObject_impl* comp) {
+  if (comp == nullptr) return false;
+  return !comp->getOwnContexts().empty() || comp->createContexts() == RTC_OK;
+}
+
 RTObject_impl* Manager::getComponent(const char* instance_name) {
   if (instance_name == nullptr) return nullptr;
   auto locked = impl_->state.lock();

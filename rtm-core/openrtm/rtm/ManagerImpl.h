@@ -79,6 +79,8 @@ class ManagerImpl {
   // Starts ORB, threads and naming. One line on failure.
   base::Result<void> start(const ManagerConfig& config, const ManagerOptions& options);
   bool activate();
+  // As the logger.* keys say now.
+  void start_logging();
   void request_end();
   void wait_until_ended();
   bool wait_until_ended(std::chrono::nanoseconds timeout);
@@ -135,6 +137,7 @@ class ManagerImpl {
   std::unique_ptr<corba::Orb> orb;
   std::unique_ptr<rt::TaskRunner> timer;
   std::unique_ptr<rt::TaskRunner> cleaner;
+  std::unique_ptr<rt::TaskRunner> peers;
   std::unique_ptr<NamingManager> naming;
   std::unique_ptr<ModuleManager> modules;
   RTM::ManagerServant* servant = nullptr;  // we hold one reference
@@ -148,10 +151,10 @@ class ManagerImpl {
   void bind_to_processors();
   base::Result<void> start_orb();
   void start_naming();
-  void start_logging();
   void start_timer_tasks();
   void live();
   void end();
+  void remove_files() const;
   void look_after_number_of_components();
 
   coil::Properties inherited_properties() const;
@@ -164,7 +167,8 @@ class ManagerImpl {
   RTM::NumberingPolicyBase* numbering = nullptr;
   std::unique_ptr<rt::SignalWatcher> signals;
   std::vector<LogstreamBase*> log_plugins;
-  std::thread life;
+  std::thread life;           // in a lock of the state; taken in by whoever sees it end
+  std::string socket_folder;  // of the ORB; empty if none
 };
 
 }  // namespace RTC

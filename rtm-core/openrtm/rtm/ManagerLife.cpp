@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 
 #include "base/log.h"
 #include "base/text.h"
@@ -70,6 +71,16 @@ base::Result<void> ManagerImpl::start(const ManagerConfig& configuration, const 
   start_logging();
   for (const auto& warning : configuration.warnings()) RTC_WARN(("%s", warning.c_str()));
   bind_to_processors();
+  // From now on a signal finds somebody who ends everything properly, also while the rest starts.
+  signals = std::make_unique<rt::SignalWatcher>(std::vector<int>{SIGINT, SIGTERM}, [this](int number) {
+    request_end();
+    auto locked = state.lock();
+    while (!locked.wait_for(changed, std::chrono::hours(1), [&] { return locked->life_is_over; })) {
+    }
+    // If nobody comes to runManager who would let the process end, the signal ends it.
+    constexpr std::chrono::seconds patience{2};
+    if (!locked.wait_for(changed, patience, [&] { return locked->runners > 0; })) ::raise(number);
+  });
   if (auto started = start_orb(); !started) return started.error();
   timer = std::make_unique<rt::TaskRunner>("rtm-timer");
   cleaner = std::make_unique<rt::TaskRunner>("rtm-cleaner");
@@ -98,14 +109,7 @@ base::Result<void> ManagerImpl::start(const ManagerConfig& configuration, const 
     RTM::LocalServiceAdmin::instance().init(config.getNode("manager.local_service"));
   }
   start_timer_tasks();
-  signals = std::make_unique<rt::SignalWatcher>(std::vector<int>{SIGINT, SIGTERM}, [this](int number) {
-    request_end();
-    wait_until_ended();
-    // If nobody comes to runManager who would let the process end, the signal ends it.
-    constexpr std::chrono::seconds patience{2};
-    auto locked = state.lock();
-    if (!locked.wait_for(changed, patience, [&] { return locked->runners > 0; })) ::raise(number);
-  });
+  auto locked = state.lock();
   life = std::thread([this] { live(); });
   return {};
 }
@@ -161,6 +165,7 @@ base::Result<void> ManagerImpl::start_orb() {
   auto started = corba::Orb::start(settings);
   if (!started) return started.error();
   orb = std::move(*started);
+  socket_folder = orb->folder();
   std::vector<std::string> ipv4;
   std::vector<std::string> ipv6;
   for (auto& address : orb->addresses()) (address.starts_with('[') ? ipv6 : ipv4).push_back(std::move(address));
@@ -186,9 +191,16 @@ void ManagerImpl::start_timer_tasks() {
   if (flag("manager.shutdown_auto", true) && !is_master()) {
     timer->add([this] { look_after_number_of_components(); }, std::chrono::seconds(1), std::chrono::seconds(1));
   }
+  // Other processes may hang: what looks after them has a thread of its own.
+  peers = std::make_unique<rt::TaskRunner>("rtm-peers");
+  constexpr std::chrono::seconds look{2};
+  const auto look_after_components = [this] {
+    for (const auto& component : held_components()) component->leaveTheDead();
+  };
+  peers->add(look_after_components, look, look);
   if (servant != nullptr && !is_master() && flag("corba.update_master_manager.enable", true)) {
     const auto interval = std::max(to_milliseconds(number("corba.update_master_manager.interval", 10.0)), std::chrono::milliseconds(100));
-    timer->add([this] { servant->greet_master(); }, interval, {});
+    peers->add([this] { servant->greet_master(); }, interval, {});
   }
 }
 
@@ -295,8 +307,18 @@ void ManagerImpl::wait_until_ended() {
 }
 
 bool ManagerImpl::wait_until_ended(std::chrono::nanoseconds timeout) {
-  auto locked = state.lock();
-  return locked.wait_for(changed, timeout, [&] { return locked->life_is_over || locked->phase == Phase::created; });
+  {
+    auto locked = state.lock();
+    if (!locked.wait_for(changed, timeout, [&] { return locked->life_is_over || locked->phase == Phase::created; })) return false;
+  }
+  // The thread has done its work; whoever comes first takes it in.
+  std::thread finished;
+  {
+    auto locked = state.lock();
+    if (life.get_id() != std::this_thread::get_id()) finished.swap(life);
+  }
+  if (finished.joinable()) finished.join();
+  return true;
 }
 
 // Waits for the request and does the work of ending: on a thread of its own because anybody may ask, also a component or the ORB.
@@ -319,14 +341,22 @@ void ManagerImpl::live() {
   changed.notify_all();
 }
 
+// Before the process ends without shutting the ORB down.
+void ManagerImpl::remove_files() const {
+  std::error_code ignored;
+  if (!socket_folder.empty()) std::filesystem::remove_all(socket_folder, ignored);
+}
+
 void ManagerImpl::end() {
   listeners.manager_.call(&RTM::ManagerActionListener::preShutdown);
   state.lock()->phase = Phase::ending;
+  if (peers) peers->stop();
   if (servant != nullptr) servant->leave_masters();
   exit_all_components();
   naming->unbindAll();
   if (state.lock()->has_abandoned) {
     RTC_ERROR(("the process ends while a callback runs that does not return"));
+    remove_files();
     std::fflush(nullptr);
     std::_Exit(EXIT_FAILURE);  // anything more would be taken away under its hands
   }

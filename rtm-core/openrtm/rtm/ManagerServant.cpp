@@ -195,6 +195,8 @@ RTC::RTObject_ptr ManagerServant::create_component(const char* module_name) {
     const auto component = manager_.impl_->held_component(made);
     return component.in() != nullptr ? component->getObjRef() : RTC::RTObject::_nil();
   }
+  const auto parsed = rt::parse_component_argument(argument);
+  if (!parsed || manager_.impl_->find_factory(parsed->id)) return RTC::RTObject::_nil();  // it can be made here, but fails
   for (const auto& slave : slaves) {
     RTC::RTObject_var made = create_at(slave, argument);
     if (!CORBA::is_nil(made)) return made._retn();
@@ -278,8 +280,11 @@ RTC::ReturnCode_t ManagerServant::set_configuration(const char* name, const char
   }
   const auto complaint = rt::complain_about(key, value);
   if (complaint && !complaint->takes_value) return RTC::BAD_PARAMETER;
-  const std::scoped_lock lock(manager_.impl_->config_mutex);
-  manager_.impl_->config.setProperty(key, value);
+  {
+    const std::scoped_lock lock(manager_.impl_->config_mutex);
+    manager_.impl_->config.setProperty(key, value);
+  }
+  if (key.starts_with("logger.")) manager_.impl_->start_logging();
   return RTC::RTC_OK;
 }
 

@@ -1,6 +1,7 @@
 #include <coil/stringutil.h>
 #include <rtm/Factory.h>
 #include <rtm/Manager.h>
+#include <rtm/NamingManager.h>
 #include <rtm/PeriodicECOrganization.h>
 #include <rtm/PeriodicECSharedComposite.h>
 
@@ -84,14 +85,16 @@ ReturnCode_t PeriodicECSharedComposite::onInitialize() {
   m_configsets.update("default");
   SDOPackage::SDOList sdos;
   for (const std::string& name : members_) {
-    RTObject_impl* member = m_pManager ? m_pManager->getComponent(name.c_str()) : nullptr;
-    if (member == nullptr) {
+    // Of this process by name, of others by address.
+    NamingManager* naming = m_pManager ? m_pManager->getNaming() : nullptr;
+    const RTCList found = naming ? naming->string_to_component(name) : RTCList();
+    if (found.length() == 0) {
       RTC_ERROR(("no component %s that could be a member", base::in_quotes(name).c_str()));
       continue;
     }
     const CORBA::ULong n = sdos.length();
     sdos.length(n + 1);
-    sdos[n] = member->getObjRef();
+    sdos[n] = SDOPackage::SDO::_duplicate(found[0]);
   }
   std::string ports = m_configsets.getConfigurationSet("default").getProperty("exported_ports");
   if (ports.empty()) ports = m_properties.getProperty("exported_ports");

@@ -7,6 +7,7 @@
 
 #include <exception>
 
+#include "base/text.h"
 #include "corba/orb.h"
 
 namespace RTC {
@@ -234,8 +235,12 @@ ReturnCode_t RTObject_impl::initialize() {
     return code;
   };
   prepareBinding();
+  const std::string active_set = m_properties.getProperty("configuration.active_config");
+  if (!active_set.empty() && !m_configsets.activateConfigurationSet(active_set.c_str()))
+    RTC_WARN(("configuration.active_config: there is no set %s", base::in_quotes(active_set).c_str()));
   impl_->services.init(m_properties);
-  if (const ReturnCode_t code = createContexts(); code != RTC_OK) return give_up(code);
+  if (getOwnContexts().empty())  // the manager's bindExecutionContext may have made them
+    if (const ReturnCode_t code = createContexts(); code != RTC_OK) return give_up(code);
   if (const ReturnCode_t code = on_initialize(); code != RTC_OK) {
     RTC_ERROR(("onInitialize failed"));
     return give_up(code);

@@ -187,6 +187,8 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   std::vector<ExecutionContextBase*> getOwnContexts() const;
   // After exit(): a thread is still in a callback that does not return; the component must not be deleted.
   bool isHeldByCallback() const;
+  // Contexts and organizations whose process has died are left, and the component's own contexts go on. The manager's timer calls it.
+  void leaveTheDead();
 
   // SDO services.
   bool addSdoServiceProvider(const SDOPackage::ServiceProfile& prof, SdoServiceProviderBase* provider);
@@ -352,6 +354,7 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   };
   struct Impl;
   struct Port;
+  friend class Manager;
 
   void prepareBinding();
   void takeNames();

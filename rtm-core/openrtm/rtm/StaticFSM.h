@@ -130,6 +130,7 @@ class TopBase : public StateBase {
 template <class State, class Super>
 class Link : public Super {
  public:
+  using SUPER = Super;
   static const StateType* parent_type() { return &state_type<Super>(); }
   // Events are inherited from the state above, these are not: that one has its own turn.
   ReturnCode_t onInit() override { return RTC_OK; }
@@ -195,10 +196,9 @@ class Machine {
 
 #define FSM_TOP(TOP) struct TOP : public ::RTC::fsm::TopBase<TOP>
 #define FSM_SUBSTATE(STATE, SUPER) struct STATE : public ::RTC::fsm::Link<STATE, SUPER>
+// data(): the Box of the state, made with the first use; substates reach that of the top with TOP::data().
 #define FSM_STATE(STATE)                                     \
- private:                                                    \
-  Box& data() { return this->engine_->template box<Box>(); } \
-                                                             \
  public:                                                     \
+  Box& data() { return this->engine_->template box<Box>(); } \
   static const char* _state_name() { return #STATE; }        \
   using SELF = STATE

@@ -1,0 +1,67 @@
+// What becomes of a component when the process of a composite or a context that it takes part in has died: it gets its own life back.
+#include <rtm/Manager.h>
+#include <rtm/RTObjectImpl.h>
+
+#include "corba/orb.h"
+
+namespace RTC {
+namespace {
+
+// A process that hangs is not dead.
+bool is_dead(CORBA::ORB_ptr orb, CORBA::Object_ptr object) {
+  constexpr std::chrono::seconds patience{1};
+  try {
+    // A reference of its own, so that the time-out is for this call alone.
+    CORBA::String_var text = orb->object_to_string(object);
+    CORBA::Object_var own = orb->string_to_object(text);
+    corba::set_call_timeout(own, patience);
+    return own->_non_existent();
+  } catch (const CORBA::TIMEOUT&) {
+    return false;
+  } catch (const CORBA::TRANSIENT& exception) {
+    return exception.minor() != omni::TRANSIENT_CallTimedout;
+  } catch (const CORBA::COMM_FAILURE&) {
+    return true;
+  } catch (const CORBA::Exception&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+void RTObject_impl::leaveTheDead() {
+  std::vector<ExecutionContext_var> contexts;
+  std::vector<SDOPackage::Organization_var> organizations;
+  std::vector<ExecutionContext_var> own;
+  {
+    auto data = impl_->shared.lock();
+    if (data->phase != Impl::Phase::alive) return;
+    contexts = data->foreign;
+    organizations = data->organizations;
+    own = data->own;
+  }
+  CORBA::ORB_ptr orb = m_pManager != nullptr ? m_pManager->getORB() : CORBA::ORB::_nil();
+  if (CORBA::is_nil(orb)) return;
+  for (std::size_t i = 0; i < contexts.size(); ++i) {
+    if (CORBA::is_nil(contexts[i]) || !is_dead(orb, contexts[i])) continue;
+    const auto handle = static_cast<ExecutionContextHandle_t>(i) + foreign_offset;
+    RTC_WARN(("the process of execution context %d has died: left", static_cast<int>(handle)));
+    const bool was_active = impl_->shared.lock()->active_in.contains(handle);
+    if (was_active) on_deactivated(handle);
+    detach_context(handle);
+  }
+  bool was_member = false;
+  for (SDOPackage::Organization_var& organization : organizations) {
+    if (!is_dead(orb, organization)) continue;
+    RTC_WARN(("the process of a composite component has died: this component is on its own again"));
+    was_member = true;
+    auto data = impl_->shared.lock();
+    std::erase_if(data->organizations, [&](const SDOPackage::Organization_var& known) { return known->_is_equivalent(organization); });
+  }
+  if (!was_member || !impl_->shared.lock()->organizations.empty()) return;
+  for (ExecutionContext_var& context : own) {
+    if (!context->is_running()) context->start();
+  }
+}
+
+}  // namespace RTC
