@@ -1,8 +1,25 @@
 #include "commander.h"
 
+#include <base/text.h>
+
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <string>
+#include <vector>
 
 namespace iface {
+namespace {
+
+constexpr double fastest = 1e6;  // [m/s], [rad/s]: beyond it is a fault, whatever the robot
+
+std::string text_of(std::span<const double> values) {
+  std::vector<std::string> words;
+  for (const double value : values) words.push_back(std::isfinite(value) ? base::format_number(value) : std::isnan(value) ? "nan" : "inf");
+  return base::join(words, ", ");
+}
+
+}  // namespace
 
 // The component's other handle of the same iface says when it is lost and found.
 Commander::Commander(shm::IfaceType type, Say say)
@@ -30,7 +47,11 @@ void Commander::drive(std::span<const double> velocity) {
     const std::scoped_lock lock(mutex_);
     auto* robot = link_.live();
     if (!robot) return;
-    const auto done = robot->command(shm::CommandKind::velocity, velocity);
+    const bool is_plausible = std::ranges::all_of(velocity, [](double v) { return std::abs(v) <= fastest; });
+    const auto done =
+        is_plausible
+            ? robot->command(shm::CommandKind::velocity, velocity)
+            : base::Error{"velocity (" + text_of(velocity) + "): each must be a number of at most 1e6 m/s or rad/s; it is ignored"};
     is_driving_ = is_driving_ || done.ok();
     if (!done && !refused_) problem = done.error().message;
     refused_ = !done;

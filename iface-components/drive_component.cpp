@@ -1,6 +1,13 @@
 #include "drive_component.h"
 
+#include <utility>
+
 namespace iface {
+namespace {
+
+constexpr double default_timeout = 1.0;  // [s]
+
+}  // namespace
 
 Drive::Drive(RTC::Manager* manager, shm::IfaceType type) : IfaceComponent(manager, type, true), commander_(type, say()), errand_(say()) {}
 
@@ -28,12 +35,21 @@ void Drive::switch_motors() {
   errand_.post(device.server_id, shm::SetMotorsRequest{device.device_id, motors_enabled_});
 }
 
+// A value that means nothing must not switch the robot's safety off.
+double Drive::command_timeout() {
+  const bool is_good = command_timeout_ >= 0;
+  if (!is_good && std::exchange(timeout_was_good_, false))
+    RTC_WARN(("command_timeout must be 0 (never) or more seconds, got %g; it is %g instead", command_timeout_, default_timeout));
+  timeout_was_good_ = is_good;
+  return is_good ? command_timeout_ : default_timeout;
+}
+
 void Drive::watch_and_publish() {
   auto* robot = link().fresh(wait_limit());
   if (!robot) return;
   const auto& stamp = robot->sample<shm::Stamp>();
-  if (watch_.expired(commander_, stamp.sim_time_ns, command_timeout_))
-    RTC_WARN(("no velocity for %g s: the robot stops", command_timeout_));
+  if (watch_.expired(commander_, stamp.sim_time_ns, command_timeout()))
+    RTC_WARN(("no velocity for %g s: the robot stops", command_timeout()));
   if (stamp.valid) publish(*robot);
 }
 

@@ -43,8 +43,11 @@ class Drive : public IfaceComponent {
   Commander& commander() { return commander_; }
 
  private:
+  double command_timeout();
+
   bool motors_enabled_ = true;
-  double command_timeout_ = 1;
+  double command_timeout_ = 1;  // [s]; 0: never
+  bool timeout_was_good_ = true;
   Commander commander_;  // shared with the threads that bring velocities
   CommandWatch watch_;
   bool motors_ = true;  // as told to the simulator

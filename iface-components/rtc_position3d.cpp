@@ -31,6 +31,7 @@ static const char* const rtcposition3d_spec[] = {
     "conf.__widget__.command_timeout", "text",
     "conf.__constraints__.server_id", "0<=x<=9999",
     "conf.__constraints__.motors_enabled", "(0,1)",
+    "conf.__constraints__.command_timeout", "x>=0",
     ""};
 // clang-format on
 

@@ -4,6 +4,7 @@
 
 #include "base/text.h"
 #include "editor.h"
+#include "parameter_check.h"
 
 namespace editor {
 namespace {
@@ -47,6 +48,24 @@ void print_sets(Editor& editor, const ComponentView& component, bool all) {
   }
 }
 
+std::string hidden(const ComponentView& component, const std::string& set_id, const std::string& parameter) {
+  const auto* set = find_set(component, set_id);
+  if (!set) return "";
+  for (const auto& [key, value] : set->values) {
+    if (key == parameter) return value;
+  }
+  return "";
+}
+
+// What the component would not understand, or has said that it does not want.
+Result<void> check_value(const ComponentView& component, const std::string& parameter, const std::string& value) {
+  auto problem = type_problem(hidden(component, "__type__", parameter), value);
+  if (problem.empty()) problem = constraint_problem(hidden(component, "__constraints__", parameter), value);
+  if (problem.empty()) return {};
+  return Error{"component " + component.path + ": parameter " + parameter + " cannot be " + base::in_quotes(value) + ", expected " +
+               problem + " (--force sets it all the same)"};
+}
+
 }  // namespace
 
 Result<void> set_values(const ComponentView& component, const std::string& id,
@@ -85,7 +104,11 @@ void configure(Editor& editor, const ConfigurationOptions& options) {
   if (!component) return editor.fail(component.error());
   const auto& arguments = options.arguments;
   const CallLimit limited(editor.limit());
-  if (options.action == "list") return print_sets(editor, *component, options.all);
+  if (!options.set.empty() && !find_set(*component, options.set)) return editor.fail(no_such_set(*component, options.set));
+  if (options.action == "list") {
+    if (!options.set.empty()) std::erase_if(component->configuration_sets, [&](const auto& set) { return set.id != options.set; });
+    return print_sets(editor, *component, options.all || !options.set.empty());
+  }
   if (options.action == "use" || options.action == "act") {
     if (arguments.size() != 1) return editor.fail({"conf use: expected one configuration set"});
     if (!find_set(*component, arguments[0])) return editor.fail(no_such_set(*component, arguments[0]));
@@ -97,6 +120,8 @@ void configure(Editor& editor, const ConfigurationOptions& options) {
   if (id.empty()) id = "default";
   const auto* set = find_set(*component, id);
   if (!set) return editor.fail(no_such_set(*component, id));
+  if (id.starts_with("_") && options.action == "set")
+    return editor.fail({"conf set: set " + id + " holds what editors know of parameters, not values"});
   if (options.action == "get") {
     if (arguments.size() != 1) return editor.fail({"conf get: expected one parameter"});
     for (const auto& [key, value] : set->values) {
@@ -118,10 +143,14 @@ void configure(Editor& editor, const ConfigurationOptions& options) {
     known = true;
   }
   if (!known) return editor.fail(no_such_parameter(*component, *set, arguments[0]));
+  if (!options.force) {
+    if (const auto good = check_value(*component, arguments[0], arguments[1]); !good) return editor.fail(good.error());
+  }
   if (const auto done = set_values(*component, id, values); !done) return editor.fail(done.error());
-  // Values reach the component when the set is activated; an active set stays so.
-  if (id != component->active_set && !component->active_set.empty()) return;
-  if (const auto used = use_set(*component, id); !used) editor.fail(used.error());
+  // Values reach the component when the active set is activated once more. Until then it has none, also when another set was changed.
+  const auto active = component->active_set.empty() && options.set.empty() ? id : component->active_set;
+  if (active.empty()) return;
+  if (const auto used = use_set(*component, active); !used) editor.fail(used.error());
 }
 
 }  // namespace editor

@@ -138,12 +138,14 @@ void inject(Editor& editor, const InjectOptions& options) {
   std::signal(SIGINT, interrupt);
   const CallLimit limited(editor.limit());
   auto next = Clock::now();
+  bool is_first = true;
   for (int i = 0; (options.count <= 0 || i < options.count) && !interrupted.load(std::memory_order_relaxed); ++i) {
-    if (i > 0) {
-      next += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / options.rate));
-      std::this_thread::sleep_until(next);
-    }
     for (const auto& payload : payloads) {
+      if (std::exchange(is_first, false) == false) {
+        next += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / options.rate));
+        std::this_thread::sleep_until(next);
+      }
+      if (interrupted.load(std::memory_order_relaxed)) break;
       const auto sent = (*tap)->put(payload);
       if (!sent) return editor.fail({"port " + port->port.full_name + ": " + sent.error().message});
     }

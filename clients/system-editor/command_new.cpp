@@ -23,9 +23,10 @@ std::string_view local(std::string_view name) {
   return colon == std::string_view::npos ? name : name.substr(colon + 1);
 }
 
+// xsi:type says what kind of element it is, not what type a port has.
 std::string attribute(const pugi::xml_node& node, std::string_view name, const std::string& otherwise = "") {
   for (const auto& candidate : node.attributes()) {
-    if (local(candidate.name()) == name) return candidate.value();
+    if (local(candidate.name()) == name && !std::string_view(candidate.name()).starts_with("xsi:")) return candidate.value();
   }
   return otherwise;
 }

@@ -72,8 +72,9 @@ struct ConfigurationOptions {
   std::string path;
   std::string action = "list";  // list, get, set, use
   std::vector<std::string> arguments;
-  std::string set;   // empty: the active one
-  bool all = false;  // hidden sets too
+  std::string set;     // empty: the active one
+  bool all = false;    // hidden sets too
+  bool force = false;  // also what the component's own types and constraints forbid
 };
 void configure(Editor& editor, const ConfigurationOptions& options);
 

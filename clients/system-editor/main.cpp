@@ -137,6 +137,7 @@ void add_configuration(CLI::App& app, Work& work) {
   conf->add_option("ARGUMENT", options->arguments, "Parameter, value or set");
   conf->add_option("-s,--set", options->set, "The set to read or change; default: the active one");
   conf->add_flag("-a,--all", options->all, "Hidden sets too");
+  conf->add_flag("--force", options->force, "Set also what the component's own types and constraints forbid");
   conf->callback([&work, options] {
     for (auto& argument : options->arguments) {
       if (argument.starts_with(" [")) argument.erase(0, 1);  // see words_of

@@ -6,10 +6,13 @@
 #include <filesystem>
 #include <fstream>
 #include <pugixml.hpp>
+#include <set>
 #include <sstream>
 
 #include "base/text.h"
 #include "idl_operations.h"
+#include "parameter_check.h"
+#include "value_codec.h"
 
 namespace editor {
 namespace {
@@ -17,8 +20,17 @@ namespace {
 using base::Error;
 using base::Result;
 
+const std::set<std::string> keywords = {
+    "alignas",  "alignof",  "and",       "asm",      "auto",      "bool",     "break",    "case",    "catch",   "char",
+    "class",    "const",    "constexpr", "continue", "decltype",  "default",  "delete",   "do",      "double",  "else",
+    "enum",     "explicit", "export",    "extern",   "false",     "float",    "for",      "friend",  "goto",    "if",
+    "inline",   "int",      "long",      "mutable",  "namespace", "new",      "noexcept", "not",     "nullptr", "operator",
+    "or",       "private",  "protected", "public",   "register",  "requires", "return",   "short",   "signed",  "sizeof",
+    "static",   "struct",   "switch",    "template", "this",      "throw",    "true",     "try",     "typedef", "typeid",
+    "typename", "union",    "unsigned",  "using",    "virtual",   "void",     "volatile", "wchar_t", "while",   "xor"};
+
 bool is_identifier(const std::string& text) {
-  if (text.empty() || std::isdigit(static_cast<unsigned char>(text[0]))) return false;
+  if (text.empty() || keywords.contains(text) || std::isdigit(static_cast<unsigned char>(text[0]))) return false;
   for (const char c : text) {
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_') return false;
   }
@@ -30,6 +42,23 @@ bool is_type(const std::string& text) {
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != ':' && c != '<' && c != '>' && c != ' ') return false;
   }
   return !text.empty();
+}
+
+// Types of the modules that come with the product must be there; others come with an IDL file of the user's.
+bool is_data_type(const std::string& type) {
+  static const std::set<std::string> types = [] {
+    std::set<std::string> names;
+    for (const auto& id : known_data_types()) {
+      auto name = id.substr(4, id.rfind(':') - 4);  // IDL:RTC/TimedLong:1.0
+      for (auto slash = name.find('/'); slash != std::string::npos; slash = name.find('/')) name.replace(slash, 1, "::");
+      names.insert(name);
+    }
+    return names;
+  }();
+  if (types.contains(type)) return true;
+  const auto module = type.substr(0, type.find("::") + 2);
+  return type.find("::") != std::string::npos && types.lower_bound(module) != types.end() &&
+         !types.lower_bound(module)->starts_with(module);
 }
 
 std::string upper(std::string text) {
@@ -355,12 +384,20 @@ Result<void> check(const NewComponent& component) {
     for (const auto& port : *ports) {
       if (auto ok = add(port.name, "port"); !ok) return ok;
       if (!is_type(port.type)) return Error{"port " + port.name + ": type " + base::in_quotes(port.type) + " is no C++ type"};
+      if (!is_data_type(port.type))
+        return Error{"port " + port.name + ": there is no data type " + base::in_quotes(port.type) +
+                     ", expected one like RTC::TimedDouble"};
     }
   }
   for (const auto& parameter : component.parameters) {
     if (auto ok = add(parameter.name, "parameter"); !ok) return ok;
     if (!is_type(parameter.type))
       return Error{"parameter " + parameter.name + ": type " + base::in_quotes(parameter.type) + " is no C++ type"};
+    if (!is_parameter_type(parameter.type))
+      return Error{"parameter " + parameter.name + ": type " + base::in_quotes(parameter.type) +
+                   " is none that a parameter can have, expected int, double, bool, string, std::vector<double> or the like"};
+    if (const auto problem = type_problem(parameter.type, parameter.default_value); !problem.empty())
+      return Error{"parameter " + parameter.name + ": default " + base::in_quotes(parameter.default_value) + ", expected " + problem};
   }
   for (const auto& service : component.services) {
     if (auto ok = add(service.port, "service port"); !ok) return ok;

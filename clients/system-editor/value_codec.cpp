@@ -423,12 +423,22 @@ class PythonForm {
     if (text == "{time}" && is_time(type)) return time_value(now_ns_);
     if (text == "True" || text == "true") return true;
     if (text == "False" || text == "false") return false;
-    if (take('(')) return members(type);
+    if (take('(')) {
+      check_name(type, text);
+      return members(type);
+    }
     if (const auto integer = base::parse_integer(text)) return *integer >= 0 ? Json(static_cast<std::uint64_t>(*integer)) : Json(*integer);
     if (const auto number = base::parse_number(text)) return *number;
     // An enumerator, perhaps with its module: RTC.GPS_FIX_NONE.
     const auto dot = text.rfind('.');
     return dot == std::string::npos ? text : text.substr(dot + 1);
+  }
+  // RTC.TimedLong, RTC::TimedLong or TimedLong for an RTC::TimedLong; the module is not looked at.
+  void check_name(CORBA::TypeCode_ptr type, const std::string& text) const {
+    if (type->kind() != CORBA::tk_struct) fail("no call here");
+    const auto begin = text.find_last_of(".:");
+    if (text.substr(begin == std::string::npos ? 0 : begin + 1) != type->name())
+      throw Failure{"value " + base::in_quotes(text_) + ": is a " + text + ", expected a " + std::string(type->name())};
   }
   Json members(CORBA::TypeCode_ptr type) {
     if (type->kind() != CORBA::tk_struct) fail("no call here");
@@ -471,6 +481,28 @@ Result<std::vector<unsigned char>> encode(CORBA::TypeCode_ptr type, const Json& 
   }
 }
 
+namespace {
+
+// A string, or a Timed type with one.
+bool takes_text(CORBA::TypeCode_ptr type) {
+  if (type->kind() == CORBA::tk_string) return true;
+  if (type->kind() != CORBA::tk_struct || type->member_count() != 2) return false;
+  const CORBA::TypeCode_var first = type->member_type(0), second = type->member_type(1);
+  return is_time(first) && resolved(second)->kind() == CORBA::tk_string;
+}
+
+// Where the text stops being JSON. NaN and infinities are none.
+std::string json_problem(const std::string& text) {
+  try {
+    return Json::parse(text).is_null() ? "null" : "";
+  } catch (const nlohmann::json::parse_error& error) {
+    const auto at = std::min(error.byte, text.size());
+    return "unexpected " + (at > 0 ? base::in_quotes(text.substr(at - 1, 10)) : std::string("end")) + " at character " + std::to_string(at);
+  }
+}
+
+}  // namespace
+
 Result<Json> parse_value(CORBA::TypeCode_ptr declared, const std::string& text, std::int64_t now_ns) {
   const auto type = resolved(declared);
   auto value = Json::parse(text, nullptr, false);
@@ -478,7 +510,14 @@ Result<Json> parse_value(CORBA::TypeCode_ptr declared, const std::string& text, 
     try {
       value = PythonForm(text, now_ns).parse(type);
     } catch (const Failure& failure) {
-      return Error{failure.message};
+      const auto first = text.find_first_not_of(" \t\n");
+      if (takes_text(type) && text.find_first_of("\"'(") == std::string::npos) {
+        value = text;  // words need no quotes where only text can stand
+      } else if (first != std::string::npos && (text[first] == '{' || text[first] == '[')) {
+        return Error{"value " + base::in_quotes(text) + ": is no JSON: " + json_problem(text)};
+      } else {
+        return Error{failure.message};
+      }
     }
   }
   if (type->kind() != CORBA::tk_struct || type->member_count() == 0) return value;
@@ -489,7 +528,9 @@ Result<Json> parse_value(CORBA::TypeCode_ptr declared, const std::string& text, 
   if (value.is_object() && !value.contains(time_name)) {
     // A bare object for a Timed type may also be its data: {"vx": 0.2} for a TimedVelocity2D.
     const std::string data_name = type->member_count() == 2 ? type->member_name(1) : "";
-    if (!data_name.empty() && !value.contains(data_name) && !value.empty()) value = Json{{data_name, value}};
+    const CORBA::TypeCode_var second = data_name.empty() ? CORBA::TypeCode::_nil() : type->member_type(1);
+    const bool is_record = !data_name.empty() && resolved(second)->kind() == CORBA::tk_struct;
+    if (is_record && !value.contains(data_name) && !value.empty()) value = Json{{data_name, value}};
     value[time_name] = time_value(now_ns);
   }
   return value;

@@ -74,7 +74,8 @@ std::string troff(const std::string& text) {
 void append_options(std::string& page, const CLI::App& app) {
   for (const auto* option : app.get_options()) {
     if (option->get_group().empty()) continue;
-    page += ".TP\n.B " + troff(option->get_name(true)) + "\n" + troff(option->get_description()) + "\n";
+    page += ".TP\n.B " + troff(option->get_positional() ? option->get_name(true) : option->get_name(false, true)) + "\n" +
+            troff(option->get_description()) + "\n";
   }
 }
 
@@ -120,7 +121,11 @@ std::string completion_script(const CLI::App& app, const std::string& name, cons
       script += "    " + command->get_name() + ") words=\"$words " + join(option_names(*command), " ") + "\";;\n";
     script += "  esac\n";
   }
-  script += "  COMPREPLY=($(compgen -W \"$words\" -- \"${COMP_WORDS[COMP_CWORD]}\"))\n}\n";
+  // Where neither an option nor a command can stand, the shell offers files.
+  script +=
+      "  local current=\"${COMP_WORDS[COMP_CWORD]}\"\n  case \"$command$current\" in ?*) [[ $current == -* || -z $command ]] || return 0;; "
+      "esac\n";
+  script += "  COMPREPLY=($(compgen -W \"$words\" -- \"$current\"))\n}\n";
   return script + "complete -o default -F " + function + " " + name + "\n";
 }
 

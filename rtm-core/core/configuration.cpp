@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/text.h"
+
 namespace rt {
 
 namespace {
@@ -85,9 +87,13 @@ std::vector<Configuration::Assignment> Configuration::assignments(Data& data, co
 }
 
 std::optional<Configuration::Update> Configuration::run(const std::string& set, const std::vector<Assignment>& assignments) {
-  Update update{set, {}};
+  Update update{set, {}, {}};
   for (const Assignment& assignment : assignments) {
-    if (!(*assignment.assign)(assignment.value.c_str())) (*assignment.assign)(assignment.default_value.c_str());
+    if (!(*assignment.assign)(assignment.value.c_str())) {
+      (*assignment.assign)(assignment.default_value.c_str());
+      update.refused.push_back("configuration set " + set + ": parameter " + assignment.name + " cannot be " +
+                               base::in_quotes(assignment.value) + "; it is " + base::in_quotes(assignment.default_value) + " instead");
+    }
     update.parameters.push_back(assignment.name);
   }
   return update;

@@ -28,6 +28,7 @@ class Configuration {
   struct Update {
     std::string set;
     std::vector<std::string> parameters;
+    std::vector<std::string> refused;  // a line for each value that could not be converted; its parameter has the default instead
   };
 
   // There is always a set "default", and it is the first active one.

@@ -36,22 +36,24 @@ bool ConfigAdmin::bind(const char* name, const char* default_value, std::functio
 
 bool ConfigAdmin::unbindParameter(const char* param_name) { return configuration_->unbind(text(param_name)); }
 
-void ConfigAdmin::notify(const std::string& set, const std::vector<std::string>& parameters) {
-  for (const std::string& parameter : parameters)
-    listeners_.configparam_[static_cast<int>(ON_UPDATE_CONFIG_PARAM)].notify(set.c_str(), parameter.c_str());
-  listeners_.configsetname_[static_cast<int>(ON_UPDATE_CONFIG_SET)].notify(set.c_str());
+template <class Update>
+void ConfigAdmin::notify(const Update& update) {
+  for (const std::string& line : update.refused) say_(line);
+  for (const std::string& parameter : update.parameters)
+    listeners_.configparam_[static_cast<int>(ON_UPDATE_CONFIG_PARAM)].notify(update.set.c_str(), parameter.c_str());
+  listeners_.configsetname_[static_cast<int>(ON_UPDATE_CONFIG_SET)].notify(update.set.c_str());
 }
 
 void ConfigAdmin::update() {
-  if (const auto update = configuration_->update()) notify(update->set, update->parameters);
+  if (const auto update = configuration_->update()) notify(*update);
 }
 
 void ConfigAdmin::update(const char* config_set) {
-  if (const auto update = configuration_->update_from(text(config_set))) notify(update->set, update->parameters);
+  if (const auto update = configuration_->update_from(text(config_set))) notify(*update);
 }
 
 void ConfigAdmin::update(const char* config_set, const char* config_param) {
-  if (const auto update = configuration_->update_from(text(config_set), text(config_param))) notify(update->set, update->parameters);
+  if (const auto update = configuration_->update_from(text(config_set), text(config_param))) notify(*update);
 }
 
 bool ConfigAdmin::isExist(const char* param_name) const { return configuration_->is_bound(text(param_name)); }

@@ -82,11 +82,16 @@ class ConfigAdmin {
                                        bool autoclean = true);
   void removeConfigurationSetNameListener(ConfigurationSetNameListenerType type, ConfigurationSetNameListener* listener);
 
+  // Where a line goes for each value that a bound variable cannot take. Set before the first update.
+  void setLog(std::function<void(const std::string& line)> say) { say_ = std::move(say); }
+
  private:
   bool bind(const char* name, const char* default_value, std::function<bool(const char*)> assign);
-  void notify(const std::string& set, const std::vector<std::string>& parameters);
+  template <class Update>
+  void notify(const Update& update);
 
   std::unique_ptr<rt::Configuration> configuration_;
+  std::function<void(const std::string& line)> say_ = [](const std::string&) {};
   ConfigurationListeners listeners_;
 };
 

@@ -138,6 +138,11 @@ struct ModuleManager::Impl {
     auto paths = base::split_list(manager->configValue("manager.modules.load_path"));
     for (const auto& path : base::split_list(manager->configValue("manager.modules.C++.load_paths"))) paths.push_back(path);
     for (const auto& path : paths) folders.emplace_back(rt::expand_format(path, nothing));
+    // Last, the modules that were installed with the program, PREFIX/bin/rtcd and PREFIX/lib/rtm-sim.
+    std::error_code error;
+    const auto program = fs::read_symlink("/proc/self/exe", error);
+    if (const auto installed = program.parent_path().parent_path() / "lib" / "rtm-sim"; !error && fs::is_directory(installed, error))
+      folders.push_back(installed);
     return folders;
   }
 

@@ -35,6 +35,7 @@ RTObject_impl::RTObject_impl(Manager* manager) : m_pManager(manager), impl_(std:
   int argc = 0;
   m_pORB = manager ? CORBA::ORB::_duplicate(manager->getORB()) : CORBA::ORB_init(argc, nullptr);
   m_pPOA = manager ? PortableServer::POA::_duplicate(manager->getPOA()) : PortableServer::POA::_the_root_poa();
+  m_configsets.setLog([this](const std::string& line) { RTC_WARN(("%s", line.c_str())); });
   impl_->configuration = new SDOPackage::Configuration_impl(*this, m_configsets, impl_->services);
   OpenRTM::DataFlowComponent_var self = _this();
   impl_->shared.lock()->reference = RTC::RTObject::_duplicate(self);
