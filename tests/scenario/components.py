@@ -142,7 +142,7 @@ def wrong_device():
     await_("the error state", lambda: rig.state("RTCSonar0") == "Error")
     log = open(rig.running[-1].log).read()
     assert "pioneer2dx::sonat" in log and "pioneer2dx::sonar" in log, log
-    rig.rtse("conf", "RTCSonar0", "set", "server_id", "-1")
+    rig.rtse("conf", "RTCSonar0", "set", "server_id", "-1", "--force")
     rig.rtse("reset", "RTCSonar0")
     assert rig.try_rtse("act", "RTCSonar0").returncode == 1
     await_("the error state", lambda: rig.state("RTCSonar0") == "Error")

@@ -229,7 +229,7 @@ def connect_demo():
 def change_configuration():
     sets = json.loads(rig.rtse("--json", "cat", "ConfigDemo0"))["configuration"]
     names = [name for name in sets if not name.startswith("_")]
-    rig.rtse("conf", "ConfigDemo0", "-s", names[-1], "set", "mode", "[a,b]")
+    rig.rtse("conf", "ConfigDemo0", "-s", names[-1], "set", "mode", "[a,b]", "--force")
     assert rig.rtse("conf", "ConfigDemo0", "-s", names[-1], "get", "mode").strip() == "[a,b]"
     text = next(key for key in sets[names[0]] if "weights" in key)
     rig.rtse("conf", "ConfigDemo0", "-s", names[0], "set", text, "7, 8.25,-1e-3")
