@@ -1,16 +1,13 @@
-#include "shm/lockstep.h"
-
+// The server's side of the lock step.
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cstring>
 #include <thread>
 #include <utility>
 
 #include "base/text.h"
-#include "shm/futex.h"
-#include "shm/process.h"
-#include "shm/words.h"
+#include "shm/lockstep.h"
+#include "shm/participant_slots.h"
 
 namespace shm {
 namespace {
@@ -18,11 +15,8 @@ namespace {
 using std::chrono::nanoseconds;
 using std::chrono::steady_clock;
 
-constexpr std::uint32_t max_phase = 15;
 constexpr nanoseconds spin_limit = std::chrono::microseconds(50);
 constexpr nanoseconds server_slice = std::chrono::milliseconds(10);
-constexpr nanoseconds client_slice = std::chrono::milliseconds(100);
-constexpr std::int64_t longest_period = std::int64_t{1} << 60;
 
 // Between two looks of a thread that spins.
 void relax() {
@@ -31,46 +25,6 @@ void relax() {
 #else
   std::atomic_signal_fence(std::memory_order_seq_cst);
 #endif
-}
-
-ParticipantSlot& slot_at(const Segment& segment, std::size_t index) { return segment.as<ParticipantSlot>(AreaIndex::participants, index); }
-std::size_t slot_count(const Segment& segment) { return segment.area(AreaIndex::participants).count; }
-Control& control_of(const Segment& segment) { return segment.as<Control>(AreaIndex::control); }
-
-ProcessMark mark_of(const ParticipantSlot& slot) { return {owner_pid(load(slot.owner)), load(slot.pid_namespace), load(slot.start_time)}; }
-
-// Whatever a client has written there, it is one line of text for people.
-std::string name_of(const ParticipantSlot& slot) {
-  std::string name(slot.name, strnlen(slot.name, sizeof slot.name));
-  std::replace_if(
-      name.begin(), name.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-  return name;
-}
-
-void free_slot(ParticipantSlot& slot, std::uint64_t owner) {
-  store(slot.state, static_cast<std::uint32_t>(RTMSIM_PARTICIPANT_FREE));
-  store(slot.start_time, std::uint64_t{0});
-  word(slot.owner).compare_exchange_strong(owner, 0, std::memory_order_acq_rel);
-}
-
-void wake_server(Control& control) {
-  word(control.server_word).fetch_add(1, std::memory_order_seq_cst);
-  if (load(control.server_waiting, std::memory_order_seq_cst) != 0) futex_wake(control.server_word, 1);  // pairs with Barrier's wait
-}
-
-std::uint32_t& tick_word(Control& control, std::size_t index) { return control.tick_words[index / 32 % RTMSIM_TICK_WORDS]; }
-constexpr std::uint32_t tick_bit(std::size_t index) { return 1U << index % 32; }
-
-void wake_participant(Control& control, std::size_t index) {
-  word(tick_word(control, index)).fetch_add(1, std::memory_order_seq_cst);
-  futex_wake_bits(tick_word(control, index), tick_bit(index));
-}
-
-void change_participants(const Segment& segment) {
-  Control& control = control_of(segment);
-  word(control.participant_epoch).fetch_add(1, std::memory_order_acq_rel);
-  word(control.attention).fetch_add(1, std::memory_order_seq_cst);
-  ring(control.attention, control.attention_waiting);
 }
 
 // First multiple of period at or after `time`.
@@ -396,205 +350,6 @@ bool Barrier::drop(const std::string& name) {
   return true;
 }
 
-namespace {
-
-std::vector<ParticipantRecord> read_records(const Segment& segment) {
-  std::vector<ParticipantRecord> records;
-  for (std::size_t i = 0; i < slot_count(segment); ++i) {
-    const ParticipantSlot& slot = slot_at(segment, i);
-    const std::uint64_t owner = load(slot.owner);
-    const std::uint32_t state = load(slot.state);
-    if (owner == 0 || (state != RTMSIM_PARTICIPANT_JOINING && state != RTMSIM_PARTICIPANT_ACTIVE)) continue;
-    ParticipantRecord record;
-    record.name = name_of(slot);
-    record.pid = owner_pid(owner);
-    record.phase = slot.phase;
-    record.period_ns = load(slot.period_ns);
-    record.ticks = load(slot.ticks);
-    record.missed = load(slot.missed);
-    record.max_ns = load(slot.max_ns);
-    record.mean_ns = record.ticks > 0 ? load(slot.total_ns) / static_cast<std::int64_t>(record.ticks) : 0;
-    record.is_active = state == RTMSIM_PARTICIPANT_ACTIVE;
-    record.is_late = record.is_active && load(slot.done) != load(slot.go);
-    records.push_back(std::move(record));
-  }
-  std::stable_sort(records.begin(), records.end(), [](const auto& a, const auto& b) { return a.phase < b.phase; });
-  return records;
-}
-
-}  // namespace
-
 std::vector<ParticipantRecord> Barrier::records() const { return read_records(state_->segment); }
-
-base::Result<std::vector<ParticipantRecord>> read_participants(const Iface& simulation) {
-  if (slot_count(simulation.segment()) == 0) return base::Error{"iface '" + simulation.name() + "' has no participants"};
-  return read_records(simulation.segment());
-}
-
-struct Participant::Impl {
-  explicit Impl(Iface opened) : simulation(std::move(opened)) {}
-  ~Impl() { leave(); }
-
-  Iface simulation;
-  std::size_t index = 0;
-  std::uint64_t owner = 0;
-  std::uint32_t last_go = 0;
-  bool is_in_tick = false;
-  steady_clock::time_point tick_start, check_at;  // check_at: when to look next whether the server lives
-  std::uint64_t ticks = 0;
-  std::int64_t total = 0, max = 0;
-  std::atomic<bool> is_interrupted{false};
-
-  ParticipantSlot& slot() const { return slot_at(simulation.segment(), index); }
-  bool is_ours() const { return load(slot().owner) == owner; }
-  base::Result<void> take_slot(const ParticipantOptions& options);
-  void finish(steady_clock::time_point now);
-  void leave();
-};
-
-base::Result<void> Participant::Impl::take_slot(const ParticipantOptions& options) {
-  const Segment& segment = simulation.segment();
-  owner = make_owner();
-  const ProcessMark mark = own_mark();
-  for (std::size_t i = 0; i < slot_count(segment); ++i) {
-    ParticipantSlot& candidate = slot_at(segment, i);
-    std::uint64_t free = 0;
-    if (!word(candidate.owner).compare_exchange_strong(free, owner, std::memory_order_acq_rel)) continue;
-    index = i;
-    store(candidate.pid_namespace, mark.pid_namespace);
-    store(candidate.start_time, mark.start_time);
-    candidate.phase = options.phase;
-    store(candidate.period_ns, static_cast<std::int64_t>(options.period.count()));
-    set_text(candidate.name, options.name);
-    store(candidate.done, 0U);
-    store(candidate.sleeping, 0U);
-    store(candidate.ticks, std::uint64_t{0});
-    store(candidate.total_ns, std::int64_t{0});
-    store(candidate.max_ns, std::int64_t{0});
-    store(candidate.missed, std::uint64_t{0});
-    store(candidate.go, 0U);
-    store(candidate.state, static_cast<std::uint32_t>(RTMSIM_PARTICIPANT_JOINING));  // pairs with Barrier's scan
-    change_participants(segment);
-    return {};
-  }
-  return base::Error{"participant " + base::in_quotes(options.name) + ": all " + std::to_string(slot_count(segment)) +
-                     " places on server " + std::to_string(simulation.server_id()) + " are taken"};
-}
-
-void Participant::Impl::leave() {
-  if (owner == 0 || !is_ours()) return;
-  ParticipantSlot& mine = slot();
-  std::uint32_t state = RTMSIM_PARTICIPANT_JOINING;
-  // Not taken in yet, or dropped: the slot is ours to free. Else the server does.
-  if (word(mine.state).compare_exchange_strong(state, RTMSIM_PARTICIPANT_FREE, std::memory_order_acq_rel) ||
-      state == RTMSIM_PARTICIPANT_DROPPED) {
-    free_slot(mine, owner);
-  } else {
-    store(mine.state, static_cast<std::uint32_t>(RTMSIM_PARTICIPANT_LEAVING));
-    if (is_in_tick) {
-      store(mine.done, last_go, std::memory_order_seq_cst);
-      Control& control = control_of(simulation.segment());
-      word(control.pending).fetch_sub(1, std::memory_order_seq_cst);
-      wake_server(control);
-    }
-  }
-  change_participants(simulation.segment());
-  owner = 0;
-}
-
-Participant::Participant(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-Participant::Participant(Participant&&) noexcept = default;
-Participant& Participant::operator=(Participant&&) noexcept = default;
-Participant::~Participant() = default;
-
-base::Result<Participant> Participant::join(std::uint32_t server_id, const ParticipantOptions& options) {
-  const auto fail = [&](const std::string& what) { return base::Error{"participant " + base::in_quotes(options.name) + ": " + what}; };
-  if (options.name.empty()) return fail("needs a name");
-  if (options.phase > max_phase) return fail("phase must be 0 to 15, got " + std::to_string(options.phase));
-  if (options.period.count() <= 0 || options.period.count() >= longest_period) {
-    return fail("period must be more than 0 and less than " + std::to_string(longest_period / 1'000'000'000) + " s, got " +
-                std::to_string(options.period.count()) + " ns");
-  }
-  auto simulation = Iface::open(server_id, IfaceType::simulation, "world");
-  if (!simulation) return simulation.error();
-  if (slot_count(simulation->segment()) == 0) return fail("the server takes no participants");
-  auto impl = std::make_unique<Impl>(std::move(*simulation));
-  if (auto good = impl->take_slot(options); !good) {
-    impl->owner = 0;
-    return good.error();
-  }
-  return Participant(std::move(impl));
-}
-
-void Participant::Impl::finish(steady_clock::time_point now) {
-  if (!is_in_tick) return;
-  is_in_tick = false;
-  if (!is_ours()) return;
-  ParticipantSlot& mine = slot();
-  const std::int64_t took = std::chrono::duration_cast<nanoseconds>(now - tick_start).count();
-  total += took;
-  max = std::max(max, took);
-  store(mine.ticks, ++ticks, std::memory_order_relaxed);
-  store(mine.total_ns, total, std::memory_order_relaxed);
-  store(mine.max_ns, max, std::memory_order_relaxed);
-  store(mine.done, last_go, std::memory_order_seq_cst);  // pairs with Barrier's is_done
-  Control& control = control_of(simulation.segment());
-  if (word(control.pending).fetch_sub(1, std::memory_order_seq_cst) <= 1) wake_server(control);
-}
-
-void Participant::finish() { impl_->finish(steady_clock::now()); }
-
-Participant::State Participant::wait(Tick& tick, nanoseconds timeout) {
-  Impl& impl = *impl_;
-  const Segment& segment = impl.simulation.segment();
-  ParticipantSlot& mine = impl.slot();
-  const std::uint32_t& shared = tick_word(control_of(segment), impl.index);
-  auto now = steady_clock::now();  // read once per sleep
-  impl.finish(now);
-  const auto deadline = now + timeout;
-  while (true) {
-    if (load(segment.header().state) != RTMSIM_STATE_LIVE) return State::closed;
-    if (!impl.is_ours() || load(mine.state) == RTMSIM_PARTICIPANT_DROPPED) {
-      impl.leave();
-      return State::dropped;
-    }
-    if (impl.is_interrupted.load(std::memory_order_relaxed) && impl.is_interrupted.exchange(false)) return State::timed_out;
-    store(mine.sleeping, 1U, std::memory_order_seq_cst);  // pairs with the load in Barrier's wake
-    const std::uint32_t seen = load(shared, std::memory_order_seq_cst);
-    const std::uint32_t go = load(mine.go, std::memory_order_seq_cst);
-    if (go != impl.last_go && load(mine.state) == RTMSIM_PARTICIPANT_ACTIVE) {
-      constexpr auto relaxed = std::memory_order_relaxed;
-      store(mine.sleeping, 0U, relaxed);
-      tick = {nanoseconds(load(mine.now_ns, relaxed)), nanoseconds(load(mine.due_ns, relaxed)), load(mine.steps, relaxed),
-              load(mine.resets, relaxed)};
-      impl.last_go = go;
-      impl.is_in_tick = true;
-      impl.tick_start = now;
-      return State::tick;
-    }
-    if (now >= deadline) {
-      store(mine.sleeping, 0U, std::memory_order_relaxed);
-      return State::timed_out;
-    }
-    if (now >= impl.check_at) {
-      impl.check_at = now + client_slice;
-      if (impl.simulation.status() != Status::live) return State::closed;
-    }
-    futex_wait_bits(shared, seen, tick_bit(impl.index), std::min(deadline, impl.check_at));
-    store(mine.sleeping, 0U, std::memory_order_relaxed);
-    now = steady_clock::now();
-  }
-}
-
-void Participant::set_period(nanoseconds period) {
-  if (impl_->is_ours() && period.count() > 0) store(impl_->slot().period_ns, static_cast<std::int64_t>(period.count()));
-}
-
-bool Participant::is_active() const { return impl_->is_ours() && load(impl_->slot().state) == RTMSIM_PARTICIPANT_ACTIVE; }
-
-void Participant::interrupt() {
-  impl_->is_interrupted.store(true);
-  if (impl_->is_ours()) wake_participant(control_of(impl_->simulation.segment()), impl_->index);
-}
 
 }  // namespace shm
