@@ -5,6 +5,7 @@
 
 #include <omniORB4/callDescriptor.h>
 #include <omniORB4/callHandle.h>
+#include <omniORB4/minorCode.h>
 #include <omniORB4/omniORB.h>
 
 #include <cstring>
@@ -242,6 +243,20 @@ class OutServant final : public Names::OutSkeleton, public PortableServer::RefCo
   std::shared_ptr<Source> source_;
 };
 
+// Calls the peer. A connection that ends while the answer is awaited may only have been idle too long for the peer's taste: once more then.
+template <class Call>
+rt::PortStatus calling(Call call) {
+  for (bool is_second = false;; is_second = true) {
+    try {
+      return call();
+    } catch (const CORBA::COMM_FAILURE& e) {
+      if (is_second || e.minor() != omni::COMM_FAILURE_WaitingForReply) return status_of(e, "data port");
+    } catch (const CORBA::SystemException& e) {
+      return status_of(e, "data port");
+    }
+  }
+}
+
 template <class Names>
 class CdrSender final : public Sender {
  public:
@@ -255,13 +270,11 @@ class CdrSender final : public Sender {
       base::log(base::Level::error, "data port", "a {} cannot be encoded: {}", payload.ops().type_id, e._name());
       return rt::PortStatus::error;
     }
-    try {
+    return calling([&] {
       PutCall<Names> call(*pieces);
       in_port_->_PR_getobj()->_invoke(call);
       return from_put(call.status());
-    } catch (const CORBA::SystemException& e) {
-      return status_of(e, "data port");
-    }
+    });
   }
 
  private:
@@ -302,7 +315,7 @@ class CdrFetcher final : public Fetcher {
   CdrFetcher(typename Names::OutStub::_ptr_type out_port, const Line& line) : out_port_(out_port), order_(line.order) {}
 
   rt::PortStatus fetch(rt::Sample& sample) override {
-    try {
+    return calling([&] {
       GetCall<Names> call(*pool_);
       out_port_->_PR_getobj()->_invoke(call);
       if (call.status == WireStatus::ok) {
@@ -310,9 +323,7 @@ class CdrFetcher final : public Fetcher {
         sample.order = order_;
       }
       return from_get(call.status);
-    } catch (const CORBA::SystemException& e) {
-      return status_of(e, "data port");
-    }
+    });
   }
 
  private:

@@ -8,10 +8,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <mutex>
+#include <optional>
 #include <system_error>
 
 #include "base/log.h"
 #include "base/text.h"
+#include "corba/call_timeout.h"
+#include "corba/peer_watch.h"
 
 namespace corba {
 namespace {
@@ -174,6 +177,15 @@ base::Result<std::vector<std::string>> to_arguments(const OrbSettings& settings,
   return result;
 }
 
+// The one of the last -ORBclientCallTimeOutPeriod, so that calls between ports keep what rtc.conf says in corba.args; 0 is none.
+std::chrono::milliseconds call_timeout_of(const std::vector<std::string>& arguments) {
+  std::optional<std::int64_t> given;
+  for (std::size_t i = 0; i + 1 < arguments.size(); ++i) {
+    if (arguments[i] == "-ORBclientCallTimeOutPeriod") given = base::parse_integer(arguments[i + 1]);
+  }
+  return given.value_or(0) > 0 ? std::chrono::milliseconds(*given) : std::chrono::hours(1);
+}
+
 // ---- object keys that people can write
 
 // Sends every caller on to the object it stands for.
@@ -210,6 +222,7 @@ base::Result<std::unique_ptr<Orb>> Orb::start(const OrbSettings& settings) {
   argv.push_back(nullptr);
   int argc = static_cast<int>(arguments->size());
 
+  set_port_call_timeout(call_timeout_of(*arguments));
   auto& messages = orb_messages();
   {
     const std::scoped_lock lock(messages.mutex);
@@ -236,7 +249,10 @@ base::Result<std::unique_ptr<Orb>> Orb::start(const OrbSettings& settings) {
     messages.collecting = false;
     detail = messages.last;
   }
-  if (failure.empty()) return result;
+  if (failure.empty()) {
+    if (settings.peer_check_interval.count() > 0) result->watch_ = std::make_unique<PeerWatch>(settings.peer_check_interval);
+    return result;
+  }
   std::string where;
   for (const auto& endpoint : settings.endpoints) where += (where.empty() ? "" : ", ") + endpoint;
   return base::Error{"orb: cannot start" + (where.empty() ? "" : " on " + where) + ": " + (detail.empty() ? failure : detail)};
@@ -245,6 +261,7 @@ base::Result<std::unique_ptr<Orb>> Orb::start(const OrbSettings& settings) {
 Orb::Orb() = default;
 
 Orb::~Orb() {
+  watch_.reset();
   try {
     if (!CORBA::is_nil(orb_)) orb_->destroy();
   } catch (const CORBA::Exception& e) {

@@ -14,6 +14,8 @@
 
 namespace corba {
 
+class PeerWatch;
+
 struct OrbSettings {
   // Where to listen: "HOST:PORT", ":PORT" (loopback), "HOST", "all" (every interface), "unix" or an omniORB end point "giop:...". Empty:
   // any free port on loopback. An empty list is the same as one empty string.
@@ -23,6 +25,7 @@ struct OrbSettings {
   std::vector<std::string> further_addresses{};           // host:port, published beside the end points: where a router passes calls on
   bool unix_socket = true;                                // a further end point for processes of this host
   std::chrono::milliseconds call_timeout{10'000};         // of every call to another process; 0: none
+  std::chrono::milliseconds peer_check_interval{2000};    // between looks for dead ports at the other ends of connections; 0: none
   std::size_t max_message_size = std::size_t{128} << 20;  // [byte]
   std::vector<std::string> arguments{};                   // further -ORB... arguments; they win over the settings above
 };
@@ -60,6 +63,7 @@ class Orb {
   PortableServer::POA_var ins_poa_;
   PortableServer::POAManager_var poa_manager_;
   std::unique_ptr<PrivateFolder> folder_;
+  std::unique_ptr<PeerWatch> watch_;
 };
 
 // Every call through this reference (and copies made of it later) ends with CORBA::TIMEOUT or TRANSIENT after that time.

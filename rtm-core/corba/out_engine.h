@@ -7,29 +7,14 @@
 #include <vector>
 
 #include "base/guarded.h"
-#include "corba/gate.h"
 #include "corba/in_engine.h"
+#include "corba/loss_handler.h"
 #include "corba/transport.h"
 #include "core/connector_settings.h"
 #include "core/mailbox.h"
 #include "core/publisher.h"
 
 namespace corba {
-
-// Told, on any thread, that the peer of a connection is gone. `close` ends that; nobody is inside any more when it returns.
-class LossHandler {
- public:
-  explicit LossHandler(std::function<void(const std::string& id)> handle) : handle_(std::move(handle)) {}
-  void lost(const std::string& id) {
-    const Gate::Visit visit(gate_);
-    if (visit) handle_(id);
-  }
-  void close() { gate_.close(); }
-
- private:
-  const std::function<void(const std::string& id)> handle_;
-  Gate gate_;
-};
 
 class OutConnection final : public Source {
  public:

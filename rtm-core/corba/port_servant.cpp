@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "corba/nv_list.h"
+#include "corba/peer_watch.h"
 
 namespace corba {
 namespace {
@@ -53,8 +54,10 @@ void PortServant::deactivate() {
 }
 
 void PortServant::shut() {
+  loss_->close();
   deactivate();
   gate_.close();
+  for (const auto& profile : connections()) forget_peers(profile.connector_id.in(), *loss_);
   // A caller has its answer a little before the POA is done with the call.
   auto holders = holders_.lock();
   holders.wait_for(released_, longest_wait, [&] { return *holders <= 1; });
@@ -311,6 +314,9 @@ RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile) {
       connection->is_established = true;
     }
   }
+  watch_peers(profile.connector_id.in(), profile.ports, reference(), loss_);
+  const bool is_still_there = state_.lock()->find(profile.connector_id.in());
+  if (!is_still_there) forget_peers(profile.connector_id.in(), *loss_);
   tell(Step::connected, profile, code);
   return code;
 }
@@ -392,6 +398,7 @@ RTC::ReturnCode_t PortServant::leave(std::string_view connector_id, bool tells_n
     connection->is_leaving = true;
     profile = connection->profile;
   }
+  forget_peers(id, *loss_);
   tell(Step::notify_disconnect, profile, RTC::RTC_OK);
   if (tells_next) tell(Step::next_disconnected, profile, leave_next(profile));
   tell(Step::unsubscribed, profile, RTC::RTC_OK);

@@ -4,12 +4,14 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/guarded.h"
 #include "corba/call_timeout.h"
 #include "corba/gate.h"
+#include "corba/loss_handler.h"
 #include "core/connector_settings.h"
 #include "rtm/idl/RTCSkel.h"
 
@@ -121,6 +123,8 @@ class PortServant : public virtual POA_RTC::PortService, public virtual Portable
   base::Guarded<State, base::Rank::port> state_;
   std::atomic<int> connection_limit_{-1};
   Gate gate_;
+  const std::shared_ptr<LossHandler> loss_ =
+      std::make_shared<LossHandler>([this](const std::string& id) { drop_connection(id.c_str()); });  // for PeerWatch
   base::Guarded<int, base::Rank::registry> holders_{1};
   std::condition_variable released_;
 };

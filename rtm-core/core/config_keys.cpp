@@ -27,6 +27,7 @@ constexpr ConfigKey keys[] = {
     {"corba.endpoints_ipv6", ""},
     {"corba.unix_socket", "YES", boolean},
     {"corba.call_timeout", "10", number},
+    {"corba.peer_check_interval", "2", number},
     {"corba.id", "omniORB"},
     {"corba.nameservers", "localhost", addresses},
     {"corba.nameservice.replace_endpoint", "NO", boolean},

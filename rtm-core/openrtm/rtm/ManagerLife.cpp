@@ -157,6 +157,7 @@ base::Result<void> ManagerImpl::start_orb() {
   settings.arguments = split_arguments(value("corba.args"));
   settings.unix_socket = flag("corba.unix_socket", true);
   settings.call_timeout = to_milliseconds(number("corba.call_timeout", 10.0));
+  settings.peer_check_interval = to_milliseconds(number("corba.peer_check_interval", 2.0));
   if (is_master() && settings.endpoints.empty()) {
     const auto address = value("corba.master_manager");
     const auto colon = address.rfind(':');

@@ -53,6 +53,18 @@ rt::ConnectorSettingsOutcome settings_of(const ConnectorProfile& profile, const 
   return rt::read_connector_settings(values, side);
 }
 
+void share_port_properties(ConnectorProfile& profile, const coil::Properties& port) {
+  for (const auto& name : port.propertyNames()) {
+    const std::string& value = port.getProperty(name);
+    const std::string key = name.starts_with("dataport.") ? name.substr(9) : name;
+    if (value.empty() || key.starts_with("inport.")) continue;
+    const std::string shown = key.starts_with("outport.") ? "dataport." + key : "dataport.outport." + key;
+    const bool is_said = !corba::find_text(profile.properties, shown).value_or("").empty() ||
+                         (shown != "dataport." + key && !corba::find_text(profile.properties, "dataport." + key).value_or("").empty());
+    if (!is_said) corba::set_text(profile.properties, shown, value);
+  }
+}
+
 bool says_when_empty(const ConnectorProfile& profile) {
   return settings_of(profile, coil::Properties(), rt::Side::out).settings.buffer.empty != rt::EmptyPolicy::readback;
 }
@@ -84,6 +96,11 @@ ConnectorInfo make_info(const ConnectorProfile& profile, const coil::Properties&
   info.properties << port;
   const coil::Properties all = NVUtil::toProperties(profile.properties);
   if (const coil::Properties* dataport = all.findNode("dataport")) info.properties << *dataport;
+  if (info.properties.getProperty("io_mode").empty()) {
+    const std::string subscription = info.properties.getProperty("subscription_type");
+    if (!subscription.empty())
+      info.properties.setProperty("io_mode", subscription == "flush" ? "block" : subscription == "new" ? "nonblock" : subscription);
+  }
   return info;
 }
 

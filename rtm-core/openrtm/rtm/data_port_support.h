@@ -29,6 +29,9 @@ rt::ConnectorSettingsOutcome settings_of(const ConnectorProfile& profile, const 
 // The OutPort of this connection does not hand out samples twice.
 bool says_when_empty(const ConnectorProfile& profile);
 
+// Shows the peer what this OutPort's own properties say about the connection, as dataport.outport.*, where the profile says nothing.
+void share_port_properties(ConnectorProfile& profile, const coil::Properties& port);
+
 // RTC_OK, or the code with which to refuse; says why in the log. Announces the type of this side in the profile.
 ReturnCode_t check_connection(ConnectorProfile& profile, const coil::Properties& port, rt::Side side, const std::string& type_id,
                               Logger& rtclog);

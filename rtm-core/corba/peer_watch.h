@@ -1,0 +1,36 @@
+// Finds the ports whose process has died though nobody sends them anything, so that no connection to them stays listed. A thread asks one
+// port of each other process now and then and sleeps while there is no connection to another process; it has no lock when it calls. A
+// process that hangs is not dead. Any thread.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "corba/loss_handler.h"
+#include "rtm/idl/RTCStub.h"
+
+namespace corba {
+
+// Works as long as it lives; one at a time.
+class PeerWatch {
+ public:
+  explicit PeerWatch(std::chrono::milliseconds interval);
+  // Waits for the call in progress, at most the second that one may take.
+  ~PeerWatch();
+  PeerWatch(const PeerWatch&) = delete;
+  PeerWatch& operator=(const PeerWatch&) = delete;
+
+ private:
+  std::chrono::milliseconds interval_;
+  std::thread thread_;
+};
+
+// The ports of a connection that are in other processes than `self` are looked after from now on; `loss` hears of it when one is dead.
+// Nothing happens while there is no PeerWatch.
+void watch_peers(const std::string& connector_id, const RTC::PortServiceList& ports, RTC::PortService_ptr self,
+                 const std::shared_ptr<LossHandler>& loss);
+void forget_peers(const std::string& connector_id, const LossHandler& loss);
+
+}  // namespace corba

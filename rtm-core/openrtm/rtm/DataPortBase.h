@@ -1,0 +1,81 @@
+// What InPorts and OutPorts have in common: their connections as component authors see them. Any thread.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "corba/type_ops.h"
+#include "core/connector_settings.h"
+#include "rtm/ConnectorBase.h"
+#include "rtm/ConnectorListener.h"
+#include "rtm/DataPortStatus.h"
+#include "rtm/PortBase.h"
+
+namespace corba {
+class InEngine;
+class OutEngine;
+}  // namespace corba
+
+namespace RTC {
+
+template <class Engine, class Connector, rt::Side side>
+class DataPortBase : public PortBase, public DataPortStatus {
+ public:
+  using ConnectorList = std::vector<Connector*>;
+
+  ~DataPortBase() override;
+
+  void init(coil::Properties& properties) override { PortBase::init(properties); }
+  void activateInterfaces() override {}
+  void deactivateInterfaces() override {}
+
+  virtual const char* name() { return short_name_.c_str(); }
+
+  // Of the last read or write, per connection in the order of connectors().
+  DataPortStatus getStatus(int index) const;
+  DataPortStatusList getStatusList() const;
+
+  // The pointers are good until the connection is taken apart.
+  ConnectorList connectors() const;
+  ConnectorInfoList getConnectorProfiles() const;
+  coil::vstring getConnectorIds() const;
+  coil::vstring getConnectorNames() const;
+  Connector* getConnectorById(const char* id) const;
+  Connector* getConnectorByName(const char* name) const;
+  bool getConnectorProfileById(const char* id, ConnectorInfo& info) const;
+  bool getConnectorProfileByName(const char* name, ConnectorInfo& info) const;
+
+  // With autoclean the port deletes the listener.
+  void addConnectorDataListener(ConnectorDataListenerType type, ConnectorDataListener* listener, bool autoclean = true);
+  void removeConnectorDataListener(ConnectorDataListenerType type, ConnectorDataListener* listener);
+  void addConnectorListener(ConnectorListenerType type, ConnectorListener* listener, bool autoclean = true);
+  void removeConnectorListener(ConnectorListenerType type, ConnectorListener* listener);
+  ConnectorListeners& getListeners() { return *listeners_; }
+
+ protected:
+  DataPortBase(const char* name, std::unique_ptr<Engine> engine);
+
+  void complete_profile(ConnectorProfile& profile) override;
+  ReturnCode_t prepare(ConnectorProfile& profile) override;
+  bool allows_duplicate(const ConnectorProfile& profile) override;
+  ReturnCode_t publishInterfaces(ConnectorProfile& profile) override;
+  ReturnCode_t subscribeInterfaces(const ConnectorProfile& profile) override;
+  void unsubscribeInterfaces(const ConnectorProfile& profile) override;
+
+  const std::unique_ptr<Engine> engine_;
+
+ private:
+  // Makes the connection in publishInterfaces if this side provides the object, else in subscribeInterfaces.
+  ReturnCode_t open(ConnectorProfile& profile, bool provides);
+  template <class Match>
+  Connector* find(Match match) const;
+
+  const std::string short_name_;
+  const std::shared_ptr<ConnectorListeners> listeners_;
+};
+
+extern template class DataPortBase<corba::InEngine, InPortConnector, rt::Side::in>;
+extern template class DataPortBase<corba::OutEngine, OutPortConnector, rt::Side::out>;
+
+}  // namespace RTC
