@@ -7,3 +7,6 @@ rtmsim_test(ports_wire_test ports/connect_test.cpp ports/transport_test.cpp port
   ports/listener_test.cpp ports/nv_util_test.cpp LIBRARIES openrtm LABELS corba)
 add_dependencies(ports_wire_test ports_peer)
 rtmsim_test(ports_golden_test ports/golden_test.cpp LIBRARIES openrtm nlohmann_json::nlohmann_json LABELS corba)
+
+add_test(NAME ports_foreign_test COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/ports/foreign_test.py $<TARGET_FILE:ports_peer>)
+set_tests_properties(ports_foreign_test PROPERTIES TIMEOUT 300 LABELS corba)

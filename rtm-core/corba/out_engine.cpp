@@ -148,6 +148,8 @@ void OutConnection::close() {
   mailbox_.close(channel_);
 }
 
+bool OutConnection::waits_for_peer() const { return line_->sender && !publisher_ && !line_->is_direct(); }
+
 rt::PortStatus OutConnection::write(Payload& payload) {
   if (line_->sender && !publisher_) return line_->send(payload, true);
   return write_buffered(payload);
@@ -294,15 +296,22 @@ bool OutEngine::write(const void* value) {
   }
   Payload payload(ops_, value);
   bool is_ok = true;
-  for (std::size_t i = 0; i < all->size(); ++i) {
+  statuses_.lock()->assign(all->size(), rt::PortStatus::ok);
+  const auto write_to = [&](std::size_t i) {
     const rt::PortStatus status = (*all)[i]->write(payload);
     is_ok &= status == rt::PortStatus::ok;
     {
       auto statuses = statuses_.lock();
-      if (i == 0) statuses->assign(all->size(), rt::PortStatus::ok);
       if (i < statuses->size()) (*statuses)[i] = status;
     }
     if (status == rt::PortStatus::connection_lost) loss_->lost((*all)[i]->id());
+  };
+  // Those that wait for their peer come last, so that a peer that hangs keeps no sample from the others.
+  for (std::size_t i = 0; i < all->size(); ++i) {
+    if (!(*all)[i]->waits_for_peer()) write_to(i);
+  }
+  for (std::size_t i = 0; i < all->size(); ++i) {
+    if ((*all)[i]->waits_for_peer()) write_to(i);
   }
   return is_ok;
 }

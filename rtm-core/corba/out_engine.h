@@ -32,6 +32,8 @@ class OutConnection final : public Source {
 
   // ok, error, buffer_full, buffer_timeout, send_full, send_timeout, connection_lost, unknown_error.
   rt::PortStatus write(Payload& payload);
+  // write returns when the peer has answered: subscription flush to another process.
+  bool waits_for_peer() const;
   // The next sample, encoded; or as a value, for this process.
   rt::PortStatus give(rt::Sample& sample) override;
   rt::PortStatus give_value(rt::Sample& sample);

@@ -207,7 +207,8 @@ RTC::ReturnCode_t PortServant::connect(RTC::ConnectorProfile& profile) {
   if (has_nil(profile.ports) || position(profile.ports) < 0) return RTC::BAD_PARAMETER;
   if (std::strlen(profile.connector_id) > longest_id) return RTC::BAD_PARAMETER;
   complete_profile(profile);
-  if (*profile.connector_id.in() == '\0') {
+  const bool is_id_ours = *profile.connector_id.in() == '\0';
+  if (is_id_ours) {
     profile.connector_id = base::make_uuid().c_str();
   } else if (state_.lock()->find(profile.connector_id.in())) {
     return RTC::PRECONDITION_NOT_MET;
@@ -219,8 +220,8 @@ RTC::ReturnCode_t PortServant::connect(RTC::ConnectorProfile& profile) {
     const RTC::PortService_var first = RTC::PortService::_duplicate(profile.ports[0]);
     limit_calls(first, port_call_timeout() * static_cast<int>(profile.ports.length()));
     code = first->notify_connect(profile);
-    // What the others have set up is of no use if one has refused; a port that knew the id before keeps its connection.
-    if (code != RTC::RTC_OK && code != RTC::PRECONDITION_NOT_MET) break_up(profile);
+    // What the others have set up is of no use if one has refused; a port that knew a given id before keeps its connection.
+    if (code != RTC::RTC_OK && (is_id_ours || code != RTC::PRECONDITION_NOT_MET)) break_up(profile);
   } catch (const CORBA::Exception& e) {
     base::log(base::Level::warn, port_name(), "the first port of connection {} does not answer: {}", base::in_quotes(profile.name.in()),
               e._name());
@@ -251,18 +252,26 @@ RTC::ReturnCode_t PortServant::reserve(const RTC::ConnectorProfile& profile, boo
   const std::string id = profile.connector_id.in();
   auto state = state_.lock();
   if (state->find(id)) return RTC::PRECONDITION_NOT_MET;
+  Connection* crossed = nullptr;
   const int limit = connection_limit_.load(std::memory_order_relaxed);
   if (limit >= 0 && state->connections.size() >= static_cast<std::size_t>(limit)) return RTC::RTC_ERROR;
-  for (const auto& connection : state->connections) {
+  for (auto& connection : state->connections) {
     if (allows_duplicate || connection.is_leaving || !share_a_peer(profile.ports, connection.profile.ports)) continue;
     // Two ports that connect to each other at the same time start opposite chains, and each meets the other's at its second port. Both
     // must give way to the same one, the one with the smaller id, or both fail.
     const bool have_crossed = !connection.is_established && is_same(connection.profile.ports[0], self) && !is_same(profile.ports[0], self);
-    if (have_crossed && id < connection.profile.connector_id.in()) continue;
-    return RTC::PRECONDITION_NOT_MET;
+    if (!have_crossed || id > connection.profile.connector_id.in()) return RTC::PRECONDITION_NOT_MET;
+    crossed = &connection;
   }
+  if (crossed) crossed->gives_way_to = id;
   state->connections.push_back({profile});
   return RTC::RTC_OK;
+}
+
+bool PortServant::gives_way(std::string_view id) {
+  auto state = state_.lock();
+  const Connection* connection = state->find(id);
+  return connection && !connection->gives_way_to.empty() && state->find(connection->gives_way_to);
 }
 
 RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile) {
@@ -290,6 +299,8 @@ RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile) {
       code = subscribe(profile);
       tell(Step::subscribed, profile, code);
     }
+    // A peer of another make may have taken both of two chains that crossed.
+    if (code == RTC::RTC_OK && gives_way(profile.connector_id.in())) code = RTC::PRECONDITION_NOT_MET;
   } catch (const CORBA::Exception& e) {
     base::log(base::Level::error, port_name(), "connecting failed: {}", e._name());
     code = RTC::RTC_ERROR;

@@ -97,6 +97,7 @@ class PortServant : public virtual POA_RTC::PortService, public virtual Portable
     RTC::ConnectorProfile profile;
     bool is_established = false;
     bool is_leaving = false;
+    std::string gives_way_to{};  // the connection between the same ports that came from the other side meanwhile
   };
   struct State {
     std::string name;
@@ -113,6 +114,7 @@ class PortServant : public virtual POA_RTC::PortService, public virtual Portable
   int position(const RTC::PortServiceList& ports);
   RTC::ReturnCode_t join(RTC::ConnectorProfile& profile);
   RTC::ReturnCode_t reserve(const RTC::ConnectorProfile& profile, bool allows_duplicate);
+  bool gives_way(std::string_view connector_id);
   RTC::ReturnCode_t join_next(RTC::ConnectorProfile& profile, int self);
   RTC::ReturnCode_t leave(std::string_view connector_id, bool tells_next, bool is_lost);
   RTC::ReturnCode_t leave_next(const RTC::ConnectorProfile& profile);

@@ -1,11 +1,14 @@
 // Octets from a peer, decoded as values of several types: any octets must end in a value or a refusal. Mutates good payloads; prints its
 // seed.
 //   ports_fuzz [--runs N] [--seed N]
+// Built with clang, -fsanitize=fuzzer and RTMSIM_LIBFUZZER it is a target of libFuzzer, whose first octet chooses type and byte order.
 #include <rtm/idl/BasicDataTypeSkel.h>
 #include <rtm/idl/ExtendedDataTypesSkel.h>
 #include <rtm/idl/InterfaceDataTypesSkel.h>
 
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <random>
 #include <string>
@@ -70,8 +73,47 @@ void mutate(Octets& octets, std::mt19937& random) {
   }
 }
 
+struct Running {
+  CORBA::ORB_var orb;
+  std::vector<std::pair<const corba::TypeOps*, Octets>> seeds;
+
+  Running() {
+    int no_arguments = 0;
+    orb = CORBA::ORB_init(no_arguments, nullptr);  // brings the code sets of strings
+    omniORB::traceLevel = 0;                       // it tells of every bad string
+    seeds = make_seeds();
+  }
+};
+
+enum class Verdict { refused, value, cannot_be_encoded };
+
+Verdict judge(const corba::TypeOps& ops, const Octets& octets, rt::ByteOrder order) {
+  const auto value = ops.make();
+  if (!corba::decode_safely(ops, value->address(), octets, order)) return Verdict::refused;
+  corba::EventData data(ops, value->address(), order);
+  const auto again = data.octets();
+  if (again.empty() && !octets.empty() && !ops.has_wide_text) return Verdict::cannot_be_encoded;
+  // What we send ourselves we take.
+  const auto copy = ops.make();
+  if (!again.empty() && !corba::decode_safely(ops, copy->address(), again, order)) return Verdict::cannot_be_encoded;
+  return Verdict::value;
+}
+
 }  // namespace
 
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const Running running;
+  if (size == 0) return 0;
+  const auto& [ops, original] = running.seeds[(data[0] >> 1) % running.seeds.size()];
+  const auto* first = reinterpret_cast<const std::byte*>(data);
+  if (judge(*ops, Octets(first + 1, first + size), data[0] & 1 ? rt::ByteOrder::little : rt::ByteOrder::big) ==
+      Verdict::cannot_be_encoded) {
+    std::abort();
+  }
+  return 0;
+}
+
+#ifndef RTMSIM_LIBFUZZER
 int main(int argc, char** argv) {
   unsigned long runs = 100'000;
   unsigned seed = std::random_device()();
@@ -82,25 +124,19 @@ int main(int argc, char** argv) {
   std::printf("seed %u\n", seed);
   std::fflush(stdout);
   std::mt19937 random(seed);
-  int no_arguments = 0;
-  const CORBA::ORB_var orb = CORBA::ORB_init(no_arguments, nullptr);  // brings the code sets of strings
-  omniORB::traceLevel = 0;                                            // it tells of every bad string
-  const auto seeds = make_seeds();
+  const Running running;
   unsigned long good = 0;
   for (unsigned long run = 0; run < runs; ++run) {
-    const auto& [ops, original] = seeds[random() % seeds.size()];
+    const auto& [ops, original] = running.seeds[random() % running.seeds.size()];
     Octets octets = original;
     mutate(octets, random);
-    const auto order = random() % 2 ? rt::ByteOrder::little : rt::ByteOrder::big;
-    const auto value = ops->make();
-    if (!corba::decode_safely(*ops, value->address(), octets, order)) continue;
-    ++good;
-    corba::EventData data(*ops, value->address(), order);
-    if (data.octets().empty() && !octets.empty() && !ops->has_wide_text) {
-      std::printf("a %s that was decoded cannot be encoded\n", ops->type_id.c_str());
-      return 1;
-    }
+    const auto verdict = judge(*ops, octets, random() % 2 ? rt::ByteOrder::little : rt::ByteOrder::big);
+    good += verdict == Verdict::value;
+    if (verdict != Verdict::cannot_be_encoded) continue;
+    std::printf("a %s that was decoded cannot be encoded\n", ops->type_id.c_str());
+    return 1;
   }
   std::printf("%lu of %lu payloads were values\n", good, runs);
   return 0;
 }
+#endif

@@ -68,6 +68,9 @@ TEST_F(Connecting, what_is_wrong_has_its_code_and_leaves_nothing) {
   EXPECT_EQ(code(both({{"interface_type", "carrier_pigeon"}})), RTC::BAD_PARAMETER);
   EXPECT_EQ(code(both({{"serializer.cdr.endian", "middle"}})), RTC::UNSUPPORTED);
   EXPECT_EQ(code(both({{"subscription_type", "periodic"}})), RTC::BAD_PARAMETER);
+  for (const char* rate : {"nan", "-nan", "inf", "-1", "0", "1e308", "1e-320", ""}) {
+    EXPECT_EQ(code(both({{"subscription_type", "periodic"}, {"publisher.push_rate", rate}})), RTC::BAD_PARAMETER) << rate;
+  }
   EXPECT_EQ(code(both({{"data_type", "IDL:RTC/TimedString:1.0"}})), RTC::BAD_PARAMETER);
   EXPECT_EQ(code(profile({out.getPortRef(), short_in.getPortRef()})), RTC::BAD_PARAMETER) << "the types differ";
   EXPECT_EQ(code(profile({out.getPortRef(), out.getPortRef()})), RTC::PRECONDITION_NOT_MET) << "the same port twice";
@@ -165,6 +168,34 @@ TEST_F(Connecting, the_profile_advertises_what_tools_look_for) {
   EXPECT_EQ(value("dataport.interface_type"), "corba_cdr,data_service,direct,shared_memory");
   const RTC::PortProfile_var out_shown = out.get_port_profile();
   EXPECT_EQ(NVUtil::toString(out_shown->properties, "dataport.io_mode"), "block,flush,new,nonblock,periodic");
+}
+
+TEST_F(Connecting, the_peer_sees_what_the_outports_own_properties_say) {
+  coil::Properties own;
+  own.setProperty("buffer.read.empty_policy", "do_nothing");
+  own.setProperty("dataport.buffer.length", "3");
+  own.setProperty("outport.buffer.write.timeout", "0.5");
+  own.setProperty("io_mode", "block");
+  out.init(own);
+  auto plan = profile({out.getPortRef(), in.getPortRef()}, {{"buffer.length", "5"}, {"outport.io_mode", "nonblock"}});
+  ASSERT_EQ(out.connect(plan), RTC::RTC_OK);
+  const auto value = [&](const char* key) { return NVUtil::toString(plan.properties, key); };
+  EXPECT_EQ(value("dataport.outport.buffer.read.empty_policy"), "do_nothing");
+  EXPECT_EQ(value("dataport.outport.buffer.write.timeout"), "0.5");
+  EXPECT_EQ(value("dataport.outport.buffer.length"), "") << "whoever connects knows better";
+  EXPECT_EQ(value("dataport.outport.io_mode"), "nonblock");
+}
+
+TEST_F(Connecting, calls_between_ports_keep_the_time_out_of_the_orb) {
+  orb.reset();
+  corba::OrbSettings settings;
+  settings.arguments = {"-ORBclientCallTimeOutPeriod", "1234"};
+  auto other_orb = corba::Orb::start(settings);
+  ASSERT_TRUE(other_orb);
+  EXPECT_EQ(corba::port_call_timeout(), std::chrono::milliseconds(1234));
+  other_orb->reset();
+  orb = ports::start_orb();
+  EXPECT_EQ(corba::port_call_timeout(), std::chrono::seconds(10));
 }
 
 TEST_F(Connecting, steps_are_told_in_their_order) {

@@ -9,8 +9,10 @@
 
 #include <atomic>
 #include <cstring>
+#include <fstream>
 #include <functional>
 #include <future>
+#include <iterator>
 
 #include "corba/call_timeout.h"
 #include "corba/nv_list.h"
@@ -178,6 +180,81 @@ TEST_F(Faults, a_peer_that_hangs_costs_its_own_connection_only) {
   EXPECT_EQ(answer.get(), RTC::RTC_ERROR);
   EXPECT_EQ(octets.connectors().size(), 1u);
   corba::set_port_call_timeout(std::chrono::seconds(10));
+}
+
+// The process must really stand still before anything is measured: one of its threads may answer once more.
+void stop_process(ports::Peer& peer) {
+  peer.process().signal(SIGSTOP);
+  ASSERT_TRUE(ports::eventually([&] {
+    std::ifstream status("/proc/" + std::to_string(peer.process().pid()) + "/stat");
+    const std::string text{std::istreambuf_iterator<char>(status), {}};
+    return text.find(") T ") != std::string::npos;
+  }));
+}
+
+TEST_F(Faults, a_peer_that_hangs_bounds_writes_of_every_subscription) {
+  for (const char* subscription : {"flush", "new", "periodic"}) {
+    ports::Peer peer;
+    RTC::TimedOctetSeq value{};
+    RTC::TimedOctetSeq result{};
+    RTC::OutPort<RTC::TimedOctetSeq> octets("A0.octets", value);
+    RTC::InPort<RTC::TimedOctetSeq> near("B0.octets", result);
+    auto far_plan = profile({octets.getPortRef(), peer.port("in")},
+                            {{"subscription_type", subscription}, {"publisher.push_rate", "1000"}, {"call_timeout", "0.5"}});
+    auto near_plan = profile({octets.getPortRef(), near.getPortRef()}, {{"subscription_type", "new"}});
+    ASSERT_EQ(octets.connect(far_plan), RTC::RTC_OK);
+    ASSERT_EQ(octets.connect(near_plan), RTC::RTC_OK);
+    stop_process(peer);
+    // The other connection of the port has each sample while the one that hangs still waits for its answer.
+    std::atomic<bool> is_written{false};
+    std::thread writer([&] {
+      value.tm.sec = 17;
+      octets.write();
+      is_written = true;
+    });
+    EXPECT_TRUE(ports::eventually([&] { return near.isNew(); }));
+    EXPECT_TRUE(std::string(subscription) != "flush" || !is_written) << "the sample came before the time-out";
+    writer.join();
+    EXPECT_TRUE(near.read());
+    EXPECT_EQ(result.tm.sec, 17u);
+    EXPECT_TRUE(ports::eventually([&] {
+      octets.write();
+      return octets.connectors().size() == 1;
+    })) << "the connection ends with the time-out of its call";
+    EXPECT_TRUE(octets.write());
+  }
+}
+
+TEST_F(Faults, a_peer_that_hangs_keeps_its_connection_while_nobody_writes) {
+  corba::OrbSettings settings;
+  orb.reset();
+  settings.peer_check_interval = std::chrono::milliseconds(20);
+  auto watching = corba::Orb::start(settings);
+  ASSERT_TRUE(watching);
+  (*watching)->activate();
+  {
+    ports::Peer peer;
+    RTC::TimedOctetSeq value{};
+    RTC::OutPort<RTC::TimedOctetSeq> octets("A0.octets", value);
+    RTC::InPort<RTC::TimedOctetSeq> from_afar("B0.octets", value);
+    std::atomic<int> disconnected{0};
+    octets.addConnectorListener(RTC::ON_DISCONNECT, new Count(disconnected));
+    from_afar.addConnectorListener(RTC::ON_DISCONNECT, new Count(disconnected));
+    auto forth = profile({octets.getPortRef(), peer.port("in")});
+    auto back = profile({peer.port("out"), from_afar.getPortRef()});
+    ASSERT_EQ(octets.connect(forth), RTC::RTC_OK);
+    ASSERT_EQ(from_afar.connect(back), RTC::RTC_OK);
+    stop_process(peer);
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));  // several looks: nothing may happen, so there is nothing to wait for
+    EXPECT_EQ(octets.connectors().size() + from_afar.connectors().size(), 2u);
+    peer.process().signal(SIGCONT);
+    EXPECT_TRUE(octets.write());
+    // One that died is found by both sides although nobody writes.
+    peer.process().kill();
+    EXPECT_TRUE(ports::eventually([&] { return disconnected == 2; }));
+    EXPECT_TRUE(ports::eventually(
+        [&] { return octets.getPortProfile().connector_profiles.length() + from_afar.getPortProfile().connector_profiles.length() == 0; }));
+  }
 }
 
 TEST_F(Faults, a_dead_port_in_the_list_ends_the_connection) {

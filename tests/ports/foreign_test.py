@@ -6,7 +6,9 @@
 Our side is ports_peer --echo, whose OutPort sends whatever its InPort receives.
 """
 
+import ctypes
 import os
+import signal
 import socket
 import struct
 import subprocess
@@ -32,6 +34,10 @@ def eventually(condition):
             return True
         time.sleep(0.002)
     return False
+
+
+def die_with_parent():
+    ctypes.CDLL(None).prctl(1, signal.SIGKILL)
 
 
 class Profile:
@@ -103,11 +109,10 @@ class ForeignPort:
     def __init__(self, orb, side):
         self.orb, self.side = orb, side
         self.profiles = []
-        self.received = []
+        self.received, self.refused = [], []
         self.answers = PORT_OK
         self.kept = None  # what a pull OutPort hands out
         self.targets = {}
-        self.failures = 0
         self.ior = orb.add(PORT, self.call)
 
     def call(self, operation, data, out):
@@ -194,8 +199,7 @@ class ForeignPort:
 
     def serve(self, operation, data, out):
         if operation == 'put':
-            if self.answers == PORT_OK:
-                self.received.append(data.octets())
+            (self.received if self.answers == PORT_OK else self.refused).append(data.octets())
             out.ulong(self.answers)
         elif operation == 'get':
             out.ulong(BUFFER_EMPTY if self.kept is None else PORT_OK)
@@ -223,7 +227,7 @@ class Foreign(unittest.TestCase):
     version, order = 2, '>'
 
     def setUp(self):
-        self.process = subprocess.Popen([peer_program, '--echo'], stdout=subprocess.PIPE, text=True)
+        self.process = subprocess.Popen([peer_program, '--echo'], stdout=subprocess.PIPE, text=True, preexec_fn=die_with_parent)
         self.references = {}
         for line in self.process.stdout:
             if line == 'ready\n':
@@ -367,11 +371,20 @@ class Foreign(unittest.TestCase):
     def test_a_receiver_that_is_full_keeps_its_connection(self):
         self.connect_both()
         self.into.answers = BUFFER_FULL
-        self.assertEqual(self.out.write(sample(b'lost')), PORT_OK)
-        self.assertEqual(self.out.write(sample(b'lost')), PORT_OK)
+        for sent in (1, 2):
+            self.assertEqual(self.out.write(sample(b'lost')), PORT_OK)
+            self.assertTrue(eventually(lambda: len(self.into.refused) == sent))
         self.into.answers = PORT_OK
-        self.assertEqual(self.echo(b'late')[-4:], b'late')
+        self.assertEqual(self.echo(b'late'), sample(b'late'))
         self.assertEqual(len(self.our_out.connector_profiles()), 1)
+
+    def test_an_answer_that_is_no_status_is_an_error(self):
+        self.connect_both()
+        self.into.answers = 77
+        self.assertEqual(self.out.write(sample(b'lost')), PORT_OK)
+        self.assertTrue(eventually(lambda: self.into.refused))
+        self.into.answers = PORT_OK
+        self.assertEqual(self.echo(b'late'), sample(b'late'))
 
     def test_a_connection_closed_once_by_the_peer_costs_no_sample(self):
         self.connect_both()

@@ -239,7 +239,7 @@ class Orb:
         self.close_after_request = 0  # so many requests are dropped together with their connection
         self.listener = socket.create_server(('127.0.0.1', 0))
         self.streams = []
-        threading.Thread(target=self.accept, daemon=True).start()
+        threading.Thread(target=self.accept, args=(self.listener,), daemon=True).start()
 
     def add(self, interface, call):
         key = b'foreign\x00%d' % next(self.numbers)
@@ -248,18 +248,21 @@ class Orb:
 
     def stop(self):
         """As if the process had died."""
+        if self.listener is None:
+            return
         self.listener.shutdown(socket.SHUT_RDWR)
         self.listener.close()
+        self.listener = None
         for stream in self.streams:
             try:
                 stream.shutdown(socket.SHUT_RDWR)
             except OSError:
                 pass  # the other side was faster
 
-    def accept(self):
+    def accept(self, listener):
         while True:
             try:
-                stream, _ = self.listener.accept()
+                stream, _ = listener.accept()
             except OSError:
                 return
             stream.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)

@@ -146,6 +146,7 @@ TEST_F(Listeners, the_information_has_the_properties_without_prefix) {
     EXPECT_EQ(info.name, "test");
     EXPECT_EQ(info.ports.size(), 2u);
     EXPECT_EQ(info.properties.getProperty("dataflow_type"), "push");
+    EXPECT_EQ(info.properties.getProperty("io_mode"), "block") << "the newer name of flush";
     EXPECT_EQ(info.properties.getProperty("serializer.cdr.endian"), "little,big");
     EXPECT_TRUE(info.properties.getProperty("corba_cdr.inport_ior").starts_with("IOR:"));
   }

@@ -1,11 +1,14 @@
-// The other process of the tests and benchmarks of ports: an InPort and an OutPort of octets, and a bare servant to compare with. Prints
+// The other process of the tests and benchmarks of ports: an InPort and an OutPort of octets, a service port that provides
+// an Echo, and a bare servant to compare with. Prints
 // its references, then works until it is stopped.
+//   ports_peer [--tcp] [--echo]    tcp only; the OutPort sends whatever the InPort receives
 #include <omniORB4/CORBA.h>
 #include <rtm/InPort.h>
 #include <rtm/OutPort.h>
 #include <rtm/idl/BasicDataTypeSkel.h>
 #include <rtm/idl/DataPort_OpenRTMSkel.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 
@@ -26,7 +29,10 @@ int main(int argc, char** argv) {
   sigaddset(&stop, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &stop, nullptr);
   corba::OrbSettings settings;
-  settings.unix_socket = !(argc > 1 && std::string(argv[1]) == "--tcp");
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  const auto is_given = [&](const char* name) { return std::ranges::find(arguments, name) != arguments.end(); };
+  settings.unix_socket = !is_given("--tcp");
+  settings.peer_check_interval = std::chrono::milliseconds(200);
   auto orb = corba::Orb::start(settings);
   if (!orb) return std::fprintf(stderr, "%s\n", orb.error().message.c_str()), 1;
   RTC::TimedOctetSeq received{};
@@ -42,10 +48,18 @@ int main(int argc, char** argv) {
   show("in", in.getPortRef());
   show("out", out.getPortRef());
   show("bare", bare_reference);
+  ports::Local<BareServant> echo;
+  RTC::CorbaPort service("Peer0.service");
+  service.registerProvider("echo0", "Echo", echo);
+  service.activateInterfaces();
+  show("service", service.getPortRef());
   (*orb)->activate();
   std::printf("ready\n");
   std::fflush(stdout);
-  int number = 0;
-  sigwait(&stop, &number);
+  const bool is_echo = is_given("--echo");
+  const timespec pause{0, is_echo ? 1'000'000 : 1'000'000'000};  // pull connections have to be asked
+  while (sigtimedwait(&stop, nullptr, &pause) != SIGTERM) {
+    while (is_echo && in.isNew() && in.read()) out.write(received);
+  }
   return 0;
 }

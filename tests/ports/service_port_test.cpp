@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <rtm/idl/DataPort_OpenRTMSkel.h>
 
+#include "corba/call_timeout.h"
 #include "ports/support.h"
 
 namespace {
@@ -85,6 +86,84 @@ TEST_F(ServicePorts, references_that_a_tool_sends_back_do_not_replace_our_own) {
   ASSERT_EQ(consumer_port.connect(made), RTC::RTC_OK);
   provider_port.activateInterfaces();
   EXPECT_EQ(consumer->put(OpenRTM::CdrData()), OpenRTM::BUFFER_EMPTY);
+}
+
+TEST_F(ServicePorts, a_reference_of_an_earlier_life_binds_nobody) {
+  CORBA::String_var stale;
+  {
+    ports::Peer peer;
+    RTC::CorbaPort probe("D0.probe");
+    auto made = ports::profile({probe.getPortRef(), peer.port("service")});
+    ASSERT_EQ(probe.connect(made), RTC::RTC_OK);
+    stale = CORBA::string_dup(NVUtil::toString(made.properties, "port.Echo.echo0").c_str());
+  }
+  RTC::CorbaPort nobody("E0.empty");
+  for (const char* key : {"port.Echo.echo0", "Peer0.port.service.provided.Echo.echo0"}) {
+    for (const char* strictness : {"best_effort", "strict"}) {
+      auto made = ports::profile({consumer_port.getPortRef(), nobody.getPortRef()});
+      NVUtil::setStringValue(made.properties, key, stale);
+      NVUtil::setStringValue(made.properties, "C0.port.service.required.Echo.echo0", "Peer0.port.service.provided.Echo.echo0");
+      NVUtil::setStringValue(made.properties, "port.connection.strictness", strictness);
+      const bool is_strict = std::string_view(strictness) == "strict";
+      EXPECT_EQ(consumer_port.connect(made), is_strict ? RTC::RTC_ERROR : RTC::RTC_OK) << key;
+      EXPECT_TRUE(CORBA::is_nil(consumer._ptr()));
+      consumer_port.disconnect_all();
+      EXPECT_EQ(nobody.getPortProfile().connector_profiles.length(), 0u);
+    }
+  }
+}
+
+TEST_F(ServicePorts, a_provider_of_another_process_is_called_until_that_process_dies) {
+  orb.reset();
+  corba::OrbSettings settings;
+  settings.peer_check_interval = std::chrono::milliseconds(20);
+  auto watching = corba::Orb::start(settings);
+  ASSERT_TRUE(watching);
+  (*watching)->activate();
+  RTC::CorbaConsumer<OpenRTM::InPortCdr> far;
+  {
+    RTC::CorbaPort port("D0.need");
+    port.registerConsumer("mine", "Whatever", far);
+    ports::Peer peer;
+    const RTC::PortService_var service = peer.port("service");
+    for (const bool is_first : {true, false}) {
+      auto made = is_first ? ports::profile({port.getPortRef(), service}) : ports::profile({service, port.getPortRef()});
+      NVUtil::setStringValue(made.properties, "D0.port.need.required.Whatever.mine", "Peer0.port.service.provided.Echo.echo0");
+      NVUtil::setStringValue(made.properties, "port.connection.strictness", "strict");
+      ASSERT_EQ(is_first ? port.connect(made) : service->connect(made), RTC::RTC_OK);
+      EXPECT_EQ(far->put(OpenRTM::CdrData()), OpenRTM::PORT_OK);
+      if (is_first) EXPECT_EQ(service->disconnect(made.connector_id), RTC::RTC_OK);
+      if (is_first) EXPECT_TRUE(CORBA::is_nil(far._ptr()));
+    }
+    peer.process().kill();
+    EXPECT_TRUE(ports::eventually([&] { return port.getPortProfile().connector_profiles.length() == 0; }));
+    EXPECT_TRUE(ports::eventually([&] { return CORBA::is_nil(far._ptr()); }));
+    EXPECT_THROW(far->put(OpenRTM::CdrData()), CORBA::Exception);
+  }
+}
+
+TEST_F(ServicePorts, a_provider_that_hangs_costs_a_caller_its_time_out_only) {
+  RTC::CorbaConsumer<OpenRTM::InPortCdr> far;
+  RTC::CorbaPort port("D0.need");
+  port.registerConsumer("echo0", "Echo", far);
+  ports::Peer peer;
+  corba::set_port_call_timeout(std::chrono::milliseconds(300));
+  auto made = ports::profile({port.getPortRef(), peer.port("service")});
+  ASSERT_EQ(port.connect(made), RTC::RTC_OK);
+  EXPECT_EQ(far->put(OpenRTM::CdrData()), OpenRTM::PORT_OK);
+  peer.process().signal(SIGSTOP);
+  // One thread of the peer may answer once more.
+  EXPECT_TRUE(ports::eventually([&] {
+    try {
+      far->put(OpenRTM::CdrData());
+      return false;
+    } catch (const CORBA::SystemException&) {
+      return true;
+    }
+  }));
+  EXPECT_EQ(port.disconnect(made.connector_id), RTC::RTC_OK);
+  EXPECT_TRUE(CORBA::is_nil(far._ptr()));
+  corba::set_port_call_timeout(std::chrono::seconds(10));
 }
 
 TEST_F(ServicePorts, the_profile_lists_the_interfaces) {

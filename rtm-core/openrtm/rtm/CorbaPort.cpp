@@ -26,6 +26,12 @@ std::string long_key(const std::string& port, std::string_view role, const std::
 
 std::string short_key(const std::string& type, const std::string& instance) { return "port." + type + "." + instance; }
 
+// What providers write: the long key or the short one, port.<type>.<instance>.
+bool is_provided_key(std::string_view key) {
+  const auto is_short = [&] { return std::ranges::count(key, '.') == 2 && key != "port.connection.strictness"; };
+  return key.find(".provided.") != std::string_view::npos || (key.starts_with("port.") && is_short());
+}
+
 bool means_unbound(const std::string& value) { return value == "null" || value == "nil"; }
 
 }  // namespace
@@ -49,11 +55,10 @@ struct CorbaPort::Consumer {
 };
 
 struct CorbaPort::State {
-  // Providers are prepared and activated by one thread at a time; POA calls are local.
   std::vector<Provider> providers;
   std::vector<Consumer> consumers;
-  base::Guarded<int, base::Rank::component> activation;
-  base::Guarded<int, base::Rank::connector> binding;
+  base::Guarded<int, base::Rank::component> activation;  // of the providers, held during calls of the POA, which are local
+  base::Guarded<int, base::Rank::connector> binding;     // of the consumers
 };
 
 CorbaPort::CorbaPort(const char* name) : PortBase(name), state_(std::make_unique<State>()) { addProperty("port.port_type", "CorbaPort"); }
@@ -93,6 +98,7 @@ bool CorbaPort::registerConsumer(const char* instance_name, const char* type_nam
 }
 
 void CorbaPort::activateInterfaces() {
+  const auto activation = state_->activation.lock();
   for (auto& provider : state_->providers) {
     if (std::exchange(provider.is_active, true)) continue;
     try {
@@ -107,6 +113,7 @@ void CorbaPort::activateInterfaces() {
 }
 
 void CorbaPort::deactivateInterfaces() {
+  const auto activation = state_->activation.lock();
   for (auto& provider : state_->providers) {
     if (!std::exchange(provider.is_active, false)) continue;
     try {
@@ -120,6 +127,21 @@ void CorbaPort::deactivateInterfaces() {
 bool CorbaPort::allows_duplicate(const ConnectorProfile& profile) {
   const auto allowed = corba::find_text(profile.properties, "dataport.allow_dup_connection");
   return base::parse_bool(allowed.value_or(m_properties.getProperty("allow_dup_connection"))).value_or(false);
+}
+
+void CorbaPort::complete_profile(ConnectorProfile& profile) {
+  // References that somebody has kept from an earlier life of the connection; whoever provides writes its own.
+  NVList kept;
+  CORBA::ULong count = 0;
+  kept.length(profile.properties.length());
+  for (CORBA::ULong i = 0; i < profile.properties.length(); ++i) {
+    const char* text = nullptr;
+    const auto& entry = profile.properties[i];
+    const bool is_reference = (entry.value >>= text) && std::string_view(text).starts_with("IOR:");
+    if (!is_reference || !is_provided_key(entry.name.in())) kept[count++] = entry;
+  }
+  kept.length(count);
+  profile.properties = kept;
 }
 
 ReturnCode_t CorbaPort::publishInterfaces(ConnectorProfile& profile) {

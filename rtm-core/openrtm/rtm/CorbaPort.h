@@ -29,6 +29,7 @@ class CorbaPort : public PortBase {
   void deactivateInterfaces() override;
 
  protected:
+  void complete_profile(ConnectorProfile& profile) override;
   bool allows_duplicate(const ConnectorProfile& profile) override;
   ReturnCode_t publishInterfaces(ConnectorProfile& profile) override;
   ReturnCode_t subscribeInterfaces(const ConnectorProfile& profile) override;
