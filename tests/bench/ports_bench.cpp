@@ -38,12 +38,14 @@ void row(const char* what, double value, const char* unit, const char* limit, bo
   std::printf("| %-44s | %9.3f %-5s | %-10s | %s |\n", what, value, unit, limit, is_good ? "ok  " : "MISS");
 }
 
-void compare(ports::Peer& peer, const char* transport) {
+// Nobody reads in the peer: its buffers are full and each sample replaces the oldest. `length`: of the buffer; empty: the default.
+void compare(ports::Peer& peer, const char* transport, const char* length) {
   RTC::TimedOctetSeq value{};
   RTC::OutPort<RTC::TimedOctetSeq> out("Bench0.out", value);
-  auto plan = ports::profile({out.getPortRef(), peer.port("in")}, {{"subscription_type", "flush"}, {"inport.buffer.length", "1"}});
+  auto plan = ports::profile({out.getPortRef(), peer.port("in")}, {{"subscription_type", "flush"}, {"inport.buffer.length", length}});
   if (out.connect(plan) != RTC::RTC_OK) return void(std::printf("cannot connect\n"));
   const OpenRTM::InPortCdr_var bare = OpenRTM::InPortCdr::_narrow(peer.reference("bare"));
+  std::printf("| buffer length %-63s |\n", *length ? length : "default");
   for (const CORBA::ULong size : {64u, 4096u, 1u << 20}) {
     value.data.length(size);
     OpenRTM::CdrData octets;
@@ -65,7 +67,8 @@ void compare(ports::Peer& peer, const char* transport) {
   }
   out.disconnect_all();
 
-  auto shared = ports::profile({out.getPortRef(), peer.port("in")}, {{"interface_type", "shared_memory"}, {"inport.buffer.length", "1"}});
+  auto shared =
+      ports::profile({out.getPortRef(), peer.port("in")}, {{"interface_type", "shared_memory"}, {"inport.buffer.length", length}});
   if (out.connect(shared) != RTC::RTC_OK) return void(std::printf("cannot connect shared_memory\n"));
   OpenRTM::CdrData octets;
   octets.length((1u << 20) + 12);
@@ -140,12 +143,12 @@ int main() {
   std::printf("| measured                                     | value           | limit      |      |\n|---|---|---|---|\n");
   {
     ports::Peer peer;
-    compare(peer, "unix");
+    for (const char* length : {"", "1"}) compare(peer, "unix", length);
     connecting(peer);
   }
   {
     ports::Peer peer({"--tcp"});
-    compare(peer, "tcp");
+    for (const char* length : {"", "1"}) compare(peer, "tcp", length);
   }
   direct();
   return 0;
