@@ -57,7 +57,7 @@ int main(int argc, char** argv) {
   std::printf("ready\n");
   std::fflush(stdout);
   const bool is_echo = is_given("--echo");
-  const timespec pause{0, is_echo ? 1'000'000 : 1'000'000'000};  // pull connections have to be asked
+  const timespec pause{is_echo ? 0 : 1, is_echo ? 1'000'000 : 0};  // pull connections have to be asked
   while (sigtimedwait(&stop, nullptr, &pause) != SIGTERM) {
     while (is_echo && in.isNew() && in.read()) out.write(received);
   }
