@@ -2,6 +2,7 @@
 
 #include <omniORB4/omniORB.h>
 
+#include <algorithm>
 #include <condition_variable>
 #include <map>
 #include <set>
@@ -19,7 +20,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto patience = std::chrono::milliseconds(1000);        // of one question
-constexpr auto second_look = std::chrono::milliseconds(200);      // after a first sign of death
+constexpr auto soon = std::chrono::milliseconds(200);             // after a first sign of death, and to meet a new peer
 constexpr int rounds_between_looks_at_a_process_that_hangs = 15;  // each look takes all the patience
 
 struct Peer {
@@ -36,6 +37,7 @@ struct Watched {
 
 struct State {
   std::map<Key, Watched> connections;
+  bool has_new = false;
   bool is_stopping = false;
 };
 
@@ -62,6 +64,8 @@ std::string address_of(CORBA::Object_ptr object) {
   const CORBA::String_var text = orb()->object_to_string(object);
   return text.in();
 }
+
+bool is_on_loopback(std::string_view address) { return address.starts_with("127.") || address.starts_with("::1"); }
 
 enum class Sign { life, object_is_gone, process_is_gone, silence };
 
@@ -99,11 +103,14 @@ class Rounds {
         auto state = table.state.lock();
         constexpr auto far = std::chrono::hours(24 * 365);
         state.wait_until(table.changed, Clock::now() + far, [&] { return state->is_stopping || !state->connections.empty(); });
-        state.wait_until(table.changed, Clock::now() + pause, [&] { return state->is_stopping; });
+        state.wait_until(table.changed, Clock::now() + pause, [&] { return state->is_stopping || state->has_new; });
+        if (std::exchange(state->has_new, false)) {
+          state.wait_until(table.changed, Clock::now() + std::min(soon, interval_), [&] { return state->is_stopping; });
+        }
         if (state->is_stopping) return;
         connections = state->connections;
       }
-      pause = look(connections) ? second_look : interval_;
+      pause = look(connections) ? std::min(soon, interval_) : interval_;
     }
   }
 
@@ -116,6 +123,7 @@ class Rounds {
       for (const auto& peer : watched.peers) processes[peer.address].emplace_back(&key, &peer);
     }
     std::erase_if(hanging_, [&](const auto& entry) { return !processes.contains(entry.first); });
+    std::erase_if(met_, [&](const auto& address) { return !processes.contains(address); });
     std::set<Key> suspects;
     for (const auto& [address, members] : processes) {
       if (is_stopping()) return false;
@@ -142,7 +150,9 @@ class Rounds {
     const Sign sign = ask(first.second->port);
     hanging_.erase(address);
     if (sign == Sign::silence) hanging_[address] = round_ + rounds_between_looks_at_a_process_that_hangs;
-    if (sign == Sign::process_is_gone) {
+    if (sign != Sign::process_is_gone) met_.insert(address);
+    // One of another host that could never be called may be behind a wall and send to us all the same.
+    if (sign == Sign::process_is_gone && (met_.contains(address) || is_on_loopback(address))) {
       for (const auto& [key, peer] : members) suspects.insert(*key);
     }
     if (sign != Sign::object_is_gone) return;
@@ -159,6 +169,7 @@ class Rounds {
   const std::chrono::milliseconds interval_;
   std::size_t round_ = 0;
   std::set<Key> suspects_;
+  std::set<std::string> met_;                   // addresses that have answered once
   std::map<std::string, std::size_t> hanging_;  // and the round in which to look again
 };
 
@@ -198,7 +209,11 @@ void watch_peers(const std::string& connector_id, const RTC::PortServiceList& po
   }
   if (watched.peers.empty()) return;
   auto& table = Table::instance();
-  table.state.lock()->connections[{loss.get(), connector_id}] = std::move(watched);
+  {
+    auto state = table.state.lock();
+    state->connections[{loss.get(), connector_id}] = std::move(watched);
+    state->has_new = true;
+  }
   table.changed.notify_all();
 }
 
