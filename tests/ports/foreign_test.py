@@ -21,9 +21,11 @@ import uuid
 from giop import Alias, In, Ior, Orb, Out, SystemException
 
 OK, ERROR, BAD_PARAMETER, UNSUPPORTED, _, PRECONDITION_NOT_MET = range(6)
-PORT_OK, PORT_ERROR, BUFFER_FULL, BUFFER_EMPTY = range(4)
+PORT_OK, PORT_ERROR, BUFFER_FULL, BUFFER_EMPTY, BUFFER_TIMEOUT = range(5)
 PORT = 'IDL:omg.org/RTC/PortService:1.0'
 IN_CDR, OUT_CDR = 'IDL:OpenRTM/InPortCdr:1.0', 'IDL:OpenRTM/OutPortCdr:1.0'
+NAMES = {'corba_cdr': (IN_CDR, OUT_CDR, 'put', 'get'),
+         'data_service': ('IDL:omg.org/RTC/DataPushService:1.0', 'IDL:omg.org/RTC/DataPullService:1.0', 'push', 'pull')}
 WATCHDOG = 60  # [s]
 
 
@@ -149,8 +151,11 @@ class ForeignPort:
     def notify_connect(self, profile):
         is_push = profile.get('dataport.dataflow_type').strip().lower() == 'push'
         if is_push == (self.side == 'in'):
-            name = 'dataport.corba_cdr.%sport' % self.side
-            ior = self.orb.add(IN_CDR if self.side == 'in' else OUT_CDR, self.serve)
+            interface = profile.get('dataport.interface_type')
+            if interface not in NAMES:
+                return BAD_PARAMETER
+            name = 'dataport.%s.%sport' % (interface, self.side)
+            ior = self.orb.add(NAMES[interface][0 if self.side == 'in' else 1], self.serve)
             profile.properties += [(name + '_ior', str(ior)), (name + '_ref', ior)]
         codes = [OK]
         following = profile.ports[self.place(profile) + 1:]
@@ -165,11 +170,12 @@ class ForeignPort:
 
     def subscribe(self, profile):
         # The last one of a name counts, as here references of old are in front.
-        key = 'dataport.corba_cdr.%sport_ior' % ('in' if self.side == 'out' else 'out')
+        interface = profile.get('dataport.interface_type')
+        key = 'dataport.%s.%sport_ior' % (interface, 'in' if self.side == 'out' else 'out')
         texts = [value for name, value in profile.properties if name == key]
         if not texts:
             return ERROR
-        self.targets[profile.id] = Ior.parse(texts[-1])
+        self.targets[profile.id] = Ior.parse(texts[-1]), NAMES[interface]
         return OK
 
     def disconnect(self, connector_id):
@@ -198,10 +204,10 @@ class ForeignPort:
         return OK
 
     def serve(self, operation, data, out):
-        if operation == 'put':
+        if operation in ('put', 'push'):
             (self.received if self.answers == PORT_OK else self.refused).append(data.octets())
             out.ulong(self.answers)
-        elif operation == 'get':
+        elif operation in ('get', 'pull'):
             out.ulong(BUFFER_EMPTY if self.kept is None else PORT_OK)
             out.octets(self.kept or b'')
         else:
@@ -209,13 +215,13 @@ class ForeignPort:
 
     def write(self, octets):
         """Push. The status that the receiver gives."""
-        target, = self.targets.values()
-        return self.orb.invoke(target, 'put', lambda out: out.octets(octets)).ulong()
+        (target, names), = self.targets.values()
+        return self.orb.invoke(target, names[2], lambda out: out.octets(octets)).ulong()
 
     def fetch(self):
         """Pull: (status, octets)."""
-        target, = self.targets.values()
-        answer = self.orb.invoke(target, 'get')
+        (target, names), = self.targets.values()
+        answer = self.orb.invoke(target, names[3])
         return answer.ulong(), answer.octets()
 
 
@@ -301,6 +307,16 @@ class Foreign(unittest.TestCase):
             self.out.kept = sample(payload)
             self.assertTrue(eventually(lambda: self.into.fetch() == (PORT_OK, sample(payload))))
 
+    def test_the_service_of_the_standard_carries_samples_too(self):
+        service = ('interface_type', 'data_service')
+        self.connect_both([service])
+        self.assertEqual(self.echo(b'pushed'), sample(b'pushed'))
+        self.our_in.disconnect_all()
+        self.our_out.disconnect_all()
+        self.connect_both([service, ('dataflow_type', 'pull')])
+        self.out.kept = sample(b'pulled')
+        self.assertTrue(eventually(lambda: self.into.fetch() == (PORT_OK, sample(b'pulled'))))
+
     def test_both_byte_orders_are_kept_as_agreed(self):
         self.connect_both([('serializer.cdr.endian', 'big,little')])
         self.assertEqual(self.echo(b'endian', '>'), sample(b'endian', '>'))
@@ -314,6 +330,31 @@ class Foreign(unittest.TestCase):
             self.our_in.disconnect_all()
             self.our_out.disconnect_all()
             self.expect_nothing_left()
+
+    def test_publishers_choose_by_their_policy(self):
+        for policy, expected in (('all', range(20)), ('fifo', range(20)), ('skip', range(1, 20, 2))):
+            self.connect_both([('subscription_type', 'new'), ('buffer.length', '64'), ('publisher.push_policy', policy),
+                               ('publisher.skip_count', '1')])
+            self.into.received.clear()
+            for number in range(20):
+                self.assertEqual(self.out.write(sample(bytes([number]))), PORT_OK)
+            wanted = [sample(bytes([number])) for number in expected]
+            self.assertTrue(eventually(lambda: len(self.into.received) >= len(wanted)))
+            self.assertEqual(self.into.received, wanted, policy)
+            self.our_in.disconnect_all()
+            self.our_out.disconnect_all()
+
+    def test_an_empty_pull_outport_answers_by_its_policy(self):
+        self.assertEqual(self.out.connect(Profile([self.out.ior, self.our_in.ior])), OK)
+        for policy, again in (('readback', PORT_OK), ('do_nothing', BUFFER_EMPTY), ('block', BUFFER_TIMEOUT)):
+            self.assertEqual(self.our_out.connect(Profile([self.our_out.ior, self.into.ior],
+                                                          [('dataflow_type', 'pull'), ('outport.buffer.read.empty_policy', policy),
+                                                           ('outport.buffer.read.timeout', '0.05')])), OK)
+            self.assertEqual(self.into.fetch()[0], BUFFER_TIMEOUT if policy == 'block' else BUFFER_EMPTY)
+            self.assertEqual(self.out.write(sample(b'x')), PORT_OK)
+            self.assertTrue(eventually(lambda: self.into.fetch() == (PORT_OK, sample(b'x'))))
+            self.assertEqual(self.into.fetch()[0], again, policy)
+            self.our_out.disconnect_all()
 
     def test_values_of_other_types_are_read_or_skipped(self):
         forth = Profile([self.out.ior, self.our_in.ior], [('buffer.length', (5, 3)), ('publisher.push_rate', (7, 1.5))])
@@ -391,7 +432,7 @@ class Foreign(unittest.TestCase):
         self.echo(b'first')
         self.orb.close_after_request = 1
         self.into.received.clear()
-        target, = self.out.targets.values()
+        (target, _), = self.out.targets.values()
         # Through an ORB of its own, as it is the other one that closes.
         Orb(self.version, self.order).invoke(target, 'put', lambda out: out.octets(sample(b'second')))
         self.assertTrue(eventually(lambda: self.into.received == [sample(b'second')]))
@@ -406,7 +447,7 @@ class Foreign(unittest.TestCase):
 
     def test_octets_that_are_no_protocol_harm_nobody(self):
         self.connect_both()
-        target, = self.out.targets.values()
+        (target, _), = self.out.targets.values()
         host, port, key = target.address()
         lie = Out('>', bytes(12))
         for value in (1, 0x03000000):
