@@ -148,12 +148,16 @@ class ForeignPort:
     def place(self, profile):
         return [port.key() for port in profile.ports].index(self.ior.key())
 
+    @staticmethod
+    def interface(profile):
+        """What it does not know it mistakes for corba_cdr."""
+        given = profile.get('dataport.interface_type')
+        return given if given in NAMES else 'corba_cdr'
+
     def notify_connect(self, profile):
         is_push = profile.get('dataport.dataflow_type').strip().lower() == 'push'
         if is_push == (self.side == 'in'):
-            interface = profile.get('dataport.interface_type')
-            if interface not in NAMES:
-                return BAD_PARAMETER
+            interface = self.interface(profile)
             name = 'dataport.%s.%sport' % (interface, self.side)
             ior = self.orb.add(NAMES[interface][0 if self.side == 'in' else 1], self.serve)
             profile.properties += [(name + '_ior', str(ior)), (name + '_ref', ior)]
@@ -170,7 +174,7 @@ class ForeignPort:
 
     def subscribe(self, profile):
         # The last one of a name counts, as here references of old are in front.
-        interface = profile.get('dataport.interface_type')
+        interface = self.interface(profile)
         key = 'dataport.%s.%sport_ior' % (interface, 'in' if self.side == 'out' else 'out')
         texts = [value for name, value in profile.properties if name == key]
         if not texts:
@@ -387,7 +391,7 @@ class Foreign(unittest.TestCase):
         self.expect_nothing_left()
 
     def test_a_connection_that_fails_is_taken_back_on_both_sides(self):
-        # No provider for pull: the foreign InPort finds nothing that it could ask.
+        # What the foreign InPort gives is no object of shared_memory, which our OutPort finds out at the end of the chain.
         back = Profile([self.into.ior, self.our_out.ior], [('interface_type', 'shared_memory')])
         self.assertEqual(self.into.connect(back), ERROR)
         self.assertTrue(eventually(lambda: not self.our_out.connector_profiles()))
