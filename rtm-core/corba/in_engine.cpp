@@ -27,6 +27,8 @@ class DirectFetcher final : public Fetcher {
   std::shared_ptr<OutConnection> source_;
 };
 
+constexpr std::size_t most_unread_of_closed = 64;
+
 bool is_same_sample(const rt::Sample& a, const rt::Sample& b) {
   if (a.value || b.value) return a.value == b.value;
   return a.block && b.block && std::ranges::equal(a.block->octets(), b.block->octets());
@@ -39,9 +41,9 @@ InConnection::InConnection(const TypeOps& ops, ConnectionPlan plan, std::shared_
   if (plan_.settings.is_rendezvous) mailbox_->set_rendezvous(channel_, true);
 }
 
-InConnection::~InConnection() { close(); }
+InConnection::~InConnection() { mailbox_->close(channel_); }
 
-void InConnection::close() { mailbox_->close(channel_); }
+void InConnection::finish() { mailbox_->finish(channel_); }
 
 rt::PortStatus InConnection::receive(rt::Sample sample) {
   if (plan_.settings.stamp == rt::StampPolicy::on_received) sample.received = base::current_clock().now();
@@ -110,20 +112,43 @@ rt::PortStatus InConnection::fetch(bool only_new) {
   return receive(std::move(sample));
 }
 
-InEngine::InEngine(const TypeOps& ops) : ops_(ops), connections_(std::make_shared<const Connections>()) {}
+InEngine::InEngine(const TypeOps& ops)
+    : ops_(ops), lists_(Lists{std::make_shared<const Connections>(), std::make_shared<const Connections>()}) {}
 
 InEngine::~InEngine() {
   const auto all = connections();
   for (const auto& connection : *all) close(connection->id());
 }
 
-std::shared_ptr<const InEngine::Connections> InEngine::connections() const { return connections_.snapshot(); }
+std::shared_ptr<const InEngine::Connections> InEngine::connections() const { return lists_.lock()->open; }
 
 void InEngine::add(std::shared_ptr<InConnection> connection) {
-  auto connections = connections_.lock();
-  auto more = std::make_shared<Connections>(**connections);
+  auto lists = lists_.lock();
+  auto more = std::make_shared<Connections>(*lists->open);
   more->push_back(std::move(connection));
-  *connections = std::move(more);
+  lists->open = std::move(more);
+}
+
+void InEngine::tidy() {
+  std::shared_ptr<const Connections> before;  // let go without the lock: samples may be large
+  auto lists = lists_.lock();
+  if (lists->closed->empty()) return;
+  auto kept = std::make_shared<Connections>();
+  std::size_t unread = 0;
+  for (auto it = lists->closed->rbegin(); it != lists->closed->rend(); ++it) {
+    const std::size_t count = (*it)->unread();
+    unread += count;
+    if (count > 0 && unread <= most_unread_of_closed) kept->insert(kept->begin(), *it);
+  }
+  before = std::exchange(lists->closed, std::move(kept));
+}
+
+std::shared_ptr<InConnection> InEngine::find(const Lists& lists, rt::Channel channel) const {
+  for (const auto& list : {lists.open, lists.closed}) {
+    const auto it = std::ranges::find(*list, channel, [](const auto& connection) { return connection->channel(); });
+    if (it != list->end()) return *it;
+  }
+  return nullptr;
 }
 
 rt::Refusal InEngine::provide(ConnectionPlan plan, RTC::ConnectorProfile& profile) {
@@ -171,27 +196,32 @@ rt::Refusal InEngine::consume(ConnectionPlan plan, const RTC::ConnectorProfile& 
 bool InEngine::close(const std::string& id) {
   std::shared_ptr<InConnection> closed;
   {
-    auto connections = connections_.lock();
-    const auto it = std::ranges::find(**connections, id, [](const auto& connection) { return connection->id(); });
-    if (it == (*connections)->end()) return false;
+    auto lists = lists_.lock();
+    const auto it = std::ranges::find(*lists->open, id, [](const auto& connection) { return connection->id(); });
+    if (it == lists->open->end()) return false;
     closed = *it;
-    auto fewer = std::make_shared<Connections>(**connections);
+    auto fewer = std::make_shared<Connections>(*lists->open);
     std::erase(*fewer, closed);
-    *connections = std::move(fewer);
+    auto more = std::make_shared<Connections>(*lists->closed);
+    more->push_back(closed);
+    lists->open = std::move(fewer);
+    lists->closed = std::move(more);
   }
   if (closed->settings().interface == rt::Interface::direct) remove_local_in(id);
   closed->provider_.reset();  // the servant holds the connection
-  closed->close();
+  closed->finish();
+  tidy();
   closed->events().on_event(ConnectorEvent::disconnect);
   return true;
 }
 
 bool InEngine::has_new(const std::string& name, std::vector<std::string>& lost) {
-  const auto all = connections();
-  bool is_new = false;
-  for (const auto& connection : *all) {
+  const Lists lists = lists_.snapshot();
+  bool is_new = std::ranges::any_of(
+      *lists.closed, [&](const auto& connection) { return (name.empty() || connection->name() == name) && connection->unread() > 0; });
+  for (const auto& connection : *lists.open) {
     if (!name.empty() && connection->name() != name) continue;
-    if (mailbox_->unread(connection->channel()) == 0) {
+    if (connection->unread() == 0) {
       if (!connection->fetcher_) continue;
       const rt::PortStatus status = connection->fetch(true);
       if (status == rt::PortStatus::connection_lost) lost.push_back(connection->id());
@@ -213,45 +243,56 @@ void InEngine::note(const Connections& all, const InConnection* read, rt::PortSt
 std::vector<rt::PortStatus> InEngine::statuses() const { return statuses_.snapshot(); }
 
 rt::PortStatus InEngine::read(const std::string& name, void* value, std::vector<std::string>& lost) {
-  const auto all = connections();
+  Lists lists = lists_.snapshot();
+  const auto is_meant = [&](const auto& connection) { return name.empty() || connection->name() == name; };
   rt::Channel channel = rt::Channel::any;
   std::size_t selected = 0;
   std::size_t pulled = 0;
   rt::PortStatus pull_status = rt::PortStatus::ok;
-  for (const auto& connection : *all) {
-    if (!name.empty() && connection->name() != name) continue;
+  for (const auto& connection : *lists.open) {
+    if (!is_meant(connection)) continue;
     ++selected;
     if (!name.empty()) channel = connection->channel();
     if (!connection->fetcher_) continue;
     ++pulled;
-    if (mailbox_->unread(connection->channel()) > 0) continue;
+    if (connection->unread() > 0) continue;
     const rt::PortStatus status = connection->fetch(false);
     if (status == rt::PortStatus::connection_lost) lost.push_back(connection->id());
     if (status != rt::PortStatus::ok) pull_status = status;
   }
-  if (selected == 0) {
-    note(*all, nullptr, rt::PortStatus::precondition_not_met);
+  // What is left of a closed connection comes before what a new one of that name has brought.
+  const auto left =
+      std::ranges::find_if(*lists.closed, [&](const auto& connection) { return is_meant(connection) && connection->unread() > 0; });
+  const bool is_left = left != lists.closed->end();
+  if (is_left && !name.empty()) channel = (*left)->channel();
+  if (selected == 0 && !is_left) {
+    note(*lists.open, nullptr, rt::PortStatus::precondition_not_met);
     return rt::PortStatus::precondition_not_met;
   }
   // Where every peer has been asked and none has anything, there is nothing: what to do then was the peer's policy.
-  if (pulled == selected && pull_status != rt::PortStatus::ok && mailbox_->unread(channel) == 0) {
-    note(*all, nullptr, pull_status);
+  if (!is_left && pulled == selected && pull_status != rt::PortStatus::ok && mailbox_->unread(channel) == 0) {
+    note(*lists.open, nullptr, pull_status);
     return pull_status;
   }
 
   const rt::ReadResult result = mailbox_->read(channel);
-  InConnection* connection = nullptr;
-  for (const auto& candidate : *all) {
-    if (candidate->channel() == result.channel || (result.channel == rt::Channel::any && !connection)) connection = candidate.get();
+  std::shared_ptr<InConnection> connection = find(lists, result.channel);
+  if (!connection && result.status == rt::PortStatus::ok) {  // it came, and something came over it, while we were looking
+    lists = lists_.snapshot();
+    connection = find(lists, result.channel);
   }
+  if (!connection && result.status != rt::PortStatus::ok && !lists.open->empty()) connection = lists.open->front();
   rt::PortStatus status = result.status;
   if (status == rt::PortStatus::ok && connection) {
     status = deliver(result.sample, *connection, value);
+  } else if (status == rt::PortStatus::ok) {
+    status = rt::PortStatus::error;  // the connection came and went while we were looking
   } else if (connection) {
     if (status == rt::PortStatus::buffer_empty) connection->events().on_event(ConnectorEvent::buffer_empty);
     if (status == rt::PortStatus::buffer_timeout) connection->events().on_event(ConnectorEvent::buffer_read_timeout);
   }
-  note(*all, connection, status);
+  note(*lists.open, connection.get(), status);
+  if (is_left) tidy();
   return status;
 }
 

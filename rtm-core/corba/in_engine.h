@@ -43,8 +43,9 @@ class InConnection final : public Receiver {
 
   // Pull connections: asks the peer and keeps what comes for the reader. `only_new`: not if it is what came last time.
   rt::PortStatus fetch(bool only_new);
-  // Nothing is received any more; what was not read is dropped.
-  void close();
+  // Nothing is received any more; what was not read can still be read.
+  void finish();
+  std::size_t unread() const { return mailbox_->unread(channel_); }
 
  private:
   friend class InEngine;
@@ -71,7 +72,8 @@ class InEngine {
   rt::Refusal provide(ConnectionPlan plan, RTC::ConnectorProfile& profile);
   // Pull: makes the connection to the OutPort that the profile names.
   rt::Refusal consume(ConnectionPlan plan, const RTC::ConnectorProfile& profile);
-  // Undoes either. False if there is no such connection.
+  // Undoes either. False if there is no such connection. What has come and was not read yet is kept for the reader, though not more of it
+  // than 64 samples of all closed connections.
   bool close(const std::string& id);
   std::shared_ptr<const Connections> connections() const;
 
@@ -84,14 +86,21 @@ class InEngine {
   std::vector<rt::PortStatus> statuses() const;
 
  private:
+  struct Lists {
+    std::shared_ptr<const Connections> open;
+    std::shared_ptr<const Connections> closed;  // that something unread has come over, oldest first
+  };
   void add(std::shared_ptr<InConnection> connection);
-  std::shared_ptr<InConnection> find(rt::Channel channel) const;
+  // Whose samples these are.
+  std::shared_ptr<InConnection> find(const Lists& lists, rt::Channel channel) const;
+  // Lets go of closed connections that have been read, and of the oldest if too much is unread.
+  void tidy();
   rt::PortStatus deliver(const rt::Sample& sample, InConnection& connection, void* value);
   void note(const Connections& all, const InConnection* read, rt::PortStatus status);
 
   const TypeOps& ops_;
   const std::shared_ptr<rt::Mailbox> mailbox_ = std::make_shared<rt::Mailbox>();
-  base::Guarded<std::shared_ptr<const Connections>, base::Rank::connector> connections_;
+  base::Guarded<Lists, base::Rank::connector> lists_;
   base::Guarded<std::vector<rt::PortStatus>, base::Rank::connector> statuses_;
 };
 

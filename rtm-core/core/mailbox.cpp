@@ -10,6 +10,13 @@ Mailbox::Entry* Mailbox::State::find(Channel channel) {
   return it == entries.end() ? nullptr : &*it;
 }
 
+Mailbox::Entry* Mailbox::State::find_writable(Channel channel) {
+  Entry* entry = find(channel);
+  return entry && !entry->is_finished ? entry : nullptr;
+}
+
+void Mailbox::State::erase(const Entry& entry) { entries.erase(entries.begin() + (&entry - entries.data())); }
+
 Mailbox::Entry* Mailbox::State::oldest(Channel channel) {
   Entry* found = nullptr;
   for (auto& entry : entries) {
@@ -41,6 +48,7 @@ std::optional<std::chrono::nanoseconds> Mailbox::State::patience(Channel channel
   const Entry* last = last_read(channel);
   for (const auto& entry : entries) {
     if (channel != Channel::any && entry.channel != channel) continue;
+    if (entry.is_finished) continue;
     if (last && &entry != last) continue;
     if (entry.settings.empty != EmptyPolicy::block && !entry.is_rendezvous) continue;
     if (!longest || entry.settings.read_timeout > *longest) longest = entry.settings.read_timeout;
@@ -62,7 +70,23 @@ void Mailbox::close(Channel channel) {
     Entry* entry = state->find(channel);
     if (!entry) return;
     closed = std::move(*entry);
-    state->entries.erase(state->entries.begin() + (entry - state->entries.data()));
+    state->erase(*entry);
+  }
+  arrived_.notify_all();
+  freed_.notify_all();
+}
+
+void Mailbox::finish(Channel channel) {
+  Entry closed{channel, {}, Ring(1), {}};  // as in close
+  {
+    auto state = state_.lock();
+    Entry* entry = state->find(channel);
+    if (!entry) return;
+    entry->is_finished = true;
+    if (entry->ring.is_empty()) {
+      closed = std::move(*entry);
+      state->erase(*entry);
+    }
   }
   arrived_.notify_all();
   freed_.notify_all();
@@ -73,12 +97,12 @@ WriteResult Mailbox::write(Channel channel, Sample sample) {
   Sample lost;
   {
     auto state = state_.lock();
-    Entry* entry = state->find(channel);
+    Entry* entry = state->find_writable(channel);
     if (!entry) return {PortStatus::precondition_not_met};
     if (entry->ring.is_full() && entry->settings.full == FullPolicy::do_nothing) return {PortStatus::buffer_full};
     if (entry->ring.is_full() && entry->settings.full == FullPolicy::block) {
       const bool has_room = state.wait_for(freed_, entry->settings.write_timeout, [&] {
-        entry = state->find(channel);
+        entry = state->find_writable(channel);
         return !entry || !entry->ring.is_full();
       });
       if (!entry) return {PortStatus::precondition_not_met};
@@ -97,7 +121,7 @@ WriteResult Mailbox::write(Channel channel, Sample sample) {
     arrived_.notify_all();
     const auto reads = entry->read_count;
     const bool is_read = state.wait_for(freed_, entry->settings.write_timeout, [&] {
-      entry = state->find(channel);
+      entry = state->find_writable(channel);
       return !entry || entry->read_count != reads;
     });
     if (!entry) return {PortStatus::precondition_not_met};
@@ -127,6 +151,7 @@ ReadResult Mailbox::read(Channel channel) {
       }
     }
     result = state->take(*entry);
+    if (entry->is_finished && entry->ring.is_empty()) state->erase(*entry);
   }
   freed_.notify_all();
   return result;

@@ -32,6 +32,9 @@ class Mailbox {
   Channel open(const BufferSettings& settings);
   // Drops what is in it; whoever waits to write or read there is released.
   void close(Channel channel);
+  // Nothing more comes: whoever waits to write there is released. What is unread can still be read; the channel closes with its last
+  // sample.
+  void finish(Channel channel);
 
   // A full ring overwrites, refuses or waits, as the channel's settings say.
   WriteResult write(Channel channel, Sample sample);
@@ -51,6 +54,7 @@ class Mailbox {
     Ring ring;
     Sample last;  // what was read last
     bool is_rendezvous = false;
+    bool is_finished = false;
     std::uint64_t read_count = 0;
   };
   struct State {
@@ -59,6 +63,9 @@ class Mailbox {
     std::uint64_t arrivals = 0;
 
     Entry* find(Channel channel);
+    // nullptr also for one that is finished.
+    Entry* find_writable(Channel channel);
+    void erase(const Entry& entry);
     // The entry (of that channel) with the oldest unread sample.
     Entry* oldest(Channel channel);
     Entry* last_read(Channel channel);

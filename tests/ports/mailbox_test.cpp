@@ -99,6 +99,22 @@ TEST(Mailbox, a_writer_that_waits_is_released_when_the_connection_ends) {
   closer.join();
 }
 
+TEST(Mailbox, a_finished_channel_is_read_to_its_end_and_not_written) {
+  Mailbox box;
+  const auto ended = box.open(buffer(FullPolicy::block, EmptyPolicy::readback, 2));
+  const auto open = box.open(buffer(FullPolicy::overwrite, EmptyPolicy::do_nothing));
+  box.write(ended, sample(1));
+  box.write(open, sample(2));
+  box.write(ended, sample(3));
+  box.finish(ended);
+  EXPECT_EQ(box.write(ended, sample(4)).status, PortStatus::precondition_not_met);
+  for (const int expected : {1, 2, 3}) EXPECT_EQ(number(box.read().sample), expected);
+  EXPECT_EQ(box.read().status, PortStatus::buffer_empty) << "nothing of it is read again";
+  EXPECT_EQ(box.read(ended).status, PortStatus::precondition_not_met);
+  box.finish(open);
+  EXPECT_EQ(box.read().status, PortStatus::precondition_not_met) << "nothing was unread";
+}
+
 TEST(Mailbox, with_a_rendezvous_a_write_returns_when_it_was_read) {
   Mailbox box;
   auto settings = buffer(FullPolicy::overwrite, EmptyPolicy::readback);

@@ -73,10 +73,70 @@ TEST_P(Transport, a_disconnected_port_reads_and_writes_nothing) {
   auto plan = profile({out.getPortRef(), in.getPortRef()}, {{"interface_type", interface}, {"dataflow_type", dataflow}});
   ASSERT_EQ(out.connect(plan), RTC::RTC_OK);
   out.write();
+  in.read();
   out.disconnect_all();
   EXPECT_FALSE(in.isNew());
   EXPECT_FALSE(in.read());
   EXPECT_FALSE(out.write());
+}
+
+TEST_P(Transport, what_was_received_is_read_after_the_connection_has_ended) {
+  if (dataflow == "pull") GTEST_SKIP() << "what was not fetched has not been received";
+  RTC::TimedLong sent{};
+  RTC::TimedLong received{};
+  RTC::OutPort<RTC::TimedLong> out("A0.out", sent);
+  RTC::InPort<RTC::TimedLong> in("B0.in", received);
+  // A tool that connects, puts a value and disconnects, several times before the component looks.
+  for (sent.data = 1; sent.data <= 3; ++sent.data) {
+    auto plan = profile({out.getPortRef(), in.getPortRef()}, {{"interface_type", interface}, {"dataflow_type", dataflow}});
+    ASSERT_EQ(out.connect(plan), RTC::RTC_OK);
+    ASSERT_TRUE(out.write());
+    ASSERT_EQ(out.disconnect_all(), RTC::RTC_OK);
+  }
+  EXPECT_TRUE(in.connectors().empty());
+  for (int i = 1; i <= 3; ++i) {
+    EXPECT_TRUE(in.isNew());
+    EXPECT_TRUE(in.isNew("test"));
+    ASSERT_TRUE(i == 2 ? in.read("test") : in.read());
+    EXPECT_EQ(received.data, i);
+  }
+  EXPECT_FALSE(in.isNew());
+  EXPECT_FALSE(in.read());
+  // Then in order with what comes over a living connection.
+  auto first = profile({out.getPortRef(), in.getPortRef()}, {{"interface_type", interface}, {"dataflow_type", dataflow}});
+  auto second = first;
+  ASSERT_EQ(out.connect(first), RTC::RTC_OK);
+  out.write();
+  out.disconnect_all();
+  ASSERT_EQ(out.connect(second), RTC::RTC_OK);
+  sent.data = 17;
+  out.write();
+  EXPECT_TRUE(in.read());
+  EXPECT_EQ(received.data, 4);
+  EXPECT_TRUE(in.read());
+  EXPECT_EQ(received.data, 17);
+  EXPECT_TRUE(in.read()) << "readback";
+}
+
+TEST_P(Transport, what_nobody_reads_of_closed_connections_is_bounded) {
+  if (dataflow == "pull") GTEST_SKIP() << "what was not fetched has not been received";
+  RTC::TimedLong sent{};
+  RTC::TimedLong received{};
+  RTC::OutPort<RTC::TimedLong> out("A0.out", sent);
+  RTC::InPort<RTC::TimedLong> in("B0.in", received);
+  for (sent.data = 0; sent.data < 100; ++sent.data) {
+    auto plan = profile({out.getPortRef(), in.getPortRef()}, {{"interface_type", interface}, {"dataflow_type", dataflow}});
+    ASSERT_EQ(out.connect(plan), RTC::RTC_OK);
+    ASSERT_TRUE(out.write());
+    ASSERT_EQ(out.disconnect_all(), RTC::RTC_OK);
+  }
+  int count = 0;
+  while (in.isNew()) {
+    ASSERT_TRUE(in.read());
+    ++count;
+  }
+  EXPECT_EQ(count, 64);
+  EXPECT_EQ(received.data, 99);
 }
 
 TEST_P(Transport, works_between_processes_in_both_directions) {
