@@ -195,7 +195,7 @@ void bench_steps_of(int robots, double step) {
   }
   const int count = std::max(10, 1000 / robots);
   std::vector<double> ours, theirs;
-  for (int i = 0; i < 200; ++i) bare.step(), server.run(server.simulation->time().count() * 1e-9 + step);
+  for (int i = 0; i < 200; ++i) bare.step(), server.simulation->step(server.times);
   for (int block = 0; block < 60; ++block) {
     auto start = Clock::now();
     for (int i = 0; i < count; ++i) server.simulation->step(server.times), server.simulation->sense(server.times);
