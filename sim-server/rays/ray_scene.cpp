@@ -1,60 +1,24 @@
 #include "rays/ray_scene.h"
 
-#include <embree3/rtcore.h>
-#include <pmmintrin.h>
-#include <spdlog/fmt/fmt.h>
-#include <xmmintrin.h>
-
 #include <array>
-#include <cmath>
-#include <cstring>
 #include <map>
-#include <mutex>
 
 #include "base/log.h"
+#include "rays/embree.h"
+#include "rays/shape_scene.h"
 
 namespace sim {
 namespace {
 
+using embree::FlushDenormals;
+using embree::without_dust;
+
 constexpr float none = std::numeric_limits<float>::infinity();
-constexpr int refits_per_build = 64;
-
-// Embree wants denormals off while it traces; the rest of the program keeps them.
-class FlushDenormals {
- public:
-  FlushDenormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040U); }
-  ~FlushDenormals() { _mm_setcsr(before_); }
-  FlushDenormals(const FlushDenormals&) = delete;
-  FlushDenormals& operator=(const FlushDenormals&) = delete;
-
- private:
-  unsigned before_;
-};
-
-// Embree takes a direction below 1e-18 for a positive one, but its coherent packets sort rays by the sign the direction had: a component
-// of -2e-19, as of a robot that stands almost exactly along an axis, makes whole packets miss. So what is next to nothing becomes nothing;
-// 1e-8 is a third of a micrometre at 30 m, and products of two such numbers stay above Embree's limit.
-float without_dust(float v) { return std::abs(v) < 1e-8F ? 0.0F : v; }
+// So many moving bodies are met one by one, each in its own frame: no tree has to be built for a scan, and most of them are out of the
+// way of most packets. With more, a tree over all of them is built once for all scans of a moment.
+constexpr std::size_t few_bodies = 32;
 
 void on_error(void*, RTCError, const char* text) { base::log(base::Level::error, "rays", "embree: {}", text); }
-
-struct DeviceRelease {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
-struct SceneRelease {
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-struct GeometryRelease {
-  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
-};
-using Device = std::unique_ptr<RTCDeviceTy, DeviceRelease>;
-using Scene = std::unique_ptr<RTCSceneTy, SceneRelease>;
-using Geometry = std::unique_ptr<RTCGeometryTy, GeometryRelease>;
-
-struct Look {
-  float retro = 0;
-  std::uint32_t color = 0;
-};
 
 struct Plane {
   RayBodyId body = 0;
@@ -63,82 +27,56 @@ struct Plane {
   Look look;
 };
 
-struct ShapeScene {
-  Scene scene;
-  std::vector<Look> looks;  // by geometry id
+// 16 rays as Embree takes them; what no packet changes is filled in once.
+struct Packet {
+  alignas(64) RTCRayHit16 rays;
+
+  explicit Packet(const Eigen::Vector3f& origin) {
+    for (std::size_t i = 0; i < 16; ++i) {
+      rays.ray.org_x[i] = origin.x();
+      rays.ray.org_y[i] = origin.y();
+      rays.ray.org_z[i] = origin.z();
+      rays.ray.time[i] = 0;
+      rays.ray.mask[i] = 0xffffffffU;
+      rays.ray.id[i] = rays.ray.flags[i] = 0;
+    }
+  }
+  void turn(const Eigen::Matrix3f& r, const float* x, const float* y, const float* z) {
+    const float xx = r(0, 0), xy = r(0, 1), xz = r(0, 2), yx = r(1, 0), yy = r(1, 1), yz = r(1, 2), zx = r(2, 0), zy = r(2, 1),
+                zz = r(2, 2);
+    for (std::size_t i = 0; i < 16; ++i) {
+      rays.ray.dir_x[i] = without_dust(xx * x[i] + xy * y[i] + xz * z[i]);
+      rays.ray.dir_y[i] = without_dust(yx * x[i] + yy * y[i] + yz * z[i]);
+      rays.ray.dir_z[i] = without_dust(zx * x[i] + zy * y[i] + zz * z[i]);
+    }
+  }
+  void intersect(RTCScene scene, const int* valid, RTCIntersectContext& context) {
+    for (std::size_t i = 0; i < 16; ++i) rays.hit.geomID[i] = rays.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect16(valid, scene, &context, &rays);
+  }
+  bool is_hit(std::size_t i) const { return rays.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID; }
 };
 
-Geometry triangles(RTCDevice device, const std::vector<Eigen::Vector3d>& vertices, const std::vector<std::array<std::uint32_t, 3>>& faces,
-                   const Eigen::Isometry3d& pose) {
-  Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-  auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, vertices.size()));
-  auto* f =
-      static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, faces.size()));
-  if (v == nullptr || f == nullptr) return nullptr;
-  for (const auto& vertex : vertices) {
-    const Eigen::Vector3f p = (pose * vertex).cast<float>();
-    *v++ = p.x(), *v++ = p.y(), *v++ = p.z();
-  }
-  std::memcpy(f, faces.data(), faces.size() * 12);
-  return geometry;
+RTCRayHit single_ray(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float near, float far) {
+  RTCRayHit ray{};
+  ray.ray.org_x = origin.x(), ray.ray.org_y = origin.y(), ray.ray.org_z = origin.z();
+  ray.ray.dir_x = without_dust(direction.x()), ray.ray.dir_y = without_dust(direction.y()), ray.ray.dir_z = without_dust(direction.z());
+  ray.ray.tnear = near;
+  ray.ray.tfar = far;
+  ray.ray.mask = 0xffffffffU;
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  return ray;
 }
 
-Geometry box(RTCDevice device, const Eigen::Vector3d& size, const Eigen::Isometry3d& pose) {
-  std::vector<Eigen::Vector3d> vertices;
-  for (int i = 0; i < 8; ++i) vertices.emplace_back(Eigen::Vector3d((i & 1) - 0.5, (i >> 1 & 1) - 0.5, (i >> 2) - 0.5).cwiseProduct(size));
-  static const std::vector<std::array<std::uint32_t, 3>> faces = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                                                                  {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-  return triangles(device, vertices, faces, pose);
+bool hits(RTCScene scene, RTCRayHit& ray) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, &ray);
+  return ray.hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
-Geometry sphere(RTCDevice device, double radius, const Eigen::Isometry3d& pose) {
-  Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT));
-  auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 16, 1));
-  const Eigen::Vector3f p = pose.translation().cast<float>();
-  v[0] = p.x(), v[1] = p.y(), v[2] = p.z(), v[3] = static_cast<float>(radius);
-  return geometry;
-}
-
-// A cylinder with flat ends (a cone of equal radii) or round ones.
-Geometry rod(RTCDevice device, RTCGeometryType type, double radius, double length, const Eigen::Isometry3d& pose) {
-  Geometry geometry(rtcNewGeometry(device, type));
-  auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 16, 2));
-  auto* i = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, 4, 1));
-  for (int end = 0; end < 2; ++end) {
-    const Eigen::Vector3f p = (pose * Eigen::Vector3d(0, 0, (end - 0.5) * length)).cast<float>();
-    v[4 * end] = p.x(), v[4 * end + 1] = p.y(), v[4 * end + 2] = p.z(), v[4 * end + 3] = static_cast<float>(radius);
-  }
-  i[0] = 0;
-  return geometry;
-}
-
-// What tells shapes that look the same from those that do not.
-std::string key_of(std::span<const RayShape> shapes) {
-  std::string key;
-  for (const auto& shape : shapes) {
-    const Eigen::Matrix4d& m = shape.pose.matrix();
-    key.append(reinterpret_cast<const char*>(m.data()), sizeof(double) * 16);
-    key += fmt::format("|{}|{}|{}|", shape.retro, shape.color, shape.geometry->index());
-    const auto numbers = [&](auto... values) { ((key += fmt::format("{},", values)), ...); };
-    if (const auto* b = std::get_if<BoxShape>(shape.geometry)) numbers(b->size.x(), b->size.y(), b->size.z());
-    if (const auto* s = std::get_if<SphereShape>(shape.geometry)) numbers(s->radius);
-    if (const auto* c = std::get_if<CylinderShape>(shape.geometry)) numbers(c->radius, c->length);
-    if (const auto* c = std::get_if<CapsuleShape>(shape.geometry)) numbers(c->radius, c->length);
-    if (const auto* e = std::get_if<EllipsoidShape>(shape.geometry)) numbers(e->radii.x(), e->radii.y(), e->radii.z());
-    if (const auto* m2 = std::get_if<MeshShape>(shape.geometry)) {
-      key += m2->path + "|" + m2->submesh;
-      numbers(m2->scale.x(), m2->scale.y(), m2->scale.z(), m2->center_submesh);
-    }
-    if (const auto* p = std::get_if<PolylineShape>(shape.geometry)) {
-      numbers(p->height);
-      for (const auto& outline : p->outlines) {
-        for (const auto& corner : outline) numbers(corner.x(), corner.y());
-        key += '/';
-      }
-    }
-  }
-  return key;
-}
+Eigen::Vector3f normal_of(const RTCRayHit& ray) { return {ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z}; }
 
 }  // namespace
 
@@ -150,7 +88,21 @@ Beams::Beams(std::span<const Eigen::Vector3f> directions, float near, float far)
   y_.assign(padded, 0);
   z_.assign(padded, 0);
   near_.assign(padded, near);
-  for (std::size_t i = 0; i < size_; ++i) x_[i] = directions[i].x(), y_[i] = directions[i].y(), z_[i] = directions[i].z();
+  for (std::size_t i = 0; i < size_; ++i) {
+    x_[i] = directions[i].x(), y_[i] = directions[i].y(), z_[i] = directions[i].z();
+    low_ = low_.cwiseMin(directions[i]);
+    high_ = high_.cwiseMax(directions[i]);
+  }
+  for (std::size_t first = 0; first < size_; first += 16) {
+    const auto packet = directions.subspan(first, std::min<std::size_t>(16, size_ - first));
+    Cone cone;
+    for (const auto& direction : packet) cone.axis += direction.normalized();
+    cone.axis = cone.axis.norm() > 1e-3F ? cone.axis.normalized().eval() : packet[0].normalized().eval();
+    float cosine = 1;
+    for (const auto& direction : packet) cosine = std::min(cosine, cone.axis.dot(direction.normalized()));
+    cone.angle = std::acos(std::clamp(cosine, -1.0F, 1.0F));
+    cones_.push_back(cone);
+  }
 }
 
 Beams Beams::fan(int beams, double from, double to, int layers, double lowest, double highest, float near, float far) {
@@ -171,52 +123,33 @@ Beams Beams::fan(int beams, double from, double to, int layers, double lowest, d
 
 class RayScene::Impl {
  public:
-  explicit Impl(TriangleCache& cache) : cache_(cache) {
-    device_.reset(rtcNewDevice("threads=1,start_threads=0"));
+  explicit Impl(TriangleCache& cache)
+      : cache_(cache), device_(rtcNewDevice("threads=1,start_threads=0")), statics_(device_.get(), RTC_BUILD_QUALITY_HIGH) {
     rtcSetDeviceErrorFunction(device_.get(), on_error, nullptr);
-    top_.reset(rtcNewScene(device_.get()));
-    rtcSetSceneFlags(top_.get(), RTC_SCENE_FLAG_DYNAMIC | RTC_SCENE_FLAG_ROBUST);
-    statics_ = make_scene(RTC_BUILD_QUALITY_MEDIUM);
+    crowd_.reset(rtcNewScene(device_.get()));
+    rtcSetSceneFlags(crowd_.get(), RTC_SCENE_FLAG_DYNAMIC | RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(crowd_.get(), RTC_BUILD_QUALITY_LOW);
   }
 
   struct Body {
-    bool is_used = false, is_moving = false;
-    std::shared_ptr<ShapeScene> shapes;
-    Geometry instance;  // moving: in the top scene
-    unsigned instance_id = RTC_INVALID_GEOMETRY_ID;
-    std::vector<unsigned> geometry_ids;  // static: in the static scene
-    std::string key;
+    bool is_used = false;
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    std::vector<unsigned> geometry_ids;  // static: in the static scene
+    // moving:
+    std::shared_ptr<ShapeScene> shapes;
+    Eigen::Vector3f middle{0, 0, 0}, half{0, 0, 0};  // of its box, in its frame
+    embree::Geometry instance;                       // in the crowd
+    unsigned instance_id = RTC_INVALID_GEOMETRY_ID;
   };
-
-  ShapeScene make_scene(RTCBuildQuality quality) const {
-    ShapeScene made;
-    made.scene.reset(rtcNewScene(device_.get()));
-    rtcSetSceneFlags(made.scene.get(), RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(made.scene.get(), quality);
-    return made;
-  }
-
-  Geometry make(const RayShape& shape, const Eigen::Isometry3d& pose, std::vector<std::string>& notes) {
-    const GeometryDef& g = *shape.geometry;
-    if (const auto* b = std::get_if<BoxShape>(&g)) return box(device_.get(), b->size, pose);
-    if (const auto* s = std::get_if<SphereShape>(&g)) return sphere(device_.get(), s->radius, pose);
-    if (const auto* c = std::get_if<CylinderShape>(&g))
-      return rod(device_.get(), RTC_GEOMETRY_TYPE_CONE_LINEAR_CURVE, c->radius, c->length, pose);
-    if (const auto* p = std::get_if<CapsuleShape>(&g))
-      return rod(device_.get(), RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE, p->radius, p->length, pose);
-    // Fine enough for lidars: a few tenths of a millimetre on an ellipsoid of a metre.
-    if (const auto* e = std::get_if<EllipsoidShape>(&g)) {
-      const TriangleMesh mesh = ellipsoid_triangles(e->radii, 96, 192);
-      return triangles(device_.get(), mesh.vertices, mesh.triangles, pose);
-    }
-    const auto mesh = cache_.triangles(g);
-    if (!mesh) {
-      notes.push_back(mesh.error().message + "; rays do not see it");
-      return nullptr;
-    }
-    return triangles(device_.get(), (*mesh)->vertices, (*mesh)->triangles, pose);
-  }
+  // A moving body seen from a sensor.
+  struct Nearby {
+    const Body* body = nullptr;
+    Eigen::Matrix3f turn;    // from the sensor's frame to the body's
+    Eigen::Vector3f origin;  // the sensor in the body's frame
+    Eigen::Vector3f toward;  // unit, to its middle in the sensor's frame
+    float nearest = 0;       // of its sphere; negative: the sensor is inside
+    float angle = 0;         // half the angle that the sphere covers
+  };
 
   // Ids of the geometries added.
   std::vector<unsigned> fill(ShapeScene& scene, std::span<const RayShape> shapes, const Eigen::Isometry3d& pose, RayBodyId body,
@@ -224,18 +157,15 @@ class RayScene::Impl {
     std::vector<unsigned> ids;
     for (const auto& shape : shapes) {
       const Eigen::Isometry3d place = pose * shape.pose;
+      const Look look{shape.retro, shape.color};
+      has_retro_ = has_retro_ || shape.retro != 0;
       if (const auto* plane = std::get_if<PlaneShape>(shape.geometry)) {
         const Eigen::Vector3d normal = (place.linear() * plane->normal).normalized();
-        planes_.push_back({body, normal, normal.dot(place.translation()), {shape.retro, shape.color}});
+        planes_.push_back({body, normal, normal.dot(place.translation()), look});
         continue;
       }
-      const Geometry geometry = make(shape, place, notes);
-      if (!geometry) continue;
-      rtcCommitGeometry(geometry.get());
-      const unsigned id = rtcAttachGeometry(scene.scene.get(), geometry.get());
-      if (scene.looks.size() <= id) scene.looks.resize(id + 1);
-      scene.looks[id] = {shape.retro, shape.color};
-      ids.push_back(id);
+      const auto geometry = make_geometry(device_.get(), *shape.geometry, place, cache_, notes);
+      if (geometry) ids.push_back(scene.add(geometry, look));
     }
     return ids;
   }
@@ -247,39 +177,40 @@ class RayScene::Impl {
     Body& body = bodies_[id];
     body = Body();
     body.is_used = true;
-    body.is_moving = is_moving;
     body.pose = pose;
     if (is_moving) {
-      add_instance(body, id, shapes, notes);
+      add_moving(body, id, shapes, notes);
     } else {
       body.geometry_ids = fill(statics_, shapes, pose, id, notes);
       statics_changed_ = true;
     }
-    changed_ = needs_build_ = true;
     return id;
   }
 
-  void add_instance(Body& body, RayBodyId id, std::span<const RayShape> shapes, std::vector<std::string>& notes) {
-    body.key = key_of(shapes);
-    auto& shared = shared_[body.key];
+  void add_moving(Body& body, RayBodyId id, std::span<const RayShape> shapes, std::vector<std::string>& notes) {
+    auto& shared = shared_[key_of(shapes)];
     body.shapes = shared.lock();
     if (!body.shapes) {
-      body.shapes = std::make_shared<ShapeScene>(make_scene(RTC_BUILD_QUALITY_MEDIUM));
+      body.shapes = std::make_shared<ShapeScene>(device_.get(), RTC_BUILD_QUALITY_MEDIUM);
       fill(*body.shapes, shapes, Eigen::Isometry3d::Identity(), id, notes);
       rtcCommitScene(body.shapes->scene.get());
       shared = body.shapes;
     }
     if (body.shapes->looks.empty()) return;  // nothing to see
+    RTCBounds bounds;
+    rtcGetSceneBounds(body.shapes->scene.get(), &bounds);
+    const Eigen::Vector3f low(bounds.lower_x, bounds.lower_y, bounds.lower_z), high(bounds.upper_x, bounds.upper_y, bounds.upper_z);
+    body.middle = (low + high) / 2;
+    body.half = (high - low) / 2 + Eigen::Vector3f::Constant(1e-4F);
     body.instance.reset(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE));
     rtcSetGeometryInstancedScene(body.instance.get(), body.shapes->scene.get());
     rtcSetGeometryTimeStepCount(body.instance.get(), 1);
-    place(body);
-    body.instance_id = rtcAttachGeometry(top_.get(), body.instance.get());
-    if (instances_.size() <= body.instance_id) instances_.resize(body.instance_id + 1, nullptr);
-    instances_[body.instance_id] = body.shapes.get();
+    body.instance_id = rtcAttachGeometry(crowd_.get(), body.instance.get());
+    moving_.push_back(id);
+    crowd_changed_ = true;
   }
 
-  void place(Body& body) const {
+  void place_in_crowd(const Body& body) const {
     std::array<float, 12> m;
     for (int column = 0; column < 4; ++column) {
       for (int row = 0; row < 3; ++row) {
@@ -294,44 +225,67 @@ class RayScene::Impl {
   void commit() {
     if (statics_changed_) {
       rtcCommitScene(statics_.scene.get());
-      if (!static_instance_) {
-        static_instance_.reset(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE));
-        rtcSetGeometryInstancedScene(static_instance_.get(), statics_.scene.get());
-        static_id_ = rtcAttachGeometry(top_.get(), static_instance_.get());
-        if (instances_.size() <= static_id_) instances_.resize(static_id_ + 1, nullptr);
-        instances_[static_id_] = &statics_;
-      }
-      rtcCommitGeometry(static_instance_.get());
+      // What is spawned or moved later must not stop the run for as long.
+      rtcSetSceneBuildQuality(statics_.scene.get(), RTC_BUILD_QUALITY_MEDIUM);
       statics_changed_ = false;
     }
-    if (!changed_) return;
-    // Refitting keeps the tree of an earlier moment, which gets worse as bodies travel.
-    const bool is_full = needs_build_ || ++refits_ >= refits_per_build;
-    if (is_full) refits_ = 0, ++full_builds_;
-    rtcSetSceneBuildQuality(top_.get(), RTC_BUILD_QUALITY_LOW);
-    rtcCommitScene(top_.get());
-    changed_ = needs_build_ = false;
+    if (!crowd_changed_ || !is_crowded()) return;
+    // Embree can't refit a scene of instances: it is built anew, as fast as it can be.
+    body_of_instance_.clear();
+    for (const auto id : moving_) {
+      const Body& body = bodies_[id];
+      place_in_crowd(body);
+      if (body_of_instance_.size() <= body.instance_id) body_of_instance_.resize(body.instance_id + 1, nullptr);
+      body_of_instance_[body.instance_id] = &body;
+    }
+    rtcCommitScene(crowd_.get());
+    crowd_changed_ = false;
   }
 
-  Look look_of(unsigned instance, unsigned geometry) const {
-    if (instance >= instances_.size() || instances_[instance] == nullptr || geometry >= instances_[instance]->looks.size()) return {};
-    return instances_[instance]->looks[geometry];
-  }
+  bool is_crowded() const { return moving_.size() > few_bodies; }
+  const Body* body_of(unsigned instance) const { return instance < body_of_instance_.size() ? body_of_instance_[instance] : nullptr; }
+
+  // Nothing when no beam can reach it.
+  std::optional<Nearby> look_at(const Body& body, const Beams& beams, const Eigen::Isometry3d& sensor) const;
+  std::vector<Nearby> nearby(const Beams& beams, const Eigen::Isometry3d& sensor) const;
 
   TriangleCache& cache_;
-  Device device_;
-  Scene top_;
+  embree::Device device_;
   ShapeScene statics_;
-  Geometry static_instance_;
-  unsigned static_id_ = RTC_INVALID_GEOMETRY_ID;
+  embree::Scene crowd_;  // instances of all moving bodies
   std::vector<Body> bodies_;
+  std::vector<RayBodyId> moving_;  // those with something to see
   std::map<std::string, std::weak_ptr<ShapeScene>> shared_;
-  std::vector<const ShapeScene*> instances_;  // by geometry id in the top scene
+  std::vector<const Body*> body_of_instance_;
   std::vector<Plane> planes_;
-  bool changed_ = true, needs_build_ = true, statics_changed_ = true;
-  int refits_ = 0;
-  std::uint64_t full_builds_ = 0;
+  bool statics_changed_ = true, crowd_changed_ = true, has_retro_ = false;
 };
+
+std::optional<RayScene::Impl::Nearby> RayScene::Impl::look_at(const Body& body, const Beams& beams, const Eigen::Isometry3d& sensor) const {
+  Nearby seen;
+  const Eigen::Matrix3d turn = body.pose.linear().transpose() * sensor.linear();
+  seen.body = &body;
+  seen.turn = turn.cast<float>();
+  seen.origin = (body.pose.linear().transpose() * (sensor.translation() - body.pose.translation())).cast<float>();
+  const Eigen::Vector3f middle = seen.turn.transpose() * (body.middle - seen.origin), half = seen.turn.cwiseAbs().transpose() * body.half;
+  // The box around all that the beams can reach against the box around the body, both along the axes of the sensor.
+  const Eigen::Vector3f low = (beams.far_ * beams.low_).cwiseMin(0), high = (beams.far_ * beams.high_).cwiseMax(0);
+  if (((middle + half).array() < low.array()).any() || ((middle - half).array() > high.array()).any()) return {};
+  const float distance = middle.norm(), radius = body.half.norm();
+  seen.nearest = distance - radius;
+  if (seen.nearest > beams.far_) return {};
+  seen.toward = middle / std::max(distance, 1e-6F);
+  seen.angle = seen.nearest > 0 ? std::asin(radius / distance) : 0;
+  return seen;
+}
+
+std::vector<RayScene::Impl::Nearby> RayScene::Impl::nearby(const Beams& beams, const Eigen::Isometry3d& sensor) const {
+  std::vector<Nearby> all;
+  for (const auto id : moving_) {
+    if (auto seen = look_at(bodies_[id], beams, sensor)) all.push_back(*seen);
+  }
+  return all;
+}
 
 RayScene::RayScene(TriangleCache& triangles) : impl_(std::make_unique<Impl>(triangles)) { commit(); }
 RayScene::~RayScene() = default;
@@ -347,115 +301,129 @@ RayBodyId RayScene::add_moving(std::span<const RayShape> shapes, const Eigen::Is
 void RayScene::remove(RayBodyId id) {
   auto& body = impl_->bodies_[id];
   if (body.instance) {
-    rtcDetachGeometry(impl_->top_.get(), body.instance_id);
-    impl_->instances_[body.instance_id] = nullptr;
+    rtcDetachGeometry(impl_->crowd_.get(), body.instance_id);
+    std::erase(impl_->moving_, id);
+    impl_->crowd_changed_ = true;
   }
   for (const auto geometry : body.geometry_ids) rtcDetachGeometry(impl_->statics_.scene.get(), geometry);
   impl_->statics_changed_ = impl_->statics_changed_ || !body.geometry_ids.empty();
   std::erase_if(impl_->planes_, [&](const Plane& plane) { return plane.body == id; });
   body = Impl::Body();
-  impl_->changed_ = impl_->needs_build_ = true;
 }
 
 void RayScene::set_pose(RayBodyId id, const Eigen::Isometry3d& pose) {
   auto& body = impl_->bodies_[id];
   if (!body.instance || (body.pose.matrix().array() == pose.matrix().array()).all()) return;
   body.pose = pose;
-  impl_->place(body);
-  impl_->changed_ = true;
+  impl_->crowd_changed_ = true;
 }
 
 void RayScene::commit() { impl_->commit(); }
-std::uint64_t RayScene::full_builds() const { return impl_->full_builds_; }
 
 void RayScene::trace(const Beams& beams, const Eigen::Isometry3d& sensor, std::span<float> ranges, std::span<float> retros) const {
   const FlushDenormals flush;
+  const Impl& scene = *impl_;
   const Eigen::Matrix3f r = sensor.linear().cast<float>();
-  const Eigen::Vector3f origin = sensor.translation().cast<float>();
+  const auto bodies = scene.is_crowded() ? std::vector<Impl::Nearby>() : scene.nearby(beams, sensor);
+  const bool wants_retros = !retros.empty() && scene.has_retro_;
+  if (!wants_retros) std::fill(retros.begin(), retros.end(), 0.0F);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  alignas(64) RTCRayHit16 packet;
+  Packet packet(sensor.translation().cast<float>()), in_body(Eigen::Vector3f::Zero());
+  RTCRay16& rays = packet.rays.ray;
   alignas(64) std::array<int, 16> valid;
-  alignas(64) std::array<float, 16> plane_retro;
+  alignas(64) std::array<float, 16> retro;
+  valid.fill(-1);
   for (std::size_t first = 0; first < beams.size_; first += 16) {
     const float *x = &beams.x_[first], *y = &beams.y_[first], *z = &beams.z_[first], *near = &beams.near_[first];
     const auto count = std::min<std::size_t>(16, beams.size_ - first);
-    for (std::size_t i = 0; i < 16; ++i) {
-      packet.ray.dir_x[i] = without_dust(r(0, 0) * x[i] + r(0, 1) * y[i] + r(0, 2) * z[i]);
-      packet.ray.dir_y[i] = without_dust(r(1, 0) * x[i] + r(1, 1) * y[i] + r(1, 2) * z[i]);
-      packet.ray.dir_z[i] = without_dust(r(2, 0) * x[i] + r(2, 1) * y[i] + r(2, 2) * z[i]);
-      packet.ray.org_x[i] = origin.x();
-      packet.ray.org_y[i] = origin.y();
-      packet.ray.org_z[i] = origin.z();
-      packet.ray.tnear[i] = near[i];
-      packet.ray.tfar[i] = beams.far_;
-      packet.ray.time[i] = 0;
-      packet.ray.mask[i] = 0xffffffffU;
-      packet.ray.flags[i] = 0;
-      packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-      packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-      valid[i] = i < count ? -1 : 0;
-      plane_retro[i] = -1;
-    }
+    for (std::size_t i = count; i < 16; ++i) valid[i] = 0;
+    packet.turn(r, x, y, z);
+    for (std::size_t i = 0; i < 16; ++i) rays.tnear[i] = near[i], rays.tfar[i] = beams.far_, retro[i] = -1;
     // Planes first: what lies behind them need not be looked for.
-    for (const auto& plane : impl_->planes_) {
+    for (const auto& plane : scene.planes_) {
       const Eigen::Vector3f n = plane.normal.cast<float>();
       const auto height = static_cast<float>(plane.distance - plane.normal.dot(sensor.translation()));
       for (std::size_t i = 0; i < 16; ++i) {
-        const float t = height / (n.x() * packet.ray.dir_x[i] + n.y() * packet.ray.dir_y[i] + n.z() * packet.ray.dir_z[i]);
-        const bool is_nearer = t >= packet.ray.tnear[i] && t < packet.ray.tfar[i];
-        packet.ray.tfar[i] = is_nearer ? t : packet.ray.tfar[i];
-        plane_retro[i] = is_nearer ? plane.look.retro : plane_retro[i];
+        const float t = height / (n.x() * rays.dir_x[i] + n.y() * rays.dir_y[i] + n.z() * rays.dir_z[i]);
+        const bool is_nearer = t >= rays.tnear[i] && t < rays.tfar[i];
+        rays.tfar[i] = is_nearer ? t : rays.tfar[i];
+        retro[i] = is_nearer ? plane.look.retro : retro[i];
       }
     }
-    rtcIntersect16(valid.data(), impl_->top_.get(), &context, &packet);
+    packet.intersect(scene.statics_.scene.get(), valid.data(), context);
     for (std::size_t i = 0; i < count; ++i) {
-      const bool is_hit = packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
-      ranges[first + i] = is_hit || plane_retro[i] >= 0 ? packet.ray.tfar[i] : none;
+      if (packet.is_hit(i)) retro[i] = wants_retros ? scene.statics_.look_of(packet.rays.hit.geomID[i]).retro : 0;
     }
-    if (retros.empty()) continue;
-    for (std::size_t i = 0; i < count; ++i) {
-      const bool is_hit = packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
-      retros[first + i] = is_hit ? impl_->look_of(packet.hit.instID[0][i], packet.hit.geomID[i]).retro : std::max(plane_retro[i], 0.0F);
+    if (scene.is_crowded()) {
+      packet.intersect(scene.crowd_.get(), valid.data(), context);
+      for (std::size_t i = 0; i < count; ++i) {
+        if (!packet.is_hit(i)) continue;
+        const auto* body = scene.body_of(packet.rays.hit.instID[0][i]);
+        retro[i] = wants_retros && body != nullptr ? body->shapes->look_of(packet.rays.hit.geomID[i]).retro : 0;
+      }
     }
+    for (const auto& seen : bodies) {
+      const Beams::Cone& cone = beams.cones_[first / 16];
+      if (seen.nearest > 0) {
+        const float apart = std::acos(std::clamp(cone.axis.dot(seen.toward), -1.0F, 1.0F));
+        if (apart > cone.angle + seen.angle + 1e-3F) continue;
+        if (seen.nearest > *std::max_element(rays.tfar, rays.tfar + count)) continue;
+      }
+      for (std::size_t i = 0; i < 16; ++i) {
+        in_body.rays.ray.org_x[i] = seen.origin.x(), in_body.rays.ray.org_y[i] = seen.origin.y(),
+        in_body.rays.ray.org_z[i] = seen.origin.z();
+        in_body.rays.ray.tnear[i] = rays.tnear[i], in_body.rays.ray.tfar[i] = rays.tfar[i];
+      }
+      in_body.turn(seen.turn, x, y, z);
+      in_body.intersect(seen.body->shapes->scene.get(), valid.data(), context);
+      for (std::size_t i = 0; i < count; ++i) {
+        if (!in_body.is_hit(i)) continue;
+        rays.tfar[i] = in_body.rays.ray.tfar[i];
+        retro[i] = wants_retros ? seen.body->shapes->look_of(in_body.rays.hit.geomID[i]).retro : 0;
+      }
+    }
+    for (std::size_t i = 0; i < count; ++i) ranges[first + i] = retro[i] >= 0 ? rays.tfar[i] : none;
+    if (!wants_retros) continue;
+    for (std::size_t i = 0; i < count; ++i) retros[first + i] = std::max(retro[i], 0.0F);
   }
 }
 
 RayHit RayScene::trace_one(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, float near, float far) const {
   const FlushDenormals flush;
+  const Impl& scene = *impl_;
   RayHit result;
   result.range = none;
-  RTCRayHit ray{};
-  const Eigen::Vector3f o = origin.cast<float>(), d = direction.cast<float>().unaryExpr(&without_dust);
-  ray.ray.org_x = o.x(), ray.ray.org_y = o.y(), ray.ray.org_z = o.z();
-  ray.ray.dir_x = d.x(), ray.ray.dir_y = d.y(), ray.ray.dir_z = d.z();
-  ray.ray.tnear = near;
-  ray.ray.tfar = far;
-  ray.ray.mask = 0xffffffffU;
-  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  for (const auto& plane : impl_->planes_) {
+  const auto take = [&](double range, const Look& look, const Eigen::Vector3f& normal) {
+    result.range = far = static_cast<float>(range);
+    result.normal = normal.normalized();
+    result.retro = look.retro;
+    result.color = look.color;
+  };
+  for (const auto& plane : scene.planes_) {
     const double t = (plane.distance - plane.normal.dot(origin)) / plane.normal.dot(direction);
-    if (!(t >= near && t < ray.ray.tfar)) continue;
-    ray.ray.tfar = result.range = static_cast<float>(t);
-    result.normal = plane.normal.cast<float>();
-    result.retro = plane.look.retro;
-    result.color = plane.look.color;
+    if (t >= near && t < far) take(t, plane.look, plane.normal.cast<float>());
   }
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(impl_->top_.get(), &context, &ray);
-  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return result;
-  const Look look = impl_->look_of(ray.hit.instID[0], ray.hit.geomID);
-  result.range = ray.ray.tfar;
-  result.retro = look.retro;
-  result.color = look.color;
-  result.normal = Eigen::Vector3f(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z);  // in the instance's frame
-  for (const auto& body : impl_->bodies_) {
-    if (body.instance && body.instance_id == ray.hit.instID[0]) result.normal = body.pose.linear().cast<float>() * result.normal;
+  const Eigen::Vector3f o = origin.cast<float>(), d = direction.cast<float>();
+  RTCRayHit ray = single_ray(o, d, near, far);
+  if (hits(scene.statics_.scene.get(), ray)) take(ray.ray.tfar, scene.statics_.look_of(ray.hit.geomID), normal_of(ray));
+  if (scene.is_crowded()) {
+    ray = single_ray(o, d, near, far);
+    const auto* body = hits(scene.crowd_.get(), ray) ? scene.body_of(ray.hit.instID[0]) : nullptr;
+    if (body != nullptr) take(ray.ray.tfar, body->shapes->look_of(ray.hit.geomID), body->pose.linear().cast<float>() * normal_of(ray));
+    return result;
   }
-  result.normal.normalize();
+  for (const auto id : scene.moving_) {
+    const auto& body = scene.bodies_[id];
+    const Eigen::Vector3f away = (body.pose * body.middle.cast<double>() - origin).cast<float>();
+    const float along = away.dot(d), radius = body.half.norm();
+    if (along < -radius || along - radius > far || away.squaredNorm() - along * along > radius * radius * 1.001F) continue;
+    const Eigen::Matrix3d back = body.pose.linear().transpose();
+    ray = single_ray((back * (origin - body.pose.translation())).cast<float>(), (back * direction).cast<float>(), near, far);
+    if (hits(body.shapes->scene.get(), ray))
+      take(ray.ray.tfar, body.shapes->look_of(ray.hit.geomID), body.pose.linear().cast<float>() * normal_of(ray));
+  }
   return result;
 }
 
@@ -464,27 +432,16 @@ void RayScene::look_out_of(std::span<const RayShape> shapes, const Eigen::Isomet
   std::vector<std::string> ignored;
   for (const auto& shape : shapes) {
     if (std::holds_alternative<PlaneShape>(*shape.geometry) || std::holds_alternative<HeightmapShape>(*shape.geometry)) continue;
-    const Geometry geometry = impl_->make(shape, shape.pose, ignored);
+    const auto geometry = make_geometry(impl_->device_.get(), *shape.geometry, shape.pose, impl_->cache_, ignored);
     if (!geometry) continue;
-    rtcCommitGeometry(geometry.get());
-    const ShapeScene alone = impl_->make_scene(RTC_BUILD_QUALITY_MEDIUM);
-    rtcAttachGeometry(alone.scene.get(), geometry.get());
+    ShapeScene alone(impl_->device_.get(), RTC_BUILD_QUALITY_MEDIUM);
+    alone.add(geometry, {});
     rtcCommitScene(alone.scene.get());
     for (std::size_t i = 0; i < beams.size(); ++i) {
-      const Eigen::Vector3f o = sensor.translation().cast<float>(), d = sensor.linear().cast<float>() * beams.direction(i);
-      RTCRayHit ray{};
-      ray.ray.org_x = o.x(), ray.ray.org_y = o.y(), ray.ray.org_z = o.z();
-      ray.ray.dir_x = d.x(), ray.ray.dir_y = d.y(), ray.ray.dir_z = d.z();
-      ray.ray.tfar = beams.far();
-      ray.ray.mask = 0xffffffffU;
-      ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-      ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-      RTCIntersectContext context;
-      rtcInitIntersectContext(&context);
-      rtcIntersect1(alone.scene.get(), &context, &ray);
-      if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
-      const bool goes_out = ray.hit.Ng_x * d.x() + ray.hit.Ng_y * d.y() + ray.hit.Ng_z * d.z() > 0;
-      if (goes_out) beams.set_near(i, std::max(beams.near(i), ray.ray.tfar * 1.0001F + 1e-4F));
+      const Eigen::Vector3f d = sensor.linear().cast<float>() * beams.direction(i);
+      RTCRayHit ray = single_ray(sensor.translation().cast<float>(), d, 0, beams.far());
+      if (hits(alone.scene.get(), ray) && normal_of(ray).dot(d) > 0)
+        beams.set_near(i, std::max(beams.near(i), ray.ray.tfar * 1.0001F + 1e-4F));
     }
   }
 }

@@ -1,6 +1,6 @@
 // The world as rays see it, in Embree: what lidars, sonars and other range finders measure against. Exact shapes: boxes and meshes as
-// triangles, spheres, cylinders and capsules as what they are, planes endless. Static shapes lie in one scene, each moving body is an
-// instance; bodies made of the same shapes share them.
+// triangles, spheres, cylinders and capsules as what they are, planes endless. Static shapes lie in one scene; moving bodies made of the
+// same shapes share theirs.
 //
 // Building and moving (add, remove, set_pose, commit) are for one thread at a time; after commit() any number of threads may trace until
 // the next change. Lengths in m. Ranges are exact to a few 1e-5 m within 30 m of the sensor.
@@ -45,9 +45,16 @@ class Beams {
 
  private:
   friend class RayScene;
+  // Around the directions of a packet.
+  struct Cone {
+    Eigen::Vector3f axis{0, 0, 0};
+    float angle = 0;  // half the opening [rad]
+  };
   std::size_t size_ = 0;
   float far_ = 0;
   std::vector<float> x_, y_, z_, near_;
+  Eigen::Vector3f low_{0, 0, 0}, high_{0, 0, 0};  // of all directions and the origin
+  std::vector<Cone> cones_;                       // by packet
 };
 
 struct RayHit {
@@ -81,8 +88,6 @@ class RayScene {
   // Where beams that start at `sensor` (in the body's frame) leave the body's own shapes that enclose their origin: the casing. Sets near
   // of those beams accordingly, so that a sensor looks out of its casing, but sees the rest of its robot.
   void look_out_of(std::span<const RayShape> shapes, const Eigen::Isometry3d& sensor, Beams& beams);
-
-  std::uint64_t full_builds() const;
 
  private:
   class Impl;
