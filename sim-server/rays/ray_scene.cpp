@@ -1,7 +1,10 @@
 #include "rays/ray_scene.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
+#include <optional>
 
 #include "base/log.h"
 #include "rays/embree.h"
@@ -150,6 +153,11 @@ class RayScene::Impl {
     float nearest = 0;       // of its sphere; negative: the sensor is inside
     float angle = 0;         // half the angle that the sphere covers
   };
+  struct NearbyPlane {
+    Eigen::Vector3f normal;  // in the world
+    float height = 0;        // of the plane over the sensor, along the normal
+    float retro = 0;
+  };
 
   // Ids of the geometries added.
   std::vector<unsigned> fill(ShapeScene& scene, std::span<const RayShape> shapes, const Eigen::Isometry3d& pose, RayBodyId body,
@@ -165,7 +173,7 @@ class RayScene::Impl {
         continue;
       }
       const auto geometry = make_geometry(device_.get(), *shape.geometry, place, cache_, notes);
-      if (geometry) ids.push_back(scene.add(geometry, look));
+      if (geometry) ids.push_back(scene.add(geometry, *shape.geometry, look));
     }
     return ids;
   }
@@ -245,6 +253,7 @@ class RayScene::Impl {
   bool is_crowded() const { return moving_.size() > few_bodies; }
   const Body* body_of(unsigned instance) const { return instance < body_of_instance_.size() ? body_of_instance_[instance] : nullptr; }
 
+  std::vector<NearbyPlane> planes_in_reach(const Beams& beams, const Eigen::Isometry3d& sensor) const;
   // Nothing when no beam can reach it.
   std::optional<Nearby> look_at(const Body& body, const Beams& beams, const Eigen::Isometry3d& sensor) const;
   std::vector<Nearby> nearby(const Beams& beams, const Eigen::Isometry3d& sensor) const;
@@ -277,6 +286,20 @@ std::optional<RayScene::Impl::Nearby> RayScene::Impl::look_at(const Body& body, 
   seen.toward = middle / std::max(distance, 1e-6F);
   seen.angle = seen.nearest > 0 ? std::asin(radius / distance) : 0;
   return seen;
+}
+
+std::vector<RayScene::Impl::NearbyPlane> RayScene::Impl::planes_in_reach(const Beams& beams, const Eigen::Isometry3d& sensor) const {
+  std::vector<NearbyPlane> all;
+  for (const auto& plane : planes_) {
+    const double height = plane.distance - plane.normal.dot(sensor.translation());
+    const Eigen::Vector3f normal = (sensor.linear().transpose() * plane.normal).cast<float>();
+    // How fast the beam comes nearer that comes nearer fastest, at most: the corner of the box of directions.
+    const Eigen::Vector3f best = height > 0 ? normal.cwiseProduct(beams.low_).cwiseMax(normal.cwiseProduct(beams.high_)).eval()
+                                            : (-normal).cwiseProduct(beams.low_).cwiseMax((-normal).cwiseProduct(beams.high_)).eval();
+    if (static_cast<double>(best.sum()) * beams.far_ < std::abs(height) * 0.999) continue;
+    all.push_back({plane.normal.cast<float>(), static_cast<float>(height), plane.look.retro});
+  }
+  return all;
 }
 
 std::vector<RayScene::Impl::Nearby> RayScene::Impl::nearby(const Beams& beams, const Eigen::Isometry3d& sensor) const {
@@ -325,6 +348,7 @@ void RayScene::trace(const Beams& beams, const Eigen::Isometry3d& sensor, std::s
   const Impl& scene = *impl_;
   const Eigen::Matrix3f r = sensor.linear().cast<float>();
   const auto bodies = scene.is_crowded() ? std::vector<Impl::Nearby>() : scene.nearby(beams, sensor);
+  const auto planes = scene.planes_in_reach(beams, sensor);
   const bool wants_retros = !retros.empty() && scene.has_retro_;
   if (!wants_retros) std::fill(retros.begin(), retros.end(), 0.0F);
   RTCIntersectContext context;
@@ -342,19 +366,22 @@ void RayScene::trace(const Beams& beams, const Eigen::Isometry3d& sensor, std::s
     packet.turn(r, x, y, z);
     for (std::size_t i = 0; i < 16; ++i) rays.tnear[i] = near[i], rays.tfar[i] = beams.far_, retro[i] = -1;
     // Planes first: what lies behind them need not be looked for.
-    for (const auto& plane : scene.planes_) {
-      const Eigen::Vector3f n = plane.normal.cast<float>();
-      const auto height = static_cast<float>(plane.distance - plane.normal.dot(sensor.translation()));
+    for (const auto& plane : planes) {
       for (std::size_t i = 0; i < 16; ++i) {
-        const float t = height / (n.x() * rays.dir_x[i] + n.y() * rays.dir_y[i] + n.z() * rays.dir_z[i]);
-        const bool is_nearer = t >= rays.tnear[i] && t < rays.tfar[i];
+        const float t =
+            plane.height / (plane.normal.x() * rays.dir_x[i] + plane.normal.y() * rays.dir_y[i] + plane.normal.z() * rays.dir_z[i]);
+        const bool is_nearer = (t >= rays.tnear[i]) & (t < rays.tfar[i]);
         rays.tfar[i] = is_nearer ? t : rays.tfar[i];
-        retro[i] = is_nearer ? plane.look.retro : retro[i];
+        retro[i] = is_nearer ? plane.retro : retro[i];
       }
     }
     packet.intersect(scene.statics_.scene.get(), valid.data(), context);
-    for (std::size_t i = 0; i < count; ++i) {
-      if (packet.is_hit(i)) retro[i] = wants_retros ? scene.statics_.look_of(packet.rays.hit.geomID[i]).retro : 0;
+    if (wants_retros) {
+      for (std::size_t i = 0; i < count; ++i) {
+        if (packet.is_hit(i)) retro[i] = scene.statics_.look_of(packet.rays.hit.geomID[i]).retro;
+      }
+    } else {
+      for (std::size_t i = 0; i < 16; ++i) retro[i] = packet.is_hit(i) ? 0 : retro[i];
     }
     if (scene.is_crowded()) {
       packet.intersect(scene.crowd_.get(), valid.data(), context);
@@ -435,7 +462,7 @@ void RayScene::look_out_of(std::span<const RayShape> shapes, const Eigen::Isomet
     const auto geometry = make_geometry(impl_->device_.get(), *shape.geometry, shape.pose, impl_->cache_, ignored);
     if (!geometry) continue;
     ShapeScene alone(impl_->device_.get(), RTC_BUILD_QUALITY_MEDIUM);
-    alone.add(geometry, {});
+    alone.add(geometry, *shape.geometry, {});
     rtcCommitScene(alone.scene.get());
     for (std::size_t i = 0; i < beams.size(); ++i) {
       const Eigen::Vector3f d = sensor.linear().cast<float>() * beams.direction(i);

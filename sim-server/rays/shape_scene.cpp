@@ -25,12 +25,28 @@ Geometry triangles(RTCDevice device, const std::vector<Eigen::Vector3d>& vertice
   return geometry;
 }
 
+// Six faces with four corners each. Every face goes on for `flap` past its edges, so that no ray slips through an edge between two faces
+// where rounding puts it outside of both.
 Geometry box(RTCDevice device, const Eigen::Vector3d& size, const Eigen::Isometry3d& pose) {
-  std::vector<Eigen::Vector3d> vertices;
-  for (int i = 0; i < 8; ++i) vertices.emplace_back(Eigen::Vector3d((i & 1) - 0.5, (i >> 1 & 1) - 0.5, (i >> 2) - 0.5).cwiseProduct(size));
-  static const std::vector<std::array<std::uint32_t, 3>> faces = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                                                                  {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-  return triangles(device, vertices, faces, pose);
+  const double flap = 1e-5 + 1e-6 * pose.translation().norm();  // [m]; above what floats round off there
+  Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_QUAD));
+  auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, 24));
+  auto* f = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 16, 6));
+  if (v == nullptr || f == nullptr) return nullptr;
+  const Eigen::Vector3d half = size / 2;
+  for (int face = 0; face < 6; ++face) {
+    const int normal = face / 2, first = (normal + 1 + face % 2) % 3, second = 3 - normal - first;  // counter-clockwise from outside
+    for (int corner = 0; corner < 4; ++corner) {
+      Eigen::Vector3d place;
+      place[normal] = face % 2 == 0 ? half[normal] : -half[normal];
+      place[first] = (corner == 1 || corner == 2 ? 1 : -1) * (half[first] + flap);
+      place[second] = (corner >= 2 ? 1 : -1) * (half[second] + flap);
+      const Eigen::Vector3f p = (pose * place).cast<float>();
+      *v++ = p.x(), *v++ = p.y(), *v++ = p.z();
+      *f++ = static_cast<std::uint32_t>(4 * face + corner);
+    }
+  }
+  return geometry;
 }
 
 Geometry sphere(RTCDevice device, double radius, const Eigen::Isometry3d& pose) {
@@ -57,11 +73,13 @@ Geometry rod(RTCDevice device, RTCGeometryType type, double radius, double lengt
 }  // namespace
 
 ShapeScene::ShapeScene(RTCDevice device, RTCBuildQuality quality) : scene(rtcNewScene(device)) {
-  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(scene.get(), quality);
 }
 
-unsigned ShapeScene::add(const Geometry& geometry, const Look& look) {
+unsigned ShapeScene::add(const Geometry& geometry, const GeometryDef& shape, const Look& look) {
+  const bool has_seams = !std::holds_alternative<BoxShape>(shape) && !std::holds_alternative<SphereShape>(shape) &&
+                         !std::holds_alternative<CylinderShape>(shape) && !std::holds_alternative<CapsuleShape>(shape);
+  if (has_seams) rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
   rtcCommitGeometry(geometry.get());
   const unsigned id = rtcAttachGeometry(scene.get(), geometry.get());
   if (looks.size() <= id) looks.resize(id + 1);

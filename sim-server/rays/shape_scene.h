@@ -20,8 +20,8 @@ struct ShapeScene {
 
   ShapeScene(RTCDevice device, RTCBuildQuality quality);
   Look look_of(unsigned geometry) const { return geometry < looks.size() ? looks[geometry] : Look(); }
-  // Returns its id.
-  unsigned add(const embree::Geometry& geometry, const Look& look);
+  // Returns its id. With triangles that share edges the scene becomes watertight, which costs a third of its speed.
+  unsigned add(const embree::Geometry& geometry, const GeometryDef& shape, const Look& look);
 };
 
 // Boxes and meshes as triangles, spheres, cylinders and capsules as what they are; not planes. Null, and a line in `notes`, when its file

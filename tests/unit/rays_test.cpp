@@ -218,6 +218,83 @@ TEST(Rays, bodies_are_seen_where_they_are_after_many_moves) {
   EXPECT_FALSE(std::isfinite(scene.trace_one({0, 0, 0}, {-1, 0, 0}, 0, 100).range));
 }
 
+TEST(Rays, no_beam_slips_through_the_edge_of_a_box) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> any(-1, 1);
+  for (int i = 0; i < 400; ++i) {
+    TriangleCache triangles;
+    RayScene scene(triangles);
+    std::vector<std::string> notes;
+    const Vector3d size(0.5 + 0.3 * any(random), 0.5 + 0.3 * any(random), 0.8);
+    const GeometryDef box = BoxShape{size};
+    const RayShape shape{&box};
+    // Every other one on the axis, an edge or a face to the front.
+    const double yaw = i % 4 == 0 ? std::numbers::pi / 4 : i % 4 == 1 ? 0 : 3 * any(random);
+    const Eigen::Isometry3d pose = at(3 + any(random), i % 4 < 2 ? 0 : any(random), 0.4, yaw);
+    i % 8 < 4 ? scene.add_static({&shape, 1}, pose, notes) : scene.add_moving({&shape, 1}, pose, notes);
+    scene.commit();
+    Vector3d edge(100, 0, 0);
+    for (int corner = 0; corner < 4; ++corner) {
+      const Vector3d at_corner = pose * Vector3d((corner % 2 - 0.5) * size.x(), (corner / 2 - 0.5) * size.y(), 0);
+      if (at_corner.head<2>().norm() < edge.head<2>().norm()) edge = at_corner;
+    }
+    const double truth = edge.head<2>().norm();
+    const std::vector<Eigen::Vector3f> directions(16, Vector3d(edge.x(), edge.y(), 0).cast<float>().normalized());
+    const Beams beams(directions, 0, 30);
+    for (int k = 0; k < 100; ++k) {
+      std::vector<float> ranges(16);
+      scene.trace(beams, at(0, 0, 0.1 + 0.006 * k), ranges, {});
+      ASSERT_NEAR(ranges[k % 16], truth, 0.001) << "box " << i << " yaw " << yaw;
+    }
+  }
+}
+
+// Few moving bodies and many are found in different ways.
+TEST(Rays, a_crowd_is_seen_as_few_bodies_are) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> any(-1, 1);
+  TriangleCache triangles;
+  std::vector<std::string> notes;
+  const GeometryDef ball = SphereShape{0.3}, box = BoxShape{{0.4, 0.6, 0.5}}, floor = PlaneShape{}, wall = BoxShape{{0.1, 30, 2}};
+  const RayShape ball_shape{&ball, Eigen::Isometry3d::Identity(), 3, 0xff0000}, box_shape{&box, at(0.2, 0, 0), 5}, floor_shape{&floor},
+      wall_shape{&wall};
+  RayScene few(triangles), crowd(triangles);
+  std::vector<RayBodyId> in_few, in_crowd;
+  for (RayScene* scene : {&few, &crowd}) {
+    scene->add_static({&floor_shape, 1}, at(0, 0, 0), notes);
+    scene->add_static({&wall_shape, 1}, at(9, 0, 1), notes);
+    for (int i = 0; i < 10; ++i)
+      (scene == &few ? in_few : in_crowd).push_back(scene->add_moving({i % 2 == 0 ? &ball_shape : &box_shape, 1}, at(0, 0, 0), notes));
+  }
+  for (int i = 0; i < 60; ++i) crowd.add_moving({&ball_shape, 1}, at(-50 - i, 0, 0), notes);  // out of reach
+  const Beams beams = Beams::fan(361, -3, 3, 3, -0.2, 0.3, 0, 15);
+  std::vector<float> a(beams.size()), b(beams.size()), retro_a(beams.size()), retro_b(beams.size());
+  int hits = 0, differ = 0;
+  for (int round = 0; round < 50; ++round) {
+    for (std::size_t i = 0; i < in_few.size(); ++i) {
+      const Eigen::Isometry3d pose =
+          tilted(8 * any(random), 8 * any(random), 0.5 + 0.5 * any(random), any(random), any(random), 3 * any(random));
+      few.set_pose(in_few[i], pose);
+      crowd.set_pose(in_crowd[i], pose);
+    }
+    few.commit();
+    crowd.commit();
+    const Eigen::Isometry3d sensor = tilted(0, 0, 0.6, 0.1 * any(random), 0.1 * any(random), any(random));
+    few.trace(beams, sensor, a, retro_a);
+    crowd.trace(beams, sensor, b, retro_b);
+    for (std::size_t i = 0; i < beams.size(); ++i) {
+      if (retro_a[i] > 0) ++hits;
+      const bool is_same = (std::isinf(a[i]) && std::isinf(b[i])) || std::abs(a[i] - b[i]) < 1e-3F;
+      if (!is_same || retro_a[i] != retro_b[i]) ++differ;  // silhouettes, by a hair
+      const RayHit one = few.trace_one(sensor.translation(), sensor.linear() * beams.direction(i).cast<double>(), 0, 15);
+      const RayHit other = crowd.trace_one(sensor.translation(), sensor.linear() * beams.direction(i).cast<double>(), 0, 15);
+      if (one.retro != other.retro || one.color != other.color || (one.normal - other.normal).norm() > 0.01F) ++differ;
+    }
+  }
+  EXPECT_GT(hits, 1500);
+  EXPECT_LT(differ, 10);
+}
+
 TEST(Noise, has_the_mean_and_deviation_asked_for) {
   NoiseDef def;
   def.kind = NoiseDef::Kind::gaussian;
@@ -237,6 +314,27 @@ TEST(Noise, has_the_mean_and_deviation_asked_for) {
   const double mean = sum / n;
   EXPECT_NEAR(mean, 0.02, 0.001);
   EXPECT_NEAR(std::sqrt(squares / n - mean * mean), 0.05, 0.001);
+}
+
+TEST(Noise, gaussian_numbers_have_the_shape_of_the_bell) {
+  RandomStream stream(5, "bell");
+  constexpr int count = 2000000;
+  double sums[5] = {};
+  int beyond[6] = {};
+  for (int i = 0; i < count; ++i) {
+    const double x = stream.gaussian();
+    for (int power = 1; power <= 4; ++power) sums[power] += std::pow(x, power) / count;
+    for (int limit = 1; limit <= 5; ++limit) beyond[limit] += std::abs(x) > limit ? 1 : 0;
+  }
+  EXPECT_NEAR(sums[1], 0, 0.003);
+  EXPECT_NEAR(sums[2], 1, 0.005);
+  EXPECT_NEAR(sums[3], 0, 0.015);
+  EXPECT_NEAR(sums[4], 3, 0.04);
+  // Five standard deviations of each count.
+  for (int limit = 1; limit <= 5; ++limit) {
+    const double expected = count * std::erfc(limit / std::sqrt(2.0));
+    EXPECT_NEAR(beyond[limit], expected, 5 * std::sqrt(expected) + 1) << "beyond " << limit;
+  }
 }
 
 TEST(Noise, differs_by_seed_and_name_and_repeats_otherwise) {
