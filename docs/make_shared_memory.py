@@ -59,6 +59,8 @@ counter-clockwise positive; quaternions are (w, x, y, z). Fields marked [atomic]
   the copy is whole when both locks are 2 n + 2. The writer never waits for readers.
 - **Waiting.** Set `waiting` to 1, look at `sequence` again, then sleep on `wake_word` (futex, shared). With nobody waiting the writer makes no system call.
 - **Subscribing.** Take a lease by changing `owner` from 0, set the flag. A sensor works as long as one lease has the flag; leases of dead processes are taken back.
+  Then add 1 to `attention` of the simulation iface and wake it if `attention_waiting` is set: a sensor that is switched on while time stands still shows the
+  present at once, where the server would find the lease within a second. Such a sample disturbs nothing that comes later, not even the noise.
 - **Frames.** Put slot + 1 into a `holds` word of the own lease, then check that the slot's `lock` still is the frame; the writer leaves held slots alone and counts what it must drop.
 - **Commands** lie in the leases; `command_latest` names the one in force. When its owner dies or lets go, the robot stops.
 - **Requests** go through a slot of one's own: `idle` - `asked` - `replying` - `replied`; texts longer than a piece travel in several rounds of the same id.

@@ -149,8 +149,7 @@ class CameraDevice final : public Device, public CameraPlaceSource {
 
   bool wants_sample(const Moment& moment) override {
     if (!schedule_.is_due(moment.time)) return false;
-    std::vector<bool> wanted;
-    for (const auto& channel : channels_) wanted.push_back(channel.writer->is_subscribed());
+    auto wanted = subscribed_channels();
     if (std::find(wanted.begin(), wanted.end(), true) == wanted.end()) return false;
     // In its own time: while a picture is drawn the next one stays due. Time that waits for pictures waits for that one, too.
     if (world_.pictures->is_synchronous()) worker_.wait();
@@ -164,12 +163,26 @@ class CameraDevice final : public Device, public CameraPlaceSource {
     job_.reset();
     if (world_.pictures->is_synchronous()) worker_.wait();
   }
+  bool owes_sample() override {
+    return std::any_of(channels_.begin(), channels_.end(), [](const Channel& channel) { return channel.writer->owes_sample(); });
+  }
+  void show(const Moment& moment) override {
+    worker_.wait();
+    worker_.start({world_.pictures->snapshot(moment.time), mount_.in_world(world_.physics), moment.time, subscribed_channels()});
+    worker_.wait();
+  }
   void reset() override {
     worker_.wait();
     schedule_.restart();
   }
 
  private:
+  std::vector<bool> subscribed_channels() const {
+    std::vector<bool> wanted;
+    for (const auto& channel : channels_) wanted.push_back(channel.writer->is_subscribed());
+    return wanted;
+  }
+
   DeviceWorld& world_;
   Mount mount_;
   CameraDef def_;
@@ -185,6 +198,7 @@ class SecondIface final : public Device {
   SecondIface(ModelId model, std::shared_ptr<shm::IfaceWriter> writer) : model_(model), writer_(std::move(writer)) {}
   shm::IfaceWriter& iface() override { return *writer_; }
   ModelId model() const override { return model_; }
+  bool owes_sample() override { return false; }
 
  private:
   ModelId model_;

@@ -62,6 +62,13 @@ class Device {
   virtual bool uses_rays() const { return false; }
   virtual void measure(const Moment&) {}
   virtual void publish(const Moment&) {}
+  // While time stands still: true when the sensor was switched on and has not said anything since.
+  virtual bool owes_sample() { return iface().owes_sample(); }
+  // Then: a sample of how it is now, which changes nothing in what comes later. Rays are up to date.
+  virtual void show(const Moment& moment) {
+    measure(moment);
+    iface().publish(moment.time);
+  }
   // Back to the start, with the model (again) at its initial state.
   virtual void reset() {}
   virtual void add_to(StateHash&) const {}

@@ -85,6 +85,12 @@ void Gps::publish(const Moment& moment) {
   writer_->publish(moment.time);
 }
 
+void Gps::show(const Moment& moment) {
+  const auto before = noise_;
+  Device::show(moment);
+  noise_ = before;
+}
+
 void Gps::reset() {
   schedule_.restart();
   noise_ = fresh_noise_;

@@ -58,6 +58,12 @@ void Imu::publish(const Moment& moment) {
   writer_->publish(moment.time);
 }
 
+void Imu::show(const Moment& moment) {
+  const auto before = noise_;
+  Device::show(moment);
+  noise_ = before;
+}
+
 void Imu::reset() {
   schedule_.restart();
   noise_ = fresh_noise_;

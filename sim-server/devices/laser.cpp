@@ -74,6 +74,12 @@ void Laser::publish(const Moment& moment) {
   writer_->publish(moment.time);
 }
 
+void Laser::show(const Moment& moment) {
+  const auto before = noise_;
+  Device::show(moment);
+  noise_ = before;
+}
+
 void Laser::reset() {
   schedule_.restart();
   noise_ = fresh_noise_;

@@ -17,6 +17,7 @@ class Laser final : public Device {
   bool uses_rays() const override { return true; }
   void measure(const Moment& moment) override;
   void publish(const Moment& moment) override;
+  void show(const Moment& moment) override;
   void reset() override;
   void add_to(StateHash& hash) const override;
 

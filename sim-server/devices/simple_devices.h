@@ -24,6 +24,7 @@ class SonarRing final : public Device {
   bool uses_rays() const override { return true; }
   void measure(const Moment& moment) override;
   void publish(const Moment& moment) override;
+  void show(const Moment& moment) override;
   void reset() override;
   void add_to(StateHash& hash) const override;
 
@@ -48,6 +49,7 @@ class Imu final : public Device {
   bool wants_sample(const Moment& moment) override { return schedule_.is_due(moment.time) && writer_->is_subscribed(); }
   void measure(const Moment& moment) override;
   void publish(const Moment& moment) override;
+  void show(const Moment& moment) override;
   void reset() override;
   void add_to(StateHash& hash) const override;
 
@@ -70,6 +72,7 @@ class Gps final : public Device {
   bool wants_sample(const Moment& moment) override { return schedule_.is_due(moment.time) && writer_->is_subscribed(); }
   void measure(const Moment& moment) override;
   void publish(const Moment& moment) override;
+  void show(const Moment& moment) override;
   void reset() override;
   void add_to(StateHash& hash) const override;
 

@@ -102,6 +102,12 @@ void SonarRing::publish(const Moment& moment) {
   writer_->publish(moment.time);
 }
 
+void SonarRing::show(const Moment& moment) {
+  const auto before = noise_;
+  Device::show(moment);
+  noise_ = before;
+}
+
 void SonarRing::reset() {
   schedule_.restart();
   noise_ = fresh_noise_;

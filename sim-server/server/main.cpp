@@ -123,12 +123,12 @@ int run(const Options& options, Signals& signals) {
   loop_options.has_status_line = isatty(STDERR_FILENO) != 0;
   ServerLoop loop(**simulation, **server, **iface, model_path, loop_options, std::move(recorder));
   signals.watch(loop);
-  loop.run();
+  const bool is_complete = loop.run();
   signals.end();
   if (options.print_hash) {
     std::printf("%016lx\n", static_cast<unsigned long>((*simulation)->hash()));
   }
-  return 0;
+  return is_complete ? 0 : 1;
 }
 
 }  // namespace

@@ -61,4 +61,11 @@ void Recorder::record(std::chrono::nanoseconds time, const Physics& physics) {
   if (!file_) base::log(base::Level::error, "sim-server", "record {}: {}; recording stops", path_, std::strerror(errno));
 }
 
+bool Recorder::finish() {
+  const bool was_good = static_cast<bool>(file_);
+  file_.close();
+  if (was_good && !file_) base::log(base::Level::error, "sim-server", "record {}: {}; its end is missing", path_, std::strerror(errno));
+  return static_cast<bool>(file_);
+}
+
 }  // namespace sim

@@ -24,6 +24,8 @@ class Recorder {
   static base::Result<Recorder> open(const std::string& path, const std::string& world);
   // After each step. When the disk is full it says so once and stops.
   void record(std::chrono::nanoseconds time, const Physics& physics);
+  // Writes what is left. False when something could not be written.
+  bool finish();
   void restart() {
     schedule_.restart();
     touching_.clear();

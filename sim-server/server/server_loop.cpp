@@ -14,8 +14,10 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto tend_period = 100ms;
-constexpr auto most_behind = 500ms;  // of wall time that is caught up; the rest is given up
+constexpr auto tend_period = 100ms;    // of heartbeats and of leases that are given up, while time passes
+constexpr auto pause_period = 1000ms;  // the same while it stands still: clients who come, ask or die wake the loop
+constexpr auto unwatched_lead = 5ms;   // of wall time that steps may come early when nobody is there to see it: one sleep for several steps
+constexpr auto most_behind = 500ms;    // of wall time that is caught up; the rest is given up
 
 double seconds(std::chrono::nanoseconds t) { return static_cast<double>(t.count()) * 1e-9; }
 
@@ -70,15 +72,18 @@ void ServerLoop::on_barrier_event(const shm::BarrierEvent& event) {
   }
 }
 
-void ServerLoop::run() {
+bool ServerLoop::run() {
   start_pace();
   publish_clock();
   wait_for_participants();
   start_pace();
   while (!is_stopping_.load(std::memory_order_acquire)) {  // pairs with the release in stop
     times_.begin_step(simulation_.steps());
+    const bool stood_still = is_paused_ && steps_to_do_ == 0;
     handle_requests(When::between_steps);
     server_.tend();
+    // Also when time is to go on now: who came before that has a sample, however fast the two followed each other.
+    if (stood_still) simulation_.answer_new_subscribers();
     // Not while time stands still: who subscribes or joins before it moves has its sample and its tick at time 0, as after a reset.
     if (is_fresh_moment_ && (!is_paused_ || steps_to_do_ > 0)) {
       is_fresh_moment_ = false;
@@ -86,7 +91,7 @@ void ServerLoop::run() {
     }
     if (options_.duration && simulation_.time() >= *options_.duration) break;
     if (is_paused_ && steps_to_do_ == 0) {
-      if (barrier_->refresh() > 0 || is_paused_) board_.wait(Clock::now() + tend_period);
+      if (barrier_->refresh() > 0 || is_paused_) board_.wait(Clock::now() + pause_period);
       start_pace();
       watch_rate();
       continue;
@@ -99,6 +104,7 @@ void ServerLoop::run() {
     watch_rate();
   }
   if (options_.has_status_line) std::fprintf(stderr, "\n");
+  return !recorder_ || recorder_->finish();
 }
 
 void ServerLoop::wait_for_participants() {
@@ -109,9 +115,10 @@ void ServerLoop::wait_for_participants() {
     const auto there = static_cast<std::uint32_t>(barrier_->refresh());
     const std::uint32_t missing = there < options_.wait_for ? options_.wait_for - there : 0;
     if (missing != missing_) missing_ = missing, publish_clock();
+    simulation_.answer_new_subscribers();
     if (missing == 0) return;
     server_.tend();
-    board_.wait(Clock::now() + tend_period);
+    board_.wait(Clock::now() + pause_period);
   }
 }
 
@@ -214,6 +221,7 @@ void ServerLoop::pace() {
     pace_sim_ = simulation_.time();
     return;
   }
+  if (due - now < unwatched_lead && !is_watched()) return;
   while (now < due && !is_stopping_.load(std::memory_order_acquire)) {  // pairs with the release in stop
     const auto before = now;
     board_.wait(std::min(due, now + tend_period));
@@ -227,6 +235,13 @@ void ServerLoop::pace() {
     }
   }
   times_.mark(Part::pace);
+}
+
+bool ServerLoop::is_watched() const {
+  const auto& devices = simulation_.devices();
+  return barrier_->refresh() > 0 || iface_.is_subscribed() || std::any_of(devices.begin(), devices.end(), [](const auto& device) {
+           return device->iface().is_subscribed() || device->iface().commander() != 0;
+         });
 }
 
 void ServerLoop::finish_step_request() {

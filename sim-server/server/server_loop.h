@@ -37,8 +37,8 @@ class ServerLoop {
              std::optional<Recorder> recorder);
   ~ServerLoop();
 
-  // Returns when the duration is over or stop() was called.
-  void run();
+  // Returns when the duration is over or stop() was called; false when not all of the recording could be written.
+  bool run();
   void stop();
 
  private:
@@ -61,6 +61,8 @@ class ServerLoop {
   // Sleeps until simulated time may go on; requests are served meanwhile.
   void pace();
   void start_pace();
+  // Somebody takes part, listens or commands.
+  bool is_watched() const;
   void watch_rate();
   void on_barrier_event(const shm::BarrierEvent& event);
   LoopState state() const;

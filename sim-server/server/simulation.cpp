@@ -99,6 +99,16 @@ void Simulation::sense(PartTimes& times) {
   times.mark(Part::publish);
 }
 
+void Simulation::answer_new_subscribers() {
+  const Moment moment{time_, world_->physics.step};
+  due_.clear();
+  for (auto& device : devices_) {
+    if (device->owes_sample()) due_.push_back(device.get());
+  }
+  if (std::any_of(due_.begin(), due_.end(), [](const Device* device) { return device->uses_rays(); })) rays_->update();
+  for (auto* device : due_) device->show(moment);
+}
+
 void Simulation::follow_trails() {
   trails_.resize(physics_->model_slots());
   for (ModelId id = 0; id < trails_.size(); ++id) {

@@ -45,6 +45,8 @@ class Simulation {
   void step(PartTimes& times);
   // Sensors that are due measure and publish.
   void sense(PartTimes& times);
+  // While time stands still: sensors that were switched on meanwhile show the present moment; the run goes on as without them.
+  void answer_new_subscribers();
 
   // As at the start, to the bit. The ifaces stay.
   base::Result<void> reset(std::vector<std::string>& notes);

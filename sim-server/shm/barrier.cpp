@@ -85,7 +85,10 @@ struct Barrier::State {
 
 Barrier::Barrier(IfaceWriter& simulation, Server& server, BarrierOptions options)
     : state_(std::make_unique<State>(simulation.segment(), server, std::move(options))) {
-  server.watch().on_death([&control = state_->control()] { wake_server(control); });
+  server.watch().on_death([&segment = state_->segment] {
+    wake_server(control_of(segment));
+    call_attention(segment);
+  });
 }
 
 Barrier::~Barrier() {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "shm/attention.h"
 #include "shm/futex.h"
 #include "shm/lease_table.h"
 #include "shm/process.h"
@@ -258,12 +259,13 @@ base::Result<void> Iface::subscribe() {
     return good;
   }
   if (has_lease) set_lease_flags(state_->segment, *state_->lease, RTMSIM_LEASE_SUBSCRIBER);
+  call_server_of(state_->segment.name());  // where time stands still a sample is made for us alone
   return {};
 }
 
 void Iface::unsubscribe() {
   State& state = *state_;
-  state.is_subscribed = false;
+  const bool was_subscribed = std::exchange(state.is_subscribed, false);
   if (!state.has_lease()) return;
   const Lease& lease = state.own_lease();
   const bool holds_frames = std::any_of(std::begin(lease.holds), std::end(lease.holds), [](const auto& hold) { return load(hold) != 0; });
@@ -273,6 +275,7 @@ void Iface::unsubscribe() {
   }
   give_lease_back(state.segment, *state.lease, state.owner);
   state.lease.reset();
+  if (was_subscribed) call_server_of(state.segment.name());
 }
 
 bool Iface::is_subscribed() const { return state_->is_subscribed && state_->has_lease(); }

@@ -31,6 +31,7 @@ std::uint32_t LeaseTable::subscribers() const {
     const Lease& lease = lease_at(segment_, i);
     if (load(lease.owner) != 0 && (load(lease.flags) & RTMSIM_LEASE_SUBSCRIBER) != 0) ++count;
   }
+  if (count > 0 && static_cast<std::uint32_t>(counted) == 0) times_switched_on_.fetch_add(1, std::memory_order_relaxed);
   counted_.store((static_cast<std::uint64_t>(epoch) << 32) | count, std::memory_order_relaxed);
   return count;
 }

@@ -18,6 +18,8 @@ class LeaseTable {
   explicit LeaseTable(const Segment& segment);
   // Any thread. Counts anew only when the epoch has changed.
   std::uint32_t subscribers() const;
+  // How often subscribers() has found the first one after there was none.
+  std::uint32_t times_switched_on() const { return times_switched_on_.load(std::memory_order_relaxed); }
   // Takes the leases of dead clients back. One thread at a time.
   void reap(ProcessWatch& watch);
 
@@ -29,6 +31,7 @@ class LeaseTable {
   const Segment& segment_;
   std::vector<Known> known_;
   mutable std::atomic<std::uint64_t> counted_;  // (epoch << 32) | subscribers
+  mutable std::atomic<std::uint32_t> times_switched_on_{0};
 };
 
 // Index of a lease that is ours from now on; nothing when all are taken.

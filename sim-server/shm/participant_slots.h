@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "shm/attention.h"
 #include "shm/futex.h"
 #include "shm/lockstep.h"
 #include "shm/process.h"
@@ -56,10 +57,8 @@ inline void wake_participant(Control& control, std::size_t index) {
 }
 
 inline void change_participants(const Segment& segment) {
-  Control& control = control_of(segment);
-  word(control.participant_epoch).fetch_add(1, std::memory_order_acq_rel);
-  word(control.attention).fetch_add(1, std::memory_order_seq_cst);
-  ring(control.attention, control.attention_waiting);
+  word(control_of(segment).participant_epoch).fetch_add(1, std::memory_order_acq_rel);
+  call_attention(segment);
 }
 
 // Of all participants that are there or joining, by phase.

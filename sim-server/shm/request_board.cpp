@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "shm/attention.h"
 #include "shm/futex.h"
 #include "shm/process.h"
 #include "shm/words.h"
@@ -22,12 +23,6 @@ char* request_text(const Segment& segment, std::size_t index) {
 char* reply_text(const Segment& segment, std::size_t index) { return request_text(segment, index) + text_piece; }
 
 RequestSlot& slot_at(const Segment& segment, std::size_t index) { return segment.as<RequestSlot>(AreaIndex::requests, index); }
-
-void call_attention(const Segment& segment) {
-  auto& control = segment.as<Control>(AreaIndex::control);
-  word(control.attention).fetch_add(1, std::memory_order_seq_cst);
-  ring(control.attention, control.attention_waiting);
-}
 
 }  // namespace
 

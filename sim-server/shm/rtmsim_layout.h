@@ -81,9 +81,10 @@ typedef struct {
   char type_name[24];
   char name[RTMSIM_NAME_SIZE];
   rtmsim_area areas[RTMSIM_AREAS];
-  uint32_t state;          /* [atomic] RTMSIM_STATE_* ; closed: nothing will ever come again, open the name anew */
-  uint32_t lease_epoch;    /* [atomic] changes with every lease taken or given back */
-  int64_t heartbeat_ns;    /* [atomic] CLOCK_MONOTONIC of the server's last sign of life, renewed about ten times a second */
+  uint32_t state;       /* [atomic] RTMSIM_STATE_* ; closed: nothing will ever come again, open the name anew */
+  uint32_t lease_epoch; /* [atomic] changes with every lease taken or given back */
+  int64_t heartbeat_ns; /* [atomic] CLOCK_MONOTONIC of the server's last sign of life, renewed about ten times a second, or once while time
+                           stands still */
   uint64_t command_latest; /* [atomic] (number of commands << 16) | index of the lease whose command is the latest; 0 = none yet */
   uint8_t reserved0[40];
   uint64_t sequence;    /* [atomic] sequence number of the latest sample or frame, 0 = none yet; sample n is in cell n % count */

@@ -31,6 +31,7 @@ struct IfaceWriter::Impl {
   FrameRing ring;
   std::uint64_t sequence = 0;
   std::uint32_t resets = 0;
+  std::atomic<std::uint32_t> served{0};  // LeaseTable::times_switched_on at the last publication
   std::size_t range_count = 0, intensity_count = 0, contact_count = 0;
 
   std::uint64_t seen_command = 0;
@@ -42,6 +43,7 @@ struct IfaceWriter::Impl {
   }
   void announce_latest() {
     Header& header = segment.header();
+    served.store(leases.times_switched_on(), std::memory_order_relaxed);
     store(header.sequence, sequence);  // pairs with the acquire in Iface::sequence
     store(header.wake_word, static_cast<std::uint32_t>(sequence), std::memory_order_seq_cst);
     ring_readers();
@@ -59,6 +61,9 @@ IfaceType IfaceWriter::type() const { return impl_->segment.name().type; }
 const std::string& IfaceWriter::name() const { return impl_->segment.name().iface; }
 const Segment& IfaceWriter::segment() const { return impl_->segment; }
 bool IfaceWriter::is_subscribed() const { return impl_->leases.subscribers() > 0; }
+bool IfaceWriter::owes_sample() const {
+  return is_subscribed() && impl_->leases.times_switched_on() != impl_->served.load(std::memory_order_relaxed);
+}
 std::byte* IfaceWriter::staging() { return reinterpret_cast<std::byte*>(impl_->staging.data()); }
 void IfaceWriter::set_resets(std::uint32_t resets) { impl_->resets = resets; }
 std::uint64_t IfaceWriter::sequence() const { return impl_->sequence; }

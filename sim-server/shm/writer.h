@@ -71,6 +71,8 @@ class IfaceWriter {
 
   // True while a living client wants samples. One load when nothing changed.
   bool is_subscribed() const;
+  // True while somebody is subscribed and nothing has been published since the first of them came. Any thread.
+  bool owes_sample() const;
 
   // ---- samples: fill the private sample, then publish a copy of it ----
   template <class Sample>

@@ -301,16 +301,27 @@ void info(Control& control, const std::string& name) {
     std::cout << key << "  " << (value.is_string() ? value.get<std::string>() : value.dump()) << '\n';
 }
 
+static bool is_paused(Control& control) {
+  auto clock = shm::Iface::open(control.server_id(), shm::IfaceType::simulation, "world");
+  return clock && clock->read() &&
+         (clock->sample<shm::SimulationSample>().paused != 0 || clock->sample<shm::SimulationSample>().waiting_for != 0);
+}
+
 void echo(Control& control, const std::string& name, int count) {
   auto iface = control.open(name);
   if (!iface) return;
+  // What stands there may be old; a sensor that was off makes a sample when it is switched on, even while time stands still.
+  std::uint64_t last = iface->sequence();
   if (const auto done = iface->subscribe(); !done) return control.fail(done.error().message);
   catch_interrupts();
-  std::uint64_t last = 0;
   for (int printed = 0; (count <= 0 || printed < count) && !is_interrupted();) {
     const auto what = iface->wait(last, std::chrono::milliseconds(200));
     if (what == shm::Wait::closed) return control.fail("iface " + name + ": the simulator is gone");
-    if (what == shm::Wait::timed_out) continue;
+    if (what == shm::Wait::timed_out) {
+      // Time stands still and somebody else listens already: what he has got is the present.
+      if (printed == 0 && is_paused(control)) last = 0;
+      continue;
+    }
     Json sample;
     if (shm::has_frames(iface->type())) {
       const auto frame = iface->hold();

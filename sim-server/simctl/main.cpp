@@ -56,7 +56,15 @@ void add_looks(CLI::App& app, Work& work) {
 void add_control(CLI::App& app, Work& work) {
   add_simple(app, work, "pause", "Stop simulated time", [](Control& c) { c.ask(shm::PauseRequest{}); });
   add_simple(app, work, "run", "Let simulated time go on", [](Control& c) { c.ask(shm::RunRequest{}); });
-  add_simple(app, work, "reset", "World and time as at the start", [](Control& c) { c.ask(shm::ResetRequest{}); });
+  auto* reset = app.add_subcommand("reset", "World and time as at the start");
+  auto poses_only = option_value(false);
+  reset->add_flag("--poses", *poses_only, "Only put all models back where they started, at rest; time goes on");
+  reset->callback([&work, poses_only] { work = [poses_only](Control& c) { c.ask(shm::ResetRequest{*poses_only}); }; });
+
+  auto* rtf = app.add_subcommand("rtf", "Set how many simulated seconds a second has");
+  auto factor = option_value(1.0);
+  rtf->add_option("FACTOR", *factor, "0: as fast as possible")->required()->check(CLI::Range(0.0, 1e6));
+  rtf->callback([&work, factor] { work = [factor](Control& c) { c.ask(shm::SetRtfRequest{*factor}); }; });
 
   auto* step = app.add_subcommand("step", "Make physics steps and pause; returns when they are done");
   auto steps = option_value<std::int64_t>(1);
@@ -74,14 +82,53 @@ void add_control(CLI::App& app, Work& work) {
     work = [model, values](Control& c) { simctl::pose(c, *model, *values); };
   });
 
-  auto* velocity = app.add_subcommand("velocity", "Drive a robot while this command runs: velocity IFACE VX VY VA");
+  auto* velocity = app.add_subcommand(
+      "velocity", "Drive a robot while this command runs: velocity IFACE VX VY VA; show or set that of a model: velocity MODEL [VX VY VA]");
   auto robot = option_value<std::string>();
   auto speeds = option_value<std::vector<double>>();
   auto seconds = option_value(0.0);
-  velocity->add_option("IFACE", *robot, "position2d or position3d iface")->required();
-  velocity->add_option("NUMBERS", *speeds, "VX VY VA [m/s, rad/s]; position3d: VX VY VZ YAWRATE")->required()->expected(3, 6);
+  velocity->add_option("IFACE", *robot, "position2d or position3d iface, or model (MODEL::LINK to show)")->required();
+  velocity
+      ->add_option("NUMBERS", *speeds,
+                   "VX VY VA [m/s, rad/s]; position3d: VX VY VZ YAWRATE; model: VX VY VA or VX VY VZ WX WY WZ in the world")
+      ->expected(0, 6);
   velocity->add_option("--for", *seconds, "Simulated seconds; default: until interrupted")->check(base::number_between(0.0, 1e9));
-  velocity->callback([&work, robot, speeds, seconds] { work = [=](Control& c) { simctl::velocity(c, *robot, *speeds, *seconds); }; });
+  velocity->callback([&work, robot, speeds, seconds] {
+    work = [=](Control& c) {
+      if (simctl::is_position_iface(c.server_id(), *robot)) return simctl::velocity(c, *robot, *speeds, *seconds);
+      simctl::model_velocity(c, *robot, *speeds);
+    };
+  });
+
+  auto* wrench = app.add_subcommand("wrench", "Push a model: wrench MODEL FX FY FZ [TX TY TZ]");
+  auto pushed = option_value<std::string>();
+  auto forces = option_value<std::vector<double>>();
+  auto duration = option_value(0.0);
+  wrench->add_option("MODEL", *pushed, "Model or MODEL::LINK; at its centre of mass")->required();
+  wrench->add_option("NUMBERS", *forces, "FX FY FZ [N], TX TY TZ [N m], in the world")->required()->expected(3, 6);
+  wrench->add_option("--for", *duration, "Simulated seconds; default: one step")->check(CLI::Range(0.0, 1e6));
+  wrench->callback([&work, pushed, forces, duration] {
+    if (forces->size() != 3 && forces->size() != 6)
+      throw CLI::ValidationError("wrench", "expected FX FY FZ or FX FY FZ TX TY TZ, got " + std::to_string(forces->size()) + " numbers");
+    work = [=](Control& c) { simctl::wrench(c, *pushed, *forces, *duration); };
+  });
+
+  auto* odometry = app.add_subcommand("odometry", "Set the odometry of a robot: odometry IFACE [X Y A]");
+  auto counted = option_value<std::string>();
+  auto origin = option_value<std::vector<double>>();
+  odometry->add_option("IFACE", *counted, "position2d or position3d iface")->required();
+  odometry->add_option("NUMBERS", *origin, "X Y A [m, rad]; default: 0 0 0")->expected(0, 3);
+  odometry->callback([&work, counted, origin] {
+    if (origin->size() == 1 || origin->size() == 2) throw CLI::ValidationError("odometry", "expected X Y A or nothing");
+    work = [=](Control& c) { simctl::reset_odometry(c, *counted, *origin); };
+  });
+
+  auto* motors = app.add_subcommand("motors", "Switch the motors of a robot: motors IFACE on|off");
+  auto driven = option_value<std::string>();
+  auto how = option_value<std::string>();
+  motors->add_option("IFACE", *driven, "position2d or position3d iface")->required();
+  motors->add_option("HOW", *how, "on or off")->required()->check(CLI::IsMember({"on", "off"}));
+  motors->callback([&work, driven, how] { work = [=](Control& c) { c.ask(shm::SetMotorsRequest{*driven, *how == "on"}); }; });
 
   auto* spawn = app.add_subcommand("spawn", "Add a model");
   auto options = option_value<simctl::SpawnOptions>();
@@ -100,6 +147,11 @@ void add_control(CLI::App& app, Work& work) {
   auto gone = option_value<std::string>();
   remove->add_option("MODEL", *gone)->required();
   remove->callback([&work, gone] { work = [gone](Control& c) { c.ask(shm::DeleteRequest{*gone}); }; });
+
+  auto* drop = app.add_subcommand("drop", "Let lock step go on without a participant that hangs");
+  auto participant = option_value<std::string>();
+  drop->add_option("NAME", *participant, "As 'participants' lists it")->required();
+  drop->callback([&work, participant] { work = [participant](Control& c) { c.ask(shm::DropParticipantRequest{*participant}); }; });
 
   auto* contacts = app.add_subcommand("contacts", "Show what a model touches");
   auto touched = option_value<std::string>();

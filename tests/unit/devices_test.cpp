@@ -370,6 +370,52 @@ TEST(Simulation, hash_is_equal_for_equal_runs_on_any_threads_and_after_a_reset) 
   EXPECT_EQ(one, again);
 }
 
+TEST(Simulation, who_subscribes_while_time_stands_still_sees_the_present_and_disturbs_nothing) {
+  const auto with_noise = [] {
+    auto robot = pioneer("robot", at(0, 0, 0));
+    auto& noise = std::get<RayDef>(robot.links[0].sensors[0].data).noise;
+    noise.kind = NoiseDef::Kind::gaussian;
+    noise.stddev = 0.02;
+    return world_of({ground(), robot, fixed("wall", BoxShape{{0.2, 20, 2}}, at(3, 0, 1))});
+  };
+  std::vector<float> undisturbed;
+  std::uint64_t hash = 0;
+  for (const bool is_looked_at : {false, true}) {
+    SimulationFixture f(with_noise());
+    f.run(1.05);
+    if (is_looked_at) {
+      for (int visit = 0; visit < 3; ++visit) {
+        auto laser = f.open(IfaceType::laser, "robot::laser");
+        const auto before = laser.sequence();
+        f.simulation->answer_new_subscribers();
+        f.simulation->answer_new_subscribers();
+        ASSERT_EQ(laser.sequence(), before + 1) << "one sample for a sensor that was switched on";
+        ASSERT_TRUE(laser.read());
+        EXPECT_EQ(laser.sample<shm::LaserSample>().stamp.sim_time_ns, f.simulation->time().count());
+        EXPECT_NEAR(laser.laser_scan().ranges[90], 3 - 0.1 - 0.1, 0.2);
+        auto second = f.open(IfaceType::laser, "robot::laser");
+        f.simulation->answer_new_subscribers();
+        EXPECT_EQ(laser.sequence(), before + 1) << "the first one must not get another";
+        EXPECT_TRUE(second.read());
+        laser.unsubscribe();
+        second.unsubscribe();
+        f.simulation->answer_new_subscribers();
+      }
+    }
+    auto laser = f.open(IfaceType::laser, "robot::laser");
+    f.run(0.5);
+    ASSERT_TRUE(laser.read());
+    const auto ranges = laser.laser_scan().ranges;
+    if (!is_looked_at) {
+      undisturbed.assign(ranges.begin(), ranges.end());
+      hash = f.simulation->hash();
+    } else {
+      EXPECT_TRUE(std::equal(ranges.begin(), ranges.end(), undisturbed.begin(), undisturbed.end()));
+      EXPECT_EQ(f.simulation->hash(), hash);
+    }
+  }
+}
+
 TEST(Simulation, a_reset_brings_back_what_was_deleted_and_takes_away_what_was_spawned) {
   SimulationFixture f(world_of({ground(), pioneer("robot", at(0, 0, 0))}));
   std::vector<std::string> notes;

@@ -1,0 +1,63 @@
+// Requests about how things move: velocity and wrench of models, odometry and motors of robots, the speed of time.
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "simctl.h"
+
+namespace simctl {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+void show_velocity(Control& control, const std::string& name) {
+  const auto reply = control.ask(shm::GetVelocityRequest{name});
+  if (!reply) return;
+  const auto& v = reply->values;
+  if (control.json()) return control.print({{"model", name}, {"linear", {v[0], v[1], v[2]}}, {"angular", {v[3], v[4], v[5]}}});
+  std::printf("%.6f %.6f %.6f m/s  %.6f %.6f %.6f rad/s\n", v[0], v[1], v[2], v[3], v[4], v[5]);
+}
+
+}  // namespace
+
+bool is_position_iface(std::uint32_t server_id, const std::string& name) {
+  for (const auto& found : shm::find_segments(server_id)) {
+    const std::string type(shm::to_text(found.name.type));
+    const bool is_position = found.name.type == shm::IfaceType::position2d || found.name.type == shm::IfaceType::position3d;
+    if (is_position && (found.name.iface == name || type + ":" + found.name.iface == name)) return true;
+  }
+  return false;
+}
+
+void model_velocity(Control& control, const std::string& model, const std::vector<double>& v) {
+  if (v.empty()) return show_velocity(control, model);
+  shm::SetVelocityRequest request;
+  request.model = model;
+  if (v.size() == 3) {
+    request.linear[0] = v[0], request.linear[1] = v[1], request.angular[2] = v[2];
+  } else if (v.size() == 6) {
+    std::copy(v.begin(), v.begin() + 3, request.linear);
+    std::copy(v.begin() + 3, v.end(), request.angular);
+  } else {
+    return control.fail("velocity of a model: expected VX VY VA or VX VY VZ WX WY WZ, got " + std::to_string(v.size()) + " numbers");
+  }
+  control.ask(request);
+}
+
+void wrench(Control& control, const std::string& name, const std::vector<double>& v, double seconds) {
+  shm::WrenchRequest request;
+  request.name = name;
+  std::copy(v.begin(), v.begin() + 3, request.force);
+  if (v.size() == 6) std::copy(v.begin() + 3, v.end(), request.torque);
+  request.duration = seconds;
+  control.ask(request);
+}
+
+void reset_odometry(Control& control, const std::string& iface, const std::vector<double>& v) {
+  shm::ResetOdometryRequest request;
+  request.iface = iface;
+  if (v.size() == 3) request.x = v[0], request.y = v[1], request.a = v[2];
+  control.ask(request);
+}
+
+}  // namespace simctl
