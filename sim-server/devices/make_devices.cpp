@@ -5,6 +5,7 @@
 #include "devices/camera.h"
 #include "devices/device.h"
 #include "devices/laser.h"
+#include "devices/meter.h"
 #include "devices/position2d.h"
 #include "devices/position3d.h"
 #include "devices/simple_devices.h"
@@ -52,6 +53,15 @@ void make_sensor(Makers& m, Mount mount, const SensorDef& sensor) {
       return m.take(Gps::make(m.world, mount, sensor));
     case SensorKind::contact:
       return m.take(Bumper::make(m.world, mount, sensor));
+    case SensorKind::altimeter:
+    case SensorKind::magnetometer:
+    case SensorKind::air_pressure:
+      return m.take(Meter::make(m.world, mount, sensor, std::nullopt));
+    case SensorKind::force_torque:
+      m.notes.push_back(
+          fmt::format("model {}: sensor {}: a force_torque sensor measures the joint that it stands in; this one stands in a link",
+                      m.world.physics.def(m.model).name, sensor.name));
+      return;
     default:
       break;
   }
@@ -61,8 +71,22 @@ void make_sensor(Makers& m, Mount mount, const SensorDef& sensor) {
     if (made) std::move(made->begin(), made->end(), std::back_inserter(m.devices));
     return;
   }
-  m.notes.push_back(fmt::format("model {}: sensor {}: {} sensors are not simulated", m.world.physics.def(m.model).name, sensor.name,
-                                to_text(sensor.kind)));
+}
+
+void make_joint_sensors(Makers& m) {
+  const ModelDef& def = m.world.physics.def(m.model);
+  for (std::uint32_t j = 0; j < def.joints.size(); ++j) {
+    for (const auto& sensor : def.joints[j].sensors) {
+      const auto link = link_of(def, {}, def.joints[j].child.empty() ? def.joints[j].parent : def.joints[j].child);
+      if (sensor.kind != SensorKind::force_torque || !link) {
+        m.notes.push_back(
+            fmt::format("model {}: sensor {}: {} sensors stand in links, not in joints", def.name, sensor.name, to_text(sensor.kind)));
+        continue;
+      }
+      const Eigen::Isometry3d place = def.links[*link].pose.inverse() * def.joints[j].pose_in_model * sensor.pose;
+      m.take(Meter::make(m.world, {{m.model, *link}, place}, sensor, JointId{m.model, j}));
+    }
+  }
 }
 
 void make_sonars(Makers& m) {
@@ -151,6 +175,7 @@ base::Result<std::vector<std::unique_ptr<Device>>> make_devices(DeviceWorld& wor
       if (!is_sonar(sensor)) make_sensor(m, {{model, l}, sensor.pose}, sensor);
     }
   }
+  make_joint_sensors(m);
   make_sonars(m);
   if (!world.physics.is_static(model)) m.take(Truth::make(world, model));
   if (m.failure) return *m.failure;

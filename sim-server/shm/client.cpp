@@ -51,19 +51,23 @@ std::string explain_absence(std::uint32_t server_id, IfaceType type, std::string
 struct Sizes {
   std::size_t info, sample;
 };
-constexpr std::array<Sizes, 13> sizes = {{{0, 0},
-                                          {sizeof(SimulationInfo), sizeof(SimulationSample)},
-                                          {sizeof(LaserInfo), sizeof(LaserSample)},
-                                          {sizeof(SonarInfo), sizeof(SonarSample)},
-                                          {sizeof(Position2dInfo), sizeof(Position2dSample)},
-                                          {sizeof(Position3dInfo), sizeof(Position3dSample)},
-                                          {sizeof(CameraInfo), 0},
-                                          {sizeof(CameraInfo), 0},
-                                          {sizeof(CameraInfo), 0},
-                                          {sizeof(ImuInfo), sizeof(ImuSample)},
-                                          {sizeof(GpsInfo), sizeof(GpsSample)},
-                                          {sizeof(BumperInfo), sizeof(BumperSample)},
-                                          {sizeof(TruthInfo), sizeof(TruthSample)}}};
+constexpr std::array<Sizes, type_names.size()> sizes = {{{0, 0},
+                                                         {sizeof(SimulationInfo), sizeof(SimulationSample)},
+                                                         {sizeof(LaserInfo), sizeof(LaserSample)},
+                                                         {sizeof(SonarInfo), sizeof(SonarSample)},
+                                                         {sizeof(Position2dInfo), sizeof(Position2dSample)},
+                                                         {sizeof(Position3dInfo), sizeof(Position3dSample)},
+                                                         {sizeof(CameraInfo), 0},
+                                                         {sizeof(CameraInfo), 0},
+                                                         {sizeof(CameraInfo), 0},
+                                                         {sizeof(ImuInfo), sizeof(ImuSample)},
+                                                         {sizeof(GpsInfo), sizeof(GpsSample)},
+                                                         {sizeof(BumperInfo), sizeof(BumperSample)},
+                                                         {sizeof(TruthInfo), sizeof(TruthSample)},
+                                                         {sizeof(MeterInfo), sizeof(ForceTorqueSample)},
+                                                         {sizeof(MeterInfo), sizeof(AltimeterSample)},
+                                                         {sizeof(MeterInfo), sizeof(MagnetometerSample)},
+                                                         {sizeof(MeterInfo), sizeof(AirPressureSample)}}};
 
 }  // namespace
 

@@ -66,7 +66,8 @@ int rtmsim_list(int64_t server, int (*each)(void*, uint32_t, const char*, const 
 rtmsim_iface* rtmsim_open(uint32_t server, uint32_t type, const char* name) {
   return guarded(static_cast<rtmsim_iface*>(nullptr), [&]() -> rtmsim_iface* {
     if (!shm::is_type(type) || name == nullptr) {
-      last_error() = "iface type must be one of RTMSIM_SIMULATION to RTMSIM_TRUTH and the name not null, got type " + std::to_string(type);
+      last_error() =
+          "iface type must be one of RTMSIM_SIMULATION to RTMSIM_AIR_PRESSURE and the name not null, got type " + std::to_string(type);
       return nullptr;
     }
     auto opened = shm::Iface::open(server, static_cast<shm::IfaceType>(type), name);

@@ -38,6 +38,11 @@ using GpsSample = ::rtmsim_gps_sample;
 using BumperInfo = ::rtmsim_bumper_info;
 using Contact = ::rtmsim_contact;
 using BumperSample = ::rtmsim_bumper_sample;
+using MeterInfo = ::rtmsim_meter_info;
+using ForceTorqueSample = ::rtmsim_force_torque_sample;
+using AltimeterSample = ::rtmsim_altimeter_sample;
+using MagnetometerSample = ::rtmsim_magnetometer_sample;
+using AirPressureSample = ::rtmsim_air_pressure_sample;
 using TruthInfo = ::rtmsim_truth_info;
 using TruthSample = ::rtmsim_truth_sample;
 using RequestBody = ::rtmsim_request_body;
@@ -65,10 +70,15 @@ enum class IfaceType : std::uint32_t {
   gps = RTMSIM_GPS,
   bumper = RTMSIM_BUMPER,
   truth = RTMSIM_TRUTH,
+  force_torque = RTMSIM_FORCE_TORQUE,
+  altimeter = RTMSIM_ALTIMETER,
+  magnetometer = RTMSIM_MAGNETOMETER,
+  air_pressure = RTMSIM_AIR_PRESSURE,
 };
 
-inline constexpr std::array<std::string_view, 13> type_names = {
-    "", "simulation", "laser", "sonar", "position2d", "position3d", "camera", "depth", "points", "imu", "gps", "bumper", "truth"};
+inline constexpr std::array<std::string_view, 17> type_names = {
+    "",    "simulation", "laser",  "sonar", "position2d",   "position3d", "camera",       "depth",       "points",
+    "imu", "gps",        "bumper", "truth", "force_torque", "altimeter",  "magnetometer", "air_pressure"};
 
 constexpr bool is_type(std::uint32_t type) { return type >= 1 && type < type_names.size(); }
 constexpr std::string_view to_text(IfaceType type) {
@@ -147,6 +157,8 @@ static_assert(sizeof(Position3dInfo) == 240 && sizeof(Position3dSample) == 304);
 static_assert(sizeof(CameraInfo) == 320 && sizeof(FrameHead) == 128);
 static_assert(sizeof(ImuInfo) == 208 && sizeof(ImuSample) == 112 && sizeof(GpsInfo) == 248 && sizeof(GpsSample) == 80);
 static_assert(sizeof(BumperInfo) == 200 && sizeof(Contact) == 192 && sizeof(BumperSample) == 40);
+static_assert(sizeof(MeterInfo) == 344 && sizeof(ForceTorqueSample) == 80 && sizeof(AltimeterSample) == 48);
+static_assert(sizeof(MagnetometerSample) == 56 && sizeof(AirPressureSample) == 40);
 static_assert(sizeof(TruthInfo) == 128 && sizeof(TruthSample) == 136);
 static_assert(sizeof(RequestBody) == 408 && sizeof(ReplyBody) == 416 && sizeof(RequestSlot) == 1024 && offsetof(RequestSlot, body) == 64);
 static_assert(sizeof(Control) == 192 && offsetof(Control, pending) == 64 && offsetof(Control, tick_words) == 128);

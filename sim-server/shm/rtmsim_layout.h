@@ -25,18 +25,22 @@ extern "C" {
 
 /* Iface types; the name in brackets is the one in the segment's name. */
 enum {
-  RTMSIM_SIMULATION = 1, /* [simulation] clock, statistics, requests, participants */
-  RTMSIM_LASER = 2,      /* [laser] */
-  RTMSIM_SONAR = 3,      /* [sonar] */
-  RTMSIM_POSITION2D = 4, /* [position2d] */
-  RTMSIM_POSITION3D = 5, /* [position3d] */
-  RTMSIM_CAMERA = 6,     /* [camera] ring of images */
-  RTMSIM_DEPTH = 7,      /* [depth] ring of float images [m] */
-  RTMSIM_POINTS = 8,     /* [points] ring of float x y z (and intensity) */
-  RTMSIM_IMU = 9,        /* [imu] */
-  RTMSIM_GPS = 10,       /* [gps] */
-  RTMSIM_BUMPER = 11,    /* [bumper] contacts */
-  RTMSIM_TRUTH = 12      /* [truth] true pose and velocity of a model */
+  RTMSIM_SIMULATION = 1,    /* [simulation] clock, statistics, requests, participants */
+  RTMSIM_LASER = 2,         /* [laser] */
+  RTMSIM_SONAR = 3,         /* [sonar] */
+  RTMSIM_POSITION2D = 4,    /* [position2d] */
+  RTMSIM_POSITION3D = 5,    /* [position3d] */
+  RTMSIM_CAMERA = 6,        /* [camera] ring of images */
+  RTMSIM_DEPTH = 7,         /* [depth] ring of float images [m] */
+  RTMSIM_POINTS = 8,        /* [points] ring of float x y z (and intensity) */
+  RTMSIM_IMU = 9,           /* [imu] */
+  RTMSIM_GPS = 10,          /* [gps] */
+  RTMSIM_BUMPER = 11,       /* [bumper] contacts */
+  RTMSIM_TRUTH = 12,        /* [truth] true pose and velocity of a model */
+  RTMSIM_FORCE_TORQUE = 13, /* [force_torque] load of a joint */
+  RTMSIM_ALTIMETER = 14,    /* [altimeter] */
+  RTMSIM_MAGNETOMETER = 15, /* [magnetometer] */
+  RTMSIM_AIR_PRESSURE = 16  /* [air_pressure] */
 };
 
 /* Areas of a segment, by index into rtmsim_header.areas; those an iface does not have are all zero. */
@@ -351,6 +355,40 @@ typedef struct {
   uint32_t count;
   uint32_t total; /* contacts there were; more than count when they did not all fit */
 } rtmsim_bumper_sample;
+
+/* Of force_torque, altimeter, magnetometer and air_pressure. */
+typedef struct {
+  double rate;
+  double noise[2];  /* standard deviations: force and torque; height and climb; field; pressure */
+  double reference; /* altimeter: height of the sensor at the start; air_pressure: altitude of the world's origin [m]; others 0 */
+  rtmsim_pose pose;
+  char model[128];
+  char joint[128]; /* force_torque: the joint that is measured; empty for others */
+} rtmsim_meter_info;
+
+/* What the child of the joint puts on its parent, or the other way round, as the sensor says; about the sensor's place, along the axes of
+ * the child, the parent or the sensor, as it says. */
+typedef struct {
+  rtmsim_stamp stamp;
+  double force[3];  /* [N] */
+  double torque[3]; /* [N m] */
+} rtmsim_force_torque_sample;
+
+typedef struct {
+  rtmsim_stamp stamp;
+  double height; /* above the place at the start [m] */
+  double climb;  /* upwards [m/s] */
+} rtmsim_altimeter_sample;
+
+typedef struct {
+  rtmsim_stamp stamp;
+  double field[3]; /* of the earth, sensor frame [T] */
+} rtmsim_magnetometer_sample;
+
+typedef struct {
+  rtmsim_stamp stamp;
+  double pressure; /* of the standard atmosphere above the world's sea level [Pa] */
+} rtmsim_air_pressure_sample;
 
 typedef struct {
   char model[128];

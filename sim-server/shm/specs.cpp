@@ -80,6 +80,15 @@ IfaceSpec bumper_spec(const std::string& name, const BumperInfo& info) {
   return make(IfaceType::bumper, name, info, is_good ? sizeof(BumperSample) + info.capacity * sizeof(Contact) : 0);
 }
 
+IfaceSpec meter_spec(IfaceType type, const std::string& name, const MeterInfo& info) {
+  const std::size_t sample_size = type == IfaceType::force_torque   ? sizeof(ForceTorqueSample)
+                                  : type == IfaceType::altimeter    ? sizeof(AltimeterSample)
+                                  : type == IfaceType::magnetometer ? sizeof(MagnetometerSample)
+                                  : type == IfaceType::air_pressure ? sizeof(AirPressureSample)
+                                                                    : 0;
+  return make(type, name, info, sample_size);
+}
+
 IfaceSpec truth_spec(const std::string& name, const TruthInfo& info) { return make(IfaceType::truth, name, info, sizeof(TruthSample)); }
 
 }  // namespace shm

@@ -44,6 +44,8 @@ IfaceSpec camera_spec(IfaceType type, const std::string& name, const CameraInfo&
 IfaceSpec imu_spec(const std::string& name, const ImuInfo& info);
 IfaceSpec gps_spec(const std::string& name, const GpsInfo& info);
 IfaceSpec bumper_spec(const std::string& name, const BumperInfo& info);
+// type: force_torque, altimeter, magnetometer or air_pressure.
+IfaceSpec meter_spec(IfaceType type, const std::string& name, const MeterInfo& info);
 IfaceSpec truth_spec(const std::string& name, const TruthInfo& info);
 
 // Copies text into a fixed field, cut at its end and always terminated.

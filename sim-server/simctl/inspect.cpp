@@ -145,6 +145,15 @@ Json info_json(const shm::Iface& iface) {
       const auto& i = iface.info<shm::BumperInfo>();
       return {{"model", i.model}, {"rate", i.rate}, {"capacity", i.capacity}, {"pose", to_json(i.pose)}};
     }
+    case IfaceType::force_torque:
+    case IfaceType::altimeter:
+    case IfaceType::magnetometer:
+    case IfaceType::air_pressure: {
+      const auto& i = iface.info<shm::MeterInfo>();
+      Json json{{"model", i.model}, {"rate", i.rate}, {"noise", to_json(i.noise)}, {"reference", i.reference}, {"pose", to_json(i.pose)}};
+      if (iface.type() == IfaceType::force_torque) json["joint"] = text_of(i.joint, sizeof i.joint);
+      return json;
+    }
     case IfaceType::truth:
       return {{"model", iface.info<shm::TruthInfo>().model}};
   }
@@ -207,6 +216,22 @@ Json sample_json(const shm::Iface& iface) {
                             {"force", to_json(c.force)},
                             {"depth", c.depth}});
       return {{"stamp", stamp_json(view.sample->stamp)}, {"total", view.sample->total}, {"contacts", contacts}};
+    }
+    case IfaceType::force_torque: {
+      const auto& s = iface.sample<shm::ForceTorqueSample>();
+      return {{"stamp", stamp_json(s.stamp)}, {"force", to_json(s.force)}, {"torque", to_json(s.torque)}};
+    }
+    case IfaceType::altimeter: {
+      const auto& s = iface.sample<shm::AltimeterSample>();
+      return {{"stamp", stamp_json(s.stamp)}, {"height", s.height}, {"climb", s.climb}};
+    }
+    case IfaceType::magnetometer: {
+      const auto& s = iface.sample<shm::MagnetometerSample>();
+      return {{"stamp", stamp_json(s.stamp)}, {"field", to_json(s.field)}};
+    }
+    case IfaceType::air_pressure: {
+      const auto& s = iface.sample<shm::AirPressureSample>();
+      return {{"stamp", stamp_json(s.stamp)}, {"pressure", s.pressure}};
     }
     case IfaceType::truth: {
       const auto& s = iface.sample<shm::TruthSample>();
@@ -280,7 +305,7 @@ void list(Control& control, bool all_servers) {
                     {"size", found.size}});
     if (control.json()) continue;
     if (all_servers) std::printf("%-6u ", found.name.server_id);
-    std::printf("%-11s %-40s %s, %u subscribers%s\n", std::string(shm::to_text(found.name.type)).c_str(), found.name.iface.c_str(),
+    std::printf("%-12s %-40s %s, %u subscribers%s\n", std::string(shm::to_text(found.name.type)).c_str(), found.name.iface.c_str(),
                 state.c_str(), found.subscribers, found.problem.empty() ? "" : (", " + found.problem).c_str());
   }
   if (control.json()) return control.print(json);

@@ -62,6 +62,8 @@ const std::map<std::string_view, Rule>& rules() {
       {"distribution/cols", {positive, drop_owner}},
       {"distribution/step", {vector3, drop_owner}},
       {"world/gravity", {vector3, ignore}},
+      {"atmosphere/temperature", {positive, ignore}},
+      {"atmosphere/pressure", {positive, ignore}},
       {"world/magnetic_field", {vector3, ignore}},
       {"wind/linear_velocity", {vector3, ignore}},
       {"physics/max_step_size", {positive, ignore}},
