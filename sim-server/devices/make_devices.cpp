@@ -158,6 +158,7 @@ void make_plugin(Makers& m, const PluginDef& plugin) {
       return m.take(Position3d::make(m.world, m.model, plugin, path_of(m, plugin.scope)));
     case PluginKind::trajectory_follower:
       return make_follower(m, plugin);
+    case PluginKind::unsupported_drive:
     case PluginKind::implied:
     case PluginKind::unknown:  // the loader has said so
       return;

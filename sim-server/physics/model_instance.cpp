@@ -12,7 +12,7 @@ constexpr double fastest = 5000;  // [m/s], [rad/s]: nothing that is simulated s
 
 }  // namespace
 
-void ModelInstance::make_shapes(ShapeStore& store, std::vector<std::string>& notes) {
+void ModelInstance::make_shapes(ShapeStore& store, std::vector<std::string>& lost) {
   const ModelDef& model = *blueprint_->model;
   for (std::uint32_t l = 0; l < model.links.size(); ++l) {
     const auto assembly = blueprint_->assembly_of_link[l];
@@ -21,14 +21,14 @@ void ModelInstance::make_shapes(ShapeStore& store, std::vector<std::string>& not
       const CollisionDef& collision = model.links[l].collisions[c];
       if (!is_anchored &&
           (std::holds_alternative<PlaneShape>(collision.geometry) || std::holds_alternative<HeightmapShape>(collision.geometry))) {
-        notes.push_back(fmt::format("model {}: collision {}::{}: a {} cannot move, it does not collide", model.name, model.links[l].name,
-                                    collision.name, kind_of(collision.geometry)));
+        lost.push_back(fmt::format("model {}: collision {}::{}: a {} cannot move, it does not collide", model.name, model.links[l].name,
+                                   collision.name, kind_of(collision.geometry)));
         continue;
       }
       auto shape = make_shape(collision, store);
       if (!shape) {
-        notes.push_back(fmt::format("model {}: collision {}::{}: {}; it does not collide", model.name, model.links[l].name, collision.name,
-                                    shape.error().message));
+        lost.push_back(fmt::format("model {}: collision {}::{}: {}; it does not collide", model.name, model.links[l].name, collision.name,
+                                   shape.error().message));
         continue;
       }
       shape->link = {id_, l};
@@ -65,10 +65,10 @@ void ModelInstance::place_anchored() {
 // --- the model
 
 ModelInstance::ModelInstance(ModelId id, std::shared_ptr<const Blueprint> blueprint, const Eigen::Isometry3d& base, ShapeStore& shapes,
-                             std::vector<std::string>& notes)
+                             std::vector<std::string>& lost)
     : id_(id), blueprint_(std::move(blueprint)), base_(base) {
   ode::prepare_thread();
-  make_shapes(shapes, notes);
+  make_shapes(shapes, lost);
   place_anchored();
 }
 

@@ -22,8 +22,9 @@ struct BodyState {
 class ModelInstance {
  public:
   // Anchored assemblies have shapes, but no body. `base` is where the model stands at the start.
+  // Shapes that are missing, because a file cannot be read or they cannot move, add a line to `lost`.
   ModelInstance(ModelId id, std::shared_ptr<const Blueprint> blueprint, const Eigen::Isometry3d& base, ShapeStore& shapes,
-                std::vector<std::string>& notes);
+                std::vector<std::string>& lost);
 
   // Makes bodies and joints in a world (of the model at its base pose); those it had are gone.
   void enter(dWorldID world, const PhysicsDef& physics);
@@ -69,7 +70,7 @@ class ModelInstance {
   bool records_forces = false;
 
  private:
-  void make_shapes(ShapeStore& shapes, std::vector<std::string>& notes);
+  void make_shapes(ShapeStore& shapes, std::vector<std::string>& lost);
   void place_anchored();
   void make_body(dWorldID world, const Assembly& assembly);
   void make_joint(dWorldID world, const PhysicsDef& physics, std::uint32_t index);

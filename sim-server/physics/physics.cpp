@@ -30,7 +30,7 @@ class Physics::Impl {
       : world_(std::move(world)), pool_(pool), store_(triangles) {}
 
   void build(std::vector<std::string>& notes, std::vector<std::string>* dropped);
-  void add(ModelId id, std::shared_ptr<const Blueprint> blueprint, std::vector<std::string>& notes);
+  void add(ModelId id, std::shared_ptr<const Blueprint> blueprint, std::vector<std::string>& lost);
   void step();
   void put_back_insane(Shard& shard);
   // After the poses or the number of static shapes changed: everybody looks round again.
@@ -77,15 +77,15 @@ void Physics::Impl::build(std::vector<std::string>& notes, std::vector<std::stri
   for (std::size_t i = 0; i < shards; ++i) shards_.push_back(std::make_unique<Shard>(world_->physics));
   models_.resize(initial_.size());
   for (ModelId id = 0; id < initial_.size(); ++id) {
-    if (initial_[id]) add(id, initial_[id], notes);
+    if (initial_[id]) add(id, initial_[id], dropped != nullptr ? *dropped : notes);
   }
   refresh_statics();
   partition();
 }
 
-void Physics::Impl::add(ModelId id, std::shared_ptr<const Blueprint> blueprint, std::vector<std::string>& notes) {
+void Physics::Impl::add(ModelId id, std::shared_ptr<const Blueprint> blueprint, std::vector<std::string>& lost) {
   const Eigen::Isometry3d base = blueprint->model->pose;
-  auto model = std::make_unique<ModelInstance>(id, std::move(blueprint), base, store_, notes);
+  auto model = std::make_unique<ModelInstance>(id, std::move(blueprint), base, store_, lost);
   if (has_bodies(*model)) {
     const auto smallest =
         std::min_element(shards_.begin(), shards_.end(), [](const auto& a, const auto& b) { return a->models.size() < b->models.size(); });

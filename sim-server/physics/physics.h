@@ -66,8 +66,8 @@ struct PhysicsStatistics {
 
 class Physics {
  public:
-  // What could not be built as written is added to `notes`, one line each; models that cannot be simulated at all are left out, in
-  // `dropped`. The pool is used by step() and must outlive the object.
+  // What could not be built as written is added to `notes`, one line each; models and shapes that cannot be simulated at all are left out,
+  // in `dropped`. The pool is used by step() and must outlive the object.
   Physics(std::shared_ptr<const WorldDef> world, WorkerPool& pool, TriangleCache& triangles, std::vector<std::string>& notes,
           std::vector<std::string>& dropped);
   ~Physics();

@@ -180,7 +180,10 @@ PluginDef build_plugin(pugi::xml_node node, const std::string& scope, BuildConte
   plugin.scope = scope;
   plugin.parameters = parameters_of(node);
   plugin.source = context.complaints.place_of(node).text();
-  if (kind_of(plugin) == PluginKind::unknown) {
+  if (kind_of(plugin) == PluginKind::unsupported_drive) {
+    context.complaints.warn(node, "drive " + base::in_quotes(plugin.filename.empty() ? plugin.name : plugin.filename) + " (" +
+                                      describe_in_context(node) + ") is not simulated; nothing drives the model");
+  } else if (kind_of(plugin) == PluginKind::unknown) {
     context.complaints.warn(node, "unknown plugin " + base::in_quotes(plugin.filename) + " (" + describe_in_context(node) + ") is ignored");
   }
   return plugin;

@@ -10,6 +10,7 @@ enum class PluginKind {
   skid_steer_drive,     // several driven wheels on each side
   velocity_control,     // the model moves as it is told, without wheels
   trajectory_follower,  // the model follows way points
+  unsupported_drive,    // drives with other wheels: Ackermann steering, mecanum, tricycle, ...
   implied,              // what it does is done by the simulator anyway (sensors, physics, clock, user interface of Gazebo)
   unknown,
 };
