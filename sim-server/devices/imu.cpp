@@ -2,6 +2,22 @@
 
 namespace sim {
 
+namespace {
+
+Eigen::Matrix3d reference_axes(const ImuDef& def, double heading) {
+  using Reference = ImuDef::Reference;
+  if (def.reference == Reference::world) return Eigen::Matrix3d::Identity();
+  if (def.reference == Reference::custom) return def.custom_axes;
+  // Columns: east, north, up in the world, whose x axis points `heading` to the left of east.
+  const Eigen::Matrix3d enu = Eigen::AngleAxisd(-heading, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  Eigen::Matrix3d axes = enu;
+  if (def.reference == Reference::ned) axes << enu.col(1), enu.col(0), -enu.col(2);
+  if (def.reference == Reference::nwu) axes << enu.col(1), -enu.col(0), enu.col(2);
+  return axes;
+}
+
+}  // namespace
+
 base::Result<std::unique_ptr<Device>> Imu::make(DeviceWorld& world, Mount mount, const SensorDef& sensor) {
   const ModelDef& model = world.physics.def(mount.link.model);
   const auto& def = std::get<ImuDef>(sensor.data);
@@ -24,6 +40,8 @@ Imu::Imu(DeviceWorld& world, Mount mount, const SensorDef& sensor, std::unique_p
     noise_[i] = Noise(noise, RandomStream(world.seed, writer_->name() + static_cast<char>('a' + i)));
   }
   fresh_noise_ = noise_;
+  has_orientation_ = def.has_orientation;
+  reference_ = reference_axes(def, world.world.spherical.heading);
 }
 
 void Imu::after_step(const Moment& moment) {
@@ -44,7 +62,8 @@ void Imu::measure(const Moment&) {
   const Eigen::Vector3d w = to_sensor * world_.physics.link_twist(mount_.link).angular;
   const Eigen::Vector3d f = to_sensor * (acceleration_ - world_.world.physics.gravity);
   auto& sample = writer_->sample<shm::ImuSample>();
-  const Eigen::Quaterniond q(pose.linear());
+  const Eigen::Quaterniond q =
+      has_orientation_ ? Eigen::Quaterniond(reference_.transpose() * pose.linear()) : Eigen::Quaterniond::Identity();
   sample.orientation[0] = q.w(), sample.orientation[1] = q.x(), sample.orientation[2] = q.y(), sample.orientation[3] = q.z();
   const double dt = std::max(static_cast<double>(schedule_.period().count()) * 1e-9, world_.world.physics.step);
   for (std::size_t i = 0; i < 3; ++i) {

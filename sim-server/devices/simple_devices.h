@@ -59,6 +59,8 @@ class Imu final : public Device {
   Mount mount_;
   Schedule schedule_;
   std::array<Noise, 6> noise_, fresh_noise_;  // angular velocity x y z, acceleration x y z
+  bool has_orientation_;
+  Eigen::Matrix3d reference_;  // columns: axes of the frame that the orientation is told against, in the world
   Eigen::Vector3d velocity_{0, 0, 0}, acceleration_{0, 0, 0};
   bool has_velocity_ = false, has_acceleration_ = false;
   std::unique_ptr<shm::IfaceWriter> writer_;

@@ -156,8 +156,8 @@ void JointInstance::make(dWorldID world, const Eigen::Isometry3d& frame) {
       dJointSetHinge2Anchor(joint, p.x(), p.y(), p.z());
       const dVector3 first = {a.x(), a.y(), a.z()}, second = {b.x(), b.y(), b.z()};
       dJointSetHinge2Axes(joint, first, second);
-      if (def_->suspension_erp) dJointSetHinge2Param(joint, dParamSuspensionERP, *def_->suspension_erp);
-      if (def_->suspension_cfm) dJointSetHinge2Param(joint, dParamSuspensionCFM, *def_->suspension_cfm);
+      if (def_->suspension_erp) dJointSetHinge2Param(joint, dParamSuspensionERP, std::clamp(*def_->suspension_erp, 0.0, 1.0));
+      if (def_->suspension_cfm) dJointSetHinge2Param(joint, dParamSuspensionCFM, std::clamp(*def_->suspension_cfm, 0.0, 1e9));
       break;
     }
     case Kind::screw:

@@ -11,6 +11,10 @@
 
 namespace sim {
 
+struct MeshProbe {
+  Eigen::Vector3d place, outward;  // in the mesh
+};
+
 // ODE's form of meshes and height maps, shared by all shapes made from them.
 class ShapeStore {
  public:
@@ -19,6 +23,7 @@ class ShapeStore {
     ode::TriMeshData data;
     std::vector<double> vertices;
     std::vector<dTriIndex> indexes;
+    std::vector<MeshProbe> probes;  // none for very fine meshes
   };
   struct Field {
     ode::HeightfieldData data;

@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include "physics/contact_surface.h"
+#include "physics/mesh_contacts.h"
 
 namespace sim {
 namespace {
@@ -163,7 +164,9 @@ void Shard::collide(ModelInstance& model_a, ShapeInstance& a, ModelInstance* mod
   int count = 0;
   if (a.needs_lock || b.needs_lock) {
     const std::lock_guard lock(shared_collider());
-    count = dCollide(a.geom.id(), b.geom.id(), most, found, sizeof(dContactGeom));
+    const auto is_mesh = [](const ShapeInstance& shape) { return dGeomGetClass(shape.geom.id()) == dTriMeshClass; };
+    count = is_mesh(a) && is_mesh(b) ? collide_meshes(a, b, most, found)
+                                     : dCollide(a.geom.id(), b.geom.id(), most, found, sizeof(dContactGeom));
   } else {
     count = dCollide(a.geom.id(), b.geom.id(), most, found, sizeof(dContactGeom));
   }

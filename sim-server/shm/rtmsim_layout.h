@@ -313,7 +313,8 @@ typedef struct {
 
 typedef struct {
   rtmsim_stamp stamp;
-  double orientation[4];      /* w x y z, of the sensor in the world */
+  double orientation[4];      /* w x y z, of the sensor in the world or in the frame that its <orientation_reference_frame> names;
+                                 1 0 0 0 when <enable_orientation> is false */
   double angular_velocity[3]; /* [rad/s], sensor frame */
   double acceleration[3];     /* specific force [m/s^2], sensor frame: at rest it is minus gravity */
 } rtmsim_imu_sample;

@@ -80,7 +80,10 @@ std::string must(pugi::xml_node sensor, const std::string& what, const std::stri
 ScanDef build_scan(pugi::xml_node node) {
   ScanDef scan;
   scan.samples = node ? integer_at(node, "samples", 640) : 1;
+  // Gazebo lets some rays stand for more points and fills in between; here every point has its own ray.
   scan.resolution = number_at(node, "resolution", 1);
+  const double points = std::round(scan.samples * scan.resolution);
+  if (scan.samples >= 1 && points <= most_rays) scan.samples = std::max(1, static_cast<int>(points));
   scan.min_angle = number_at(node, "min_angle", 0);
   scan.max_angle = number_at(node, "max_angle", 0);
   return scan;
@@ -221,6 +224,23 @@ ImuDef build_imu(pugi::xml_node sensor, BuildContext& context) {
   imu.angular_velocity = noises_at(node, "angular_velocity", context);
   imu.linear_acceleration = noises_at(node, "linear_acceleration", context);
   imu.has_orientation = bool_at(node, "enable_orientation", true);
+  using Reference = ImuDef::Reference;
+  const pugi::xml_node frame = node.child("orientation_reference_frame");
+  const std::string where = text_at(frame, "localization", frame ? "CUSTOM" : "");
+  if (where == "ENU" || where == "NED" || where == "NWU") {
+    imu.reference = where == "ENU" ? Reference::enu : where == "NED" ? Reference::ned : Reference::nwu;
+  } else if (where == "CUSTOM") {
+    const Eigen::Vector3d rpy = vector3_at(frame, "custom_rpy", Eigen::Vector3d::Zero());
+    if (rpy.allFinite()) {
+      imu.reference = Reference::custom;
+      imu.custom_axes = (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
+                         Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
+                            .toRotationMatrix();
+    }
+  } else if (!where.empty()) {
+    context.complaints.warn(frame, "localization " + base::in_quotes(where) + " of " + describe_in_context(sensor) +
+                                       " is not known; its orientation is that in the world");
+  }
   return imu;
 }
 

@@ -258,6 +258,9 @@ struct SonarDef {
   double radius = 0.5;  // of the cone at range_max
 };
 struct ImuDef {
+  enum class Reference { world, enu, ned, nwu, custom };  // what the orientation is told against
+  Reference reference = Reference::world;
+  Eigen::Matrix3d custom_axes = Eigen::Matrix3d::Identity();      // columns: axes of a custom frame in the world
   std::array<NoiseDef, 3> angular_velocity, linear_acceleration;  // x, y, z
   bool has_orientation = true;
 };

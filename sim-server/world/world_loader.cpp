@@ -168,6 +168,10 @@ void Loader::collect(pugi::xml_node world, const fs::path& folder) {
     } else if (kind == "include") {
       collect_include(world, child, folder);
     } else if (kind == "road") {
+      if (!child.child("point")) {
+        complaints_.drop(child, describe(child) + " has no <point> and is left out");
+        continue;
+      }
       pugi::xml_node model = model_of_road(child, copies_);
       model.append_copy(child.attribute(line_mark));
       model.append_attribute(file_mark) = complaints_.add_file(complaints_.place_of(child).file);

@@ -1,5 +1,5 @@
 // Feeds the world loader with files of the corpus and with mutations of them: none may crash it, hang it or make a definition that breaks
-// its promises.
+// its promises or that the physics cannot step (ODE ends the process when a value is against its rules).
 //   world_fuzz [--seed N] [--runs N] CORPUS...      (files and folders; a crash leaves the text in world_fuzz_last.sdf)
 // Built with -DRTMSIM_LIBFUZZER (clang) it is a libFuzzer target over the same check.
 #include <algorithm>
@@ -9,11 +9,13 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <memory>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "base/text.h"
+#include "physics/physics.h"
 #include "world/world_loader.h"
 
 namespace {
@@ -59,6 +61,26 @@ void check(const sim::ModelDef& model) {
   }
 }
 
+void step(sim::WorldDef world) {
+  std::size_t parts = 0;
+  for (const sim::ModelDef& model : world.models) parts += model.links.size() + model.joints.size();
+  if (parts > 100) return;
+  sim::WorkerPool pool(1);
+  sim::TriangleCache triangles;
+  std::vector<std::string> notes, dropped;
+  sim::Physics physics(std::make_shared<const sim::WorldDef>(std::move(world)), pool, triangles, notes, dropped);
+  for (int i = 0; i < 5; ++i) physics.step();
+  for (sim::ModelId id = 0; id < physics.model_slots(); ++id) {
+    if (!physics.exists(id)) continue;
+    require(physics.model_pose(id).matrix().allFinite(), "pose of a moving model is not finite");
+    for (std::uint32_t j = 0; j < physics.def(id).joints.size(); ++j) {
+      require(!std::isnan(physics.joint_state({id, j}).position), "position of a joint is no number");
+      physics.set_motor({id, j}, 0, 1, 1);
+    }
+  }
+  physics.step();
+}
+
 void run(const std::string& text, const fs::path& folder, const sim::ModelPath& path) {
   const base::Result<sim::LoadResult> world = sim::load_world_text(text, folder, "fuzz", path);
   if (world) {
@@ -66,6 +88,7 @@ void run(const std::string& text, const fs::path& folder, const sim::ModelPath& 
     require(world->world.physics.step > 0 && std::isfinite(world->world.physics.step), "step is not positive");
     for (const sim::Finding& finding : world->findings)
       require(finding.text().find('\n') == std::string::npos, "finding has several lines");
+    step(world->world);
   } else {
     require(!world.error().message.empty() && world.error().message.find('\n') == std::string::npos, "error is not one line");
   }

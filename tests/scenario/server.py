@@ -178,7 +178,9 @@ def bad_requests():
     before = state()
     for words in (["pose", "nobody"], ["pose", "nobody", "1", "2", "0"], ["delete", "nobody"], ["contacts", "nobody"], ["echo", "nobody"],
                   ["info", "nobody"], ["velocity", "nobody", "1", "0", "0"], ["pose", robot, "nan", "0", "0"], ["pose", robot, "inf", "0", "0"],
-                  ["velocity", f"{robot}::position2d", "nan", "0", "0"], ["spawn", "<sdf version='1.9'><model"], ["spawn", "/no/such/file.sdf"]):
+                  ["velocity", f"{robot}::position2d", "nan", "0", "0"], ["spawn", "<sdf version='1.9'><model"], ["spawn", "/no/such/file.sdf"],
+                  ["spawn", f"<sdf version='1.9'><model name='{robot}'><link name='l'/></model></sdf>"],
+                  ["spawn", "<sdf version='1.9'><model name='m'><pose>nan 0 0 0 0 0</pose><link name='l'/></model></sdf>"]):
         refused(*words)
     refused("screenshot", f"{work.name}/x.png", "--from", "1 2 3", code=2, says="expected 6 numbers")
     refused("spawn", course, "--pose", "1 2", code=2, says="expected X Y YAW")

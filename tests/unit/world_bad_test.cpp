@@ -217,6 +217,58 @@ TEST(BadWorld, physics_out_of_bounds_is_ignored) {
   EXPECT_EQ(gravity.findings.size(), 1U);
 }
 
+TEST(BadWorld, populations_and_roads_that_make_no_sense_are_left_out) {
+  const WorldFiles files;
+  const std::string model = "<model name='m'><link name='l'/></model>", box = "<box><size>1 1 1</size></box>";
+  const auto population = [&](const std::string& content) { return "<population name='p'>" + content + "</population>"; };
+  const auto of_kind = [](const std::string& kind) { return "<distribution><type>" + kind + "</type></distribution>"; };
+  for (const std::string& bad :
+       {population(model + box + "<model_count>2000000000</model_count>" + of_kind("random")),
+        population(model + box + "<model_count>-5</model_count>" + of_kind("uniform")),
+        population(model + "<model_count>5</model_count>" + of_kind("random")),
+        population(model + box + "<model_count>5</model_count>" + of_kind("spiral")),
+        population(box + "<model_count>5</model_count>" + of_kind("random")),
+        population(model + box + "<distribution><type>grid</type><rows>100000</rows><cols>100000</cols></distribution>"),
+        population(model + "<box><size>nan 1 1</size></box><model_count>5</model_count>" + of_kind("random")),
+        population("<pose>0 0 inf 0 0 0</pose>" + model + box + "<model_count>5</model_count>" + of_kind("random")),
+        std::string("<road name='r'><width>nan</width><point>0 0 0</point></road>"),
+        std::string("<road name='r'><width>1</width><point>0 0 0</point><point>1 inf 0</point></road>"), std::string("<road name='r'/>")}) {
+    const LoadResult result = files.load(bad + "<model name='ok'><link name='l'/></model>");
+    EXPECT_EQ(result.world.models.size(), 1U) << bad;
+    EXPECT_EQ(result.findings.size(), 1U) << bad << "\n" << all_findings(result);
+    EXPECT_TRUE(result.dropped) << bad;
+  }
+}
+
+TEST(BadWorld, texts_that_only_look_like_quotes_end) {
+  const WorldFiles files;
+  for (const char* text :
+       {"<sdf version=\"", "<sdf version=\"\"", "<sdf a=\"\"b", "<sdf version=\xe2\x80\x9c", "<sdf version=\xe2\x80\x9c>", "</sdf></sdf>",
+        "<sdf version='1.9'></sdf></", "<a b=''>", "<a b=\"\"\"\"/><", "<sdf =", "<sdf ==''=''>"}) {
+    EXPECT_FALSE(files.load_text(text).ok()) << text;
+  }
+}
+
+TEST(BadWorld, joints_with_absurd_numbers_are_mended_or_left_out) {
+  const WorldFiles files;
+  for (const char* content : {"<axis><xyz>0 0 1</xyz><initial_position>nan</initial_position></axis>",
+                              "<axis><xyz>0 0 1</xyz><initial_position>1e300</initial_position></axis>"}) {
+    const LoadResult result = files.load(
+        "<model name='m'><link name='a'/><link name='b'/><joint name='j' "
+        "type='revolute'><parent>a</parent><child>b</child>" +
+            std::string(content) + "</joint></model>",
+        "1.6");
+    ASSERT_EQ(result.world.models.at(0).joints.size(), 1U);
+    EXPECT_EQ(result.world.models[0].joints[0].axes[0].initial_position, 0);
+    EXPECT_EQ(result.findings.size(), 1U) << all_findings(result);
+  }
+  const LoadResult screw = files.load(
+      "<model name='m'><link name='a'/><link name='b'/><joint name='j' type='screw'><parent>a</parent><child>b</child><axis><xyz>0 0 "
+      "1</xyz></axis><screw_thread_pitch>0</screw_thread_pitch></joint></model>");
+  ASSERT_EQ(screw.world.models.at(0).joints.size(), 1U);
+  EXPECT_EQ(screw.world.models[0].joints[0].thread_pitch, 0) << "a nut that only turns";
+}
+
 TEST(BadWorld, references_to_nothing_are_named) {
   const WorldFiles files;
   const LoadResult result = files.load(
