@@ -393,12 +393,17 @@ def rate():
             stamps = [json.loads(line)["stamp"] for line in out.splitlines()]
             return max((s["sim_time"] - float(rtf) * s["wall_time"], s["sim_time"], s["wall_time"]) for s in stamps)[1:]
 
-        time.sleep(0.5)
-        sim_before, wall_before = least_delayed(300)
-        time.sleep(9.5)  # what is measured
-        sim_after, wall_after = least_delayed(300)
-        reached = (sim_after - sim_before) / (wall_after - wall_before)
-        assert abs(reached / float(rtf) - 1) < 0.01, f"{reached} times real time, {rtf} was asked for"
+        def reached():
+            sim_before, wall_before = least_delayed(200)
+            time.sleep(9.5)  # what is measured
+            sim_after, wall_after = least_delayed(200)
+            return (sim_after - sim_before) / (wall_after - wall_before)
+
+        # Time that a machine under load takes away for more than half a second is given up: then it counts again.
+        tries = []
+        while not tries or abs(tries[-1] / float(rtf) - 1) > 0.01:
+            assert len(tries) < 4, f"{tries} times real time, {rtf} was asked for"
+            tries.append(reached())
         stop(process)
     process = started("--rtf", "100000")
     await_("a warning", lambda: "100000 was asked for" in open(process.log.name).read())
