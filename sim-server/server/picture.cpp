@@ -166,8 +166,11 @@ base::Result<Image> draw_picture(Simulation& simulation, const shm::ScreenshotRe
   auto view = view_of(simulation, world, request);
   if (!view) return view.error();
   if (!view->is_parallel && request.view != shm::ScreenshotRequest::View::camera) {
-    view->near_clip = 0.05;
-    view->far_clip = std::max(200.0, 3 * bounds_of(world).diagonal().norm());
+    // The nearest thing may be the ground below. What lies close together far away needs a near plane that is not too near.
+    const Eigen::AlignedBox3d box = bounds_of(world);
+    const Vector3d eye = view->pose.translation();
+    view->near_clip = std::clamp(0.3 * std::min(box.exteriorDistance(eye), std::abs(eye.z() - box.min().z())), 0.05, 5.0);
+    view->far_clip = std::max(200.0, 3 * box.diagonal().norm());
   }
   view->grid = simulation.world().scene.grid && request.view != shm::ScreenshotRequest::View::camera;
   auto renderer = simulation.renderer();
