@@ -10,6 +10,7 @@
 #include <cstring>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 namespace video {
 namespace {
@@ -17,9 +18,13 @@ namespace {
 using base::Error;
 using base::Result;
 
-constexpr int largest_side = 16384;
+constexpr int largest_side = 16384;           // [pixel]
+constexpr std::size_t most_pixels = 1 << 26;  // a JPEG of few octets can claim any size
 
 enum class Kind { colors, depth, bayer, wide_grey };
+
+// A peer's text may be of any length.
+std::string quoted_format(const RTC::CameraImage& image) { return base::in_quotes(std::string_view(image.format.in()).substr(0, 40)); }
 
 struct Layout {
   std::size_t octets;                // of a pixel
@@ -56,7 +61,7 @@ Result<Layout> layout_of(const RTC::CameraImage& image) {
     if (const auto layout = nameless_layout(image, !format.empty())) return *layout;
   }
   return Error{
-      "image format " + base::in_quotes(image.format.in()) + " with " + std::to_string(image.bpp) +
+      "image format " + quoted_format(image) + " with " + std::to_string(image.bpp) +
       " bits per pixel is not known, expected RGB8, BGR8, RGBA8, BGRA8, MONO8, MONO16, BAYER_RGGB8 and its like, DEPTH32F or JPEG"};
 }
 
@@ -70,9 +75,10 @@ Result<Picture> from_jpeg(const RTC::CameraImage& image) {
   if (!decoder || size == 0 || tjDecompressHeader3(decoder.get(), bytes, size, &picture.width, &picture.height, &sampling, &colours) != 0) {
     return Error{"image of " + std::to_string(size) + " octets is no JPEG"};
   }
-  if (picture.width > largest_side || picture.height > largest_side)
+  const std::size_t pixels = static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
+  if (picture.width > largest_side || picture.height > largest_side || pixels > most_pixels)
     return Error{"JPEG image of " + std::to_string(picture.width) + "x" + std::to_string(picture.height) + " is too large"};
-  picture.rgb.resize(std::size_t{3} * static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height));
+  picture.rgb.resize(3 * pixels);
   if (tjDecompress2(decoder.get(), bytes, size, picture.rgb.data(), picture.width, 0, picture.height, TJPF_RGB, 0) != 0 &&
       tjGetErrorCode(decoder.get()) == TJERR_FATAL) {
     return Error{std::string("JPEG image: ") + tjGetErrorStr2(decoder.get())};
@@ -109,7 +115,7 @@ Result<Picture> to_picture(const RTC::CameraImage& image) {
   const auto size = std::to_string(image.width) + "x" + std::to_string(image.height);
   if (count == 0 || image.width > largest_side || image.height > largest_side) return Error{"image of " + size + " pixels cannot be shown"};
   if (image.pixels.length() != wanted) {
-    return Error{"image of " + size + " pixels in format " + base::in_quotes(image.format.in()) + " must have " + std::to_string(wanted) +
+    return Error{"image of " + size + " pixels in format " + quoted_format(image) + " must have " + std::to_string(wanted) +
                  " octets, got " + std::to_string(image.pixels.length())};
   }
   picture.rgb.resize(3 * count);

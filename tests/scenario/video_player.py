@@ -24,10 +24,10 @@ def start_display():
     assert environment["DISPLAY"] != ":", "Xvfb does not start"
 
 
-def start_player(record_dir="", **more):
+def start_player(record_dir="", others=(), **more):
     system.naming()
     system.until("the naming service", lambda: system.rtse("ls") is not None)
-    host = system.start(f"{bin_dir}/rtcd", "-o", f"corba.nameservers:{system.names}", "-o", f"manager.modules.load_path:{lib_dir}", "-o", "manager.shutdown_auto:NO", "VideoPlayer", "FrameSource",
+    host = system.start(f"{bin_dir}/rtcd", "-o", f"corba.nameservers:{system.names}", "-o", f"manager.modules.load_path:{lib_dir}", "-o", "manager.shutdown_auto:NO", "VideoPlayer", "FrameSource", *others,
                         **{"DISPLAY": "", "WAYLAND_DISPLAY": "", **environment, **more})
     system.rtse("wait", "VideoPlayer0", "FrameSource0", "--state", "any", "--timeout", "60")
     system.rtse("con", "FrameSource0:image", "VideoPlayer0:image")
@@ -37,8 +37,8 @@ def start_player(record_dir="", **more):
     return host
 
 
-def screen(*words, ok=True):
-    done = subprocess.run([f"{bin_dir}/x11_window", "VideoPlayer0", *words], env={**os.environ, **environment}, capture_output=True, text=True, timeout=60)
+def screen(*words, ok=True, player="VideoPlayer0"):
+    done = subprocess.run([f"{bin_dir}/x11_window", player, *words], env={**os.environ, **environment}, capture_output=True, text=True, timeout=60)
     assert not ok or done.returncode == 0, f"{words}: {done.returncode} {done.stderr}"
     return done.stdout.strip() if ok else done.returncode
 
@@ -212,7 +212,30 @@ def wrong_display():
     assert state() == "Active"
 
 
-cases = {f.__name__: f for f in (formats, keys, resize, bad_images, no_display, wrong_display)}
+# Players in one process share the display; what is typed reaches the one that is typed to.
+def two_players():
+    start_display()
+    start_player(others=["VideoPlayer"])
+    title = lambda number: screen("title", player=f"VideoPlayer{number}")
+    system.rtse("act", "VideoPlayer1")
+    system.until("a second window", lambda: title(1))
+    screen("key", "space", player="VideoPlayer1")
+    system.until("a title that says so", lambda: "paused" in title(1))
+    assert "paused" not in title(0), title(0)
+    screen("key", "q", player="VideoPlayer1")
+    system.until("one window less", lambda: screen("size", ok=False, player="VideoPlayer1") == 3)
+    rgb = noise(16 * 16 * 3, 1)
+    send(16, 16, rgb)
+    shows(16, 16, rgb)
+    assert state() == "Active"
+    # The last one closes, and another display's thread begins with the next.
+    screen("close")
+    system.until("no window", lambda: screen("size", ok=False) == 3)
+    system.rtse("act", "VideoPlayer1")
+    system.until("a window", lambda: title(1))
+
+
+cases = {f.__name__: f for f in (formats, keys, resize, bad_images, two_players, no_display, wrong_display)}
 with system:
     cases[case]()
 print("ok")
