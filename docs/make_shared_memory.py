@@ -84,7 +84,7 @@ out += """
 - Depth is measured along the optical axis. Where nothing is between the clip planes it is +infinity; the point there is NaN NaN NaN. Clouds are organised: point i belongs to pixel i of the depth
   image of the same time, x forward, y left, z up in the sensor. Of a distorting lens the points lie on the rays that its pixels really see.
 - A pixel at column u, row v has its centre at (u + 0.5, v + 0.5); a point (x, y, z) of the sensor is seen at u = cx - fx y / x, v = cy - fy z / x. With `distortion` those tangents are first
-  bent by k1 k2 p1 p2 k3 as in OpenCV.
+  bent by k1 k2 p1 p2 k3 as in OpenCV. Of a wide-angle lens (`<lens>`) fx and fy are those that a pinhole with its field of view would have.
 - The cameras of a set (`multicamera`) are ifaces `sensor::camera`, taken at the same time; the base line of a stereo pair is the difference of their `pose`s.
 - `dropped` counts frames that found every slot of the ring held by readers; a reader that is merely late misses the sequence numbers in between.
 

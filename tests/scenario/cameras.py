@@ -250,7 +250,24 @@ def killed_player_and_server():
     assert numbers()[-1] == 0, f"refused frames: {numbers()}"
 
 
-cases = {f.__name__: f for f in (slow_reader, only_for_readers, restarted_server, stopped_player, killed_player_and_server)}
+# simctl record writes every format as a PNG that anybody can look at.
+def recorded_formats():
+    names = ("R8G8B8", "B8G8R8", "RGBA_INT8", "BGRA_INT8", "L8", "L16", "BAYER_RGGB8", "BAYER_BGGR8", "BAYER_GBRG8", "BAYER_GRBG8")
+    eyes = "".join(f"<sensor name='{name}' type='camera'><camera><image><width>20</width><height>12</height><format>{name}</format></image></camera></sensor>" for name in names)
+    with open(world, "w") as file:
+        file.write(f"""<sdf version='1.9'><world name='w'><model name='wall'><static>true</static><pose>3 0 0 0 0 0</pose><link name='l'><visual name='v'>
+<geometry><box><size>0.2 40 40</size></box></geometry><material><lighting>false</lighting><diffuse>0 0 0 1</diffuse><emissive>1 0.502 0 1</emissive></material></visual></link></model>
+<model name='robot'><static>true</static><link name='l'>{eyes}</link></model></world></sdf>""")
+    system.server(world)
+    for name in names:
+        system.simctl("record", f"robot::{name}", f"{system.work}/{name}", "--count", "1")
+        picture = f"{system.work}/{name}/frame-000001.png"
+        pixel = (151,) if name.startswith("L") else (255, 128, 0, 255) if "A_INT8" in name else (255, 128, 0)
+        width, height, octets = pixels.png(picture, len(pixel))
+        assert (width, height, octets) == (20, 12, bytes(pixel) * 240), f"{name}: {octets[:12]}"
+
+
+cases = {f.__name__: f for f in (slow_reader, only_for_readers, restarted_server, stopped_player, killed_player_and_server, recorded_formats)}
 with system:
     cases[case]()
 print("ok")

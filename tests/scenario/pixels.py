@@ -19,8 +19,8 @@ def unfiltered(kind, row, above, pixel):
     return bytes(out)
 
 
-def png(path):
-    """Width, height and the bytes of an 8-bit RGB picture."""
+def png(path, channels=3):
+    """Width, height and the bytes of an 8-bit picture: grey (1), RGB (3) or RGBA (4)."""
     with open(path, "rb") as file:
         data = file.read()
     assert data[:8] == b"\x89PNG\r\n\x1a\n", f"{path}: no PNG"
@@ -30,13 +30,13 @@ def png(path):
         body = data[at + 8 : at + 8 + length]
         if kind == b"IHDR":
             width, height = int.from_bytes(body[:4], "big"), int.from_bytes(body[4:8], "big")
-            assert body[8:10] == b"\x08\x02", f"{path}: expected 8-bit RGB"
+            assert body[8:10] == bytes((8, {1: 0, 3: 2, 4: 6}[channels])), f"{path}: expected 8 bits and {channels} channels"
         if kind == b"IDAT":
             packed += body
         at += length + 12
-    raw, step, rows = zlib.decompress(packed), 3 * width + 1, [bytes(3 * width)]
+    raw, step, rows = zlib.decompress(packed), channels * width + 1, [bytes(channels * width)]
     for y in range(height):
-        rows.append(unfiltered(raw[y * step], raw[y * step + 1 : (y + 1) * step], rows[-1], 3))
+        rows.append(unfiltered(raw[y * step], raw[y * step + 1 : (y + 1) * step], rows[-1], channels))
     return width, height, b"".join(rows[1:])
 
 

@@ -13,8 +13,8 @@
 namespace video {
 namespace {
 
-struct Window_ : testing::Test {
-  Window_() { setenv("SDL_VIDEODRIVER", "dummy", 1); }
+struct Windows : testing::Test {
+  Windows() { setenv("SDL_VIDEODRIVER", "dummy", 1); }
 };
 
 std::shared_ptr<const Picture> picture(int width, int height) {
@@ -45,7 +45,7 @@ void press(SDL_Keycode key, std::uint32_t window) {
   SDL_PushEvent(&event);
 }
 
-TEST_F(Window_, without_a_display_says_so) {
+TEST_F(Windows, without_a_display_says_so) {
   unsetenv("SDL_VIDEODRIVER");
   unsetenv("DISPLAY");
   unsetenv("WAYLAND_DISPLAY");
@@ -60,7 +60,7 @@ TEST_F(Window_, without_a_display_says_so) {
   EXPECT_TRUE(Window::open("player")) << "a failure leaves nothing behind";
 }
 
-TEST_F(Window_, keys_reach_the_window_that_has_them) {
+TEST_F(Windows, keys_reach_the_window_that_has_them) {
   auto first = Window::open("first"), second = Window::open("second");
   ASSERT_TRUE(first && second);
   press(SDLK_SPACE, 2);
@@ -75,7 +75,7 @@ TEST_F(Window_, keys_reach_the_window_that_has_them) {
   EXPECT_FALSE(left.toggle_pause || left.close);
 }
 
-TEST_F(Window_, pictures_of_any_size_follow_each_other_from_many_threads) {
+TEST_F(Windows, pictures_of_any_size_follow_each_other_from_many_threads) {
   std::vector<std::jthread> owners;
   for (int owner = 0; owner < 4; ++owner) {
     owners.emplace_back([owner] {
