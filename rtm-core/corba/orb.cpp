@@ -198,6 +198,7 @@ class Forwarder final : public PortableServer::ServantBase {
   _CORBA_Boolean _non_existent() override { return target_->_non_existent(); }
   void* _ptrToInterface(const char* id) override { return omni::ptrStrMatch(id, CORBA::Object::_PD_repoId) ? this : nullptr; }
   const char* _mostDerivedRepoId() override { return CORBA::Object::_PD_repoId; }
+  CORBA::Object_ptr target() const { return CORBA::Object::_duplicate(target_); }
 
  private:
   CORBA::Object_var target_;
@@ -322,6 +323,20 @@ void Orb::publish(const std::string& key, CORBA::Object_ptr object) {
 void Orb::withdraw(const std::string& key) {
   const PortableServer::ObjectId_var id = PortableServer::string_to_ObjectId(key.c_str());
   remove_object(ins_poa_, id);
+}
+
+CORBA::Object_ptr published_object(CORBA::Object_ptr reference) {
+  try {
+    int argc = 0;
+    const CORBA::ORB_var orb = CORBA::ORB_init(argc, nullptr);
+    const CORBA::Object_var adapter = orb->resolve_initial_references("omniINSPOA");
+    const PortableServer::POA_var keys = PortableServer::POA::_narrow(adapter);
+    const PortableServer::ServantBase_var servant = keys->reference_to_servant(reference);
+    if (const auto* forwarder = dynamic_cast<const Forwarder*>(servant.in())) return forwarder->target();
+  } catch (const CORBA::Exception&) {
+    // Not of this adapter: the normal case.
+  }
+  return CORBA::Object::_nil();
 }
 
 void set_call_timeout(CORBA::Object_ptr object, std::chrono::milliseconds timeout) {

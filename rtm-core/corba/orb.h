@@ -66,6 +66,9 @@ class Orb {
   std::unique_ptr<PeerWatch> watch_;
 };
 
+// The object that has been published under the key of this reference; nil when the key is none of this process. A new reference.
+CORBA::Object_ptr published_object(CORBA::Object_ptr reference);
+
 // Every call through this reference (and copies made of it later) ends with CORBA::TIMEOUT or TRANSIENT after that time.
 void set_call_timeout(CORBA::Object_ptr object, std::chrono::milliseconds timeout);
 

@@ -25,15 +25,19 @@ std::string name_of(RTC::LightweightRTObject_ptr component) {
 
 }  // namespace
 
-RTC::LightweightRTObject_ptr RemoteParticipant::impatient(RTC::LightweightRTObject_ptr component) {
-  if (CORBA::is_nil(component)) return RTC::LightweightRTObject::_nil();
+CORBA::Object_ptr impatient_copy(CORBA::Object_ptr object, std::chrono::milliseconds timeout) {
+  if (CORBA::is_nil(object)) return CORBA::Object::_nil();
   int argc = 0;
   CORBA::ORB_var orb = CORBA::ORB_init(argc, nullptr);
-  CORBA::String_var text = orb->object_to_string(component);
-  CORBA::Object_var object = orb->string_to_object(text);
-  RTC::LightweightRTObject_var own = RTC::LightweightRTObject::_unchecked_narrow(object);
-  set_call_timeout(own, call_timeout);
+  CORBA::String_var text = orb->object_to_string(object);
+  CORBA::Object_var own = orb->string_to_object(text);
+  set_call_timeout(own, timeout);
   return own._retn();
+}
+
+RTC::LightweightRTObject_ptr RemoteParticipant::impatient(RTC::LightweightRTObject_ptr component) {
+  CORBA::Object_var own = impatient_copy(component, call_timeout);
+  return RTC::LightweightRTObject::_unchecked_narrow(own);
 }
 
 RemoteParticipant::RemoteParticipant(RTC::LightweightRTObject_ptr component, RTC::ExecutionContextHandle_t handle)

@@ -13,11 +13,14 @@
 
 namespace corba {
 
+// A reference of its own to the same object, whose calls end after `timeout` and throw CORBA system exceptions; nil for nil.
+CORBA::Object_ptr impatient_copy(CORBA::Object_ptr object, std::chrono::milliseconds timeout);
+
 class RemoteParticipant final : public rt::Participant {
  public:
   static constexpr std::chrono::milliseconds call_timeout{1000};
 
-  // A reference of its own to the same object, whose calls end after call_timeout and throw CORBA system exceptions; nil for nil.
+  // An impatient_copy with call_timeout.
   static RTC::LightweightRTObject_ptr impatient(RTC::LightweightRTObject_ptr component);
 
   // `component` is an impatient reference. Asks whether it has on_execute and the like.

@@ -49,20 +49,48 @@ ReturnCode ExecutionContext::start() {
   return ReturnCode::ok;
 }
 
-ReturnCode ExecutionContext::stop() {
+ReturnCode ExecutionContext::stop(std::chrono::nanoseconds timeout) {
   {
     auto data = shared_.lock();
     if (!data->running) return ReturnCode::precondition_not_met;
-    data->running = false;
+    data->halted = true;
   }
-  wait_until_quiet(60s);
+  if (!wait_until_quiet(timeout)) {
+    resume();
+    return ReturnCode::error;
+  }
+  {
+    auto data = shared_.lock();
+    data->running = false;
+    data->halted = false;
+  }
   call_all(Action::shutdown);
   return ReturnCode::ok;
 }
 
+void ExecutionContext::halt() { shared_.lock()->halted = true; }
+
+void ExecutionContext::resume() {
+  shared_.lock()->halted = false;
+  if (wake_) wake_();
+}
+
 bool ExecutionContext::wait_until_quiet(std::chrono::nanoseconds timeout) {
   auto data = shared_.lock();
-  return data.wait_for(changed_, timeout, [&] { return data->called == 0 || data->caller == std::this_thread::get_id(); });
+  if (data->called == 0 || data->caller == std::this_thread::get_id()) return true;
+  return data.wait_for(changed_, timeout, [&] { return data->called == 0 || is_stuck(*data); }) && data->called == 0;
+}
+
+void ExecutionContext::write_off_call() {
+  auto data = shared_.lock();
+  if (data->called != 0 && data->caller != std::this_thread::get_id()) data->stuck = data->calls;
+  changed_.notify_all();
+}
+
+std::optional<std::string> ExecutionContext::stuck_call() const {
+  auto data = shared_.lock();
+  if (!is_stuck(*data)) return std::nullopt;
+  return data->callee->name() + " in " + std::string(callback_of(data->action));
 }
 
 ReturnCode ExecutionContext::set_rate(double rate) {
@@ -83,6 +111,7 @@ MemberId ExecutionContext::add(std::shared_ptr<Participant> participant) {
 
 bool ExecutionContext::remove(MemberId id, std::chrono::nanoseconds timeout) {
   std::shared_ptr<Member> removed;  // a participant is destroyed without the lock
+  std::shared_ptr<Participant> participant;
   auto data = shared_.lock();
   const auto it = std::find_if(data->members.begin(), data->members.end(), [&](const auto& member) { return member->id == id; });
   if (it == data->members.end()) return false;
@@ -92,7 +121,12 @@ bool ExecutionContext::remove(MemberId id, std::chrono::nanoseconds timeout) {
   data->members.erase(it);
   ++data->version;
   changed_.notify_all();
-  return data.wait_for(changed_, timeout, [&] { return data->called != id || data->caller == std::this_thread::get_id(); });
+  const auto is_left_alone = [&] { return data->called != id || data->caller == std::this_thread::get_id(); };
+  const bool is_quiet =
+      is_left_alone() || (data.wait_for(changed_, timeout, [&] { return is_left_alone() || is_stuck(*data); }) && is_left_alone());
+  // The stepping thread, which may be stuck in a call to somebody else, still has this entry.
+  if (data->called != id) participant = std::move(removed->participant);
+  return is_quiet;
 }
 
 ExecutionContext::Member* ExecutionContext::find(Data& data, MemberId id) {
@@ -136,7 +170,7 @@ bool ExecutionContext::is_next(State state) const {
 
 bool ExecutionContext::is_idle() const {
   const auto data = shared_.lock();
-  if (!data->running) return true;
+  if (!may_call(*data)) return true;
   return std::all_of(data->members.begin(), data->members.end(),
                      [](const auto& member) { return member->state == State::inactive && !member->pending; });
 }
@@ -178,9 +212,12 @@ bool ExecutionContext::is_stepping_thread() const {
 std::optional<ReturnCode> ExecutionContext::call_in_phase(Member& member, Action action) {
   {
     auto data = shared_.lock();
-    if (member.removed || !data->running) return std::nullopt;
+    if (member.removed || !may_call(*data)) return std::nullopt;
     data->called = member.id;
     data->caller = std::this_thread::get_id();
+    data->callee = member.participant.get();
+    data->action = action;
+    ++data->calls;
   }
   const ReturnCode code = call(*member.participant, action);
   {
@@ -209,7 +246,7 @@ void ExecutionContext::transit(Member& member) {
   const Transition* transition = nullptr;
   {
     auto data = shared_.lock();
-    if (member.removed || !data->running || !member.pending) return;
+    if (member.removed || !may_call(*data) || !member.pending) return;
     transition = find_transition(member.state, *member.pending);
     assert(transition && "only possible events are pending");
   }
@@ -240,7 +277,7 @@ void ExecutionContext::run_phase(Select select) {
     std::optional<Action> action;
     {
       auto data = shared_.lock();
-      if (!member->removed && data->running && !member->pending) action = select(actions_of(member->state));
+      if (!member->removed && may_call(*data) && !member->pending) action = select(actions_of(member->state));
     }
     if (!action || call_in_phase(*member, *action).value_or(ReturnCode::ok) == ReturnCode::ok) continue;
     auto data = shared_.lock();

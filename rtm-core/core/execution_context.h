@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -57,10 +58,13 @@ class ExecutionContext {
   explicit ExecutionContext(std::string name = "execution context", double rate = 1000.0);
 
   bool is_running() const;
-  // Call every member's startup (shutdown) action. Fail when it runs (is stopped) already. After stop() has returned no phase calls
-  // anybody; it waits for a call that runs on another thread.
+  // Call every member's startup (shutdown) action. Fail when it runs (is stopped) already. After stop() has succeeded no phase calls
+  // anybody. It waits for a call that runs on another thread; when that does not return in time the answer is error and it runs on.
   ReturnCode start();
-  ReturnCode stop();
+  ReturnCode stop(std::chrono::nanoseconds timeout = std::chrono::seconds(60));
+  // Between halt() and resume() no phase begins to call anybody, so that a quiet context stays quiet.
+  void halt();
+  void resume();
 
   double rate() const;
   std::chrono::nanoseconds period() const;
@@ -70,7 +74,7 @@ class ExecutionContext {
   // A new member is inactive and takes part from the next cycle on.
   MemberId add(std::shared_ptr<Participant> participant);
   // Waits until the member is not being called on another thread. False when there is no such member or the time is over; even then it is
-  // not called again.
+  // not called again. Without a call in progress the participant is given back at once.
   bool remove(MemberId id, std::chrono::nanoseconds timeout = std::chrono::seconds(60));
   std::vector<MemberState> members() const;
   // State::created for somebody who is no member.
@@ -86,6 +90,10 @@ class ExecutionContext {
   ReturnCode wait(MemberId id, Event event, std::chrono::nanoseconds timeout);
   // Waits until nobody is called on another thread; false when the time is over.
   bool wait_until_quiet(std::chrono::nanoseconds timeout);
+  // Nobody waits for the call that runs now any more: remove() and wait_until_quiet() fail at once as long as it lasts.
+  void write_off_call();
+  // The call that is written off and still runs, as "Arm0 in onExecute".
+  std::optional<std::string> stuck_call() const;
 
   // Called after every request and change of rate, so that a worker wakes up. Set it before anybody else knows the context.
   void on_wake(std::function<void()> wake) { wake_ = std::move(wake); }
@@ -117,14 +125,21 @@ class ExecutionContext {
   };
   struct Data {
     bool running = false;
+    bool halted = false;
     double rate = 1000.0;
     MemberId last_id = 0;
     std::vector<std::shared_ptr<Member>> members{};
     std::uint64_t version = 0;  // of members
     MemberId called = 0;        // the member that the stepping thread calls now
     std::thread::id caller{};
+    const Participant* callee = nullptr;  // valid while called != 0
+    Action action{};
+    std::uint64_t calls = 0;  // so far
+    std::uint64_t stuck = 0;  // the number of the call that is written off
     ContextStatistics statistics{};
   };
+  static bool may_call(const Data& data) { return data.running && !data.halted; }
+  static bool is_stuck(const Data& data) { return data.called != 0 && data.stuck == data.calls; }
   using Shared = base::Guarded<Data, base::Rank::context>;
 
   static Member* find(Data& data, MemberId id);

@@ -56,4 +56,30 @@ std::string_view to_text(Action action) {
   return "unknown action";
 }
 
+std::string_view callback_of(Action action) {
+  switch (action) {
+    case Action::startup:
+      return "onStartup";
+    case Action::shutdown:
+      return "onShutdown";
+    case Action::activated:
+      return "onActivated";
+    case Action::deactivated:
+      return "onDeactivated";
+    case Action::aborting:
+      return "onAborting";
+    case Action::error:
+      return "onError";
+    case Action::reset:
+      return "onReset";
+    case Action::execute:
+      return "onExecute";
+    case Action::state_update:
+      return "onStateUpdate";
+    case Action::rate_changed:
+      return "onRateChanged";
+  }
+  return "unknown callback";
+}
+
 }  // namespace rt

@@ -59,5 +59,7 @@ std::string_view to_text(State state);
 std::string_view to_text(Event event);
 // "on_activated", ...
 std::string_view to_text(Action action);
+// "onActivated", ...: the name that authors know.
+std::string_view callback_of(Action action);
 
 }  // namespace rt

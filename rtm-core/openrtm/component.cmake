@@ -4,6 +4,7 @@ target_sources(openrtm PRIVATE
   rtm/ConfigAdmin.cpp
   rtm/ECFactory.cpp
   rtm/ExecutionContextBase.cpp
+  rtm/ExecutionContextMembers.cpp
   rtm/ExtTrigExecutionContext.cpp
   rtm/ExtendedFsmServiceProvider.cpp
   rtm/ListenerNames.cpp
@@ -15,6 +16,7 @@ target_sources(openrtm PRIVATE
   rtm/PeriodicECSharedComposite.cpp
   rtm/PeriodicExecutionContext.cpp
   rtm/RTObject.cpp
+  rtm/RTObjectCallbacks.cpp
   rtm/RTObjectContexts.cpp
   rtm/RTObjectOrphans.cpp
   rtm/RTObjectPorts.cpp

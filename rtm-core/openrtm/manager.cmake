@@ -9,6 +9,7 @@ target_sources(openrtm PRIVATE
   rtm/ManagerConfig.cpp
   rtm/ManagerConnections.cpp
   rtm/ManagerCreation.cpp
+  rtm/ManagerEnd.cpp
   rtm/ManagerLife.cpp
   rtm/ManagerServant.cpp
   rtm/ManagerTopics.cpp

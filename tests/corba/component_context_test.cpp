@@ -109,6 +109,7 @@ TEST_F(ComponentContextTest, authors_may_bring_one_with_a_clock_of_its_own) {
                                                       coil::Destructor<RTC::ExecutionContextBase, ManualContext>);
   Owned<> simulated(nullptr, "Simulated0");
   simulated->getProperties()["execution_contexts"] = "ManualContext";
+  simulated->getProperties()["exec_cxt.callback_timeout"] = "0";  // nobody steps it at the end
   ASSERT_EQ(simulated->initialize(), RTC::RTC_OK);
   std::chrono::nanoseconds seen{};
   simulated->during = [&](const std::string& callback) {

@@ -36,20 +36,32 @@ class ExecutionContextBase {
   virtual void init(coil::Properties& props);
   // Makes the component an owner of this context.
   virtual RTC::ReturnCode_t bindComponent(RTC::RTObject_impl* rtc);
-  // Ends the membership of an owner: after return the context does not call it any more. Returns how many owners are left.
-  std::size_t unbindComponent(RTC::RTObject_impl* rtc);
+  // Ends the membership of an owner: after return the context does not call it any more, but a callback that outlasts `patience` still
+  // runs. Returns how many owners are left.
+  std::size_t unbindComponent(RTC::RTObject_impl* rtc, std::chrono::nanoseconds patience = default_callback_timeout);
+  // Ends all memberships at once, without waiting for callbacks: for a context that ends.
+  void dismissMembers();
 
   CORBA::Boolean isRunning() const;
-  // onStartup (onShutdown) of every member is called on the calling thread.
+  // onStartup (onShutdown) of every member is called on the calling thread. stop() waits for a callback that runs; when that does not
+  // return within callbackTimeout() the answer is RTC_ERROR, a log line names it, and the context runs on when it does return.
   RTC::ReturnCode_t start();
   RTC::ReturnCode_t stop();
+  // The same with another end of its patience.
+  RTC::ReturnCode_t stopBy(std::chrono::steady_clock::time_point deadline);
+  // How long whoever ends something waits for callbacks of components: option callback_timeout [s].
+  static constexpr std::chrono::seconds default_callback_timeout{5};
+  std::chrono::nanoseconds callbackTimeout() const;
   // [Hz]
   CORBA::Double getRate() const;
   std::chrono::nanoseconds getPeriod() const;
   RTC::ReturnCode_t setRate(CORBA::Double rate);
 
   RTC::ReturnCode_t addComponent(RTC::LightweightRTObject_ptr comp);
+  // The component is not called any more after return. A callback of it that outlasts callbackTimeout() (or the deadline) still runs; a log
+  // line names it.
   RTC::ReturnCode_t removeComponent(RTC::LightweightRTObject_ptr comp);
+  RTC::ReturnCode_t removeComponent(RTC::LightweightRTObject_ptr comp, std::chrono::steady_clock::time_point deadline);
   // Wait for the transition unless sync_transition is off or the caller is the stepping thread.
   RTC::ReturnCode_t activateComponent(RTC::LightweightRTObject_ptr comp);
   RTC::ReturnCode_t deactivateComponent(RTC::LightweightRTObject_ptr comp);
@@ -82,8 +94,10 @@ class ExecutionContextBase {
   std::string getTypeName() const;
 
   // Brings a member to rest before it leaves: deactivates it when it is active, resets it when it is in error; waits for that whatever
-  // sync_transition says.
-  void calmComponent(RTC::LightweightRTObject_ptr comp, std::chrono::nanoseconds timeout);
+  // sync_transition says, but not for a callback that has outlasted a wait before.
+  void calmComponent(RTC::LightweightRTObject_ptr comp, std::chrono::steady_clock::time_point deadline);
+  // Asks for the same and returns at once; contexts without a thread do nothing.
+  void askToRest(RTC::LightweightRTObject_ptr comp);
   // Waits until no callback of a member runs on another thread; false on time-out.
   bool waitForQuiet(std::chrono::nanoseconds timeout);
 
@@ -129,6 +143,9 @@ class ExecutionContextBase {
   // Cycles that should have been and were not, for the statistics of the profile.
   void countMissedCycles(std::uint64_t cycles);
   bool isSteppingThread() const;
+  // For onStopping, before the thread is joined: waits for the callback that runs, as long as stop() may. False, and a log line, when it
+  // does not return.
+  bool waitForCallbacks();
 
   rt::ExecutionContext& context();
   const rt::ExecutionContext& context() const;
@@ -138,6 +155,10 @@ class ExecutionContextBase {
  private:
   struct Impl;
   class Joining;
+  class Changing;
+  std::chrono::nanoseconds callbackPatience() const;
+  // About the one that runs; nobody waits for it any more.
+  void complainAboutCallback(const char* consequence);
   std::unique_ptr<Impl> impl_;
 };
 

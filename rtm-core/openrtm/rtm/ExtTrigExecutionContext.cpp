@@ -5,8 +5,6 @@
 
 namespace RTC {
 
-using namespace std::chrono_literals;
-
 class ExtTrigExecutionContext::Steps final : public rt::Steps {
  public:
   explicit Steps(ExtTrigExecutionContext& context) : context_(context) {}
@@ -44,8 +42,7 @@ RTC::ReturnCode_t ExtTrigExecutionContext::onStarted() {
 
 RTC::ReturnCode_t ExtTrigExecutionContext::onStopping() {
   worker_->stop();
-  if (!waitForQuiet(10s)) {
-    RTC_ERROR(("a component has not returned from its callback for 10 s; the context goes on when it does"));
+  if (!waitForCallbacks()) {
     worker_->reset();
     return RTC::RTC_ERROR;
   }

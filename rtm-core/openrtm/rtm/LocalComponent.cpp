@@ -1,28 +1,32 @@
+#include <rtm/ExecutionContextBase.h>
 #include <rtm/LocalComponent.h>
 #include <rtm/RTObject.h>
+
+#include "corba/orb.h"
 
 namespace RTC {
 
 namespace {
 
-std::shared_ptr<RTObject_impl> find_in(PortableServer::POA_ptr poa, CORBA::Object_ptr object) {
-  if (CORBA::is_nil(poa)) return nullptr;
+template <class Wanted>
+std::shared_ptr<Wanted> find(CORBA::Object_ptr object) {
+  if (CORBA::is_nil(object)) return nullptr;
+  PortableServer::POA_var root = PortableServer::POA::_the_root_poa();
+  if (CORBA::is_nil(root)) return nullptr;
   try {
-    PortableServer::Servant servant = poa->reference_to_servant(object);
-    if (auto* component = dynamic_cast<RTObject_impl*>(servant)) return {component, [](RTObject_impl* counted) { counted->_remove_ref(); }};
+    PortableServer::Servant servant = root->reference_to_servant(object);
+    if (auto* wanted = dynamic_cast<Wanted*>(servant)) return {wanted, [servant](Wanted*) { servant->_remove_ref(); }};
     servant->_remove_ref();
   } catch (const CORBA::Exception&) {
-    // Not of this adapter: the normal case for components of other processes.
+    // Not of this adapter: the normal case for objects of other processes.
   }
-  return nullptr;
+  const CORBA::Object_var published = corba::published_object(object);
+  return CORBA::is_nil(published) ? nullptr : find<Wanted>(published);
 }
 
 }  // namespace
 
-std::shared_ptr<RTObject_impl> findLocalComponent(CORBA::Object_ptr object) {
-  if (CORBA::is_nil(object)) return nullptr;
-  PortableServer::POA_var root = PortableServer::POA::_the_root_poa();
-  return find_in(root, object);
-}
+std::shared_ptr<RTObject_impl> findLocalComponent(CORBA::Object_ptr object) { return find<RTObject_impl>(object); }
+std::shared_ptr<ExecutionContextBase> findLocalContext(CORBA::Object_ptr object) { return find<ExecutionContextBase>(object); }
 
 }  // namespace RTC

@@ -121,7 +121,7 @@ void ManagerImpl::destroy(std::uint64_t id) {
   {
     auto locked = state.lock();
     const auto at = locked->records.find(id);
-    if (at == locked->records.end()) return;
+    if (at == locked->records.end() || at->second.component == nullptr) return;
     record = at->second;
     at->second.finalized = true;
   }
@@ -130,16 +130,16 @@ void ManagerImpl::destroy(std::uint64_t id) {
     const std::scoped_lock lock(numbering_mutex);
     if (numbering != nullptr) numbering->onDelete(record.component);
   }
-  const bool is_held = record.component->isHeldByCallback();
-  if (is_held) {
-    RTC_ERROR(("%s: does not return from its callback; it is gone for others but stays in memory", record.instance_name.c_str()));
-  } else if (record.factory) {
-    record.factory->destroy(record.component);
+  {
+    // Nobody finds it any more; who is looking at it has a reference.
+    auto locked = state.lock();
+    locked->records[id].component = nullptr;
+    locked->abandoned.push_back(record);
   }
+  delete_abandoned();
   bool is_last = false;
   {
     auto locked = state.lock();
-    locked->has_abandoned = locked->has_abandoned || is_held;
     locked->reserved_names.erase(record.instance_name);
     locked->records.erase(id);
     is_last = locked->records.empty() && locked->had_components && locked->activated && locked->phase == Phase::active;
@@ -150,19 +150,19 @@ void ManagerImpl::destroy(std::uint64_t id) {
   }
 }
 
-void ManagerImpl::exit_all_components() {
-  auto all = records();
-  std::reverse(all.begin(), all.end());
-  for (const auto& record : all) {
-    if (!record.listed || record.finalized) continue;
-    try {
-      record.component->exit();
-    } catch (...) {
-      RTC_ERROR(("%s: exit failed with an exception", record.instance_name.c_str()));
-    }
-    cleaner->post([this, id = record.id] { destroy(id); });
+// Those in whose callbacks no thread is any more.
+void ManagerImpl::delete_abandoned() {
+  RTObject_impl::destroyLeftContexts();
+  std::vector<Record> free;
+  {
+    auto locked = state.lock();
+    auto& all = locked->abandoned;
+    const auto rest = std::stable_partition(all.begin(), all.end(), [](const Record& one) { return one.component->isHeldByCallback(); });
+    free.assign(rest, all.end());
+    all.erase(rest, all.end());
   }
-  cleaner->drain();
+  for (const Record& record : free)
+    if (record.factory) record.factory->destroy(record.component);
 }
 
 void Manager::deleteComponent(RTObject_impl* comp) {

@@ -88,7 +88,8 @@ std::optional<ManagerImpl::RegisteredFactory> ManagerImpl::find_factory(const rt
 std::size_t ManagerImpl::forget_module(const std::string& module) {
   auto locked = state.lock();
   const auto living = static_cast<std::size_t>(
-      std::count_if(locked->records.begin(), locked->records.end(), [&](const auto& entry) { return entry.second.module == module; }));
+      std::count_if(locked->records.begin(), locked->records.end(), [&](const auto& entry) { return entry.second.module == module; }) +
+      std::count_if(locked->abandoned.begin(), locked->abandoned.end(), [&](const auto& record) { return record.module == module; }));
   if (living == 0) std::erase_if(locked->factories, [&](const auto& registered) { return registered.module == module; });
   return living;
 }

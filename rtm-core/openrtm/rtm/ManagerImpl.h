@@ -68,7 +68,9 @@ class ManagerImpl {
     bool activating = false;  // a thread is in activate
     bool activated = false;   // everything that the configuration names has been made
     bool had_components = false;
-    bool has_abandoned = false;  // a component was left in memory because a thread is still in one of its callbacks
+    std::vector<Record> abandoned;  // gone for everybody, but in memory as long as a thread is in one of their callbacks
+    std::string step;               // of the end
+    std::chrono::steady_clock::time_point step_since{};
     std::chrono::steady_clock::time_point empty_since = std::chrono::steady_clock::now();
   };
 
@@ -104,7 +106,7 @@ class ManagerImpl {
   base::Result<RTObject_impl*> create(std::string argument);
   void finalized(RTObject_impl* component);
   void destroy(std::uint64_t id);
-  void exit_all_components();
+  void delete_abandoned();
   // Puts the component's names into the naming service and its key into the ORB, and takes them out.
   void publish(const Record& record);
   void withdraw(const Record& record);
@@ -153,8 +155,19 @@ class ManagerImpl {
   void start_naming();
   void start_timer_tasks();
   void live();
+  // The end (ManagerEnd.cpp)
+  class EndWatch;
   void end();
   void remove_files() const;
+  void begin_step(std::string step);
+  void exit_all_components();
+  std::chrono::nanoseconds callback_timeout() const;
+  // Every component that is in memory, with a reference.
+  std::vector<std::shared_ptr<RTObject_impl>> all_components() const;
+  bool is_callback_running() const;
+  void complain_about_callbacks() const;
+  void answer_last_calls();
+  [[noreturn]] void give_up(const std::string& step);
   void look_after_number_of_components();
 
   coil::Properties inherited_properties() const;

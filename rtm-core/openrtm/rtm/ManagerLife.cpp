@@ -6,7 +6,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 
 #include "base/log.h"
 #include "base/text.h"
@@ -320,67 +319,6 @@ bool ManagerImpl::wait_until_ended(std::chrono::nanoseconds timeout) {
   }
   if (finished.joinable()) finished.join();
   return true;
-}
-
-// Waits for the request and does the work of ending: on a thread of its own because anybody may ask, also a component or the ORB.
-void ManagerImpl::live() {
-  pthread_setname_np(pthread_self(), "rtm-life");
-  for (bool ready = false; !ready;) {  // nothing is taken away under the hands of activate
-    auto locked = state.lock();
-    ready = locked.wait_for(changed, std::chrono::hours(1), [&] { return locked->end_requested && !locked->activating; });
-  }
-  try {
-    end();
-  } catch (const std::exception& e) {
-    RTC_ERROR(("ending failed: %s", e.what()));
-  } catch (...) {
-    RTC_ERROR(("ending failed with an unknown exception"));
-  }
-  auto locked = state.lock();
-  locked->phase = Phase::ended;
-  locked->life_is_over = true;
-  changed.notify_all();
-}
-
-// Before the process ends without shutting the ORB down.
-void ManagerImpl::remove_files() const {
-  std::error_code ignored;
-  if (!socket_folder.empty()) std::filesystem::remove_all(socket_folder, ignored);
-}
-
-void ManagerImpl::end() {
-  listeners.manager_.call(&RTM::ManagerActionListener::preShutdown);
-  state.lock()->phase = Phase::ending;
-  if (peers) peers->stop();
-  if (servant != nullptr) servant->leave_masters();
-  exit_all_components();
-  naming->unbindAll();
-  if (state.lock()->has_abandoned) {
-    RTC_ERROR(("the process ends while a callback runs that does not return"));
-    remove_files();
-    std::fflush(nullptr);
-    std::_Exit(EXIT_FAILURE);  // anything more would be taken away under its hands
-  }
-  RTM::LocalServiceAdmin::instance().finalize();
-  if (servant != nullptr) servant->deactivate();
-  timer->stop();
-  cleaner->drain();
-  cleaner->stop();
-  naming.reset();
-  {
-    const std::scoped_lock lock(numbering_mutex);
-    RTM::NumberingPolicyFactory::instance().deleteObject(numbering);
-  }
-  orb.reset();
-  if (servant != nullptr) servant->_remove_ref();
-  servant = nullptr;
-  listeners.manager_.call(&RTM::ManagerActionListener::postShutdown);
-  for (auto* plugin : log_plugins) {
-    if (plugin->getStreamBuffer() != nullptr) removeLogStreamBuffer(plugin->getStreamBuffer());
-    plugin->shutdown();
-    LogstreamFactory::instance().deleteObject(plugin);
-  }
-  log_plugins.clear();
 }
 
 }  // namespace RTC

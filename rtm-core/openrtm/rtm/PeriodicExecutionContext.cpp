@@ -10,8 +10,6 @@
 
 namespace RTC {
 
-using namespace std::chrono_literals;
-
 class PeriodicExecutionContext::Steps final : public rt::Steps {
  public:
   explicit Steps(PeriodicExecutionContext& context) : context_(context) {}
@@ -62,8 +60,7 @@ RTC::ReturnCode_t PeriodicExecutionContext::onStarted() {
 
 RTC::ReturnCode_t PeriodicExecutionContext::onStopping() {
   worker_->stop();
-  if (!waitForQuiet(10s)) {
-    RTC_ERROR(("a component has not returned from its callback for 10 s; the context cannot stop"));
+  if (!waitForCallbacks()) {
     worker_->reset();
     return RTC::RTC_ERROR;
   }

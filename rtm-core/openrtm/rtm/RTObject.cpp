@@ -5,21 +5,10 @@
 #include <rtm/PortBase.h>
 #include <rtm/RTObjectImpl.h>
 
-#include <exception>
-
 #include "base/text.h"
 #include "corba/orb.h"
 
 namespace RTC {
-
-using namespace std::chrono_literals;
-
-namespace {
-
-// How many callbacks of components run on this thread, one inside the other.
-thread_local int callback_depth = 0;
-
-}  // namespace
 
 void deactivateServant(PortableServer::ServantBase& servant, CORBA::Object_ptr reference) {
   try {
@@ -63,164 +52,6 @@ DataFlowComponentBase::DataFlowComponentBase(Manager* manager) : RTObject_impl(m
 DataFlowComponentBase::DataFlowComponentBase(CORBA::ORB_ptr orb, PortableServer::POA_ptr poa) : RTObject_impl(orb, poa) {}
 DataFlowComponentBase::~DataFlowComponentBase() = default;
 
-// --- callbacks
-
-ReturnCode_t RTObject_impl::onInitialize() { return RTC_OK; }
-ReturnCode_t RTObject_impl::onFinalize() { return RTC_OK; }
-ReturnCode_t RTObject_impl::onStartup(RTC::UniqueId) { return RTC_OK; }
-ReturnCode_t RTObject_impl::onShutdown(RTC::UniqueId) { return RTC_OK; }
-ReturnCode_t RTObject_impl::onActivated(RTC::UniqueId) { return RTC_OK; }
-ReturnCode_t RTObject_impl::onDeactivated(RTC::UniqueId) { return RTC_OK; }
-ReturnCode_t RTObject_impl::onExecute(RTC::UniqueId) { return RTC_OK; }
-ReturnCode_t RTObject_impl::onAborting(RTC::UniqueId) { return RTC_OK; }
-ReturnCode_t RTObject_impl::onError(RTC::UniqueId) { return RTC_OK; }
-ReturnCode_t RTObject_impl::onReset(RTC::UniqueId) { return RTC_OK; }
-ReturnCode_t RTObject_impl::onStateUpdate(RTC::UniqueId) { return RTC_OK; }
-ReturnCode_t RTObject_impl::onRateChanged(RTC::UniqueId) { return RTC_OK; }
-ReturnCode_t RTObject_impl::onAction(RTC::UniqueId) { return RTC_OK; }
-
-template <class Function>
-ReturnCode_t RTObject_impl::callUser(const char* name, Function function) {
-  struct Depth {
-    Depth() { ++callback_depth; }
-    ~Depth() { --callback_depth; }
-  } const depth;
-  try {
-    return function();
-  } catch (const CORBA::Exception& exception) {
-    RTC_ERROR(("%s threw %s", name, corba::to_text(exception).c_str()));
-  } catch (const std::exception& exception) {
-    RTC_ERROR(("%s threw: %s", name, exception.what()));
-  } catch (...) {
-    RTC_ERROR(("%s threw something that is no std::exception", name));
-  }
-  return RTC_ERROR;
-}
-
-ReturnCode_t RTObject_impl::on_initialize() {
-  return callUser("onInitialize", [this] {
-    m_actionListeners.preaction_[PRE_ON_INITIALIZE].notify(0);
-    const ReturnCode_t code = onInitialize();
-    const std::string active = m_properties.getProperty("configuration.active_config", "default");
-    if (!m_configsets.activateConfigurationSet(active.c_str())) m_configsets.activateConfigurationSet("default");
-    m_configsets.update();
-    m_actionListeners.postaction_[POST_ON_INITIALIZE].notify(0, code);
-    return code;
-  });
-}
-
-ReturnCode_t RTObject_impl::on_finalize() {
-  return callUser("onFinalize", [this] {
-    m_actionListeners.preaction_[PRE_ON_FINALIZE].notify(0);
-    const ReturnCode_t code = onFinalize();
-    m_actionListeners.postaction_[POST_ON_FINALIZE].notify(0, code);
-    return code;
-  });
-}
-
-ReturnCode_t RTObject_impl::on_startup(ExecutionContextHandle_t exec_handle) {
-  return callUser("onStartup", [&] {
-    m_actionListeners.preaction_[PRE_ON_STARTUP].notify(exec_handle);
-    const ReturnCode_t code = onStartup(exec_handle);
-    m_actionListeners.postaction_[POST_ON_STARTUP].notify(exec_handle, code);
-    return code;
-  });
-}
-
-ReturnCode_t RTObject_impl::on_shutdown(ExecutionContextHandle_t exec_handle) {
-  return callUser("onShutdown", [&] {
-    m_actionListeners.preaction_[PRE_ON_SHUTDOWN].notify(exec_handle);
-    const ReturnCode_t code = onShutdown(exec_handle);
-    m_actionListeners.postaction_[POST_ON_SHUTDOWN].notify(exec_handle, code);
-    return code;
-  });
-}
-
-ReturnCode_t RTObject_impl::on_activated(ExecutionContextHandle_t exec_handle) {
-  return callUser("onActivated", [&] {
-    m_actionListeners.preaction_[PRE_ON_ACTIVATED].notify(exec_handle);
-    m_configsets.update();
-    const ReturnCode_t code = onActivated(exec_handle);
-    activatePorts(exec_handle);
-    m_actionListeners.postaction_[POST_ON_ACTIVATED].notify(exec_handle, code);
-    return code;
-  });
-}
-
-ReturnCode_t RTObject_impl::on_deactivated(ExecutionContextHandle_t exec_handle) {
-  return callUser("onDeactivated", [&] {
-    m_actionListeners.preaction_[PRE_ON_DEACTIVATED].notify(exec_handle);
-    deactivatePorts(exec_handle);
-    const ReturnCode_t code = onDeactivated(exec_handle);
-    m_actionListeners.postaction_[POST_ON_DEACTIVATED].notify(exec_handle, code);
-    return code;
-  });
-}
-
-ReturnCode_t RTObject_impl::on_aborting(ExecutionContextHandle_t exec_handle) {
-  return callUser("onAborting", [&] {
-    m_actionListeners.preaction_[PRE_ON_ABORTING].notify(exec_handle);
-    const ReturnCode_t code = onAborting(exec_handle);
-    m_actionListeners.postaction_[POST_ON_ABORTING].notify(exec_handle, code);
-    return code;
-  });
-}
-
-ReturnCode_t RTObject_impl::on_error(ExecutionContextHandle_t exec_handle) {
-  return callUser("onError", [&] {
-    m_actionListeners.preaction_[PRE_ON_ERROR].notify(exec_handle);
-    const ReturnCode_t code = onError(exec_handle);
-    m_configsets.update();
-    m_actionListeners.postaction_[POST_ON_ERROR].notify(exec_handle, code);
-    return code;
-  });
-}
-
-ReturnCode_t RTObject_impl::on_reset(ExecutionContextHandle_t exec_handle) {
-  return callUser("onReset", [&] {
-    m_actionListeners.preaction_[PRE_ON_RESET].notify(exec_handle);
-    const ReturnCode_t code = onReset(exec_handle);
-    m_actionListeners.postaction_[POST_ON_RESET].notify(exec_handle, code);
-    return code;
-  });
-}
-
-ReturnCode_t RTObject_impl::on_execute(ExecutionContextHandle_t exec_handle) {
-  return callUser("onExecute", [&] {
-    m_actionListeners.preaction_[PRE_ON_EXECUTE].notify(exec_handle);
-    bool reads = false, writes = false;
-    {
-      auto data = impl_->shared.lock();
-      reads = data->reads_all;
-      writes = data->writes_all;
-    }
-    if (reads) readAll();
-    const ReturnCode_t code = onExecute(exec_handle);
-    if (writes) writeAll();
-    m_actionListeners.postaction_[POST_ON_EXECUTE].notify(exec_handle, code);
-    return code;
-  });
-}
-
-ReturnCode_t RTObject_impl::on_state_update(ExecutionContextHandle_t exec_handle) {
-  return callUser("onStateUpdate", [&] {
-    m_actionListeners.preaction_[PRE_ON_STATE_UPDATE].notify(exec_handle);
-    const ReturnCode_t code = onStateUpdate(exec_handle);
-    m_configsets.update();
-    m_actionListeners.postaction_[POST_ON_STATE_UPDATE].notify(exec_handle, code);
-    return code;
-  });
-}
-
-ReturnCode_t RTObject_impl::on_rate_changed(ExecutionContextHandle_t exec_handle) {
-  return callUser("onRateChanged", [&] {
-    m_actionListeners.preaction_[PRE_ON_RATE_CHANGED].notify(exec_handle);
-    const ReturnCode_t code = onRateChanged(exec_handle);
-    m_actionListeners.postaction_[POST_ON_RATE_CHANGED].notify(exec_handle, code);
-    return code;
-  });
-}
-
 // --- life
 
 ReturnCode_t RTObject_impl::initialize() {
@@ -236,10 +67,15 @@ ReturnCode_t RTObject_impl::initialize() {
     return code;
   };
   prepareBinding();
-  const std::string active_set = m_properties.getProperty("configuration.active_config");
+  coil::Properties properties;
+  {
+    const auto turn = impl_->properties_turn.lock();
+    properties = m_properties;
+  }
+  const std::string active_set = properties.getProperty("configuration.active_config");
   if (!active_set.empty() && !m_configsets.activateConfigurationSet(active_set.c_str()))
     RTC_WARN(("configuration.active_config: there is no set %s", base::in_quotes(active_set).c_str()));
-  impl_->services.init(m_properties);
+  impl_->services.init(properties);
   if (getOwnContexts().empty())  // the manager's bindExecutionContext may have made them
     if (const ReturnCode_t code = createContexts(); code != RTC_OK) return give_up(code);
   if (const ReturnCode_t code = on_initialize(); code != RTC_OK) {
@@ -256,21 +92,30 @@ ReturnCode_t RTObject_impl::initialize() {
   return RTC_OK;
 }
 
-ReturnCode_t RTObject_impl::finalize() {
+ReturnCode_t RTObject_impl::finalize() { return finalizeBy(std::chrono::steady_clock::now() + callbackTimeout()); }
+
+ReturnCode_t RTObject_impl::finalizeBy(std::chrono::steady_clock::time_point deadline) {
   {
     auto data = impl_->shared.lock();
     if (data->phase != Impl::Phase::exiting) return PRECONDITION_NOT_MET;
     data->phase = Impl::Phase::finalizing;
   }
-  on_finalize();
+  // Authors rely on it that their callbacks do not run side by side.
+  if (waitForCallbacks(deadline))
+    on_finalize();
+  else
+    complainAboutCallbacks("the component ends without onFinalize and onShutdown and stays in memory");
   finalizePorts();
-  finalizeContexts();
+  finalizeContexts(deadline);
   shutdown();
+  destroyLeftContexts();  // not in the destructor, which a context's thread may call
   if (m_pManager) m_pManager->notifyFinalized(this);
   return RTC_OK;
 }
 
-ReturnCode_t RTObject_impl::exit() {
+ReturnCode_t RTObject_impl::exit() { return exitBy(std::chrono::steady_clock::now() + callbackTimeout()); }
+
+ReturnCode_t RTObject_impl::exitBy(std::chrono::steady_clock::time_point deadline) {
   bool is_first = false;
   {
     auto data = impl_->shared.lock();
@@ -278,15 +123,15 @@ ReturnCode_t RTObject_impl::exit() {
     if (is_first) data->phase = Impl::Phase::exiting;
   }
   if (!is_first) {
-    if (callback_depth == 0) waitForExiter();
+    if (!isInsideCallback()) waitForExiter();
     return PRECONDITION_NOT_MET;
   }
-  if (callback_depth == 0) return exitNow();
+  if (!isInsideCallback()) return exitNow(deadline);
   // A context cannot be stopped from inside one of its callbacks. The thread holds a reference: the component may be given back meanwhile.
   _add_ref();
   const std::scoped_lock lock(impl_->exiter_mutex);
-  impl_->exiter = std::thread([this] {
-    exitNow();
+  impl_->exiter = std::thread([this, deadline] {
+    exitNow(deadline);
     _remove_ref();
   });
   return RTC_OK;
@@ -303,10 +148,10 @@ void RTObject_impl::waitForExiter() {
   if (exiter.joinable()) exiter.join();
 }
 
-ReturnCode_t RTObject_impl::exitNow() {
+ReturnCode_t RTObject_impl::exitNow(std::chrono::steady_clock::time_point deadline) {
   leaveOrganizations();
-  leaveContexts();
-  return finalize();
+  leaveContexts(deadline);
+  return finalizeBy(deadline);
 }
 
 void RTObject_impl::leaveOrganizations() {
@@ -318,37 +163,6 @@ void RTObject_impl::leaveOrganizations() {
       target->remove_member(getInstanceName());
     } catch (const CORBA::Exception& exception) {
       RTC_DEBUG(("an organization does not let the component go: %s", corba::to_text(exception).c_str()));
-    }
-  }
-}
-
-void RTObject_impl::leaveContexts() {
-  std::vector<ExecutionContextBase*> contexts;
-  std::vector<ExecutionContext_var> foreign;
-  RTObject_var self;
-  {
-    auto data = impl_->shared.lock();
-    contexts = data->contexts;
-    foreign = data->foreign;
-    self = data->reference;
-  }
-  for (ExecutionContextBase* context : contexts) context->calmComponent(self, 5s);
-  for (ExecutionContext_var& context : foreign) {
-    if (CORBA::is_nil(context)) continue;
-    try {
-      switch (context->get_component_state(self)) {
-        case ACTIVE_STATE:
-          context->deactivate_component(self);
-          break;
-        case ERROR_STATE:
-          context->reset_component(self);
-          break;
-        default:
-          break;
-      }
-      context->remove_component(self);
-    } catch (const CORBA::Exception& exception) {
-      RTC_DEBUG(("a context of another process does not answer: %s", corba::to_text(exception).c_str()));
     }
   }
 }
@@ -417,7 +231,12 @@ void RTObject_impl::takeNames() {
   if (!instance.empty() && instance != profile_.instance_name) setInstanceName(instance.c_str());
 }
 
-std::vector<std::string> RTObject_impl::getNamingNames() const { return coil::split(m_properties.getProperty("naming.names"), ",", true); }
+std::string RTObject_impl::property(const std::string& key, const std::string& otherwise) const {
+  const auto turn = impl_->properties_turn.lock();
+  return m_properties.getProperty(key, otherwise);
+}
+
+std::vector<std::string> RTObject_impl::getNamingNames() const { return coil::split(property("naming.names"), ",", true); }
 
 void RTObject_impl::setObjRef(const RTObject_ptr rtobj) { impl_->shared.lock()->reference = RTC::RTObject::_duplicate(rtobj); }
 
@@ -450,7 +269,14 @@ void RTObject_impl::removeStatusListener(int number) { impl_->shared.lock()->sta
 void RTObject_impl::prepareBinding() {
   const auto phase = impl_->shared.lock()->phase;
   if (phase != Impl::Phase::created && phase != Impl::Phase::initializing) return;
-  if (const coil::Properties* conf = m_properties.findNode("conf")) m_configsets.load(*conf);
+  coil::Properties sets;
+  {
+    const auto turn = impl_->properties_turn.lock();
+    const coil::Properties* conf = m_properties.findNode("conf");
+    if (!conf) return;
+    sets = *conf;
+  }
+  m_configsets.load(sets);
 }
 
 ComponentProfile* RTObject_impl::get_component_profile() {

@@ -16,10 +16,12 @@
 #include <rtm/idl/OpenRTMSkel.h>
 
 // Authors rely on some of these headers without naming them: coil/Time.h, CORBA_SeqUtil.h, NVUtil.h, iostream.
+#include <chrono>
 #include <functional>
 #include <iostream>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace SDOPackage {
@@ -61,8 +63,12 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   // RTC::LightweightRTObject
   ReturnCode_t initialize() override;
   ReturnCode_t finalize() override;
-  // From inside a callback it returns at once and happens after the cycle.
+  // From inside a callback it returns at once and happens after the cycle. Waits for callbacks of this component that run: those that do
+  // not return within callbackTimeout(), all together, are named in the log; the component is then gone for everybody else but must not be
+  // deleted (isHeldByCallback).
   ReturnCode_t exit() override;
+  // The same with another end of its patience.
+  ReturnCode_t exitBy(std::chrono::steady_clock::time_point deadline);
   CORBA::Boolean is_alive(ExecutionContext_ptr exec_context) override;
   ExecutionContext_ptr get_context(ExecutionContextHandle_t exec_handle) override;
   ExecutionContextList* get_owned_contexts() override;
@@ -185,10 +191,26 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   ReturnCode_t reset(RTC::UniqueId ec_id);
   // The contexts that this process has made for the component.
   std::vector<ExecutionContextBase*> getOwnContexts() const;
-  // After exit(): a thread is still in a callback that does not return; the component must not be deleted.
+  // The property exec_cxt.callback_timeout [s], default 5.
+  std::chrono::nanoseconds callbackTimeout() const;
+  // Asks for deactivation (reset) wherever the component is active (in error), and waits for nothing; then waits until it is at rest.
+  void askToRest();
+  void comeToRest(std::chrono::steady_clock::time_point deadline);
+  // Callbacks that run on other threads, whoever calls them.
+  struct RunningCallback {
+    const char* callback;
+    std::chrono::steady_clock::time_point since;
+    std::thread::id thread;
+    bool is_written_off;  // has outlasted a wait; nobody waits for it again
+  };
+  std::vector<RunningCallback> runningCallbacks() const;
+  // After exit(): a thread is still in a callback; the component must not be deleted before it returns.
   bool isHeldByCallback() const;
   // Contexts and organizations whose process has died are left, and the component's own contexts go on. The manager's timer calls it.
   void leaveTheDead();
+  // Contexts that could not end because of a callback are destroyed when it has returned: by the next component that ends, or here. True
+  // when none is left.
+  static bool destroyLeftContexts();
 
   // SDO services.
   bool addSdoServiceProvider(const SDOPackage::ServiceProfile& prof, SdoServiceProviderBase* provider);
@@ -366,8 +388,14 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   void activatePorts(UniqueId exec_handle);
   void deactivatePorts(UniqueId exec_handle);
   void leaveOrganizations();
-  void leaveContexts();
-  ReturnCode_t exitNow();
+  std::vector<std::shared_ptr<ExecutionContextBase>> localContexts() const;
+  void leaveContexts(std::chrono::steady_clock::time_point deadline);
+  ReturnCode_t exitNow(std::chrono::steady_clock::time_point deadline);
+  ReturnCode_t finalizeBy(std::chrono::steady_clock::time_point deadline);
+  void finalizeContexts(std::chrono::steady_clock::time_point deadline);
+  bool waitForCallbacks(std::chrono::steady_clock::time_point deadline);
+  void complainAboutCallbacks(const char* consequence) const;
+  std::string property(const std::string& key, const std::string& otherwise = "") const;
   void waitForExiter();
   // Calls the author's function; what it throws is logged and RTC_ERROR.
   template <class Function>

@@ -1,6 +1,7 @@
 // The execution contexts of a component: its own, made from properties, and those it takes part in.
 #include <coil/stringutil.h>
 #include <rtm/ECFactory.h>
+#include <rtm/LocalComponent.h>
 #include <rtm/Manager.h>
 #include <rtm/RTObjectImpl.h>
 
@@ -8,6 +9,7 @@
 
 #include "base/text.h"
 #include "corba/orb.h"
+#include "corba/remote_participant.h"
 
 namespace RTC {
 
@@ -70,12 +72,42 @@ class NamedContexts {
   base::Guarded<std::vector<Entry>, base::Rank::registry> entries_;
 };
 
+std::chrono::nanoseconds left_until(std::chrono::steady_clock::time_point deadline) {
+  return std::max<std::chrono::nanoseconds>(deadline - std::chrono::steady_clock::now(), std::chrono::nanoseconds(0));
+}
+
+// Contexts whose owners are gone, but not the callback that one of their threads is in.
+base::Guarded<std::vector<ExecutionContextBase*>, base::Rank::registry>& left_contexts() {
+  static base::Guarded<std::vector<ExecutionContextBase*>, base::Rank::registry> contexts;
+  return contexts;
+}
+
+// What the context asks of others on the way (detach_context) is its own affair; these calls end in time.
+void leaveRemoteContext(ExecutionContext_ptr reference, RTObject_ptr self, std::chrono::steady_clock::time_point deadline) {
+  constexpr std::chrono::milliseconds shortest{200};
+  const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(left_until(deadline));
+  CORBA::Object_var own = corba::impatient_copy(reference, std::max(left, shortest));
+  ExecutionContext_var context = ExecutionContext::_unchecked_narrow(own);
+  switch (context->get_component_state(self)) {
+    case ACTIVE_STATE:
+      context->deactivate_component(self);
+      break;
+    case ERROR_STATE:
+      context->reset_component(self);
+      break;
+    default:
+      break;
+  }
+  context->remove_component(self);
+}
+
 bool is_same(ExecutionContext_ptr a, ExecutionContext_ptr b) { return !CORBA::is_nil(a) && !CORBA::is_nil(b) && a->_is_equivalent(b); }
 
 }  // namespace
 
 // exec_cxt.*, then exec_cxt.periodic.*, ec.<type>.* and ec.<name>.*; the last word counts.
 coil::Properties RTObject_impl::contextOptions(const std::string& type, const std::string& name) const {
+  const auto turn = impl_->properties_turn.lock();
   coil::Properties options;
   options["sync_transition"] = "YES";
   options["transition_timeout"] = "0.5";
@@ -96,10 +128,17 @@ coil::Properties RTObject_impl::contextOptions(const std::string& type, const st
 
 ReturnCode_t RTObject_impl::createContexts() {
   registerBuiltinExecutionContexts(m_pManager);
-  const std::string list = m_properties.getProperty("execution_contexts");
+  if (const std::string text = property("exec_cxt.callback_timeout"); !text.empty()) {
+    const auto number = base::parse_number(text);
+    if (number && *number >= 0 && *number < 1e6)
+      impl_->shared.lock()->callback_timeout = std::chrono::nanoseconds(static_cast<std::int64_t>(*number * 1e9));
+    else
+      RTC_WARN(("exec_cxt.callback_timeout must be a number of seconds, got %s", base::in_quotes(text).c_str()));
+  }
+  const std::string list = property("execution_contexts");
   std::vector<Wanted> wanted;
   if (list.empty())
-    wanted.push_back({m_properties.getProperty("exec_cxt.periodic.type", "PeriodicExecutionContext"), ""});
+    wanted.push_back({property("exec_cxt.periodic.type", "PeriodicExecutionContext"), ""});
   else if (!base::equal_ignoring_case(base::trim(list), "none"))
     wanted = parse_contexts(list);
   for (const Wanted& one : wanted) {
@@ -123,31 +162,92 @@ ReturnCode_t RTObject_impl::createContexts() {
   return RTC_OK;
 }
 
+std::chrono::nanoseconds RTObject_impl::callbackTimeout() const { return impl_->shared.lock()->callback_timeout; }
+
+// The contexts of this process in which the component is or may be.
+std::vector<std::shared_ptr<ExecutionContextBase>> RTObject_impl::localContexts() const {
+  std::vector<std::shared_ptr<ExecutionContextBase>> contexts;
+  std::vector<ExecutionContext_var> references;
+  {
+    auto data = impl_->shared.lock();
+    references = data->own;
+    references.insert(references.end(), data->foreign.begin(), data->foreign.end());
+  }
+  for (const ExecutionContext_var& reference : references)
+    if (auto context = findLocalContext(reference)) contexts.push_back(std::move(context));
+  return contexts;
+}
+
+void RTObject_impl::askToRest() {
+  const RTObject_var self = getObjRef();
+  for (const auto& context : localContexts()) context->askToRest(self);
+}
+
+void RTObject_impl::comeToRest(std::chrono::steady_clock::time_point deadline) {
+  const RTObject_var self = getObjRef();
+  for (const auto& context : localContexts()) context->calmComponent(self, deadline);
+  waitForCallbacks(deadline);
+}
+
+void RTObject_impl::leaveContexts(std::chrono::steady_clock::time_point deadline) {
+  askToRest();
+  comeToRest(deadline);
+  const RTObject_var self = getObjRef();
+  const std::vector<ExecutionContext_var> foreign = impl_->shared.lock()->foreign;
+  for (const ExecutionContext_var& reference : foreign) {
+    if (CORBA::is_nil(reference)) continue;
+    if (const auto context = findLocalContext(reference)) {
+      context->removeComponent(self, deadline);
+      continue;
+    }
+    try {
+      leaveRemoteContext(reference, self, deadline);
+    } catch (const CORBA::Exception& exception) {
+      RTC_DEBUG(("a context of another process does not answer: %s", corba::to_text(exception).c_str()));
+    }
+  }
+}
+
 // Own contexts end with their last owner. May be called again.
-void RTObject_impl::finalizeContexts() {
+void RTObject_impl::finalizeContexts() { finalizeContexts(std::chrono::steady_clock::now() + callbackTimeout()); }
+
+void RTObject_impl::finalizeContexts(std::chrono::steady_clock::time_point deadline) {
   std::vector<ExecutionContextBase*> contexts;
   contexts.swap(impl_->shared.lock()->contexts);
+  // A thread cannot be taken out of a callback that does not return, so what it works on must stay; but nobody calls it any more.
+  const bool is_held = isHeldByCallback();
   for (ExecutionContextBase* context : contexts) {
-    if (NamedContexts::instance().release(context)) {
-      // A thread cannot be taken out of a callback that does not return, so what it works on must stay. stop() has waited already when it
-      // fails.
-      const bool has_failed = context->stop() == RTC::RTC_ERROR;
-      if (!context->waitForQuiet(has_failed ? std::chrono::seconds(0) : std::chrono::seconds(10))) {
-        impl_->shared.lock()->is_held = true;
-        continue;
-      }
-      context->unbindComponent(this);
+    const bool is_last = NamedContexts::instance().release(context);
+    if (is_held || !is_last) context->unbindComponent(this, is_held ? std::chrono::nanoseconds(0) : left_until(deadline));
+    if (!is_last) continue;
+    const bool has_failed = context->stopBy(deadline) == RTC_ERROR;
+    const bool is_quiet = !has_failed && context->waitForQuiet(left_until(deadline));
+    context->unbindComponent(this, std::chrono::nanoseconds(0));
+    context->dismissMembers();
+    if (is_quiet)
       destroyExecutionContext(context);
-    } else {
-      context->unbindComponent(this);
-    }
+    else
+      left_contexts().lock()->push_back(context);
   }
   auto data = impl_->shared.lock();
   data->own.clear();
   data->foreign.clear();
 }
 
-bool RTObject_impl::isHeldByCallback() const { return impl_->shared.lock()->is_held; }
+bool RTObject_impl::destroyLeftContexts() {
+  if (isInsideCallback()) return false;  // perhaps on the thread of one of them
+  std::vector<ExecutionContextBase*> contexts;
+  contexts.swap(*left_contexts().lock());
+  std::erase_if(contexts, [](ExecutionContextBase* context) {
+    if (!context->waitForQuiet(std::chrono::nanoseconds(0))) return false;
+    context->stop();
+    destroyExecutionContext(context);
+    return true;
+  });
+  auto all = left_contexts().lock();
+  all->insert(all->end(), contexts.begin(), contexts.end());
+  return all->empty();
+}
 
 CORBA::Boolean RTObject_impl::is_alive(ExecutionContext_ptr exec_context) { return get_context_handle(exec_context) >= 0; }
 

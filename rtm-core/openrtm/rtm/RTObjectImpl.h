@@ -33,7 +33,7 @@ struct RTObject_impl::Impl {
     std::vector<ExecutionContext_var> own{};      // by handle
     std::vector<ExecutionContext_var> foreign{};  // by handle - foreign_offset; nil where one has left
     std::vector<ExecutionContextBase*> contexts{};
-    bool is_held = false;  // see isHeldByCallback
+    std::chrono::nanoseconds callback_timeout = ExecutionContextBase::default_callback_timeout;
     std::vector<Port> ports{};
     std::set<UniqueId> active_in{};  // contexts in which the component is active: ports work while there is one
     std::vector<SDOPackage::Organization_var> organizations{};
@@ -52,11 +52,17 @@ struct RTObject_impl::Impl {
   base::Guarded<Turn, base::Rank::registry> properties_turn;
   SdoServiceAdmin services;
   SDOPackage::Configuration_impl* configuration = nullptr;  // a servant; one reference
-  std::thread exiter;                                       // runs exit() when a callback asked for it
+  class Visit;
+  base::Guarded<std::vector<RunningCallback>, base::Rank::buffer> running;
+  std::condition_variable callback_ended;
+  std::thread exiter;  // runs exit() when a callback asked for it
   std::mutex exiter_mutex;
 };
 
 inline constexpr ExecutionContextHandle_t foreign_offset = 1000;
+
+// This thread runs a callback of some component.
+bool isInsideCallback();
 
 // Takes a servant out of its object adapter; calls in progress end first, then its reference is given back there.
 void deactivateServant(PortableServer::ServantBase& servant, CORBA::Object_ptr reference);

@@ -9,7 +9,10 @@
 
 namespace RTC {
 
-std::string RTObject_impl::portNameOf(const std::string& name) const { return profile_.instance_name + "." + name; }
+std::string RTObject_impl::portNameOf(const std::string& name) const {
+  const auto turn = impl_->properties_turn.lock();
+  return profile_.instance_name + "." + name;
+}
 
 bool RTObject_impl::addPort(Port port) {
   if (port.local) {
@@ -17,8 +20,11 @@ bool RTObject_impl::addPort(Port port) {
     const char* kind = port.in ? "inport" : port.out ? "outport" : "corbaport";
     const std::string for_all = port.in || port.out ? std::string("port.") + kind + ".dataport" : "port.corba";
     coil::Properties properties;
-    if (const coil::Properties* node = m_properties.findNode(for_all)) properties << *node;
-    if (const coil::Properties* node = m_properties.findNode(std::string("port.") + kind + "." + port.name)) properties << *node;
+    {
+      const auto turn = impl_->properties_turn.lock();
+      if (const coil::Properties* node = m_properties.findNode(for_all)) properties << *node;
+      if (const coil::Properties* node = m_properties.findNode(std::string("port.") + kind + "." + port.name)) properties << *node;
+    }
     RTObject_var self = getObjRef();
     port.local->setName(portNameOf(port.name).c_str());
     port.local->setOwner(self);

@@ -1,0 +1,302 @@
+// The members of an execution context: how they come, change their state and leave.
+#include <rtm/ExecutionContextImpl.h>
+#include <rtm/LocalComponent.h>
+#include <rtm/RTObject.h>
+
+#include <algorithm>
+
+#include "corba/orb.h"
+#include "corba/remote_participant.h"
+#include "corba/return_code.h"
+
+namespace RTC {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+class LocalParticipant final : public rt::Participant {
+ public:
+  LocalParticipant(std::shared_ptr<RTObject_impl> component, ExecutionContextHandle_t handle)
+      : component_(std::move(component)), handle_(handle) {}
+
+  std::string name() const override { return component_->getInstanceName(); }
+  rt::ReturnCode call(rt::Action action) override { return corba::from_wire(forward(action)); }
+
+ private:
+  ReturnCode_t forward(rt::Action action) {
+    switch (action) {
+      case rt::Action::startup:
+        return component_->on_startup(handle_);
+      case rt::Action::shutdown:
+        return component_->on_shutdown(handle_);
+      case rt::Action::activated:
+        return component_->on_activated(handle_);
+      case rt::Action::deactivated:
+        return component_->on_deactivated(handle_);
+      case rt::Action::aborting:
+        return component_->on_aborting(handle_);
+      case rt::Action::error:
+        return component_->on_error(handle_);
+      case rt::Action::reset:
+        return component_->on_reset(handle_);
+      case rt::Action::execute:
+        return component_->on_execute(handle_);
+      case rt::Action::state_update:
+        return component_->on_state_update(handle_);
+      case rt::Action::rate_changed:
+        return component_->on_rate_changed(handle_);
+    }
+    return RTC::RTC_ERROR;
+  }
+
+  const std::shared_ptr<RTObject_impl> component_;
+  const ExecutionContextHandle_t handle_;
+};
+
+}  // namespace
+
+std::optional<ExecutionContextBase::Impl::Member> ExecutionContextBase::Impl::find(RTC::LightweightRTObject_ptr component) const {
+  if (CORBA::is_nil(component)) return std::nullopt;
+  const std::vector<Member> members = snapshot();
+  for (const Member& member : members)
+    if (member.reference->_is_equivalent(component)) return member;
+  // The same component under another key (corbaloc).
+  if (const auto local = findLocalComponent(component))
+    for (const Member& member : members)
+      if (member.local == local.get()) return member;
+  return std::nullopt;
+}
+
+std::vector<RTC::LightweightRTObject_var> ExecutionContextBase::getComponents() const {
+  std::vector<RTC::LightweightRTObject_var> components;
+  for (const Impl::Member& member : impl_->snapshot()) components.push_back(member.reference);
+  return components;
+}
+
+RTC::ReturnCode_t ExecutionContextBase::bindComponent(RTC::RTObject_impl* rtc) {
+  if (rtc == nullptr) return RTC::BAD_PARAMETER;
+  RTC::ExecutionContextService_var reference = getObjRef();
+  RTC::RTObject_var owner = rtc->getObjRef();
+  const ExecutionContextHandle_t handle = rtc->bindContext(reference);
+  if (handle < 0) return RTC::RTC_ERROR;
+  rtc->_add_ref();
+  const std::shared_ptr<RTObject_impl> counted(rtc, [](RTObject_impl* component) { component->_remove_ref(); });
+  const rt::MemberId id = impl_->context.add(std::make_shared<LocalParticipant>(counted, handle));
+  auto data = impl_->shared.lock();
+  data->members.push_back(
+      {.reference = RTC::LightweightRTObject::_duplicate(owner), .local = rtc, .id = id, .handle = handle, .owner = true});
+  if (CORBA::is_nil(data->owner)) data->owner = owner;
+  return RTC::RTC_OK;
+}
+
+std::size_t ExecutionContextBase::unbindComponent(RTC::RTObject_impl* rtc, std::chrono::nanoseconds patience) {
+  rt::MemberId id = 0;
+  std::size_t owners = 0;
+  {
+    auto data = impl_->shared.lock();
+    std::erase_if(data->members, [&](const Impl::Member& member) {
+      if (member.local != rtc || !member.owner) return false;
+      id = member.id;
+      return true;
+    });
+    data->owner = RTC::RTObject::_nil();
+    for (const Impl::Member& member : data->members)
+      if (member.owner && owners++ == 0) data->owner = RTC::RTObject::_unchecked_narrow(member.reference);
+  }
+  if (id != 0) impl_->context.remove(id, patience);
+  return owners;
+}
+
+void ExecutionContextBase::dismissMembers() {
+  std::vector<Impl::Member> members;
+  members.swap(impl_->shared.lock()->members);
+  for (const Impl::Member& member : members) {
+    impl_->context.remove(member.id, 0ns);
+    if (!member.owner) Impl::detach(member, rtclog);
+  }
+}
+
+void ExecutionContextBase::Impl::detach(const Member& member, Logger& rtclog) {
+  try {
+    RTC::LightweightRTObject_var(member.reference)->detach_context(member.handle);
+  } catch (const CORBA::Exception& exception) {
+    RTC_DEBUG(("a component that leaves does not answer detach_context: %s", corba::to_text(exception).c_str()));
+  }
+}
+
+// One caller at a time brings a component in: it is no member until it has answered.
+class ExecutionContextBase::Joining {
+ public:
+  Joining(base::Guarded<Impl::Data, base::Rank::component>& shared, RTC::LightweightRTObject_ptr component)
+      : shared_(shared), component_(RTC::LightweightRTObject::_duplicate(component)) {
+    auto data = shared_.lock();
+    for (const auto& other : data->joining)
+      if (RTC::LightweightRTObject_var(other)->_is_equivalent(component)) return;
+    data->joining.push_back(component_);
+    is_first_ = true;
+  }
+  ~Joining() {
+    if (!is_first_) return;
+    auto data = shared_.lock();
+    const auto it =
+        std::find_if(data->joining.begin(), data->joining.end(), [&](const auto& other) { return other.in() == component_.in(); });
+    if (it != data->joining.end()) data->joining.erase(it);
+  }
+  Joining(const Joining&) = delete;
+  Joining& operator=(const Joining&) = delete;
+  explicit operator bool() const { return is_first_; }
+
+ private:
+  base::Guarded<Impl::Data, base::Rank::component>& shared_;
+  RTC::LightweightRTObject_var component_;
+  bool is_first_ = false;
+};
+
+RTC::ReturnCode_t ExecutionContextBase::addComponent(RTC::LightweightRTObject_ptr comp) {
+  if (CORBA::is_nil(comp)) return RTC::BAD_PARAMETER;
+  const Joining joining(impl_->shared, comp);
+  if (!joining || impl_->find(comp)) return RTC::PRECONDITION_NOT_MET;
+  if (const auto code = onAddingComponent(comp); code != RTC::RTC_OK) return code;
+  RTC::ExecutionContextService_var self = getObjRef();
+  Impl::Member member;
+  std::shared_ptr<rt::Participant> participant;
+  try {
+    if (const auto local = findLocalComponent(comp)) {
+      member.reference = RTC::LightweightRTObject::_duplicate(comp);
+      member.local = local.get();
+      member.handle = local->attach_context(self);
+      participant = std::make_shared<LocalParticipant>(local, member.handle);
+    } else {
+      member.reference = corba::RemoteParticipant::impatient(comp);
+      member.handle = member.reference->attach_context(self);
+      if (member.handle >= 0) participant = std::make_shared<corba::RemoteParticipant>(member.reference, member.handle);
+    }
+  } catch (const CORBA::Exception& exception) {
+    RTC_ERROR(("a component that is to join does not answer attach_context: %s", corba::to_text(exception).c_str()));
+    return RTC::RTC_ERROR;
+  }
+  if (member.handle < 0) return RTC::RTC_ERROR;
+  member.id = impl_->context.add(std::move(participant));
+  impl_->shared.lock()->members.push_back(member);
+  return onAddedComponent(comp);
+}
+
+RTC::ReturnCode_t ExecutionContextBase::removeComponent(RTC::LightweightRTObject_ptr comp) {
+  return removeComponent(comp, std::chrono::steady_clock::now() + callbackTimeout());
+}
+
+RTC::ReturnCode_t ExecutionContextBase::removeComponent(RTC::LightweightRTObject_ptr comp, std::chrono::steady_clock::time_point deadline) {
+  const auto member = impl_->find(comp);
+  if (!member || member->owner) return RTC::BAD_PARAMETER;
+  if (const auto code = onRemovingComponent(comp); code != RTC::RTC_OK) return code;
+  {
+    auto data = impl_->shared.lock();
+    if (std::erase_if(data->members, [&](const Impl::Member& other) { return other.id == member->id; }) == 0) return RTC::BAD_PARAMETER;
+  }
+  const auto patience = std::max<std::chrono::nanoseconds>(deadline - std::chrono::steady_clock::now(), 0ns);
+  if (!impl_->context.remove(member->id, patience)) complainAboutCallback("it leaves the context all the same");
+  Impl::detach(*member, rtclog);
+  return onRemovedComponent(comp);
+}
+
+RTC::ReturnCode_t ExecutionContextBase::activateComponent(RTC::LightweightRTObject_ptr comp) {
+  const auto member = impl_->find(comp);
+  if (!member) return RTC::BAD_PARAMETER;
+  if (const auto code = onActivating(comp); code != RTC::RTC_OK) return code;
+  if (const auto code = impl_->context.request(member->id, rt::Event::activate); code != rt::ReturnCode::ok) return corba::to_wire(code);
+  const Impl::Patience patience = impl_->shared.lock()->activation;
+  RTC_impl::RTObjectStateMachine machine(member->reference, member->handle, impl_->context, member->id, member->owner);
+  if (!patience.wait) return onActivated(&machine, 0);
+  if (impl_->context.is_stepping_thread()) return RTC::RTC_OK;
+  if (const auto code = onWaitingActivated(&machine, 0); code != RTC::RTC_OK) return code;
+  const auto code = impl_->context.wait(member->id, rt::Event::activate, patience.timeout);
+  return code == rt::ReturnCode::ok ? onActivated(&machine, 1) : corba::to_wire(code);
+}
+
+RTC::ReturnCode_t ExecutionContextBase::deactivateComponent(RTC::LightweightRTObject_ptr comp) {
+  const auto member = impl_->find(comp);
+  if (!member) return RTC::BAD_PARAMETER;
+  if (const auto code = onDeactivating(comp); code != RTC::RTC_OK) return code;
+  if (const auto code = impl_->context.request(member->id, rt::Event::deactivate); code != rt::ReturnCode::ok) return corba::to_wire(code);
+  const Impl::Patience patience = impl_->shared.lock()->deactivation;
+  RTC_impl::RTObjectStateMachine machine(member->reference, member->handle, impl_->context, member->id, member->owner);
+  if (!patience.wait) return onDeactivated(&machine, 0);
+  if (impl_->context.is_stepping_thread()) return RTC::RTC_OK;
+  if (const auto code = onWaitingDeactivated(&machine, 0); code != RTC::RTC_OK) return code;
+  const auto code = impl_->context.wait(member->id, rt::Event::deactivate, patience.timeout);
+  return code == rt::ReturnCode::ok ? onDeactivated(&machine, 1) : corba::to_wire(code);
+}
+
+RTC::ReturnCode_t ExecutionContextBase::resetComponent(RTC::LightweightRTObject_ptr comp) {
+  const auto member = impl_->find(comp);
+  if (!member) return RTC::BAD_PARAMETER;
+  if (const auto code = onResetting(comp); code != RTC::RTC_OK) return code;
+  if (const auto code = impl_->context.request(member->id, rt::Event::reset); code != rt::ReturnCode::ok) return corba::to_wire(code);
+  const Impl::Patience patience = impl_->shared.lock()->reset;
+  RTC_impl::RTObjectStateMachine machine(member->reference, member->handle, impl_->context, member->id, member->owner);
+  if (!patience.wait) return onReset(&machine, 0);
+  if (impl_->context.is_stepping_thread()) return RTC::RTC_OK;
+  if (const auto code = onWaitingReset(&machine, 0); code != RTC::RTC_OK) return code;
+  const auto code = impl_->context.wait(member->id, rt::Event::reset, patience.timeout);
+  return code == rt::ReturnCode::ok ? onReset(&machine, 1) : corba::to_wire(code);
+}
+
+RTC::LifeCycleState ExecutionContextBase::getComponentState(RTC::LightweightRTObject_ptr comp) const {
+  const auto member = impl_->find(comp);
+  const auto state = member ? static_cast<RTC::LifeCycleState>(impl_->context.state(member->id)) : RTC::CREATED_STATE;
+  return onGetComponentState(state);
+}
+
+void ExecutionContextBase::askToRest(RTC::LightweightRTObject_ptr comp) {
+  const auto member = impl_->find(comp);
+  if (!member || !isRunning()) return;
+  const rt::State state = impl_->context.state(member->id);
+  if (state == rt::State::active) impl_->context.request(member->id, rt::Event::deactivate);
+  if (state == rt::State::error) impl_->context.request(member->id, rt::Event::reset);
+}
+
+void ExecutionContextBase::calmComponent(RTC::LightweightRTObject_ptr comp, std::chrono::steady_clock::time_point deadline) {
+  const auto member = impl_->find(comp);
+  if (!member || !isRunning()) return;
+  const auto left = [&] { return std::max<std::chrono::nanoseconds>(deadline - std::chrono::steady_clock::now(), 0ns); };
+  RTC_impl::RTObjectStateMachine machine(member->reference, member->handle, impl_->context, member->id, member->owner);
+  // A transition that is under way ends first; a deactivation that fails leads to the error state, and a reset out of it.
+  for (int attempt = 0; attempt < 3 && !impl_->context.stuck_call(); ++attempt) {
+    const rt::State state = impl_->context.state(member->id);
+    const rt::State next = impl_->context.next_state(member->id);
+    if (state == next && state != rt::State::active && state != rt::State::error) return;
+    const rt::Event event = state == rt::State::error ? rt::Event::reset : rt::Event::deactivate;
+    if (state == next && impl_->context.request(member->id, event) != rt::ReturnCode::ok) return;
+    if (event == rt::Event::reset)
+      onWaitingReset(&machine, 0);
+    else
+      onWaitingDeactivated(&machine, 0);
+    const rt::ReturnCode code = impl_->context.wait(member->id, event, left());
+    if (left() == 0ns) {
+      impl_->context.write_off_call();
+      return;
+    }
+    if (state == rt::State::error && code != rt::ReturnCode::ok) return;
+  }
+}
+
+void destroyExecutionContext(ExecutionContextBase* context) {
+  auto* servant = dynamic_cast<PortableServer::ServantBase*>(context);
+  if (servant == nullptr) {
+    delete context;
+    return;
+  }
+  RTC::ExecutionContextService_var reference = context->getObjRef();
+  context->setObjRef(RTC::ExecutionContextService::_nil());
+  try {
+    PortableServer::POA_var poa = servant->_default_POA();
+    PortableServer::ObjectId_var id = poa->reference_to_id(reference);
+    poa->deactivate_object(id);
+  } catch (const CORBA::Exception&) {
+    // It was never activated, or the object adapter is gone: there is nothing left to take it out of.
+  }
+  servant->_remove_ref();
+}
+
+}  // namespace RTC

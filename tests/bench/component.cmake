@@ -1,0 +1,2 @@
+add_executable(component_bench component_bench.cpp)
+target_link_libraries(component_bench PRIVATE openrtm rtmsim_settings)
