@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <iterator>
 
 #include "base/log.h"
 
@@ -77,20 +78,25 @@ void ExecutionContext::resume() {
 
 bool ExecutionContext::wait_until_quiet(std::chrono::nanoseconds timeout) {
   auto data = shared_.lock();
-  if (data->called == 0 || data->caller == std::this_thread::get_id()) return true;
-  return data.wait_for(changed_, timeout, [&] { return data->called == 0 || is_stuck(*data); }) && data->called == 0;
+  data.wait_for(changed_, timeout,
+                [&] { return std::ranges::all_of(data->calls, [](const Call& call) { return call.is_own() || call.is_written_off; }); });
+  return std::ranges::all_of(data->calls, [](const Call& call) { return call.is_own(); });
 }
 
 void ExecutionContext::write_off_call() {
   auto data = shared_.lock();
-  if (data->called != 0 && data->caller != std::this_thread::get_id()) data->stuck = data->calls;
+  for (Call& call : data->calls) call.is_written_off = call.is_written_off || !call.is_own();
   changed_.notify_all();
 }
 
 std::optional<std::string> ExecutionContext::stuck_call() const {
   auto data = shared_.lock();
-  if (!is_stuck(*data)) return std::nullopt;
-  return data->callee->name() + " in " + std::string(callback_of(data->action));
+  std::optional<std::string> text;
+  for (const Call& call : data->calls) {
+    if (!call.is_written_off) continue;
+    text = (text ? *text + ", " : "") + call.callee->name() + " in " + std::string(callback_of(call.action));
+  }
+  return text;
 }
 
 ReturnCode ExecutionContext::set_rate(double rate) {
@@ -101,10 +107,13 @@ ReturnCode ExecutionContext::set_rate(double rate) {
   return ReturnCode::ok;
 }
 
-MemberId ExecutionContext::add(std::shared_ptr<Participant> participant) {
+void ExecutionContext::set_lanes(std::size_t count) { lanes_.resize(std::max<std::size_t>(count, 1)); }
+
+MemberId ExecutionContext::add(std::shared_ptr<Participant> participant, std::size_t lane) {
   auto data = shared_.lock();
   const MemberId id = ++data->last_id;
-  data->members.push_back(std::make_shared<Member>(Member{.id = id, .participant = std::move(participant)}));
+  data->members.push_back(
+      std::make_shared<Member>(Member{.id = id, .participant = std::move(participant), .lane = lane < lanes_.size() ? lane : 0}));
   ++data->version;
   return id;
 }
@@ -121,11 +130,14 @@ bool ExecutionContext::remove(MemberId id, std::chrono::nanoseconds timeout) {
   data->members.erase(it);
   ++data->version;
   changed_.notify_all();
-  const auto is_left_alone = [&] { return data->called != id || data->caller == std::this_thread::get_id(); };
-  const bool is_quiet =
-      is_left_alone() || (data.wait_for(changed_, timeout, [&] { return is_left_alone() || is_stuck(*data); }) && is_left_alone());
+  const auto is_left_alone = [&](bool forget_written_off) {
+    return std::ranges::none_of(
+        data->calls, [&](const Call& call) { return call.member == id && !call.is_own() && !(forget_written_off && call.is_written_off); });
+  };
+  data.wait_for(changed_, timeout, [&] { return is_left_alone(true); });
+  const bool is_quiet = is_left_alone(false);
   // The stepping thread, which may be stuck in a call to somebody else, still has this entry.
-  if (data->called != id) participant = std::move(removed->participant);
+  if (std::ranges::none_of(data->calls, [&](const Call& call) { return call.member == id; })) participant = std::move(removed->participant);
   return is_quiet;
 }
 
@@ -206,40 +218,39 @@ ReturnCode ExecutionContext::wait(MemberId id, Event event, std::chrono::nanosec
 
 bool ExecutionContext::is_stepping_thread() const {
   const auto data = shared_.lock();
-  return data->called != 0 && data->caller == std::this_thread::get_id();
+  return std::ranges::any_of(data->calls, [](const Call& call) { return call.is_own(); });
 }
 
 std::optional<ReturnCode> ExecutionContext::call_in_phase(Member& member, Action action) {
   {
     auto data = shared_.lock();
     if (member.removed || !may_call(*data)) return std::nullopt;
-    data->called = member.id;
-    data->caller = std::this_thread::get_id();
-    data->callee = member.participant.get();
-    data->action = action;
-    ++data->calls;
+    data->calls.push_back({member.id, member.participant.get(), action, std::this_thread::get_id(), false});
   }
   const ReturnCode code = call(*member.participant, action);
   {
     auto data = shared_.lock();
-    data->called = 0;
+    const auto it = std::find_if(data->calls.rbegin(), data->calls.rend(), [](const Call& one) { return one.is_own(); });
+    data->calls.erase(std::next(it).base());
   }
   changed_.notify_all();  // free when nobody waits
   return code;
 }
 
-void ExecutionContext::refresh() {
+void ExecutionContext::refresh(std::size_t number) {
+  Lane& lane = lanes_[number];
   std::vector<std::shared_ptr<Member>> old;  // what has left is destroyed without the lock
   auto data = shared_.lock();
-  if (stepping_version_ == data->version) return;
-  old = std::exchange(stepping_, data->members);
-  stepping_version_ = data->version;
+  if (lane.version == data->version) return;
+  old = std::exchange(lane.members, {});
+  std::ranges::copy_if(data->members, std::back_inserter(lane.members), [&](const auto& member) { return member->lane == number; });
+  lane.version = data->version;
 }
 
-void ExecutionContext::transit() {
-  cycle_start_ = std::chrono::steady_clock::now();
-  refresh();
-  for (const auto& member : stepping_) transit(*member);
+void ExecutionContext::transit(std::size_t lane) {
+  lanes_[lane].cycle_start = std::chrono::steady_clock::now();
+  refresh(lane);
+  for (const auto& member : lanes_[lane].members) transit(*member);
 }
 
 void ExecutionContext::transit(Member& member) {
@@ -272,8 +283,8 @@ void ExecutionContext::transit(Member& member) {
 }
 
 template <class Select>
-void ExecutionContext::run_phase(Select select) {
-  for (const auto& member : stepping_) {
+void ExecutionContext::run_phase(std::size_t lane, Select select) {
+  for (const auto& member : lanes_[lane].members) {
     std::optional<Action> action;
     {
       auto data = shared_.lock();
@@ -285,13 +296,14 @@ void ExecutionContext::run_phase(Select select) {
   }
 }
 
-void ExecutionContext::execute() {
-  run_phase([](const StateActions& actions) { return actions.execute; });
+void ExecutionContext::execute(std::size_t lane) {
+  run_phase(lane, [](const StateActions& actions) { return actions.execute; });
 }
 
-void ExecutionContext::update() {
-  run_phase([](const StateActions& actions) { return actions.state_update; });
-  const auto took = std::chrono::steady_clock::now() - cycle_start_;
+void ExecutionContext::update(std::size_t lane) {
+  run_phase(lane, [](const StateActions& actions) { return actions.state_update; });
+  if (lane != 0) return;
+  const auto took = std::chrono::steady_clock::now() - lanes_[lane].cycle_start;
   auto data = shared_.lock();
   if (!data->running) return;
   ContextStatistics& statistics = data->statistics;

@@ -1,6 +1,6 @@
 // An execution context without a thread: who takes part, in which state, what is asked for, and the three phases of a cycle.
-// step() and the phases belong to one thread at a time, the stepping thread; everything else may be called from any thread. No lock is held
-// while a participant is called.
+// step() and the phases belong to one thread at a time, the stepping thread; with lanes, each lane has one. Everything else may be called
+// from any thread. No lock is held while a participant is called.
 #pragma once
 
 #include <chrono>
@@ -71,8 +71,10 @@ class ExecutionContext {
   // Takes effect from the next cycle on; calls every member's rate_changed.
   ReturnCode set_rate(double rate);
 
-  // A new member is inactive and takes part from the next cycle on.
-  MemberId add(std::shared_ptr<Participant> participant);
+  // Members are stepped lane by lane; lanes may be stepped at the same time. One, number 0, unless this is called before the first step.
+  void set_lanes(std::size_t count);
+  // A new member is inactive and takes part from the next cycle on. A lane that does not exist is the first.
+  MemberId add(std::shared_ptr<Participant> participant, std::size_t lane = 0);
   // Waits until the member is not being called on another thread. False when there is no such member or the time is over; even then it is
   // not called again. Without a call in progress the participant is given back at once.
   bool remove(MemberId id, std::chrono::nanoseconds timeout = std::chrono::seconds(60));
@@ -101,9 +103,10 @@ class ExecutionContext {
   bool is_idle() const;
 
   // The phases: transitions; execute (error); state update. They do nothing while the context is stopped.
-  void transit();
-  void execute();
-  void update();
+  // A cycle is counted at the end of lane 0.
+  void transit(std::size_t lane = 0);
+  void execute(std::size_t lane = 0);
+  void update(std::size_t lane = 0);
   void step() {
     transit();
     execute();
@@ -119,9 +122,24 @@ class ExecutionContext {
   struct Member {
     MemberId id;
     std::shared_ptr<Participant> participant;
+    std::size_t lane = 0;
     State state = State::inactive;
     std::optional<Event> pending{};
     bool removed = false;
+  };
+  struct Lane {
+    std::vector<std::shared_ptr<Member>> members{};
+    std::uint64_t version = 0;
+    std::chrono::steady_clock::time_point cycle_start{};
+  };
+  // Of a stepping thread to a member.
+  struct Call {
+    MemberId member;
+    const Participant* callee;
+    Action action;
+    std::thread::id caller;
+    bool is_written_off;
+    bool is_own() const { return caller == std::this_thread::get_id(); }
   };
   struct Data {
     bool running = false;
@@ -130,16 +148,10 @@ class ExecutionContext {
     MemberId last_id = 0;
     std::vector<std::shared_ptr<Member>> members{};
     std::uint64_t version = 0;  // of members
-    MemberId called = 0;        // the member that the stepping thread calls now
-    std::thread::id caller{};
-    const Participant* callee = nullptr;  // valid while called != 0
-    Action action{};
-    std::uint64_t calls = 0;  // so far
-    std::uint64_t stuck = 0;  // the number of the call that is written off
+    std::vector<Call> calls{};  // in progress: one per lane at most
     ContextStatistics statistics{};
   };
   static bool may_call(const Data& data) { return data.running && !data.halted; }
-  static bool is_stuck(const Data& data) { return data.called != 0 && data.stuck == data.calls; }
   using Shared = base::Guarded<Data, base::Rank::context>;
 
   static Member* find(Data& data, MemberId id);
@@ -149,19 +161,16 @@ class ExecutionContext {
   void call_all(Action action);
   // Nothing when the member has left or the context is stopped: it is not called then.
   std::optional<ReturnCode> call_in_phase(Member& member, Action action);
-  void refresh();
+  void refresh(std::size_t lane);
   void transit(Member& member);
   template <class Select>
-  void run_phase(Select select);
+  void run_phase(std::size_t lane, Select select);
 
   const std::string name_;
   std::function<void()> wake_;
   Shared shared_;
   std::condition_variable changed_;
-  // The stepping thread's own.
-  std::vector<std::shared_ptr<Member>> stepping_;
-  std::uint64_t stepping_version_ = 0;
-  std::chrono::steady_clock::time_point cycle_start_{};
+  std::vector<Lane> lanes_ = std::vector<Lane>(1);  // each its stepping thread's own
 };
 
 }  // namespace rt

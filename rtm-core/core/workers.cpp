@@ -2,6 +2,8 @@
 
 #include <sys/prctl.h>
 
+#include <optional>
+
 namespace rt {
 
 namespace {
@@ -31,6 +33,7 @@ bool PeriodicWorker::sleep_while_idle() {
   auto data = shared_.lock();
   while (!data->stopping && !data->woken)
     data.wait_until(condition_, std::chrono::steady_clock::now() + std::chrono::hours(24), [&] { return data->stopping || data->woken; });
+  data->has_left = data->stopping;
   return !data->stopping;
 }
 
@@ -40,14 +43,14 @@ bool PeriodicWorker::wait_for_deadline() {
     const auto deadline = cycle_ + period;
     {
       auto data = shared_.lock();
-      if (data->stopping) return false;
+      if (data->stopping) return !(data->has_left = true);
       // Without a sleep there is no time for extra transitions either: the next cycle makes them.
       if (std::chrono::steady_clock::now() >= deadline ||
           !data.wait_until(condition_, deadline, [&] { return data->stopping || data->woken; })) {
         cycle_ = deadline;
         break;
       }
-      if (data->stopping) return false;
+      if (data->stopping) return !(data->has_left = true);
       data->woken = false;
     }
     steps_.transit();
@@ -67,6 +70,13 @@ void PeriodicWorker::stop() {
   condition_.notify_all();
 }
 
+bool PeriodicWorker::resume() {
+  auto data = shared_.lock();
+  if (data->has_left) return false;
+  data->stopping = false;
+  return true;
+}
+
 void PeriodicWorker::reset() { *shared_.lock() = Data{}; }
 
 void PeriodicWorker::wake() {
@@ -78,25 +88,36 @@ bool PeriodicWorker::is_stopping() const { return shared_.lock()->stopping; }
 
 void TriggeredWorker::run() {
   while (true) {
-    bool ticked = false;
+    std::optional<std::chrono::nanoseconds> tick;
     {
       auto data = shared_.lock();
-      while (!data->stopping && !data->woken && data->ticks == 0)
+      while (!data->stopping && !data->woken && data->ticks.empty())
         data.wait_until(condition_, std::chrono::steady_clock::now() + std::chrono::hours(24),
-                        [&] { return data->stopping || data->woken || data->ticks > 0; });
+                        [&] { return data->stopping || data->woken || !data->ticks.empty(); });
+      data->has_left = data->stopping;
       if (data->stopping) return;
-      ticked = data->ticks > 0;
-      if (ticked) --data->ticks;
+      if (!data->ticks.empty()) {
+        tick = data->ticks.front();
+        data->ticks.pop_front();
+      }
       data->woken = false;
     }
+    if (tick) steps_.begin_tick(*tick);
     steps_.transit();
-    if (ticked) steps_.execute_and_update();
+    if (tick) steps_.execute_and_update();
   }
 }
 
 void TriggeredWorker::stop() {
   shared_.lock()->stopping = true;
   condition_.notify_all();
+}
+
+bool TriggeredWorker::resume() {
+  auto data = shared_.lock();
+  if (data->has_left) return false;
+  data->stopping = false;
+  return true;
 }
 
 void TriggeredWorker::reset() { *shared_.lock() = Data{}; }
@@ -106,10 +127,67 @@ void TriggeredWorker::wake() {
   condition_.notify_all();
 }
 
-void TriggeredWorker::tick() {
+void TriggeredWorker::tick(std::chrono::nanoseconds time) {
   if (!context_.is_running()) return;
-  ++shared_.lock()->ticks;
+  bool is_taken = false;
+  {
+    auto data = shared_.lock();
+    is_taken = data->ticks.size() < most_waiting;
+    if (is_taken) data->ticks.push_back(time);
+  }
   condition_.notify_all();
+  if (!is_taken) context_.count_missed(1);
+}
+
+void Crew::start(std::size_t threads, std::function<void(std::size_t, int)> work) {
+  stop();
+  *shared_.lock() = Data{};
+  work_ = std::move(work);
+  for (std::size_t i = 1; i <= threads; ++i) threads_.emplace_back([this, i] { serve(i); });
+}
+
+void Crew::serve(std::size_t number) {
+  make_this_thread_punctual();
+  std::uint64_t seen = 0;
+  while (true) {
+    int job = 0;
+    {
+      auto data = shared_.lock();
+      while (!data->stopping && data->round == seen)
+        data.wait_until(begins_, std::chrono::steady_clock::now() + std::chrono::hours(24),
+                        [&] { return data->stopping || data->round != seen; });
+      if (data->stopping) return;
+      seen = data->round;
+      job = data->job;
+    }
+    work_(number, job);
+    bool is_last = false;
+    {
+      auto data = shared_.lock();
+      is_last = --data->busy == 0;
+    }
+    if (is_last) done_.notify_all();
+  }
+}
+
+void Crew::run(int job, const std::function<void()>& own) {
+  {
+    auto data = shared_.lock();
+    ++data->round;
+    data->job = job;
+    data->busy = threads_.size();
+  }
+  begins_.notify_all();
+  own();
+  auto data = shared_.lock();
+  while (data->busy > 0) data.wait_until(done_, std::chrono::steady_clock::now() + std::chrono::hours(24), [&] { return data->busy == 0; });
+}
+
+void Crew::stop() {
+  shared_.lock()->stopping = true;
+  begins_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
+  threads_.clear();
 }
 
 bool Turns::begin() {

@@ -1,10 +1,14 @@
-// What drives an execution context on a thread: PeriodicWorker at its rate, TriggeredWorker once per tick, Turns on whatever thread comes.
-// run() belongs to one thread; everything else may be called from any thread. The thread itself is the caller's.
+// What drives an execution context on a thread: PeriodicWorker at its rate, TriggeredWorker once per tick, Turns on whatever thread comes;
+// a Crew steps its lanes at the same time. run() belongs to one thread; everything else may be called from any thread. Their threads are
+// the caller's, except a Crew's.
 #pragma once
 
 #include <condition_variable>
 #include <cstdint>
+#include <deque>
+#include <functional>
 #include <thread>
+#include <vector>
 
 #include "base/guarded.h"
 #include "core/execution_context.h"
@@ -15,6 +19,8 @@ namespace rt {
 class Steps {
  public:
   virtual ~Steps() = default;
+  // A TriggeredWorker begins the cycle of a tick that brought this time.
+  virtual void begin_tick(std::chrono::nanoseconds) {}
   virtual void transit() = 0;
   virtual void execute_and_update() = 0;
 };
@@ -30,6 +36,8 @@ class PeriodicWorker {
   // Until stop().
   void run();
   void stop();
+  // Takes stop() back for a thread that has not noticed; false when run() has returned or is about to.
+  bool resume();
   // Allows run() again after stop().
   void reset();
   void wake();
@@ -38,6 +46,7 @@ class PeriodicWorker {
  private:
   struct Data {
     bool stopping = false;
+    bool has_left = false;
     bool woken = false;
   };
   // False when stopping.
@@ -51,29 +60,61 @@ class PeriodicWorker {
   std::chrono::steady_clock::time_point cycle_{};  // when the present cycle should have begun; run() only
 };
 
-// As many cycles as ticks. A request is answered without a tick.
+// As many cycles as ticks, in their order. A request is answered without a tick.
 class TriggeredWorker {
  public:
+  // Ticks that wait; more of them are not taken and counted as missed.
+  static constexpr std::size_t most_waiting = 100'000;
+
   TriggeredWorker(ExecutionContext& context, Steps& steps) : context_(context), steps_(steps) {}
 
   void run();
   void stop();
+  // Takes stop() back, as above.
+  bool resume();
+  // Forgets ticks that wait.
   void reset();
   void wake();
-  // Ticks of a stopped context are forgotten.
-  void tick();
+  // Any thread, several at once. Ticks of a stopped context are forgotten.
+  void tick(std::chrono::nanoseconds time = {});
 
  private:
   struct Data {
     bool stopping = false;
+    bool has_left = false;
     bool woken = false;
-    std::uint64_t ticks = 0;
+    std::deque<std::chrono::nanoseconds> ticks{};
   };
 
   ExecutionContext& context_;
   Steps& steps_;
   base::Guarded<Data, base::Rank::buffer> shared_;
   std::condition_variable condition_;
+};
+
+// Does jobs on several threads of its own at once. start, run and stop are called by one thread at a time.
+class Crew {
+ public:
+  ~Crew() { stop(); }
+  // `work` is called with the number of the thread, from 1, and the job.
+  void start(std::size_t threads, std::function<void(std::size_t, int)> work);
+  // Lets all threads do the job; `own` runs here meanwhile. Returns when all are done.
+  void run(int job, const std::function<void()>& own);
+  void stop();
+
+ private:
+  struct Data {
+    std::uint64_t round = 0;
+    int job = 0;
+    std::size_t busy = 0;
+    bool stopping = false;
+  };
+  void serve(std::size_t number);
+
+  std::function<void(std::size_t, int)> work_;
+  std::vector<std::thread> threads_;
+  base::Guarded<Data, base::Rank::buffer> shared_;
+  std::condition_variable begins_, done_;
 };
 
 // Lets one thread after the other step a context.

@@ -10,6 +10,7 @@ target_sources(openrtm PRIVATE
   rtm/ListenerNames.cpp
   rtm/LocalComponent.cpp
   rtm/LoggerConsumer.cpp
+  rtm/LogicalTimeTriggeredEC.cpp
   rtm/MultilayerCompositeEC.cpp
   rtm/OpenHRPExecutionContext.cpp
   rtm/PeriodicECOrganization.cpp

@@ -3,7 +3,11 @@
 #include <gtest/gtest.h>
 #include <rtm/ECFactory.h>
 #include <rtm/ExecutionContextServant.h>
+#include <rtm/idl/LogicalTimeTriggeredECSkel.h>
 #include <rtm/idl/OpenRTMSkel.h>
+
+#include <atomic>
+#include <thread>
 
 #include "base/clock.h"
 #include "support/component_fixture.h"
@@ -78,6 +82,88 @@ TEST_F(ComponentContextTest, a_tick_of_the_synchronous_one_returns_after_the_cyc
     EXPECT_EQ(stepped->thread_of("onExecute"), std::this_thread::get_id());
     EXPECT_EQ(stepped->deactivate(0), RTC::RTC_OK);
     EXPECT_EQ(stepped->count("onDeactivated"), 1);
+  }
+}
+
+TEST_F(ComponentContextTest, every_tick_of_several_threads_is_a_cycle) {
+  constexpr int threads = 8, ticks = 500;
+  for (const char* type : {"ExtTrigExecutionContext", "OpenHRPExecutionContext", "SimulatorExecutionContext", "LogicalTimeTriggeredEC"}) {
+    Owned<> ticked(nullptr, "Ticked0");
+    ticked->getProperties()["execution_contexts"] = type;
+    ASSERT_EQ(ticked->initialize(), RTC::RTC_OK);
+    ASSERT_EQ(ticked->activate(0), RTC::RTC_OK);
+    const RTC::ExecutionContext_var context = first_context(*ticked);
+    {
+      std::vector<std::jthread> callers;
+      for (int i = 0; i < threads; ++i)
+        callers.emplace_back([&] {
+          OpenRTM::ExtTrigExecutionContextService_var trigger = OpenRTM::ExtTrigExecutionContextService::_narrow(context);
+          OpenRTM::LogicalTimeTriggeredEC_var logical = OpenRTM::LogicalTimeTriggeredEC::_narrow(context);
+          for (int k = 0; k < ticks; ++k) CORBA::is_nil(trigger) ? logical->tick(k, 0) : trigger->tick();
+        });
+    }
+    EXPECT_TRUE(ticked->wait_for("onStateUpdate", threads * ticks)) << type;
+    EXPECT_EQ(ticked->deactivate(0), RTC::RTC_OK);
+    EXPECT_EQ(ticked->count("onExecute"), threads * ticks) << type;
+  }
+}
+
+TEST_F(ComponentContextTest, each_cycle_of_logical_time_happens_at_the_time_of_its_tick) {
+  Owned<> ticked(nullptr, "Logical0");
+  ticked->getProperties()["execution_contexts"] = "LogicalTimeTriggeredEC";
+  ASSERT_EQ(ticked->initialize(), RTC::RTC_OK);
+  ASSERT_EQ(ticked->activate(0), RTC::RTC_OK);
+  std::vector<std::chrono::nanoseconds> seen;  // of the context's thread
+  ticked->during = [&](const std::string& callback) {
+    if (callback == "onExecute") seen.push_back(base::current_clock().now());
+  };
+  const RTC::ExecutionContext_var context = first_context(*ticked);
+  EXPECT_TRUE(context->_is_a("IDL:openrtm.org/OpenRTM/LogicalTimeTriggeredEC:1.0"));
+  OpenRTM::LogicalTimeTriggeredEC_var logical = OpenRTM::LogicalTimeTriggeredEC::_narrow(context);
+  CORBA::ULong sec = 7, usec = 7;
+  logical->get_time(sec, usec);
+  EXPECT_EQ(std::pair(sec, usec), std::pair(0u, 0u));
+  logical->tick(1, 250000);
+  logical->tick(1, 1500000);
+  logical->tick(4294967295u, 999999);
+  ASSERT_TRUE(ticked->wait_for("onStateUpdate", 3));
+  logical->get_time(sec, usec);
+  EXPECT_EQ(std::pair(sec, usec), std::pair(4294967295u, 999999u));
+  EXPECT_EQ(ticked->deactivate(0), RTC::RTC_OK);
+  ticked->during = nullptr;
+  EXPECT_THAT(seen, testing::ElementsAre(1250ms, 2500ms, 4294967295s + 999999us));
+  EXPECT_EQ(context->stop(), RTC::RTC_OK);
+  logical->tick(9, 0);
+  EXPECT_EQ(context->start(), RTC::RTC_OK);
+  logical->get_time(sec, usec);
+  EXPECT_EQ(sec, 4294967295u) << "ticks of a stopped context are forgotten";
+}
+
+TEST_F(ComponentContextTest, tools_may_ask_while_a_component_ends) {
+  for (int round = 0; round < 20; ++round) {
+    auto* leaving = new support::ProbeComponent(nullptr, "Leaving0");
+    ASSERT_EQ(leaving->initialize(), RTC::RTC_OK);
+    const RTC::RTObject_var reference = leaving->getObjRef();
+    std::atomic<bool> has_left{false};
+    std::vector<std::jthread> tools;
+    for (int i = 0; i < 3; ++i)
+      tools.emplace_back([&] {
+        const RTC::RTObject_var component = reference;
+        while (!has_left) {
+          try {
+            const SDOPackage::Configuration_var configuration = component->get_configuration();
+            const SDOPackage::ConfigurationSetList_var sets = configuration->get_configuration_sets();
+            const RTC::ComponentProfile_var profile = component->get_component_profile();
+            RTC::ExecutionContextList_var contexts = component->get_owned_contexts();
+            for (CORBA::ULong k = 0; k < contexts->length(); ++k) contexts[k]->get_component_state(component);
+          } catch (const CORBA::Exception&) {
+            // It has left: what the contract knows for that.
+          }
+        }
+      });
+    EXPECT_EQ(leaving->exit(), RTC::RTC_OK);
+    leaving->_remove_ref();
+    has_left = true;
   }
 }
 

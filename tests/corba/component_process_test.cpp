@@ -4,6 +4,7 @@
 #include <rtm/NVUtil.h>
 
 #include <atomic>
+#include <fstream>
 #include <limits>
 #include <thread>
 
@@ -394,6 +395,67 @@ TEST_F(ComponentTest, what_remains_of_a_killed_owner_is_forgotten_at_exit) {
   ASSERT_TRUE(probe->wait_for("onExecute", 3));
   peer.process().kill();
   EXPECT_EQ(probe->exit(), RTC::RTC_OK);
+}
+
+// Stopped, so that its connections stay open and nobody answers.
+void freeze(support::Process& process) {
+  process.signal(SIGSTOP);
+  const auto is_stopped = [&] {
+    std::ifstream file("/proc/" + std::to_string(process.pid()) + "/stat");
+    std::string text;
+    std::getline(file, text);
+    return text.find(") T ") != std::string::npos;
+  };
+  while (!is_stopped()) std::this_thread::sleep_for(1ms);
+}
+
+TEST_F(ComponentTest, a_member_of_another_process_that_hangs_costs_the_others_one_time_out_at_most) {
+  probe->initialize();
+  Owned<> neighbour(nullptr, "Neighbour0");  // has a context of its own
+  neighbour->initialize();
+  PeerProcess peer;
+  const RTC::ExecutionContext_var context = first_context(*probe);
+  const auto of_probe = [&] { return RTC::ExecutionContextService::_narrow(context); };
+  ASSERT_EQ(RTC::ExecutionContextService_var(of_probe())->add_component(peer.component), RTC::RTC_OK);
+  ASSERT_EQ(RTC::ExecutionContextService_var(of_probe())->activate_component(peer.component), RTC::RTC_OK);
+  ASSERT_EQ(probe->activate(0), RTC::RTC_OK);
+  ASSERT_EQ(neighbour->activate(0), RTC::RTC_OK);
+  ASSERT_TRUE(probe->wait_for("onExecute", 3));
+  freeze(peer.process());
+  // Whoever is in another context, and tools, notice nothing; the context itself goes on after a time-out of the call, and only one.
+  const int seen = neighbour->count("onExecute");
+  for (int i = 0; i < 20; ++i) {
+    RTC::ExecutionContextService_var service = of_probe();
+    const RTC::ExecutionContextProfile_var profile = service->get_profile();
+    EXPECT_EQ(profile->participants.length(), 1u);
+    const RTC::RTObject_var self = probe->getObjRef();
+    EXPECT_EQ(service->get_component_state(self), RTC::ACTIVE_STATE);
+    EXPECT_TRUE(neighbour->wait_for("onExecute", seen + i));
+  }
+  const int before = probe->count("onExecute");
+  EXPECT_TRUE(probe->wait_for("onExecute", before + 50));
+  RTC::ExecutionContextService_var service = of_probe();
+  while (service->get_component_state(peer.component) != RTC::ERROR_STATE) std::this_thread::sleep_for(1ms);
+  EXPECT_EQ(probe->deactivate(0), RTC::RTC_OK);
+  EXPECT_EQ(service->remove_component(peer.component), RTC::RTC_OK);
+  peer.process().signal(SIGCONT);
+}
+
+TEST_F(ComponentTest, a_context_of_another_process_that_hangs_does_not_keep_a_component_from_leaving) {
+  probe->getProperties()["exec_cxt.callback_timeout"] = "0.2";
+  probe->initialize();
+  PeerProcess peer;
+  RTC::ExecutionContextList_var contexts = peer.component->get_owned_contexts();
+  const RTC::RTObject_var self = probe->getObjRef();
+  ASSERT_EQ(contexts[0u]->add_component(self), RTC::RTC_OK);
+  ASSERT_EQ(contexts[0u]->activate_component(self), RTC::RTC_OK);
+  ASSERT_TRUE(probe->wait_for("onExecute", 3));
+  freeze(peer.process());
+  const auto began = std::chrono::steady_clock::now();
+  EXPECT_EQ(probe->exit(), RTC::RTC_OK);
+  EXPECT_LT(std::chrono::steady_clock::now() - began, 5s) << "half of the time-out of other calls";
+  EXPECT_EQ(probe->count("onFinalize"), 1);
+  peer.process().signal(SIGCONT);
 }
 
 }  // namespace

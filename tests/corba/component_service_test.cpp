@@ -12,6 +12,11 @@
 #include <rtm/idl/FsmComponentObserverSkel.h>
 #include <rtm/idl/LoggerSkel.h>
 
+#include <condition_variable>
+#include <map>
+#include <mutex>
+#include <thread>
+
 #include "support/component_fixture.h"
 
 namespace {
@@ -298,6 +303,73 @@ TEST_F(ComponentServiceTest, members_of_a_composite_run_in_its_context_and_follo
   EXPECT_THROW(organizations[0u]->remove_member("Probe0"), SDOPackage::InvalidParameter);
   of_member = probe->get_organizations();
   EXPECT_EQ(of_member->length(), 0u);
+}
+
+// Two members that each wait in onExecute for the other: on one thread they would never meet.
+TEST_F(ComponentServiceTest, groups_of_a_multilayer_composite_run_at_the_same_time) {
+  Owned<> a(nullptr, "LayerA"), b(nullptr, "LayerB"), c(nullptr, "LayerC");
+  std::mutex mutex;
+  std::condition_variable changed;
+  int inside = 0, met = 0;
+  std::map<std::string, std::thread::id> threads;
+  const auto meet = [&](const std::string& name) {
+    std::unique_lock lock(mutex);
+    threads[name] = std::this_thread::get_id();
+    if (++inside == 2) {
+      ++met;
+      changed.notify_all();
+    } else {
+      changed.wait_for(lock, 100ms, [&, before = met] { return met > before; });  // alone in the cycles of activation and deactivation
+    }
+    --inside;
+  };
+  a->during = [&](const std::string& callback) {
+    if (callback == "onExecute") meet("LayerA");
+  };
+  b->during = [&](const std::string& callback) {
+    if (callback == "onExecute") meet("LayerB");
+  };
+  c->during = [&](const std::string& callback) {
+    if (callback != "onExecute") return;
+    const std::scoped_lock lock(mutex);
+    threads["LayerC"] = std::this_thread::get_id();
+  };
+  Owned<Composite> composite;
+  composite->getProperties()["exec_cxt.periodic.type"] = "MultilayerCompositeEC";
+  coil::Properties spec;
+  spec["conf.default.members"] = "LayerA | LayerB, LayerC";
+  composite->setProperties(spec);
+  ASSERT_EQ(composite->initialize(), RTC::RTC_OK);
+  SDOPackage::OrganizationList_var organizations = composite->get_owned_organizations();
+  SDOPackage::SDOList members;
+  members.length(3);
+  CORBA::ULong n = 0;
+  for (auto* member : {&*a, &*b, &*c}) {
+    ASSERT_EQ(member->initialize(), RTC::RTC_OK);
+    members[n++] = member->getObjRef();
+  }
+  ASSERT_TRUE(organizations[0u]->add_members(members));
+  ASSERT_EQ(composite->activate(0), RTC::RTC_OK);
+  for (auto* member : {&*a, &*b, &*c}) EXPECT_TRUE(member->wait_for("onStateUpdate", 20));
+  ASSERT_EQ(composite->deactivate(0), RTC::RTC_OK);
+  for (auto* member : {&*a, &*b, &*c}) EXPECT_TRUE(member->wait_for("onDeactivated"));
+  {
+    const std::scoped_lock lock(mutex);
+    EXPECT_NE(threads["LayerA"], threads["LayerB"]);
+    EXPECT_EQ(threads["LayerB"], threads["LayerC"]);
+    EXPECT_GE(met, 10);
+  }
+  // And again: the threads of the groups come and go with the context's.
+  const RTC::ExecutionContext_var context = first_context(*composite);
+  EXPECT_EQ(context->stop(), RTC::RTC_OK);
+  EXPECT_EQ(context->start(), RTC::RTC_OK);
+  const int seen = c->count("onExecute");
+  ASSERT_EQ(composite->activate(0), RTC::RTC_OK);
+  EXPECT_TRUE(c->wait_for("onExecute", seen + 3));
+  ASSERT_EQ(composite->deactivate(0), RTC::RTC_OK);
+  for (auto* member : {&*a, &*b, &*c}) EXPECT_TRUE(member->wait_for("onDeactivated", 2));
+  EXPECT_EQ(context->stop(), RTC::RTC_OK);
+  for (auto* member : {&*a, &*b, &*c}) member->during = nullptr;
 }
 
 // --- state machines

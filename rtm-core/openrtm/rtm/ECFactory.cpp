@@ -1,5 +1,6 @@
 #include <rtm/ECFactory.h>
 #include <rtm/ExtTrigExecutionContext.h>
+#include <rtm/LogicalTimeTriggeredEC.h>
 #include <rtm/MultilayerCompositeEC.h>
 #include <rtm/PeriodicExecutionContext.h>
 #include <rtm/SimulatorExecutionContext.h>
@@ -12,6 +13,7 @@ void registerBuiltinExecutionContexts(RTC::Manager* manager) {
   OpenHRPExecutionContextInit(manager);
   SimulatorExecutionContextInit(manager);
   MultilayerCompositeECInit(manager);
+  LogicalTimeTriggeredECInit(manager);
 }
 
 }  // namespace RTC

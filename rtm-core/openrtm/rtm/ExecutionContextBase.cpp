@@ -272,19 +272,19 @@ void ExecutionContextBase::invokeWorker() {
   impl_->context.step();
 }
 
-void ExecutionContextBase::invokeWorkerPreDo() {
+void ExecutionContextBase::invokeWorkerPreDo(std::size_t lane) {
   const base::ScopedClock clock(contextClock());
-  impl_->context.transit();
+  impl_->context.transit(lane);
 }
 
-void ExecutionContextBase::invokeWorkerDo() {
+void ExecutionContextBase::invokeWorkerDo(std::size_t lane) {
   const base::ScopedClock clock(contextClock());
-  impl_->context.execute();
+  impl_->context.execute(lane);
 }
 
-void ExecutionContextBase::invokeWorkerPostDo() {
+void ExecutionContextBase::invokeWorkerPostDo(std::size_t lane) {
   const base::ScopedClock clock(contextClock());
-  impl_->context.update();
+  impl_->context.update(lane);
 }
 
 void ExecutionContextBase::countMissedCycles(std::uint64_t cycles) { impl_->context.count_missed(cycles); }

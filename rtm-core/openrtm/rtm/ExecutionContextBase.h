@@ -137,9 +137,11 @@ class ExecutionContextBase {
 
   // One cycle: transitions, onExecute (onError), onStateUpdate. Nothing happens while the context is stopped.
   void invokeWorker();
-  void invokeWorkerPreDo();
-  void invokeWorkerDo();
-  void invokeWorkerPostDo();
+  void invokeWorkerPreDo(std::size_t lane = 0);
+  void invokeWorkerDo(std::size_t lane = 0);
+  void invokeWorkerPostDo(std::size_t lane = 0);
+  // In which lane (core/execution_context.h) a component that joins is to run.
+  virtual std::size_t laneOf(const std::string& /*instance_name*/) const { return 0; }
   // Cycles that should have been and were not, for the statistics of the profile.
   void countMissedCycles(std::uint64_t cycles);
   bool isSteppingThread() const;

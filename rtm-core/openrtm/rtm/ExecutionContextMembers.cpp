@@ -177,7 +177,8 @@ RTC::ReturnCode_t ExecutionContextBase::addComponent(RTC::LightweightRTObject_pt
     return RTC::RTC_ERROR;
   }
   if (member.handle < 0) return RTC::RTC_ERROR;
-  member.id = impl_->context.add(std::move(participant));
+  const std::size_t lane = laneOf(participant->name());
+  member.id = impl_->context.add(std::move(participant), lane);
   impl_->shared.lock()->members.push_back(member);
   return onAddedComponent(comp);
 }

@@ -42,10 +42,7 @@ RTC::ReturnCode_t ExtTrigExecutionContext::onStarted() {
 
 RTC::ReturnCode_t ExtTrigExecutionContext::onStopping() {
   worker_->stop();
-  if (!waitForCallbacks()) {
-    worker_->reset();
-    return RTC::RTC_ERROR;
-  }
+  if (!waitForCallbacks() && worker_->resume()) return RTC::RTC_ERROR;
   coil::Task::wait();
   return RTC::RTC_OK;
 }

@@ -113,9 +113,11 @@ std::vector<std::shared_ptr<RTObject_impl>> ManagerImpl::all_components() const 
   return components;
 }
 
-bool ManagerImpl::is_callback_running() const {
-  const auto components = all_components();
-  return std::any_of(components.begin(), components.end(), [](const auto& component) { return component->isHeldByCallback(); });
+bool ManagerImpl::is_callback_running(std::chrono::nanoseconds at_least) const {
+  for (const auto& component : all_components())
+    for (const auto& one : component->runningCallbacks())
+      if (steady_clock::now() - one.since >= at_least) return true;
+  return false;
 }
 
 void ManagerImpl::complain_about_callbacks() const {
@@ -170,8 +172,9 @@ void ManagerImpl::live() {
     auto locked = state.lock();
     return locked.wait_for(changed, patience, [&] { return !locked->activating; });
   };
-  while (!is_activated(std::max<std::chrono::nanoseconds>(callback_timeout(), 10ms)))
-    if (is_callback_running()) give_up("activation");
+  const auto patience = std::max<std::chrono::nanoseconds>(callback_timeout(), 10ms);
+  while (!is_activated(patience))
+    if (is_callback_running(patience)) give_up("activation");
   try {
     end();
   } catch (const std::exception& e) {
@@ -228,8 +231,9 @@ void ManagerImpl::end() {
   exit_all_components();
   begin_step("naming");
   naming->unbindAll();
+  for (const auto& component : all_components()) component->comeToRest(steady_clock::now() + grace);  // also those that are being made
   delete_abandoned();
-  if (is_callback_running() || !RTObject_impl::destroyLeftContexts()) give_up("naming");
+  if (is_callback_running(0s) || !RTObject_impl::destroyLeftContexts()) give_up("naming");
   begin_step(after_naming);
   RTM::LocalServiceAdmin::instance().finalize();
   if (servant != nullptr) servant->deactivate();

@@ -164,7 +164,7 @@ class ManagerImpl {
   std::chrono::nanoseconds callback_timeout() const;
   // Every component that is in memory, with a reference.
   std::vector<std::shared_ptr<RTObject_impl>> all_components() const;
-  bool is_callback_running() const;
+  bool is_callback_running(std::chrono::nanoseconds at_least) const;
   void complain_about_callbacks() const;
   void answer_last_calls();
   [[noreturn]] void give_up(const std::string& step);

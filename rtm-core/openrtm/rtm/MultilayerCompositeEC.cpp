@@ -1,9 +1,76 @@
 #include <rtm/ECFactory.h>
 #include <rtm/MultilayerCompositeEC.h>
+#include <rtm/RTObject.h>
+
+#include "base/text.h"
+#include "core/execution_context.h"
+#include "core/workers.h"
 
 namespace RTC_exp {
 
-MultilayerCompositeEC::MultilayerCompositeEC() : PeriodicExecutionContext("multilayercomposite_ec") {}
+namespace {
+
+enum Job : int { transitions, execution };
+
+// Members of other processes are named by address: rtcname://host/context/Arm0.rtc, rtcloc://host/category/Arm0.
+std::string instance_of(const std::string& member) {
+  std::string name = member.substr(member.rfind('/') + 1);
+  if (name.size() < member.size() && name.ends_with(".rtc")) name.resize(name.size() - 4);
+  return name;
+}
+
+}  // namespace
+
+MultilayerCompositeEC::MultilayerCompositeEC() : PeriodicExecutionContext("multilayercomposite_ec"), crew_(std::make_unique<rt::Crew>()) {}
+
+// The thread of the base works with what is here: it ends first.
+MultilayerCompositeEC::~MultilayerCompositeEC() { endThread(); }
+
+RTC::ReturnCode_t MultilayerCompositeEC::bindComponent(RTC::RTObject_impl* rtc) {
+  if (rtc != nullptr && getComponents().empty()) {
+    const std::string members = rtc->getConfigService().getConfigurationSet("default").getProperty("members");
+    for (const std::string& group : base::split_list(members, '|')) {
+      const auto names = base::split_list(group);
+      if (names.empty()) continue;
+      ++count_;
+      for (const std::string& name : names) groups_.emplace(instance_of(name), count_);
+    }
+    context().set_lanes(count_ + 1);
+  }
+  return PeriodicExecutionContext::bindComponent(rtc);
+}
+
+std::size_t MultilayerCompositeEC::laneOf(const std::string& instance_name) const {
+  const auto it = groups_.find(instance_name);
+  return it == groups_.end() ? 0 : it->second;
+}
+
+RTC::ReturnCode_t MultilayerCompositeEC::onStarted() {
+  endThread();
+  crew_->start(count_, [this](std::size_t lane, int job) {
+    if (job == transitions) return invokeWorkerPreDo(lane);
+    invokeWorkerDo(lane);
+    invokeWorkerPostDo(lane);
+  });
+  return PeriodicExecutionContext::onStarted();
+}
+
+RTC::ReturnCode_t MultilayerCompositeEC::onStopping() {
+  const RTC::ReturnCode_t code = PeriodicExecutionContext::onStopping();
+  if (code == RTC::RTC_OK && !isSteppingThread()) crew_->stop();  // else at the next start
+  return code;
+}
+
+void MultilayerCompositeEC::stepTransitions() {
+  crew_->run(transitions, [this] { invokeWorkerPreDo(); });
+}
+
+void MultilayerCompositeEC::stepExecution() {
+  crew_->run(execution, [this] {
+    invokeWorkerDo();
+    invokeWorkerPostDo();
+  });
+}
 
 }  // namespace RTC_exp
 

@@ -84,7 +84,7 @@ ReturnCode_t PeriodicECSharedComposite::onInitialize() {
   addConfigurationSetListener(ON_SET_CONFIG_SET, new SetListener(m_configsets, *organization_));
   m_configsets.update("default");
   SDOPackage::SDOList sdos;
-  for (const std::string& name : members_) {
+  for (const std::string& name : base::split_list(base::join(members_, "|"), '|')) {  // both separators; see MultilayerCompositeEC
     // Of this process by name, of others by address.
     NamingManager* naming = m_pManager ? m_pManager->getNaming() : nullptr;
     const RTCList found = naming ? naming->string_to_component(name) : RTCList();

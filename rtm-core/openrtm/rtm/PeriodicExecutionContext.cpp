@@ -13,11 +13,8 @@ namespace RTC {
 class PeriodicExecutionContext::Steps final : public rt::Steps {
  public:
   explicit Steps(PeriodicExecutionContext& context) : context_(context) {}
-  void transit() override { context_.invokeWorkerPreDo(); }
-  void execute_and_update() override {
-    context_.invokeWorkerDo();
-    context_.invokeWorkerPostDo();
-  }
+  void transit() override { context_.stepTransitions(); }
+  void execute_and_update() override { context_.stepExecution(); }
 
  private:
   PeriodicExecutionContext& context_;
@@ -31,7 +28,9 @@ PeriodicExecutionContext::PeriodicExecutionContext(const std::string& name)
   setKind(RTC::PERIODIC);
 }
 
-PeriodicExecutionContext::~PeriodicExecutionContext() {
+PeriodicExecutionContext::~PeriodicExecutionContext() { endThread(); }
+
+void PeriodicExecutionContext::endThread() {
   worker_->stop();
   coil::Task::wait();
 }
@@ -60,10 +59,8 @@ RTC::ReturnCode_t PeriodicExecutionContext::onStarted() {
 
 RTC::ReturnCode_t PeriodicExecutionContext::onStopping() {
   worker_->stop();
-  if (!waitForCallbacks()) {
-    worker_->reset();
-    return RTC::RTC_ERROR;
-  }
+  if (isSteppingThread()) return RTC::RTC_OK;  // the thread ends after this cycle
+  if (!waitForCallbacks() && worker_->resume()) return RTC::RTC_ERROR;
   coil::Task::wait();
   return RTC::RTC_OK;
 }

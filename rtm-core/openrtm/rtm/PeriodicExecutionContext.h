@@ -36,6 +36,14 @@ class PeriodicExecutionContext : public ExecutionContextServant<POA_RTC::Executi
   RTC::ReturnCode_t onStarted() override;
   RTC::ReturnCode_t onStopping() override;
   void onWakeUp() override;
+  // For destructors of derived classes whose members the thread uses: ends it and waits for that.
+  void endThread();
+  // The two halves of a cycle, on the context's thread.
+  virtual void stepTransitions() { invokeWorkerPreDo(); }
+  virtual void stepExecution() {
+    invokeWorkerDo();
+    invokeWorkerPostDo();
+  }
   // True while the thread is to go on.
   bool threadRunning() const;
 

@@ -5,8 +5,11 @@
 #include <rtm/PortBase.h>
 #include <rtm/RTObjectImpl.h>
 
+#include <algorithm>
+
 #include "base/text.h"
 #include "corba/orb.h"
+#include "corba/remote_participant.h"
 
 namespace RTC {
 
@@ -25,9 +28,11 @@ RTObject_impl::RTObject_impl(Manager* manager) : m_pManager(manager), impl_(std:
   m_pORB = manager ? CORBA::ORB::_duplicate(manager->getORB()) : CORBA::ORB_init(argc, nullptr);
   m_pPOA = manager ? PortableServer::POA::_duplicate(manager->getPOA()) : PortableServer::POA::_the_root_poa();
   m_configsets.setLog([this](const std::string& line) { RTC_WARN(("%s", line.c_str())); });
-  impl_->configuration = new SDOPackage::Configuration_impl(*this, m_configsets, impl_->services);
   OpenRTM::DataFlowComponent_var self = _this();
-  impl_->shared.lock()->reference = RTC::RTObject::_duplicate(self);
+  auto* configuration = new SDOPackage::Configuration_impl(*this, m_configsets, impl_->services);
+  auto data = impl_->shared.lock();
+  data->configuration = configuration;
+  data->reference = RTC::RTObject::_duplicate(self);
 }
 
 RTObject_impl::RTObject_impl(CORBA::ORB_ptr orb, PortableServer::POA_ptr poa) : RTObject_impl(nullptr) {
@@ -149,17 +154,20 @@ void RTObject_impl::waitForExiter() {
 }
 
 ReturnCode_t RTObject_impl::exitNow(std::chrono::steady_clock::time_point deadline) {
-  leaveOrganizations();
+  leaveOrganizations(deadline);
   leaveContexts(deadline);
   return finalizeBy(deadline);
 }
 
-void RTObject_impl::leaveOrganizations() {
+void RTObject_impl::leaveOrganizations(std::chrono::steady_clock::time_point deadline) {
   std::vector<SDOPackage::Organization_var> organizations;
   organizations.swap(impl_->shared.lock()->organizations);
   for (const SDOPackage::Organization_var& organization : organizations) {
     try {
-      SDOPackage::Organization_var target = organization;
+      constexpr std::chrono::milliseconds shortest{200};
+      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+      const CORBA::Object_var own = corba::impatient_copy(organization, std::max(left, shortest));
+      const SDOPackage::Organization_var target = SDOPackage::Organization::_unchecked_narrow(own);
       target->remove_member(getInstanceName());
     } catch (const CORBA::Exception& exception) {
       RTC_DEBUG(("an organization does not let the component go: %s", corba::to_text(exception).c_str()));
@@ -170,12 +178,14 @@ void RTObject_impl::leaveOrganizations() {
 // May be called again.
 void RTObject_impl::shutdown() {
   std::vector<SDOPackage::Organization_impl*> organizations;
+  SDOPackage::Configuration_impl* configuration = nullptr;
   RTObject_var self;
   {
     auto data = impl_->shared.lock();
     if (data->phase == Impl::Phase::finalized) return;
     data->phase = Impl::Phase::finalized;
     organizations.swap(data->owned_organizations);
+    configuration = std::exchange(data->configuration, nullptr);
     self = data->reference;
   }
   for (SDOPackage::Organization_impl* organization : organizations) {
@@ -188,7 +198,7 @@ void RTObject_impl::shutdown() {
     organization->_remove_ref();
   }
   impl_->services.exit();
-  if (auto* configuration = std::exchange(impl_->configuration, nullptr)) {
+  if (configuration) {
     configuration->close();
     try {
       SDOPackage::Configuration_var reference = configuration->_this();

@@ -387,7 +387,7 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   std::string portNameOf(const std::string& name) const;
   void activatePorts(UniqueId exec_handle);
   void deactivatePorts(UniqueId exec_handle);
-  void leaveOrganizations();
+  void leaveOrganizations(std::chrono::steady_clock::time_point deadline);
   std::vector<std::shared_ptr<ExecutionContextBase>> localContexts() const;
   void leaveContexts(std::chrono::steady_clock::time_point deadline);
   ReturnCode_t exitNow(std::chrono::steady_clock::time_point deadline);

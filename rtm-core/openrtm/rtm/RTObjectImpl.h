@@ -38,6 +38,7 @@ struct RTObject_impl::Impl {
     std::set<UniqueId> active_in{};  // contexts in which the component is active: ports work while there is one
     std::vector<SDOPackage::Organization_var> organizations{};
     std::vector<SDOPackage::Organization_impl*> owned_organizations{};  // servants, one reference each
+    SDOPackage::Configuration_impl* configuration = nullptr;            // a servant; one reference, none when it is finalized
     SDOPackage::DeviceProfile device{};
     std::map<int, StatusListener> status_listeners{};
     int next_status_listener = 1;
@@ -51,7 +52,6 @@ struct RTObject_impl::Impl {
   struct Turn {};
   base::Guarded<Turn, base::Rank::registry> properties_turn;
   SdoServiceAdmin services;
-  SDOPackage::Configuration_impl* configuration = nullptr;  // a servant; one reference
   class Visit;
   base::Guarded<std::vector<RunningCallback>, base::Rank::buffer> running;
   std::condition_variable callback_ended;

@@ -22,8 +22,15 @@ SDOPackage::OrganizationList* RTObject_impl::get_owned_organizations() {
   return list._retn();
 }
 
-char* RTObject_impl::get_sdo_id() { return CORBA::string_dup(getInstanceName()); }
-char* RTObject_impl::get_sdo_type() { return CORBA::string_dup(getDescription()); }
+char* RTObject_impl::get_sdo_id() {
+  const auto turn = impl_->properties_turn.lock();
+  return CORBA::string_dup(profile_.instance_name.c_str());
+}
+
+char* RTObject_impl::get_sdo_type() {
+  const auto turn = impl_->properties_turn.lock();
+  return CORBA::string_dup(profile_.description.c_str());
+}
 
 SDOPackage::DeviceProfile* RTObject_impl::get_device_profile() { return new SDOPackage::DeviceProfile(getDeviceProfile()); }
 SDOPackage::DeviceProfile RTObject_impl::getDeviceProfile() const { return impl_->shared.lock()->device; }
@@ -44,8 +51,14 @@ SDOPackage::SDOService_ptr RTObject_impl::get_sdo_service(const char* id) {
 }
 
 SDOPackage::Configuration_ptr RTObject_impl::get_configuration() {
-  if (!impl_->configuration) throw SDOPackage::NotAvailable("the component is finalized");
-  return impl_->configuration->_this();
+  PortableServer::Servant_var<SDOPackage::Configuration_impl> configuration;
+  {
+    auto data = impl_->shared.lock();
+    if (data->configuration) data->configuration->_add_ref();
+    configuration = data->configuration;
+  }
+  if (configuration.in() == nullptr) throw SDOPackage::NotAvailable("the component is finalized");
+  return configuration->_this();
 }
 
 SDOPackage::Monitoring_ptr RTObject_impl::get_monitoring() { throw SDOPackage::InterfaceNotImplemented("monitoring is not implemented"); }

@@ -1,0 +1,82 @@
+#include <rtm/ECFactory.h>
+#include <rtm/LogicalTimeTriggeredEC.h>
+
+#include "base/clock.h"
+#include "core/workers.h"
+
+namespace RTC {
+
+class LogicalTimeTriggeredEC::Steps final : public rt::Steps {
+ public:
+  explicit Steps(LogicalTimeTriggeredEC& context) : context_(context) {}
+  void begin_tick(std::chrono::nanoseconds time) override { context_.clock_->set(time); }
+  void transit() override { context_.invokeWorkerPreDo(); }
+  void execute_and_update() override {
+    context_.invokeWorkerDo();
+    context_.invokeWorkerPostDo();
+  }
+
+ private:
+  LogicalTimeTriggeredEC& context_;
+};
+
+LogicalTimeTriggeredEC::LogicalTimeTriggeredEC()
+    : ExecutionContextServant("logicaltime_ec"),
+      clock_(std::make_unique<base::ManualClock>()),
+      steps_(std::make_unique<Steps>(*this)),
+      worker_(std::make_unique<rt::TriggeredWorker>(context(), *steps_)) {
+  setObjRef(RTC::ExecutionContextService_var(_this()));
+  setKind(RTC::PERIODIC);
+}
+
+LogicalTimeTriggeredEC::~LogicalTimeTriggeredEC() {
+  worker_->stop();
+  coil::Task::wait();
+}
+
+void LogicalTimeTriggeredEC::tick(CORBA::ULong sec, CORBA::ULong usec) {
+  worker_->tick(std::chrono::seconds(sec) + std::chrono::microseconds(usec));
+}
+
+void LogicalTimeTriggeredEC::get_time(CORBA::ULong& sec, CORBA::ULong& usec) {
+  const auto now = std::chrono::duration_cast<std::chrono::microseconds>(clock_->now());
+  sec = static_cast<CORBA::ULong>(now / std::chrono::seconds(1));
+  usec = static_cast<CORBA::ULong>((now % std::chrono::seconds(1)).count());
+}
+
+const base::Clock& LogicalTimeTriggeredEC::contextClock() const { return *clock_; }
+
+RTC::ReturnCode_t LogicalTimeTriggeredEC::onStarted() {
+  coil::Task::wait();
+  worker_->reset();
+  open(nullptr);
+  return RTC::RTC_OK;
+}
+
+RTC::ReturnCode_t LogicalTimeTriggeredEC::onStopping() {
+  worker_->stop();
+  if (!waitForCallbacks() && worker_->resume()) return RTC::RTC_ERROR;
+  coil::Task::wait();
+  return RTC::RTC_OK;
+}
+
+void LogicalTimeTriggeredEC::onWakeUp() { worker_->wake(); }
+
+int LogicalTimeTriggeredEC::open(void*) {
+  coil::Task::activate();
+  return 0;
+}
+
+int LogicalTimeTriggeredEC::svc() {
+  worker_->run();
+  return 0;
+}
+
+int LogicalTimeTriggeredEC::close(unsigned long) { return 0; }
+
+}  // namespace RTC
+
+extern "C" void LogicalTimeTriggeredECInit(RTC::Manager*) {
+  RTC::ExecutionContextFactory::instance().addFactory("LogicalTimeTriggeredEC", RTC::ECCreate<RTC::LogicalTimeTriggeredEC>,
+                                                      RTC::ECDelete<RTC::LogicalTimeTriggeredEC>);
+}
