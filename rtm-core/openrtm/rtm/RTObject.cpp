@@ -30,8 +30,10 @@ RTObject_impl::RTObject_impl(Manager* manager) : m_pManager(manager), impl_(std:
   m_configsets.setLog([this](const std::string& line) { RTC_WARN(("%s", line.c_str())); });
   OpenRTM::DataFlowComponent_var self = _this();
   auto* configuration = new SDOPackage::Configuration_impl(*this, m_configsets, impl_->services);
+  SDOPackage::Configuration_var configuration_reference = configuration->_this();
   auto data = impl_->shared.lock();
   data->configuration = configuration;
+  data->configuration_reference = configuration_reference;
   data->reference = RTC::RTObject::_duplicate(self);
 }
 
@@ -179,6 +181,7 @@ void RTObject_impl::leaveOrganizations(std::chrono::steady_clock::time_point dea
 void RTObject_impl::shutdown() {
   std::vector<SDOPackage::Organization_impl*> organizations;
   SDOPackage::Configuration_impl* configuration = nullptr;
+  SDOPackage::Configuration_var configuration_reference;
   RTObject_var self;
   {
     auto data = impl_->shared.lock();
@@ -186,6 +189,7 @@ void RTObject_impl::shutdown() {
     data->phase = Impl::Phase::finalized;
     organizations.swap(data->owned_organizations);
     configuration = std::exchange(data->configuration, nullptr);
+    configuration_reference = std::exchange(data->configuration_reference, SDOPackage::Configuration_var());
     self = data->reference;
   }
   for (SDOPackage::Organization_impl* organization : organizations) {
@@ -200,12 +204,7 @@ void RTObject_impl::shutdown() {
   impl_->services.exit();
   if (configuration) {
     configuration->close();
-    try {
-      SDOPackage::Configuration_var reference = configuration->_this();
-      deactivateServant(*configuration, reference);
-    } catch (const CORBA::Exception&) {
-      // The object adapter is gone.
-    }
+    deactivateServant(*configuration, configuration_reference);
     configuration->_remove_ref();
   }
   deactivateServant(*this, self);

@@ -39,6 +39,7 @@ struct RTObject_impl::Impl {
     std::vector<SDOPackage::Organization_var> organizations{};
     std::vector<SDOPackage::Organization_impl*> owned_organizations{};  // servants, one reference each
     SDOPackage::Configuration_impl* configuration = nullptr;            // a servant; one reference, none when it is finalized
+    SDOPackage::Configuration_var configuration_reference{};            // asking the servant again would activate it again
     SDOPackage::DeviceProfile device{};
     std::map<int, StatusListener> status_listeners{};
     int next_status_listener = 1;

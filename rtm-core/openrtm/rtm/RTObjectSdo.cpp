@@ -51,14 +51,9 @@ SDOPackage::SDOService_ptr RTObject_impl::get_sdo_service(const char* id) {
 }
 
 SDOPackage::Configuration_ptr RTObject_impl::get_configuration() {
-  PortableServer::Servant_var<SDOPackage::Configuration_impl> configuration;
-  {
-    auto data = impl_->shared.lock();
-    if (data->configuration) data->configuration->_add_ref();
-    configuration = data->configuration;
-  }
-  if (configuration.in() == nullptr) throw SDOPackage::NotAvailable("the component is finalized");
-  return configuration->_this();
+  const SDOPackage::Configuration_var configuration = impl_->shared.lock()->configuration_reference;
+  if (CORBA::is_nil(configuration)) throw SDOPackage::NotAvailable("the component is finalized");
+  return SDOPackage::Configuration::_duplicate(configuration);
 }
 
 SDOPackage::Monitoring_ptr RTObject_impl::get_monitoring() { throw SDOPackage::InterfaceNotImplemented("monitoring is not implemented"); }
