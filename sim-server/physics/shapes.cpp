@@ -7,7 +7,32 @@
 
 namespace sim {
 
+namespace {
+
+constexpr double ground_below = 10;  // [m] of solid ground under the lowest place of a height field
+
+// ODE's own box is too small for a field that is turned and not square. Its heights are along y.
+Aabb box_of_field(dGeomID geom, const ShapeStore::Field& field) {
+  const auto [low, high] = std::minmax_element(field.grid->heights.begin(), field.grid->heights.end());
+  const Eigen::Vector3d middle(0, (*low - ground_below + *high) / 2, 0);
+  const Eigen::Vector3d half(field.grid->width / 2, (*high - *low + ground_below) / 2, field.grid->depth / 2);
+  const dReal* p = dGeomGetPosition(geom);
+  const dReal* r = dGeomGetRotation(geom);
+  Aabb box;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d sign(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+    const Eigen::Vector3d q = middle + sign.cwiseProduct(half);
+    const Eigen::Vector3d at(p[0] + r[0] * q.x() + r[1] * q.y() + r[2] * q.z(), p[1] + r[4] * q.x() + r[5] * q.y() + r[6] * q.z(),
+                             p[2] + r[8] * q.x() + r[9] * q.y() + r[10] * q.z());
+    box.extend({at, at});
+  }
+  return box;
+}
+
+}  // namespace
+
 Aabb box_of(dGeomID geom) {
+  if (dGeomGetClass(geom) == dHeightfieldClass) return box_of_field(geom, *static_cast<const ShapeStore::Field*>(dGeomGetData(geom)));
   dReal b[6];
   dGeomGetAABB(geom, b);
   return {{b[0], b[2], b[4]}, {b[1], b[3], b[5]}};
@@ -39,9 +64,9 @@ base::Result<std::shared_ptr<ShapeStore::Field>> ShapeStore::field(const Heightm
   field->grid = *grid;
   field->data = ode::HeightfieldData(dGeomHeightfieldDataCreate());
   const HeightGrid& g = **grid;
-  dGeomHeightfieldDataBuildSingle(field->data.id(), g.heights.data(), 0, g.width, g.depth, g.columns, g.rows, 1, 0, 10, 0);
+  dGeomHeightfieldDataBuildSingle(field->data.id(), g.heights.data(), 0, g.width, g.depth, g.columns, g.rows, 1, 0, ground_below, 0);
   const auto [low, high] = std::minmax_element(g.heights.begin(), g.heights.end());
-  dGeomHeightfieldDataSetBounds(field->data.id(), *low - 10, *high);
+  dGeomHeightfieldDataSetBounds(field->data.id(), *low - ground_below, *high);
   fields_[grid->get()] = field;
   return field;
 }
@@ -65,6 +90,7 @@ base::Result<ShapeInstance> make_shape(const CollisionDef& collision, ShapeStore
     if (!field) return field.error();
     shape.geom = ode::Geom(dCreateHeightfield(nullptr, (*field)->data.id(), 1));
     shape.data = *field;
+    dGeomSetData(shape.geom.id(), field->get());  // for box_of; lives as long as the shape
     shape.needs_lock = true;
   } else {
     auto mesh = shapes.mesh(geometry);

@@ -470,6 +470,8 @@ TEST(Surface, old_threads_and_times_work) {
   measure.tack();
   EXPECT_EQ(measure.count(), 1u);
   EXPECT_EQ(RTC::toVector(RTC::toStringList({"a", "b"})), (coil::vstring{"a", "b"}));
+  int argc = 0;
+  const CORBA::ORB_var orb = CORBA::ORB_init(argc, nullptr);  // omniORB has no values of type any before
   SDOPackage::NVList list;
   CORBA_SeqUtil::push_back(list, NVUtil::newNV("key", "value"));
   EXPECT_EQ(NVUtil::toString(list, "key"), "value");

@@ -225,11 +225,15 @@ def looked_at_while_paused():
         hashes = []
         for is_looked_at in (False, True):
             process = started(*options)
+            is_listened_to = False
 
             def look(ifaces=("laser", "sonar", "position2d", "laser")):
                 samples = [read("echo", f"{robot}::{iface}", "-n", "1") for iface in ifaces] if is_looked_at else []
                 now = read("stats")["sim_time"]
-                assert all(abs(sample["stamp"]["sim_time"] - now) < 1e-9 for sample in samples), (samples, now)
+                # A laser that somebody listens to keeps to its own times, ten a second: a further scan would reach the listener too.
+                for iface, sample in zip(ifaces, samples):
+                    allowed = 0.1 if iface == "laser" and is_listened_to else 1e-9
+                    assert abs(sample["stamp"]["sim_time"] - now) < allowed, (iface, sample["stamp"], now)
                 return samples
 
             first = look()
@@ -239,6 +243,7 @@ def looked_at_while_paused():
             # Somebody listens all the time, in both runs.
             listener = client("echo", f"{robot}::laser")
             await_("a listener", lambda: read("stats")["subscribed"] == 1)
+            is_listened_to = True
             ok("step", "1050")
             look()
             ok("pose", robot, "1", "0.5", "0.3")

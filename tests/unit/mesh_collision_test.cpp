@@ -164,12 +164,14 @@ TEST_F(Meshes, a_height_map_is_the_same_for_bodies_and_for_lasers) {
   std::vector<ModelDef> models{terrain(path, {16, 16, 4}, at(0, 0, 0), {0, 0, 0})};
   std::vector<Eigen::Vector2d> places{{0.3, 0.4}, {-3.1, 2.2}, {5.4, -4.7}, {2.05, 6.3}};
   for (std::size_t i = 0; i < places.size(); ++i) {
-    ModelDef eye = body("eye" + std::to_string(i), SphereShape{0.01}, tilted(places[i].x(), places[i].y(), 10, 0, std::numbers::pi / 2));
+    // Its body stands a metre aside, where the ball does not come by.
+    ModelDef eye =
+        body("eye" + std::to_string(i), SphereShape{0.01}, tilted(places[i].x() + 1, places[i].y(), 10, 0, std::numbers::pi / 2));
     eye.is_static = true;
-    eye.links[0].sensors.push_back(laser("laser", 1, 0, 0, 20, Eigen::Isometry3d::Identity()));
+    eye.links[0].sensors.push_back(laser("laser", 1, 0, 0, 20, Eigen::Isometry3d(Eigen::Translation3d(0, 0, -1))));
     models.push_back(eye);
-    // A small ball held over the same place, free to move up and down only, rests where it touches the ground.
-    ModelDef ball = body("ball" + std::to_string(i), SphereShape{0.02}, at(places[i].x(), places[i].y(), 5));
+    // A small ball held over the same place, above the ray, free to move up and down only, rests where it touches the ground.
+    ModelDef ball = body("ball" + std::to_string(i), SphereShape{0.02}, at(places[i].x(), places[i].y(), 10.5));
     JointDef rail;
     rail.name = "rail";
     rail.kind = JointDef::Kind::prismatic;
