@@ -47,7 +47,8 @@ std::string describe(const CORBA::Exception& exception) {
   if (is_time_out(exception)) return "does not answer within the time-out (hung, or stopped?)";
   if (dynamic_cast<const CORBA::OBJECT_NOT_EXIST*>(&exception)) return "is gone (its process lives, the object does not)";
   if (const auto* transient = dynamic_cast<const CORBA::TRANSIENT*>(&exception)) {
-    if (transient->minor() == omni::TRANSIENT_NoUsableProfile) return "cannot be reached (no such host, or nothing in its address can be used)";
+    if (transient->minor() == omni::TRANSIENT_NoUsableProfile)
+      return "cannot be reached (no such host, or nothing in its address can be used)";
     return "cannot be reached (its process is gone, or there is no such host)";
   }
   if (dynamic_cast<const CORBA::BAD_PARAM*>(&exception)) return "has an address that is none, expected HOST:PORT (BAD_PARAM)";

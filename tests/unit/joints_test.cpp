@@ -14,12 +14,12 @@ constexpr double g = 9.8;
 // frame is that of the arm, unless `pose` says otherwise.
 struct Rig {
   std::string kind = "revolute";
-  std::string axes;        // <axis> and more
-  std::string joint_pose;  // in the arm
+  std::string axes{};        // <axis> and more
+  std::string joint_pose{};  // in the arm
   std::string arm_pose = "0 0 1 0 0 0";
-  std::string center;  // of mass in the arm
+  std::string center{};  // of mass in the arm
   std::string gravity = "0 0 0";
-  std::string extra;  // links and joints
+  std::string extra{};  // links and joints
   bool is_base_free = false;
   bool is_base_parent = true;
   std::string version = "1.9";
@@ -51,11 +51,6 @@ std::string axis(const std::string& xyz, const std::string& more = "", const std
 void spin(PhysicsFixture& f, const Eigen::Vector3d& rate, const std::string& link = "m::arm") {
   const Eigen::Vector3d moments(0.02, 0.03, 0.04);
   ASSERT_TRUE(f.physics.add_wrench(f.link(link), {0, 0, 0}, moments.cwiseProduct(rate) / f.physics.step_length()));
-  f.physics.step();
-}
-
-void push(PhysicsFixture& f, const Eigen::Vector3d& velocity) {
-  ASSERT_TRUE(f.physics.add_wrench(f.link("m::arm"), velocity / f.physics.step_length(), {0, 0, 0}));
   f.physics.step();
 }
 

@@ -51,7 +51,9 @@ TEST_P(Wild, runs_for_ten_seconds) {
     EXPECT_LT(p.z(), 10) << physics.def(id).name << " at " << p.transpose();
     bool has_shape = false;
     for (const auto& link : physics.def(id).links) has_shape = has_shape || !link.collisions.empty();
-    if (has_ground && has_shape) EXPECT_GT(p.z(), -0.5) << physics.def(id).name << " at " << p.transpose();
+    if (has_ground && has_shape) {
+      EXPECT_GT(p.z(), -0.5) << physics.def(id).name << " at " << p.transpose();
+    }
   }
   for (auto& iface : ifaces) EXPECT_GT(iface.sequence(), 0U) << iface.name() << " has published nothing";
 }
@@ -67,8 +69,8 @@ std::vector<fs::path> worlds() {
   return found;
 }
 
-INSTANTIATE_TEST_SUITE_P(Worlds, Wild, ::testing::ValuesIn(worlds()), [](const auto& info) {
-  std::string name = info.param.filename().string();
+INSTANTIATE_TEST_SUITE_P(Worlds, Wild, ::testing::ValuesIn(worlds()), [](const auto& world) {
+  std::string name = world.param.filename().string();
   for (char& c : name) c = c == '.' ? '_' : c;
   return name;
 });
