@@ -83,8 +83,12 @@ void read_members(ComponentView& component) {
   for (CORBA::ULong i = 0; i < organizations->length(); ++i) {
     SDOPackage::SDOList_var members = organizations[i]->get_members();
     for (CORBA::ULong n = 0; n < members->length(); ++n) {
-      CORBA::String_var id = members[n]->get_sdo_id();
-      component.members.emplace_back(id.in());
+      try {
+        CORBA::String_var id = members[n]->get_sdo_id();
+        component.members.emplace_back(id.in());
+      } catch (const CORBA::Exception& exception) {  // one dead member hides neither the others nor the composite
+        component.members.emplace_back("(a member that " + describe(exception) + ")");
+      }
     }
   }
 }
@@ -105,7 +109,12 @@ void read_profile(ComponentView& component) {
 
 }  // namespace
 
-RTC::LifeCycleState ComponentView::state() const { return contexts.empty() ? RTC::CREATED_STATE : contexts.front().state; }
+// A member of a composite has its own context stopped and runs in another.
+RTC::LifeCycleState ComponentView::state() const {
+  if (contexts.empty()) return RTC::CREATED_STATE;
+  const auto running = std::find_if(contexts.begin(), contexts.end(), [](const ContextView& context) { return context.is_running; });
+  return running == contexts.end() ? contexts.front().state : running->state;
+}
 
 const PortView* ComponentView::port(const std::string& name) const {
   for (const auto& candidate : ports) {
