@@ -73,9 +73,9 @@ std::shared_ptr<shm::Participant> SimTimeContext::join() {
   }
   auto simulation = shm::Iface::open(static_cast<std::uint32_t>(server_id_), shm::IfaceType::simulation, "world");
   if (!simulation) return nullptr;
-  simulation_.emplace(std::move(*simulation));
   is_waiting_ = false;
-  const auto step = std::chrono::nanoseconds(simulation_->info<shm::SimulationInfo>().step_ns);
+  const auto step = std::chrono::nanoseconds(simulation->info<shm::SimulationInfo>().step_ns);
+  simulator_time_->follow(std::move(*simulation));
   say_once("ticking at " + base::format_number(getRate()) + " Hz of simulated time, phase " + std::to_string(phase_) + " of simulator " +
            std::to_string(server_id_) +
            (options.period < step ? "; that is once a step, " + base::format_number(1e9 / static_cast<double>(step.count())) + " Hz" : ""));
@@ -83,12 +83,6 @@ std::shared_ptr<shm::Participant> SimTimeContext::join() {
   const std::scoped_lock lock(mutex_);
   participant_ = participant;
   return participant;
-}
-
-bool SimTimeContext::time_stands_still() {
-  if (!simulation_ || !simulation_->read()) return true;
-  const auto& sample = simulation_->sample<shm::SimulationSample>();
-  return sample.paused != 0 || sample.waiting_for != 0;
 }
 
 void SimTimeContext::run(shm::Participant& participant) {
@@ -102,7 +96,7 @@ void SimTimeContext::run(shm::Participant& participant) {
         invokeWorkerPostDo();
         break;
       case shm::Participant::State::timed_out:
-        if (time_stands_still()) invokeWorkerPreDo();
+        if (simulator_time_->stands_still()) invokeWorkerPreDo();
         break;
       case shm::Participant::State::dropped:
         return say_once("the simulator has dropped this context from the lock step; joining again");
@@ -124,7 +118,7 @@ int SimTimeContext::svc() {
       invokeWorkerPreDo();
       std::this_thread::sleep_for(retry_period);  // nothing announces a simulator that does not exist yet
     }
-    simulation_.reset();
+    simulator_time_->follow(std::nullopt);
   }
   return 0;
 }

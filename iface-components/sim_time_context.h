@@ -15,10 +15,10 @@
 
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 
 #include "sim_clock.h"
+#include "simulator_time.h"
 
 class SimTimeContext : public RTC::PeriodicExecutionContext {
  public:
@@ -33,22 +33,22 @@ class SimTimeContext : public RTC::PeriodicExecutionContext {
   RTC::ReturnCode_t onSetRate(double rate) override;
   void onWakeUp() override;
   const base::Clock& contextClock() const override { return clock_; }
+  std::shared_ptr<const base::Clock> sharedClock() const override { return simulator_time_; }
 
  private:
   std::shared_ptr<shm::Participant> join();
   void run(shm::Participant& participant);
-  bool time_stands_still();
   void interrupt();
   void say_once(const std::string& line);
   std::string participant_name() const;
 
-  iface::SimClock clock_;
+  iface::SimClock clock_;  // the time of the tick that runs
+  const std::shared_ptr<iface::SimulatorTime> simulator_time_ = std::make_shared<iface::SimulatorTime>();
   int server_id_ = 0;
   std::uint32_t phase_ = 1;
-  std::string said_;                      // the last line, not to be said again
-  bool is_waiting_ = false;               // and has said so
-  std::optional<shm::Iface> simulation_;  // of the ticking thread
-  std::mutex mutex_;                      // of participant_
+  std::string said_;         // the last line, not to be said again
+  bool is_waiting_ = false;  // and has said so
+  std::mutex mutex_;         // of participant_
   std::shared_ptr<shm::Participant> participant_;
 };
 

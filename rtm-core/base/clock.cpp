@@ -1,5 +1,7 @@
 #include "base/clock.h"
 
+#include <utility>
+
 namespace base {
 namespace {
 
@@ -18,6 +20,25 @@ const Clock& current_clock() {
   static const SystemClock system_clock;
   const Clock* clock = scoped_clock();
   return clock ? *clock : system_clock;
+}
+
+const Clock& current_clock_or(const Clock& otherwise) {
+  const Clock* clock = scoped_clock();
+  return clock ? *clock : otherwise;
+}
+
+std::chrono::nanoseconds FollowingClock::now() const {
+  std::shared_ptr<const Clock> clock;
+  {
+    const std::lock_guard lock(mutex_);
+    clock = clock_;
+  }
+  return (clock ? *clock : current_clock()).now();
+}
+
+void FollowingClock::follow(std::shared_ptr<const Clock> clock) {
+  const std::lock_guard lock(mutex_);
+  clock_.swap(clock);
 }
 
 ScopedClock::ScopedClock(const Clock& clock) : previous_(scoped_clock()) { scoped_clock() = &clock; }

@@ -4,6 +4,8 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 
 namespace base {
 
@@ -33,6 +35,19 @@ class ManualClock final : public Clock {
 
 // The clock of what runs on this thread: the execution context's while it calls a component, else the system clock.
 const Clock& current_clock();
+// The execution context's while it calls a component on this thread, else `otherwise`.
+const Clock& current_clock_or(const Clock& otherwise);
+
+// Passes on the time of another clock, which can be exchanged; the current clock of the calling thread while there is none.
+class FollowingClock final : public Clock {
+ public:
+  std::chrono::nanoseconds now() const override;
+  void follow(std::shared_ptr<const Clock> clock);
+
+ private:
+  mutable std::mutex mutex_;
+  std::shared_ptr<const Clock> clock_;
+};
 
 // Makes `clock` the current one of this thread for the guard's life; guards nest.
 class ScopedClock {

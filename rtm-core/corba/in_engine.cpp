@@ -36,6 +36,12 @@ bool is_same_sample(const rt::Sample& a, const rt::Sample& b) {
 
 }  // namespace
 
+std::chrono::nanoseconds ConnectionPlan::port_time() const { return (clock ? *clock : base::current_clock()).now(); }
+
+std::chrono::nanoseconds ConnectionPlan::caller_time() const {
+  return (clock ? base::current_clock_or(*clock) : base::current_clock()).now();
+}
+
 InConnection::InConnection(const TypeOps& ops, ConnectionPlan plan, std::shared_ptr<rt::Mailbox> mailbox)
     : ops_(ops), plan_(std::move(plan)), mailbox_(std::move(mailbox)), channel_(mailbox_->open(plan_.settings.buffer)) {
   if (plan_.settings.is_rendezvous) mailbox_->set_rendezvous(channel_, true);
@@ -46,7 +52,7 @@ InConnection::~InConnection() { mailbox_->close(channel_); }
 void InConnection::finish() { mailbox_->finish(channel_); }
 
 rt::PortStatus InConnection::receive(rt::Sample sample) {
-  if (plan_.settings.stamp == rt::StampPolicy::on_received) sample.received = base::current_clock().now();
+  if (plan_.settings.stamp == rt::StampPolicy::on_received) sample.received = plan_.port_time();
   ConnectorEvents& events = *plan_.events;
   if (events.is_observed(DataEvent::received)) {
     EventData data(ops_, sample);
@@ -319,7 +325,7 @@ rt::PortStatus InEngine::deliver(const rt::Sample& received, InConnection& conne
   if (ops_.stamp && connection.settings().stamp == rt::StampPolicy::on_received && sample->received.count()) {
     ops_.stamp(value, sample->received);
   }
-  if (ops_.stamp && connection.settings().stamp == rt::StampPolicy::on_read) ops_.stamp(value, base::current_clock().now());
+  if (ops_.stamp && connection.settings().stamp == rt::StampPolicy::on_read) ops_.stamp(value, connection.plan_.caller_time());
   return rt::PortStatus::ok;
 }
 

@@ -1,6 +1,7 @@
 // The connections of one InPort: what comes in over any transport waits here until it is read. Any thread; one reader at a time.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <map>
 #include <memory>
@@ -14,6 +15,10 @@
 #include "core/mailbox.h"
 #include "rtm/idl/RTCStub.h"
 
+namespace base {
+class Clock;
+}
+
 namespace corba {
 
 // What a port knows about a connection before it exists.
@@ -22,7 +27,12 @@ struct ConnectionPlan {
   std::string name;
   rt::ConnectorSettings settings;
   std::shared_ptr<ConnectorEvents> events;
-  bool peer_says_when_empty = false;  // the OutPort of a pull connection does not hand out old samples again
+  bool peer_says_when_empty = false;         // the OutPort of a pull connection does not hand out old samples again
+  std::shared_ptr<const base::Clock> clock;  // of the port's component, for time stamps; null: the calling thread's
+
+  // The time by the component's clock; of a call that a component makes, by the clock of the context that runs it.
+  std::chrono::nanoseconds port_time() const;
+  std::chrono::nanoseconds caller_time() const;
 };
 
 class InConnection final : public Receiver {

@@ -91,7 +91,7 @@ struct OutConnection::Line {
   rt::PortStatus send(Payload& payload, bool is_flush) {
     Changed changed(payload);
     if (plan.settings.stamp == rt::StampPolicy::on_send || (is_flush && plan.settings.stamp == rt::StampPolicy::on_write)) {
-      changed.stamp(base::current_clock().now());
+      changed.stamp(plan.caller_time());
     }
     tell(DataEvent::send, changed);
     const rt::PortStatus status = sender->send(changed.now());
@@ -157,7 +157,7 @@ rt::PortStatus OutConnection::write(Payload& payload) {
 
 rt::PortStatus OutConnection::write_buffered(Payload& payload) {
   Changed changed(payload);
-  if (line_->plan.settings.stamp == rt::StampPolicy::on_write) changed.stamp(base::current_clock().now());
+  if (line_->plan.settings.stamp == rt::StampPolicy::on_write) changed.stamp(line_->plan.caller_time());
   line_->tell(DataEvent::buffer_write, changed);
   rt::WriteResult result;
   try {
@@ -193,7 +193,7 @@ rt::PortStatus OutConnection::take(rt::Sample& sample) {
   }
   Payload payload(line_->ops, result.sample);
   Changed changed(payload);
-  if (line_->plan.settings.stamp == rt::StampPolicy::on_send) changed.stamp(base::current_clock().now());
+  if (line_->plan.settings.stamp == rt::StampPolicy::on_send) changed.stamp(line_->plan.port_time());
   line_->tell(DataEvent::buffer_read, changed);
   line_->tell(DataEvent::send, changed);
   sample = line_->keep(changed.now());

@@ -81,6 +81,28 @@ with System(bin_dir, lib_dir) as s:
     elif case == "chain_mixed_at_a_rate_that_is_no_multiple_of_the_step":
         chain(s, (0, 2, 1, 3, 2), rate=30, ticks=300)
 
+    elif case == "time_stamps":
+        # Every policy stamps with simulated time, also where a thread of the receiver's or sender's process does it that no context runs.
+        s.naming()
+        s.server(empty, "--lockstep", "--paused", "--rtf", "0", "--wait-for", "2")
+        s.host(relay("From", **{"exec_cxt.sim_time.phase": 0, "conf.default.source": 1, "conf.default.stamp": 0}))
+        s.host(relay("To", **{"conf.default.stamp": 0, "conf.default.journal": f"{s.work}/to.txt"}))
+        s.rtse("wait", "From", "To", "--state", "any", "--timeout", "60")
+        join(s, 2)
+        for flow in ("push", "pull"):
+            for policy in ("on_write", "on_send", "on_received", "on_read"):
+                open(f"{s.work}/to.txt", "w").close()
+                s.rtse("con", "From:out", "To:in", "-p", f"dataport.dataflow_type={flow}", "-p", "dataport.subscription_type=flush", "-p", f"timestamp_policy={policy}")
+                s.rtse("act", "From", "To")
+                start = s.seconds()
+                s.simctl("step", "100")
+                seen = journal(f"{s.work}/to.txt")
+                stamps = [at for at, _ in seen]
+                due = [round(stamps[0] + 0.01 * n, 9) for n in range(max(10, len(stamps)))]
+                assert stamps == due and start <= due[0] <= start + 0.02, f"{flow}, {policy}: from {start} on stamped {stamps}"
+                s.rtse("deact", "From", "To")
+                s.rtse("dis", "From:out")
+
     elif case == "killed":
         s.naming()
         s.server(empty, "--lockstep", "--rtf", "0")

@@ -27,6 +27,7 @@ class Relay : public RTC::DataFlowComponentBase {
     bindParameter("hang_at", hang_at_, "0");
     bindParameter("crash_at", crash_at_, "0");
     bindParameter("nan_at", nan_at_, "0");
+    bindParameter("stamp", stamp_, "1");
     addOutPort("number", number_out_);
     return RTC::RTC_OK;
   }
@@ -50,7 +51,11 @@ class Relay : public RTC::DataFlowComponentBase {
       in_.read();
       sent_.data = received_.data;
     }
-    setTimestamp(sent_);
+    if (stamp_ != 0) {
+      setTimestamp(sent_);
+    } else {
+      sent_.tm = received_.tm;  // as the connection has stamped it
+    }
     if (!journal_.empty()) {
       char line[64];
       std::snprintf(line, sizeof line, "%u.%09u %d\n", static_cast<unsigned>(sent_.tm.sec), static_cast<unsigned>(sent_.tm.nsec),
@@ -67,7 +72,7 @@ class Relay : public RTC::DataFlowComponentBase {
   RTC::OutPort<RTC::TimedLong> out_;
   RTC::TimedDouble number_{};
   RTC::OutPort<RTC::TimedDouble> number_out_;
-  int source_ = 0, hang_at_ = 0, crash_at_ = 0, nan_at_ = 0, ticks_ = 0;
+  int source_ = 0, hang_at_ = 0, crash_at_ = 0, nan_at_ = 0, stamp_ = 1, ticks_ = 0;
   std::string journal_;
 };
 
@@ -89,6 +94,7 @@ static const char* const relay_spec[] = {
     "conf.default.hang_at", "0",
     "conf.default.crash_at", "0",
     "conf.default.nan_at", "0",
+    "conf.default.stamp", "1",
     ""};
 // clang-format on
 

@@ -19,6 +19,11 @@ template <class Engine, class Connector, rt::Side side>
 DataPortBase<Engine, Connector, side>::~DataPortBase() = default;
 
 template <class Engine, class Connector, rt::Side side>
+void DataPortBase<Engine, Connector, side>::setClock(std::shared_ptr<const base::Clock> clock) {
+  *clock_.lock() = std::move(clock);
+}
+
+template <class Engine, class Connector, rt::Side side>
 DataPortStatus DataPortBase<Engine, Connector, side>::getStatus(int index) const {
   const auto statuses = engine_->statuses();
   if (index < 0 || static_cast<std::size_t>(index) >= statuses.size()) return UNKNOWN_ERROR;
@@ -147,6 +152,7 @@ ReturnCode_t DataPortBase<Engine, Connector, side>::open(ConnectorProfile& profi
   if (is_provider != provides) return RTC_OK;
   auto connector = std::make_shared<Connector>(*this, listeners_, detail::make_info(profile, m_properties));
   auto plan = detail::make_plan(profile, settings, connector);
+  plan.clock = *clock_.lock();
   const rt::Refusal refusal = provides ? engine_->provide(std::move(plan), profile) : engine_->consume(std::move(plan), profile);
   if (refusal.code != rt::ReturnCode::ok) {
     RTC_WARN_STR("connection refused: " << refusal.reason);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/guarded.h"
 #include "corba/type_ops.h"
 #include "core/connector_settings.h"
 #include "rtm/ConnectorBase.h"
@@ -12,6 +13,9 @@
 #include "rtm/DataPortStatus.h"
 #include "rtm/PortBase.h"
 
+namespace base {
+class Clock;
+}
 namespace corba {
 class InEngine;
 class OutEngine;
@@ -31,6 +35,9 @@ class DataPortBase : public PortBase, public DataPortStatus {
   void deactivateInterfaces() override {}
 
   virtual const char* name() { return short_name_.c_str(); }
+
+  // The time for stamps on threads that no context runs. For connections that are made later; the component sets it when it takes the port.
+  void setClock(std::shared_ptr<const base::Clock> clock);
 
   // Of the last read or write, per connection in the order of connectors().
   DataPortStatus getStatus(int index) const;
@@ -73,6 +80,7 @@ class DataPortBase : public PortBase, public DataPortStatus {
 
   const std::string short_name_;
   const std::shared_ptr<ConnectorListeners> listeners_;
+  base::Guarded<std::shared_ptr<const base::Clock>, base::Rank::buffer> clock_;
 };
 
 extern template class DataPortBase<corba::InEngine, InPortConnector, rt::Side::in>;

@@ -96,6 +96,10 @@ class ExecutionContextBase {
   // Brings a member to rest before it leaves: deactivates it when it is active, resets it when it is in error; waits for that whatever
   // sync_transition says, but not for a callback that has outlasted a wait before.
   void calmComponent(RTC::LightweightRTObject_ptr comp, std::chrono::steady_clock::time_point deadline);
+  // What time it is for the components now, for threads that the context does not run, such as those that receive data for them. It may
+  // outlive the context. Null: the time of the system.
+  virtual std::shared_ptr<const base::Clock> sharedClock() const { return nullptr; }
+
   // Asks for the same and returns at once; contexts without a thread do nothing.
   void askToRest(RTC::LightweightRTObject_ptr comp);
   // Waits until no callback of a member runs on another thread; false on time-out.

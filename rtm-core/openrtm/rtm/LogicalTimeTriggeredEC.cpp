@@ -22,7 +22,7 @@ class LogicalTimeTriggeredEC::Steps final : public rt::Steps {
 
 LogicalTimeTriggeredEC::LogicalTimeTriggeredEC()
     : ExecutionContextServant("logicaltime_ec"),
-      clock_(std::make_unique<base::ManualClock>()),
+      clock_(std::make_shared<base::ManualClock>()),
       steps_(std::make_unique<Steps>(*this)),
       worker_(std::make_unique<rt::TriggeredWorker>(context(), *steps_)) {
   setObjRef(RTC::ExecutionContextService_var(_this()));
@@ -45,6 +45,7 @@ void LogicalTimeTriggeredEC::get_time(CORBA::ULong& sec, CORBA::ULong& usec) {
 }
 
 const base::Clock& LogicalTimeTriggeredEC::contextClock() const { return *clock_; }
+std::shared_ptr<const base::Clock> LogicalTimeTriggeredEC::sharedClock() const { return clock_; }
 
 RTC::ReturnCode_t LogicalTimeTriggeredEC::onStarted() {
   coil::Task::wait();

@@ -43,10 +43,11 @@ class LogicalTimeTriggeredEC : public ExecutionContextServant<POA_OpenRTM::Logic
   RTC::ReturnCode_t onStopping() override;
   void onWakeUp() override;
   const base::Clock& contextClock() const override;
+  std::shared_ptr<const base::Clock> sharedClock() const override;
 
  private:
   class Steps;
-  std::unique_ptr<base::ManualClock> clock_;
+  const std::shared_ptr<base::ManualClock> clock_;
   std::unique_ptr<Steps> steps_;
   std::unique_ptr<rt::TriggeredWorker> worker_;
 };

@@ -393,6 +393,7 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   ReturnCode_t exitNow(std::chrono::steady_clock::time_point deadline);
   ReturnCode_t finalizeBy(std::chrono::steady_clock::time_point deadline);
   void finalizeContexts(std::chrono::steady_clock::time_point deadline);
+  void chooseClock();
   bool waitForCallbacks(std::chrono::steady_clock::time_point deadline);
   void complainAboutCallbacks(const char* consequence) const;
   std::string property(const std::string& key, const std::string& otherwise = "") const;

@@ -229,9 +229,25 @@ void RTObject_impl::finalizeContexts(std::chrono::steady_clock::time_point deadl
     else
       left_contexts().lock()->push_back(context);
   }
-  auto data = impl_->shared.lock();
-  data->own.clear();
-  data->foreign.clear();
+  {
+    auto data = impl_->shared.lock();
+    data->own.clear();
+    data->foreign.clear();
+  }
+  chooseClock();
+}
+
+// The clock of the first own context; of the latest one that the component takes part in, if there is one.
+void RTObject_impl::chooseClock() {
+  ExecutionContext_var chosen;
+  {
+    auto data = impl_->shared.lock();
+    if (!data->own.empty()) chosen = data->own.front();
+    for (const ExecutionContext_var& context : data->foreign)
+      if (!CORBA::is_nil(context)) chosen = context;
+  }
+  const auto context = CORBA::is_nil(chosen) ? nullptr : findLocalContext(chosen);
+  impl_->clock->follow(context ? context->sharedClock() : nullptr);
 }
 
 bool RTObject_impl::destroyLeftContexts() {
@@ -303,6 +319,7 @@ UniqueId RTObject_impl::bindContext(ExecutionContext_ptr exec_context) {
     if (id >= foreign_offset) return -1;
     data->own.push_back(ExecutionContext::_duplicate(exec_context));
   }
+  chooseClock();
   m_actionListeners.ecaction_[EC_ATTACHED].notify(id);
   return id;
 }
@@ -319,6 +336,7 @@ ExecutionContextHandle_t RTObject_impl::attach_context(ExecutionContext_ptr exec
     *free = ExecutionContext::_duplicate(exec_context);
     id = static_cast<ExecutionContextHandle_t>(free - list.begin()) + foreign_offset;
   }
+  chooseClock();
   m_actionListeners.ecaction_[EC_ATTACHED].notify(id);
   return id;
 }
@@ -331,6 +349,7 @@ ReturnCode_t RTObject_impl::detach_context(ExecutionContextHandle_t exec_handle)
     if (index >= data->foreign.size() || CORBA::is_nil(data->foreign[index])) return BAD_PARAMETER;
     data->foreign[index] = ExecutionContext::_nil();
   }
+  chooseClock();
   m_actionListeners.ecaction_[EC_DETACHED].notify(exec_handle);
   return RTC_OK;
 }

@@ -12,6 +12,7 @@
 #include <set>
 #include <thread>
 
+#include "base/clock.h"
 #include "base/guarded.h"
 
 namespace RTC {
@@ -53,6 +54,8 @@ struct RTObject_impl::Impl {
   struct Turn {};
   base::Guarded<Turn, base::Rank::registry> properties_turn;
   SdoServiceAdmin services;
+  // Of the context that the component joined last; for time stamps.
+  const std::shared_ptr<base::FollowingClock> clock = std::make_shared<base::FollowingClock>();
   class Visit;
   base::Guarded<std::vector<RunningCallback>, base::Rank::buffer> running;
   std::condition_variable callback_ended;

@@ -30,6 +30,8 @@ bool RTObject_impl::addPort(Port port) {
     port.local->setOwner(self);
     port.local->init(properties);
     port.local->setPortConnectListenerHolder(&m_portconnListeners);
+    if (port.in) port.in->setClock(impl_->clock);
+    if (port.out) port.out->setClock(impl_->clock);
     port.reference = PortService::_duplicate(port.local->getPortRef());
   }
   PortProfile profile;

@@ -1,0 +1,28 @@
+#include "simulator_time.h"
+
+#include <utility>
+
+namespace iface {
+
+void SimulatorTime::follow(std::optional<shm::Iface> simulation) {
+  const std::scoped_lock lock(mutex_);
+  std::swap(simulation_, simulation);
+}
+
+const shm::SimulationSample* SimulatorTime::read() const {
+  return simulation_ && simulation_->read() ? &simulation_->sample<shm::SimulationSample>() : nullptr;
+}
+
+std::chrono::nanoseconds SimulatorTime::now() const {
+  const std::scoped_lock lock(mutex_);
+  if (const auto* sample = read()) last_ = std::chrono::nanoseconds(sample->stamp.sim_time_ns);
+  return last_;
+}
+
+bool SimulatorTime::stands_still() const {
+  const std::scoped_lock lock(mutex_);
+  const auto* sample = read();
+  return !sample || sample->paused != 0 || sample->waiting_for != 0;
+}
+
+}  // namespace iface
