@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 
@@ -43,18 +44,36 @@ RunResult from_json(const Json& json, std::uint64_t seed) {
   return result;
 }
 
-// A line on standard output; what is wrong on standard error, with the seed before it when there are several.
-void report(Editor& editor, const RunResult& result, bool names_seed) {
+double times_real_time(const RunResult& result) { return result.wall_s > 0 ? result.simulated_s / result.wall_s : 0; }
+
+void print_heading() {
+  std::printf("%10s  %-6s  %11s  %9s  %9s  %-16s  %s\n", "seed", "result", "simulated", "speed", "path", "state", "unmet");
+}
+
+void print_row(const RunResult& result) {
+  std::string unmet = result.problem.empty() ? "" : "did not run to the end";
+  for (const auto& verdict : result.verdicts) {
+    if (!verdict.problem.empty()) unmet += (unmet.empty() ? "" : ", ") + verdict.expectation;
+  }
+  std::printf("%10llu  %-6s  %9.1f s  %7.1f x  %7.2f m  %-16s  %s\n", static_cast<unsigned long long>(result.seed),
+              result.is_passed() ? "passed" : "FAILED", result.simulated_s, times_real_time(result), result.path_m,
+              result.state_hash.empty() ? "-" : result.state_hash.c_str(), unmet.empty() ? "-" : unmet.c_str());
+}
+
+// A line on standard output, or a row of the table of seeds; what is wrong on standard error, with the seed before it when there are
+// several.
+void report(Editor& editor, const RunResult& result, bool is_row) {
   if (editor.json()) {
     std::cout << to_json(result).dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+  } else if (is_row) {
+    print_row(result);
   } else {
     std::printf("%s  seed %llu  %.1f s simulated in %.1f s (%.1f x real time)  path %.2f m  state %s\n",
                 result.is_passed() ? "passed" : "FAILED", static_cast<unsigned long long>(result.seed), result.simulated_s, result.wall_s,
-                result.wall_s > 0 ? result.simulated_s / result.wall_s : 0, result.path_m,
-                result.state_hash.empty() ? "-" : result.state_hash.c_str());
+                times_real_time(result), result.path_m, result.state_hash.empty() ? "-" : result.state_hash.c_str());
   }
   std::fflush(stdout);
-  const std::string seed = names_seed ? "seed " + std::to_string(result.seed) + ": " : "";
+  const std::string seed = is_row ? "seed " + std::to_string(result.seed) + ": " : "";
   for (const auto& note : result.notes) std::fprintf(stderr, "rtse: %s%s\n", seed.c_str(), note.c_str());
   if (!result.problem.empty()) editor.fail({seed + result.problem});
   for (const auto& verdict : result.verdicts) {
@@ -120,17 +139,19 @@ Result<void> check_writable(const std::string& file) {
 }
 
 std::vector<RunResult> run_seeds(Editor& editor, const RunOptions& options, const std::vector<std::uint64_t>& seeds, int jobs) {
-  std::vector<RunResult> results;
+  std::map<std::size_t, RunResult> done;  // by place in `seeds`
+  std::size_t reported = 0;               // rows come in the order of the seeds
   std::mutex mutex;
-  std::size_t passed = 0;
   const bool shows = !options.quiet && isatty(2);
   const auto show = [&] {
     constexpr std::size_t width = 30;
-    const auto done = results.size() * width / seeds.size();
-    std::fprintf(stderr, "\r[%s%s] %zu of %zu", std::string(done, '#').c_str(), std::string(width - done, '.').c_str(), results.size(),
+    const auto filled = done.size() * width / seeds.size();
+    std::fprintf(stderr, "\r[%s%s] %zu of %zu", std::string(filled, '#').c_str(), std::string(width - filled, '.').c_str(), done.size(),
                  seeds.size());
   };
   const auto hide = [] { std::fprintf(stderr, "\r%60s\r", ""); };
+  if (!editor.json()) print_heading();
+  std::fflush(stdout);
   if (shows) show();
   in_parallel(
       seeds.size(), editor.limit(),
@@ -138,18 +159,26 @@ std::vector<RunResult> run_seeds(Editor& editor, const RunOptions& options, cons
         if (is_interrupted()) return;
         auto result = run_apart(options, seeds[i]);
         const std::scoped_lock lock(mutex);
-        passed += result.is_passed() ? 1U : 0U;
+        done.emplace(i, std::move(result));
         if (shows) hide();
-        report(editor, result, true);
-        results.push_back(std::move(result));
+        for (auto next = done.find(reported); next != done.end(); next = done.find(reported)) {
+          report(editor, next->second, true);
+          ++reported;
+        }
         if (shows) show();
       },
       static_cast<std::size_t>(jobs));
   if (shows) hide();
+  std::vector<RunResult> results;
+  std::size_t passed = 0;
+  for (auto& [place, result] : done) {
+    if (place >= reported) report(editor, result, true);  // an earlier one was interrupted
+    passed += result.is_passed() ? 1U : 0U;
+    results.push_back(std::move(result));
+  }
   if (!editor.json()) std::printf("%zu of %zu seeds passed\n", passed, seeds.size());
   if (results.size() < seeds.size())
     editor.fail({"run: interrupted after " + std::to_string(results.size()) + " of " + std::to_string(seeds.size()) + " seeds"});
-  std::ranges::sort(results, {}, &RunResult::seed);
   return results;
 }
 

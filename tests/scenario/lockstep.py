@@ -7,6 +7,9 @@ import time
 
 from system import System, is_stopped
 
+sys.path.append(f"{sys.argv[4]}/tests/ports")
+from giop import Ior, Orb
+
 case, bin_dir, lib_dir, source = sys.argv[1:]
 empty = f"{source}/worlds/empty.sdf"
 rtcd_line = re.compile(r"\[(\d+\.\d+)\] INFO: (\w+): relay activated")
@@ -35,6 +38,26 @@ def stands_still(s):
     s.simctl("pause")  # what changes nothing in the world is answered all the same
     s.simctl("run")
     assert s.simctl("tree")
+
+
+# The reference of a component's first context, asked of the naming service and of the component in GIOP.
+def own_context(orb, s, component):
+    host, port = s.names.split(":")
+    folders = re.findall(r"^/[^/]+/(\S+):\n((?:\S+\n)+)", s.rtse("ls", "-R"), re.MULTILINE)
+    folder = next(folder for folder, names in folders if f"{component}.rtc" in names.split())
+    names = [part.rsplit(".", 1) for part in folder.split("/")] + [(component, "rtc")]
+    root = Ior.make("IDL:omg.org/CosNaming/NamingContext:1.0", host, int(port), b"NameService", 2)
+
+    def write_name(out):
+        def one(pair):
+            out.string(pair[0])
+            out.string(pair[1])
+
+        out.sequence(names, one)
+
+    reference = orb.invoke(root, "resolve", write_name).ior()
+    contexts = orb.invoke(reference, "get_owned_contexts")
+    return contexts.sequence(contexts.ior)[0]
 
 
 def journal(path):
@@ -199,17 +222,31 @@ with System(bin_dir, lib_dir) as s:
         goes_on(s)
         goes_on(s, other)
 
-    elif case == "come_and_go":
+    elif case == "registers_1000_times":
+        # A context joins at each start and leaves at each stop; time passes for the others all along, and nothing is left of any registration.
         s.naming()
-        s.server(empty, "--lockstep", "--rtf", "0")
+        server = s.server(empty, "--lockstep", "--rtf", "0")
         s.host(relay("Stays"))
-        host = s.host(relay("Seed"))
+        host = s.host(relay("Comes"))
+        s.rtse("wait", "Stays", "Comes", "--state", "any", "--timeout", "60")
         join(s, 2)
-        manager = s.until("its manager", lambda: [name for name in s.rtse("ls", "-R").split() if name.endswith(".mgr")])
-        for n in range(60):
-            s.rtse("act", "Seed")
-            s.rtse("deact", "Seed")
-            join(s, 2)
+        orb = Orb()
+        context = own_context(orb, s, "Comes")
+        order = lambda operation: orb.invoke(context, operation).ulong()
+        resident = lambda: int(re.search(r"VmRSS:\s*(\d+)", open(f"/proc/{server.pid}/status").read())[1])
+        joined = lambda: len(re.findall(r"participant Comes .* takes part", s.log(server)))
+        at = s.seconds()
+        for n in range(1, 1000):
+            assert order("stop") == 0 and order("start") == 0, f"registration {n}"
+            s.until(f"registration {n}", lambda: joined() > n, pause=0.001)
+            if n == 100:
+                early = resident()
+        assert resident() < early + 1024, f"the simulator has grown from {early} to {resident()} KiB"
+        join(s, 2)
+        assert s.seconds() > at
+        goes_on(s)
+        said = s.log(host).count("Comes: ticking at 100 Hz")
+        assert said <= 1, f"said {said} times that it has joined"
         host.terminate()
         host.wait()
         join(s, 1)

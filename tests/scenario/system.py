@@ -96,7 +96,7 @@ class System:
         return json.loads(self.simctl("--json", "participants", server_id=server_id))
 
     # The first true answer; an assertion that fails means "not yet".
-    def until(self, what, ready):
+    def until(self, what, ready, pause=0.02):
         end = time.monotonic() + watchdog
         while True:
             why = ""
@@ -107,7 +107,7 @@ class System:
             except (AssertionError, KeyError, ValueError, FileNotFoundError) as error:
                 why = str(error)
             assert time.monotonic() < end, f"{what}: not within {watchdog} s; {why}"
-            time.sleep(0.02)
+            time.sleep(pause)
 
 
 def is_stopped(process):
