@@ -46,6 +46,8 @@ int code_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 +
   dup2(null, 0);
   dup2(output, 1);
   dup2(output, 2);
+  for (int number = 1; number < NSIG; ++number) signal(number, SIG_DFL);  // what we ignore is no business of others
+  close_range(3, ~0U, 0);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);

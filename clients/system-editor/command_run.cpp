@@ -130,11 +130,30 @@ Result<void> check_writable(const std::string& file) {
   const std::filesystem::path path(file);
   const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_directory(status) && !std::filesystem::is_regular_file(status))
+    return Error{"file " + base::in_quotes(file) + ": is no regular file"};
   if (std::filesystem::is_directory(path, error)) return Error{"file " + base::in_quotes(file) + ": is a folder"};
   if (!std::filesystem::is_directory(folder, error))
     return Error{"file " + base::in_quotes(file) + ": there is no folder " + folder.string()};
   if (access(std::filesystem::exists(path, error) ? path.c_str() : folder.c_str(), W_OK) != 0)
     return Error{"file " + base::in_quotes(file) + ": cannot be written"};
+  return {};
+}
+
+// Each file that is written is one of its own.
+Result<void> check_files(const RunOptions& options) {
+  std::error_code error;
+  std::vector<std::filesystem::path> taken;
+  for (const auto& file : {options.system, options.world, options.expectations})
+    taken.push_back(std::filesystem::weakly_canonical(file, error));
+  for (const auto& file : {options.junit, options.picture}) {
+    if (file.empty()) continue;
+    const auto path = std::filesystem::weakly_canonical(file, error);
+    if (std::ranges::find(taken, path) != taken.end()) return Error{"file " + base::in_quotes(file) + ": is used for something else too"};
+    if (const auto writable = check_writable(file); !writable) return writable;
+    taken.push_back(path);
+  }
   return {};
 }
 
@@ -204,9 +223,7 @@ Result<ComponentProperty> parse_property(const std::string& text) {
 }
 
 void run(Editor& editor, const RunOptions& options, const std::optional<std::string>& seeds_text, int jobs) {
-  for (const auto& file : {options.junit, options.picture}) {
-    if (const auto writable = check_writable(file); !writable) return editor.fail(writable.error());
-  }
+  if (const auto good = check_files(options); !good) return editor.fail(good.error());
   catch_interrupts();
   std::vector<RunResult> results;
   if (seeds_text) {
@@ -216,9 +233,11 @@ void run(Editor& editor, const RunOptions& options, const std::optional<std::str
   } else {
     results.push_back(run_system(editor.orb(), options));
     report(editor, results.back(), false);
-    if (!results.back().problem.empty() && options.keep.empty() && !editor.json())
+    if (!results.back().logs.empty() && options.keep.empty() && !editor.json())
       std::fprintf(stderr, "rtse: --keep DIR keeps the logs of all processes\n");
   }
+  if (std::cout.flush(); !std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+    editor.fail({"standard output: cannot be written"});
   if (options.junit.empty()) return;
   if (const auto written = write_junit(options.junit, options, results); !written) editor.fail(written.error());
 }

@@ -60,7 +60,7 @@ Result<Editor::Port> Editor::port(const std::string& path, bool with_connectors)
 void Editor::fail(const Error& error) {
   std::cout.flush();
   std::fprintf(stderr, "rtse: %s\n", error.message.c_str());
-  failed_ = true;
+  if (problem_.empty()) problem_ = error.message.empty() ? "failed" : error.message;
 }
 
 void Editor::print(const nlohmann::ordered_json& value) const { std::cout << value.dump(2) << '\n'; }

@@ -34,7 +34,9 @@ class Editor {
   Result<Port> port(const std::string& path, bool with_connectors = false) const;
 
   void fail(const Error& error);
-  bool failed() const { return failed_; }
+  bool failed() const { return !problem_.empty(); }
+  // What was said first.
+  const std::string& problem() const { return problem_; }
   void print(const nlohmann::ordered_json& value) const;
 
  private:
@@ -42,7 +44,7 @@ class Editor {
   std::string server_;
   bool json_;
   std::chrono::milliseconds limit_;
-  bool failed_ = false;
+  std::string problem_;
 };
 
 // Each prints what it did or found and reports failures through editor.fail().

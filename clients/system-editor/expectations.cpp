@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <iomanip>
 #include <set>
@@ -28,6 +29,8 @@ const std::map<Kind, std::set<std::string>> keys = {
     {Kind::path_length, {"model", "min", "max"}},    {Kind::reach, {"model", "region", "within"}},
     {Kind::stay, {"model", "region", "within"}},     {Kind::no_contact, {"model", "except"}},
     {Kind::value, {"port", "member", "min", "max"}}, {Kind::state, {"component", "is"}}};
+
+const std::string usually_touched = "ground_plane";
 
 const std::set<std::string> states = {"Created", "Inactive", "Active", "Error"};
 
@@ -112,7 +115,7 @@ Expectation read_one(const std::string& name, const YAML::Node& node) {
   }
   if (expectation.kind == Kind::reach || expectation.kind == Kind::stay) read_region(node, expectation);
   if (expectation.kind == Kind::no_contact) {
-    expectation.except = {"ground_plane"};
+    expectation.except = {usually_touched};
     if (node["except"]) expectation.except.clear();
     const auto except = node["except"];
     if (except && !except.IsScalar() && !except.IsSequence()) throw Failure{"except must be a model or a list of models"};
@@ -127,6 +130,13 @@ Expectation read_one(const std::string& name, const YAML::Node& node) {
   return expectation;
 }
 
+// What was measured, to six digits; limits are shown as they were given.
+std::string measured(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
 std::string bounds(const Expectation& e) {
   if (e.min && e.max) return "from " + base::format_number(*e.min) + " to " + base::format_number(*e.max);
   return e.min ? "at least " + base::format_number(*e.min) : "at most " + base::format_number(*e.max);
@@ -137,7 +147,7 @@ bool inside(const RecordedPose& pose, const double* region) {
 }
 
 std::string place(const RecordedPose& pose) {
-  return "(" + base::format_number(pose.x) + ", " + base::format_number(pose.y) + ") at " + base::format_number(pose.time) + " s";
+  return "(" + measured(pose.x) + ", " + measured(pose.y) + ") at " + measured(pose.time) + " s";
 }
 
 std::string region_problem(const Expectation& e, const std::vector<RecordedPose>& poses) {
@@ -151,24 +161,35 @@ std::string region_problem(const Expectation& e, const std::vector<RecordedPose>
     const double dy = std::max({e.region[1] - pose.y, 0.0, pose.y - e.region[3]});
     nearest = std::min(nearest, std::hypot(dx, dy));
   }
-  return e.kind == Kind::stay ? "" : "it came no nearer than " + base::format_number(nearest) + " m";
+  return e.kind == Kind::stay ? "" : "it came no nearer than " + measured(nearest) + " m";
 }
 
-std::string contact_problem(const Expectation& e, const Record& record) {
+template <class Names>
+std::string names_in(const Names& all) {
+  std::vector<std::string> names;
+  for (const auto& entry : all) {
+    if constexpr (requires { entry.first; }) {
+      names.push_back(entry.first);
+    } else {
+      names.push_back(entry);
+    }
+  }
+  return names.empty() ? "none" : base::join(names, ", ");
+}
+
+std::string contact_problem(const Expectation& e, const Record& record, const std::vector<std::string>& models) {
+  for (const auto& name : e.except) {
+    const bool is_default = name == usually_touched;
+    if (!is_default && std::find(models.begin(), models.end(), name) == models.end())
+      return "the world has no model " + base::in_quotes(name) + " that may be touched; models: " + names_in(models);
+  }
   for (const auto& contact : record.contacts) {
     const auto& other = contact.model == e.model ? contact.other : contact.model;
     if (contact.model != e.model && contact.other != e.model) continue;
     if (std::find(e.except.begin(), e.except.end(), other) != e.except.end()) continue;
-    return "it touched " + other + " at " + base::format_number(contact.time) + " s";
+    return "it touched " + other + " at " + measured(contact.time) + " s";
   }
   return "";
-}
-
-template <class Map>
-std::string names_in(const Map& map) {
-  std::vector<std::string> names;
-  for (const auto& entry : map) names.push_back(entry.first);
-  return names.empty() ? "none" : base::join(names, ", ");
 }
 
 std::string value_problem(const Expectation& e, const Seen& seen) {
@@ -179,9 +200,7 @@ std::string value_problem(const Expectation& e, const Seen& seen) {
   if (value.not_numbers > 0)
     return "it was not a number (NaN) in " + std::to_string(value.not_numbers) + " of " + std::to_string(value.samples) + " samples";
   const bool fits = (!e.min || value.lowest >= *e.min) && (!e.max || value.highest <= *e.max);
-  return fits
-             ? ""
-             : "it ran from " + base::format_number(value.lowest) + " to " + base::format_number(value.highest) + ", expected " + bounds(e);
+  return fits ? "" : "it ran from " + measured(value.lowest) + " to " + measured(value.highest) + ", expected " + bounds(e);
 }
 
 std::string command_problem(const Expectation& e, const Seen& seen) {
@@ -202,13 +221,13 @@ std::string problem_of(const Expectation& e, const Seen& seen) {
     case Kind::path_length: {
       const double length = path_length(poses->second);
       const bool fits = (!e.min || length >= *e.min) && (!e.max || length <= *e.max);
-      return fits ? "" : "it was " + base::format_number(length) + " m, expected " + bounds(e);
+      return fits ? "" : "it was " + measured(length) + " m, expected " + bounds(e);
     }
     case Kind::reach:
     case Kind::stay:
       return region_problem(e, poses->second);
     case Kind::no_contact:
-      return contact_problem(e, seen.record);
+      return contact_problem(e, seen.record, seen.models);
     case Kind::value:
       return value_problem(e, seen);
     case Kind::state: {
@@ -246,10 +265,11 @@ Result<std::vector<Expectation>> read_expectations(const std::string& file) {
   }
 }
 
-Result<Record> read_record(const std::string& file) {
+Result<Record> read_record(const std::string& file, double end) {
   std::ifstream in(file);
   if (!in) return Error{"record " + base::in_quotes(file) + ": cannot be read"};
   Record record;
+  double last = 0;
   for (std::string line; std::getline(in, line);) {
     std::istringstream words(line);
     std::string first;
@@ -258,7 +278,7 @@ Result<Record> read_record(const std::string& file) {
     if (first == "contact") {
       RecordedContact contact;
       words >> contact.time >> std::quoted(contact.model) >> std::quoted(contact.other);
-      if (words) record.contacts.push_back(contact);
+      if (words && contact.time <= end) record.contacts.push_back(contact);
       continue;
     }
     const auto time = base::parse_number(first);
@@ -266,6 +286,8 @@ Result<Record> read_record(const std::string& file) {
     std::string model;
     words >> std::quoted(model) >> pose.x >> pose.y >> pose.z;
     if (!time || !words) return Error{"record " + base::in_quotes(file) + ": line " + base::in_quotes(line) + " is no pose"};
+    if (pose.time < last || pose.time > end) break;
+    last = pose.time;
     record.poses[model].push_back(pose);
   }
   return record;

@@ -49,8 +49,8 @@ struct Record {
   std::map<std::string, std::vector<RecordedPose>> poses;
   std::vector<RecordedContact> contacts;
 };
-// What sim-server --record writes.
-base::Result<Record> read_record(const std::string& file);
+// What sim-server --record writes, until `end` [s] or a reset of the world.
+base::Result<Record> read_record(const std::string& file, double end);
 // "data.vx", "ranges[0]" -> its steps; the error says what is wrong with it.
 base::Result<std::vector<std::string>> member_path(const std::string& member);
 double path_length(const std::vector<RecordedPose>& poses);
@@ -72,6 +72,7 @@ struct SeenCommand {
 // All that a run has shown.
 struct Seen {
   Record record;
+  std::vector<std::string> models;            // all of the world
   std::map<std::string, SeenValue> values;    // by "port member"
   std::map<std::string, std::string> states;  // by component
   std::map<std::string, SeenCommand> commands;

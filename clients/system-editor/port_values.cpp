@@ -50,6 +50,8 @@ Result<void> PortValues::listen(CORBA::ORB_ptr orb, const Editor& editor, const 
     if (expectation.kind != Expectation::Kind::value) continue;
     auto port = editor.port(expectation.port);
     if (!port) return port.error();
+    if (port->port.port_type() != "DataOutPort")
+      return Error{"port " + expectation.port + ": is no OutPort, so there are no values to see"};
     const auto type = type_code_of(port->port.data_type());
     if (CORBA::is_nil(type))
       return Error{"port " + expectation.port + ": carries " + port->port.data_type() + ", which rtse does not know"};

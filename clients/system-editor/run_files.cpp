@@ -3,6 +3,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <sstream>
@@ -24,6 +25,23 @@ void remove_leftovers() {
     const auto pid = base::parse_integer(name.substr(prefix.size(), name.find('-', prefix.size()) - prefix.size()));
     if (pid && *pid > 0 && kill(static_cast<pid_t>(*pid), 0) != 0 && errno == ESRCH) std::filesystem::remove_all(entry.path(), ignored);
   }
+}
+
+// How many octets the UTF-8 character at the start has; 0: it is none, or none that XML 1.0 allows.
+std::size_t character_at(std::string_view text) {
+  const auto octet = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
+  const unsigned first = octet(0);
+  if (first < 0x80) return first >= 0x20 || first == '\n' || first == '\t' ? 1 : 0;
+  const std::size_t size = first >= 0xf0 && first < 0xf5 ? 4 : first >= 0xe0 ? 3 : 2;
+  if (first < 0xc2 || first >= 0xf5) return 0;
+  unsigned code = first & (0x7fU >> size);
+  for (std::size_t i = 1; i < size; ++i) {
+    if ((octet(i) & 0xc0U) != 0x80U) return 0;
+    code = code << 6U | (octet(i) & 0x3fU);
+  }
+  const bool is_shortest = size == 2 || code >= (size == 3 ? 0x800U : 0x10000U);
+  const bool is_character = (code < 0xd800 || code > 0xdfff) && code < 0xfffe;
+  return is_shortest && (is_character || (code >= 0x10000 && code < 0x110000)) ? size : 0;
 }
 
 }  // namespace
@@ -81,6 +99,16 @@ std::string last_lines(const std::string& file) {
   std::string text = "--- " + std::filesystem::path(file).filename().string() + "\n";
   for (std::size_t i = lines.size() > enough ? lines.size() - enough : 0; i < lines.size(); ++i) text += lines[i] + "\n";
   return text;
+}
+
+std::string printable(std::string_view text) {
+  std::string result;
+  while (!text.empty()) {
+    const auto size = character_at(text);
+    result += size > 0 ? text.substr(0, size) : "?";
+    text.remove_prefix(std::max<std::size_t>(size, 1));
+  }
+  return result;
 }
 
 }  // namespace editor

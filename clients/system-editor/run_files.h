@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace editor {
@@ -33,5 +34,7 @@ LogLevel level_of(const std::string& line);
 std::string telling_line(const std::string& file);
 // The last lines of a log under its name; nothing for one that is empty.
 std::string last_lines(const std::string& file);
+// What is no UTF-8, or no character that XML 1.0 allows, becomes a question mark.
+std::string printable(std::string_view text);
 
 }  // namespace editor

@@ -1,18 +1,18 @@
 // What a run has shown as JUnit XML.
+#include <cstdio>
 #include <filesystem>
 #include <pugixml.hpp>
 
 #include "base/text.h"
+#include "run_files.h"
 #include "run_system.h"
 
 namespace editor {
 namespace {
 
-// XML 1.0 has no control characters.
-std::string printable(std::string text) {
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') c = '?';
-  }
+std::string seconds(double time) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f", time);
   return text;
 }
 
@@ -20,13 +20,13 @@ class Suite {
  public:
   explicit Suite(const std::string& name) : node_(document_.append_child("testsuite")) { node_.append_attribute("name") = name.c_str(); }
 
-  pugi::xml_node add(const std::string& group, const std::string& name, double seconds) {
+  pugi::xml_node add(const std::string& group, const std::string& name, double time) {
     auto test = node_.append_child("testcase");
     test.append_attribute("classname") = printable(group).c_str();
     test.append_attribute("name") = printable(name).c_str();
-    test.append_attribute("time") = seconds;
+    test.append_attribute("time") = seconds(time).c_str();
     ++tests_;
-    seconds_ += seconds;
+    seconds_ += time;
     return test;
   }
   void fail(pugi::xml_node test, const std::string& why) {
@@ -43,7 +43,7 @@ class Suite {
     node_.append_attribute("tests") = tests_;
     node_.append_attribute("failures") = failures_;
     node_.append_attribute("errors") = errors_;
-    node_.append_attribute("time") = seconds_;
+    node_.append_attribute("time") = seconds(seconds_).c_str();
     return document_.save_file(file.c_str(), "  ");
   }
 

@@ -59,6 +59,7 @@ class Run {
       result_.logs = last_words();
     }
     ports_.end();
+    take_warnings();
     stop();
     result_.wall_s = std::chrono::duration<double>(Clock::now() - began).count();
     return result_;
@@ -83,6 +84,18 @@ class Run {
     auto system = read_system(options_.system);
     if (!system) return system.error();
     system_ = std::move(*system);
+    for (const auto& component : system_.components) {
+      if (component.contexts.empty() || component.contexts.front().rate.empty()) continue;
+      const auto& rate = component.contexts.front().rate;
+      const auto number = base::parse_number(rate);
+      if (!number || *number <= 0 || *number > 1e9)
+        return fail("component " + component.instance + ": its rate must be more than 0 and at most 1e9 Hz, got " + base::in_quotes(rate));
+    }
+    for (const auto& [kind, paths] : {std::pair("module", &options_.module_paths), std::pair("resource", &options_.resource_paths)}) {
+      for (const auto& path : *paths) {
+        if (!std::filesystem::is_directory(path)) return fail(std::string(kind) + " path " + base::in_quotes(path) + ": no such folder");
+      }
+    }
     for (const auto& text : options_.properties) {
       auto property = parse_property(text);
       if (!property) return property.error();
@@ -98,7 +111,7 @@ class Run {
   }
 
   Result<void> judge_all() {
-    auto record = read_record(place_.file("record.txt"));
+    auto record = read_record(place_.file("record.txt"), options_.duration_s + step_s_ / 2);
     if (!record) return record.error();
     seen_.record = std::move(*record);
     const auto verdicts = judge(expectations_, seen_);
@@ -192,6 +205,21 @@ class Run {
     }
   }
 
+  // What the components have to say that should not be missed.
+  void take_warnings() {
+    constexpr std::size_t enough = 5;
+    for (const auto& host : hosts_) {
+      std::size_t count = 0;
+      for (const auto& line : lines_of(host.log)) {
+        const auto level = level_of(line);
+        if (level != LogLevel::warning && level != LogLevel::error) continue;
+        if (++count <= enough) result_.notes.push_back(line);
+      }
+      if (count > enough)
+        result_.notes.push_back("host of " + host.components + ": and " + std::to_string(count - enough) + " more such lines (--keep)");
+    }
+  }
+
   // Of the simulator with our id, whoever's it is; an empty object when there is none.
   Json statistics() const {
     const auto text = simctl({"--json", "stats"});
@@ -218,7 +246,8 @@ class Run {
     const auto parts = base::split_list(component.id, ':');
     const auto type = parts.size() >= 4 ? parts[3] : component.instance;
     auto text = type + "?instance_name=" + component.instance;
-    if (!component.contexts.empty()) text += "&exec_cxt.periodic.rate=" + component.contexts.front().rate;
+    if (!component.contexts.empty() && !component.contexts.front().rate.empty())
+      text += "&exec_cxt.periodic.rate=" + component.contexts.front().rate;
     for (const auto& property : properties_) {
       if (property.instance == component.instance) text += "&" + property.key + "=" + property.value;
     }
@@ -233,10 +262,10 @@ class Run {
     const auto set = [](const std::string& key, const std::string& value) { return key + ":" + value; };
     const auto log = place_.new_file("rtcd-" + std::to_string(hosts_.size()) + ".log");
     ProgramCall call{{own_program("rtcd")}, {{"RTMSIM_SERVER_ID", server_id_}, {"TMPDIR", place_.scratch("tmp")}}, log};
-    for (const auto& option :
-         {set("corba.nameservers", server_), set("manager.modules.load_path", base::join(paths, ",")),
-          set("manager.modules.preload", "SimTimeContext.so"), set("exec_cxt.periodic.type", "SimTimeContext"),
-          set("manager.shutdown_auto", "NO"), set("manager.shutdown_on_nortcs", "NO"), set("logger.log_level", "INFO")}) {
+    for (const auto& option : {set("corba.nameservers", server_), set("manager.modules.load_path", base::join(paths, ",")),
+                               set("manager.modules.preload", "SimTimeContext.so"), set("exec_cxt.periodic.type", "SimTimeContext"),
+                               set("manager.instance_name", "host" + std::to_string(hosts_.size())), set("manager.shutdown_auto", "NO"),
+                               set("manager.shutdown_on_nortcs", "NO"), set("logger.log_level", "INFO")}) {
       call.words.insert(call.words.end(), {"-o", option});
     }
     std::vector<std::string> names;
@@ -294,14 +323,8 @@ class Run {
     editor_.emplace(orb_, server_, false, std::chrono::milliseconds(call_limit));
     load(*editor_, file, false);
     if (!editor_->failed()) start(*editor_, file, false);
-    if (editor_->failed()) return fail("system " + options_.system + ": could not be wired and activated: " + hosts_said());
+    if (editor_->failed()) return fail("system " + options_.system + ": could not be wired and activated: " + editor_->problem());
     return {};
-  }
-
-  std::string hosts_said() const {
-    std::vector<std::string> said;
-    for (const auto& host : hosts_) said.push_back(telling_line(host.log));
-    return base::join(said, "; ");
   }
 
   // The ends of all logs, for a report.
@@ -373,6 +396,11 @@ class Run {
       const auto drawn = simctl({"screenshot", file, "--top", "--scans", "--size", "900x900"}, 60s);
       if (!drawn) result_.verdicts.push_back({"picture " + options_.picture, drawn.error().message});
     }
+    if (const auto tree = simctl({"--json", "tree"})) {
+      const auto json = Json::parse(*tree, nullptr, false);
+      for (const auto& model : json.is_object() ? json.value("models", Json::array()) : Json::array())
+        seen_.models.push_back(model.value("name", ""));
+    }
     for (const auto& component : system_.components) {
       const auto view = editor_->component(component.instance + ".rtc", {.contexts = true});
       seen_.states[component.instance] = view ? state_text(view->state()) : "gone";
@@ -406,7 +434,7 @@ class Run {
       const auto ending = started->wait_or_interrupt(command_limit);
       if (ending == Ending::interrupted) return fail("run: interrupted");
       const auto lines = base::split_list(started->said(), '\n');
-      seen.text = lines.empty() ? "" : lines.back();
+      seen.text = lines.empty() ? "" : printable(lines.back());
       if (ending == Ending::ended) {
         seen.exit_code = started->exit_code();
       } else {
@@ -454,7 +482,8 @@ RunResult run_system(CORBA::ORB_ptr orb, const RunOptions& options) {
   } catch (const std::filesystem::filesystem_error& error) {
     RunResult result;
     result.seed = options.seed;
-    result.problem = "folder " + base::in_quotes(error.path1().string()) + ": " + error.code().message();
+    const auto path = error.path1().empty() ? std::filesystem::path(std::getenv("TMPDIR") ? std::getenv("TMPDIR") : "/tmp") : error.path1();
+    result.problem = "folder " + base::in_quotes(path.string()) + ": " + error.code().message();
     return result;
   }
 }

@@ -1,6 +1,7 @@
 #include "corba/remote_participant.h"
 
 #include "base/log.h"
+#include "corba/action_call.h"
 #include "corba/orb.h"
 #include "corba/return_code.h"
 #include "rtm/idl/SDOPackageStub.h"
@@ -53,7 +54,7 @@ RemoteParticipant::RemoteParticipant(RTC::LightweightRTObject_ptr component, RTC
 rt::ReturnCode RemoteParticipant::call(rt::Action action) {
   if (*lost_.lock() && action != rt::Action::reset && action != rt::Action::startup) return rt::ReturnCode::error;
   try {
-    const auto code = from_wire(forward(action));
+    const auto code = from_wire(call_action(action, *component_, CORBA::is_nil(data_flow_) ? nullptr : data_flow_.in(), handle_));
     *lost_.lock() = false;
     return code;
   } catch (const CORBA::Exception& exception) {
@@ -61,32 +62,6 @@ rt::ReturnCode RemoteParticipant::call(rt::Action action) {
     base::log(base::Level::error, name_, "component of another process does not answer {}: {}", to_text(action), to_text(exception));
   }
   return rt::ReturnCode::error;
-}
-
-RTC::ReturnCode_t RemoteParticipant::forward(rt::Action action) {
-  switch (action) {
-    case rt::Action::startup:
-      return component_->on_startup(handle_);
-    case rt::Action::shutdown:
-      return component_->on_shutdown(handle_);
-    case rt::Action::activated:
-      return component_->on_activated(handle_);
-    case rt::Action::deactivated:
-      return component_->on_deactivated(handle_);
-    case rt::Action::aborting:
-      return component_->on_aborting(handle_);
-    case rt::Action::error:
-      return component_->on_error(handle_);
-    case rt::Action::reset:
-      return component_->on_reset(handle_);
-    case rt::Action::execute:
-      return CORBA::is_nil(data_flow_) ? RTC::RTC_OK : data_flow_->on_execute(handle_);
-    case rt::Action::state_update:
-      return CORBA::is_nil(data_flow_) ? RTC::RTC_OK : data_flow_->on_state_update(handle_);
-    case rt::Action::rate_changed:
-      return CORBA::is_nil(data_flow_) ? RTC::RTC_OK : data_flow_->on_rate_changed(handle_);
-  }
-  return RTC::RTC_ERROR;
 }
 
 }  // namespace corba

@@ -30,8 +30,6 @@ class RemoteParticipant final : public rt::Participant {
   rt::ReturnCode call(rt::Action action) override;
 
  private:
-  RTC::ReturnCode_t forward(rt::Action action);
-
   RTC::LightweightRTObject_var component_;
   RTC::DataFlowComponentAction_var data_flow_;  // nil when it has no such operations
   const RTC::ExecutionContextHandle_t handle_;

@@ -50,7 +50,8 @@ class Place:
 
     def start(self, system, world, *options):
         self.junit = self.path / "junit.xml"
-        return subprocess.Popen([rtse, "run", system, "--world", world, "--module-path", lib_dir, "--junit", str(self.junit), *options], text=True,
+        junit = [] if "--junit" in options else ["--junit", str(self.junit)]
+        return subprocess.Popen([rtse, "run", system, "--world", world, "--module-path", lib_dir, *junit, *options], text=True,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=self.environment, cwd=self.path)
 
     # Exit code, standard output, standard error.
@@ -222,6 +223,29 @@ def odds_and_ends():
         for words in (["--duration", "nan"], ["--seeds", ""], ["--seeds", "3..1"], ["--seed", "-5"], ["--seeds", "1..2", "--seed", "3"], ["--hang-timeout", "0"]):
             code, out, err = place.run(system, world, *words)
             assert code == 2 and len(err.splitlines()) == 1, (words, code, err)
+        os.mkfifo(place.path / "pipe")
+        mistakes = {("--module-path", "/nonexistent"): "module path \"/nonexistent\"", ("--resource-path", "/nonexistent"): "resource path", ("--junit", system): "something else too",
+                    ("--picture", str(place.path / "pipe")): "no regular file", ("--picture", f"{place.path}/same", "--junit", f"{place.path}/same"): "something else too"}
+        for words, why in mistakes.items():
+            code, out, err = place.run(system, world, *words)
+            assert code == 1 and why in err and "--keep" not in err, (words, code, err)
+        e = place.write("e.yaml", expectations("value: {port: 'Relay1:in', member: data, min: 0}"))
+        code, out, err = place.run(system, world, "--duration", "1", "--expect", e)
+        assert code == 1 and "Relay1:in: is no OutPort" in err, err
+        # What a command says need not be text, and the signals are as they are for a program started by a shell.
+        e = place.write("e.yaml", expectations("command: 'head -c 300 /dev/urandom; exit 3'", "command: 'yes | head -n 1; grep -q \"^SigIgn:.*0000000000000000$\" /proc/self/status'"))
+        code, out, err = place.run(system, world, "--duration", "1", "--expect", e)
+        verdicts = place.verdicts()
+        assert of(verdicts, "command: head").startswith("it ended with exit code 3") and of(verdicts, "command: yes | head") == "", verdicts
+        # What a component warns of is said, though its log is not kept.
+        code, out, err = place.run(system, world, "--duration", "1", "--property", "Relay1:exec_cxt.sim_time.phase=99")
+        assert code == 0 and "exec_cxt.sim_time.phase" in err and "99" in err, (code, err)
+        bad = place.write("bad.xml", pathlib.Path(system).read_text().replace('rts:rate="10.0"', 'rts:rate="nan"'))
+        code, out, err = place.run(bad, world)
+        assert code == 1 and "rate" in err and "nan" in err, err
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([rtse, "run", system, "--world", world, "--duration", "1", "--module-path", lib_dir], text=True, stdout=full, stderr=subprocess.PIPE, env=place.environment)
+        assert done.returncode == 1 and "standard output" in done.stderr, done
         code, out, err = place.run(system, world, "--picture", "/nonexistent/p.png")
         assert code == 1 and "/nonexistent" in err, err
 

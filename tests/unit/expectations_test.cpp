@@ -38,6 +38,7 @@ class ExpectationsTest : public testing::Test {
   Seen seen_ = [] {
     Seen seen;
     seen.record.poses["robot"] = {{0, 0, 0, 0}, {1, 3, 0, 0}, {2, 3, 4, 0}};
+    seen.models = {"box", "ground_plane", "robot"};
     seen.record.contacts = {{0.1, "robot", "ground_plane"}, {1.5, "box", "robot"}};
     for (const double number : {-1, 0, 2}) seen.values["A0:out data"].take(number);
     seen.states["A0"] = "Active";
@@ -129,15 +130,31 @@ TEST_F(ExpectationsTest, what_cannot_be_judged_is_refused_with_its_line) {
 }
 
 TEST_F(ExpectationsTest, records_are_read_whole_or_refused) {
-  const auto record = read_record(file("# rtm-sim record 1\n0.100 robot 1 2 3 1 0 0 0\ncontact 0.2 robot box\n"));
+  const auto record = read_record(file("# rtm-sim record 1\n0.100 robot 1 2 3 1 0 0 0\ncontact 0.2 robot box\n"), 10);
   ASSERT_TRUE(record.ok());
   EXPECT_EQ(record->poses.at("robot").at(0).z, 3);
   EXPECT_EQ(record->contacts.at(0).other, "box");
-  EXPECT_FALSE(read_record(file("0.1 robot 1 x 3\n")).ok());
-  const auto quoted = read_record(file("0.1 \"my \\\"big\\\" box\" 1 2 3 1 0 0 0\ncontact 0.2 robot \"my box\"\n"));
+  EXPECT_FALSE(read_record(file("0.1 robot 1 x 3\n"), 10).ok());
+  const auto quoted = read_record(file("0.1 \"my \\\"big\\\" box\" 1 2 3 1 0 0 0\ncontact 0.2 robot \"my box\"\n"), 10);
   ASSERT_TRUE(quoted.ok());
   EXPECT_EQ(quoted->poses.begin()->first, "my \"big\" box");
   EXPECT_EQ(quoted->contacts.at(0).other, "my box");
+}
+
+TEST_F(ExpectationsTest, a_record_ends_with_the_run_and_with_a_reset) {
+  const auto text = [](const std::string& time, int x) { return time + " robot " + std::to_string(x) + " 0 0 1 0 0 0\n"; };
+  const auto late = read_record(file(text("1", 1) + text("2", 3) + "contact 2.5 robot box\n" + text("3", 9)), 2);
+  ASSERT_TRUE(late.ok());
+  EXPECT_EQ(path_length(late->poses.at("robot")), 2);
+  EXPECT_TRUE(late->contacts.empty());
+  const auto reset = read_record(file(text("1", 1) + text("2", 3) + text("0.1", 0) + text("0.2", 7)), 10);
+  ASSERT_TRUE(reset.ok());
+  EXPECT_EQ(path_length(reset->poses.at("robot")), 2);
+}
+
+TEST_F(ExpectationsTest, what_may_be_touched_must_be_there) {
+  EXPECT_EQ(problem("- no_contact: {model: robot, except: [ground_plane, bxo]}"),
+            "the world has no model \"bxo\" that may be touched; models: box, ground_plane, robot");
 }
 
 }  // namespace

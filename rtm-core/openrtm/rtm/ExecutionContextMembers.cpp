@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "corba/action_call.h"
 #include "corba/orb.h"
 #include "corba/remote_participant.h"
 #include "corba/return_code.h"
@@ -21,35 +22,11 @@ class LocalParticipant final : public rt::Participant {
       : component_(std::move(component)), handle_(handle) {}
 
   std::string name() const override { return component_->getInstanceName(); }
-  rt::ReturnCode call(rt::Action action) override { return corba::from_wire(forward(action)); }
-
- private:
-  ReturnCode_t forward(rt::Action action) {
-    switch (action) {
-      case rt::Action::startup:
-        return component_->on_startup(handle_);
-      case rt::Action::shutdown:
-        return component_->on_shutdown(handle_);
-      case rt::Action::activated:
-        return component_->on_activated(handle_);
-      case rt::Action::deactivated:
-        return component_->on_deactivated(handle_);
-      case rt::Action::aborting:
-        return component_->on_aborting(handle_);
-      case rt::Action::error:
-        return component_->on_error(handle_);
-      case rt::Action::reset:
-        return component_->on_reset(handle_);
-      case rt::Action::execute:
-        return component_->on_execute(handle_);
-      case rt::Action::state_update:
-        return component_->on_state_update(handle_);
-      case rt::Action::rate_changed:
-        return component_->on_rate_changed(handle_);
-    }
-    return RTC::RTC_ERROR;
+  rt::ReturnCode call(rt::Action action) override {
+    return corba::from_wire(corba::call_action(action, *component_, component_.get(), handle_));
   }
 
+ private:
   const std::shared_ptr<RTObject_impl> component_;
   const ExecutionContextHandle_t handle_;
 };
