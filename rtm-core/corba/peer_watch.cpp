@@ -51,20 +51,6 @@ struct Table {
   }
 };
 
-// "127.0.0.1:43210"; the whole reference if it names no such place.
-std::string address_of(CORBA::Object_ptr object) {
-  omniIOR_var ior = object->_PR_getobj()->_getIOR();
-  const auto& profiles = ior->iopProfiles();
-  for (CORBA::ULong i = 0; i < profiles.length(); ++i) {
-    if (profiles[i].tag != IOP::TAG_INTERNET_IOP) continue;
-    IIOP::ProfileBody body;
-    IIOP::unmarshalProfile(profiles[i], body);
-    if (*body.address.host.in()) return std::string(body.address.host.in()) + ":" + std::to_string(body.address.port);
-  }
-  const CORBA::String_var text = orb()->object_to_string(object);
-  return text.in();
-}
-
 bool is_on_loopback(std::string_view address) { return address.starts_with("127.") || address.starts_with("::1"); }
 
 enum class Sign { life, object_is_gone, process_is_gone, silence };
@@ -175,6 +161,19 @@ class Rounds {
 
 }  // namespace
 
+std::string process_address(CORBA::Object_ptr object) {
+  omniIOR_var ior = object->_PR_getobj()->_getIOR();
+  const auto& profiles = ior->iopProfiles();
+  for (CORBA::ULong i = 0; i < profiles.length(); ++i) {
+    if (profiles[i].tag != IOP::TAG_INTERNET_IOP) continue;
+    IIOP::ProfileBody body;
+    IIOP::unmarshalProfile(profiles[i], body);
+    if (*body.address.host.in()) return std::string(body.address.host.in()) + ":" + std::to_string(body.address.port);
+  }
+  const CORBA::String_var text = orb()->object_to_string(object);
+  return text.in();
+}
+
 PeerWatch::PeerWatch(std::chrono::milliseconds interval) : interval_(interval) {
   Table::instance().state.lock()->is_stopping = false;
   thread_ = std::thread([this] {
@@ -198,10 +197,10 @@ void watch_peers(const std::string& connector_id, const RTC::PortServiceList& po
                  const std::shared_ptr<LossHandler>& loss) {
   Watched watched{loss, {}};
   try {
-    const std::string here = address_of(self);
+    const std::string here = process_address(self);
     for (CORBA::ULong i = 0; i < ports.length(); ++i) {
       if (CORBA::is_nil(ports[i])) continue;
-      const std::string address = address_of(ports[i]);
+      const std::string address = process_address(ports[i]);
       if (address != here) watched.peers.push_back({RTC::PortService::_duplicate(ports[i]), address});
     }
   } catch (const CORBA::Exception&) {

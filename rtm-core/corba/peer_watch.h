@@ -33,4 +33,8 @@ void watch_peers(const std::string& connector_id, const RTC::PortServiceList& po
                  const std::shared_ptr<LossHandler>& loss);
 void forget_peers(const std::string& connector_id, const LossHandler& loss);
 
+// Where the process of an object listens, "127.0.0.1:43210"; the whole reference if it names no such place. Throws CORBA::SystemException
+// for a reference that is none.
+std::string process_address(CORBA::Object_ptr object);
+
 }  // namespace corba

@@ -7,6 +7,7 @@
 #include "base/id.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "corba/farewell.h"
 #include "corba/nv_list.h"
 #include "corba/peer_watch.h"
 
@@ -351,13 +352,8 @@ RTC::ReturnCode_t PortServant::break_up(const RTC::ConnectorProfile& profile) {
   RTC::ReturnCode_t code = RTC::RTC_ERROR;
   for (CORBA::ULong i = 0; i < profile.ports.length(); ++i) {
     if (is_same(profile.ports[i], reference())) return leave(profile.connector_id.in(), true, false);
-    try {
-      const RTC::PortService_var port = RTC::PortService::_duplicate(profile.ports[i]);
-      limit_calls(port, port_call_timeout() * static_cast<int>(profile.ports.length() - i));
-      return port->notify_disconnect(profile.connector_id);
-    } catch (const CORBA::Exception&) {
-      // Dead or hanging: the next one takes the lead.
-    }
+    // If it is dead or hangs, the next one takes the lead.
+    if (const auto answer = take_leave(profile.ports[i], profile.connector_id, profile.ports.length() - i)) return *answer;
   }
   return code;
 }
@@ -434,13 +430,7 @@ RTC::ReturnCode_t PortServant::leave_next(const RTC::ConnectorProfile& profile) 
   const int self = position(profile.ports);
   if (self < 0) return RTC::BAD_PARAMETER;
   for (CORBA::ULong next = static_cast<CORBA::ULong>(self) + 1; next < profile.ports.length(); ++next) {
-    try {
-      const RTC::PortService_var port = RTC::PortService::_duplicate(profile.ports[next]);
-      limit_calls(port, port_call_timeout() * static_cast<int>(profile.ports.length() - next));
-      return port->notify_disconnect(profile.connector_id);
-    } catch (const CORBA::Exception&) {
-      // Dead or hanging: the next one takes the lead.
-    }
+    if (const auto answer = take_leave(profile.ports[next], profile.connector_id, profile.ports.length() - next)) return *answer;
   }
   return RTC::RTC_OK;
 }

@@ -1,5 +1,6 @@
 // Throws mutated text at everything a manager parses: rtc.conf, creation arguments, connections, names, command lines. Deterministic: the
 // seed is printed. Run by hand for longer: manager_fuzz RUNS [SEED].
+// Built with clang, -fsanitize=fuzzer and RTMSIM_LIBFUZZER it is a target of libFuzzer.
 #include <cstdlib>
 #include <iostream>
 #include <random>
@@ -27,7 +28,7 @@ const std::vector<std::string> seeds = {
     "exec_cxt.periodic.rate: 1e308\nlogger.log_level: DEBUG\n!x\n#y\na=b\\\\\n",
 };
 
-std::string mutate(std::string text, std::mt19937_64& random) {
+[[maybe_unused]] std::string mutate(std::string text, std::mt19937_64& random) {
   const auto pick = [&](std::size_t n) { return n == 0 ? 0 : random() % n; };
   static const std::string special = "\\:=.,/?&%${}()# \t\n\r\0\xff\x80";
   for (auto changes = 1 + pick(8); changes > 0; --changes) {
@@ -84,6 +85,12 @@ void parse_everything(const std::string& text) {
 
 }  // namespace
 
+#ifdef RTMSIM_LIBFUZZER
+extern "C" int LLVMFuzzerTestOneInput(const char* data, std::size_t size) {
+  parse_everything(std::string(data, size));
+  return 0;
+}
+#else
 int main(int argc, char** argv) {
   const long runs = argc > 1 ? std::atol(argv[1]) : 20'000;
   const unsigned long seed = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 1;
@@ -93,3 +100,4 @@ int main(int argc, char** argv) {
   for (long i = 0; i < runs; ++i) parse_everything(mutate(seeds[random() % seeds.size()], random));
   return 0;
 }
+#endif

@@ -257,6 +257,31 @@ TEST_F(Faults, a_peer_that_hangs_keeps_its_connection_while_nobody_writes) {
   }
 }
 
+TEST_F(Faults, leaving_a_peer_that_hangs_takes_a_moment_for_all_its_connections_together) {
+  ports::Peer peer;
+  RTC::TimedOctetSeq value{};
+  RTC::OutPort<RTC::TimedOctetSeq> first("A0.octets", value);
+  RTC::OutPort<RTC::TimedOctetSeq> second("A0.octets", value);
+  RTC::InPort<RTC::TimedOctetSeq> third("A0.octets", value);
+  auto forth = profile({first.getPortRef(), peer.port("in")});
+  auto also_forth = profile({second.getPortRef(), peer.port("in")});
+  auto back = profile({peer.port("out"), third.getPortRef()});  // here the one that hangs is first in the chain
+  ASSERT_EQ(first.connect(forth), RTC::RTC_OK);
+  ASSERT_EQ(second.connect(also_forth), RTC::RTC_OK);
+  ASSERT_EQ(third.connect(back), RTC::RTC_OK);
+  stop_process(peer);
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(third.disconnect_all(), RTC::RTC_OK);
+  EXPECT_EQ(first.disconnect_all(), RTC::RTC_OK);
+  EXPECT_EQ(second.disconnect_all(), RTC::RTC_OK);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, corba::port_call_timeout()) << "one call of the usual patience would last as long";
+  EXPECT_EQ(first.connectors().size() + second.connectors().size() + third.connectors().size(), 0u);
+  // The peer has had the message when it wakes.
+  peer.process().signal(SIGCONT);
+  const RTC::PortService_var far = peer.port("in");
+  EXPECT_TRUE(ports::eventually([&] { return RTC::ConnectorProfileList_var(far->get_connector_profiles())->length() == 0; }));
+}
+
 TEST_F(Faults, a_dead_port_in_the_list_ends_the_connection) {
   RTC::PortService_var dead;
   {

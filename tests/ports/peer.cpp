@@ -1,6 +1,5 @@
 // The other process of the tests and benchmarks of ports: an InPort and an OutPort of octets, a service port that provides
-// an Echo, and a bare servant to compare with. Prints
-// its references, then works until it is stopped.
+// an Echo, and bare servants to compare with. Prints its references, then works until it is stopped.
 //   ports_peer [--tcp] [--echo]    tcp only; the OutPort sends whatever the InPort receives
 #include <omniORB4/CORBA.h>
 #include <rtm/InPort.h>
@@ -11,6 +10,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <vector>
 
 #include "ports/support.h"
 
@@ -19,6 +19,19 @@ namespace {
 class BareServant : public POA_OpenRTM::InPortCdr, public PortableServer::RefCountServantBase {
  public:
   OpenRTM::PortStatus put(const OpenRTM::CdrData&) override { return OpenRTM::PORT_OK; }
+};
+
+// Keeps what came last for somebody to look at, as a servant does whose samples are of use. For one caller at a time.
+class KeepingServant : public POA_OpenRTM::InPortCdr, public PortableServer::RefCountServantBase {
+ public:
+  OpenRTM::PortStatus put(const OpenRTM::CdrData& sample) override {
+    // What a careful author writes: the sequence's own assignment goes octet by octet.
+    last_.assign(sample.get_buffer(), sample.get_buffer() + sample.length());
+    return OpenRTM::PORT_OK;
+  }
+
+ private:
+  std::vector<CORBA::Octet> last_;
 };
 
 }  // namespace
@@ -41,6 +54,8 @@ int main(int argc, char** argv) {
   RTC::OutPort<RTC::TimedOctetSeq> out("Peer0.out", sent);
   ports::Local<BareServant> bare;
   const OpenRTM::InPortCdr_var bare_reference = bare._this();
+  ports::Local<KeepingServant> keeping;
+  const OpenRTM::InPortCdr_var keeping_reference = keeping._this();
   const auto show = [&](const char* name, CORBA::Object_ptr object) {
     const CORBA::String_var text = (*orb)->orb()->object_to_string(object);
     std::printf("%s %s\n", name, text.in());
@@ -48,6 +63,7 @@ int main(int argc, char** argv) {
   show("in", in.getPortRef());
   show("out", out.getPortRef());
   show("bare", bare_reference);
+  show("keeping", keeping_reference);
   ports::Local<BareServant> echo;
   RTC::CorbaPort service("Peer0.service");
   service.registerProvider("echo0", "Echo", echo);

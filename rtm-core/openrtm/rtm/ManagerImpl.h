@@ -59,8 +59,9 @@ class ManagerImpl {
   struct State {
     Phase phase = Phase::created;
     bool end_requested = false;
-    bool life_is_over = false;  // the life thread has done its work
-    int runners = 0;            // threads in runManager
+    bool life_is_over = false;      // the life thread has done its work
+    bool life_is_taken_in = false;  // and is joined
+    int runners = 0;                // threads in runManager
     std::vector<RegisteredFactory> factories;
     std::map<std::uint64_t, Record> records;
     std::uint64_t last_id = 0;

@@ -311,13 +311,17 @@ bool ManagerImpl::wait_until_ended(std::chrono::nanoseconds timeout) {
     auto locked = state.lock();
     if (!locked.wait_for(changed, timeout, [&] { return locked->life_is_over || locked->phase == Phase::created; })) return false;
   }
-  // The thread has done its work; whoever comes first takes it in.
+  // The thread has done its work; whoever comes first takes it in, nobody goes on before that.
   std::thread finished;
   {
     auto locked = state.lock();
-    if (life.get_id() != std::this_thread::get_id()) finished.swap(life);
+    if (!locked->life_is_over || life.get_id() == std::this_thread::get_id()) return true;
+    finished.swap(life);
+    if (!finished.joinable()) return locked.wait_for(changed, timeout, [&] { return locked->life_is_taken_in; });
   }
-  if (finished.joinable()) finished.join();
+  finished.join();
+  state.lock()->life_is_taken_in = true;
+  changed.notify_all();
   return true;
 }
 

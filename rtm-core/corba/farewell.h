@@ -1,0 +1,15 @@
+// Tells other ports that a connection ends, without waiting long for one that hangs. Any thread; no lock is held while it calls.
+#pragma once
+
+#include <optional>
+
+#include "rtm/idl/RTCStub.h"
+
+namespace corba {
+
+// notify_disconnect; nothing if the port is dead or does not answer in about a second. `left`: ports of the chain from this one on, each of
+// which may find that the next one hangs. The process that did not answer is told later, if it wakes within the time-out of calls between
+// ports; until that is known nobody waits for it any more.
+std::optional<RTC::ReturnCode_t> take_leave(RTC::PortService_ptr port, const char* connector_id, CORBA::ULong left);
+
+}  // namespace corba
