@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <condition_variable>
 #include <deque>
 #include <map>
 #include <string>
@@ -12,80 +13,111 @@
 #include <utility>
 
 #include "base/guarded.h"
-#include "base/log.h"
 #include "corba/call_timeout.h"
 #include "corba/peer_watch.h"
 
 namespace corba {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 // Leaving takes a port no time.
 constexpr auto patience = std::chrono::milliseconds(1000);
+// Of one of the calls by which a process that hangs is tried again; the end of the ORB waits for the last of them.
+constexpr auto attempt = std::chrono::milliseconds(300);
 
 struct Message {
   RTC::PortService_var port;
   std::string connector_id;
 };
 
-// What the processes that hang have not been told yet, by their address; each has a thread that tries. A global, as the processes are for
-// all ports. Never destroyed: a thread may be in a call at the very end.
-using Untold = std::map<std::string, std::deque<Message>>;
-base::Guarded<Untold, base::Rank::registry>& untold() {
-  static auto& table = *new base::Guarded<Untold, base::Rank::registry>;
-  return table;
-}
+struct State {
+  std::map<std::string, std::deque<Message>> untold;  // by the address of the process that hangs; each has a thread that tries
+  int threads = 0;
+  bool is_ending = true;  // also before the beginning
+};
+
+// The processes are for all ports, so this is a global. Never destroyed: ports may die after it otherwise.
+struct Table {
+  base::Guarded<State, base::Rank::registry> state;
+  std::condition_variable changed;
+  static Table& instance() {
+    static Table& table = *new Table;
+    return table;
+  }
+};
 
 // False if the process is not known to hang.
 bool leave_message(const std::string& address, RTC::PortService_ptr port, const char* connector_id) {
-  auto table = untold().lock();
-  const auto found = table->find(address);
-  if (found == table->end()) return false;
+  auto state = Table::instance().state.lock();
+  const auto found = state->untold.find(address);
+  if (found == state->untold.end()) return false;
   found->second.push_back({RTC::PortService::_duplicate(port), connector_id});
   return true;
 }
 
-// Gives up with the first message that nobody takes.
+bool is_time_out(const CORBA::SystemException& problem) {
+  return dynamic_cast<const CORBA::TIMEOUT*>(&problem) ||
+         (dynamic_cast<const CORBA::TRANSIENT*>(&problem) && problem.minor() == omni::TRANSIENT_CallTimedout);
+}
+
+// Until all is told or the process has hung for as long as a call may take.
 void tell_late(const std::string& address) {
   const omni_thread::ensure_self known_to_the_orb;  // time-outs need it
-  for (;;) {
+  auto& table = Table::instance();
+  const auto deadline = Clock::now() + port_call_timeout();
+  for (bool gives_up = false;;) {
+    std::deque<Message> dropped;  // let go without the lock
     Message message;
     {
-      auto table = untold().lock();
-      auto& messages = (*table)[address];
-      if (messages.empty()) {
-        table->erase(address);
-        return;
+      auto state = table.state.lock();
+      auto& messages = state->untold[address];
+      if (messages.empty() || state->is_ending || gives_up) {
+        dropped = std::move(messages);
+        state->untold.erase(address);
+        break;
       }
-      message = std::move(messages.front());
-      messages.pop_front();
+      message = messages.front();
     }
     try {
-      limit_calls(message.port, port_call_timeout());
+      limit_calls(message.port, std::min(port_call_timeout(), attempt));
       message.port->notify_disconnect(message.connector_id.c_str());
-    } catch (const CORBA::Exception& e) {
-      std::deque<Message> dropped;  // let go without the lock
-      {
-        auto table = untold().lock();
-        dropped = std::move((*table)[address]);
-        table->erase(address);
-      }
-      base::log(base::Level::debug, "port", "{} does not hear that {} connections have ended: {}", address, dropped.size() + 1, e._name());
-      return;
+    } catch (const CORBA::SystemException& e) {
+      gives_up = is_time_out(e) && Clock::now() >= deadline;
+      if (is_time_out(e)) continue;  // any other problem is an answer, too
+    } catch (const CORBA::Exception&) {
+      // Of another make, and odd: it has got the message.
     }
+    table.state.lock()->untold[address].pop_front();
   }
 }
 
 void tell_later(const std::string& address, RTC::PortService_ptr port, const char* connector_id) {
   {
-    auto table = untold().lock();
-    const bool has_thread = table->contains(address);
-    (*table)[address].push_back({RTC::PortService::_duplicate(port), connector_id});
+    auto state = Table::instance().state.lock();
+    if (state->is_ending) return;
+    const bool has_thread = state->untold.contains(address);
+    state->untold[address].push_back({RTC::PortService::_duplicate(port), connector_id});
     if (has_thread) return;
+    ++state->threads;
   }
-  std::thread([address] { tell_late(address); }).detach();
+  std::thread([address] {
+    tell_late(address);
+    --Table::instance().state.lock()->threads;
+    Table::instance().changed.notify_all();
+  }).detach();
 }
 
 }  // namespace
+
+void begin_farewells() { Table::instance().state.lock()->is_ending = false; }
+
+void end_farewells() {
+  auto& table = Table::instance();
+  auto state = table.state.lock();
+  state->is_ending = true;
+  state.wait_for(table.changed, attempt * 10, [&] { return state->threads == 0; });
+}
 
 std::optional<RTC::ReturnCode_t> take_leave(RTC::PortService_ptr port, const char* connector_id, CORBA::ULong left) {
   std::string address;
@@ -94,12 +126,10 @@ std::optional<RTC::ReturnCode_t> take_leave(RTC::PortService_ptr port, const cha
     if (leave_message(address, port, connector_id)) return std::nullopt;
     limit_calls(port, std::min(port_call_timeout(), patience) * static_cast<int>(left));
     return port->notify_disconnect(connector_id);
-  } catch (const CORBA::TIMEOUT&) {
-    tell_later(address, port, connector_id);
-  } catch (const CORBA::TRANSIENT& e) {
-    if (e.minor() == omni::TRANSIENT_CallTimedout) tell_later(address, port, connector_id);
+  } catch (const CORBA::SystemException& e) {
+    if (is_time_out(e)) tell_later(address, port, connector_id);  // or it is dead, and there is nobody to tell
   } catch (const CORBA::Exception&) {
-    // Dead: there is nobody to tell.
+    // Of another make, and odd.
   }
   return std::nullopt;
 }

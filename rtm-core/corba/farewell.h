@@ -12,4 +12,9 @@ namespace corba {
 // ports; until that is known nobody waits for it any more.
 std::optional<RTC::ReturnCode_t> take_leave(RTC::PortService_ptr port, const char* connector_id, CORBA::ULong left);
 
+// Only between these two are those that did not answer told later: while there is an ORB. The end waits for the calls in progress, a
+// moment.
+void begin_farewells();
+void end_farewells();
+
 }  // namespace corba

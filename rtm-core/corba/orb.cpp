@@ -14,6 +14,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "corba/call_timeout.h"
+#include "corba/farewell.h"
 #include "corba/peer_watch.h"
 
 namespace corba {
@@ -251,6 +252,7 @@ base::Result<std::unique_ptr<Orb>> Orb::start(const OrbSettings& settings) {
     detail = messages.last;
   }
   if (failure.empty()) {
+    begin_farewells();
     if (settings.peer_check_interval.count() > 0) result->watch_ = std::make_unique<PeerWatch>(settings.peer_check_interval);
     return result;
   }
@@ -263,6 +265,7 @@ Orb::Orb() = default;
 
 Orb::~Orb() {
   watch_.reset();
+  end_farewells();
   try {
     if (!CORBA::is_nil(orb_)) orb_->destroy();
   } catch (const CORBA::Exception& e) {
