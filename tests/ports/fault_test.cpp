@@ -282,6 +282,21 @@ TEST_F(Faults, leaving_a_peer_that_hangs_takes_a_moment_for_all_its_connections_
   EXPECT_TRUE(ports::eventually([&] { return RTC::ConnectorProfileList_var(far->get_connector_profiles())->length() == 0; }));
 }
 
+TEST_F(Faults, the_end_does_not_wait_for_a_peer_that_hangs_and_was_left) {
+  ports::Peer peer;
+  {
+    RTC::TimedOctetSeq value{};
+    RTC::OutPort<RTC::TimedOctetSeq> octets("A0.octets", value);
+    auto forth = profile({octets.getPortRef(), peer.port("in")});
+    ASSERT_EQ(octets.connect(forth), RTC::RTC_OK);
+    stop_process(peer);
+    EXPECT_EQ(octets.disconnect_all(), RTC::RTC_OK);
+  }
+  const auto start = std::chrono::steady_clock::now();
+  orb.reset();
+  EXPECT_LT(std::chrono::steady_clock::now() - start, corba::port_call_timeout() / 2);
+}
+
 TEST_F(Faults, a_dead_port_in_the_list_ends_the_connection) {
   RTC::PortService_var dead;
   {
