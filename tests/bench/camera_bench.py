@@ -28,7 +28,6 @@ def measure(interface):
             file.write(world)
         s.naming()
         s.server(f"{s.work}/w.sdf")
-        s.until("the naming service", lambda: s.rtse("ls") is not None)
         options = ["-o", f"corba.nameservers:{s.names}", "-o", f"manager.modules.load_path:{lib_dir}", "-o", "manager.shutdown_auto:NO"]
         s.start(f"{bin_dir}/rtcd", *options, f"RTCCamera?conf.default.server_id={s.server_id}&conf.default.device_id=robot::eye")
         player = s.start(f"{bin_dir}/camera_probe", s.server_id, "robot::eye", frames, *options)

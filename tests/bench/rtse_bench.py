@@ -84,7 +84,7 @@ def with_a_hung_process(process):
 
 limit = 0.05   # of one command [s]
 period = 0.01  # of the components' contexts [s]: a transition waits for the next cycle
-try:
+with rig:
     rig.naming()
     hosts = []
     for host in range(4):
@@ -101,9 +101,4 @@ try:
     command_times()
     system_times(pairs)
     with_a_hung_process(hosts[0])
-except BaseException:
-    rig.logs()
-    raise
-finally:
-    rig.close()
 sys.exit(1 if missed else 0)

@@ -153,7 +153,6 @@ def restarted_server():
 
 def start_system(*players):
     system.naming()
-    system.until("the naming service", lambda: system.rtse("ls") is not None)
     rtcd = [f"{bin_dir}/rtcd", "-o", f"corba.nameservers:{system.names}", "-o", f"manager.modules.load_path:{lib_dir}", "-o", "manager.shutdown_auto:NO"]
     hosts = [system.start(*rtcd, f"RTCCamera?conf.default.server_id={system.server_id}&conf.default.device_id=robot::eye")]
     for name in players:

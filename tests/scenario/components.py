@@ -140,13 +140,13 @@ def wrong_device():
     up("RTCSonar")
     rig.rtse("conf", "RTCSonar0", "set", "device_id", "pioneer2dx::sonat")
     await_("the error state", lambda: rig.state("RTCSonar0") == "Error")
-    log = open(rig.running[-1].log).read()
+    log = rig.log(rig.running[-1])
     assert "pioneer2dx::sonat" in log and "pioneer2dx::sonar" in log, log
     rig.rtse("conf", "RTCSonar0", "set", "server_id", "-1", "--force")
     rig.rtse("reset", "RTCSonar0")
     assert rig.try_rtse("act", "RTCSonar0").returncode == 1
     await_("the error state", lambda: rig.state("RTCSonar0") == "Error")
-    rig.rtse("conf", "RTCSonar0", "set", "server_id", str(rig.server_id))
+    rig.rtse("conf", "RTCSonar0", "set", "server_id", rig.server_id)
     rig.rtse("conf", "RTCSonar0", "set", "device_id", "pioneer2dx::sonar")
     rig.rtse("reset", "RTCSonar0")
     rig.rtse("act", "RTCSonar0")
@@ -257,7 +257,7 @@ def camera_jpeg():
     # Away from the edge, which 4:2:0 blurs.
     for y in range(16):
         close(list(rgb[(y * 24 + 18) * 3 : (y * 24 + 24) * 3]), plain["pixels"][(y * 24 + 18) * 3 : (y * 24 + 24) * 3], 6)
-    log = open(rig.running[-1].log).read()
+    log = rig.log(rig.running[-1])
     assert " 0 refused" in log, log
 
 
@@ -306,7 +306,7 @@ def wrong_camera_device():
     for name, (right, wrong, port) in components.items():
         assert rig.try_rtse("act", f"{name}0").returncode == 1
         await_("the error state", lambda: rig.state(f"{name}0") == "Error")
-        line = await_("a line", lambda: next(line for line in open(rig.running[-1].log).read().splitlines() if f"{name}0" in line and wrong in line))
+        line = await_("a line", lambda: next(line for line in rig.log(rig.running[-1]).splitlines() if f"{name}0" in line and wrong in line))
         assert right in line, line
         rig.rtse("conf", f"{name}0", "set", "device_id", right)
         rig.rtse("reset", f"{name}0")
@@ -324,7 +324,7 @@ def restarted_server():
     before = {name: sample(f"{name}0:{port}") for name, (_, port) in components.items()}
     await_("a climbing drone", lambda: fly(0.5) > 0.4)
     rig.kill(rig.running[0])
-    log = lambda: open(rig.running[2].log).read()
+    log = lambda: rig.log(rig.running[2])
     await_("lines that say so", lambda: log().count("is lost") == 3)
     rig.server(world=rig.path("w.sdf"))
     await_("lines that say so", lambda: log().count("is there again") == 3)
@@ -337,11 +337,6 @@ def restarted_server():
 
 cases = {f.__name__: f for f in (sonar, imu, gps, bumper, simulation, motors, wrong_device, camera_formats, camera_parameters, camera_jpeg, depth_camera, drone, wrong_camera_device,
                                  restarted_server)}
-try:
+with rig:
     cases[case]()
-except BaseException:
-    rig.logs()
-    raise
-finally:
-    rig.close()
 print("ok")

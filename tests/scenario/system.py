@@ -12,6 +12,21 @@ import time
 watchdog = 60  # [s]; a bound on hanging, not on speed
 
 
+# The first true answer; an exception of those that mean "not there yet" is none.
+def await_(what, ready, period=0.02):
+    end = time.monotonic() + watchdog
+    while True:
+        why = ""
+        try:
+            answer = ready()
+            if answer or answer == "":
+                return answer
+        except (AssertionError, ValueError, KeyError, IndexError, FileNotFoundError) as error:
+            why = str(error)
+        assert time.monotonic() < end, f"{what}: not within {watchdog} s; {why}"
+        time.sleep(period)
+
+
 class System:
     def __init__(self, bin_dir, lib_dir):
         self.bin_dir, self.lib_dir = bin_dir, lib_dir
@@ -22,11 +37,25 @@ class System:
         self.folder = tempfile.TemporaryDirectory()
         self.work = self.folder.name
         self.running = []
+        self.servers = {self.server_id}
 
     def __enter__(self):
         return self
 
     def __exit__(self, kind, *_):
+        hung = self.end()
+        if kind:
+            for process in self.running:
+                print(f"--- {process.args} {process.returncode}\n{self.log(process)[-3000:]}", file=sys.stderr)
+        self.folder.cleanup()
+        if not kind:
+            assert not hung, f"did not end: {hung}"
+            mine = tuple(f"rtmsim-{os.getuid()}-{server}." for server in self.servers)
+            left = [name for name in os.listdir("/dev/shm") if name.startswith(mine)]
+            assert not left, left
+
+    # All processes have ended, the last first; the command lines of those that had to be killed.
+    def end(self):
         for process in reversed(self.running):
             if process.poll() is None:
                 process.send_signal(signal.SIGCONT)
@@ -36,22 +65,18 @@ class System:
             try:
                 process.wait(20)
             except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
+                self.kill(process)
                 hung.append(process.args)
-        if kind:
-            for process in self.running:
-                print(f"--- {process.args}\n{self.log(process)[-3000:]}", file=sys.stderr)
-        self.folder.cleanup()
-        if not kind:
-            assert not hung, f"did not end: {hung}"
-            for server_id in (self.server_id, str(int(self.server_id) + 1)):
-                left = [name for name in os.listdir("/dev/shm") if name.startswith(f"rtmsim-{os.getuid()}-{server_id}.")]
-                assert not left, left
+        return hung
 
-    def start(self, *words, input=None, **environment):
+    def kill(self, process):
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+
+    def start(self, *words, input=None, cwd=None, **environment):
         log = f"{self.work}/{len(self.running)}.log"
-        process = subprocess.Popen(words, stdin=input, stdout=open(log, "w"), stderr=subprocess.STDOUT, env={**os.environ, "RTMSIM_SERVER_ID": self.server_id, **environment})
+        process = subprocess.Popen(words, stdin=input, stdout=open(log, "w"), stderr=subprocess.STDOUT, cwd=cwd,
+                                   env={**os.environ, "RTMSIM_SERVER_ID": self.server_id, **environment})
         process.log_file = log
         self.running.append(process)
         return process
@@ -65,23 +90,35 @@ class System:
         assert done.returncode == 0, f"{words}: {done.stderr}"
         return done.stdout
 
+    # With an empty folder each time: a naming service that has forgotten everything.
     def naming(self):
-        return self.start("omniNames", "-start", self.names.split(":")[1], "-datadir", self.work, "-ORBendPoint", f"giop:tcp:{self.names}")
+        folder = tempfile.mkdtemp(dir=self.work)
+        process = self.start("omniNames", "-start", self.names.split(":")[1], "-datadir", folder, "-ORBendPoint", f"giop:tcp:{self.names}")
+        self.until("the naming service", lambda: self.rtse("ls") is not None)
+        return process
 
     def server(self, world, *options, server_id=None):
         server_id = server_id or self.server_id
+        self.servers.add(server_id)
         process = self.start(f"{self.bin_dir}/sim-server", world, "-s", server_id, *options)
-        self.until("simulator", lambda: self.simctl("stats", server_id=server_id))
+        self.until("simulator", lambda: process.poll() is None and self.simctl("stats", server_id=server_id))
         return process
 
-    # A host of components "Name?option=value&...", on simulated time.
-    def host(self, *components, **environment):
+    # A host of components "Name?option=value&...".
+    def rtcd(self, *words, **more):
         return self.start(f"{self.bin_dir}/rtcd", "-o", f"corba.nameservers:{self.names}", "-o", f"manager.modules.load_path:{self.lib_dir}",
-                          "-o", "manager.modules.preload:SimTimeContext.so", "-o", "exec_cxt.periodic.type:SimTimeContext", "-o", "manager.shutdown_auto:NO",
-                          *components, **environment)
+                          "-o", "manager.shutdown_auto:NO", *words, **more)
+
+    # The same, on simulated time.
+    def host(self, *components, **environment):
+        return self.rtcd("-o", "manager.modules.preload:SimTimeContext.so", "-o", "exec_cxt.periodic.type:SimTimeContext", *components, **environment)
 
     def rtse(self, *words):
         return self.call(f"{self.bin_dir}/rtse", "--ns", self.names, *words)
+
+    # With its exit code.
+    def try_rtse(self, *words):
+        return subprocess.run([f"{self.bin_dir}/rtse", "--ns", self.names, *words], capture_output=True, text=True, timeout=2 * watchdog)
 
     def simctl(self, *words, server_id=None):
         return self.call(f"{self.bin_dir}/simctl", "-s", server_id or self.server_id, *words)
@@ -95,19 +132,8 @@ class System:
     def participants(self, server_id=None):
         return json.loads(self.simctl("--json", "participants", server_id=server_id))
 
-    # The first true answer; an assertion that fails means "not yet".
-    def until(self, what, ready, pause=0.02):
-        end = time.monotonic() + watchdog
-        while True:
-            why = ""
-            try:
-                answer = ready()
-                if answer or answer == "":
-                    return answer
-            except (AssertionError, KeyError, ValueError, FileNotFoundError) as error:
-                why = str(error)
-            assert time.monotonic() < end, f"{what}: not within {watchdog} s; {why}"
-            time.sleep(pause)
+    def until(self, what, ready, period=0.02):
+        return await_(what, ready, period)
 
 
 def is_stopped(process):

@@ -186,11 +186,11 @@ def two_robots():
     rig.rtse("conf", "RTCPosition2d0", "set", "device_id", "left::position2d")
     rig.rtse("conf", "RTCPosition2d1", "set", "device_id", "right::position2d")
     spun("RTCPosition2d0", "left", "right", 0.5)
-    other = 1 + rig.server_id % 999  # ids below 1000 are no other test's first ones
-    rig.server(server=other)
-    rig.rtse("conf", "RTCLaser1", "set", "server_id", str(other))
+    other = str(int(rig.server_id) + 1)  # first ids are even
+    rig.server(server_id=other)
+    rig.rtse("conf", "RTCLaser1", "set", "server_id", other)
     await_("the error of a device that the other world has not", lambda: rig.state("RTCLaser1") == "Error")
-    log = "".join(open(process.log).read() for process in rig.running)
+    log = "".join(rig.log(process) for process in rig.running)
     assert "pioneer2dx::laser" in log, "no line names what there is instead of left::laser"
     rig.rtse("conf", "RTCLaser1", "set", "device_id", "pioneer2dx::laser")
     rig.rtse("reset", "RTCLaser1")
@@ -286,11 +286,6 @@ def save_and_load():
 
 cases = {f.__name__: f for f in (kill_simulator, kill_host, kill_avoider, kill_sensor, kill_naming, one_process, four_processes, late_naming, late_simulator,
                                  two_robots, save_and_load)}
-try:
+with rig:
     cases[case]()
-except BaseException:
-    rig.logs()
-    raise
-finally:
-    rig.close()
 print("ok")

@@ -26,7 +26,6 @@ def start_display():
 
 def start_player(record_dir="", others=(), **more):
     system.naming()
-    system.until("the naming service", lambda: system.rtse("ls") is not None)
     host = system.start(f"{bin_dir}/rtcd", "-o", f"corba.nameservers:{system.names}", "-o", f"manager.modules.load_path:{lib_dir}", "-o", "manager.shutdown_auto:NO", "VideoPlayer", "FrameSource", *others,
                         **{"DISPLAY": "", "WAYLAND_DISPLAY": "", **environment, **more})
     system.rtse("wait", "VideoPlayer0", "FrameSource0", "--state", "any", "--timeout", "60")
