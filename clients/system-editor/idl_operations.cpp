@@ -4,9 +4,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
-#include <set>
+#include <regex>
+#include <sstream>
 
 #include "base/id.h"
 #include "base/text.h"
@@ -35,8 +38,20 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
+// Where the product's own IDL files are: beside the installed program, else where this one was built.
+std::vector<std::filesystem::path> product_idl() {
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  const auto installed = program.parent_path().parent_path() / "include/rtm-sim/rtm";
+  if (std::filesystem::is_directory(installed / "idl", error)) return {installed / "idl", installed / "ext"};
+  return {RTMSIM_IDL_DIR, RTMSIM_IDL_DIR "/ext"};
+}
+
 Result<void> run_omniidl(const std::string& file, const std::filesystem::path& folder) {
-  std::vector<std::string> words = {"omniidl", "-bcxx", "-C" + folder.string(), file};
+  // Its example code holds every operation, also the inherited ones, with all names written in full.
+  std::vector<std::string> words = {"omniidl", "-bcxx", "-Wbexample", "-C" + folder.string()};
+  for (const auto& path : product_idl()) words.push_back("-I" + path.string());
+  words.push_back(file);
   std::vector<char*> arguments;
   for (auto& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -52,49 +67,55 @@ Result<void> run_omniidl(const std::string& file, const std::filesystem::path& f
 std::string answer_for(const std::string& type) {
   if (type == "void") return "return;";
   if (type == "char*") return "return CORBA::string_dup(\"\");";
+  if (type == "CORBA::WChar*") return "return CORBA::wstring_dup(L\"\");";
+  if (type.ends_with("_slice*")) return "return " + type.substr(0, type.size() - 7) + "_alloc();";
   if (type.ends_with("*")) return "return new " + type.substr(0, type.size() - 1) + "();";
   if (type.ends_with("_ptr")) return "return " + type.substr(0, type.size() - 4) + "::_nil();";
   return "return " + type + "();";
 }
 
-// Types of the interface's own module are written without it.
-std::string qualified(const std::string& type, const std::string& scope) {
-  if (type.starts_with("::")) return type.substr(2);
-  if (type == "void" || type == "char*") return type;
-  return scope + type;
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) text.replace(at, from.size(), to);
+  return text;
 }
 
-struct Interface {
-  std::vector<std::string> bases;
-  std::vector<std::string> lines;
-};
-
-Interface read_interface(const std::vector<std::string>& header, const std::string& name) {
-  Interface result;
-  for (std::size_t i = 0; i < header.size(); ++i) {
-    if (header[i] != "class _impl_" + name + " :") continue;
-    for (++i; i < header.size() && header[i] != "public:"; ++i) {
-      if (const auto at = header[i].find("_impl_"); at != std::string::npos)
-        result.bases.push_back(header[i].substr(at + 6, header[i].find_first_of(",{ ", at) - at - 6));
-    }
-    for (; i < header.size() && header[i] != "};"; ++i) {
-      if (header[i].starts_with("virtual ") && header[i].ends_with(" = 0;")) result.lines.push_back(header[i]);
-    }
-  }
-  return result;
+Result<std::string> read_text(const std::filesystem::path& file) {
+  std::error_code error;
+  std::ifstream in(file, std::ios::binary);
+  if (!in || !std::filesystem::is_regular_file(file, error))
+    return Error{"IDL file " + base::in_quotes(file.string()) + ": cannot be read"};
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
 }
 
-void collect(const std::vector<std::string>& header, const std::string& name, const std::string& scope, std::set<std::string>& seen,
-             std::vector<Operation>& operations) {
-  if (!seen.insert(name).second) return;
-  const auto interface = read_interface(header, name);
-  for (const auto& base : interface.bases) collect(header, base, scope, seen, operations);
-  for (const auto& line : interface.lines) {
-    const auto text = line.substr(8, line.size() - 8 - 5);
-    const auto space = text.rfind(' ', text.find('('));
-    const auto type = qualified(text.substr(0, space), scope);
-    operations.push_back({type + " " + text.substr(space + 1), answer_for(type)});
+std::vector<std::string> includes_of(const std::string& text) {
+  static const std::regex line(R"re((^|\n)[ \t]*#[ \t]*include[ \t]*["<]([^">\n]+)[">])re");
+  std::vector<std::string> names;
+  for (std::sregex_iterator found(text.begin(), text.end(), line), end; found != end; ++found) names.push_back((*found)[2]);
+  return names;
+}
+
+Result<void> collect(const std::filesystem::path& file, std::map<std::string, std::string>& files) {
+  auto text = read_text(file);
+  if (!text) return text.error();
+  const auto name = file.filename().string();
+  // It stands in a CMakeLists.txt.
+  if (!std::ranges::all_of(name, [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || c == '.'; }))
+    return Error{"IDL file " + base::in_quotes(file.string()) + ": its name may hold letters, digits, '_', '-' and '.' only"};
+  if (const auto [other, is_new] = files.emplace(name, *text); !is_new) {
+    if (other->second == *text) return {};
+    return Error{"IDL file " + base::in_quotes(file.string()) + ": another file has this name"};
   }
+  for (const auto& include : includes_of(*text)) {
+    std::error_code error;
+    const auto neighbour = file.parent_path() / include;
+    if (!std::filesystem::is_regular_file(neighbour, error)) continue;  // one of the product's, or omniidl says what is missing
+    if (include.find('/') != std::string::npos)
+      return Error{"IDL file " + base::in_quotes(file.string()) + ": includes " + base::in_quotes(include) + "; put both into one folder"};
+    if (const auto done = collect(neighbour, files); !done) return done;
+  }
+  return {};
 }
 
 }  // namespace
@@ -102,20 +123,37 @@ void collect(const std::vector<std::string>& header, const std::string& name, co
 Result<std::vector<Operation>> operations_of(const NewService& service) {
   const TemporaryFolder folder;
   if (const auto ran = run_omniidl(service.idl_file, folder.path()); !ran) return ran.error();
-  const auto stem = std::filesystem::path(service.idl_file).stem().string();
-  std::ifstream in(folder.path() / (stem + ".hh"));
-  std::vector<std::string> header;
-  for (std::string line; std::getline(in, line);) header.emplace_back(base::trim(line));
-  const auto colon = service.interface.rfind("::");
-  const auto name = colon == std::string::npos ? service.interface : service.interface.substr(colon + 2);
-  const auto scope = colon == std::string::npos ? "" : service.interface.substr(0, colon + 2);
+  std::ifstream in(folder.path() / (std::filesystem::path(service.idl_file).stem().string() + "_i.cc"));
+  const auto implementation = replaced(service.interface, "::", "_") + "_i";
+  const auto class_line = "class " + implementation + " : public POA_" + service.interface + " {";
+  const auto method = " " + implementation + "::";
   bool exists = false;
-  for (const auto& line : header) exists = exists || line == "class _impl_" + name + " :";
-  if (!exists) return Error{"IDL file " + base::in_quotes(service.idl_file) + ": has no interface " + base::in_quotes(service.interface)};
   std::vector<Operation> operations;
-  std::set<std::string> seen;
-  collect(header, name, scope, seen, operations);
+  for (std::string line; std::getline(in, line);) {
+    if (std::string(base::trim(line)) == class_line) exists = true;
+    const auto at = line.find(method);
+    if (at == std::string::npos || at == 0 || line.front() == ' ' || line.front() == '#' || line.find('(') < at) continue;
+    auto type = line.substr(0, at);
+    if (type.starts_with("::")) type.erase(0, 2);
+    operations.push_back({type + " " + std::string(base::trim(line.substr(at + method.size()))), answer_for(type)});
+  }
+  if (!exists) return Error{"IDL file " + base::in_quotes(service.idl_file) + ": has no interface " + base::in_quotes(service.interface)};
   return operations;
+}
+
+Result<std::map<std::string, std::string>> with_included(const std::vector<std::string>& files) {
+  std::map<std::string, std::string> all;
+  for (const auto& file : files) {
+    if (const auto done = collect(file, all); !done) return done.error();
+  }
+  return all;
+}
+
+bool defines_type(const std::map<std::string, std::string>& idl, const std::string& type) {
+  const auto colon = type.rfind("::");
+  const auto name = colon == std::string::npos ? type : type.substr(colon + 2);
+  const std::regex definition("(struct|union)\\s+" + name + "\\b|typedef\\b[^;]*\\b" + name + "\\s*;");
+  return std::ranges::any_of(idl, [&](const auto& file) { return std::regex_search(file.second, definition); });
 }
 
 }  // namespace editor

@@ -1,6 +1,8 @@
-// The operations of an IDL interface as C++ declarations, asked from omniidl. Any thread.
+// What `rtse new` asks of IDL files: which files belong together, and the operations of an interface as C++ declarations, from omniidl. Any
+// thread.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,5 +17,12 @@ struct Operation {
 
 // Those of the interface and of the interfaces that it inherits. Fails when omniidl is missing or refuses the file.
 base::Result<std::vector<Operation>> operations_of(const NewService& service);
+
+// File name -> text: the files, and those of their own folders that they include. What is included from elsewhere must be in a folder that
+// every project gets (the data types of the product). Fails for files that cannot lie in one folder.
+base::Result<std::map<std::string, std::string>> with_included(const std::vector<std::string>& files);
+
+// A struct, union or typedef of this C++ name ("Mod::Pt") is in one of the texts.
+bool defines_type(const std::map<std::string, std::string>& idl, const std::string& type);
 
 }  // namespace editor

@@ -2,17 +2,13 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
-#include <pugixml.hpp>
 #include <set>
-#include <sstream>
 
 #include "base/text.h"
 #include "idl_operations.h"
-#include "parameter_check.h"
-#include "value_codec.h"
 
 namespace editor {
 namespace {
@@ -20,49 +16,10 @@ namespace {
 using base::Error;
 using base::Result;
 
-const std::set<std::string> keywords = {
-    "alignas",  "alignof",  "and",       "asm",      "auto",      "bool",     "break",    "case",    "catch",   "char",
-    "class",    "const",    "constexpr", "continue", "decltype",  "default",  "delete",   "do",      "double",  "else",
-    "enum",     "explicit", "export",    "extern",   "false",     "float",    "for",      "friend",  "goto",    "if",
-    "inline",   "int",      "long",      "mutable",  "namespace", "new",      "noexcept", "not",     "nullptr", "operator",
-    "or",       "private",  "protected", "public",   "register",  "requires", "return",   "short",   "signed",  "sizeof",
-    "static",   "struct",   "switch",    "template", "this",      "throw",    "true",     "try",     "typedef", "typeid",
-    "typename", "union",    "unsigned",  "using",    "virtual",   "void",     "volatile", "wchar_t", "while",   "xor"};
-
-bool is_identifier(const std::string& text) {
-  if (text.empty() || keywords.contains(text) || std::isdigit(static_cast<unsigned char>(text[0]))) return false;
-  for (const char c : text) {
-    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_') return false;
-  }
-  return true;
-}
-
-bool is_type(const std::string& text) {
-  for (const char c : text) {
-    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != ':' && c != '<' && c != '>' && c != ' ') return false;
-  }
-  return !text.empty();
-}
-
-// Types of the modules that come with the product must be there; others come with an IDL file of the user's.
-bool is_data_type(const std::string& type) {
-  static const std::set<std::string> types = [] {
-    std::set<std::string> names;
-    for (const auto& id : known_data_types()) {
-      auto name = id.substr(4, id.rfind(':') - 4);  // IDL:RTC/TimedLong:1.0
-      for (auto slash = name.find('/'); slash != std::string::npos; slash = name.find('/')) name.replace(slash, 1, "::");
-      names.insert(name);
-    }
-    return names;
-  }();
-  if (types.contains(type)) return true;
-  const auto module = type.substr(0, type.find("::") + 2);
-  return type.find("::") != std::string::npos && types.lower_bound(module) != types.end() &&
-         !types.lower_bound(module)->starts_with(module);
-}
-
+// For the guards of headers.
 std::string upper(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  for (char& c : text)
+    c = std::isalnum(static_cast<unsigned char>(c)) ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : '_';
   return text;
 }
 
@@ -76,15 +33,34 @@ std::string literal(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') result += '\\';
-    result += c == '\n' ? ' ' : c;
+    result += std::iscntrl(static_cast<unsigned char>(c)) ? ' ' : c;
   }
   return result + "\"";
 }
 
+// For a comment of one line: no control characters, and no backslash at the end, which would take the next line into the comment.
+std::string comment(std::string text) {
+  for (char& c : text) c = std::iscntrl(static_cast<unsigned char>(c)) ? ' ' : c;
+  while (text.ends_with('\\') || text.ends_with(' ')) text.pop_back();
+  return text;
+}
+
+// RTC.xml says "string" where C++ says "std::string".
+std::string cpp_type(std::string type) {
+  for (const std::string_view word : {"string", "vector", "int16_t", "uint16_t", "int32_t", "uint32_t", "int64_t", "uint64_t"}) {
+    for (auto at = type.find(word); at != std::string::npos; at = type.find(word, at + word.size() + 5)) {
+      const bool is_whole = at == 0 || (!std::isalnum(static_cast<unsigned char>(type[at - 1])) && type[at - 1] != ':');
+      if (is_whole) type.insert(at, "std::");
+    }
+  }
+  return type;
+}
+
 std::string stem(const std::string& file) { return std::filesystem::path(file).stem().string(); }
 
-// The header of idl/ that has a type.
+// The header of idl/ that has a type; nothing for types of the user's own IDL files.
 std::string header_of(const std::string& type) {
+  if (!is_product_type(type)) return "";
   if (type.starts_with("Img::")) return "rtm/ext/CameraCommonInterfaceSkel.h";
   if (type.starts_with("JARA_ARM::")) return "rtm/ext/ManipulatorCommonInterface_DataTypesSkel.h";
   const auto name = last_name(type);
@@ -101,9 +77,35 @@ std::string data_headers(const NewComponent& component) {
   std::map<std::string, bool> headers;
   for (const auto& port : component.in_ports) headers[header_of(port.type)] = true;
   for (const auto& port : component.out_ports) headers[header_of(port.type)] = true;
+  headers.erase("");
   std::string text;
   for (const auto& [header, unused] : headers) text += "#include <" + header + ">\n";
+  for (const auto& file : component.idl_files) text += fmt::format("#include \"{}Skel.h\"\n", stem(file));
   return text;
+}
+
+// The service ports in their order, each once.
+std::vector<std::string> service_ports(const NewComponent& component) {
+  std::vector<std::string> ports;
+  for (const auto& service : component.services) {
+    if (std::ranges::find(ports, service.port) == ports.end()) ports.push_back(service.port);
+  }
+  return ports;
+}
+
+// "MyServiceSVC_impl"; with its module when another provided interface has the same last name.
+std::string implementation_name(const NewComponent& component, const std::string& interface) {
+  const bool is_alone = std::ranges::none_of(component.services, [&](const NewService& other) {
+    return other.is_provided && other.interface != interface && last_name(other.interface) == last_name(interface);
+  });
+  auto name = is_alone ? last_name(interface) : interface;
+  for (auto colon = name.find("::"); colon != std::string::npos; colon = name.find("::")) name.replace(colon, 2, "_");
+  return name + "SVC_impl";
+}
+
+std::string arguments_of(const std::string& action, bool is_definition) {
+  if (action == "onFinalize") return "";
+  return is_definition ? "RTC::UniqueId /*ec_id*/" : "RTC::UniqueId ec_id";
 }
 
 std::string specification(const NewComponent& component) {
@@ -122,28 +124,34 @@ std::string specification(const NewComponent& component) {
   add("lang_type", "compile");
   add("exec_cxt.periodic.rate", base::format_number(component.rate));
   for (const auto& parameter : component.parameters) add("conf.default." + parameter.name, parameter.default_value);
-  for (const auto& parameter : component.parameters) add("conf.__widget__." + parameter.name, "text");
+  for (const auto& parameter : component.parameters) add("conf.__widget__." + parameter.name, parameter.widget);
   for (const auto& parameter : component.parameters) add("conf.__type__." + parameter.name, parameter.type);
+  for (const auto& parameter : component.parameters) {
+    if (!parameter.constraint.empty()) add("conf.__constraints__." + parameter.name, parameter.constraint);
+  }
   return text + "    \"\"};\n";
 }
 
 std::string header_file(const NewComponent& component) {
   std::string members;
-  for (const auto& parameter : component.parameters) members += fmt::format("  {} m_{};\n", parameter.type, parameter.name);
+  for (const auto& parameter : component.parameters) members += fmt::format("  {} m_{};\n", cpp_type(parameter.type), parameter.name);
   for (const auto& port : component.in_ports) members += fmt::format("\n  {0} m_{1};\n  RTC::InPort<{0}> m_{1}In;\n", port.type, port.name);
   for (const auto& port : component.out_ports)
     members += fmt::format("\n  {0} m_{1};\n  RTC::OutPort<{0}> m_{1}Out;\n", port.type, port.name);
-  std::string includes;
+  for (const auto& port : service_ports(component)) members += fmt::format("\n  RTC::CorbaPort m_{}Port;\n", port);
+  std::set<std::string> includes;
   for (const auto& service : component.services) {
-    members += fmt::format("\n  RTC::CorbaPort m_{}Port;\n", service.port);
     if (service.is_provided) {
-      members += fmt::format("  {} m_{};\n", last_name(service.interface) + "SVC_impl", service.instance);
-      includes += fmt::format("#include \"{}SVC_impl.h\"\n", stem(service.idl_file));
+      members += fmt::format("  {} m_{};\n", implementation_name(component, service.interface), service.instance);
+      includes.insert(fmt::format("#include \"{}SVC_impl.h\"\n", stem(service.idl_file)));
     } else {
       members += fmt::format("  RTC::CorbaConsumer<{}> m_{};\n", service.interface, service.instance);
-      includes += fmt::format("#include \"{}Stub.h\"\n", stem(service.idl_file));
+      includes.insert(fmt::format("#include \"{}Stub.h\"\n", stem(service.idl_file)));
     }
   }
+  std::string actions;
+  for (const auto& action : component.actions)
+    actions += fmt::format("  RTC::ReturnCode_t {}({}) override;\n", action, arguments_of(action, false));
   return fmt::format(R"(// {description}
 #ifndef {guard}_H
 #define {guard}_H
@@ -154,6 +162,7 @@ std::string header_file(const NewComponent& component) {
 #include <rtm/DataInPort.h>
 #include <rtm/DataOutPort.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -168,7 +177,7 @@ class {name} : public RTC::DataFlowComponentBase
   RTC::ReturnCode_t onActivated(RTC::UniqueId ec_id) override;
   RTC::ReturnCode_t onDeactivated(RTC::UniqueId ec_id) override;
   RTC::ReturnCode_t onExecute(RTC::UniqueId ec_id) override;
-
+{actions}
  private:
 {members}}};
 
@@ -179,29 +188,35 @@ extern "C"
 
 #endif
 )",
-                     fmt::arg("description", component.description), fmt::arg("guard", upper(component.name)),
-                     fmt::arg("data", data_headers(component)), fmt::arg("services", includes), fmt::arg("name", component.name),
-                     fmt::arg("members", members));
+                     fmt::arg("description", comment(component.description)), fmt::arg("guard", upper(component.name)),
+                     fmt::arg("data", data_headers(component)), fmt::arg("services", fmt::join(includes, "")),
+                     fmt::arg("name", component.name), fmt::arg("members", members), fmt::arg("actions", actions));
 }
 
 std::string source_file(const NewComponent& component) {
   std::string construct;
   for (const auto& port : component.in_ports) construct += fmt::format(",\n    m_{0}In(\"{0}\", m_{0})", port.name);
   for (const auto& port : component.out_ports) construct += fmt::format(",\n    m_{0}Out(\"{0}\", m_{0})", port.name);
-  for (const auto& service : component.services) construct += fmt::format(",\n    m_{0}Port(\"{0}\")", service.port);
+  for (const auto& port : service_ports(component)) construct += fmt::format(",\n    m_{0}Port(\"{0}\")", port);
   std::string initialise;
   for (const auto& port : component.in_ports) initialise += fmt::format("  addInPort(\"{0}\", m_{0}In);\n", port.name);
   for (const auto& port : component.out_ports) initialise += fmt::format("  addOutPort(\"{0}\", m_{0}Out);\n", port.name);
   for (const auto& service : component.services) {
-    initialise += fmt::format("  m_{0}Port.register{1}(\"{2}\", \"{3}\", m_{2});\n  addPort(m_{0}Port);\n", service.port,
+    initialise += fmt::format("  m_{0}Port.register{1}(\"{2}\", \"{3}\", m_{2});\n", service.port,
                               service.is_provided ? "Provider" : "Consumer", service.instance, service.interface);
   }
+  for (const auto& port : service_ports(component)) initialise += fmt::format("  addPort(m_{0}Port);\n", port);
   for (const auto& parameter : component.parameters)
     initialise += fmt::format("  bindParameter(\"{0}\", m_{0}, {1});\n", parameter.name, literal(parameter.default_value));
   std::string execute;
   for (const auto& port : component.in_ports)
     execute += fmt::format("  if (m_{0}In.isNew())\n  {{\n    m_{0}In.read();\n    // m_{0} holds the newest value.\n  }}\n", port.name);
   for (const auto& port : component.out_ports) execute += fmt::format("  setTimestamp(m_{0});\n  m_{0}Out.write();\n", port.name);
+  std::string actions;
+  for (const auto& action : component.actions) {
+    actions +=
+        fmt::format("RTC::ReturnCode_t {}::{}({})\n{{\n  return RTC::RTC_OK;\n}}\n\n", component.name, action, arguments_of(action, true));
+  }
   return fmt::format(R"(#include "{name}.h"
 
 {spec}
@@ -234,7 +249,7 @@ RTC::ReturnCode_t {name}::onExecute(RTC::UniqueId /*ec_id*/)
 {execute}  return RTC::RTC_OK;
 }}
 
-extern "C"
+{actions}extern "C"
 {{
   void {name}Init(RTC::Manager* manager)
   {{
@@ -244,7 +259,8 @@ extern "C"
 }};
 )",
                      fmt::arg("name", component.name), fmt::arg("spec", specification(component)), fmt::arg("construct", construct),
-                     fmt::arg("initialise", initialise), fmt::arg("execute", execute), fmt::arg("lower", base::to_lower(component.name)));
+                     fmt::arg("initialise", initialise), fmt::arg("execute", execute), fmt::arg("actions", actions),
+                     fmt::arg("lower", base::to_lower(component.name)));
 }
 
 std::string program_file(const NewComponent& component) {
@@ -275,13 +291,10 @@ int main(int argc, char** argv)
                      fmt::arg("name", component.name));
 }
 
-std::string cmake_file(const NewComponent& component) {
+std::string cmake_file(const NewComponent& component, const std::map<std::string, std::string>& idl_files) {
   std::string idl;
-  std::map<std::string, bool> files;
-  for (const auto& service : component.services)
-    files[std::filesystem::path(service.idl_file).filename().string()] = service.is_provided || files[service.idl_file];
-  for (const auto& [file, provided] : files) idl += fmt::format("openrtm_compile_idl_files(${{CMAKE_CURRENT_SOURCE_DIR}}/idl/{})\n", file);
-  const bool any = !files.empty();
+  for (const auto& [file, text] : idl_files) idl += fmt::format("openrtm_compile_idl_files(${{CMAKE_CURRENT_SOURCE_DIR}}/idl/{})\n", file);
+  const bool any = !idl_files.empty();
   return fmt::format(
       R"(cmake_minimum_required(VERSION 3.10)
 project({name} CXX)
@@ -321,29 +334,39 @@ endif()
                      fmt::arg("name", component.name));
 }
 
-// The operations of the interface, as our IDL compiler declares them for C++.
-Result<std::string> service_header(const NewService& service) {
+// The implementation of an interface, with the operations as the IDL compiler declares them for C++.
+Result<std::string> implementation(const NewComponent& component, const NewService& service) {
   const auto operations = operations_of(service);
   if (!operations) return operations.error();
-  const auto name = last_name(service.interface);
   std::string methods;
   for (const auto& operation : *operations)
     methods += fmt::format("  {} override\n  {{\n    {}\n  }}\n", operation.declaration, operation.answer);
-  return fmt::format(R"(// Implementation of the service {interface}.
-#ifndef {guard}SVC_IMPL_H
-#define {guard}SVC_IMPL_H
-
-#include "{stem}Skel.h"
-
-class {name}SVC_impl : public virtual POA_{interface}, public virtual PortableServer::RefCountServantBase
+  return fmt::format(R"(
+// Implementation of the service {interface}.
+class {name} : public virtual POA_{interface}, public virtual PortableServer::RefCountServantBase
 {{
  public:
 {methods}}};
-
-#endif
 )",
-                     fmt::arg("interface", service.interface), fmt::arg("stem", stem(service.idl_file)),
-                     fmt::arg("guard", upper(stem(service.idl_file))), fmt::arg("name", name), fmt::arg("methods", methods));
+                     fmt::arg("interface", service.interface), fmt::arg("name", implementation_name(component, service.interface)),
+                     fmt::arg("methods", methods));
+}
+
+// One header for each IDL file with provided interfaces.
+Result<void> add_implementations(const NewComponent& component, std::map<std::string, std::string>& files) {
+  std::map<std::string, std::string> bodies;  // by the file's stem
+  std::set<std::string> seen;
+  for (const auto& service : component.services) {
+    if (!service.is_provided || !seen.insert(service.interface).second) continue;
+    const auto body = implementation(component, service);
+    if (!body) return body.error();
+    bodies[stem(service.idl_file)] += *body;
+  }
+  for (const auto& [name, body] : bodies) {
+    files["include/" + name + "SVC_impl.h"] =
+        fmt::format("#ifndef {0}SVC_IMPL_H\n#define {0}SVC_IMPL_H\n\n#include \"{1}Skel.h\"\n{2}\n#endif\n", upper(name), name, body);
+  }
+  return {};
 }
 
 std::string readme_file(const NewComponent& component) {
@@ -359,75 +382,23 @@ std::string readme_file(const NewComponent& component) {
       component.name, component.description, ports);
 }
 
-Result<std::string> read_file(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file)) return Error{"file " + base::in_quotes(file) + ": cannot be read"};
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 }  // namespace
-
-Result<void> check(const NewComponent& component) {
-  if (!is_identifier(component.name)) return Error{"component name " + base::in_quotes(component.name) + ": must be a C++ identifier"};
-  if (!(component.rate > 0 && component.rate <= 1e5))
-    return Error{"rate " + base::format_number(component.rate) + ": must be above 0 and at most 100000 Hz"};
-  std::map<std::string, std::string> seen;
-  const auto add = [&](const std::string& name, const std::string& what) -> Result<void> {
-    if (!is_identifier(name)) return Error{what + " " + base::in_quotes(name) + ": must be a C++ identifier"};
-    if (const auto [other, is_new] = seen.emplace(name, what); !is_new)
-      return Error{what + " " + base::in_quotes(name) + ": there is a " + other->second + " of this name"};
-    return {};
-  };
-  for (const auto* ports : {&component.in_ports, &component.out_ports}) {
-    for (const auto& port : *ports) {
-      if (auto ok = add(port.name, "port"); !ok) return ok;
-      if (!is_type(port.type)) return Error{"port " + port.name + ": type " + base::in_quotes(port.type) + " is no C++ type"};
-      if (!is_data_type(port.type))
-        return Error{"port " + port.name + ": there is no data type " + base::in_quotes(port.type) +
-                     ", expected one like RTC::TimedDouble"};
-    }
-  }
-  for (const auto& parameter : component.parameters) {
-    if (auto ok = add(parameter.name, "parameter"); !ok) return ok;
-    if (!is_type(parameter.type))
-      return Error{"parameter " + parameter.name + ": type " + base::in_quotes(parameter.type) + " is no C++ type"};
-    if (!is_parameter_type(parameter.type))
-      return Error{"parameter " + parameter.name + ": type " + base::in_quotes(parameter.type) +
-                   " is none that a parameter can have, expected int, double, bool, string, std::vector<double> or the like"};
-    if (const auto problem = type_problem(parameter.type, parameter.default_value); !problem.empty())
-      return Error{"parameter " + parameter.name + ": default " + base::in_quotes(parameter.default_value) + ", expected " + problem};
-  }
-  for (const auto& service : component.services) {
-    if (auto ok = add(service.port, "service port"); !ok) return ok;
-    if (auto ok = add(service.instance, "service"); !ok) return ok;
-    if (!is_type(service.interface))
-      return Error{"service port " + service.port + ": interface " + base::in_quotes(service.interface) + " is no IDL name"};
-    if (!std::filesystem::is_regular_file(service.idl_file))
-      return Error{"service port " + service.port + ": IDL file " + base::in_quotes(service.idl_file) + " does not exist"};
-  }
-  return {};
-}
 
 Result<std::map<std::string, std::string>> skeleton(const NewComponent& component) {
   if (const auto ok = check(component); !ok) return ok.error();
+  auto idl_paths = component.idl_files;
+  for (const auto& service : component.services) idl_paths.push_back(service.idl_file);
+  const auto idl = with_included(idl_paths);
+  if (!idl) return idl.error();
   std::map<std::string, std::string> files;
   files["README.md"] = readme_file(component);
-  files["CMakeLists.txt"] = cmake_file(component);
+  files["CMakeLists.txt"] = cmake_file(component, *idl);
   files["include/" + component.name + ".h"] = header_file(component);
   files["src/" + component.name + ".cpp"] = source_file(component);
   files["src/" + component.name + "Comp.cpp"] = program_file(component);
   files["test/starts.cmake"] = test_file(component);
-  for (const auto& service : component.services) {
-    auto idl = read_file(service.idl_file);
-    if (!idl) return idl.error();
-    files["idl/" + std::filesystem::path(service.idl_file).filename().string()] = *idl;
-    if (!service.is_provided) continue;
-    auto header = service_header(service);
-    if (!header) return header.error();
-    files["include/" + stem(service.idl_file) + "SVC_impl.h"] = *header;
-  }
+  for (const auto& [name, text] : *idl) files["idl/" + name] = text;
+  if (const auto added = add_implementations(component, files); !added) return added.error();
   return files;
 }
 

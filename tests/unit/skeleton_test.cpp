@@ -1,6 +1,7 @@
 #include "skeleton.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -58,6 +59,115 @@ TEST(Skeleton, a_specification_of_rtc_builder_is_read) {
   EXPECT_EQ(component->in_ports.at(0).type, "RTC::TimedLong");
   EXPECT_EQ(component->out_ports.at(0).name, "out");
   EXPECT_EQ(component->parameters.at(0).default_value, "0.1");
+}
+
+// A folder with files for one test.
+class Folder {
+ public:
+  Folder() : path_(std::filesystem::path(testing::TempDir()) / ("skeleton_test_" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name) << text;
+    return (path_ / name).string();
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string refusal(const NewComponent& component) {
+  const auto checked = check(component);
+  return checked ? "" : checked.error().message;
+}
+
+TEST(Skeleton, names_that_meet_in_the_code_or_are_taken_are_refused) {
+  auto component = follower();
+  component.parameters = {{"rangeIn", "int", "0"}};
+  EXPECT_NE(refusal(component).find("m_rangeIn"), std::string::npos) << refusal(component);
+  for (const char* name : {"static_cast", "test", "std", "co_await", "_x", "a__b"}) {
+    component = follower();
+    component.name = name;
+    EXPECT_NE(refusal(component), "") << name;
+  }
+  component = follower();
+  component.in_ports = {{"long", "RTC::TimedLong"}};  // a member m_long, which is fine
+  EXPECT_EQ(refusal(component), "");
+}
+
+TEST(Skeleton, a_description_stays_in_its_comment) {
+  auto component = follower();
+  component.description = "one\ntwo \\";
+  const auto files = skeleton(component);
+  ASSERT_TRUE(files.ok()) << files.error().message;
+  EXPECT_TRUE(files->at("include/Follower.h").starts_with("// one two\n#ifndef")) << files->at("include/Follower.h").substr(0, 40);
+}
+
+TEST(Skeleton, a_service_port_has_several_interfaces_and_an_idl_file_several_services) {
+  const Folder folder;
+  const auto idl =
+      folder.write("Two.idl", "#include \"Base.idl\"\nmodule M { interface A { Base::T t(); }; interface B { void b(in long x); }; };\n");
+  folder.write("Base.idl", "module Base { struct T { long a; string b; }; };\n");
+  auto component = follower();
+  component.services = {{"port", "M::A", idl, true, "a"}, {"port", "M::B", idl, true, "b"}, {"other", "M::B", idl, false, "c"}};
+  const auto files = skeleton(component);
+  ASSERT_TRUE(files.ok()) << files.error().message;
+  EXPECT_TRUE(files->contains("idl/Two.idl") && files->contains("idl/Base.idl"));
+  const auto& implementation = files->at("include/TwoSVC_impl.h");
+  EXPECT_NE(implementation.find("class ASVC_impl"), std::string::npos) << implementation;
+  EXPECT_NE(implementation.find("class BSVC_impl"), std::string::npos) << implementation;
+  EXPECT_NE(implementation.find("  Base::T* t() override"), std::string::npos) << implementation;
+  const auto& source = files->at("src/Follower.cpp");
+  EXPECT_EQ(source.find("addPort(m_portPort)"), source.rfind("addPort(m_portPort)")) << source;
+  const auto& cmake = files->at("CMakeLists.txt");
+  EXPECT_NE(cmake.find("idl/Base.idl)"), std::string::npos) << cmake;
+  EXPECT_EQ(cmake.find(std::filesystem::path(idl).parent_path().string()), std::string::npos) << cmake;
+}
+
+TEST(Skeleton, data_types_of_the_users_own_come_with_an_idl_file) {
+  auto component = follower();
+  component.in_ports = {{"blob", "My::Blob"}};
+  EXPECT_NE(refusal(component).find("--idl"), std::string::npos) << refusal(component);
+  const Folder folder;
+  component.idl_files = {folder.write("Mine.idl", "#include \"BasicDataType.idl\"\nmodule My { struct Blob { RTC::Time tm; }; };\n")};
+  const auto files = skeleton(component);
+  ASSERT_TRUE(files.ok()) << files.error().message;
+  EXPECT_NE(files->at("include/Follower.h").find("#include \"MineSkel.h\""), std::string::npos);
+  component.in_ports = {{"blob", "My::Bulb"}};
+  EXPECT_NE(refusal(component), "");
+}
+
+TEST(Skeleton, actions_and_widgets_of_rtc_builder_are_kept) {
+  const Folder folder;
+  const auto file = folder.write("RTC.xml", R"(<rtc:RtcProfile xmlns:rtc="r" xmlns:rtcExt="e">
+  <rtc:BasicInfo rtc:name="Mover" rtc:executionRate="20.0"/>
+  <rtc:Actions><rtc:OnReset rtc:implemented="true"/><rtc:OnError rtc:implemented="false"/><rtc:OnExecute rtc:implemented="true"/></rtc:Actions>
+  <rtc:ConfigurationSet><rtc:Configuration rtc:name="k" rtc:type="string" rtc:defaultValue="a">
+    <rtcExt:Properties rtcExt:value="slider" rtcExt:name="__widget__"/></rtc:Configuration></rtc:ConfigurationSet>
+</rtc:RtcProfile>)");
+  const auto component = read_specification(file);
+  ASSERT_TRUE(component.ok()) << component.error().message;
+  EXPECT_EQ(component->actions, std::vector<std::string>{"onReset"});
+  const auto files = skeleton(*component);
+  ASSERT_TRUE(files.ok()) << files.error().message;
+  EXPECT_NE(files->at("src/Mover.cpp").find("Mover::onReset(RTC::UniqueId"), std::string::npos);
+  EXPECT_NE(files->at("src/Mover.cpp").find("\"conf.__widget__.k\", \"slider\""), std::string::npos);
+  EXPECT_NE(files->at("include/Mover.h").find("std::string m_k;"), std::string::npos);
+}
+
+TEST(Skeleton, a_specification_in_yaml_says_where_it_is_not_understood) {
+  const Folder folder;
+  const auto problem = [&](const std::string& text) {
+    const auto read = read_specification(folder.write("spec.yaml", text));
+    return read ? std::string() : read.error().message;
+  };
+  EXPECT_NE(problem("name: X\nin_ports: 5\n").find("spec.yaml\":2: in_ports must be a list"), std::string::npos);
+  EXPECT_NE(problem("name: X\nin_ports:\n  - {name: a, typ: TimedLong}\n").find("3: unknown key \"typ\""), std::string::npos);
+  EXPECT_NE(problem("name: X\nrate: fast\n").find("2: rate must be a number"), std::string::npos);
+  EXPECT_NE(problem("name: X\nservices: [{port: s, direction: both}]\n").find("provided or required"), std::string::npos);
 }
 
 }  // namespace
