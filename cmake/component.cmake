@@ -31,6 +31,7 @@ function(rtmsim_component name)
     set_target_properties(${name} PROPERTIES INSTALL_RPATH "$ORIGIN/..")
     install(TARGETS ${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/rtm-sim)
     install(TARGETS ${name}Comp RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+    set_property(GLOBAL APPEND PROPERTY RTMSIM_COMPONENT_PROGRAMS ${name}Comp)
   endif()
 endfunction()
 

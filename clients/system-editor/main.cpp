@@ -1,12 +1,12 @@
 // rtse, the command-line system editor: lists, wires, configures, starts and saves systems of RT components.
-#include <omniORB4/CORBA.h>
-
-#include <cstdlib>
 #include <iostream>
 
 #include "base/command_line.h"
 #include "base/text.h"
 #include "editor.h"
+#include "names_offered.h"
+#include "orb.h"
+#include "output.h"
 #include "run_system.h"
 #include "skeleton.h"
 
@@ -14,54 +14,18 @@ namespace {
 
 using editor::Editor;
 
-std::string default_server() {
-  // rtshell's variable; several servers are separated by ';'.
-  if (const char* servers = std::getenv("RTCTREE_NAMESERVERS")) {
-    const auto list = base::split_list(servers, ';');
-    if (!list.empty()) return list.front();
-  }
-  return "localhost:2809";
-}
-
-// The ORB of a tool: it listens on loopback only, for the ports that print and inject make.
-class Orb {
- public:
-  Orb() {
-    const char* options[][2] = {{"endPoint", "giop:tcp:127.0.0.1:"},
-                                {"giopMaxMsgSize", "268435456"},
-                                {"supportPerThreadTimeOut", "1"},
-                                // No limit of its own for new connections: it would replace the limit of the first call over each.
-                                {"clientCallTimeOutPeriod", "30000"},
-                                {nullptr, nullptr}};
-    int argc = 0;
-    orb_ = CORBA::ORB_init(argc, nullptr, "omniORB4", options);
-    CORBA::Object_var object = orb_->resolve_initial_references("RootPOA");
-    const PortableServer::POA_var poa = PortableServer::POA::_narrow(object);
-    const PortableServer::POAManager_var manager = poa->the_POAManager();
-    manager->activate();
-  }
-  ~Orb() {
-    try {
-      orb_->destroy();
-    } catch (const CORBA::Exception&) {
-      // The process ends anyway.
-    }
-  }
-  Orb(const Orb&) = delete;
-  Orb& operator=(const Orb&) = delete;
-  CORBA::ORB_ptr get() const { return orb_; }
-
- private:
-  CORBA::ORB_var orb_;
-};
-
 struct Settings {
-  std::string server = default_server();
+  std::string server = editor::default_server();
   bool json = false;
   double limit_s = 1;
 };
 
 using Work = std::function<void(Editor&)>;
+
+// For what CLI11 cannot say of a command line: exit code 2 and a line.
+void require(bool is_right, const std::string& command, const std::string& expectation) {
+  if (!is_right) throw CLI::ValidationError(command, expectation);
+}
 
 // Each function declares one group of commands; the chosen one ends up in `work`.
 void add_listing(CLI::App& app, Work& work) {
@@ -96,7 +60,8 @@ void add_states(CLI::App& app, Work& work) {
     auto paths = std::make_shared<std::vector<std::string>>();
     auto context = std::make_shared<int>(-1);
     command->add_option("PATH", *paths, "Components")->required();
-    command->add_option("-e,--context", *context, "Index of the execution context; default: the first")->check(CLI::NonNegativeNumber);
+    command->add_option("-e,--context", *context, "Index of the execution context; default: the first")
+        ->check(base::number_between(0, 1000));
     command->callback(
         [&work, paths, context, transition] { work = [=](Editor& e) { editor::change_state(e, *paths, transition, *context); }; });
   };
@@ -114,7 +79,12 @@ void add_states(CLI::App& app, Work& work) {
   auto zombies = std::make_shared<bool>(false);
   del->add_option("PATH", *del_paths, "Names");
   del->add_flag("-z,--zombies", *zombies, "All names whose object is gone");
-  del->callback([&work, del_paths, zombies] { work = [=](Editor& e) { editor::delete_bindings(e, *del_paths, *zombies); }; });
+  auto force = std::make_shared<bool>(false);
+  del->add_flag("--force", *force, "Contexts that hold living objects too");
+  del->callback([&work, del_paths, zombies, force] {
+    require(!del_paths->empty() || *zombies, "del", "expected names, or -z for all whose object is gone");
+    work = [=](Editor& e) { editor::delete_bindings(e, *del_paths, *zombies, *force); };
+  });
 
   auto* wait = app.add_subcommand("wait", "Wait until components are in a state");
   auto wait_paths = std::make_shared<std::vector<std::string>>();
@@ -142,6 +112,12 @@ void add_configuration(CLI::App& app, Work& work) {
     for (auto& argument : options->arguments) {
       if (argument.starts_with(" [")) argument.erase(0, 1);  // see words_of
     }
+    const auto& action = options->action;
+    const auto count = options->arguments.size();
+    require(action != "list" || count == 0, "conf list", "expected nothing more");
+    require(action != "get" || count == 1, "conf get", "expected one parameter");
+    require(action != "set" || count == 2, "conf set", "expected a parameter and a value");
+    require((action != "use" && action != "act") || count == 1, "conf " + action, "expected one configuration set");
     work = [options](Editor& e) { editor::configure(e, *options); };
   });
 }
@@ -161,14 +137,17 @@ void add_connections(CLI::App& app, Work& work) {
   auto id = std::make_shared<std::string>();
   dis->add_option("PATH", *paths, "Ports or a component")->expected(0, 2);
   dis->add_option("-i,--id", *id, "Connector id");
-  dis->callback([&work, paths, id] { work = [=](Editor& e) { editor::disconnect(e, *paths, *id); }; });
+  dis->callback([&work, paths, id] {
+    require(!paths->empty() || !id->empty(), "dis", "expected one component or port, two ports, or -i ID");
+    work = [=](Editor& e) { editor::disconnect(e, *paths, *id); };
+  });
 }
 
 void add_data(CLI::App& app, Work& work) {
   auto* print = app.add_subcommand("print", "Print what OutPorts send");
   auto options = std::make_shared<editor::PrintOptions>();
   print->add_option("PORT", options->ports, "OutPorts")->required();
-  print->add_option("-n,--count", options->count, "End after so many samples")->check(CLI::NonNegativeNumber);
+  print->add_option("-n,--count", options->count, "End after so many samples")->check(base::number_between(0, 1e9));
   print->add_option("-t,--timeout", options->timeout_s, "End after so many seconds")->check(base::number_between(0.0, 1e9));
   print->add_option("-r,--rate", options->rate, "At most so many samples a second")->check(base::number_between(0.0, 1e6));
   print->callback([&work, options] { work = [options](Editor& e) { editor::print_ports(e, *options); }; });
@@ -177,7 +156,9 @@ void add_data(CLI::App& app, Work& work) {
   auto values = std::make_shared<editor::InjectOptions>();
   inject->add_option("PORT", values->port, "InPort")->required();
   inject->add_option("VALUE", values->values, "JSON, or RTC.TimedLong({time}, 42)")->required();
-  inject->add_option("-n,--count", values->count, "How often; 0: until stopped")->check(CLI::NonNegativeNumber)->capture_default_str();
+  inject->add_option("-n,--count", values->count, "How often; 0: until stopped")
+      ->check(base::number_between(0, 1e9))
+      ->capture_default_str();
   inject->add_option("-r,--rate", values->rate, "How often a second")->check(base::number_between(1e-3, 1e5))->capture_default_str();
   inject->callback([&work, values] { work = [values](Editor& e) { editor::inject(e, *values); }; });
 }
@@ -219,7 +200,9 @@ void add_systems(CLI::App& app, Work& work) {
   auto file = std::make_shared<std::string>();
   auto state = std::make_shared<std::string>("any");
   check->add_option("FILE", *file, "RTSProfile, XML or YAML")->required();
-  check->add_option("-s,--state", *state, "State that every component should be in; saved: each in its own")->capture_default_str();
+  check->add_option("-s,--state", *state, "State that every component should be in; saved: each in its own")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"created", "inactive", "active", "error", "any", "saved"}, CLI::ignore_case));
   check->callback([&work, file, state] { work = [=](Editor& e) { editor::check_system(e, *file, *state); }; });
 }
 
@@ -269,7 +252,17 @@ void add_managers(CLI::App& app, Work& work) {
       ->check(CLI::IsMember({"list", "create", "delete", "load", "unload"}));
   mgr->add_option("ARGUMENT", options->arguments, "Types, instances or files");
   mgr->add_option("-m,--manager", options->manager, "Path or corbaloc::HOST[:PORT][/ID]; default: the only one of the name server");
-  mgr->callback([&work, options] { work = [options](Editor& e) { editor::manage(e, *options); }; });
+  mgr->callback([&work, options] {
+    require(options->action != "list" || options->arguments.empty(), "mgr list", "expected nothing more");
+    require(options->action == "list" || !options->arguments.empty(), "mgr " + options->action, "expected a name");
+    for (const auto& argument : options->action == "create" ? options->arguments : std::vector<std::string>()) {
+      const auto question = std::min(argument.find('?'), argument.size());
+      for (const auto& option : base::split_list(argument.substr(question == argument.size() ? question : question + 1), '&'))
+        require(option.empty() || option.find('=') != std::string::npos, "mgr create",
+                "expected KEY=VALUE after the '?', got \"" + option + "\"");
+    }
+    work = [options](Editor& e) { editor::manage(e, *options); };
+  });
 }
 
 }  // namespace
@@ -314,12 +307,13 @@ int main(int argc, char** argv) {
   const auto words = words_of(argc, argv);
   std::vector<const char*> arguments;
   for (const auto& word : words) arguments.push_back(word.c_str());
-  if (const auto end = base::parse_command_line(app, "rtse", argc, arguments.data())) return *end;
+  if (const auto end = base::parse_command_line(app, "rtse", argc, arguments.data(), editor::names_offered)) return *end;
   if (!work) return code;  // done without an ORB
   try {
-    const Orb orb;
+    const editor::Orb orb;
     Editor editor(orb.get(), settings.server, settings.json, std::chrono::milliseconds(static_cast<int>(settings.limit_s * 1000)));
     work(editor);
+    if (!editor::flush_output()) editor.fail({"standard output: cannot be written"});
     return editor.failed() ? 1 : 0;
   } catch (const CORBA::Exception& e) {
     std::cerr << "rtse: " << editor::describe(e) << '\n';

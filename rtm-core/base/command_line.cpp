@@ -13,51 +13,6 @@ struct Printed : CLI::Success {
   Printed() : CLI::Success("printed", "", CLI::ExitCodes::Success) {}
 };
 
-std::vector<std::string> option_names(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const auto* option : app.get_options([](const CLI::Option* candidate) { return candidate->nonpositional(); })) {
-    if (option->get_group().empty()) continue;
-    for (const auto& name : option->get_lnames()) names.push_back("--" + name);
-    for (const auto& name : option->get_snames()) names.push_back("-" + name);
-  }
-  return names;
-}
-
-std::vector<const CLI::App*> subcommands(const CLI::App& app) {
-  std::vector<const CLI::App*> all;
-  for (const auto* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    if (!command->get_name().empty() && !command->get_group().empty()) all.push_back(command);
-  }
-  return all;
-}
-
-// 'NAME:DESCRIPTION' as zsh's _describe wants it: one line, colons of the name escaped, in single quotes.
-std::string zsh_entry(const std::string& name, const std::string& description) {
-  std::string entry = "'";
-  const auto append = [&](const std::string& text, bool is_name) {
-    for (const char c : text) {
-      if (c == '\'') entry += "'\\''";
-      if (c == ':' && is_name) entry += "\\:";
-      if (c == '\n') entry += ' ';
-      if (c != '\'' && c != '\n' && (c != ':' || !is_name)) entry += c;
-    }
-  };
-  append(name, true);
-  if (!description.empty()) entry += ":";
-  append(description, false);
-  return entry + "'";
-}
-
-std::string zsh_options(const CLI::App& app) {
-  std::string entries;
-  for (const auto* option : app.get_options([](const CLI::Option* candidate) { return candidate->nonpositional(); })) {
-    if (option->get_group().empty()) continue;
-    for (const auto& name : option->get_lnames()) entries += " " + zsh_entry("--" + name, option->get_description());
-    for (const auto& name : option->get_snames()) entries += " " + zsh_entry("-" + name, option->get_description());
-  }
-  return entries;
-}
-
 // Troff takes a leading dot or quote for a request, and a bare hyphen for a typographic one.
 std::string troff(const std::string& text) {
   std::string result;
@@ -79,62 +34,21 @@ void append_options(std::string& page, const CLI::App& app) {
   }
 }
 
-}  // namespace
-
-namespace {
-
-// A file _NAME of the function path, which zsh loads by its first line; also good to be sourced.
-std::string zsh_completion(const CLI::App& app, const std::string& name) {
-  const auto commands = subcommands(app);
-  std::string script = "#compdef " + name + "\n_" + name + "() {\n  local -a options commands\n  local command=\"\" word\n";
-  script += "  options=(" + zsh_options(app) + ")\n";
-  if (!commands.empty()) {
-    script += "  commands=(";
-    for (const auto* command : commands) script += " " + zsh_entry(command->get_name(), command->get_description());
-    script += ")\n  for word in ${words[2,CURRENT-1]}; do\n    case $word in\n";
-    for (const auto* command : commands) script += "      " + command->get_name() + ") command=$word; break;;\n";
-    script += "    esac\n  done\n  case $command in\n";
-    for (const auto* command : commands) script += "    " + command->get_name() + ") options+=(" + zsh_options(*command) + ");;\n";
-    script += "  esac\n";
-  }
-  script += "  if [[ ${words[CURRENT]} == -* ]]; then\n    _describe -o option options\n";
-  if (!commands.empty()) script += "  elif [[ -z $command ]]; then\n    _describe command commands\n";
-  script += "  else\n    _files\n  fi\n}\n";
-  return script + "if [[ ${funcstack[1]} == _" + name + " ]]; then\n  _" + name + " \"$@\"\nelse\n  compdef _" + name + " " + name +
-         "\nfi\n";
+// The first line of the description, for lists of manual pages: "rtse: list, wire ..." -> "list, wire ...".
+std::string summary(const CLI::App& app, const std::string& name) {
+  auto line = app.get_description().substr(0, app.get_description().find('\n'));
+  if (line.starts_with(name + ": ")) line.erase(0, name.size() + 2);
+  return line;
 }
 
 }  // namespace
-
-std::string completion_script(const CLI::App& app, const std::string& name, const std::string& shell) {
-  if (shell == "zsh") return zsh_completion(app, name);
-  std::string function = "_" + name + "_completion";
-  for (char& c : function) c = c == '-' ? '_' : c;
-  auto script = function + "() {\n  local words=\"" + join(option_names(app), " ") + "\"\n  local command=\"\"\n  local word\n";
-  std::vector<std::string> names;
-  for (const auto* command : subcommands(app)) names.push_back(command->get_name());
-  if (!names.empty()) {
-    script += "  for word in \"${COMP_WORDS[@]:1:COMP_CWORD-1}\"; do\n    case \" " + join(names, " ") +
-              " \" in *\" $word \"*) command=$word; break;; esac\n  done\n";
-    script += "  case \"$command\" in\n    \"\") words=\"$words " + join(names, " ") + "\";;\n";
-    for (const auto* command : subcommands(app))
-      script += "    " + command->get_name() + ") words=\"$words " + join(option_names(*command), " ") + "\";;\n";
-    script += "  esac\n";
-  }
-  // Where neither an option nor a command can stand, the shell offers files.
-  script +=
-      "  local current=\"${COMP_WORDS[COMP_CWORD]}\"\n  case \"$command$current\" in ?*) [[ $current == -* || -z $command ]] || return 0;; "
-      "esac\n";
-  script += "  COMPREPLY=($(compgen -W \"$words\" -- \"$current\"))\n}\n";
-  return script + "complete -o default -F " + function + " " + name + "\n";
-}
 
 std::string manual_page(const CLI::App& app, const std::string& name, const std::string& version) {
-  std::string page = ".TH " + name + " 1 \"\" \"rtm-sim " + version + "\"\n.SH NAME\n" + name + "\n.SH DESCRIPTION\n" +
-                     troff(app.get_description()) + "\n";
+  std::string page = ".TH " + name + " 1 \"\" \"rtm-sim " + version + "\"\n.SH NAME\n" + troff(name) + " \\- " + troff(summary(app, name)) +
+                     "\n.SH DESCRIPTION\n" + troff(app.get_description()) + "\n";
   page += ".SH OPTIONS\n";
   append_options(page, app);
-  const auto commands = subcommands(app);
+  const auto commands = commands_of(app);
   if (!commands.empty()) page += ".SH COMMANDS\n";
   for (const auto* command : commands) {
     page += ".SS " + troff(command->get_name()) + "\n" + troff(command->get_description()) + "\n";
@@ -147,8 +61,8 @@ void add_standard_options(CLI::App& app, const std::string& name, const std::str
   app.set_version_flag("--version", name + " " + version);
   app.add_option_function<std::string>(
          "--completion",
-         [&app, name](const std::string& shell) {
-           std::cout << completion_script(app, name, shell);
+         [name](const std::string& shell) {
+           std::cout << completion_script(name, shell);
            throw Printed();
          },
          "Print the completion script of a shell: bash or zsh")
@@ -174,7 +88,13 @@ CLI::Validator number_between(double low, double high) {
       "FLOAT in [" + range + "]");
 }
 
-std::optional<int> parse_command_line(CLI::App& app, const std::string& name, int argc, const char* const* argv) {
+std::optional<int> parse_command_line(CLI::App& app, const std::string& name, int argc, const char* const* argv, const Offers& offers) {
+  if (argc > 1 && std::string_view(argv[1]) == "--complete") {
+    const auto completion = complete(app, {argv + 2, argv + argc}, offers);
+    if (completion.files) std::cout << ":files\n";
+    for (const auto& offer : completion.offers) std::cout << offer.text << '\t' << offer.description << '\n';
+    return 0;
+  }
   try {
     app.parse(argc, argv);
     return std::nullopt;

@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "base/completion.h"
+
 namespace base {
 
 // Adds --version (prints "<name> <version>"), and --completion bash|zsh and --man, which print what their names say and end the program.
@@ -14,10 +16,10 @@ void add_standard_options(CLI::App& app, const std::string& name, const std::str
 CLI::Validator number_between(double low, double high);
 
 // Parses; the exit code when the program is to end now: 0 after --help and the like, 2 after a wrong command line (one line on stderr).
-std::optional<int> parse_command_line(CLI::App& app, const std::string& name, int argc, const char* const* argv);
+// After --complete it prints what may stand for the last word, see base/completion.h.
+std::optional<int> parse_command_line(CLI::App& app, const std::string& name, int argc, const char* const* argv, const Offers& offers = {});
 
-// The completion script for bash or zsh, and the manual page, from the same declarations as --help.
-std::string completion_script(const CLI::App& app, const std::string& name, const std::string& shell);
+// The manual page, from the same declarations as --help.
 std::string manual_page(const CLI::App& app, const std::string& name, const std::string& version);
 
 }  // namespace base

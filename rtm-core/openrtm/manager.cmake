@@ -1,6 +1,7 @@
 # Manager, modules, naming, logging.
 target_sources(openrtm PRIVATE
   rtm/CORBA_RTCUtil.cpp
+  rtm/ComponentProgram.cpp
   rtm/CorbaNaming.cpp
   rtm/Factory.cpp
   rtm/LocalServiceAdmin.cpp

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "base/command_line.h"
+#include "offers.h"
 #include "simctl.h"
 
 namespace {
@@ -225,7 +226,7 @@ int main(int argc, char** argv) {
   add_looks(app, work);
   add_control(app, work);
   add_pictures(app, work);
-  if (const auto end = base::parse_command_line(app, "simctl", argc, argv)) return *end;
+  if (const auto end = base::parse_command_line(app, "simctl", argc, argv, simctl::offers)) return *end;
   Control control(server_id, json);
   work(control);
   return control.failed() ? 1 : 0;

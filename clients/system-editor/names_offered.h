@@ -1,0 +1,12 @@
+// What the running system knows of when the user presses the tab key: components, ports, parameters, managers. One thread at a time.
+#pragma once
+
+#include "base/completion.h"
+
+namespace editor {
+
+// Asks the name server of the words (or the default one), for half a second at most; nothing when it does not answer.
+std::optional<std::vector<base::Offer>> names_offered(const std::string& value, const std::vector<std::string>& before,
+                                                      const std::string& current);
+
+}  // namespace editor

@@ -1,0 +1,26 @@
+// The ORB of a tool, and the name server that it speaks to when it is told nothing. One thread at a time.
+#pragma once
+
+#include <omniORB4/CORBA.h>
+
+#include <string>
+
+namespace editor {
+
+// The first of $RTCTREE_NAMESERVERS, else localhost:2809.
+std::string default_server();
+
+// The ORB of a tool: it listens on loopback only, for the ports that print and inject make.
+class Orb {
+ public:
+  Orb();
+  ~Orb();
+  Orb(const Orb&) = delete;
+  Orb& operator=(const Orb&) = delete;
+  CORBA::ORB_ptr get() const { return orb_; }
+
+ private:
+  CORBA::ORB_var orb_;
+};
+
+}  // namespace editor

@@ -1,0 +1,39 @@
+// What a shell is told when the user presses the tab key: `PROGRAM --complete WORD...` prints what may stand for the last word, a line
+// each. The scripts that
+// --completion prints ask that way, so that names of the running system are offered too. One thread at a time.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace base {
+
+// What may stand there. A text that ends in ':', '=' or '/' is not the end of the word.
+struct Offer {
+  std::string text;
+  std::string description = "";
+};
+
+// What a program itself knows. `value` is the name of a positional (PATH) or option (--manager), `before` are the words before it. Nothing:
+// the fixed words of the declaration, else files.
+using Offers = std::function<std::optional<std::vector<Offer>>(const std::string& value, const std::vector<std::string>& before,
+                                                               const std::string& current)>;
+
+struct Completion {
+  std::vector<Offer> offers;
+  bool files = false;  // the shell adds the names of files
+};
+
+// Words without the program's name; the last is the one at the cursor, as far as it is there.
+Completion complete(const CLI::App& app, const std::vector<std::string>& words, const Offers& offers = {});
+
+// The subcommands that --help shows.
+std::vector<const CLI::App*> commands_of(const CLI::App& app);
+
+// The script for bash or zsh.
+std::string completion_script(const std::string& name, const std::string& shell);
+
+}  // namespace base

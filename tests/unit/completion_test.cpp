@@ -1,0 +1,62 @@
+#include "base/completion.h"
+
+#include <gtest/gtest.h>
+
+namespace base {
+namespace {
+
+std::vector<std::string> texts(const Completion& completion) {
+  std::vector<std::string> all;
+  for (const auto& offer : completion.offers) all.push_back(offer.text);
+  return all;
+}
+
+// A program with two commands.
+struct Program {
+  Program() {
+    app.set_help_flag();
+    app.add_flag("--json")->description("print JSON");
+    app.add_option("-s,--server", server);
+    auto* list = app.add_subcommand("list", "list all");
+    list->set_help_flag();
+    list->add_option("PATH", paths)->expected(0, 2);
+    list->add_option("--state", state)->check(CLI::IsMember({"on", "off"}));
+    list->add_option("FILE", file);
+    app.add_subcommand("load", "load one")->set_help_flag();
+  }
+  CLI::App app;
+  std::string server, state, file;
+  std::vector<std::string> paths;
+};
+
+TEST(Completion, offers_commands_and_options_where_they_can_stand) {
+  const Program program;
+  EXPECT_EQ(texts(complete(program.app, {"l"})), (std::vector<std::string>{"list", "load"}));
+  EXPECT_EQ(texts(complete(program.app, {"--j"})), std::vector<std::string>{"--json"});
+  EXPECT_EQ(texts(complete(program.app, {"-s", "list", "li"})), std::vector<std::string>{"list"}) << "the value of an option is no command";
+  EXPECT_EQ(texts(complete(program.app, {"list", "--"})), (std::vector<std::string>{"--state", "--json", "--server"}));
+}
+
+TEST(Completion, offers_the_fixed_words_of_an_option) {
+  const Program program;
+  EXPECT_EQ(texts(complete(program.app, {"list", "--state", ""})), (std::vector<std::string>{"on", "off"}));
+  EXPECT_EQ(texts(complete(program.app, {"list", "--state=of"})), std::vector<std::string>{"--state=off"});
+}
+
+TEST(Completion, asks_the_program_for_each_positional_and_offers_files_otherwise) {
+  const Program program;
+  const Offers offers = [](const std::string& value, const std::vector<std::string>& before,
+                           const std::string&) -> std::optional<std::vector<Offer>> {
+    if (value != "PATH") return std::nullopt;
+    return std::vector<Offer>{{"robot", std::to_string(before.size())}, {"rubble"}};
+  };
+  const auto second = complete(program.app, {"list", "a", "ro"}, offers);
+  ASSERT_EQ(texts(second), std::vector<std::string>{"robot"});
+  EXPECT_EQ(second.offers[0].description, "2") << "all words before are told";
+  const auto third = complete(program.app, {"list", "a", "b", ""}, offers);
+  EXPECT_TRUE(third.offers.empty());
+  EXPECT_TRUE(third.files);
+}
+
+}  // namespace
+}  // namespace base
