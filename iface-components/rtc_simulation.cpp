@@ -84,7 +84,14 @@ void SimulationServiceImpl::remove(const char* model) { ask_or_throw(server_id_,
 
 RTCSimulation::RTCSimulation(RTC::Manager* manager)
     : RTC::DataFlowComponentBase(manager),
-      link_(shm::IfaceType::simulation, [this](bool, const std::string& line) { RTC_WARN(("%s", line.c_str())); }),
+      link_(shm::IfaceType::simulation,
+            [this](bool is_problem, const std::string& line) {
+              if (is_problem) {
+                RTC_WARN(("%s", line.c_str()));
+              } else {
+                RTC_INFO(("%s", line.c_str()));
+              }
+            }),
       errand_([this](bool, const std::string& line) { RTC_WARN(("%s", line.c_str())); }),
       time_out_("time", time_),
       simulation_port_("simulation") {}
@@ -126,6 +133,11 @@ RTC::ReturnCode_t RTCSimulation::onActivated(RTC::UniqueId) {
 
 RTC::ReturnCode_t RTCSimulation::onDeactivated(RTC::UniqueId) {
   link_.detach();
+  // Without a simulator no time goes on that could be stopped.
+  if (const auto world = shm::Iface::open(static_cast<std::uint32_t>(server_id_), shm::IfaceType::simulation, "world"); !world) {
+    RTC_WARN(("%s: nothing is to be paused", world.error().message.c_str()));
+    return RTC::RTC_OK;
+  }
   return ask(shm::PauseRequest{});
 }
 

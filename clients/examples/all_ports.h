@@ -67,6 +67,16 @@ void set_number(Data&& data, unsigned long n, CORBA::ULong length) {
   }
 }
 
+// A character of a wide string, as UTF-8.
+inline std::string to_utf8(CORBA::WChar c) {
+  const auto code = static_cast<unsigned long>(c);
+  const auto tail = [&](int shift) { return static_cast<char>(0x80 | ((code >> shift) & 0x3f)); };
+  if (code < 0x80) return std::string(1, static_cast<char>(code));
+  if (code < 0x800) return {static_cast<char>(0xc0 | (code >> 6)), tail(0)};
+  if (code < 0x10000) return {static_cast<char>(0xe0 | (code >> 12)), tail(6), tail(0)};
+  return {static_cast<char>(0xf0 | (code >> 18)), tail(12), tail(6), tail(0)};
+}
+
 // A value as text; elements of sequences are separated by blanks.
 template <class Data>
 std::string to_text(const Data& data) {
@@ -74,7 +84,9 @@ std::string to_text(const Data& data) {
     std::string text;
     for (CORBA::ULong i = 0; i < data.length(); ++i) text += (i == 0 ? "" : " ") + to_text(data[i]);
     return text;
-  } else if constexpr (std::is_same_v<Data, CORBA::Char> || std::is_same_v<Data, CORBA::WChar>) {
+  } else if constexpr (std::is_same_v<Data, CORBA::WChar>) {
+    return to_utf8(data);
+  } else if constexpr (std::is_same_v<Data, CORBA::Char>) {
     return std::string(1, static_cast<char>(data));
   } else if constexpr (std::is_arithmetic_v<Data>) {
     return std::to_string(data);
@@ -82,7 +94,7 @@ std::string to_text(const Data& data) {
     return static_cast<const char*>(data);
   } else {
     std::string text;
-    for (const CORBA::WChar* c = data; *c != 0; ++c) text += static_cast<char>(*c);
+    for (const CORBA::WChar* c = data; *c != 0; ++c) text += to_utf8(*c);
     return text;
   }
 }

@@ -30,7 +30,9 @@ struct Description {
     app.add_flag("-d")->description("Be the master manager: listen on the port of corba.master_manager");
     app.add_flag("-a")->description("Without the manager's own CORBA object");
     app.add_flag("--with-naming")->description("Start omniNames when the first of corba.nameservers does not answer, stop it at the end");
-    app.footer("Exit code: 0 ended as asked, 1 failed, 2 wrong command line");
+    app.footer(
+        "Exit code: 0 ended as asked, 1 failed, 2 wrong command line\n"
+        "SIGTERM ends it; so does SIGINT, unless it was started with SIGINT ignored, as in the background of a script");
   }
 };
 
