@@ -59,14 +59,18 @@ std::string hidden(const ComponentView& component, const std::string& set_id, co
 
 // What the component would not understand, or has said that it does not want.
 Result<void> check_value(const ComponentView& component, const std::string& parameter, const std::string& value) {
-  auto problem = type_problem(hidden(component, "__type__", parameter), value);
-  if (problem.empty()) problem = constraint_problem(hidden(component, "__constraints__", parameter), value);
+  const auto problem = value_problem(component, parameter, value);
   if (problem.empty()) return {};
   return Error{"component " + component.path + ": parameter " + parameter + " cannot be " + base::in_quotes(value) + ", expected " +
                problem + " (--force sets it all the same)"};
 }
 
 }  // namespace
+
+std::string value_problem(const ComponentView& component, const std::string& parameter, const std::string& value) {
+  const auto problem = type_problem(hidden(component, "__type__", parameter), value);
+  return problem.empty() ? constraint_problem(hidden(component, "__constraints__", parameter), value) : problem;
+}
 
 Result<void> set_values(const ComponentView& component, const std::string& id,
                         const std::vector<std::pair<std::string, std::string>>& values) {
@@ -110,7 +114,6 @@ void configure(Editor& editor, const ConfigurationOptions& options) {
     return print_sets(editor, *component, options.all || !options.set.empty());
   }
   if (options.action == "use" || options.action == "act") {
-    if (arguments.size() != 1) return editor.fail({"conf use: expected one configuration set"});
     if (!find_set(*component, arguments[0])) return editor.fail(no_such_set(*component, arguments[0]));
     const auto used = use_set(*component, arguments[0]);
     if (!used) editor.fail(used.error());
@@ -123,7 +126,6 @@ void configure(Editor& editor, const ConfigurationOptions& options) {
   if (id.starts_with("_") && options.action == "set")
     return editor.fail({"conf set: set " + id + " holds what editors know of parameters, not values"});
   if (options.action == "get") {
-    if (arguments.size() != 1) return editor.fail({"conf get: expected one parameter"});
     for (const auto& [key, value] : set->values) {
       if (key != arguments[0]) continue;
       if (editor.json()) return editor.print({{key, value}});
@@ -132,9 +134,6 @@ void configure(Editor& editor, const ConfigurationOptions& options) {
     }
     return editor.fail(no_such_parameter(*component, *set, arguments[0]));
   }
-  if (options.action != "set")
-    return editor.fail({"conf: unknown action " + base::in_quotes(options.action) + ", expected list, get, set or use"});
-  if (arguments.size() != 2) return editor.fail({"conf set: expected a parameter and a value"});
   auto values = set->values;
   bool known = false;
   for (auto& [key, value] : values) {

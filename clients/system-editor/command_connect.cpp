@@ -93,12 +93,27 @@ bool are_connected(const PortView& a, const PortView& b) {
   return false;
 }
 
+bool is_in_use(const std::vector<const PortView*>& ports, const std::string& id) {
+  bool found = false;
+  for (const auto* port : ports) {
+    const auto asked = remote("port", [&] {
+      RTC::ConnectorProfileList_var list = port->object->get_connector_profiles();
+      for (CORBA::ULong i = 0; i < list->length(); ++i) found = found || (!id.empty() && id == list[i].connector_id.in());
+    });
+    if (!asked) continue;  // the other port knows it too
+  }
+  return found;
+}
+
 }  // namespace
 
 Result<void> connect_ports(const std::vector<const PortView*>& ports, const std::string& id, const std::string& name,
                            const Properties& given) {
   const auto properties = with_defaults(*ports.front(), given);
   if (const auto fit = check_ports(ports, properties); !fit) return fit;
+  for (std::size_t i = 1; i < ports.size(); ++i) {
+    if (ports[i]->object->_is_equivalent(ports[0]->object)) return Error{"port " + ports[0]->full_name + ": cannot be connected to itself"};
+  }
   RTC::ConnectorProfile profile;
   profile.name = name.empty() ? names_of(ports, "_").c_str() : name.c_str();
   profile.connector_id = id.c_str();
@@ -111,7 +126,8 @@ Result<void> connect_ports(const std::vector<const PortView*>& ports, const std:
   const auto called = remote(what + ": a port", [&] { code = ports.front()->object->connect(profile); });
   if (!called) return called;
   std::string meaning;
-  if (code == RTC::PRECONDITION_NOT_MET) meaning = "they are connected already, or the connector id is in use";
+  if (code == RTC::PRECONDITION_NOT_MET)
+    meaning = is_in_use(ports, id) ? "connector id " + base::in_quotes(id) + " is in use" : "they are connected already";
   if (code == RTC::BAD_PARAMETER) meaning = "a property has a value that a port does not take";
   if (code == RTC::RTC_ERROR) meaning = "a port refused, its component's log says why";
   return check(what, code, meaning);
@@ -127,7 +143,6 @@ Result<void> disconnect_connector(const PortView& port, const std::string& id) {
 }
 
 void connect(Editor& editor, const ConnectOptions& options) {
-  if (options.ports.size() < 2) return editor.fail({"con: expected at least two ports"});
   std::vector<Editor::Port> found;
   for (const auto& path : options.ports) {
     auto port = editor.port(path, options.no_duplicates);

@@ -11,6 +11,7 @@
 #include "base/clock.h"
 #include "base/text.h"
 #include "editor.h"
+#include "output.h"
 #include "tap.h"
 #include "value_codec.h"
 
@@ -83,11 +84,12 @@ void print_ports(Editor& editor, const PrintOptions& options) {
                        : Clock::time_point::max();
   auto next_line = Clock::now();
   int printed = 0;
-  while (!interrupted.load(std::memory_order_relaxed) && Clock::now() < end && (options.count <= 0 || printed < options.count)) {
+  while (!interrupted.load(std::memory_order_relaxed) && !output_is_closed() && Clock::now() < end &&
+         (options.count <= 0 || printed < options.count)) {
     Sample sample;
     {
       std::unique_lock lock(queue.mutex);
-      // Wakes now and then to see an interrupt.
+      // Wakes now and then to see an interrupt, or that nobody reads any more.
       if (!queue.arrived.wait_until(lock, std::min(end, Clock::now() + std::chrono::milliseconds(100)),
                                     [&] { return !queue.samples.empty(); }))
         continue;
@@ -111,7 +113,7 @@ void print_ports(Editor& editor, const PrintOptions& options) {
   taps.clear();
   if (queue.dropped > 0)
     editor.fail({"print: " + std::to_string(queue.dropped) + " samples were dropped, they came faster than they could be written"});
-  if (options.count > 0 && printed < options.count && !interrupted.load(std::memory_order_relaxed)) {
+  if (options.count > 0 && printed < options.count && !output_is_closed() && !interrupted.load(std::memory_order_relaxed)) {
     editor.fail({"print: got " + std::to_string(printed) + " of " + std::to_string(options.count) + " samples in " +
                  base::format_number(options.timeout_s) + " s"});
   }

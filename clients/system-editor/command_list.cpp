@@ -153,7 +153,7 @@ Json to_json(const PortView& port, const std::vector<ComponentView>& all) {
     Json entry{{"id", connector.id}, {"name", connector.name}, {"properties", connector.properties}, {"ports", Json::array()}};
     for (CORBA::ULong i = 0; i < connector.ports.length(); ++i) {
       const auto owner = owner_of(connector.ports[i], all);
-      entry["ports"].push_back(owner.port ? owner.component->path + ":" + owner.port->name : std::string("unknown"));
+      entry["ports"].push_back(owner.port ? owner.component->path + ":" + owner.port->name : absent_port(connector.ports[i]));
     }
     value["connectors"].push_back(entry);
   }
@@ -204,7 +204,7 @@ void print_port(const PortView& port, const std::vector<ComponentView>& all, boo
     for (CORBA::ULong i = 0; i < connector.ports.length(); ++i) {
       if (connector.ports[i]->_is_equivalent(port.object)) continue;
       const auto owner = owner_of(connector.ports[i], all);
-      others.push_back(owner.port ? owner.component->path + ":" + owner.port->name : "a port of an unknown component");
+      others.push_back(owner.port ? owner.component->path + ":" + owner.port->name : absent_port(connector.ports[i]));
     }
     std::cout << "     connected to " << base::join(others, ", ") << "  (" << connector.name << ", id " << connector.id << ")\n";
     if (!is_long) continue;

@@ -56,6 +56,26 @@ void print_profiles(const char* title, const RTM::ModuleProfileList& list, nlohm
   }
 }
 
+// Why nothing was created, as far as the manager tells.
+std::string why_not_created(RTM::Manager_ptr manager, const std::string& argument) {
+  const auto question = argument.find('?');
+  const auto type = argument.substr(0, question);
+  std::string instance;
+  for (const auto& option : base::split_list(question == std::string::npos ? "" : argument.substr(question + 1), '&')) {
+    if (option.starts_with("instance_name=")) instance = option.substr(std::string("instance_name=").size());
+  }
+  RTC::ComponentProfileList_var components = manager->get_component_profiles();
+  for (CORBA::ULong i = 0; i < components->length(); ++i) {
+    if (!instance.empty() && instance == components[i].instance_name.in()) return "there is a component " + instance + " already";
+  }
+  RTM::ModuleProfileList_var factories = manager->get_factory_profiles();
+  for (CORBA::ULong i = 0; i < factories->length(); ++i) {
+    if (property(to_properties(factories[i].properties), "implementation_id") == type)
+      return "its initialisation failed, the manager's log says why";
+  }
+  return "the manager has no type " + base::in_quotes(type) + " and finds no module with it; see: rtse mgr list";
+}
+
 void list_manager(Editor& editor, RTM::Manager_ptr manager) {
   nlohmann::ordered_json json{{"components", nlohmann::ordered_json::array()},
                               {"loaded_modules", nlohmann::ordered_json::array()},
@@ -94,7 +114,6 @@ void manage(Editor& editor, const ManagerOptions& options) {
   if (!reached) return editor.fail(reached.error());
   if (CORBA::is_nil(manager)) return editor.fail({"manager " + options.manager + ": the object there is no manager"});
   if (options.action == "list") return list_manager(editor, manager);
-  if (options.arguments.empty()) return editor.fail({"mgr " + options.action + ": expected a name"});
   if (options.action == "load") {
     const auto init = options.arguments.size() > 1 ? options.arguments[1] : "";
     RTC::ReturnCode_t code = RTC::RTC_OK;
@@ -112,7 +131,7 @@ void manage(Editor& editor, const ManagerOptions& options) {
         RTC::RTObject_var component = manager->create_component(argument.c_str());
         if (CORBA::is_nil(component)) {
           code = RTC::RTC_ERROR;
-          meaning = "no such type is loaded, or its initialisation failed; see: rtse mgr list";
+          meaning = why_not_created(manager, argument);
         } else {
           RTC::ComponentProfile_var profile = component->get_component_profile();
           std::cout << profile->instance_name.in() << '\n';
@@ -122,7 +141,7 @@ void manage(Editor& editor, const ManagerOptions& options) {
         meaning = "the manager has no such component";
       } else if (options.action == "unload") {
         code = manager->unload_module(argument.c_str());
-        meaning = "the manager has not loaded it";
+        meaning = code == RTC::PRECONDITION_NOT_MET ? "components of it are there" : "the manager has not loaded it";
       }
     });
     if (!called) return editor.fail(called.error());

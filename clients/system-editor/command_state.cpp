@@ -1,4 +1,6 @@
 // act, deact, reset, exit, del, wait.
+#include <algorithm>
+#include <cstdlib>
 #include <iostream>
 #include <thread>
 
@@ -10,6 +12,8 @@ namespace {
 
 // A transition may take as long as the component's own callback; tools of the field wait half a second and then report a failure.
 constexpr std::chrono::seconds transition_limit{10};
+// A context answers RTC_ERROR when the component's callback has not returned within a time of its own; it may still come.
+constexpr std::chrono::seconds late_limit{6};
 
 struct Wording {
   const char* verb;
@@ -70,10 +74,16 @@ Result<void> change_state(const ComponentView& component, Transition transition,
   const auto called = remote(what + ":", [&] { code = call((*context)->object, component.object, transition); });
   if (!called) return called.error();
   if (code == RTC::RTC_OK) return {};
-  RTC::LifeCycleState now = RTC::CREATED_STATE;
-  const auto asked = remote(what, [&] { now = (*context)->object->get_component_state(component.object); });
-  if (asked && now == words.to) return {};  // late, but it arrived
-  return check(what, code, asked ? "it is " + state_text(now) + " now, its log says why" : "");
+  RTC::LifeCycleState now = words.from;
+  const auto end = std::chrono::steady_clock::now() + (code == RTC::RTC_ERROR ? late_limit : std::chrono::seconds(0));
+  while (true) {
+    const auto asked = remote(what, [&] { now = (*context)->object->get_component_state(component.object); });
+    if (!asked) return check(what, code);
+    if (now == words.to) return {};  // late, but it arrived
+    if (now != words.from || std::chrono::steady_clock::now() >= end) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // nobody tells when the callback returns
+  }
+  return check(what, code, "it is " + state_text(now) + " now, its log says why");
 }
 
 void change_state(Editor& editor, const std::vector<std::string>& paths, Transition transition, int context) {
@@ -102,16 +112,30 @@ void exit_components(Editor& editor, const std::vector<std::string>& paths) {
   }
 }
 
-void delete_bindings(Editor& editor, const std::vector<std::string>& paths, bool zombies) {
-  if (paths.empty() && !zombies) return editor.fail({"del: expected names, or -z for all whose object is gone"});
+namespace {
+
+// Something under it that answers, or hangs.
+bool holds_living(const Entry& entry) {
+  if (entry.kind != EntryKind::context) return entry.health != Health::zombie;
+  return std::ranges::any_of(entry.children, holds_living);
+}
+
+void delete_binding(Editor& editor, const Entry& entry, bool force) {
+  const bool lives = holds_living(entry);
+  if (lives && entry.kind == EntryKind::context && !force)
+    return editor.fail({entry.path() + ": is a context that holds living objects (--force deletes it all the same)"});
+  if (const auto gone = unbind(editor.orb(), entry); !gone) return editor.fail(gone.error());
+  std::cout << "deleted " << entry.path() << (lives ? "  (it lives; its process may register it again)" : "") << '\n';
+}
+
+}  // namespace
+
+void delete_bindings(Editor& editor, const std::vector<std::string>& paths, bool zombies, bool force) {
   const auto names = editor.tree(paths.empty() ? "" : paths.front());
   if (!names) return editor.fail(names.error());
   if (zombies) {
     for (const auto* entry : names->objects()) {
-      if (entry->health != Health::zombie) continue;
-      const auto gone = unbind(editor.orb(), *entry);
-      if (!gone) editor.fail(gone.error());
-      if (gone) std::cout << "deleted " << entry->path() << '\n';
+      if (entry->health == Health::zombie) delete_binding(editor, *entry, force);
     }
   }
   for (const auto& path : paths) {
@@ -125,18 +149,33 @@ void delete_bindings(Editor& editor, const std::vector<std::string>& paths, bool
       editor.fail(entry.error());
       continue;
     }
-    if (const auto gone = unbind(editor.orb(), **entry); !gone) editor.fail(gone.error());
+    delete_binding(editor, **entry, force);
   }
 }
+
+namespace {
+
+// No name, or only such whose object is gone. A component that does not answer is not gone, and behind a name server that does not, nobody
+// knows.
+bool is_gone(const Editor& editor, const std::string& path) {
+  const char* working = std::getenv("RTCSH_CWD");
+  const auto address = parse_address(path, working ? working : "");
+  const auto names = editor.tree(path, true);
+  if (!address || !names) return false;
+  const auto meant = names->candidates(*address);
+  return meant && std::ranges::all_of(*meant, [](const Entry* entry) { return entry->health == Health::zombie; });
+}
+
+}  // namespace
 
 void wait_for_state(Editor& editor, const std::vector<std::string>& paths, const std::string& state, double timeout_s) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_s);
   for (const auto& path : paths) {
     while (true) {
       const auto component = editor.component(path, {.contexts = true});
-      const auto now = component ? state_text(component->state()) : std::string("not there");
+      const auto now = component ? state_text(component->state()) : std::string("not there or does not answer");
       if (base::equal_ignoring_case(now, state) || (component && base::equal_ignoring_case(state, "any"))) break;
-      if (base::equal_ignoring_case(state, "gone") && !component) break;
+      if (base::equal_ignoring_case(state, "gone") && !component && is_gone(editor, path)) break;
       if (std::chrono::steady_clock::now() >= deadline) {
         editor.fail({"component " + base::in_quotes(path) + ": is " + now + " after " + base::format_number(timeout_s) + " s, waited for " +
                      state + (component ? "" : " (" + component.error().message + ")")});

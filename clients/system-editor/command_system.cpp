@@ -1,4 +1,4 @@
-// save, load, start, stop, teardown, check: whole systems, as RTSProfile files.
+// save, load, start, stop, teardown: whole systems, as RTSProfile files.
 #include <algorithm>
 #include <ctime>
 #include <iostream>
@@ -7,7 +7,7 @@
 
 #include "base/text.h"
 #include "editor.h"
-#include "rts_profile.h"
+#include "matched_system.h"
 
 namespace editor {
 namespace {
@@ -26,12 +26,6 @@ std::string rate_text(double rate) {
   auto text = base::format_number(rate);
   if (text.find_first_of(".e") == std::string::npos) text += ".0";
   return text;
-}
-
-std::string path_uri(const ComponentView& component) { return base::join(component.segments, "/"); }
-
-bool is_reference(const std::string& key, const std::string& value) {
-  return value.starts_with("IOR:") || key.ends_with("_ior") || key.ends_with("_ref");
 }
 
 std::string reference_text(CORBA::ORB_ptr orb, CORBA::Object_ptr object) {
@@ -83,19 +77,22 @@ SavedConnector to_saved(const ConnectorView& connector, const PortOwner& source,
 
 // Every connection once, the OutPort or the provider's side first.
 void collect_connectors(Editor& editor, const std::vector<ComponentView>& components, SavedSystem& system) {
+  const CallLimit limited(editor.limit());
   std::set<std::string> seen;
   for (const auto& component : components) {
     for (const auto& port : component.ports) {
       for (const auto& connector : port.connectors) {
         if (!seen.insert(connector.id).second) continue;
         std::vector<PortOwner> owners;
+        std::string absent;
         for (CORBA::ULong i = 0; i < connector.ports.length(); ++i) {
           const auto owner = owner_of(connector.ports[i], components);
           if (owner.port) owners.push_back(owner);
+          if (!owner.port && absent.empty()) absent = absent_port(connector.ports[i]);
         }
-        if (owners.size() < 2 || owners.size() != connector.ports.length()) {
-          editor.fail({"connection " + connector.id + " of port " + port.full_name +
-                       ": leads to a component that is not on the name server, it is left out"});
+        if (!absent.empty() || owners.size() < 2) {
+          editor.fail({"connection " + connector.id + " of port " + port.full_name + ": leads to " +
+                       (absent.empty() ? "no other port" : absent) + "; it is left out"});
           continue;
         }
         if (owners.size() > 2) {
@@ -110,46 +107,6 @@ void collect_connectors(Editor& editor, const std::vector<ComponentView>& compon
   }
 }
 
-// The components that a file speaks of, found on the name server by path, else by instance name.
-class Matched {
- public:
-  static Result<Matched> read(Editor& editor, const SavedSystem& system, Detail detail) {
-    Matched matched;
-    const auto names = editor.tree();
-    if (!names) return names.error();
-    matched.components_ = read_components(*names, detail, editor.limit());
-    for (const auto& saved : system.components) {
-      const auto* component = matched.find(saved.path_uri, saved.instance);
-      if (component && component->problem.empty()) continue;
-      const Error missing{"component " + saved.path_uri + ": " + (component ? component->problem : "is not on the name server")};
-      if (saved.is_required) matched.missing_.push_back(missing);
-    }
-    return matched;
-  }
-
-  const ComponentView* find(const std::string& uri, const std::string& instance) const {
-    const ComponentView* by_name = nullptr;
-    for (const auto& component : components_) {
-      if (path_uri(component) == uri) return &component;
-      const bool same = component.instance == instance || component.segments.back() == instance + ".rtc";
-      if (same && (!by_name || !by_name->problem.empty())) by_name = &component;
-    }
-    return by_name;
-  }
-  const PortView* port(const SavedTarget& target) const {
-    const auto* component = find(target.path_uri, target.instance);
-    if (!component) return nullptr;
-    const auto prefix = target.instance + ".";
-    const auto name = target.port_name.starts_with(prefix) ? target.port_name.substr(prefix.size()) : target.port_name;
-    return component->port(name);
-  }
-  const std::vector<Error>& missing() const { return missing_; }
-
- private:
-  std::vector<ComponentView> components_;
-  std::vector<Error> missing_;
-};
-
 // Does the work on all items in parallel and reports failures in order.
 template <class T, class F>
 void for_all(Editor& editor, const std::vector<T>& items, F work) {
@@ -159,32 +116,6 @@ void for_all(Editor& editor, const std::vector<T>& items, F work) {
   for (const auto& result : results) {
     if (!result) editor.fail(result.error());
   }
-}
-
-Properties connect_properties(const SavedConnector& saved) {
-  Properties properties;
-  for (const auto& [key, value] : saved.properties) {
-    if (!is_reference(key, value)) properties[key] = value;
-  }
-  if (!saved.is_data) return properties;
-  const auto add = [&](const char* key, const std::string& value) {
-    if (!value.empty()) properties.emplace(key, value);
-  };
-  add("dataport.data_type", saved.data_type);
-  add("dataport.interface_type", saved.interface_type);
-  add("dataport.dataflow_type", saved.dataflow_type);
-  add("dataport.subscription_type", saved.subscription_type);
-  return properties;
-}
-
-bool same_connection(const ConnectorView& connector, const PortView& source, const PortView& target) {
-  bool has_source = false;
-  bool has_target = false;
-  for (CORBA::ULong i = 0; i < connector.ports.length(); ++i) {
-    has_source = has_source || connector.ports[i]->_is_equivalent(source.object);
-    has_target = has_target || connector.ports[i]->_is_equivalent(target.object);
-  }
-  return has_source && has_target;
 }
 
 // A connection that a dead process has left behind at the port that lives; one whose other ports live, or hang, is somebody's.
@@ -228,20 +159,41 @@ Result<void> restore_connection(const Matched& matched, const SavedConnector& sa
   return connect_ports({source, target}, saved.id, saved.name, connect_properties(saved));
 }
 
+// The values that the component can take; what it has said that it cannot is added to `problems`.
+std::vector<std::pair<std::string, std::string>> good_values(const ComponentView& component, const SavedConfigurationSet& set,
+                                                             std::vector<std::string>& problems) {
+  std::vector<std::pair<std::string, std::string>> good;
+  for (const auto& [key, value] : set.values) {
+    const auto problem = value_problem(component, key, value);
+    if (problem.empty()) {
+      good.emplace_back(key, value);
+    } else {
+      problems.push_back("parameter " + set.id + "." + key + " cannot be " + base::in_quotes(value) + ", expected " + problem);
+    }
+  }
+  return good;
+}
+
+// Values that do not fit are left out and reported; the others are set.
 Result<void> restore_configuration(const Matched& matched, const SavedComponent& saved, bool dry_run) {
   const auto* component = matched.find(saved.path_uri, saved.instance);
   if (!component || !component->problem.empty()) return {};  // reported already, or optional
+  std::vector<std::string> problems;
   for (const auto& set : saved.configuration_sets) {
-    if (set.values.empty()) continue;
+    const auto values = good_values(*component, set, problems);
+    if (values.empty()) continue;
     if (dry_run) {
       std::cout << "set configuration " + set.id + " of " + component->path + "\n";
       continue;
     }
-    if (const auto done = set_values(*component, set.id, set.values); !done) return done;
+    if (const auto done = set_values(*component, set.id, values); !done) return done;
   }
   const auto active = saved.active_set.empty() ? component->active_set : saved.active_set;
-  if (active.empty() || dry_run) return {};
-  return use_set(*component, active);
+  if (!active.empty() && !dry_run) {
+    if (const auto used = use_set(*component, active); !used) return used;
+  }
+  if (problems.empty()) return {};
+  return Error{"component " + component->path + ": " + base::join(problems, "; ")};
 }
 
 int context_index(const ComponentView& component, const std::string& context_id) {
@@ -397,81 +349,6 @@ void teardown(Editor& editor, const std::string& file, bool dry_run) {
     std::cout << "disconnect " + saved.id + " of " + port->full_name + "\n";
     return {};
   });
-}
-
-namespace {
-
-void check_connection(Editor& editor, const Matched& matched, const SavedConnector& saved) {
-  const auto* source = matched.port(saved.source);
-  const auto* target = matched.port(saved.target);
-  if (!source || !target)
-    return editor.fail({"connection " + saved.id + ": there is no port " + (source ? saved.target.port_name : saved.source.port_name)});
-  for (const auto& connector : source->connectors) {
-    if (!same_connection(connector, *source, *target)) continue;
-    if (!saved.is_data) return;
-    const auto wanted = connect_properties(saved);
-    for (const auto* key : {"dataport.interface_type", "dataport.dataflow_type", "dataport.subscription_type"}) {
-      const auto is = property(connector.properties, key);
-      const auto should = property(wanted, key);
-      if (!should.empty() && !base::equal_ignoring_case(is, should))
-        editor.fail({"connection " + saved.id + ": " + key + " is " + base::in_quotes(is) + ", expected " + base::in_quotes(should)});
-    }
-    return;
-  }
-  editor.fail({"connection " + saved.id + ": " + source->full_name + " and " + target->full_name + " are not connected"});
-}
-
-void check_component(Editor& editor, const Matched& matched, const SavedComponent& saved, const std::string& state) {
-  const auto* component = matched.find(saved.path_uri, saved.instance);
-  if (!component || !component->problem.empty()) return;
-  if (component->profile_id() != saved.id)
-    editor.fail({"component " + component->path + ": is a " + component->profile_id() + ", expected " + saved.id});
-  if (!saved.active_set.empty() && component->active_set != saved.active_set) {
-    editor.fail({"component " + component->path + ": active configuration set is " + base::in_quotes(component->active_set) +
-                 ", expected " + base::in_quotes(saved.active_set)});
-  }
-  for (const auto& set : saved.configuration_sets) {
-    for (const auto& [key, value] : set.values) {
-      std::string is;
-      bool found = false;
-      for (const auto& candidate : component->configuration_sets) {
-        for (const auto& [name, text] : candidate.values) {
-          if (candidate.id != set.id || name != key) continue;
-          is = text;
-          found = true;
-        }
-      }
-      if (!found || is != value)
-        editor.fail({"component " + component->path + ": parameter " + set.id + "." + key + " is " +
-                     (found ? base::in_quotes(is) : "missing") + ", expected " + base::in_quotes(value)});
-    }
-  }
-  if (state.empty() || base::equal_ignoring_case(state, "any")) return;
-  for (const auto& context : component->contexts) {
-    if (!context.is_owned) continue;
-    auto wanted = state;
-    if (base::equal_ignoring_case(state, "saved")) {
-      const auto handle = std::to_string(context.handle);
-      const auto same = std::find_if(saved.contexts.begin(), saved.contexts.end(), [&](const auto& one) { return one.id == handle; });
-      wanted = same == saved.contexts.end() ? "" : same->state;
-    }
-    if (!wanted.empty() && !base::equal_ignoring_case(state_text(context.state), wanted)) {
-      editor.fail({"component " + component->path + ": is " + state_text(context.state) + " in context " + std::to_string(context.handle) +
-                   ", expected " + wanted});
-    }
-  }
-}
-
-}  // namespace
-
-void check_system(Editor& editor, const std::string& file, const std::string& state) {
-  const auto system = read_system(file);
-  if (!system) return editor.fail(system.error());
-  const auto matched = Matched::read(editor, *system, {.contexts = true, .connectors = true, .configuration = true});
-  if (!matched) return editor.fail(matched.error());
-  for (const auto& missing : matched->missing()) editor.fail(missing);
-  for (const auto& connector : system->connectors) check_connection(editor, *matched, connector);
-  for (const auto& component : system->components) check_component(editor, *matched, component, state);
 }
 
 }  // namespace editor

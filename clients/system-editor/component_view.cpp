@@ -160,6 +160,14 @@ std::vector<ComponentView> read_components(const NamingTree& tree, Detail detail
   return components;
 }
 
+std::string absent_port(RTC::PortService_ptr port) {
+  try {
+    return CORBA::is_nil(port) || port->_non_existent() ? "a port that is gone" : "a port of a component that is not on the name server";
+  } catch (const CORBA::Exception& e) {
+    return is_time_out(e) ? "a port that does not answer" : "a port that is gone";
+  }
+}
+
 PortOwner owner_of(RTC::PortService_ptr port, const std::vector<ComponentView>& components) {
   for (const auto& component : components) {
     for (const auto& candidate : component.ports) {

@@ -95,5 +95,7 @@ struct PortOwner {
   const PortView* port = nullptr;
 };
 PortOwner owner_of(RTC::PortService_ptr port, const std::vector<ComponentView>& components);
+// Whose a port is that none of them has, in words; it is asked whether it lives.
+std::string absent_port(RTC::PortService_ptr port);
 
 }  // namespace editor

@@ -18,7 +18,11 @@ std::string working_path() {
 }  // namespace
 
 Editor::Editor(CORBA::ORB_ptr orb, std::string server, bool json, std::chrono::milliseconds limit)
-    : orb_(CORBA::ORB::_duplicate(orb)), server_(std::move(server)), json_(json), limit_(limit) {}
+    : orb_(CORBA::ORB::_duplicate(orb)), server_(std::move(server)), json_(json), limit_(limit) {
+  // "/HOST:PORT/" is how paths name it.
+  while (server_.ends_with('/')) server_.pop_back();
+  while (server_.starts_with('/')) server_.erase(0, 1);
+}
 
 Result<NamingTree> Editor::tree(const std::string& path, bool only) const {
   auto address = parse_address(path, working_path());
@@ -60,7 +64,8 @@ Result<Editor::Port> Editor::port(const std::string& path, bool with_connectors)
 void Editor::fail(const Error& error) {
   std::cout.flush();
   std::fprintf(stderr, "rtse: %s\n", error.message.c_str());
-  if (problem_.empty()) problem_ = error.message.empty() ? "failed" : error.message;
+  failed_ = true;
+  if (problem_.empty()) problem_ = error.message;
 }
 
 void Editor::print(const nlohmann::ordered_json& value) const { std::cout << value.dump(2) << '\n'; }

@@ -34,7 +34,9 @@ class Editor {
   Result<Port> port(const std::string& path, bool with_connectors = false) const;
 
   void fail(const Error& error);
-  bool failed() const { return !problem_.empty(); }
+  // For what is told in another way than by a line on standard error.
+  void set_failed() { failed_ = true; }
+  bool failed() const { return failed_; }
   // What was said first.
   const std::string& problem() const { return problem_; }
   void print(const nlohmann::ordered_json& value) const;
@@ -44,6 +46,7 @@ class Editor {
   std::string server_;
   bool json_;
   std::chrono::milliseconds limit_;
+  bool failed_ = false;
   std::string problem_;
 };
 
@@ -62,8 +65,12 @@ enum class Transition { activate, deactivate, reset };
 Result<void> change_state(const ComponentView& component, Transition transition, int context);
 void change_state(Editor& editor, const std::vector<std::string>& paths, Transition transition, int context);
 void exit_components(Editor& editor, const std::vector<std::string>& paths);
-void delete_bindings(Editor& editor, const std::vector<std::string>& paths, bool zombies);
+// Contexts that hold something living only with `force`.
+void delete_bindings(Editor& editor, const std::vector<std::string>& paths, bool zombies, bool force);
 void wait_for_state(Editor& editor, const std::vector<std::string>& paths, const std::string& state, double timeout_s);
+
+// "" or what the component has said that a value of this parameter must be.
+std::string value_problem(const ComponentView& component, const std::string& parameter, const std::string& value);
 
 // Merges the values into the set; it is applied when the set is activated.
 Result<void> set_values(const ComponentView& component, const std::string& id,

@@ -121,6 +121,12 @@ bool same_server(std::string a, std::string b) {
   return a == b;
 }
 
+// HOST[:PORT], iiop:HOST[:PORT] as newer tools of the field write it, or a whole corbaloc address.
+std::string address_of(const std::string& server) {
+  if (server.starts_with("corbaloc:")) return server;
+  return "corbaloc:" + std::string(server.starts_with("iiop:") ? "" : ":") + server + "/NameService";
+}
+
 // When several match, one that is alive beats zombies.
 std::vector<const Entry*> living(std::vector<const Entry*> found) {
   std::vector<const Entry*> alive;
@@ -139,7 +145,7 @@ Result<NamingTree> NamingTree::read(CORBA::ORB_ptr orb, const std::string& serve
   NamingTree tree;
   tree.root_.kind = EntryKind::context;
   tree.root_.segments = {server};
-  const auto url = server.starts_with("corbaloc:") ? server : "corbaloc::" + server + "/NameService";
+  const auto url = address_of(server);
   const CallLimit limited(limit);
   CosNaming::NamingContext_var context;
   const auto reached = remote("name server " + server, [&] {
@@ -212,7 +218,7 @@ Result<const Entry*> NamingTree::find_component(const Address& address) const {
 
 Result<void> unbind(CORBA::ORB_ptr orb, const Entry& entry) {
   return remote("unbinding " + entry.path(), [&] {
-    const auto url = "corbaloc::" + entry.segments.front() + "/NameService";
+    const auto url = address_of(entry.segments.front());
     CORBA::Object_var object = orb->string_to_object(url.c_str());
     const auto root = CosNaming::NamingContext::_narrow(object);
     CosNaming::Name name;

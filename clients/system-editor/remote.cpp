@@ -80,8 +80,19 @@ Result<void> check(const std::string& what, RTC::ReturnCode_t code, const std::s
   return Error{what + ": " + std::string(rt::to_text(corba::from_wire(code))) + (meaning.empty() ? "" : ", " + meaning)};
 }
 
-CallLimit::CallLimit(std::chrono::milliseconds limit) { omniORB::setClientThreadCallTimeout(static_cast<CORBA::ULong>(limit.count())); }
-CallLimit::~CallLimit() { omniORB::setClientThreadCallTimeout(0); }
+namespace {
+
+thread_local CORBA::ULong limit_of_thread = 0;  // [ms]; the ORB does not tell it
+
+void set_limit(CORBA::ULong limit) {
+  limit_of_thread = limit;
+  omniORB::setClientThreadCallTimeout(limit);
+}
+
+}  // namespace
+
+CallLimit::CallLimit(std::chrono::milliseconds limit) : before_(limit_of_thread) { set_limit(static_cast<CORBA::ULong>(limit.count())); }
+CallLimit::~CallLimit() { set_limit(static_cast<CORBA::ULong>(before_)); }
 
 void in_parallel(std::size_t count, std::chrono::milliseconds limit, const std::function<void(std::size_t)>& work, std::size_t threads) {
   std::atomic<std::size_t> next{0};

@@ -39,6 +39,9 @@ class CallLimit {
   ~CallLimit();
   CallLimit(const CallLimit&) = delete;
   CallLimit& operator=(const CallLimit&) = delete;
+
+ private:
+  const unsigned long before_;  // [ms]; the limit of the guard around this one
 };
 
 // Calls work(0) ... work(count - 1) on up to `threads` threads and returns when all are done. Each call runs under the limit.

@@ -208,7 +208,7 @@ class Writer {
       case CORBA::tk_octet:
         return integer<std::uint8_t>(value, where);
       case CORBA::tk_float:
-        return put(static_cast<float>(real(value, where)));
+        return put(single(value, where));
       case CORBA::tk_double:
         return put(real(value, where));
       case CORBA::tk_boolean:
@@ -266,6 +266,11 @@ class Writer {
     if (value.is_null()) return 0;
     if (!value.is_number()) refuse(where, "a number", value);
     return value.get<double>();
+  }
+  static float single(const Json& value, const std::string& where) {
+    const double number = real(value, where);
+    if (std::abs(number) > std::numeric_limits<float>::max()) refuse(where, "a number of at most 3.4e38", value);
+    return static_cast<float>(number);
   }
   void boolean(const Json& value, const std::string& where) {
     if (value.is_null()) return put(std::uint8_t{0});

@@ -1,0 +1,106 @@
+// check: the running system beside a saved one.
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/text.h"
+#include "matched_system.h"
+
+namespace editor {
+namespace {
+
+// What is not as in the file, in order.
+class Differences {
+ public:
+  void add(const Error& difference) { found_.push_back(difference); }
+  // A line each on standard error, or one JSON object on standard output.
+  void tell(Editor& editor) const {
+    if (!editor.json()) {
+      for (const auto& difference : found_) editor.fail(difference);
+      return;
+    }
+    auto texts = nlohmann::ordered_json::array();
+    for (const auto& difference : found_) texts.push_back(difference.message);
+    editor.print({{"same", found_.empty()}, {"differences", texts}});
+    if (!found_.empty()) editor.set_failed();
+  }
+
+ private:
+  std::vector<Error> found_;
+};
+
+void check_connection(const Matched& matched, const SavedConnector& saved, Differences& differences) {
+  const auto* source = matched.port(saved.source);
+  const auto* target = matched.port(saved.target);
+  if (!source || !target)
+    return differences.add({"connection " + saved.id + ": there is no port " + (source ? saved.target.port_name : saved.source.port_name)});
+  for (const auto& connector : source->connectors) {
+    if (!same_connection(connector, *source, *target)) continue;
+    if (!saved.is_data) return;
+    const auto wanted = connect_properties(saved);
+    for (const auto* key : {"dataport.interface_type", "dataport.dataflow_type", "dataport.subscription_type"}) {
+      const auto is = property(connector.properties, key);
+      const auto should = property(wanted, key);
+      if (!should.empty() && !base::equal_ignoring_case(is, should))
+        differences.add({"connection " + saved.id + ": " + key + " is " + base::in_quotes(is) + ", expected " + base::in_quotes(should)});
+    }
+    return;
+  }
+  differences.add({"connection " + saved.id + ": " + source->full_name + " and " + target->full_name + " are not connected"});
+}
+
+void check_component(const Matched& matched, const SavedComponent& saved, const std::string& state, Differences& differences) {
+  const auto* component = matched.find(saved.path_uri, saved.instance);
+  if (!component || !component->problem.empty()) return;
+  if (component->profile_id() != saved.id)
+    differences.add({"component " + component->path + ": is a " + component->profile_id() + ", expected " + saved.id});
+  if (!saved.active_set.empty() && component->active_set != saved.active_set) {
+    differences.add({"component " + component->path + ": active configuration set is " + base::in_quotes(component->active_set) +
+                     ", expected " + base::in_quotes(saved.active_set)});
+  }
+  for (const auto& set : saved.configuration_sets) {
+    for (const auto& [key, value] : set.values) {
+      std::string is;
+      bool found = false;
+      for (const auto& candidate : component->configuration_sets) {
+        for (const auto& [name, text] : candidate.values) {
+          if (candidate.id != set.id || name != key) continue;
+          is = text;
+          found = true;
+        }
+      }
+      if (!found || is != value)
+        differences.add({"component " + component->path + ": parameter " + set.id + "." + key + " is " +
+                         (found ? base::in_quotes(is) : "missing") + ", expected " + base::in_quotes(value)});
+    }
+  }
+  if (state.empty() || base::equal_ignoring_case(state, "any")) return;
+  for (const auto& context : component->contexts) {
+    if (!context.is_owned) continue;
+    auto wanted = state;
+    if (base::equal_ignoring_case(state, "saved")) {
+      const auto handle = std::to_string(context.handle);
+      const auto same = std::find_if(saved.contexts.begin(), saved.contexts.end(), [&](const auto& one) { return one.id == handle; });
+      wanted = same == saved.contexts.end() ? "" : same->state;
+    }
+    if (!wanted.empty() && !base::equal_ignoring_case(state_text(context.state), wanted)) {
+      differences.add({"component " + component->path + ": is " + state_text(context.state) + " in context " +
+                       std::to_string(context.handle) + ", expected " + wanted});
+    }
+  }
+}
+
+}  // namespace
+
+void check_system(Editor& editor, const std::string& file, const std::string& state) {
+  const auto system = read_system(file);
+  if (!system) return editor.fail(system.error());
+  const auto matched = Matched::read(editor, *system, {.contexts = true, .connectors = true, .configuration = true});
+  if (!matched) return editor.fail(matched.error());
+  Differences differences;
+  for (const auto& missing : matched->missing()) differences.add(missing);
+  for (const auto& connector : system->connectors) check_connection(*matched, connector, differences);
+  for (const auto& component : system->components) check_component(*matched, component, state, differences);
+  differences.tell(editor);
+}
+
+}  // namespace editor

@@ -1,0 +1,38 @@
+// A saved system beside the running one: which running component and port each entry of the file means. One thread at a time.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "editor.h"
+#include "rts_profile.h"
+
+namespace editor {
+
+// The path as the file format writes it, without the leading slash.
+std::string path_uri(const ComponentView& component);
+
+// Properties with references of objects: of the run that was saved, and of no use in any other.
+bool is_reference(const std::string& key, const std::string& value);
+
+// What a saved connection is made with.
+Properties connect_properties(const SavedConnector& saved);
+
+bool same_connection(const ConnectorView& connector, const PortView& source, const PortView& target);
+
+// The components that a file speaks of, found on the name server by path, else by instance name.
+class Matched {
+ public:
+  static Result<Matched> read(Editor& editor, const SavedSystem& system, Detail detail);
+
+  const ComponentView* find(const std::string& uri, const std::string& instance) const;
+  const PortView* port(const SavedTarget& target) const;
+  // Required components that are not there or do not answer.
+  const std::vector<Error>& missing() const { return missing_; }
+
+ private:
+  std::vector<ComponentView> components_;
+  std::vector<Error> missing_;
+};
+
+}  // namespace editor

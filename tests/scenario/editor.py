@@ -1,0 +1,149 @@
+# The system editor at work on living, hung and dead processes, one case per run: editor.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+from rig import Rig, await_
+
+case, *folders = sys.argv[1:]
+rig = Rig(*folders)
+
+
+def up(*components, options=()):
+    rig.naming()
+    host = rig.host(*components, options=options)
+    rig.there(*(component.split("?")[0] + "0" for component in components))
+    return host
+
+
+def refused(*words, code=1, says=""):
+    done = rig.try_rtse(*words)
+    assert done.returncode == code, f"{words}: exit {done.returncode}, expected {code}: {done.stdout}{done.stderr}"
+    assert says in done.stderr, f"{words}: {done.stderr!r} does not say {says!r}"
+    return done
+
+
+# What is wrong with the command line itself is exit code 2 and needs no name server.
+def wrong_usage():
+    for words in (["conf", "X", "get"], ["conf", "X", "set", "a"], ["conf", "X", "use"], ["conf", "X", "list", "a"], ["dis"], ["del"], ["mgr", "create"],
+                  ["mgr", "list", "a"], ["check", "f.xml", "--state", "bogus"], ["act", "-e", "-1", "X"], ["print", "X:y", "-n", "-1"], ["new"],
+                  ["new", "N", "--rate", "0"]):
+        line = refused(*words, code=2, says="--help").stderr
+        assert line.count("\n") == 1 and len(line) < 250, line
+
+
+# A command whose reader has gone ends, also when nothing is left to print.
+def closed_pipe():
+    up("SourceAll")
+    rig.rtse("act", "SourceAll0")
+    for port in ("SourceAll0:long", "SourceAll0:short"):
+        process = subprocess.Popen([f"{rig.bin_dir}/rtse", "--ns", rig.names, "print", port], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        process.stdout.readline()
+        if port.endswith("short"):
+            rig.rtse("deact", "SourceAll0")
+        process.stdout.close()
+        process.wait(60)
+        assert process.stderr.read() == "", "a closed pipe is nothing to complain of"
+    with open("/dev/full", "w") as full:
+        done = subprocess.run([f"{rig.bin_dir}/rtse", "--ns", rig.names, "ls", "-R"], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
+    assert done.returncode == 1 and "cannot be written" in done.stderr, done
+
+
+# A process that only hangs is not gone; one that died is.
+def hung_is_not_gone():
+    up("SourceAll")
+    host = rig.host("SinkAll")
+    rig.there("SinkAll0")
+    rig.rtse("con", "SourceAll0:long", "SinkAll0:long", "-i", "wire")
+    host.send_signal(signal.SIGSTOP)
+    refused("wait", "SinkAll0", "--state", "gone", "--timeout", "0.2", says="does not answer")
+    assert "does not answer" in rig.rtse("cat", "SourceAll0:long")
+    refused("save", rig.path("half.xml"), says="leads to a port that does not answer")
+    host.send_signal(signal.SIGCONT)
+    rig.kill(host)
+    rig.rtse("wait", "SinkAll0", "--state", "gone", "--timeout", "60")
+    rig.rtse("del", "SinkAll0")
+    rig.rtse("wait", "SinkAll0", "--state", "gone", "--timeout", "60")
+
+
+# Values that a component has said that it does not want are refused, from a file too; the others are taken.
+def bad_values_in_files():
+    up("ConfigDemo")
+    saved = rig.path("system.xml")
+    rig.rtse("save", saved)
+    text = open(saved).read()
+    assert 'rts:name="count" rts:data="1"' in text and 'rts:name="gain" rts:data="0.5"' in text, text
+    with open(saved, "w") as file:
+        file.write(text.replace('rts:name="count" rts:data="1"', 'rts:name="count" rts:data="many"').replace('rts:name="gain" rts:data="0.5"', 'rts:name="gain" rts:data="0.75"'))
+    refused("load", saved, says='default.count cannot be "many"')
+    assert rig.rtse("conf", "ConfigDemo0", "get", "count").strip() == "1"
+    assert rig.rtse("conf", "ConfigDemo0", "get", "gain").strip() == "0.75"
+    answer = json.loads(refused("--json", "check", saved).stdout)
+    assert not answer["same"] and len(answer["differences"]) == 1 and "count" in answer["differences"][0], answer
+    with open(saved, "w") as file:
+        file.write(text)
+    rig.rtse("load", saved)
+    assert json.loads(rig.rtse("--json", "check", saved)) == {"same": True, "differences": []}
+
+
+# The forms in which tools of the field name a name server.
+def name_servers():
+    up("SourceAll")
+    for path in (f"/{rig.names}/", f"/iiop:{rig.names}/", f"/localhost:{rig.names.split(':')[1]}/"):
+        context = next(name for name in rig.rtse("ls", path).split() if name.endswith(".host_cxt/"))
+        assert "SourceAll" in rig.rtse("cat", f"{path}{context}SourceAll0.rtc"), path
+    for server in (f"{rig.names}/", f"/{rig.names}", f"iiop:{rig.names}", f"corbaloc::{rig.names}/NameService"):
+        assert "SourceAll" in rig.rtse("--ns", server, "cat", "SourceAll0"), server
+
+
+# Names of the living are deleted with a word, contexts full of them only by force.
+def delete_names():
+    up("SourceAll")
+    assert "it lives" in rig.rtse("del", "SourceAll0")
+    context = next(name for name in rig.rtse("ls").split() if name.endswith(".host_cxt/")).strip("/")
+    refused("del", context, says="--force")
+    assert "deleted" in rig.rtse("del", "--force", context)
+
+
+# The reasons are told apart.
+def why_not():
+    up("SourceAll", "SinkAll", "EchoProvider")
+    rig.rtse("con", "SourceAll0:long", "SinkAll0:long", "-i", "one")
+    refused("con", "SourceAll0:long", "SinkAll0:long", says="are connected already")
+    refused("con", "SourceAll0:short", "SinkAll0:short", "-i", "one", says='id "one" is in use')
+    refused("con", "EchoProvider0:Echo", "EchoProvider0:Echo", says="to itself")
+    refused("mgr", "create", "SinkAll?instance_name=SinkAll0", says="there is a component SinkAll0 already")
+    refused("mgr", "create", "NoSuchType", says='no type "NoSuchType"')
+    refused("mgr", "unload", "SinkAll.so", says="components of it are there")
+    refused("inject", "SinkAll0:float", "1e39", says="at most 3.4e38")
+
+
+# Deactivating means that time stands still. A simulator that is gone cannot go on; one that is slow is waited for.
+def simulation_that_is_gone():
+    simulator = rig.server()
+    rig.naming()
+    rig.host(rig.device("RTCSimulation"))
+    rig.there("RTCSimulation0")
+    rig.rtse("act", "RTCSimulation0")
+    simulator.send_signal(signal.SIGSTOP)
+    slow = subprocess.Popen([f"{rig.bin_dir}/rtse", "--ns", rig.names, "deact", "RTCSimulation0"], stderr=subprocess.PIPE, text=True)
+    # The context gives up after half a second; the command must not.
+    time.sleep(1)
+    assert slow.poll() is None, slow.stderr.read()
+    simulator.send_signal(signal.SIGCONT)
+    assert slow.wait(60) == 0, slow.stderr.read()
+    assert json.loads(rig.simctl("--json", "stats"))["paused"], "time goes on"
+    rig.rtse("act", "RTCSimulation0")
+    rig.kill(simulator)
+    rig.rtse("deact", "RTCSimulation0")
+    assert rig.state("RTCSimulation0") == "Inactive"
+    rig.server()
+    rig.rtse("act", "RTCSimulation0")
+
+
+with rig:
+    globals()[case]()
+print("ok")
