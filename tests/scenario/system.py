@@ -13,7 +13,7 @@ watchdog = 60  # [s]; a bound on hanging, not on speed
 
 
 # The first true answer; an exception of those that mean "not there yet" is none.
-def await_(what, ready, period=0.02):
+def await_(what, ready, pause=0.02):
     end = time.monotonic() + watchdog
     while True:
         why = ""
@@ -24,7 +24,7 @@ def await_(what, ready, period=0.02):
         except (AssertionError, ValueError, KeyError, IndexError, FileNotFoundError) as error:
             why = str(error)
         assert time.monotonic() < end, f"{what}: not within {watchdog} s; {why}"
-        time.sleep(period)
+        time.sleep(pause)
 
 
 class System:
@@ -132,8 +132,8 @@ class System:
     def participants(self, server_id=None):
         return json.loads(self.simctl("--json", "participants", server_id=server_id))
 
-    def until(self, what, ready, period=0.02):
-        return await_(what, ready, period)
+    def until(self, what, ready, pause=0.02):
+        return await_(what, ready, pause)
 
 
 def is_stopped(process):
