@@ -1,6 +1,7 @@
 #include "names_offered.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include "base/text.h"

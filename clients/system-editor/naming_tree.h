@@ -44,9 +44,10 @@ class NamingTree {
   // The one thing that the address names; the error lists what comes near.
   Result<const Entry*> find(const Address& address) const;
   Result<const Entry*> find_component(const Address& address) const;
+  // All that it may name, alive or not. Fails when it is on another name server.
+  Result<std::vector<const Entry*>> candidates(const Address& address) const;
 
  private:
-  Result<std::vector<const Entry*>> candidates(const Address& address) const;
 
   Entry root_;
 };

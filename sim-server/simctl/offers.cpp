@@ -1,6 +1,7 @@
 #include "offers.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <set>
 
