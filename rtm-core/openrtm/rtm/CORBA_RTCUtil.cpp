@@ -64,16 +64,6 @@ coil::vstring connectors_of(const RTC::PortService_ptr port, Choose choose) {
   });
 }
 
-// The port that `<component>.<port>` names.
-RTC::PortService_ptr port_of_name(const std::string& name) {
-  const auto slash = name.rfind('/');
-  const auto dot = name.find('.', slash == std::string::npos ? 0 : slash);
-  auto* manager = RTC::Manager::instance_if_any();
-  if (dot == std::string::npos || manager == nullptr || manager->getNaming() == nullptr) return RTC::PortService::_nil();
-  const auto found = manager->getNaming()->string_to_component(name.substr(0, dot));
-  return found.length() > 0 ? get_port_by_name(found[0], name.substr(dot + 1)) : RTC::PortService::_nil();
-}
-
 }  // namespace
 
 // ---------------------------------------------------------------------------------------------- components and contexts
@@ -219,20 +209,31 @@ RTC::PortService_ptr get_port_by_name(const RTC::RTObject_ptr rtc, const std::st
   });
 }
 
-coil::vstring get_connector_names_by_portref(const RTC::PortService_ptr port) {
+RTC::PortService_ptr get_port_by_url(const std::string& name) {
+  const auto slash = name.rfind('/');
+  const auto dot = name.find('.', slash == std::string::npos ? 0 : slash);
+  auto* manager = RTC::Manager::instance_if_any();
+  if (dot == std::string::npos || manager == nullptr || manager->getNaming() == nullptr) return RTC::PortService::_nil();
+  const auto found = manager->getNaming()->string_to_component(name.substr(0, dot));
+  return found.length() > 0 ? get_port_by_name(found[0], name.substr(dot + 1)) : RTC::PortService::_nil();
+}
+
+coil::vstring get_connector_names(const RTC::PortService_ptr port) {
   return connectors_of(port, [](const RTC::ConnectorProfile& profile) { return profile.name.in(); });
 }
-coil::vstring get_connector_ids_by_portref(const RTC::PortService_ptr port) {
+coil::vstring get_connector_ids(const RTC::PortService_ptr port) {
   return connectors_of(port, [](const RTC::ConnectorProfile& profile) { return profile.connector_id.in(); });
 }
 coil::vstring get_connector_names(const RTC::RTObject_ptr rtc, const std::string& port_name) {
   RTC::PortService_var port = get_port_by_name(rtc, port_name);
-  return get_connector_names_by_portref(port);
+  return get_connector_names(port.in());
 }
 coil::vstring get_connector_ids(const RTC::RTObject_ptr rtc, const std::string& port_name) {
   RTC::PortService_var port = get_port_by_name(rtc, port_name);
-  return get_connector_ids_by_portref(port);
+  return get_connector_ids(port.in());
 }
+coil::vstring get_connector_names_by_portref(const RTC::PortService_ptr port) { return get_connector_names(port); }
+coil::vstring get_connector_ids_by_portref(const RTC::PortService_ptr port) { return get_connector_ids(port); }
 
 // ---------------------------------------------------------------------------------------------- connections
 
@@ -332,31 +333,37 @@ ReturnCode_t disconnect_connector_name(const RTC::PortService_ptr port, const st
   });
 }
 
+ReturnCode_t disconnect_all(const RTC::PortService_ptr port) {
+  return CORBA::is_nil(port) ? BAD_PARAMETER : guarded(RTC_ERROR, [&] { return port->disconnect_all(); });
+}
+
+ReturnCode_t disconnect_connector_name(const std::string& port_url, const std::string& connector_name) {
+  RTC::PortService_var port = get_port_by_url(port_url);
+  return disconnect_connector_name(port.in(), connector_name);
+}
+ReturnCode_t disconnect_connector_id(const std::string& port_url, const std::string& connector_id) {
+  RTC::PortService_var port = get_port_by_url(port_url);
+  return disconnect_connector_id(port.in(), connector_id);
+}
+ReturnCode_t disconnect_all(const std::string& port_url) {
+  RTC::PortService_var port = get_port_by_url(port_url);
+  return disconnect_all(port.in());
+}
+
 ReturnCode_t disconnect_by_portref_connector_name(const RTC::PortService_ptr port, const std::string& connector_name) {
   return disconnect_connector_name(port, connector_name);
 }
 ReturnCode_t disconnect_by_portref_connector_id(const RTC::PortService_ptr port, const std::string& connector_id) {
   return disconnect_connector_id(port, connector_id);
 }
-
-ReturnCode_t disconnect_all_by_ref(const RTC::PortService_ptr port) {
-  return CORBA::is_nil(port) ? BAD_PARAMETER : guarded(RTC_ERROR, [&] { return port->disconnect_all(); });
-}
-
+ReturnCode_t disconnect_all_by_ref(const RTC::PortService_ptr port) { return disconnect_all(port); }
 ReturnCode_t disconnect_by_portname_connector_name(const std::string& port_name, const std::string& connector_name) {
-  RTC::PortService_var port = port_of_name(port_name);
-  return disconnect_connector_name(port, connector_name);
+  return disconnect_connector_name(port_name, connector_name);
 }
-
 ReturnCode_t disconnect_by_portname_connector_id(const std::string& port_name, const std::string& connector_id) {
-  RTC::PortService_var port = port_of_name(port_name);
-  return disconnect_connector_id(port, connector_id);
+  return disconnect_connector_id(port_name, connector_id);
 }
-
-ReturnCode_t disconnect_all_by_name(const std::string& port_name) {
-  RTC::PortService_var port = port_of_name(port_name);
-  return disconnect_all_by_ref(port);
-}
+ReturnCode_t disconnect_all_by_name(const std::string& port_name) { return disconnect_all(port_name); }
 
 // ---------------------------------------------------------------------------------------------- configuration
 

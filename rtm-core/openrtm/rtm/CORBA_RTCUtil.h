@@ -45,11 +45,15 @@ coil::vstring get_outport_names(const RTC::RTObject_ptr rtc);
 coil::vstring get_svcport_names(const RTC::RTObject_ptr rtc);
 // With or without the instance name in front. The caller releases the reference; nil if there is none.
 RTC::PortService_ptr get_port_by_name(const RTC::RTObject_ptr rtc, const std::string& port_name);
-// `path.port` or `rtcname://...`: the port of a component found with `name`.
-coil::vstring get_connector_names_by_portref(const RTC::PortService_ptr port);
+// port_url: `<instance>.<port>` of a component of this process's manager, or `rtcname://...` or `rtcloc://...` with `.<port>` at its end.
+// The caller releases the reference; nil if there is none.
+RTC::PortService_ptr get_port_by_url(const std::string& port_url);
+coil::vstring get_connector_names(const RTC::PortService_ptr port);
 coil::vstring get_connector_names(const RTC::RTObject_ptr rtc, const std::string& port_name);
-coil::vstring get_connector_ids_by_portref(const RTC::PortService_ptr port);
+coil::vstring get_connector_names_by_portref(const RTC::PortService_ptr port);
+coil::vstring get_connector_ids(const RTC::PortService_ptr port);
 coil::vstring get_connector_ids(const RTC::RTObject_ptr rtc, const std::string& port_name);
+coil::vstring get_connector_ids_by_portref(const RTC::PortService_ptr port);
 
 // A profile for connect: properties become dataport.*, with corba_cdr, push (for data ports) where nothing is said.
 RTC::ConnectorProfile_var create_connector(const std::string& name, const coil::Properties& properties, const RTC::PortService_ptr port0,
@@ -65,12 +69,17 @@ ReturnCode_t connect_multi(const std::string& name, const coil::Properties& prop
 ReturnCode_t connect_by_name(const std::string& name, const coil::Properties& properties, const RTC::RTObject_ptr rtc0,
                              const std::string& port_name0, const RTC::RTObject_ptr rtc1, const std::string& port_name1);
 ReturnCode_t disconnect(const RTC::ConnectorProfile& profile);
+// Ports by reference or by URL, as get_port_by_url takes it.
 ReturnCode_t disconnect_connector_name(const RTC::PortService_ptr port, const std::string& connector_name);
+ReturnCode_t disconnect_connector_name(const std::string& port_url, const std::string& connector_name);
 ReturnCode_t disconnect_connector_id(const RTC::PortService_ptr port, const std::string& connector_id);
+ReturnCode_t disconnect_connector_id(const std::string& port_url, const std::string& connector_id);
+ReturnCode_t disconnect_all(const RTC::PortService_ptr port);
+ReturnCode_t disconnect_all(const std::string& port_url);
+// The same under the names of other languages.
 ReturnCode_t disconnect_by_portref_connector_name(const RTC::PortService_ptr port, const std::string& connector_name);
 ReturnCode_t disconnect_by_portref_connector_id(const RTC::PortService_ptr port, const std::string& connector_id);
 ReturnCode_t disconnect_all_by_ref(const RTC::PortService_ptr port);
-// port_name: `<instance>.<port>` of a component of this process's manager, or a name that NamingManager::string_to_component knows.
 ReturnCode_t disconnect_by_portname_connector_name(const std::string& port_name, const std::string& connector_name);
 ReturnCode_t disconnect_by_portname_connector_id(const std::string& port_name, const std::string& connector_id);
 ReturnCode_t disconnect_all_by_name(const std::string& port_name);

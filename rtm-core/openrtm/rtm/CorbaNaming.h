@@ -11,6 +11,14 @@ namespace RTC {
 
 class CorbaNaming {
  public:
+  // What its calls throw, as sources that catch it name it.
+  using SystemException = CORBA::SystemException;
+  using NotFound = CosNaming::NamingContext::NotFound;
+  using CannotProceed = CosNaming::NamingContext::CannotProceed;
+  using InvalidName = CosNaming::NamingContext::InvalidName;
+  using AlreadyBound = CosNaming::NamingContext::AlreadyBound;
+  using NotEmpty = CosNaming::NamingContext::NotEmpty;
+
   explicit CorbaNaming(CORBA::ORB_ptr orb);
   // name_server: host, host:port or corbaloc URL. Throws if it cannot be reached.
   CorbaNaming(CORBA::ORB_ptr orb, const char* name_server);

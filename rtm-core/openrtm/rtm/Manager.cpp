@@ -149,6 +149,7 @@ coil::Properties& Manager::getConfig() { return impl_->config; }
 std::string Manager::configValue(const std::string& key) const { return impl_->value(key); }
 Logger& Manager::getLogger() { return impl_->rtclog; }
 int Manager::getLogLevel() { return impl_->rtclog.getLevel(); }
+LogStreamBuf& Manager::getLogStreamBuf() { return impl_->log_buffers; }
 
 ReturnCode_t Manager::load(const std::string& fname, const std::string& initfunc) {
   if (impl_->modules == nullptr || impl_->is_ending()) return PRECONDITION_NOT_MET;

@@ -94,6 +94,8 @@ class Manager {
   std::string configValue(const std::string& key) const;
   Logger& getLogger();
   int getLogLevel();
+  // Where stream buffers are added that want the log too.
+  LogStreamBuf& getLogStreamBuf();
 
   // --- modules
   // RTC_OK also when it is loaded already. fname: a file, found in manager.modules.load_path unless it is a path. initfunc: the function to

@@ -181,6 +181,7 @@ class ManagerImpl {
   RTM::NumberingPolicyBase* numbering = nullptr;
   std::unique_ptr<rt::SignalWatcher> signals;
   std::vector<LogstreamBase*> log_plugins;
+  LogStreamBuf log_buffers;
   std::thread life;           // in a lock of the state; taken in by whoever sees it end
   std::string socket_folder;  // of the ORB; empty if none
 };

@@ -11,6 +11,7 @@
 #include <streambuf>
 
 #include <coil/ClockManager.h>
+#include <coil/Logger.h>
 
 #include "base/clock.h"
 #include "base/log.h"
@@ -136,12 +137,11 @@ class Router {
     }
     if (settings->enabled && (wanted || level <= settings->level)) {
       const auto line = format_line(*settings, record);
-      const std::scoped_lock lock(output_mutex_);
-      for (const auto& output : outputs_) output->stream << line << std::flush;
-      for (auto* buffer : buffers_) {
-        buffer->sputn(line.data(), static_cast<std::streamsize>(line.size()));
-        buffer->pubsync();
+      {
+        const std::scoped_lock lock(output_mutex_);
+        for (const auto& output : outputs_) output->stream << line << std::flush;
       }
+      give_to_buffers(*settings, record, line);
     }
     for (const auto& sink : sinks) {
       if (level <= sink->level) sink->call(record);
@@ -179,15 +179,37 @@ class Router {
   }
 
   void add_buffer(std::streambuf* buffer) {
-    const std::scoped_lock lock(output_mutex_);
+    const std::scoped_lock lock(buffers_mutex_);
     buffers_.push_back(buffer);
   }
   void remove_buffer(std::streambuf* buffer) {
-    const std::scoped_lock lock(output_mutex_);
+    const std::scoped_lock lock(buffers_mutex_);
     std::erase(buffers_, buffer);
   }
 
  private:
+  // Buffers are other people's code: what they log does not come back to them.
+  void give_to_buffers(const LogSettings& settings, const LogRecord& record, const std::string& line) {
+    thread_local bool giving = false;
+    if (giving) return;
+    const std::scoped_lock lock(buffers_mutex_);
+    giving = true;
+    for (auto* buffer : buffers_) {
+      try {
+        if (auto* records = dynamic_cast<coil::LogStreamBuffer*>(buffer)) {
+          const auto date = settings.date_format.empty() ? std::string() : format_date(settings.date_format, record.time);
+          records->write(record.level, std::string(record.name), date, std::string(record.message));
+        } else {
+          buffer->sputn(line.data(), static_cast<std::streamsize>(line.size()));
+          buffer->pubsync();
+        }
+      } catch (...) {  // a record that cannot be logged cannot be complained about either
+        continue;
+      }
+    }
+    giving = false;
+  }
+
   // With mutex_ held: base must let pass what anybody wants.
   void update_level() {
     int level = settings_->enabled ? settings_->level : static_cast<int>(Logger::RTL_SILENT);
@@ -230,6 +252,7 @@ class Router {
   LogSinkId last_id_ = 0;
   std::mutex output_mutex_;
   std::vector<std::unique_ptr<Output>> outputs_;
+  std::mutex buffers_mutex_;
   std::vector<std::streambuf*> buffers_;
 };
 

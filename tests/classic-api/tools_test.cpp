@@ -1,0 +1,132 @@
+// What sources beside components use: connections by the URL of a port, log plug-ins that take records.
+#include <gtest/gtest.h>
+#include <rtm/idl/BasicDataTypeSkel.h>
+
+#include <rtm/CORBA_RTCUtil.h>
+#include <rtm/CorbaNaming.h>
+#include <rtm/DataFlowComponentBase.h>
+#include <rtm/DataInPort.h>
+#include <rtm/DataOutPort.h>
+#include <rtm/LogstreamBase.h>
+#include <rtm/Manager.h>
+#include <rtm/NamingManager.h>
+
+#include <thread>
+
+namespace {
+
+class Ported : public RTC::DataFlowComponentBase {
+ public:
+  explicit Ported(RTC::Manager* manager) : RTC::DataFlowComponentBase(manager), in("in", value), out("out", value) {}
+  RTC::ReturnCode_t onInitialize() override {
+    addInPort("in", in);
+    addOutPort("out", out);
+    return RTC::RTC_OK;
+  }
+  RTC::TimedLong value;
+  RTC::InPort<RTC::TimedLong> in;
+  RTC::OutPort<RTC::TimedLong> out;
+};
+
+RTC::Manager* started() {
+  static std::vector<std::string> words{"tools", "-i", "-f", "none.conf", "-o", "naming.enable:NO", "-o", "manager.shutdown_on_nortcs:NO"};
+  std::vector<char*> argv;
+  for (auto& word : words) argv.push_back(word.data());
+  RTC::Manager* manager = RTC::Manager::init(static_cast<int>(argv.size()), argv.data());
+  manager->activateManager();
+  static const char* const spec[] = {"implementation_id", "Ported", "type_name", "Ported", "max_instance", "0", ""};
+  coil::Properties profile(spec);
+  manager->registerFactory(profile, RTC::Create<Ported>, RTC::Delete<Ported>);
+  return manager;
+}
+
+TEST(Tools, ports_are_found_and_disconnected_by_url) {
+  RTC::Manager* manager = started();
+  ASSERT_NE(manager->createComponent("Ported"), nullptr);
+  RTC::RTCList found = manager->getNaming()->string_to_component("Ported0");
+  ASSERT_EQ(found.length(), 1u);
+  RTC::RTObject_var component = RTC::RTObject::_duplicate(found[0]);
+
+  RTC::PortService_var in = CORBA_RTCUtil::get_port_by_url("Ported0.in");
+  RTC::PortService_var out = CORBA_RTCUtil::get_port_by_url("Ported0.out");
+  RTC::PortService_var none = CORBA_RTCUtil::get_port_by_url("Ported0.none");
+  ASSERT_FALSE(CORBA::is_nil(in));
+  ASSERT_FALSE(CORBA::is_nil(out));
+  EXPECT_TRUE(CORBA::is_nil(none));
+
+  coil::Properties prop;
+  prop["dataport.dataflow_type"] = "push";
+  const auto wire = [&](const char* name) { return CORBA_RTCUtil::connect(name, prop, in.in(), out.in()); };
+  ASSERT_EQ(wire("first"), RTC::RTC_OK);
+  EXPECT_EQ(CORBA_RTCUtil::get_connector_names(in.in()), coil::vstring{"first"});
+  EXPECT_EQ(CORBA_RTCUtil::get_connector_ids(in.in()), CORBA_RTCUtil::get_connector_ids(component.in(), "Ported0.out"));
+  EXPECT_EQ(CORBA_RTCUtil::disconnect_connector_name("Ported0.in", "second"), RTC::BAD_PARAMETER);
+  EXPECT_EQ(CORBA_RTCUtil::disconnect_connector_name("Ported0.in", "first"), RTC::RTC_OK);
+  EXPECT_TRUE(CORBA_RTCUtil::get_connector_names(out.in()).empty());
+
+  ASSERT_EQ(wire("third"), RTC::RTC_OK);
+  EXPECT_EQ(CORBA_RTCUtil::disconnect_connector_id("Ported0.out", CORBA_RTCUtil::get_connector_ids(in.in()).at(0)), RTC::RTC_OK);
+  ASSERT_EQ(wire("fourth"), RTC::RTC_OK);
+  EXPECT_EQ(CORBA_RTCUtil::disconnect_all("Ported0.out"), RTC::RTC_OK);
+  ASSERT_EQ(wire("fifth"), RTC::RTC_OK);
+  EXPECT_EQ(CORBA_RTCUtil::disconnect_all(in.in()), RTC::RTC_OK);
+  EXPECT_TRUE(CORBA_RTCUtil::get_connector_names(in.in()).empty());
+  EXPECT_EQ(CORBA_RTCUtil::disconnect_all("Nobody0.out"), RTC::BAD_PARAMETER);
+}
+
+TEST(Tools, what_a_naming_service_throws_can_be_caught_under_classic_names) {
+  CosNaming::Name name;
+  EXPECT_THROW(throw CosNaming::NamingContext::NotFound(CosNaming::NamingContext::not_object, name), RTC::CorbaNaming::NotFound);
+  EXPECT_THROW(throw CORBA::TRANSIENT(), RTC::CorbaNaming::SystemException);
+  EXPECT_TRUE((std::is_same_v<RTC::CorbaNaming::InvalidName, CosNaming::NamingContext::InvalidName>));
+  EXPECT_TRUE((std::is_same_v<RTC::CorbaNaming::CannotProceed, CosNaming::NamingContext::CannotProceed>));
+}
+
+struct Record {
+  int level;
+  std::string name, date, message;
+  bool operator==(const Record&) const = default;
+};
+
+class Records : public coil::LogStreamBuffer {
+ public:
+  void write(int level, const std::string& name, const std::string& date, const std::string& message) override {
+    seen.push_back({level, name, date, message});
+    RTC::Logger rtclog("records");
+    RTC_ERROR(("seen %s", message.c_str()));  // does not come back
+  }
+  std::vector<Record> seen;
+};
+
+class Plugin : public RTC::LogstreamBase {
+ public:
+  bool init(const coil::Properties& prop) override { return prop.getProperty("header") == "x"; }
+  coil::LogStreamBuffer* getStreamBuffer() override { return &records; }
+  Records records;
+};
+
+TEST(Tools, a_log_plugin_gets_the_parts_of_each_record) {
+  Plugin plugin;
+  coil::Properties node;
+  node["header"] = "x";
+  ASSERT_TRUE(plugin.init(node));
+  RTC::setLogSettings({.level = RTC::Logger::RTL_WARN, .files = {}, .date_format = "day"});
+  started()->getLogStreamBuf().addStream(plugin.getStreamBuffer());
+  RTC::Logger rtclog("speaker");
+  RTC_INFO(("unwanted"));
+  RTC_WARN(("wanted %d", 1));
+  EXPECT_TRUE(started()->getLogStreamBuf().removeStream(plugin.getStreamBuffer()));
+  RTC_WARN(("too late"));
+  RTC::setLogSettings({});
+  EXPECT_EQ(plugin.records.seen, (std::vector<Record>{{RTC::Logger::RTL_WARN, "speaker", "day", "wanted 1"}}));
+}
+
+TEST(Tools, what_a_factory_answers_can_be_compared_with_numbers) {
+  auto& factory = RTC::LogstreamFactory::instance();
+  const auto add = [&] { return factory.addFactory("tools", coil::Creator<RTC::LogstreamBase, Plugin>, coil::Destructor<RTC::LogstreamBase, Plugin>); };
+  EXPECT_TRUE(add() == 0);
+  EXPECT_TRUE(add() != 0);
+  EXPECT_TRUE(0 == factory.removeFactory("tools"));
+}
+
+}  // namespace
