@@ -15,7 +15,7 @@ text = header.read_text()
 
 
 def clean(comment):
-    return " ".join(comment.replace("|", "\\|").split())
+    return " ".join(re.sub(r"\n\s*\*", " ", comment).replace("|", "\\|").split())
 
 
 structs = []
@@ -58,14 +58,17 @@ counter-clockwise positive; quaternions are (w, x, y, z). Fields marked [atomic]
 - **Reading a sample.** Sample *n* lies in cell *n* mod `count` of the area `cells`: a lock word, then the sample. Read `sequence`, the lock, the sample (by atomic words), the lock again;
   the copy is whole when both locks are 2 n + 2. The writer never waits for readers.
 - **Waiting.** Set `waiting` to 1, look at `sequence` again, then sleep on `wake_word` (futex, shared). With nobody waiting the writer makes no system call.
-- **Subscribing.** Take a lease by changing `owner` from 0, set the flag. A sensor works as long as one lease has the flag; leases of dead processes are taken back.
-  Then add 1 to `attention` of the simulation iface and wake it if `attention_waiting` is set: a sensor that is switched on while time stands still shows the
-  present at once, where the server would find the lease within a second. Such a sample disturbs nothing that comes later, not even the noise.
+- **Subscribing.** Take a lease: change `owner` from 0 to (pid << 32) + a number that no other lease of your process has, then write `pid_namespace`, `start_time` and last `flags` with
+  `RTMSIM_LEASE_SUBSCRIBER`. Add 1 to `lease_epoch` of the header: without that the server does not look. A sensor works as long as one lease has the flag; leases of dead processes are taken
+  back. To give a lease back store 0 in `owner` and add 1 to `lease_epoch`. Then add 1 to `attention` of the simulation iface and wake it if `attention_waiting` is set: a sensor that is
+  switched on while time stands still shows the present at once, where the server would find the lease within a second. Such a sample disturbs nothing that comes later, not even the noise.
 - **Frames.** Put slot + 1 into a `holds` word of the own lease, then check that the slot's `lock` still is the frame; the writer leaves held slots alone and counts what it must drop.
-- **Commands** lie in the leases; `command_latest` names the one in force. When its owner dies or lets go, the robot stops.
+- **Commands** lie in the leases: make `command_lock` odd, write the command, make it even; then store (number of commands + 1) << 16 | index of the lease in `command_latest` of the header,
+  which names the one in force. When its owner dies or lets go, the robot stops.
 - **Requests** go through a slot of one's own: `idle` - `asked` - `replying` - `replied`; texts longer than a piece travel in several rounds of the same id.
 - **Stale segments** (pid, start time, boot id of the server) are replaced by the next server; a living server's name is refused. Mode 0600 unless `--shm-mode` or `--shm-group` say otherwise.
-- The server keeps private copies of every size and index: what a client scribbles cannot make it read or write elsewhere.
+- The server keeps private copies of every size and index: what a client scribbles cannot make it read or write elsewhere. A file that somebody cuts short ends no process either: whoever has
+  it mapped goes on with zeros of its own (`shm/cut_guard.h`), the server says so, and the iface is there again after its next start.
 
 """
 for title, pattern in (("Iface types", r"/\* Iface types;.*?\*/\s*enum \{\n(.*?)\};"), ("Areas", r"/\* Areas of a segment.*?\*/\s*enum \{\n(.*?)\};")):
@@ -73,6 +76,36 @@ for title, pattern in (("Iface types", r"/\* Iface types;.*?\*/\s*enum \{\n(.*?)
     for name, value, comment in re.findall(r"(\w+) = (\d+),?\s*(?:/\*(.*?)\*/)?", re.search(pattern, text, re.S).group(1), re.S):
         out += f"| {value} | `{name}` | {clean(comment)} |\n"
     out += "\n"
+
+
+def table(title, pattern):
+    rows = ""
+    for body in re.findall(pattern, text, re.S):
+        for name, value, comment in re.findall(r"(RTMSIM_\w+) =\s*(\d+),?[ \t]*(?:/\*(.*?)\*/)?", body, re.S):
+            rows += f"| {value} | `{name}` | {clean(comment)} |\n"
+    assert rows, title
+    return f"## {title}\n\n| value | name | meaning |\n| --- | --- | --- |\n{rows}\n"
+
+
+out += table("Other numbers", r"enum \{\s*(RTMSIM_(?:STATE|LEASE|COMMAND|DRIVE|STATUS|SLOT|PARTICIPANT|DROPPED)_.*?)\}")
+out += table("Requests", r"enum \{\s*(RTMSIM_REQUEST_.*?)\}")
+out += table("Views of a screenshot", r"enum \{\s*(RTMSIM_VIEW_.*?)\}")
+out += """Texts of replies are JSON:
+
+| request | holds |
+| --- | --- |
+| list | `world`; `models`: name, static, pose (x y z qw qx qy qz); `ifaces`: type, name, model, subscribed |
+| tree | `models`: name, static, pose, `links` (name, mass, pose, collisions, sensors with the names of their ifaces), `joints` (name, type, parent, child, position, velocity), plugins |
+| stats | what `simctl --json stats` prints: time, speed, hash, counts, `parts` (where wall time goes), `participants`, `contacts_by_model` |
+| contacts | `model`, `total` since the start, `contacts` of now: link, other, position, normal, depth |
+
+| constant | value |
+| --- | --- |
+"""
+for name, value in re.findall(r"#define (RTMSIM_(?!LAYOUT_H)\w+) ([^\s/]+)", text):
+    value = value.strip('"')
+    out += f"| `{name}` | `{value}` |\n"
+out += "\n"
 out += "## Formats of frames\n\n| value | name | bytes of a pixel |\n| --- | --- | --- |\n"
 for name, value, comment in re.findall(r"(\w+) = (\d+),?\s*(?:/\*(.*?)\*/)?", re.search(r"enum \{\n(\s*RTMSIM_FORMAT_.*?)\};", text, re.S).group(1), re.S):
     out += f"| {value} | `{name}` | {clean(comment)} |\n"

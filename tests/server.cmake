@@ -1,8 +1,12 @@
 # sim-server and simctl as processes; each case has a server of its own.
 foreach(case requests motion bad_requests same_state killed living_server_is_refused ends check paused_is_idle looked_at_while_paused
-             rate no_room scribbled_over)
+             rate no_room scribbled_over ends_while_it_loads cut_short names)
   add_test(NAME server.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/server.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(server.${case} PROPERTIES LABELS sim TIMEOUT 300 SKIP_RETURN_CODE 77)
 endforeach()
+add_test(NAME server.by_the_page COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/by_the_page.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+set_tests_properties(server.by_the_page PROPERTIES LABELS sim TIMEOUT 300)
+add_test(NAME worlds.are_what_their_scripts_write COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/generated_worlds.py ${PROJECT_SOURCE_DIR})
+set_tests_properties(worlds.are_what_their_scripts_write PROPERTIES LABELS world TIMEOUT 300)
 rtmsim_test(wild_run_test unit/wild_run_test.cpp LIBRARIES simserver LABELS sim world)

@@ -164,6 +164,8 @@ def pioneer():
       <min_angular_velocity>{number(-math.radians(90))}</min_angular_velocity>
       <max_angular_acceleration>{number(math.radians(300))}</max_angular_acceleration>
       <min_angular_acceleration>{number(-math.radians(300))}</min_angular_acceleration>
+      <odom_publish_frequency>50</odom_publish_frequency>
+      <updateRate>50</updateRate>
     </plugin>
   </model>"""
 

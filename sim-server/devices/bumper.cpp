@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "devices/simple_devices.h"
+#include "world/iface_names.h"
 
 namespace sim {
 namespace {
@@ -14,7 +15,7 @@ base::Result<std::unique_ptr<Device>> Bumper::make(DeviceWorld& world, Mount mou
   info.rate = sensor.update_rate > 0 ? sensor.update_rate : 1 / world.world.physics.step;
   info.pose = to_pose(model.links[mount.link.link].pose * mount.pose);
   shm::set_text(info.model, scoped_model(model, sensor.scope));
-  auto writer = world.shm.create(shm::bumper_spec(iface_name(model.name, sensor.scope, sensor.name), info));
+  auto writer = world.shm.create(shm::bumper_spec(iface_name(model, sensor), info));
   if (!writer) return writer.error();
   return std::unique_ptr<Device>(new Bumper(world, mount, sensor, std::move(*writer)));
 }
@@ -25,14 +26,8 @@ Bumper::Bumper(DeviceWorld& world, Mount mount, const SensorDef& sensor, std::un
   for (const auto& collision : world.physics.def(mount.link.model).links[mount.link.link].collisions) {
     collisions_.push_back(names.empty() || std::find(names.begin(), names.end(), collision.name) != names.end());
   }
-}
-
-void Bumper::before_step(const Moment&) {
-  const bool wanted = writer_->is_subscribed();
-  if (wanted == is_recording_) return;
-  is_recording_ = wanted;
-  // Another bumper of the model that is still in use switches it on again in its own turn.
-  world_.physics.record_forces(mount_.link.model, wanted);
+  // Always: who subscribes while the body sleeps wants the forces that it fell asleep with.
+  world_.physics.record_forces(mount_.link.model);
 }
 
 void Bumper::measure(const Moment&) {

@@ -10,6 +10,7 @@
 #include "base/log.h"
 #include "devices/render_world.h"
 #include "render/pixels.h"
+#include "world/iface_names.h"
 
 namespace sim {
 namespace {
@@ -265,8 +266,8 @@ base::Result<std::vector<std::unique_ptr<Device>>> make_cameras(DeviceWorld& wor
   const bool is_depth = sensor.kind == SensorKind::depth_camera, is_rgbd = sensor.kind == SensorKind::rgbd_camera;
   const auto output = is_depth ? Camera::Output::depth : is_rgbd ? Camera::Output::color_and_depth : Camera::Output::color;
   for (const auto& def : std::get<CameraSetDef>(sensor.data).cameras) {
-    const std::string own_name = sensor.kind == SensorKind::multi_camera ? sensor.name + "::" + def.name : sensor.name;
-    const std::string name = iface_name(world.physics.def(mount.link.model).name, sensor.scope, own_name);
+    std::string name = iface_name(world.physics.def(mount.link.model), sensor);
+    if (sensor.kind == SensorKind::multi_camera) name += "::" + without_slashes(def.name);
     Camera camera(def, output, seed_of(world.seed, name));
     const Mount place{mount.link, mount.pose * def.pose};
     std::vector<Channel> channels;

@@ -78,9 +78,9 @@ class Device {
   virtual bool set_motors(bool) { return false; }
 };
 
-// All devices of a model: its sensors and those of its plugins that are known. What is left out adds a line to `notes`. Fails when an iface
-// cannot be made (no shared memory left, name taken).
-base::Result<std::vector<std::unique_ptr<Device>>> make_devices(DeviceWorld& world, ModelId model, std::vector<std::string>& notes);
+// All devices of a model: its sensors and those of its plugins that are known. What is left out adds a line to `left_out`. Fails when an
+// iface cannot be made (no shared memory left).
+base::Result<std::vector<std::unique_ptr<Device>>> make_devices(DeviceWorld& world, ModelId model, std::vector<std::string>& left_out);
 
 // --- for the devices themselves
 

@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "devices/simple_devices.h"
+#include "world/iface_names.h"
 
 namespace sim {
 namespace {
@@ -50,7 +51,7 @@ base::Result<std::unique_ptr<Device>> Gps::make(DeviceWorld& world, Mount mount,
   info.heading = world.world.spherical.heading;
   info.pose = to_pose(model.links[mount.link.link].pose * mount.pose);
   shm::set_text(info.model, scoped_model(model, sensor.scope));
-  auto writer = world.shm.create(shm::gps_spec(iface_name(model.name, sensor.scope, sensor.name), info));
+  auto writer = world.shm.create(shm::gps_spec(iface_name(model, sensor), info));
   if (!writer) return writer.error();
   return std::unique_ptr<Device>(new Gps(world, mount, sensor, std::move(*writer)));
 }

@@ -1,4 +1,5 @@
 #include "devices/simple_devices.h"
+#include "world/iface_names.h"
 
 namespace sim {
 
@@ -27,7 +28,7 @@ base::Result<std::unique_ptr<Device>> Imu::make(DeviceWorld& world, Mount mount,
   info.acceleration_noise = def.linear_acceleration[0].kind == NoiseDef::Kind::none ? 0 : def.linear_acceleration[0].stddev;
   info.pose = to_pose(model.links[mount.link.link].pose * mount.pose);
   shm::set_text(info.model, scoped_model(model, sensor.scope));
-  auto writer = world.shm.create(shm::imu_spec(iface_name(model.name, sensor.scope, sensor.name), info));
+  auto writer = world.shm.create(shm::imu_spec(iface_name(model, sensor), info));
   if (!writer) return writer.error();
   return std::unique_ptr<Device>(new Imu(world, mount, sensor, std::move(*writer)));
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include "world/iface_names.h"
 
 namespace sim {
 
@@ -23,7 +24,7 @@ base::Result<std::unique_ptr<Device>> Laser::make(DeviceWorld& world, Mount moun
   info.noise = ray.noise.kind == NoiseDef::Kind::none ? 0 : ray.noise.stddev;
   info.pose = to_pose(model.links[mount.link.link].pose * mount.pose);
   shm::set_text(info.model, scoped_model(model, sensor.scope));
-  auto writer = world.shm.create(shm::laser_spec(iface_name(model.name, sensor.scope, sensor.name), info));
+  auto writer = world.shm.create(shm::laser_spec(iface_name(model, sensor), info));
   if (!writer) return writer.error();
   return std::unique_ptr<Device>(new Laser(world, mount, sensor, std::move(*writer)));
 }

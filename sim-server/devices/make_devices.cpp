@@ -9,18 +9,13 @@
 #include "devices/position2d.h"
 #include "devices/position3d.h"
 #include "devices/simple_devices.h"
+#include "world/iface_names.h"
 #include "world/plugin_kind.h"
 
 namespace sim {
 namespace {
 
 using Made = base::Result<std::unique_ptr<Device>>;
-
-bool is_sonar(const SensorDef& sensor) {
-  if (sensor.kind == SensorKind::sonar) return true;
-  return sensor.kind == SensorKind::ray && base::to_lower(sensor.name).starts_with("sonar");
-}
-bool is_of_a_ring(const SensorDef& sensor) { return base::to_lower(sensor.name).starts_with("sonar"); }
 
 bool is_camera(SensorKind kind) {
   return kind == SensorKind::camera || kind == SensorKind::depth_camera || kind == SensorKind::rgbd_camera ||
@@ -30,10 +25,16 @@ bool is_camera(SensorKind kind) {
 struct Makers {
   DeviceWorld& world;
   ModelId model;
-  std::vector<std::string>& notes;
+  std::vector<std::string>& left_out;
   std::vector<std::unique_ptr<Device>> devices;
   std::optional<base::Error> failure;
 
+  // False, with a line, for names that are too long: those of models may fill an iface's name alone.
+  bool can_name(const std::string& iface, const std::string& what) {
+    const auto good = shm::check_name(iface);
+    if (!good) left_out.push_back(fmt::format("model {}: {}: {}", world.physics.def(model).name, what, good.error().message));
+    return good.has_value();
+  }
   void take(Made made) {
     if (made) {
       devices.push_back(std::move(*made));
@@ -44,6 +45,7 @@ struct Makers {
 };
 
 void make_sensor(Makers& m, Mount mount, const SensorDef& sensor) {
+  if (!m.can_name(iface_name(m.world.physics.def(m.model), sensor), "sensor " + sensor.name)) return;
   switch (sensor.kind) {
     case SensorKind::ray:
       return m.take(Laser::make(m.world, mount, sensor));
@@ -58,7 +60,7 @@ void make_sensor(Makers& m, Mount mount, const SensorDef& sensor) {
     case SensorKind::air_pressure:
       return m.take(Meter::make(m.world, mount, sensor, std::nullopt));
     case SensorKind::force_torque:
-      m.notes.push_back(
+      m.left_out.push_back(
           fmt::format("model {}: sensor {}: a force_torque sensor measures the joint that it stands in; this one stands in a link",
                       m.world.physics.def(m.model).name, sensor.name));
       return;
@@ -79,10 +81,11 @@ void make_joint_sensors(Makers& m) {
     for (const auto& sensor : def.joints[j].sensors) {
       const auto link = link_of(def, {}, def.joints[j].child.empty() ? def.joints[j].parent : def.joints[j].child);
       if (sensor.kind != SensorKind::force_torque || !link) {
-        m.notes.push_back(
+        m.left_out.push_back(
             fmt::format("model {}: sensor {}: {} sensors stand in links, not in joints", def.name, sensor.name, to_text(sensor.kind)));
         continue;
       }
+      if (!m.can_name(iface_name(def, sensor), "sensor " + sensor.name)) continue;
       const Eigen::Isometry3d place = def.links[*link].pose.inverse() * def.joints[j].pose_in_model * sensor.pose;
       m.take(Meter::make(m.world, {{m.model, *link}, place}, sensor, JointId{m.model, j}));
     }
@@ -91,21 +94,23 @@ void make_joint_sensors(Makers& m) {
 
 void make_sonars(Makers& m) {
   const ModelDef& def = m.world.physics.def(m.model);
-  std::vector<std::pair<std::string, std::vector<SonarRing::Transducer>>> rings;  // by scope
+  struct Ring {
+    std::string scope, iface;
+    std::vector<SonarRing::Transducer> transducers;
+  };
+  std::vector<Ring> rings;  // one for each scope
   for (std::uint32_t l = 0; l < def.links.size(); ++l) {
     for (const auto& sensor : def.links[l].sensors) {
       if (!is_sonar(sensor)) continue;
       const SonarRing::Transducer transducer{{{m.model, l}, sensor.pose}, &sensor};
-      if (!is_of_a_ring(sensor)) {
-        m.take(SonarRing::make(m.world, iface_name(def.name, sensor.scope, sensor.name), sensor.scope, {transducer}));
-        continue;
-      }
-      auto ring = std::find_if(rings.begin(), rings.end(), [&](const auto& r) { return r.first == sensor.scope; });
-      if (ring == rings.end()) ring = rings.insert(rings.end(), {sensor.scope, {}});
-      ring->second.push_back(transducer);
+      const std::string iface = iface_name(def, sensor);
+      if (!m.can_name(iface, "sensor " + sensor.name)) continue;
+      auto ring = std::find_if(rings.begin(), rings.end(), [&](const Ring& r) { return is_of_a_ring(sensor) && r.iface == iface; });
+      if (ring == rings.end()) ring = rings.insert(rings.end(), {sensor.scope, iface, {}});
+      ring->transducers.push_back(transducer);
     }
   }
-  for (const auto& [scope, transducers] : rings) m.take(SonarRing::make(m.world, iface_name(def.name, scope, "sonar"), scope, transducers));
+  for (const auto& ring : rings) m.take(SonarRing::make(m.world, ring.iface, ring.scope, ring.transducers));
 }
 
 // The way points that a drive of the same (nested) model follows while nobody commands it.
@@ -114,7 +119,7 @@ std::optional<Path> path_of(Makers& m, const std::string& scope) {
     if (plugin.scope != scope || kind_of(plugin) != PluginKind::trajectory_follower) continue;
     auto path = Path::of(plugin, m.world.physics.model_pose(m.model));
     if (path) return std::move(*path);
-    m.notes.push_back(path.error().message);
+    m.left_out.push_back(path.error().message);
   }
   return {};
 }
@@ -126,33 +131,40 @@ void make_follower(Makers& m, const PluginDef& plugin) {
     if (other.scope != plugin.scope) continue;
     if (kind_of(other) == PluginKind::velocity_control) return;  // which flies them
     if (&other != &plugin && kind_of(other) == PluginKind::trajectory_follower && &other < &plugin) {
-      m.notes.push_back(
+      m.left_out.push_back(
           fmt::format("{}: plugin {}: the model follows the way points of {} already", plugin.source, plugin.name, other.name));
       return;
     }
   }
   if (m.world.physics.is_static(m.model)) {
-    m.notes.push_back(fmt::format("{}: plugin {}: the model is static and cannot move", plugin.source, plugin.name));
+    m.left_out.push_back(fmt::format("{}: plugin {}: the model is static and cannot move", plugin.source, plugin.name));
     return;
   }
   auto path = Path::of(plugin, m.world.physics.model_pose(m.model));
-  if (!path) return m.notes.push_back(path.error().message);
+  if (!path) return m.left_out.push_back(path.error().message);
   m.take(Position3d::make(m.world, m.model, plugin, std::move(*path)));
 }
 
 void make_plugin(Makers& m, const PluginDef& plugin) {
+  const ModelDef& def = m.world.physics.def(m.model);
+  if (kind_of(plugin) != PluginKind::unknown && !m.can_name(iface_name(def, plugin), "plugin " + plugin.name)) return;
   switch (kind_of(plugin)) {
     case PluginKind::differential_drive:
     case PluginKind::skid_steer_drive:
       // A drive that is wrong is the world's fault, not the machine's: said, left out.
-      if (const auto settings = DriveSettings::of(m.world.physics.def(m.model), plugin); !settings) {
-        m.notes.push_back(settings.error().message);
+      if (const auto settings = DriveSettings::of(def, plugin); !settings) {
+        m.left_out.push_back(settings.error().message);
         return;
       }
       return m.take(Position2d::make(m.world, m.model, plugin));
     case PluginKind::velocity_control:
+      for (const auto& other : def.plugins) {
+        if (&other >= &plugin || other.scope != plugin.scope || kind_of(other) != PluginKind::velocity_control) continue;
+        m.left_out.push_back(fmt::format("{}: plugin {}: the model is moved by {} already", plugin.source, plugin.name, other.name));
+        return;
+      }
       if (m.world.physics.is_static(m.model)) {
-        m.notes.push_back(fmt::format("{}: plugin {}: the model is static and cannot move", plugin.source, plugin.name));
+        m.left_out.push_back(fmt::format("{}: plugin {}: the model is static and cannot move", plugin.source, plugin.name));
         return;
       }
       return m.take(Position3d::make(m.world, m.model, plugin, path_of(m, plugin.scope)));
@@ -167,8 +179,8 @@ void make_plugin(Makers& m, const PluginDef& plugin) {
 
 }  // namespace
 
-base::Result<std::vector<std::unique_ptr<Device>>> make_devices(DeviceWorld& world, ModelId model, std::vector<std::string>& notes) {
-  Makers m{world, model, notes, {}, {}};
+base::Result<std::vector<std::unique_ptr<Device>>> make_devices(DeviceWorld& world, ModelId model, std::vector<std::string>& left_out) {
+  Makers m{world, model, left_out, {}, {}};
   const ModelDef& def = world.physics.def(model);
   for (const auto& plugin : def.plugins) make_plugin(m, plugin);
   for (std::uint32_t l = 0; l < def.links.size(); ++l) {
@@ -178,7 +190,7 @@ base::Result<std::vector<std::unique_ptr<Device>>> make_devices(DeviceWorld& wor
   }
   make_joint_sensors(m);
   make_sonars(m);
-  if (!world.physics.is_static(model)) m.take(Truth::make(world, model));
+  if (!world.physics.is_static(model) && m.can_name(def.name, "true pose")) m.take(Truth::make(world, model));
   if (m.failure) return *m.failure;
   return std::move(m.devices);
 }

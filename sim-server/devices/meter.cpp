@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include "world/iface_names.h"
 
 namespace sim {
 
@@ -57,7 +58,7 @@ base::Result<std::unique_ptr<Device>> Meter::make(DeviceWorld& world, Mount moun
   info.pose = to_pose(model.links[mount.link.link].pose * mount.pose);
   shm::set_text(info.model, scoped_model(model, sensor.scope));
   if (joint) shm::set_text(info.joint, model.joints[joint->joint].name);
-  auto writer = world.shm.create(shm::meter_spec(type_of(sensor.kind), iface_name(model.name, sensor.scope, sensor.name), info));
+  auto writer = world.shm.create(shm::meter_spec(type_of(sensor.kind), iface_name(model, sensor), info));
   if (!writer) return writer.error();
   return std::unique_ptr<Device>(new Meter(world, mount, sensor, joint, info.reference, std::move(*writer)));
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "world/iface_names.h"
 #include "world/plugin_kind.h"
 
 namespace sim {
@@ -121,7 +122,7 @@ base::Result<std::unique_ptr<Device>> Position2d::make(DeviceWorld& world, Model
   info.wheel_radius = settings->radius;
   info.rate = settings->rate > 0 ? settings->rate : 1 / world.world.physics.step;
   shm::set_text(info.model, scoped_model(def, plugin.scope));
-  auto writer = world.shm.create(shm::position2d_spec(iface_name(def.name, plugin.scope, iface_own_name(plugin)), info));
+  auto writer = world.shm.create(shm::position2d_spec(iface_name(def, plugin), info));
   if (!writer) return writer.error();
   return std::unique_ptr<Device>(new Position2d(world, model, *settings, std::move(*writer)));
 }

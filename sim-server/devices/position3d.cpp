@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "base/text.h"
+#include "world/iface_names.h"
 #include "world/plugin_kind.h"
 
 namespace sim {
@@ -32,7 +33,7 @@ base::Result<std::unique_ptr<Device>> Position3d::make(DeviceWorld& world, Model
   info.max_yaw_rate = plugin.parameters.number_of({"max_yaw_rate", "max_angular_velocity"}).value_or(0);
   info.rate = 1 / world.world.physics.step;
   shm::set_text(info.model, scoped_model(def, plugin.scope));
-  auto writer = world.shm.create(shm::position3d_spec(iface_name(def.name, plugin.scope, "position3d"), info));
+  auto writer = world.shm.create(shm::position3d_spec(iface_name(def, plugin), info));
   if (!writer) return writer.error();
   return std::unique_ptr<Device>(new Position3d(world, model, plugin, std::move(path), std::move(*writer)));
 }

@@ -95,11 +95,10 @@ class Bumper final : public Device {
   static base::Result<std::unique_ptr<Device>> make(DeviceWorld& world, Mount mount, const SensorDef& sensor);
   shm::IfaceWriter& iface() override { return *writer_; }
   ModelId model() const override { return mount_.link.model; }
-  void before_step(const Moment& moment) override;
   bool wants_sample(const Moment& moment) override { return schedule_.is_due(moment.time) && writer_->is_subscribed(); }
   void measure(const Moment& moment) override;
   void publish(const Moment& moment) override;
-  void reset() override { schedule_.restart(), is_recording_ = false; }
+  void reset() override { schedule_.restart(); }
 
  private:
   Bumper(DeviceWorld& world, Mount mount, const SensorDef& sensor, std::unique_ptr<shm::IfaceWriter> writer);
@@ -107,7 +106,6 @@ class Bumper final : public Device {
   Mount mount_;
   std::vector<bool> collisions_;  // of the link: those that count
   Schedule schedule_;
-  bool is_recording_ = false;
   std::unique_ptr<shm::IfaceWriter> writer_;
 };
 

@@ -427,7 +427,7 @@ std::optional<Wrench> Physics::joint_load(JointId joint) const {
 
 std::span<const Contact> Physics::contacts(ModelId model) const { return impl_->at(model).contacts; }
 std::uint64_t Physics::contacts_so_far(ModelId model) const { return impl_->at(model).contacts_so_far; }
-void Physics::record_forces(ModelId model, bool on) { impl_->at(model).records_forces = on; }
+void Physics::record_forces(ModelId model) { impl_->at(model).records_forces = true; }
 
 void Physics::add_to(StateHash& hash) const {
   hash.add(impl_->steps_);
@@ -452,16 +452,19 @@ PhysicsStatistics Physics::statistics() const {
   PhysicsStatistics s;
   s.shards = static_cast<std::uint32_t>(impl_->shards_.size());
   s.moves_between_shards = impl_->moves_;
-  for (const auto& shard : impl_->shards_) s.contacts += shard->contacts;
+  std::uint32_t half_contacts = 0;  // what touches something else that moves is told by both
   for (const auto& model : impl_->models_) {
     if (!model) continue;
     s.joints += static_cast<std::uint32_t>(model->joints().size());
+    for (const Contact& contact : model->contacts)
+      half_contacts += exists(contact.other.model) && !is_static(contact.other.model) ? 1U : 2U;
     for (std::uint32_t i = 0; i < model->body_count(); ++i) {
       if (model->body(i) == nullptr) continue;
       ++s.bodies;
       if (dBodyIsEnabled(model->body(i)) != 0) ++s.awake;
     }
   }
+  s.contacts = (half_contacts + 1) / 2;
   return s;
 }
 

@@ -128,7 +128,8 @@ class Physics {
   // Contacts of the last step in which the model was awake.
   std::span<const Contact> contacts(ModelId model) const;
   std::uint64_t contacts_so_far(ModelId model) const;
-  void record_forces(ModelId model, bool on);
+  // From now on with their forces.
+  void record_forces(ModelId model);
 
   // Everything that decides how the run goes on.
   void add_to(StateHash& hash) const;

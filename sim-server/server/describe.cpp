@@ -2,12 +2,11 @@
 
 #include <unistd.h>
 
-#include <unistd.h>
-
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "base/log.h"
+#include "world/iface_names.h"
 
 namespace sim {
 namespace {
@@ -38,7 +37,7 @@ Json model_tree(const Physics& physics, ModelId id) {
     const LinkDef& link = model.links[l];
     Json sensors = Json::array(), collisions = Json::array();
     for (const auto& sensor : link.sensors) {
-      sensors.push_back({{"name", sensor.name}, {"type", sensor.type}, {"iface", iface_name(model.name, sensor.scope, sensor.name)}});
+      sensors.push_back({{"name", sensor.name}, {"type", sensor.type}, {"iface", iface_name(model, sensor)}});
     }
     for (const auto& collision : link.collisions)
       collisions.push_back({{"name", collision.name}, {"shape", std::string(kind_of(collision.geometry))}});
@@ -142,7 +141,7 @@ std::string stats_text(Simulation& simulation, const LoopState& loop) {
   }
   return text({{"world", simulation.world().name},
                {"pid", getpid()},
-               {"sim_time", static_cast<double>(simulation.time().count()) * 1e-9},
+               {"sim_time", static_cast<double>(simulation.time().count()) / 1e9},
                {"steps", simulation.steps()},
                {"step", simulation.world().physics.step},
                {"paused", loop.is_paused},

@@ -2,14 +2,18 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <thread>
 
 #include "base/command_line.h"
+#include "base/guarded.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "server/server_loop.h"
+#include "shm/segment.h"
 #include "world/world_loader.h"
 
 namespace {
@@ -40,31 +44,47 @@ int fail(const std::string& message) {
   return 1;
 }
 
-// SIGINT and SIGTERM, received by a thread of their own instead of a handler.
+// SIGINT, SIGTERM and SIGHUP, received by a thread of their own instead of a handler. They stop the loop; before there is one they end the
+// process at once, however long the world takes to load.
 class Signals {
  public:
+  // Before any other thread is started this must exist.
   Signals() {
     sigemptyset(&set_);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR2}) sigaddset(&set_, signal);
+    for (const int signal : {SIGINT, SIGTERM, SIGUSR2}) sigaddset(&set_, signal);
+    struct sigaction hang_up {};
+    sigaction(SIGHUP, nullptr, &hang_up);
+    if (hang_up.sa_handler != SIG_IGN) sigaddset(&set_, SIGHUP);  // ignored: started by nohup
     pthread_sigmask(SIG_BLOCK, &set_, nullptr);
-  }
-  // Before any other thread is started this must exist; from here on `stop` is called when a signal comes.
-  void watch(sim::ServerLoop& loop) {
-    thread_ = std::thread([this, &loop] {
-      int signal = 0;
-      sigwait(&set_, &signal);
-      if (signal != SIGUSR2) loop.stop();
+    thread_ = std::thread([this] {
+      while (true) {
+        int signal = 0;
+        sigwait(&set_, &signal);
+        if (is_over_.load(std::memory_order_acquire)) return;  // pairs with the release in end
+        if (signal != SIGUSR2) stop(signal);
+      }
     });
   }
+  void watch(sim::ServerLoop* loop) { *loop_.lock() = loop; }
   void end() {
     if (!thread_.joinable()) return;
+    is_over_.store(true, std::memory_order_release);  // pairs with the acquire in the thread
     pthread_kill(thread_.native_handle(), SIGUSR2);
     thread_.join();
   }
   ~Signals() { end(); }
 
  private:
+  void stop(int signal) {
+    auto loop = loop_.lock();
+    if (*loop != nullptr) return (*loop)->stop();
+    shm::remove_own();
+    std::_Exit(128 + signal);
+  }
+
   sigset_t set_;
+  base::Guarded<sim::ServerLoop*, base::Rank::manager> loop_{nullptr};
+  std::atomic<bool> is_over_{false};
   std::thread thread_;
 };
 
@@ -76,14 +96,18 @@ int run(const Options& options, Signals& signals) {
   std::size_t dropped = 0;
   for (const auto& finding : loaded->findings) {
     if (finding.severity == Finding::Severity::dropped) ++dropped;
-    if (options.check || finding.severity != Finding::Severity::note || options.verbosity > 1)
-      std::fprintf(stderr, "%s\n", finding.text().c_str());
+    const int wanted = finding.severity == Finding::Severity::dropped ? 0 : finding.severity == Finding::Severity::warning ? 1 : 2;
+    if (options.check || options.verbosity >= wanted) std::fprintf(stderr, "%s\n", finding.text().c_str());
   }
   auto world = std::make_shared<const WorldDef>(std::move(loaded->world));
 
   auto access = shm::parse_access(options.shm_mode, options.shm_group);
   if (!access) return fail(access.error().message);
-  auto server = shm::Server::start({.server_id = options.server_id, .access = *access});
+  // Who only looks takes no server's place; ids of this kind cannot be asked for. Nobody else removes what such a one leaves when it is
+  // killed.
+  const std::uint32_t server_id = options.check ? 100'000'000 + static_cast<std::uint32_t>(getpid()) : options.server_id;
+  if (options.check) shm::remove_stale();
+  auto server = shm::Server::start({.server_id = server_id, .access = *access});
   if (!server) return fail(server.error().message);
   shm::SimulationInfo info{};
   info.step_ns = std::llround(world->physics.step * 1e9);
@@ -102,7 +126,12 @@ int run(const Options& options, Signals& signals) {
   auto simulation = Simulation::create(world, **server, {.seed = options.seed, .threads = threads}, notes, left_out);
   if (!simulation) return fail(simulation.error().message);
   for (const auto* lines : {&left_out, &notes}) {
-    for (const auto& line : *lines) std::fprintf(stderr, "%s: %s\n", options.world.c_str(), line.c_str());
+    if (lines == &notes && options.verbosity == 0 && !options.check) continue;
+    // Plugins know their place in the files; models are told by name.
+    for (const auto& line : *lines) {
+      const char* separator = line.starts_with("model ") ? ": " : "";
+      std::fprintf(stderr, "%s%s%s\n", *separator != 0 ? options.world.c_str() : "", separator, line.c_str());
+    }
   }
   dropped += left_out.size();
   if (options.check) return loaded->dropped || dropped > 0 ? 1 : 0;
@@ -122,7 +151,7 @@ int run(const Options& options, Signals& signals) {
   if (options.duration >= 0) loop_options.duration = std::chrono::nanoseconds(std::llround(options.duration * 1e9));
   loop_options.has_status_line = isatty(STDERR_FILENO) != 0;
   ServerLoop loop(**simulation, **server, **iface, model_path, loop_options, std::move(recorder));
-  signals.watch(loop);
+  signals.watch(&loop);
   const bool is_complete = loop.run();
   signals.end();
   if (options.print_hash) {

@@ -99,7 +99,7 @@ base::Result<View> view_of(Simulation& simulation, const Snapshot& world, const 
     return base::Error{fmt::format("screenshot: field of view {}, expected at most {} rad", request.span, widest_fov)};
   if (request.view == Kind::camera) {
     const auto* camera = find_camera(simulation, request.follow);
-    if (camera == nullptr) return base::Error{"screenshot: no camera " + request.follow};
+    if (camera == nullptr) return base::Error{"no camera " + request.follow};
     const CameraDef& def = camera->camera_def();
     View view = View::pinhole(camera->camera_pose(), std::min(def.horizontal_fov, widest_fov), width, height);
     view.near_clip = def.near_clip;

@@ -38,7 +38,7 @@ ServerLoop::ServerLoop(Simulation& simulation, shm::Server& server, shm::IfaceWr
   barrier.participant_timeout = options.participant_timeout;
   barrier.on_event = [this](const shm::BarrierEvent& event) { on_barrier_event(event); };
   barrier.on_waiting = [this] {
-    server_.tend();
+    tend();
     handle_requests(When::in_tick);
     return !is_stopping_.load(std::memory_order_acquire);  // pairs with the release in stop
   };
@@ -74,6 +74,7 @@ void ServerLoop::on_barrier_event(const shm::BarrierEvent& event) {
 
 bool ServerLoop::run() {
   start_pace();
+  count();
   publish_clock();
   wait_for_participants();
   start_pace();
@@ -81,7 +82,7 @@ bool ServerLoop::run() {
     times_.begin_step(simulation_.steps());
     const bool stood_still = is_paused_ && steps_to_do_ == 0;
     handle_requests(When::between_steps);
-    server_.tend();
+    tend();
     // Also when time is to go on now: who came before that has a sample, however fast the two followed each other.
     if (stood_still) simulation_.answer_new_subscribers();
     // Not while time stands still: who subscribes or joins before it moves has its sample and its tick at time 0, as after a reset.
@@ -117,8 +118,16 @@ void ServerLoop::wait_for_participants() {
     if (missing != missing_) missing_ = missing, publish_clock();
     simulation_.answer_new_subscribers();
     if (missing == 0) return;
-    server_.tend();
+    tend();
     board_.wait(Clock::now() + pause_period);
+  }
+}
+
+void ServerLoop::tend() {
+  server_.tend();
+  for (const auto& name : server_.take_cuts()) {
+    base::log(base::Level::error, "sim-server",
+              "shared memory {} was cut short by another process; nobody can use it until the server starts anew", name);
   }
 }
 
@@ -153,17 +162,8 @@ void ServerLoop::publish_clock() {
   iface_.publish(simulation_.time());
 }
 
-// Counts for people: renewed about once a second.
-void ServerLoop::watch_rate() {
-  if (simulation_.steps() % 16 != 0 && !is_paused_) return;
-  const auto now = Clock::now();
-  const auto wall = now - rate_wall_;
-  if (wall < 1s) return;
-  rtf_reached_ = seconds(simulation_.time() - rate_sim_) / seconds(wall);
-  load_ = std::clamp(1 - seconds(slept_) / seconds(wall), 0.0, 1.0);
-  rate_wall_ = now;
-  rate_sim_ = simulation_.time();
-  slept_ = 0ns;
+// For people: renewed at the start and about once a second.
+void ServerLoop::count() {
   auto& sample = iface_.sample<shm::SimulationSample>();
   const PhysicsStatistics s = simulation_.physics().statistics();
   sample.models = 0;
@@ -182,10 +182,24 @@ void ServerLoop::watch_rate() {
     sample.parts[i].total_ns = entry.total.count();
     sample.parts[i].max_ns = entry.longest.count();
   }
+}
+
+void ServerLoop::watch_rate() {
+  if (simulation_.steps() % 16 != 0 && !is_paused_) return;
+  const auto now = Clock::now();
+  const auto wall = now - rate_wall_;
+  if (wall < 1s) return;
+  rtf_reached_ = seconds(simulation_.time() - rate_sim_) / seconds(wall);
+  load_ = std::clamp(1 - seconds(slept_) / seconds(wall), 0.0, 1.0);
+  rate_wall_ = now;
+  rate_sim_ = simulation_.time();
+  slept_ = 0ns;
+  count();
+  const auto& sample = iface_.sample<shm::SimulationSample>();
   if (is_paused_) publish_clock();
   if (options_.has_status_line) {
     std::fprintf(stderr, "\r%10.3f s  %7.2f x real time  load %3.0f %%  contacts %u  sensors %u%s   ", seconds(simulation_.time()),
-                 rtf_reached_, 100 * load_, s.contacts, sample.active_sensors, is_paused_ ? "  paused" : "");
+                 rtf_reached_, 100 * load_, sample.contacts, sample.active_sensors, is_paused_ ? "  paused" : "");
     std::fflush(stderr);
   }
   const auto watched = now - warning_wall_;
@@ -228,7 +242,7 @@ void ServerLoop::pace() {
     now = Clock::now();
     slept_ += now - before;
     if (now < due) {
-      server_.tend();
+      tend();
       const auto was_at = simulation_.time();
       handle_requests(When::between_steps);
       if (is_paused_ || steps_to_do_ > 0 || simulation_.time() != was_at || is_fresh_moment_) return;

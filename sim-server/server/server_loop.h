@@ -51,6 +51,8 @@ class ServerLoop {
   void wait_for_participants();
   // What belongs to a moment: sensors, clock, participants.
   bool finish_moment();
+  // Heartbeats and leases; says what others have broken.
+  void tend();
   void step();
   void publish_clock();
   void reset(bool poses_only);
@@ -64,6 +66,7 @@ class ServerLoop {
   // Somebody takes part, listens or commands.
   bool is_watched() const;
   void watch_rate();
+  void count();
   void on_barrier_event(const shm::BarrierEvent& event);
   LoopState state() const;
 

@@ -29,7 +29,7 @@ base::Result<std::unique_ptr<Simulation>> Simulation::create(std::shared_ptr<con
   s->rays_->update();
   for (ModelId id = 0; id < s->initial_models_; ++id) {
     if (!s->physics_->exists(id)) continue;
-    if (auto made = s->make_devices_of(id, notes); !made) return made.error();
+    if (auto made = s->make_devices_of(id, dropped); !made) return made.error();
   }
   return s;
 }
@@ -43,8 +43,8 @@ base::Result<Renderer*> Simulation::renderer() {
   return renderer_.get();
 }
 
-base::Result<void> Simulation::make_devices_of(ModelId model, std::vector<std::string>& notes) {
-  auto made = make_devices(*device_world_, model, notes);
+base::Result<void> Simulation::make_devices_of(ModelId model, std::vector<std::string>& left_out) {
+  auto made = make_devices(*device_world_, model, left_out);
   if (!made) return made.error();
   for (auto& device : *made) {
     device->iface().set_resets(resets_);

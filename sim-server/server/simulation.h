@@ -74,7 +74,7 @@ class Simulation {
 
  private:
   Simulation(std::shared_ptr<const WorldDef> world, shm::Server& shm, const SimulationOptions& options);
-  base::Result<void> make_devices_of(ModelId model, std::vector<std::string>& notes);
+  base::Result<void> make_devices_of(ModelId model, std::vector<std::string>& left_out);
   void sort_devices();
   void follow_trails();
 

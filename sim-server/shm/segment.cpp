@@ -20,6 +20,7 @@
 
 #include "base/guarded.h"
 #include "base/text.h"
+#include "shm/cut_guard.h"
 #include "shm/futex.h"
 #include "shm/process.h"
 #include "shm/words.h"
@@ -81,7 +82,10 @@ std::shared_ptr<void> map_file(int file, std::size_t size) {
   std::erase_if(*table, [](const auto& entry) { return entry.second.expired(); });
   void* base = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
   if (base == MAP_FAILED) return nullptr;
-  std::shared_ptr<void> mapping(base, [size](void* mapped) { ::munmap(mapped, size); });
+  std::shared_ptr<void> mapping(base, [size, guard = std::make_shared<CutGuard>(base, size)](void* mapped) mutable {
+    guard.reset();
+    ::munmap(mapped, size);
+  });
   (*table)[key] = mapping;
   return mapping;
 }
@@ -337,6 +341,8 @@ std::span<const std::byte> Segment::info() const {
   return {place.count > 0 ? at(AreaIndex::info) : nullptr, place.count > 0 ? place.size : 0};
 }
 
+bool Segment::was_cut() const { return shm::was_cut(base_.get()); }
+
 bool Segment::is_current() const { return inode_ != 0 && inode_of_path(path_of(name_)) == inode_; }
 
 void Segment::close() {
@@ -407,6 +413,16 @@ std::vector<std::string> remove_stale(std::optional<std::uint32_t> server_id) {
     if (eviction && eviction->judgement == Judgement::removed) removed.push_back(name.text());
   }
   return removed;
+}
+
+void remove_own() {
+  const ProcessMark own = own_mark();
+  for (const auto& name : all_names()) {
+    auto segment = Segment::open(name);
+    if (!segment) continue;
+    const ProcessMark& server = segment->facts().server;
+    if (server.pid == own.pid && server.pid_namespace == own.pid_namespace && server.start_time == own.start_time) segment->close();
+  }
 }
 
 }  // namespace shm

@@ -77,6 +77,8 @@ class Segment {
   }
   std::span<const std::byte> info() const;
 
+  // True when another process has cut the file short: what is here are private zeros, and nobody else sees what is written.
+  bool was_cut() const;
   // True when the name still leads to this segment.
   bool is_current() const;
   // Says closed to all readers and wakes them; removes the name if it still leads here. For the owner.
@@ -109,6 +111,9 @@ std::vector<Found> find_segments(std::uint32_t server_id);
 
 // Removes the segments of dead servers that belong to this user; returns their names.
 std::vector<std::string> remove_stale(std::optional<std::uint32_t> server_id = std::nullopt);
+
+// Removes all names that this process has made, for one that ends without destructors. Readers are told.
+void remove_own();
 
 // By process and, when that can't be judged, by heartbeat.
 bool is_server_alive(const Header& header);

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "shm/cut_guard.h"
 #include "shm/frame_ring.h"
 #include "shm/futex.h"
 #include "shm/lease_table.h"
@@ -37,6 +38,7 @@ struct IfaceWriter::Impl {
   std::uint64_t seen_command = 0;
   std::uint64_t commander = 0;  // owner word of the lease whose command is in force
   std::size_t commander_lease = 0;
+  bool is_cut_told = false;  // under the lock of the server's ifaces
 
   Stamp next_stamp(std::chrono::nanoseconds sim_time, bool is_valid) const {
     return {sequence + 1, sim_time.count(), wall_ns(), is_valid ? 1U : 0U, resets};
@@ -153,6 +155,7 @@ struct Server::State {
     std::uint64_t deaths = 0;
   };
   base::Guarded<Ifaces, base::Rank::buffer> ifaces;
+  std::atomic<std::size_t> cuts_told{0};
 };
 
 Server::Server(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -216,6 +219,19 @@ void Server::tend() {
     store(impl->segment.header().heartbeat_ns, now);
     impl->leases.reap(*state_->watch);
   }
+}
+
+std::vector<std::string> Server::take_cuts() {
+  std::vector<std::string> names;
+  const std::size_t now = cuts();
+  if (now == state_->cuts_told.load(std::memory_order_relaxed)) return names;
+  state_->cuts_told.store(now, std::memory_order_relaxed);
+  auto ifaces = state_->ifaces.lock();
+  for (const auto& weak : ifaces->all) {
+    auto impl = weak.lock();
+    if (impl && impl->segment.was_cut() && !std::exchange(impl->is_cut_told, true)) names.push_back(impl->segment.name().text());
+  }
+  return names;
 }
 
 ProcessWatch& Server::watch() { return *state_->watch; }

@@ -92,7 +92,7 @@ std::optional<shm::Iface> Control::open(const std::string& text) {
 void step(Control& control, std::int64_t steps) {
   // Steps take as long as the world needs; a dead server is noticed anyway.
   const auto reply = control.ask(shm::StepRequest{steps}, std::chrono::hours(24));
-  if (reply && control.json()) control.print({{"sim_time", static_cast<double>(reply->sim_time_ns) * 1e-9}, {"steps", reply->steps}});
+  if (reply && control.json()) control.print({{"sim_time", static_cast<double>(reply->sim_time_ns) / 1e9}, {"steps", reply->steps}});
 }
 
 void pose(Control& control, const std::string& model, const std::vector<double>& values) {
@@ -147,8 +147,10 @@ void spawn(Control& control, const SpawnOptions& options) {
   request.sdf = options.file;
   // Paths are ours, not the server's; model:// and the like stay as they are.
   if (request.is_path && options.file.find("://") == std::string::npos) {
-    if (!std::filesystem::exists(options.file, error)) return control.fail("file " + base::in_quotes(options.file) + ": does not exist");
-    request.sdf = std::filesystem::absolute(options.file, error).string();
+    const bool is_there = std::filesystem::exists(options.file, error);
+    if (!is_there && options.file.find('/') != std::string::npos)
+      return control.fail("file " + base::in_quotes(options.file) + ": does not exist");
+    request.sdf = is_there ? std::filesystem::absolute(options.file, error).string() : "model://" + options.file;
   }
   request.name = options.name;
   request.has_pose = !options.pose.empty();
@@ -159,16 +161,21 @@ void spawn(Control& control, const SpawnOptions& options) {
   std::cout << reply->message << '\n';
 }
 
+std::optional<std::pair<std::uint32_t, std::uint32_t>> parse_size(const std::string& text) {
+  const auto x = text.find('x');
+  const auto width = base::parse_integer(text.substr(0, x));
+  const auto height = x == std::string::npos ? std::nullopt : base::parse_integer(text.substr(x + 1));
+  if (!width || !height || *width < 1 || *height < 1 || *width > 8192 || *height > 8192) return std::nullopt;
+  return std::pair(static_cast<std::uint32_t>(*width), static_cast<std::uint32_t>(*height));
+}
+
 void screenshot(Control& control, const ScreenshotOptions& options) {
   shm::ScreenshotRequest request;
-  const auto x = options.size.find('x');
-  const auto width = base::parse_integer(options.size.substr(0, x));
-  const auto height = x == std::string::npos ? std::nullopt : base::parse_integer(options.size.substr(x + 1));
-  if (!width || !height || *width < 1 || *height < 1 || *width > 8192 || *height > 8192)
-    return control.fail("size " + base::in_quotes(options.size) + ": expected WIDTHxHEIGHT, each from 1 to 8192");
+  const auto size = parse_size(options.size);
+  if (!size) return control.fail("size " + base::in_quotes(options.size) + ": expected WIDTHxHEIGHT, each from 1 to 8192");
   request.path = std::filesystem::absolute(options.file).string();
-  request.width = static_cast<std::uint32_t>(*width);
-  request.height = static_cast<std::uint32_t>(*height);
+  request.width = size->first;
+  request.height = size->second;
   request.with_scans = options.with_scans;
   request.with_collisions = options.with_collisions;
   request.span = options.span;

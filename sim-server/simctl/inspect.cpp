@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <iostream>
@@ -25,18 +26,26 @@ Json to_json(const double (&values)[n]) {
   for (const double value : values) array.push_back(value);
   return array;
 }
+// The shortest decimal that is this float, not the double next to it: 1.56 instead of 1.5600000619888306.
+double shortest(float value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value);
+  double result = value;
+  std::from_chars(text, end.ptr, result);
+  return result;
+}
 // JSON has no infinity: null stands for "nothing hit", -1 for "too near".
 Json to_json(std::span<const float> ranges) {
   Json array = Json::array();
-  for (const float range : ranges) array.push_back(std::isfinite(range) ? Json(range) : range < 0 ? Json(-1) : Json());
+  for (const float range : ranges) array.push_back(std::isfinite(range) ? Json(shortest(range)) : range < 0 ? Json(-1) : Json());
   return array;
 }
 std::string text_of(const char* text, std::size_t size) { return {text, strnlen(text, size)}; }
 
 Json stamp_json(const shm::Stamp& stamp) {
   return {{"sequence", stamp.sequence},
-          {"sim_time", static_cast<double>(stamp.sim_time_ns) * 1e-9},
-          {"wall_time", static_cast<double>(stamp.wall_time_ns) * 1e-9},
+          {"sim_time", static_cast<double>(stamp.sim_time_ns) / 1e9},
+          {"wall_time", static_cast<double>(stamp.wall_time_ns) / 1e9},
           {"valid", stamp.valid != 0}};
 }
 
@@ -47,7 +56,7 @@ Json info_json(const shm::Iface& iface) {
       const auto& i = iface.info<shm::SimulationInfo>();
       return {{"world", text_of(i.world, sizeof i.world)},
               {"file", text_of(i.file, sizeof i.file)},
-              {"step", static_cast<double>(i.step_ns) * 1e-9},
+              {"step", static_cast<double>(i.step_ns) / 1e9},
               {"seed", i.seed},
               {"lockstep", i.lockstep != 0},
               {"version", text_of(i.version, sizeof i.version)}};
@@ -308,7 +317,7 @@ void list(Control& control, bool all_servers) {
     std::printf("%-12s %-40s %s, %u subscribers%s\n", std::string(shm::to_text(found.name.type)).c_str(), found.name.iface.c_str(),
                 state.c_str(), found.subscribers, found.problem.empty() ? "" : (", " + found.problem).c_str());
   }
-  if (control.json()) return control.print(json);
+  if (control.json()) control.print(json);
   if (!any && !all_servers)
     control.fail("server " + std::to_string(control.server_id()) +
                  ": is not there; simctl list --all shows others, start one with: sim-server -s " + std::to_string(control.server_id()) +

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "base/command_line.h"
+#include "base/text.h"
 #include "offers.h"
 #include "simctl.h"
 
@@ -64,7 +65,7 @@ void add_control(CLI::App& app, Work& work) {
 
   auto* rtf = app.add_subcommand("rtf", "Set how many simulated seconds a second has");
   auto factor = option_value(1.0);
-  rtf->add_option("FACTOR", *factor, "0: as fast as possible")->required()->check(CLI::Range(0.0, 1e6));
+  rtf->add_option("FACTOR", *factor, "0: as fast as possible")->required()->check(base::number_between(0.0, 1e6));
   rtf->callback([&work, factor] { work = [factor](Control& c) { c.ask(shm::SetRtfRequest{*factor}); }; });
 
   auto* step = app.add_subcommand("step", "Make physics steps and pause; returns when they are done");
@@ -95,6 +96,8 @@ void add_control(CLI::App& app, Work& work) {
       ->expected(0, 6);
   velocity->add_option("--for", *seconds, "Simulated seconds; default: until interrupted")->check(base::number_between(0.0, 1e9));
   velocity->callback([&work, robot, speeds, seconds] {
+    if (const auto n = speeds->size(); n == 1 || n == 2 || n == 5)
+      throw CLI::ValidationError("velocity", "expected 3, 4 or 6 numbers, got " + std::to_string(n));
     work = [=](Control& c) {
       if (simctl::is_position_iface(c.server_id(), *robot)) return simctl::velocity(c, *robot, *speeds, *seconds);
       simctl::model_velocity(c, *robot, *speeds);
@@ -107,7 +110,7 @@ void add_control(CLI::App& app, Work& work) {
   auto duration = option_value(0.0);
   wrench->add_option("MODEL", *pushed, "Model or MODEL::LINK; at its centre of mass")->required();
   wrench->add_option("NUMBERS", *forces, "FX FY FZ [N], TX TY TZ [N m], in the world")->required()->expected(3, 6);
-  wrench->add_option("--for", *duration, "Simulated seconds; default: one step")->check(CLI::Range(0.0, 1e6));
+  wrench->add_option("--for", *duration, "Simulated seconds; default: one step")->check(base::number_between(0.0, 1e6));
   wrench->callback([&work, pushed, forces, duration] {
     if (forces->size() != 3 && forces->size() != 6)
       throw CLI::ValidationError("wrench", "expected FX FY FZ or FX FY FZ TX TY TZ, got " + std::to_string(forces->size()) + " numbers");
@@ -187,6 +190,7 @@ void add_pictures(CLI::App& app, Work& work) {
       throw CLI::ValidationError("--span", "goes with --top, --from or --follow");
     if (!std::all_of(options->from.begin(), options->from.end(), [](double v) { return std::isfinite(v); }))
       throw CLI::ValidationError("--from", "expected finite numbers");
+    if (!simctl::parse_size(options->size)) throw CLI::ValidationError("--size", "expected WIDTHxHEIGHT, each from 1 to 8192");
     if (from->count() > 0 && options->from.size() != 6) {
       throw CLI::ValidationError("--from",
                                  "expected 6 numbers, X Y Z ROLL PITCH YAW [m, rad], got " + std::to_string(options->from.size()));
@@ -208,6 +212,19 @@ void add_pictures(CLI::App& app, Work& work) {
   });
 }
 
+// The first word that is neither an option nor the value of one.
+std::string first_word(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "-s" || word == "--server-id" || word == "--completion") {
+      ++i;
+    } else if (!word.starts_with('-')) {
+      return word;
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -226,6 +243,11 @@ int main(int argc, char** argv) {
   add_looks(app, work);
   add_control(app, work);
   add_pictures(app, work);
+  if (const std::string word = first_word(argc, argv);
+      !word.empty() && app.get_subcommands([&](CLI::App* sub) { return sub->get_name() == word; }).empty()) {
+    std::cerr << "simctl: unknown command " << base::in_quotes(word) << "; see simctl --help\n";
+    return 2;
+  }
   if (const auto end = base::parse_command_line(app, "simctl", argc, argv, simctl::offers)) return *end;
   Control control(server_id, json);
   work(control);

@@ -4,6 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/result.h"
@@ -57,6 +58,8 @@ struct ScreenshotOptions {
   bool from_top = false, with_scans = false, with_collisions = false;
   double span = 0;
 };
+// "WIDTHxHEIGHT", each from 1 to 8192.
+std::optional<std::pair<std::uint32_t, std::uint32_t>> parse_size(const std::string& text);
 void screenshot(Control& control, const ScreenshotOptions& options);
 void contacts(Control& control, const std::string& model);
 

@@ -8,6 +8,7 @@
 
 #include "base/text.h"
 #include "world/checks.h"
+#include "world/iface_names.h"
 #include "world/plugin_kind.h"
 #include "world/repairs.h"
 #include "world/xml_file.h"
@@ -92,11 +93,13 @@ std::optional<GeometryDef> build_geometry(pugi::xml_node geometry, BuildContext&
     return EllipsoidShape{vector3_at(node, "radii", {1, 1, 1})};
   }
   if (pugi::xml_node node = geometry.child("plane")) return build_plane(node);
-  if (pugi::xml_node node = geometry.child("mesh")) return build_mesh(node);
+  if (pugi::xml_node node = geometry.child("mesh"); node && !text_at(node, "uri").empty()) return build_mesh(node);
   if (pugi::xml_node node = geometry.child("heightmap")) return build_heightmap(node);
   if (geometry.child("polyline")) return build_polyline(geometry, context);
   const pugi::xml_node owner = geometry.parent();
-  if (const pugi::xml_node image = geometry.child("image")) {
+  if (geometry.child("mesh")) {
+    context.complaints.drop(owner, "<mesh> of " + describe_in_context(owner) + " has no <uri>; the " + owner.name() + " is left out");
+  } else if (const pugi::xml_node image = geometry.child("image")) {
     context.complaints.drop(image, "shapes from images are not simulated; " + describe_in_context(owner) + " is left out");
   } else if (!geometry.child("empty")) {
     context.complaints.warn(owner, describe_in_context(owner) + " has no shape and is ignored");
@@ -502,6 +505,7 @@ ModelDef build_model(pugi::xml_node node, const ResolvedModel& resolved, BuildCo
   ModelBuilder(model, context).add(node, resolved, {}, Eigen::Isometry3d::Identity());
   model.canonical_link = resolved.canonical_link;
   if (!model.link(model.canonical_link) && !model.links.empty()) model.canonical_link = model.links.front().name;
+  name_ifaces(model, context.complaints);
   return model;
 }
 

@@ -11,9 +11,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
+// Pipes and devices are no models: reading one may never end.
 bool is_there(const fs::path& path) {
   std::error_code problem;
-  return fs::exists(path, problem) && !problem;
+  const fs::file_status status = fs::status(path, problem);
+  return !problem && (fs::is_regular_file(status) || fs::is_directory(status));
 }
 
 bool take_prefix(std::string_view& text, std::string_view prefix) {
@@ -105,6 +107,10 @@ std::optional<fs::path> ModelPath::find(std::string_view uri, const fs::path& fo
   const std::string text = without_percent_codes(base::trim(uri));
   std::string_view rest = text;
   if (rest.empty() || rest.size() > 4096) return std::nullopt;
+  if (const std::size_t end = rest.find(')'); rest.starts_with("$(find ") && end != std::string_view::npos) {
+    // As in launch files and xacro.
+    return find_model(std::string(base::trim(rest.substr(7, end - 7))).append(rest.substr(end + 1)), folder, folders_);
+  }
   if (take_prefix(rest, "model://") || take_prefix(rest, "package://") || take_prefix(rest, "fuel://")) {
     while (take_prefix(rest, "/")) {
     }

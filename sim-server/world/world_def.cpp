@@ -146,12 +146,6 @@ const ModelDef* WorldDef::model(std::string_view model_name) const {
   return nullptr;
 }
 
-std::string iface_name(std::string_view model, std::string_view scope, std::string_view own_name) {
-  std::string name(model);
-  if (!scope.empty()) name.append("::").append(scope);
-  return name.append("::").append(own_name);
-}
-
 std::string Finding::text() const {
   if (file.empty()) return message;
   return line > 0 ? file + ":" + std::to_string(line) + ": " + message : file + ": " + message;

@@ -50,6 +50,7 @@ struct PluginDef {
   std::string filename;  // as written: "libDiffDrivePlugin.so", "gz-sim-diff-drive-system", ...
   std::string
       scope;  // nested model it stands in, relative to its ModelDef ("" or "arm::hand"); joints and links it names are relative to it
+  std::string iface;  // of drives, as in SensorDef
   ParameterNode parameters;
   std::string source;  // "file:line" for messages
 };
@@ -308,6 +309,7 @@ std::string_view to_text(SensorKind kind);
 struct SensorDef {
   std::string name;
   std::string scope;  // nested model it stands in, as in PluginDef
+  std::string iface;  // what its iface is called after the model's name, see iface_names.h; empty: scope and name
   SensorKind kind = SensorKind::ray;
   std::string type;                                        // as written: "gpu_lidar"
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // in the link
@@ -390,9 +392,6 @@ struct ModelDef {
   const LinkDef* link(std::string_view link_name) const;     // null when absent
   const JointDef* joint(std::string_view joint_name) const;  // null when absent
 };
-
-// Name of the iface of a sensor or plugin: model, scope and own name joined by "::" ("pioneer2dx::laser").
-std::string iface_name(std::string_view model, std::string_view scope, std::string_view own_name);
 
 // --- actors
 // ---------------------------------------------------------------------------------------------------------------------------------

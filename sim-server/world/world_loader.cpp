@@ -9,6 +9,7 @@
 #include "world/checks.h"
 #include "world/complaints.h"
 #include "world/frame_skeleton.h"
+#include "world/iface_names.h"
 #include "world/materials.h"
 #include "world/model_builder.h"
 #include "world/model_files.h"
@@ -127,6 +128,7 @@ void Loader::add_instance(std::size_t distinct, pugi::xml_node named, pugi::xml_
   if (!distinct_[distinct].is_usable) return;
   std::string legal = name.empty() ? "model" : name;
   for (std::size_t at; (at = legal.find("::")) != std::string::npos;) legal.replace(at, 2, "_");
+  legal = without_slashes(legal);
   if (legal == "world" || (legal.starts_with("__") && legal.ends_with("__"))) legal = "model_" + legal;
   legal = free_name(legal, names_);
   if (legal != name)

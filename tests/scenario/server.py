@@ -117,6 +117,8 @@ def requests():
     box = "<sdf version='1.9'><model name='crate'><link name='l'><collision name='c'><geometry><box><size>.3 .3 .3</size></box></geometry></collision></link></model></sdf>"
     assert read("spawn", box, "--name", "crate", "--pose", "-1", "-1", "0.15", "0")["name"] == "crate"
     near(position("crate"), (-1, -1, 0.15))
+    assert read("spawn", "sick_lms200", "--pose", "0", "0", "3", "0")["name"] == "sick_lms200"  # by its name alone
+    ok("delete", "sick_lms200")
     refused("spawn", box, "--name", "crate", says="crate")
     ok("delete", "crate")
     refused("pose", "crate", says="crate")
@@ -187,6 +189,12 @@ def bad_requests():
     refused("pose", robot, "1", code=2)
     refused("step", "-1", code=2)
     refused("step", "many", code=2)
+    refused("velocity", robot, "1", code=2)
+    refused("rtf", "nan", code=2)
+    refused("screenshot", f"{work.name}/x.png", "--size", "0x0", code=2)
+    refused("nosuch", code=2, says='unknown command "nosuch"')
+    nobody = subprocess.run([f"{bin_dir}/simctl", "-s", "999", "--json", "list"], capture_output=True, text=True)  # tests have ids from 1000 on
+    assert nobody.returncode == 1 and json.loads(nobody.stdout) == [], nobody
     assert state() == before, "a refused request changed the world"
     stop(process)
 
@@ -374,6 +382,54 @@ def ends():
     process = server("--rtf", "0", "--duration", "0.5")
     assert process.wait(watchdog) == 0
     assert not segments(), segments()
+    # A signal that means nothing is not the last one that is heard.
+    process = started()
+    process.send_signal(signal.SIGUSR2)
+    time.sleep(0.1)
+    stop(process)
+    # Under nohup the end of the terminal is not the end.
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    process = started()
+    signal.signal(signal.SIGHUP, before)
+    process.send_signal(signal.SIGHUP)
+    time.sleep(0.2)
+    stop(process)
+    stop(started(), signal.SIGHUP)
+
+
+# Also while the world is still being read: these meshes take seconds.
+def ends_while_it_loads():
+    slow = f"{work.name}/slow"
+    os.mkdir(slow)
+    triangles = 200000
+    with open(f"{slow}/big.obj", "w") as file:
+        for i in range(triangles):
+            file.write(f"v {i % 500} {i // 500} {i % 7}\n")
+        for i in range(triangles - 501):
+            file.write(f"f {i + 1} {i + 2} {i + 501}\n")
+    world = f"{slow}/slow.sdf"
+    meshes = "".join(f"<collision name='c{i}'><geometry><mesh><uri>big.obj</uri><scale>{i + 1} 1 1</scale></mesh></geometry></collision>" for i in range(20))
+    with open(world, "w") as file:
+        file.write(f"<sdf version='1.9'><world name='w'><model name='m'><static>true</static><link name='l'>{meshes}</link></model></world></sdf>")
+    process = server(world=world)
+    await_("its first iface", segments)
+    process.send_signal(signal.SIGTERM)
+    assert process.wait(watchdog) == 128 + signal.SIGTERM, process.returncode
+    assert not segments(), segments()
+
+
+# A file of shared memory that somebody cuts short: said, and everything else goes on.
+def cut_short():
+    process = started()
+    listener = client("echo", f"{robot}::laser")
+    await_("a listener", lambda: read("stats")["subscribed"] == 1)
+    os.truncate(f"/dev/shm/rtmsim-{os.getuid()}-{server_id}.laser.{robot}::laser", 0)
+    await_("a line about it", lambda: "was cut short" in open(process.log.name).read())
+    assert listener.wait(watchdog) == 1
+    before = read("stats")["sim_time"]
+    await_("running time", lambda: read("stats")["sim_time"] > before)
+    near(read("echo", f"{robot}::position2d", "-n", "1")["odometry"], (0, 0, 0), 1e-3)
+    stop(process)
 
 
 def check():
@@ -385,6 +441,34 @@ def check():
     assert server("--check", world="/no/such/world.sdf").wait(watchdog) == 1
     assert server("--rtf", "-1").wait(watchdog) == 2
     assert not segments(), segments()
+    drive = f"{work.name}/drive.sdf"
+    with open(drive, "w") as file:
+        file.write("<sdf version='1.9'><world name='w'><model name='m'><link name='l'/>"
+                   "<plugin name='p' filename='gz-sim-diff-drive-system'><left_joint>no</left_joint><right_joint>no</right_joint></plugin></model></world></sdf>")
+    looking = server("--check", world=drive)
+    assert looking.wait(watchdog) == 1, "a drive was left out"
+    said = open(looking.log.name).read().splitlines()
+    assert len(said) == 1 and said[0].count("drive.sdf") == 1, said
+    # Who only looks needs no server id of its own.
+    process = started("-u")
+    assert server("--check").wait(watchdog) == 0
+    stop(process)
+
+
+# What goes wrong in people's names is no reason to refuse their world.
+def names():
+    world = f"{work.name}/names.sdf"
+    imu = "<sensor name='s' type='imu'/>"
+    with open(world, "w") as file:
+        file.write(f"<sdf version='1.9'><world name='w'><model name='a/b'><link name='x'>{imu}</link><link name='y'>{imu}</link></model>"
+                   f"<model name='{'n' * 199}'><link name='l'>{imu}</link></model></world></sdf>")
+    process = started("-u", world=world)
+    there = {(one["type"], one["name"]) for one in read("list")}
+    assert {("imu", "a_b::s"), ("imu", "a_b::s_1"), ("truth", "a_b"), ("truth", "n" * 199)} <= there, there
+    tree = read("tree", "a_b")["models"][0]
+    assert [link["sensors"][0]["iface"] for link in tree["links"]] == ["a_b::s", "a_b::s_1"], tree
+    stop(process)
+    assert server("--check", world=world).wait(watchdog) == 1, "a sensor was left out: its name does not fit after the model's"
 
 
 # The factor that was asked for, by the stamps of the clock. Delays only ever make a stamp late, so the least delayed ones at both ends
@@ -431,7 +515,7 @@ def paused_is_idle():
     stop(process)
 
 
-cases = {f.__name__: f for f in (requests, motion, bad_requests, same_state, killed, living_server_is_refused, ends, check, paused_is_idle,
+cases = {f.__name__: f for f in (ends_while_it_loads, cut_short, names, requests, motion, bad_requests, same_state, killed, living_server_is_refused, ends, check, paused_is_idle,
                                   no_room, scribbled_over,
                                   looked_at_while_paused, rate)}
 try:

@@ -322,6 +322,49 @@ TEST(Faults, a_scribbling_client_stops_neither_server_nor_its_loop) {
   (void)find_segments(f.id);
 }
 
+TEST(Faults, a_file_that_is_cut_short_ends_neither_server_nor_readers) {
+  for (const std::size_t size : {0, 1024, 4096}) {
+    Fixture f;
+    auto simulation = f.make(simulation_spec(simulation_info()));
+    auto laser = f.make(laser_spec("laser", laser_info(4000)));
+    auto camera = f.make(camera_spec(IfaceType::camera, "eye", camera_info(640, 480)));
+    auto base = f.make(position2d_spec("base", Position2dInfo{}));
+    RequestBoard board(*simulation, *f.server);
+    Barrier barrier(*simulation, *f.server, {});
+    Iface reader = f.open(IfaceType::laser, "laser"), eye = f.open(IfaceType::camera, "eye"),
+          driver = f.open(IfaceType::position2d, "base");
+    ASSERT_TRUE(reader.subscribe() && eye.subscribe() && driver.command_velocity(1, 0, 0));
+    Command command{};
+    ASSERT_EQ(base->poll_command(command), CommandChange::fresh);
+    EXPECT_TRUE(f.server->take_cuts().empty());
+
+    for (const IfaceWriter* writer : {simulation.get(), laser.get(), camera.get(), base.get()}) {
+      ASSERT_EQ(::truncate(("/dev/shm/" + writer->segment().name().text()).c_str(), static_cast<off_t>(size)), 0);
+    }
+    CommandChange change = CommandChange::none;
+    for (std::uint64_t n = 1; n < 5; ++n) {
+      const std::chrono::milliseconds time(n);
+      f.server->tend();
+      EXPECT_TRUE(board.poll().empty());
+      laser->publish(time);
+      if (camera->begin_frame()) camera->publish_frame(time, identity_pose);
+      if (const auto now = base->poll_command(command); now != CommandChange::none) change = now;
+      base->publish(time);
+      simulation->publish(time);
+      EXPECT_TRUE(barrier.tick(time, n));
+      (void)reader.wait(n, 1ms);
+      (void)reader.laser_scan();
+      (void)eye.hold();
+      (void)driver.command_velocity(1, 0, 0);
+    }
+    EXPECT_EQ(f.server->take_cuts().size(), 4U) << size;
+    EXPECT_TRUE(f.server->take_cuts().empty());
+    EXPECT_EQ(change, CommandChange::lost) << "the robot goes on without anybody who could stop it";
+    EXPECT_NE(reader.status(), Status::live);
+    EXPECT_FALSE(Iface::open(f.id, IfaceType::laser, "laser"));
+  }
+}
+
 TEST(Faults, a_participant_killed_in_the_middle_of_a_tick_is_dropped_at_once) {
   Fixture f;
   auto simulation = f.make(simulation_spec(simulation_info()));

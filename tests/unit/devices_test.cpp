@@ -308,6 +308,28 @@ TEST(Bumper, reports_what_it_touches_with_force) {
   EXPECT_NEAR(up, 98, 1) << "also while it sleeps";
 }
 
+TEST(Bumper, tells_the_forces_of_a_body_that_slept_before_anybody_asked) {
+  ModelDef box = body("box", BoxShape{{0.4, 0.4, 0.4}}, at(0, 0, 0.2), 10);
+  SensorDef bumper = sensor("bumper", SensorKind::contact, Eigen::Isometry3d::Identity());
+  bumper.data = ContactDef{{"collision"}};
+  box.links[0].sensors = {bumper, bumper};
+  box.links[0].sensors[1].name = "other";
+  SimulationFixture f(world_of({ground(), box}));
+  f.run(2);
+  const auto weight = [&](const std::string& name) {
+    auto iface = f.open(IfaceType::bumper, name);
+    f.run(0.1);
+    if (!iface.read()) return 0.0;
+    double up = 0;
+    for (const auto& contact : iface.bumper().contacts) up += contact.force[2];
+    return up;
+  };
+  ASSERT_EQ(f.physics().statistics().awake, 0U);
+  EXPECT_EQ(f.physics().statistics().contacts, 4U) << "it touches the floor also while it sleeps";
+  EXPECT_NEAR(weight("box::bumper"), 98, 1);
+  EXPECT_NEAR(weight("box::other"), 98, 1) << "the first one's client has gone";
+}
+
 ModelDef helicopter() {
   ModelDef model = body("heli", BoxShape{{1.5, 0.5, 0.5}}, at(0, 0, 5), 5);
   PluginDef plugin;

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "support/world_files.h"
+#include "world/iface_names.h"
 #include "world/materials.h"
 #include "world/plugin_kind.h"
 
@@ -37,10 +38,10 @@ TEST(ShippedWorlds, have_the_robots_that_they_promise) {
   EXPECT_NEAR(mass, 9.16, 1e-9) << "9 kg and the laser";
   ASSERT_EQ(robot->plugins.size(), 1U);
   EXPECT_EQ(kind_of(robot->plugins[0]), PluginKind::differential_drive);
-  EXPECT_EQ(iface_name(robot->name, robot->plugins[0].scope, iface_own_name(robot->plugins[0])), "pioneer2dx::position2d");
+  EXPECT_EQ(iface_name(*robot, robot->plugins[0]), "pioneer2dx::position2d");
   EXPECT_EQ(robot->link("chassis")->sensors.size(), 16U);
   const SensorDef& laser = robot->link("laser_link")->sensors.at(0);
-  EXPECT_EQ(iface_name(robot->name, laser.scope, laser.name), "pioneer2dx::laser");
+  EXPECT_EQ(iface_name(*robot, laser), "pioneer2dx::laser");
   EXPECT_EQ(std::get<RayDef>(laser.data).horizontal.samples, 682);
   const LoadResult maze = load_shipped("worlds/maze.sdf");
   for (const char* name : {"leader", "follower"}) {
