@@ -33,7 +33,7 @@ struct Makers {
   bool can_name(const std::string& iface, const std::string& what) {
     const auto good = shm::check_name(iface);
     if (!good) left_out.push_back(fmt::format("model {}: {}: {}", world.physics.def(model).name, what, good.error().message));
-    return good.has_value();
+    return static_cast<bool>(good);
   }
   void take(Made made) {
     if (made) {

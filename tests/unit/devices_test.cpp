@@ -133,8 +133,8 @@ TEST(Position2d, a_drive_without_its_joints_is_one_line_and_the_rest_runs) {
   ModelDef robot = pioneer("robot", at(0, 0, 0));
   parameter(robot, "left_joint").text = "nothing";
   SimulationFixture f(world_of({ground(), robot}));
-  ASSERT_EQ(f.notes.size(), 1U);
-  EXPECT_NE(f.notes[0].find("nothing"), std::string::npos);
+  ASSERT_EQ(f.dropped.size(), 1U);
+  EXPECT_NE(f.dropped[0].find("nothing"), std::string::npos);
   EXPECT_EQ(f.simulation->device("robot::position2d"), nullptr);
   f.open(IfaceType::laser, "robot::laser");
 }
@@ -324,8 +324,8 @@ TEST(Bumper, tells_the_forces_of_a_body_that_slept_before_anybody_asked) {
     for (const auto& contact : iface.bumper().contacts) up += contact.force[2];
     return up;
   };
-  ASSERT_EQ(f.physics().statistics().awake, 0U);
-  EXPECT_EQ(f.physics().statistics().contacts, 4U) << "it touches the floor also while it sleeps";
+  ASSERT_EQ(f.simulation->physics().statistics().awake, 0U);
+  EXPECT_EQ(f.simulation->physics().statistics().contacts, 4U) << "it touches the floor also while it sleeps";
   EXPECT_NEAR(weight("box::bumper"), 98, 1);
   EXPECT_NEAR(weight("box::other"), 98, 1) << "the first one's client has gone";
 }

@@ -89,9 +89,9 @@ TEST(Follower, a_static_model_and_a_wrong_way_are_one_line_and_the_rest_runs) {
   ModelDef lost = body("lost", BoxShape{{1, 1, 1}}, at(-9, 0, 0.5));
   lost.plugins.push_back(way({"1 x"}));
   SimulationFixture f(world_of({ground(), statue, lost, walker()}));
-  ASSERT_EQ(f.notes.size(), 2U);
-  EXPECT_NE(f.notes[0].find("static"), std::string::npos) << f.notes[0];
-  EXPECT_NE(f.notes[1].find("waypoint \"1 x\""), std::string::npos) << f.notes[1];
+  ASSERT_EQ(f.dropped.size(), 2U);
+  EXPECT_NE(f.dropped[0].find("static"), std::string::npos) << f.notes[0];
+  EXPECT_NE(f.dropped[1].find("waypoint \"1 x\""), std::string::npos) << f.notes[1];
   auto cow = f.open(IfaceType::position3d, "cow::position3d");
   f.run(1);
   ASSERT_TRUE(cow.read());
