@@ -193,6 +193,16 @@ bool fits_type(const std::string& type, const std::string& text) {
   return true;
 }
 
+// Elements that newer versions or ROS know and that only name topics and frames of messages; and what belongs to a sensor of a type that
+// gets a line of its own.
+bool means_nothing_here(pugi::xml_node node, std::string_view name) {
+  for (std::string_view known : {"gz_frame_id", "ignition_frame_id", "optical_frame_id", "camera_info_topic", "trigger_topic",
+                                 "enable_metrics", "robotNamespace", "topicName", "frameName"}) {
+    if (name == known) return true;
+  }
+  return std::string_view(node.name()) == "sensor" && name == node.attribute("type").value();
+}
+
 std::string expectation(const std::string& type) {
   if (type == "bool") return "true or false";
   if (type == "int") return "a whole number";
@@ -322,8 +332,9 @@ void SdfLibrary::State::check(pugi::xml_node node, const sdf::ElementPtr& descri
       name = lower;
     }
     if (!known) {
-      complaints->warn(child, "unknown element <" + base::in_quotes(name).substr(1, base::in_quotes(name).size() - 2) + "> in " +
-                                  describe_in_context(node) + " is ignored");
+      if (!means_nothing_here(node, name))
+        complaints->warn(child, "unknown element <" + base::in_quotes(name).substr(1, base::in_quotes(name).size() - 2) + "> in " +
+                                    describe_in_context(node) + " is ignored");
       node.remove_child(child);
       continue;
     }
