@@ -68,7 +68,7 @@ RTC::ReturnCode_t VideoPlayer::onInitialize() {
 }
 
 RTC::ReturnCode_t VideoPlayer::onActivated(RTC::UniqueId) {
-  frames_ = saved_ = refused_ = frames_at_title_ = 0;
+  frames_ = recorded_ = saved_ = refused_ = frames_at_title_ = 0;
   is_paused_ = false;
   dropped_.store(0, std::memory_order_relaxed);
   title_time_ = Clock::now();
@@ -145,10 +145,10 @@ void VideoPlayer::take(const RTC::CameraImage& image) {
 }
 
 // The file's name; empty when there is none.
-std::string VideoPlayer::save(const std::string& folder, const char* prefix) {
+std::string VideoPlayer::save(const std::string& folder, const char* prefix, std::uint64_t& number) {
   if (picture_->rgb.empty()) return {};
   char name[64];
-  std::snprintf(name, sizeof name, "%s-%06llu.png", prefix, static_cast<unsigned long long>(++saved_));
+  std::snprintf(name, sizeof name, "%s-%06llu.png", prefix, static_cast<unsigned long long>(++number));
   const auto file = (std::filesystem::path(folder) / name).string();
   if (const auto written = video::write_png(*picture_, file); !written) {
     if (said_ != written.error().message) RTC_ERROR(("%s", written.error().message.c_str()));
@@ -159,7 +159,7 @@ std::string VideoPlayer::save(const std::string& folder, const char* prefix) {
 }
 
 void VideoPlayer::record() {
-  const auto name = save(record_dir_, "frame");
+  const auto name = save(record_dir_, "frame", recorded_);
   char time[32];
   std::snprintf(time, sizeof time, "%u.%09u", static_cast<unsigned>(image_.tm.sec), static_cast<unsigned>(image_.tm.nsec));
   if (!name.empty()) times_ << name << ' ' << time << std::endl;
@@ -169,15 +169,17 @@ void VideoPlayer::handle_events(RTC::UniqueId ec_id) {
   const auto events = window_->events();
   if (!events.problem.empty() && events.problem != said_) RTC_ERROR(("%s", events.problem.c_str()));
   if (!events.problem.empty()) said_ = events.problem;
-  if (events.save) save(record_dir_.empty() ? "." : record_dir_, "picture");
+  if (events.save) save(record_dir_.empty() ? "." : record_dir_, "picture", saved_);
   if (events.toggle_pause) {
     is_paused_ = !is_paused_;
     write_title();
   }
-  if (!events.close) return;
+  if (!events.close && !events.lost) return;
   window_.reset();
+  if (events.lost && record_dir_.empty()) RTC_WARN(("the display has gone; set record_dir to get the frames as PNG files"));
+  if (events.lost && !record_dir_.empty()) RTC_WARN(("the display has gone; the frames go to %s", record_dir_.c_str()));
   if (!record_dir_.empty()) return;
-  RTC_INFO(("the window was closed"));
+  if (events.close) RTC_INFO(("the window was closed"));
   deactivate(ec_id);
 }
 

@@ -44,7 +44,7 @@ class VideoPlayer : public RTC::DataFlowComponentBase {
   void handle_events(RTC::UniqueId ec_id);
   void update_title();
   void write_title();
-  std::string save(const std::string& folder, const char* prefix);
+  std::string save(const std::string& folder, const char* prefix, std::uint64_t& number);
   void record();
   void refuse(const std::string& line);
 
@@ -57,7 +57,7 @@ class VideoPlayer : public RTC::DataFlowComponentBase {
   std::shared_ptr<const video::Picture> picture_ = std::make_shared<video::Picture>();
   bool is_paused_ = false;
   std::uint64_t frames_ = 0;
-  std::uint64_t saved_ = 0;
+  std::uint64_t recorded_ = 0, saved_ = 0;
   std::uint64_t refused_ = 0;
   std::atomic<std::uint64_t> dropped_{0};
   std::uint64_t frames_at_title_ = 0;

@@ -1,9 +1,16 @@
 #include "window.h"
 
 #include <SDL.h>
+#include <SDL_syswm.h>
+#include <X11/Xlib.h>
 #include <base/guarded.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
+#include <condition_variable>
 #include <cstdlib>
 #include <functional>
 #include <future>
@@ -46,6 +53,13 @@ class Window::Pane {
 
   const Shared* shared() const { return shared_.get(); }
   bool has(std::uint32_t id) const { return SDL_GetWindowID(window_) == id; }
+  // Null when it is not X11.
+  Display* display() const {
+    SDL_SysWMinfo info;
+    SDL_VERSION(&info.version);
+    return SDL_GetWindowWMInfo(window_, &info) == SDL_TRUE && info.subsystem == SDL_SYSWM_X11 ? info.info.x11.display : nullptr;
+  }
+  void lose() const { shared_->state.lock()->events.lost = true; }
 
   void take(const SDL_Event& event) {
     auto state = shared_->state.lock();
@@ -113,6 +127,9 @@ class Window::Pane {
 };
 
 // The thread of the display. One per process, as SDL is.
+//
+// When the X server dies Xlib wants to end the process. Its handler for that does not return: the thread stays where it is for ever, and
+// whoever waits for it is told. Nobody but the thread touches the display, so nobody else can meet its end.
 class Window::Screen {
  public:
   static Screen& one() {
@@ -126,18 +143,21 @@ class Window::Screen {
 
   base::Result<void> open(const std::shared_ptr<Shared>& shared, const std::string& title) {
     const std::scoped_lock lock(turnstile_);
+    if (state_.lock()->is_lost) return lost();
     if (panes_open_ == 0) {
       if (auto started = start(); !started) return started;
     }
     base::Result<void> opened;
-    run_there([&] {
+    const bool is_there = run_there([&] {
       auto pane = Pane::open(shared, title);
       if (!pane) {
         opened = pane.error();
-      } else {
-        panes_.push_back(std::move(*pane));
+        return;
       }
+      watch(**pane);
+      panes_.push_back(std::move(*pane));
     });
+    if (!is_there) opened = lost();
     if (opened) ++panes_open_;
     if (panes_open_ == 0) end();
     return opened;
@@ -147,34 +167,50 @@ class Window::Screen {
     run_there([&] { std::erase_if(panes_, [&](const auto& pane) { return pane->shared() == shared; }); });
     if (--panes_open_ == 0) end();
   }
-  // Only while a window is open.
+  // Any thread.
   void wake() const {
-    SDL_Event event{};
-    event.type = wake_event_;
-    SDL_PushEvent(&event);
+    const std::uint64_t one = 1;
+    if (::write(bell_, &one, sizeof one) < 0) return;  // it rings already
   }
 
  private:
+  struct State {
+    std::vector<std::function<void()>> tasks;
+    std::uint64_t tasks_given = 0, tasks_done = 0;
+    bool is_lost = false;
+  };
+
+  static base::Error lost() { return base::Error{"the display of this process has gone"}; }
+
   base::Result<void> start() {
     std::promise<base::Result<void>> started;
     is_ending_ = false;
+    display_ = nullptr;
     thread_ = std::jthread([&] { run(started); });
     auto result = started.get_future().get();
     if (!result) thread_.join();
     return result;
   }
   void end() {
-    run_there([this] { is_ending_ = true; });
-    thread_.join();
+    if (run_there([this] { is_ending_ = true; })) return thread_.join();
+    if (thread_.joinable()) thread_.detach();
+    for (auto& pane : panes_) (void)pane.release();  // there is nothing left that they could give back
+    panes_.clear();
   }
-  void run_there(const std::function<void()>& work) {
-    std::promise<void> done;
-    tasks_.lock()->push_back([&] {
-      work();
-      done.set_value();
-    });
+  // False when the display has gone; then the work has not been finished and never will be.
+  bool run_there(const std::function<void()>& work) {
+    std::uint64_t number = 0;
+    {
+      auto state = state_.lock();
+      if (state->is_lost) return false;
+      state->tasks.push_back(work);
+      number = ++state->tasks_given;
+    }
     wake();
-    done.get_future().wait();
+    auto state = state_.lock();
+    while (!state.wait_for(changed_, std::chrono::hours(1), [&] { return state->tasks_done >= number || state->is_lost; })) {
+    }
+    return state->tasks_done >= number;
   }
 
   void run(std::promise<base::Result<void>>& started) {
@@ -184,21 +220,35 @@ class Window::Screen {
     SDL_SetHint(SDL_HINT_VIDEODRIVER, "x11,wayland");
     if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0)
       return started.set_value(base::Error{std::string("the display cannot be used: ") + SDL_GetError()});
-    if (wake_event_ == 0) wake_event_ = SDL_RegisterEvents(1);
     started.set_value({});
     while (!is_ending_) {
-      SDL_Event event;
-      if (SDL_WaitEvent(&event) == 0) {
-        SDL_Delay(10);  // a display that has gone: do not spin, but open and close are still answered
-      } else {
-        do handle(event);
-        while (SDL_PollEvent(&event) != 0);
+      const bool was_busy = take_events();
+      const auto tasks = std::exchange(state_.lock()->tasks, {});
+      for (const auto& task : tasks) {
+        task();
+        ++state_.lock()->tasks_done;
+        changed_.notify_all();
       }
-      const auto tasks = std::exchange(*tasks_.lock(), {});
-      for (const auto& task : tasks) task();
       for (auto& pane : panes_) pane->refresh();
+      // Drawing may have brought events along, which no longer wait in the connection.
+      if (!was_busy && !is_ending_ && !take_events()) sleep();
     }
     SDL_QuitSubSystem(SDL_INIT_VIDEO);
+  }
+  // Until somebody rings or the display has something to say.
+  void sleep() const {
+    pollfd wanted[2] = {{bell_, POLLIN, 0}, {display_ != nullptr ? ConnectionNumber(display_) : -1, POLLIN, 0}};
+    // Other kinds of display do not show their connection; a key may wait for a moment there.
+    const int limit = display_ == nullptr && !panes_.empty() ? 20 : -1;
+    if (::poll(wanted, 2, limit) <= 0 || wanted[0].revents == 0) return;
+    std::uint64_t rings = 0;
+    if (::read(bell_, &rings, sizeof rings) < 0) return;
+  }
+  bool take_events() {
+    SDL_Event event;
+    bool is_any = false;
+    while (SDL_PollEvent(&event) != 0) handle(event), is_any = true;
+    return is_any;
   }
   void handle(const SDL_Event& event) {
     if (event.type != SDL_WINDOWEVENT && event.type != SDL_KEYDOWN) return;
@@ -208,11 +258,28 @@ class Window::Screen {
     }
   }
 
+  // From the first window on the display is known.
+  void watch(const Pane& pane) {
+    if (display_ != nullptr) return;
+    display_ = pane.display();
+    if (display_ != nullptr)
+      XSetIOErrorExitHandler(
+          display_, [](Display*, void* screen) { static_cast<Screen*>(screen)->lose(); }, this);
+  }
+  [[noreturn]] void lose() {
+    for (const auto& pane : panes_) pane->lose();
+    state_.lock()->is_lost = true;
+    changed_.notify_all();
+    while (true) ::poll(nullptr, 0, -1);
+  }
+
+  const int bell_ = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   std::mutex turnstile_;  // whoever opens or closes goes through here, one at a time, and waits for the display meanwhile
   int panes_open_ = 0;
-  std::uint32_t wake_event_ = 0;
-  base::Guarded<std::vector<std::function<void()>>, base::Rank::buffer> tasks_;
+  base::Guarded<State, base::Rank::buffer> state_;
+  std::condition_variable changed_;
   std::vector<std::unique_ptr<Pane>> panes_;  // the thread's, like what follows
+  Display* display_ = nullptr;                // of X11; SDL's
   bool is_ending_ = false;
   std::jthread thread_;
 };

@@ -17,12 +17,13 @@ struct Events {
   bool toggle_pause = false;  // space
   bool save = false;          // s
   bool close = false;         // the window's button, q or escape
+  bool lost = false;          // the display has gone, and the window with it
   std::string problem;        // a picture that could not be shown: why
 };
 
 class Window {
  public:
-  // Fails when there is no display.
+  // Fails when there is no display. After one has gone the process gets no other: SDL cannot leave it.
   static base::Result<std::unique_ptr<Window>> open(const std::string& title);
   ~Window();
   Window(const Window&) = delete;

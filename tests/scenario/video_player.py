@@ -118,18 +118,19 @@ def keys():
     send(32, 24, second)
     shows(32, 24, first)
     screen("key", "s")
-    saved = f"{system.work}/frames/picture-000002.png"
+    saved = f"{system.work}/frames/picture-000001.png"
     system.until("a saved picture", lambda: pixels.png(saved) == (32, 24, first))
     assert not os.path.exists(f"{system.work}/frames/frame-000002.png"), "records while it pauses"
     screen("key", "space")
     system.until("a title that says so", lambda: "paused" not in screen("title"))
     send(32, 24, third)
     shows(32, 24, third)
+    system.until("the next number", lambda: pixels.png(f"{system.work}/frames/frame-000002.png") == (32, 24, third))
     screen("key", "q")
     system.until("no window", lambda: screen("size", ok=False) == 3)
     assert state() == "Active", "it still records"
     send(32, 24, second)
-    system.until("a recorded frame", lambda: pixels.png(f"{system.work}/frames/frame-000004.png") == (32, 24, second))
+    system.until("a recorded frame", lambda: pixels.png(f"{system.work}/frames/frame-000003.png") == (32, 24, second))
     system.rtse("deact", "VideoPlayer0")
     system.rtse("conf", "VideoPlayer0", "set", "record_dir", "")
     # Nothing to do without window and records: each way to close the window ends it, and it can start again.
@@ -211,6 +212,35 @@ def wrong_display():
     assert state() == "Active"
 
 
+# The X server dies: the frames go on into the folder; a player without one ends; the process lives.
+def killed_display():
+    start_display()
+    frames = f"{system.work}/frames"
+    host = start_player(frames, others=["VideoPlayer"])
+    system.rtse("act", "VideoPlayer1")
+    first, second = noise(32 * 24 * 3, 1), noise(32 * 24 * 3, 2)
+    send(32, 24, first)
+    shows(32, 24, first)
+    system.until("a second window", lambda: screen("title", player="VideoPlayer1"))
+    display = next(process for process in system.running if process.args[0] == "Xvfb")
+    system.running.remove(display)
+    display.kill()
+    display.wait()
+    says(host, "VideoPlayer0", "the display has gone; the frames go to", frames)
+    says(host, "VideoPlayer1", "the display has gone; set record_dir")
+    system.until("the player without a folder has ended", lambda: json.loads(system.rtse("--json", "cat", "VideoPlayer1"))["state"] == "Inactive")
+    send(32, 24, second)
+    system.until("a recorded frame", lambda: pixels.png(f"{frames}/frame-000002.png") == (32, 24, second))
+    assert state() == "Active"
+    system.rtse("deact", "VideoPlayer0")
+    system.rtse("act", "VideoPlayer0")
+    says(host, "no window: the display of this process has gone; the frames go to")
+    system.rtse("exit", "VideoPlayer1")
+    assert host.poll() is None
+    host.terminate()
+    assert host.wait(60) == 0, host.returncode
+
+
 # Players in one process share the display; what is typed reaches the one that is typed to.
 def two_players():
     start_display()
@@ -234,7 +264,7 @@ def two_players():
     system.until("a window", lambda: title(1))
 
 
-cases = {f.__name__: f for f in (formats, keys, resize, bad_images, two_players, no_display, wrong_display)}
+cases = {f.__name__: f for f in (formats, keys, resize, bad_images, two_players, no_display, wrong_display, killed_display)}
 with system:
     cases[case]()
 print("ok")
