@@ -331,6 +331,15 @@ void SdfLibrary::State::check(pugi::xml_node node, const sdf::ElementPtr& descri
       known = description->GetElementDescription(lower);
       name = lower;
     }
+    // Newer than this library; taken over as it is.
+    if (!known && name == "shininess" && std::string_view(node.name()) == "material") {
+      if (!fits_type("double", text_of(child))) {
+        complaints->warn(child, "<shininess> of " + describe_in_context(node) + " must be " + expectation("double") + ", got " +
+                                    base::in_quotes(text_of(child)) + "; it is ignored");
+        node.remove_child(child);
+      }
+      continue;
+    }
     if (!known) {
       if (!means_nothing_here(node, name))
         complaints->warn(child, "unknown element <" + base::in_quotes(name).substr(1, base::in_quotes(name).size() - 2) + "> in " +

@@ -257,6 +257,20 @@ TEST(Materials, of_visuals_come_from_scripts_built_in_colours_and_pbr) {
   EXPECT_THAT(result.findings[0].text(), HasSubstr("Nothing/Known"));
 }
 
+TEST(Materials, shininess_of_a_material_is_read_though_the_library_is_older) {
+  const WorldFiles files;
+  const auto visual = [](const std::string& name, const std::string& shininess) {
+    return "<visual name='" + name + "'><geometry><box/></geometry><material><specular>1 1 1 1</specular><shininess>" + shininess +
+           "</shininess></material></visual>";
+  };
+  const LoadResult result = files.load(model_of(visual("good", "30") + visual("bad", "much")));
+  ASSERT_EQ(result.world.models.at(0).links.at(0).visuals.size(), 2U);
+  EXPECT_EQ(result.world.models[0].links[0].visuals[0].material.value().shininess, 30);
+  EXPECT_EQ(result.world.models[0].links[0].visuals[1].material.value().shininess, 0);
+  ASSERT_EQ(result.findings.size(), 1U) << all_findings(result);
+  EXPECT_THAT(result.findings[0].text(), HasSubstr("must be a number, got \"much\""));
+}
+
 TEST(ModelPath, finds_what_uris_mean) {
   const WorldFiles files;
   files.write("models/box/meshes/a.dae", "x");
