@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes farm.sdf: a pasture with a cow that walks her round, a field with crop rows, a barn, trees, and a helicopter above with a camera that looks down."""
+"""Writes farm.sdf: a pasture with a cow that walks her round, a calf on the way beside it, a field with crop rows, a barn, trees, and a helicopter above with a camera that looks down."""
 import math
 import pathlib
 
@@ -32,6 +32,31 @@ lines += [include("fence", f"fence_{n}", x, y, 0, yaw) for n, (x, y, yaw) in enu
 lines += [include("crop_row", f"crop_row_{n}", 10, -5.4 + 1.2 * n) for n in range(10)]
 trees = [(-14, -3, 0.3), (-12, -8, 1.9), (-4, 11, 0.9), (1, 12.5, 2.6), (7, 11, 1.2), (15, 10, 0.4), (-2, -11, 2.1), (8, -11, 0)]
 lines += [include("tree", f"tree_{n}", x, y, 0, yaw) for n, (x, y, yaw) in enumerate(trees)]
+
+# A calf walks up and down before the fence: an actor, whose legs move by the animation of its skin.
+calf_speed, calf_scale, west, east, near, far = 0.6, 0.55, -7, 5, -9.1, -7.7
+turn = (far - near) / 2
+corner_step = 0.6  # places close to the bends keep the curve through them round
+line = [(west, far, 0), (west + corner_step, far, 0)] + [(x, far, 0) for x in range(west + 2, east, 2)] + [(east - corner_step, far, 0)]
+bend = lambda x, start, way: [(x + turn * math.cos(start + way * k * math.pi / 4), (near + far) / 2 + turn * math.sin(start + way * k * math.pi / 4), start + way * k * math.pi / 4 + way * math.pi / 2) for k in range(5)]
+back = [(x, near, -math.pi) for x in (east - corner_step, *range(east - 2, west, -2), west + corner_step)]
+round_trip = line + bend(east, math.pi / 2, -1) + back + bend(west, -math.pi / 2, -1)
+time, stops = 0.0, []
+for n, (x, y, yaw) in enumerate(round_trip):
+    if n:
+        time += math.dist(round_trip[n - 1][:2], (x, y)) / calf_speed
+    stops.append(f"          <waypoint><time>{time:.2f}</time><pose>{x:.3f} {y:.3f} 0 0 0 {yaw:.4f}</pose></waypoint>")
+cow_mesh = "model://cow/meshes/walking_cow.dae"
+lines.append(f"""    <actor name="calf">
+      <pose>{west} {far} 0 0 0 0</pose>
+      <skin><filename>{cow_mesh}</filename><scale>{calf_scale}</scale></skin>
+      <animation name="walking"><filename>{cow_mesh}</filename><scale>{calf_scale}</scale><interpolate_x>true</interpolate_x></animation>
+      <script>
+        <trajectory id="0" type="walking">
+""" + "\n".join(stops) + """
+        </trajectory>
+      </script>
+    </actor>""")
 
 newline = "\n"
 pathlib.Path(__file__).resolve().with_name("farm.sdf").write_text(f"""<?xml version="1.0"?>

@@ -9,6 +9,7 @@ import random
 import struct
 import zlib
 
+newline = "\n"
 models = pathlib.Path(__file__).resolve().parent / "models"
 
 
@@ -118,9 +119,11 @@ class Mesh:
 
     def __init__(self):
         self.vertices, self.faces = [], {}
+        self.limb, self.limbs = None, []  # what comes next hangs on; of each vertex
 
     def vertex(self, position, normal, uv=(0, 0)):
         self.vertices.append((position, normal, uv))
+        self.limbs.append(self.limb)
         return len(self.vertices)
 
     def triangle(self, material, *corners):
@@ -207,6 +210,108 @@ class Mesh:
         (folder / f"{name}.mtl").write_text("\n".join(lines) + "\n")
 
 
+# --- meshes with limbs ----------------------------------------------------------
+
+
+class Joint:
+    """A joint of a skeleton at a place in the mesh; angles(t), t in [0, 1), gives its roll, pitch and yaw during a round of steps, way(t) how far it is from its place."""
+
+    def __init__(self, name, parent, place, angles=lambda t: (0, 0, 0), way=lambda t: (0, 0, 0)):
+        self.name, self.parent, self.place, self.angles, self.way = name, parent, place, angles, way
+
+    def matrix(self, t=None):
+        """In its parent, row by row; without a time at rest."""
+        x, y, z = sub(self.place, self.parent.place if self.parent else (0, 0, 0))
+        if t is None:
+            return [1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1]
+        r, p, w = self.angles(t)
+        x, y, z = add((x, y, z), self.way(t))
+        (cr, sr), (cp, sp), (cw, sw) = ((math.cos(a), math.sin(a)) for a in (r, p, w))
+        return [cw * cp, cw * sp * sr - sw * cr, cw * sp * cr + sw * sr, x, sw * cp, sw * sp * sr + cw * cr, sw * sp * cr - cw * sr, y, -sp, cp * sr, cp * cr, z, 0, 0, 0, 1]
+
+
+def write_collada(path, m, materials, joints, weights_of, length, frames):
+    """The mesh with its skeleton and a round of steps of so many seconds. weights_of(limb, position) gives (joint's name, share) pairs."""
+    numbers = lambda values: " ".join(f"{v:.4f}".rstrip("0").rstrip(".") for v in values)
+
+    def source(name, values, names, kind="float", array="float_array"):
+        width = {"float4x4": 16}.get(kind, len(names))
+        text = " ".join(values) if array == "Name_array" else numbers(values)
+        params = "".join(f'<param name="{n}" type="{kind}"/>' for n in names)
+        return (f'<source id="{name}"><{array} id="{name}-array" count="{len(values)}">{text}</{array}><technique_common>'
+                f'<accessor source="#{name}-array" count="{len(values) // width}" stride="{width}">{params}</accessor></technique_common></source>')
+
+    flat = lambda rows: [x for row in rows for x in row]
+    index = {joint.name: i for i, joint in enumerate(joints)}
+    shares, table, counts, pairs = [1.0], {1.0: 0}, [], []
+    for limb, (position, _, _) in zip(m.limbs, m.vertices):
+        weights = [(name, round(share, 3)) for name, share in weights_of(limb, position) if share > 0.0005]
+        counts.append(len(weights))
+        for name, share in weights:
+            if share not in table:
+                table[share] = len(shares)
+                shares.append(share)
+            pairs += [index[name], table[share]]
+    effects, library, triangles, bindings = [], [], [], []
+    for material, faces in m.faces.items():
+        colour, picture = materials[material]
+        image = (f'<newparam sid="{material}-surface"><surface type="2D"><init_from>{material}-image</init_from></surface></newparam>'
+                 f'<newparam sid="{material}-sampler"><sampler2D><source>{material}-surface</source></sampler2D></newparam>') if picture else ""
+        diffuse = f'<texture texture="{material}-sampler" texcoord="UV"/>' if picture else f"<color>{numbers((*colour, 1))}</color>"
+        effects.append(f'<effect id="{material}-effect"><profile_COMMON>{image}<technique sid="common"><lambert><diffuse>{diffuse}</diffuse></lambert></technique></profile_COMMON></effect>')
+        library.append(f'<material id="{material}" name="{material}"><instance_effect url="#{material}-effect"/></material>')
+        corners = " ".join(str(i - 1) for face in faces for i in face)
+        triangles.append(f'<triangles material="{material}" count="{len(faces)}"><input semantic="VERTEX" source="#vertices" offset="0"/><input semantic="NORMAL" source="#normals" offset="0"/>'
+                         f'<input semantic="TEXCOORD" source="#uvs" offset="0" set="0"/><p>{corners}</p></triangles>')
+        bindings.append(f'<instance_material symbol="{material}" target="#{material}"><bind_vertex_input semantic="UV" input_semantic="TEXCOORD" input_set="0"/></instance_material>')
+    images = "".join(f'<image id="{name}-image"><init_from>{picture}</init_from></image>' for name, (_, picture) in materials.items() if picture)
+
+    def node(joint):
+        children = "".join(node(other) for other in joints if other.parent is joint)
+        return f'<node id="{joint.name}" name="{joint.name}" sid="{joint.name}" type="JOINT"><matrix sid="transform">{numbers(joint.matrix())}</matrix>{children}</node>'
+
+    times = [length * i / frames for i in range(frames + 1)]
+    animations = "\n".join(
+        f'<animation id="{joint.name}-steps">' + source(f"{joint.name}-times", times, ["TIME"]) +
+        source(f"{joint.name}-poses", flat(joint.matrix(i / frames) for i in range(frames + 1)), ["TRANSFORM"], "float4x4") +
+        source(f"{joint.name}-kinds", ["LINEAR"] * (frames + 1), ["INTERPOLATION"], "name", "Name_array") +
+        f'<sampler id="{joint.name}-sampler"><input semantic="INPUT" source="#{joint.name}-times"/><input semantic="OUTPUT" source="#{joint.name}-poses"/>'
+        f'<input semantic="INTERPOLATION" source="#{joint.name}-kinds"/></sampler><channel source="#{joint.name}-sampler" target="{joint.name}/transform"/></animation>' for joint in joints)
+    inverse = [[1, 0, 0, -j.place[0], 0, 1, 0, -j.place[1], 0, 0, 1, -j.place[2], 0, 0, 0, 1] for j in joints]
+    root = joints[0]
+    path.write_text(f"""<?xml version="1.0" encoding="utf-8"?>
+<!-- Written by worlds/make_farm_models.py. -->
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="meter" meter="1"/><up_axis>Z_UP</up_axis></asset>
+<library_images>{images}</library_images>
+<library_effects>{"".join(effects)}</library_effects>
+<library_materials>{"".join(library)}</library_materials>
+<library_geometries><geometry id="mesh" name="mesh"><mesh>
+{source("positions", flat(p for p, _, _ in m.vertices), "XYZ")}
+{source("normals", flat(n for _, n, _ in m.vertices), "XYZ")}
+{source("uvs", flat(t for _, _, t in m.vertices), "ST")}
+<vertices id="vertices"><input semantic="POSITION" source="#positions"/></vertices>
+{newline.join(triangles)}
+</mesh></geometry></library_geometries>
+<library_controllers><controller id="skin"><skin source="#mesh"><bind_shape_matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</bind_shape_matrix>
+{source("joints", [j.name for j in joints], ["JOINT"], "name", "Name_array")}
+{source("inverse", flat(inverse), ["TRANSFORM"], "float4x4")}
+{source("shares", shares, ["WEIGHT"])}
+<joints><input semantic="JOINT" source="#joints"/><input semantic="INV_BIND_MATRIX" source="#inverse"/></joints>
+<vertex_weights count="{len(counts)}"><input semantic="JOINT" source="#joints" offset="0"/><input semantic="WEIGHT" source="#shares" offset="1"/><vcount>{" ".join(map(str, counts))}</vcount>
+<v>{" ".join(map(str, pairs))}</v></vertex_weights>
+</skin></controller></library_controllers>
+<library_animations>
+{animations}
+</library_animations>
+<library_visual_scenes><visual_scene id="scene">{node(root)}
+<node id="body" name="body"><instance_controller url="#skin"><skeleton>#{root.name}</skeleton><bind_material><technique_common>{"".join(bindings)}</technique_common></bind_material></instance_controller></node>
+</visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#scene"/></scene>
+</COLLADA>
+""")
+
+
 # --- SDFormat -----------------------------------------------------------------
 
 
@@ -246,32 +351,67 @@ def write_model(name, title, description, parts, static=True, inertial="", after
 # --- the models ---------------------------------------------------------------
 
 
+def cow_joints():
+    """Walks a metre in a round of steps: hind left, fore left, hind right, fore right."""
+    turn = lambda t: 2 * math.pi * t
+    hips = Joint("hips", None, (-0.1, 0, 1.0), way=lambda t: (t, 0, 0.012 * math.sin(2 * turn(t))))
+    joints = [hips, Joint("neck", hips, (0.70, 0, 1.15), lambda t: (0, 0.06 * math.sin(2 * turn(t)), 0)), Joint("tail_root", hips, (-0.95, 0, 1.29), lambda t: (0.25 * math.sin(turn(t)), 0, 0))]
+    for name, x, knee, y, begin, bent in (("hind_left", -0.70, -0.75, 0.2, 0.0, 1), ("fore_left", 0.50, 0.50, 0.2, 0.25, 1), ("hind_right", -0.70, -0.75, -0.2, 0.5, 1), ("fore_right", 0.50, 0.50, -0.2, 0.75, 1)):
+        # The foot goes back while it carries, and forward, lifted, while it does not.
+        upper = Joint(name, hips, (x, y, 1.0), lambda t, b=begin: (0, 0.27 * math.sin(turn(t - b)), 0))
+        lower = Joint(f"{name}_low", upper, (knee, y, 0.55), lambda t, b=begin, s=bent: (0, s * 0.7 * max(0.0, -math.cos(turn(t - b))) ** 1.5, 0))
+        joints += [upper, lower]
+    return joints
+
+
+def cow_weights(limb, position):
+    smooth = lambda value, none, all: max(0.0, min(1.0, (value - none) / (all - none)))
+    x, _, z = position
+    if limb == "trunk":
+        neck = smooth(x, 0.60, 0.92)
+        return [("hips", 1 - neck), ("neck", neck)]
+    if limb in ("head", "tail"):
+        return [({"head": "neck", "tail": "tail_root"}[limb], 1.0)]
+    leg, low = smooth(z, 1.08, 0.92), smooth(z, 0.62, 0.48)
+    return [("hips", 1 - leg), (limb, leg - low), (f"{limb}_low", low)]
+
+
 def cow():
     """2.4 x 0.8 x 1.5 m; the origin is on the ground below the middle."""
     m = Mesh()
+    m.limb = "trunk"
     along = lambda *rings: [((x, 0, z), a, b) for x, z, a, b in rings]
     m.loft("hide", along((-0.97, 1.15, 0.08, 0.10), (-0.93, 1.11, 0.20, 0.22), (-0.80, 1.08, 0.30, 0.31), (-0.50, 1.04, 0.37, 0.36), (-0.10, 1.01, 0.40, 0.39),
                          (0.25, 1.03, 0.37, 0.38), (0.50, 1.07, 0.31, 0.35), (0.68, 1.13, 0.23, 0.29), (0.82, 1.22, 0.16, 0.22), (0.95, 1.32, 0.12, 0.16)), 20)
+    m.limb = "head"
     m.loft("hide", along((0.90, 1.41, 0.07, 0.07), (0.95, 1.41, 0.13, 0.14), (1.06, 1.37, 0.14, 0.145), (1.20, 1.28, 0.11, 0.11), (1.30, 1.22, 0.095, 0.095)), 14, (0.3, 0.5))
     m.loft("skin", along((1.28, 1.23, 0.097, 0.097), (1.36, 1.18, 0.10, 0.09), (1.41, 1.15, 0.085, 0.075), (1.43, 1.14, 0.04, 0.04)), 14)
     m.loft("white", along((1.02, 1.505, 0.02, 0.01), (1.10, 1.48, 0.045, 0.02), (1.20, 1.38, 0.05, 0.02), (1.29, 1.30, 0.06, 0.02)), 8)  # the blaze
     for side in (-1, 1):
+        m.limb = "head"
         m.loft("horn", [((0.97, 0.09 * side, 1.51), 0.035, 0.035), ((0.98, 0.18 * side, 1.55), 0.028, 0.028), ((1.02, 0.22 * side, 1.62), 0.008, 0.008)], 8)
         m.loft("black", [((0.96, 0.11 * side, 1.43), 0.02, 0.03), ((0.95, 0.20 * side, 1.42), 0.025, 0.06), ((0.94, 0.29 * side, 1.39), 0.008, 0.015)], 8)
         m.ellipsoid("black", (1.13, 0.12 * side, 1.39), (0.025, 0.02, 0.03), 6)
         m.ellipsoid("black", (1.405, 0.045 * side, 1.19), (0.02, 0.015, 0.012), 6)
-        y = 0.20 * side
+        y, name = 0.20 * side, "left" if side > 0 else "right"
+        m.limb = f"fore_{name}"
         m.loft("white", [((0.50, y, 1.00), 0.10, 0.16), ((0.50, y, 0.72), 0.075, 0.10), ((0.50, y, 0.45), 0.06, 0.065), ((0.50, y, 0.10), 0.055, 0.055)], 10)
+        m.limb = f"hind_{name}"
         m.loft("white", [((-0.70, y, 1.05), 0.12, 0.22), ((-0.68, y, 0.75), 0.09, 0.14), ((-0.76, y, 0.48), 0.06, 0.07), ((-0.72, y, 0.10), 0.055, 0.055)], 10)
         for x in (0.50, -0.72):
+            m.limb = f"fore_{name}" if x > 0 else f"hind_{name}"
             m.loft("black", [((x + 0.01, y, 0.11), 0.06, 0.06), ((x + 0.02, y, 0.0), 0.075, 0.08)], 10)
+        m.limb = "trunk"
         for x in (-0.36, -0.50):
             m.loft("skin", [((x, 0.08 * side, 0.66), 0.022, 0.022), ((x, 0.08 * side, 0.56), 0.014, 0.014)], 6)
     m.ellipsoid("skin", (-0.43, 0, 0.70), (0.20, 0.17, 0.11), 10)
+    m.limb = "tail"
     m.loft("hide", [((-0.94, 0, 1.30), 0.035, 0.035), ((-1.01, 0, 1.22), 0.03, 0.03), ((-1.04, 0, 0.80), 0.02, 0.02)], 8, (0.2, 0.2))
     m.ellipsoid("black", (-1.04, 0, 0.72), (0.04, 0.04, 0.14), 8)
     folder = models / "cow" / "meshes"
-    m.write(folder, "cow", {"hide": ((1, 1, 1), "hide.png"), "skin": ((0.90, 0.62, 0.58), None), "horn": ((0.85, 0.78, 0.62), None), "white": ((0.88, 0.86, 0.82), None), "black": ((0.05, 0.045, 0.04), None)})
+    materials = {"hide": ((1, 1, 1), "hide.png"), "skin": ((0.90, 0.62, 0.58), None), "horn": ((0.85, 0.78, 0.62), None), "white": ((0.88, 0.86, 0.82), None), "black": ((0.05, 0.045, 0.04), None)}
+    m.write(folder, "cow", materials)
+    write_collada(folder / "walking_cow.dae", m, materials, cow_joints(), cow_weights, 1.25, 20)
     write_png(folder / "hide.png", 256, hide_texture())
     mass, (x, y, z) = 600, (1.9, 0.7, 0.8)
     moments = mass / 12 * (y * y + z * z), mass / 12 * (x * x + z * z), mass / 12 * (x * x + y * y)

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "devices/actor_motion.h"
 #include "physics/physics.h"
 #include "render/scene.h"
 
@@ -17,9 +18,6 @@ struct Snapshot {
   std::shared_ptr<const std::vector<Eigen::Isometry3d>> poses;  // of the scene's links
   std::vector<ModelId> models;                                  // of Scene::models; actors come after them
 };
-
-// Where an actor is, `seconds` after the start of the simulation.
-Eigen::Isometry3d actor_pose(const ActorDef& actor, double seconds);
 
 class RenderWorld {
  public:
@@ -43,6 +41,7 @@ class RenderWorld {
 
   const Physics& physics_;
   const WorldDef& world_;
+  std::vector<ActorMotion> motions_;  // of the actors
   Assets assets_;
   Built visuals_, collisions_;
   bool is_synchronous_ = false;

@@ -164,6 +164,31 @@ std::shared_ptr<const Mesh> Assets::load(const MeshShape& shape) {
   return kept = std::make_shared<Mesh>(std::move(file->mesh));
 }
 
+std::shared_ptr<const SkinFile> Assets::skin(const std::string& path, double scale) {
+  if (path == missing_file) return nullptr;
+  const auto [kept, is_new] = skins_.try_emplace(fmt::format("{}|{}", path, scale));
+  if (!is_new) return kept->second;
+  auto file = read_skin_file(path, scale);
+  if (!file) {
+    complaints_.push_back(file.error().message + "; a magenta box stands in");
+    return nullptr;
+  }
+  for (auto& image : file->images) embedded_[image.name] = std::move(image.bytes);
+  return kept->second = std::make_shared<SkinFile>(std::move(*file));
+}
+
+std::shared_ptr<const SkinAnimation> Assets::animation(const std::string& path, double scale, const std::shared_ptr<const SkinFile>& skin) {
+  const auto name = std::find_if(skins_.begin(), skins_.end(), [&](const auto& entry) { return entry.second == skin; });
+  const auto [kept, is_new] = animations_.try_emplace(fmt::format("{}|{}|{}", path, scale, name->first));
+  if (!is_new) return kept->second;
+  auto file = read_skin_animation(path, scale, skin->skin);
+  if (!file) {
+    complaints_.push_back(file.error().message + "; the limbs keep still");
+    return nullptr;
+  }
+  return kept->second = std::make_shared<SkinAnimation>(std::move(*file));
+}
+
 std::shared_ptr<const Mesh> Assets::load(const HeightmapShape& shape) {
   if (shape.path == missing_file) return missing_mesh_;
   auto& kept = meshes_[key_of(shape)];

@@ -9,6 +9,7 @@
 
 #include "render/image.h"
 #include "render/mesh.h"
+#include "render/skin.h"
 #include "world/triangles.h"
 #include "world/world_def.h"
 
@@ -28,6 +29,9 @@ class Assets {
 
   // Never null. Unit box, sphere, cylinder and plane are shared: scale_of() tells how to scale them.
   std::shared_ptr<const Mesh> mesh(const GeometryDef& geometry);
+  // Of an actor. Null when it cannot be read; animations also when they do not fit to the skin.
+  std::shared_ptr<const SkinFile> skin(const std::string& path, double scale);
+  std::shared_ptr<const SkinAnimation> animation(const std::string& path, double scale, const std::shared_ptr<const SkinFile>& skin);
   // From the mesh that mesh() returns to the shape.
   static Eigen::Affine3d placement_of(const GeometryDef& geometry);
 
@@ -54,6 +58,8 @@ class Assets {
   TriangleCache triangles_;
   std::map<std::string, std::shared_ptr<const Mesh>> meshes_;
   std::map<std::string, std::shared_ptr<const Texture>> textures_;
+  std::map<std::string, std::shared_ptr<const SkinFile>> skins_;
+  std::map<std::string, std::shared_ptr<const SkinAnimation>> animations_;
   std::map<std::string, std::vector<std::uint8_t>> embedded_;
   std::vector<std::string> complaints_;
 };

@@ -1,5 +1,6 @@
 #include "render/gpu_store.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <set>
 
@@ -78,10 +79,25 @@ SurfaceProgram::SurfaceProgram(GpuProgram built) : program(std::move(built)) {
   for (const auto& [place, name] : all) *place = program.uniform(name);
 }
 
-const GpuMesh& GpuStore::mesh(const std::shared_ptr<const Mesh>& mesh) {
+const GpuMesh& GpuStore::mesh(const std::shared_ptr<const Mesh>& mesh) { return made(mesh); }
+
+void GpuStore::bend(const SceneActor& actor, std::span<const Eigen::Isometry3d> poses) {
+  const Eigen::Isometry3d to_actor = poses[actor.link].inverse();
+  std::vector<Eigen::Isometry3d> bones;
+  for (std::size_t i = 0; i < actor.skin->skin.bones.size(); ++i) bones.push_back(to_actor * poses[actor.link + 1 + i]);
+  GpuMesh& gpu = made(actor.mesh);
+  const auto is_same = [](const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) { return a.matrix() == b.matrix(); };
+  if (std::equal(bones.begin(), bones.end(), gpu.bones.begin(), gpu.bones.end(), is_same)) return;
+  sim::bend(actor.skin->skin, bones, bent_);
+  gl_.BindBuffer(GL_ARRAY_BUFFER, gpu.vertices.name());
+  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(bent_.size() * sizeof(Vertex)), bent_.data(), GL_STREAM_DRAW);
+  gpu.bones = std::move(bones);
+}
+
+GpuMesh& GpuStore::made(const std::shared_ptr<const Mesh>& mesh) {
   const auto found = meshes_.find(mesh);
   if (found != meshes_.end()) return found->second;
-  GpuMesh made{{gl_.GenVertexArrays, gl_.DeleteVertexArrays}, {gl_.GenBuffers, gl_.DeleteBuffers}, {gl_.GenBuffers, gl_.DeleteBuffers}};
+  GpuMesh made{{gl_.GenVertexArrays, gl_.DeleteVertexArrays}, {gl_.GenBuffers, gl_.DeleteBuffers}, {gl_.GenBuffers, gl_.DeleteBuffers}, {}};
   gl_.BindVertexArray(made.vertex_array.name());
   gl_.BindBuffer(GL_ARRAY_BUFFER, made.vertices.name());
   gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh->vertices.size() * sizeof(Vertex)), mesh->vertices.data(), GL_STATIC_DRAW);

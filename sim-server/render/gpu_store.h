@@ -4,6 +4,8 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "base/result.h"
 #include "render/gl.h"
@@ -43,6 +45,7 @@ struct SurfaceProgram {
 
 struct GpuMesh {
   gl::Object vertex_array, vertices, indices;
+  std::vector<Eigen::Isometry3d> bones;  // of an actor, relative to it; empty: at rest
 };
 
 class GpuStore {
@@ -50,6 +53,8 @@ class GpuStore {
   explicit GpuStore(const gl::Functions& gl) : gl_(gl) {}
 
   const GpuMesh& mesh(const std::shared_ptr<const Mesh>& mesh);
+  // Of a mesh of an actor: brings its vertices to where the bones are, unless they are there.
+  void bend(const SceneActor& actor, std::span<const Eigen::Isometry3d> poses);
   GLuint texture(const std::shared_ptr<const Texture>& texture);
   base::Result<SurfaceProgram*> program(const Features& features);
 
@@ -57,9 +62,12 @@ class GpuStore {
   void keep_only(const Scene& scene);
 
  private:
+  GpuMesh& made(const std::shared_ptr<const Mesh>& mesh);
+
   const gl::Functions& gl_;
   std::map<Features, std::unique_ptr<SurfaceProgram>> programs_;
   std::map<std::shared_ptr<const Mesh>, GpuMesh> meshes_;
+  std::vector<Vertex> bent_;
   std::map<std::shared_ptr<const Texture>, gl::Object> textures_;
 };
 

@@ -5,18 +5,28 @@
 #include <assimp/scene.h>
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <optional>
 
 #include "base/text.h"
-#include "render/mesh.h"
+#include "render/skin.h"
 
 namespace sim {
 namespace {
 
 constexpr std::size_t most_triangles = 20'000'000;
+
+constexpr std::size_t most_bones = 4096;
+
+Eigen::Affine3d to_affine(const aiMatrix4x4& in) {
+  Eigen::Matrix4d out;
+  out << in.a1, in.a2, in.a3, in.a4, in.b1, in.b2, in.b3, in.b4, in.c1, in.c2, in.c3, in.c4, in.d1, in.d2, in.d3, in.d4;
+  return Eigen::Affine3d(out);
+}
 
 Color to_color(const aiColor4D& c) { return {c.r, c.g, c.b, c.a}; }
 
@@ -37,10 +47,12 @@ std::string find_texture(const std::string& written, const std::filesystem::path
 
 class Reader {
  public:
-  Reader(const aiScene& scene, const MeshShape& shape)
-      : scene_(scene), shape_(shape), folder_(std::filesystem::path(shape.path).parent_path()) {}
+  // With a skin the vertices are taken as they hang on the skeleton at rest.
+  Reader(const aiScene& scene, const MeshShape& shape, Skin* skin)
+      : scene_(scene), shape_(shape), folder_(std::filesystem::path(shape.path).parent_path()), skin_(skin) {}
 
   MeshFile read() {
+    if (skin_ != nullptr) add_nodes(*scene_.mRootNode, -1);
     collect(*scene_.mRootNode, aiMatrix4x4(), false);
     for (auto& [index, indices] : indices_by_material_) {
       mend_normals(indices);
@@ -49,26 +61,99 @@ class Reader {
       out_.mesh.indices.insert(out_.mesh.indices.end(), indices.begin(), indices.end());
       out_.mesh.parts.push_back(std::move(part));
     }
+    if (skin_ != nullptr) hang();
     place();
     return std::move(out_);
   }
 
  private:
+  void add_nodes(const aiNode& node, int parent) {
+    const auto index = static_cast<std::uint32_t>(skin_->nodes.size());
+    skin_->nodes.push_back({node.mName.C_Str(), parent, to_affine(node.mTransformation)});
+    node_by_name_.try_emplace(node.mName.C_Str(), index);
+    node_by_place_.emplace(&node, index);
+    for (unsigned i = 0; i < node.mNumChildren; ++i) add_nodes(*node.mChildren[i], static_cast<int>(index));
+  }
+
+  std::uint16_t add_bone(std::uint32_t node, const Eigen::Affine3d& from_mesh) {
+    skin_->bones.push_back({node, from_mesh});
+    return static_cast<std::uint16_t>(skin_->bones.size() - 1);
+  }
+
+  // What hangs on no bone hangs on its node.
+  void add_weights(const aiMesh& mesh, const aiNode& node, std::size_t first) {
+    auto& weights = skin_->weights;
+    weights.resize(first + mesh.mNumVertices, SkinWeights{{}, {0, 0, 0, 0}});
+    for (unsigned b = 0; b < mesh.mNumBones && skin_->bones.size() < most_bones; ++b) {
+      const aiBone& in = *mesh.mBones[b];
+      const auto found = node_by_name_.find(in.mName.C_Str());
+      if (found == node_by_name_.end()) continue;
+      const std::uint16_t bone = add_bone(found->second, to_affine(in.mOffsetMatrix));
+      for (unsigned w = 0; w < in.mNumWeights; ++w) {
+        const auto& [vertex, share] = in.mWeights[w];
+        if (vertex >= mesh.mNumVertices || !(share > 0)) continue;
+        auto& shares = weights[first + vertex].shares;
+        const auto place = std::min_element(shares.begin(), shares.end());
+        if (share <= *place) continue;
+        *place = share;
+        weights[first + vertex].bones[static_cast<std::size_t>(place - shares.begin())] = bone;
+      }
+    }
+    std::optional<std::uint16_t> own;
+    for (std::size_t v = first; v < weights.size(); ++v) {
+      auto& [bones, shares] = weights[v];
+      const float sum = shares[0] + shares[1] + shares[2] + shares[3];
+      if (sum > 0) {
+        for (auto& share : shares) share /= sum;
+        // The greatest first, so that the first one that is 0 ends the list.
+        for (std::size_t i = 0; i < 3; ++i) {
+          const auto greatest =
+              static_cast<std::size_t>(std::max_element(shares.begin() + static_cast<std::ptrdiff_t>(i), shares.end()) - shares.begin());
+          std::swap(shares[i], shares[greatest]);
+          std::swap(bones[i], bones[greatest]);
+        }
+        continue;
+      }
+      if (!own) own = add_bone(node_by_place_.at(&node), Eigen::Affine3d::Identity());
+      bones = {*own, 0, 0, 0};
+      shares = {1, 0, 0, 0};
+    }
+  }
+
+  // Bones get the scales that poses lack; the vertices come to where they are at rest.
+  void hang() {
+    Skin& skin = *skin_;
+    skin.scale = shape_.scale.x();
+    std::vector<Eigen::Affine3d> poses;
+    for (const auto& node : skin.nodes)
+      poses.push_back(node.parent < 0 ? node.in_parent : poses[static_cast<std::size_t>(node.parent)] * node.in_parent);
+    for (auto& bone : skin.bones) {
+      const Eigen::Vector3d scale = skin.scale * poses[bone.node].linear().colwise().norm().transpose();
+      bone.from_mesh = Eigen::Affine3d(Eigen::Scaling(scale)) * bone.from_mesh;
+    }
+    skin.vertices = out_.mesh.vertices;
+    bend(skin, bone_poses(skin, nullptr, 0, false), out_.mesh.vertices);
+  }
+
   void collect(const aiNode& node, const aiMatrix4x4& parent, bool is_inside) {
     const aiMatrix4x4 transform = parent * node.mTransformation;
     const bool is_wanted = is_inside || shape_.submesh.empty() || shape_.submesh == node.mName.C_Str();
     for (unsigned i = 0; i < node.mNumMeshes; ++i) {
       const aiMesh& mesh = *scene_.mMeshes[node.mMeshes[i]];
-      if (is_wanted || shape_.submesh == mesh.mName.C_Str()) add(mesh, transform);
+      if (!is_wanted && shape_.submesh != mesh.mName.C_Str()) continue;
+      const std::size_t first = out_.mesh.vertices.size();
+      add(mesh, transform);
+      if (skin_ != nullptr) add_weights(mesh, node, first);
     }
     for (unsigned i = 0; i < node.mNumChildren; ++i) collect(*node.mChildren[i], transform, is_wanted && !shape_.submesh.empty());
   }
 
-  void add(const aiMesh& mesh, const aiMatrix4x4& transform) {
+  void add(const aiMesh& mesh, const aiMatrix4x4& to_root) {
+    const aiMatrix4x4 transform = skin_ != nullptr ? aiMatrix4x4() : to_root;
     const auto first = static_cast<std::uint32_t>(out_.mesh.vertices.size());
     aiMatrix3x3 normals(transform);
     normals.Inverse().Transpose();
-    const bool is_mirrored = aiMatrix3x3(transform).Determinant() < 0;
+    const bool is_mirrored = aiMatrix3x3(to_root).Determinant() < 0;
     for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
       const aiVector3D p = transform * mesh.mVertices[v];
       const aiVector3D n = mesh.HasNormals() ? (normals * mesh.mNormals[v]).NormalizeSafe() : aiVector3D(0, 0, 1);
@@ -166,7 +251,7 @@ class Reader {
     for (const auto index : out_.mesh.indices) box.extend(Eigen::Map<const Eigen::Vector3f>(out_.mesh.vertices[index].position.data()));
     const Eigen::Vector3f centre =
         shape_.center_submesh && !shape_.submesh.empty() && !box.isEmpty() ? Eigen::Vector3f(box.center()) : Eigen::Vector3f::Zero();
-    const Eigen::Vector3f scale = shape_.scale.cast<float>();
+    const Eigen::Vector3f scale = skin_ != nullptr ? Eigen::Vector3f::Ones() : Eigen::Vector3f(shape_.scale.cast<float>());
     for (auto& vertex : out_.mesh.vertices) {
       Eigen::Map<Eigen::Vector3f> position(vertex.position.data());
       Eigen::Map<Eigen::Vector3f> normal(vertex.normal.data());
@@ -182,13 +267,14 @@ class Reader {
   const aiScene& scene_;
   const MeshShape& shape_;
   std::filesystem::path folder_;
+  Skin* skin_;  // may be null
+  std::map<std::string, std::uint32_t> node_by_name_;
+  std::map<const aiNode*, std::uint32_t> node_by_place_;
   MeshFile out_;
   std::map<unsigned, std::vector<std::uint32_t>> indices_by_material_;
 };
 
-}  // namespace
-
-base::Result<MeshFile> read_mesh_file(const MeshShape& shape) {
+base::Result<MeshFile> read_file(const MeshShape& shape, Skin* skin) {
   try {
     Assimp::Importer importer;
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
@@ -199,7 +285,7 @@ base::Result<MeshFile> read_mesh_file(const MeshShape& shape) {
                                                              aiProcess_ImproveCacheLocality | aiProcess_TransformUVCoords);
     if (scene == nullptr || scene->mRootNode == nullptr)
       return base::Error{fmt::format("mesh {}: {}", shape.path, base::in_quotes(importer.GetErrorString()))};
-    MeshFile file = Reader(*scene, shape).read();
+    MeshFile file = Reader(*scene, shape, skin).read();
     if (file.mesh.indices.empty())
       return base::Error{shape.submesh.empty() ? fmt::format("mesh {}: has no triangle", shape.path)
                                                : fmt::format("mesh {}: has no submesh {}", shape.path, base::in_quotes(shape.submesh))};
@@ -207,6 +293,22 @@ base::Result<MeshFile> read_mesh_file(const MeshShape& shape) {
   } catch (const std::exception& e) {
     return base::Error{fmt::format("mesh {}: {}", shape.path, base::in_quotes(e.what()))};
   }
+}
+
+}  // namespace
+
+base::Result<MeshFile> read_mesh_file(const MeshShape& shape) { return read_file(shape, nullptr); }
+
+base::Result<SkinFile> read_skin_file(const std::string& path, double scale) {
+  MeshShape shape;
+  shape.path = path;
+  shape.scale.setConstant(scale);
+  SkinFile out;
+  auto file = read_file(shape, &out.skin);
+  if (!file) return file.error();
+  out.mesh = std::move(file->mesh);
+  out.images = std::move(file->images);
+  return out;
 }
 
 }  // namespace sim

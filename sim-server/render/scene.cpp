@@ -89,18 +89,20 @@ class Builder {
     entry.link_count = 1;
     const auto index = entry.first_link;
     scene_.links.push_back({actor.name, false, actor.pose});
-    if (!actor.skin.empty()) {
-      VisualDef skin;
-      skin.name = "skin";
-      MeshShape mesh;
-      mesh.path = actor.skin;
-      mesh.scale.setConstant(actor.skin_scale);
-      skin.geometry = mesh;
-      add(skin, index);
+    SceneActor seen;
+    seen.link = index;
+    seen.skin = actor.skin.empty() ? nullptr : assets_.skin(actor.skin, actor.skin_scale);
+    if (seen.skin) add_skin(actor, seen);
+    if (!actor.skin.empty() && !seen.skin) {
+      VisualDef missing;
+      missing.geometry = MeshShape{missing_file, {}, false, Eigen::Vector3d::Ones()};
+      add(missing, index);
     }
     for (const auto& visual : actor.visuals) add(visual, index);
+    entry.link_count = static_cast<std::uint32_t>(scene_.links.size()) - index;
     measure(entry);
     scene_.models.push_back(std::move(entry));
+    scene_.actors.push_back(std::move(seen));
   }
 
   // A large level sheet of something static, with nothing below it, is ground: it could only shade itself.
@@ -117,14 +119,52 @@ class Builder {
       if (scene_.links[scene_.drawables[i].link].is_static && std::min(size.x(), size.y()) >= smallest && size.z() <= thickest &&
           boxes[i].max().z() < lowest + deepest)
         scene_.drawables[i].is_ground = true;
+      // What stands on it must be seen.
+      if (scene_.drawables[i].is_ground && content_ == Scene::Content::collisions)
+        scene_.drawables[i].material.albedo.head<3>() = linear({0.6F, 0.6F, 0.58F, 1});
     }
   }
 
   Scene& scene() { return scene_; }
 
  private:
-  void add(const VisualDef& visual, std::uint32_t link) {
-    const auto mesh = assets_.mesh(visual.geometry);
+  void add_skin(const ActorDef& actor, SceneActor& seen) {
+    const Skin& skin = seen.skin->skin;
+    for (const auto& animation : actor.animations) seen.animations.push_back(assets_.animation(animation.path, animation.scale, seen.skin));
+    auto mesh = std::make_shared<Mesh>(seen.skin->mesh);
+    hold_all(*mesh, skin, seen.animations, !actor.trajectories.empty());
+    seen.mesh = mesh;
+    const auto bones = bone_poses(skin, nullptr, 0, false);
+    for (std::size_t i = 0; i < bones.size(); ++i)
+      scene_.links.push_back({actor.name + "::" + skin.nodes[skin.bones[i].node].name, false, actor.pose * bones[i]});
+    add(VisualDef{}, seen.link, mesh);
+  }
+
+  // Bounds that hold every pose of the animations.
+  static void hold_all(Mesh& mesh, const Skin& skin, const std::vector<std::shared_ptr<const SkinAnimation>>& animations, bool stays) {
+    constexpr int looks = 16;
+    constexpr float room = 1.05F;
+    std::vector<Vertex> bent;
+    for (const auto& animation : animations) {
+      for (int look = 0; look < looks && animation; ++look) {
+        bend(skin, bone_poses(skin, animation.get(), animation->length * look / looks, stays), bent);
+        for (auto& part : mesh.parts) {
+          for (std::uint32_t i = 0; i < part.index_count; ++i)
+            part.bounds.extend(Eigen::Map<const Eigen::Vector3f>(bent[mesh.indices[part.first_index + i]].position.data()));
+        }
+      }
+    }
+    for (auto& part : mesh.parts) {
+      const Eigen::Vector3f middle = part.bounds.center(), half = 0.5F * room * part.bounds.sizes();
+      part.bounds = Eigen::AlignedBox3f(Eigen::Vector3f(middle - half), Eigen::Vector3f(middle + half));
+      part.is_faceted = false;
+      mesh.bounds.extend(part.bounds);
+    }
+  }
+
+  void add(const VisualDef& visual, std::uint32_t link) { add(visual, link, assets_.mesh(visual.geometry)); }
+
+  void add(const VisualDef& visual, std::uint32_t link, const std::shared_ptr<const Mesh>& mesh) {
     const auto* plane = std::get_if<PlaneShape>(&visual.geometry);
     const auto* heightmap = std::get_if<HeightmapShape>(&visual.geometry);
     for (std::uint32_t part = 0; part < mesh->parts.size(); ++part) {

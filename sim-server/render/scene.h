@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "render/assets.h"
+#include "render/skin.h"
 #include "world/world_def.h"
 
 namespace sim {
@@ -64,14 +65,23 @@ struct SceneModel {
   double height = 0;                 // of the highest point over that origin at the start
 };
 
+// The links after an actor's own are its bones.
+struct SceneActor {
+  std::uint32_t link = 0;                // its own
+  std::shared_ptr<const SkinFile> skin;  // null: it has none that can be bent
+  std::shared_ptr<const Mesh> mesh;      // the skin's, for this actor alone; its bounds hold all that its animations do
+  std::vector<std::shared_ptr<const SkinAnimation>> animations;  // as in its definition; null: cannot be played
+};
+
 struct Scene {
   enum class Content { visuals, collisions };
 
   SceneDef look;
-  std::vector<SceneLink> links;  // of models[0], models[1], ... in the order of their definitions, then one per actor
+  std::vector<SceneLink> links;  // of models[0], models[1], ... in the order of their definitions, then each actor with its bones
   std::vector<SceneModel> models;
   std::vector<Drawable> drawables;
   std::vector<SceneLight> lights;
+  std::vector<SceneActor> actors;
 
   // What it takes of a world; pointers must live during the call only.
   struct Parts {

@@ -150,6 +150,10 @@ ActorDef build_actor(pugi::xml_node node, BuildContext& context) {
   actor.skin = text_at(node, "skin/filename");
   if (!actor.skin.starts_with('/')) actor.skin.clear();
   actor.skin_scale = number_at(node, "skin/scale", 1);
+  if (actor.skin_scale == 0) {
+    context.complaints.warn(node, "the scale of the skin of " + describe(node) + " must not be 0; 1 is taken");
+    actor.skin_scale = 1;
+  }
   actor.loop = bool_at(node, "script/loop", true);
   actor.auto_start = bool_at(node, "script/auto_start", true);
   actor.delay_start = number_at(node, "script/delay_start", 0);
@@ -169,6 +173,13 @@ ActorDef build_actor(pugi::xml_node node, BuildContext& context) {
   }
   for (pugi::xml_node trajectory : node.child("script").children("trajectory"))
     actor.trajectories.push_back(build_trajectory(trajectory, context));
+  for (const auto& trajectory : actor.trajectories) {
+    const bool is_known = std::any_of(actor.animations.begin(), actor.animations.end(),
+                                      [&](const AnimationDef& animation) { return animation.name == trajectory.animation; });
+    if (!is_known && !actor.animations.empty() && !trajectory.animation.empty())
+      context.complaints.warn(node, describe(node) + " has no animation " + base::in_quotes(trajectory.animation) +
+                                        ", which a trajectory names; its limbs keep still meanwhile");
+  }
   for (pugi::xml_node plugin : node.children("plugin")) actor.plugins.push_back(build_plugin(plugin, {}, context));
   actor.source = context.complaints.place_of(node).text();
   if (actor.skin.empty() && actor.visuals.empty())
