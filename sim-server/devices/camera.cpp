@@ -43,6 +43,12 @@ class CameraWorker {
 
   bool is_idle() const { return !state_.lock()->is_busy; }
   std::uint64_t drawn() const { return state_.lock()->drawn; }
+  bool holds_context() const { return state_.lock()->holds_context; }
+  // Gives the context back, soon; the next picture opens another.
+  void rest() {
+    state_.lock()->should_rest = true;
+    changed_.notify_all();
+  }
   // Only when idle.
   void start(Job job) {
     if (!thread_.joinable()) thread_ = std::jthread([this] { run(); });
@@ -64,29 +70,45 @@ class CameraWorker {
     std::optional<Job> job;
     bool is_busy = false;
     bool is_ending = false;
+    bool should_rest = false;
+    bool holds_context = false;
     std::uint64_t drawn = 0;
   };
 
   void run() {
-    while (auto job = next()) {
-      draw(*job);
-      job.reset();  // the snapshot may be large; nobody needs it now
+    while (auto work = next()) {
+      if (work->is_rest) {
+        renderer_.reset();
+      } else {
+        draw(*work->job);
+        work->job.reset();  // the snapshot may be large; nobody needs it now
+      }
       {
         auto state = state_.lock();
-        state->is_busy = false;
-        ++state->drawn;
+        state->holds_context = renderer_ != nullptr;
+        if (!work->is_rest) {
+          state->is_busy = false;
+          ++state->drawn;
+        }
       }
       changed_.notify_all();
     }
     renderer_.reset();  // in the thread that it belongs to
   }
 
-  std::optional<Job> next() {
+  // A picture to draw or, without one, the context to give back.
+  struct Work {
+    std::optional<Job> job;
+    bool is_rest = false;
+  };
+  std::optional<Work> next() {
     auto state = state_.lock();
-    while (!state.wait_for(changed_, std::chrono::hours(1), [&] { return state->job || state->is_ending; })) {
+    while (!state.wait_for(changed_, std::chrono::hours(1), [&] { return state->job || state->is_ending || state->should_rest; })) {
     }
     if (state->is_ending) return std::nullopt;
-    return std::exchange(state->job, std::nullopt);
+    const bool is_rest = !state->job;
+    state->should_rest = false;
+    return Work{std::exchange(state->job, std::nullopt), is_rest};
   }
 
   void draw(const Job& job) {
@@ -147,11 +169,15 @@ class CameraDevice final : public Device, public CameraPlaceSource {
   Eigen::Isometry3d camera_pose() const override { return mount_.in_world(world_.physics); }
   const CameraDef& camera_def() const override { return def_; }
   std::uint64_t pictures_drawn() const override { return worker_.drawn(); }
+  bool holds_context() const override { return worker_.holds_context(); }
 
   bool wants_sample(const Moment& moment) override {
     if (!schedule_.is_due(moment.time)) return false;
     auto wanted = subscribed_channels();
-    if (std::find(wanted.begin(), wanted.end(), true) == wanted.end()) return false;
+    if (std::find(wanted.begin(), wanted.end(), true) == wanted.end()) {
+      rest_when_long_idle(moment.time);
+      return false;
+    }
     // In its own time: while a picture is drawn the next one stays due. Time that waits for pictures waits for that one, too.
     if (world_.pictures->is_synchronous()) worker_.wait();
     if (!worker_.is_idle()) return false;
@@ -161,6 +187,7 @@ class CameraDevice final : public Device, public CameraPlaceSource {
   void measure(const Moment&) override { worker_.start(std::move(*job_)); }
   void publish(const Moment& moment) override {
     schedule_.done(moment.time);
+    last_picture_ = moment.time;
     job_.reset();
     if (world_.pictures->is_synchronous()) worker_.wait();
   }
@@ -171,13 +198,22 @@ class CameraDevice final : public Device, public CameraPlaceSource {
     worker_.wait();
     worker_.start({world_.pictures->snapshot(moment.time), mount_.in_world(world_.physics), moment.time, subscribed_channels()});
     worker_.wait();
+    last_picture_ = moment.time;
   }
   void reset() override {
     worker_.wait();
     schedule_.restart();
+    if (last_picture_) last_picture_ = std::chrono::nanoseconds(0);
   }
 
  private:
+  void rest_when_long_idle(std::chrono::nanoseconds now) {
+    constexpr std::chrono::seconds long_idle{10};
+    if (!last_picture_ || now - *last_picture_ < long_idle) return;
+    last_picture_.reset();
+    worker_.rest();
+  }
+
   std::vector<bool> subscribed_channels() const {
     std::vector<bool> wanted;
     for (const auto& channel : channels_) wanted.push_back(channel.writer->is_subscribed());
@@ -190,6 +226,7 @@ class CameraDevice final : public Device, public CameraPlaceSource {
   Schedule schedule_;
   std::vector<Channel> channels_;
   std::optional<Job> job_;
+  std::optional<std::chrono::nanoseconds> last_picture_;  // since it had to open a context
   CameraWorker worker_;
 };
 

@@ -1,5 +1,6 @@
 // Cameras of all kinds: camera, depth, rgbd, multicamera. Each camera draws in a thread of its own, with a context of its own, and only
-// while somebody subscribes. The frame of time t shows the world at t, and its pose is the camera's at t. See device.h for the thread rule.
+// while somebody subscribes; ten simulated seconds after the last picture it gives its context back. The frame of time t shows the world at
+// t, and its pose is the camera's at t. See device.h for the thread rule.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +19,7 @@ class CameraPlaceSource {
   virtual Eigen::Isometry3d camera_pose() const = 0;  // in the world, now
   virtual const CameraDef& camera_def() const = 0;
   virtual std::uint64_t pictures_drawn() const = 0;  // so far; none while nobody subscribes
+  virtual bool holds_context() const = 0;            // GL's, with what it holds of the scene: tens of MiB
 };
 
 // The devices of one sensor: one for each iface. A camera has a `camera` iface, a depth camera `depth` and `points`, an rgbd camera all

@@ -346,6 +346,27 @@ TEST(CameraDevice, only_who_subscribes_makes_it_draw) {
   EXPECT_EQ(camera->pictures_drawn(), before);
 }
 
+TEST(CameraDevice, nobody_for_ten_seconds_gives_its_memory_back) {
+  Stage f(dark({carrier(sensor_of(SensorKind::camera, {camera_def()})), orange_wall()}));
+  const auto* camera = dynamic_cast<const CameraPlaceSource*>(f.simulation->device("robot::eye"));
+  auto eye = shm::Iface::open(own_server_id(), IfaceType::camera, "robot::eye");
+  ASSERT_TRUE(eye && camera != nullptr);
+  EXPECT_FALSE(camera->holds_context());
+  for (int round = 0; round < 2; ++round) {
+    ASSERT_TRUE(eye->subscribe());
+    const auto before = eye->sequence();
+    f.run(12);
+    EXPECT_TRUE(camera->holds_context());
+    EXPECT_GT(eye->sequence(), before + 100);
+    eye->unsubscribe();
+    f.run(9);
+    EXPECT_TRUE(camera->holds_context()) << "somebody may come back";
+    f.run(2);
+    for (int i = 0; i < 1'000'000 && camera->holds_context(); ++i) f.run(0.01);
+    EXPECT_FALSE(camera->holds_context());
+  }
+}
+
 Eigen::Isometry3d isometry(const shm::Pose& p) {
   Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
   out.translation() = Eigen::Vector3d(p.x, p.y, p.z);
