@@ -257,15 +257,18 @@ bool bench_ring(const Rig& rig, double frame_bytes) {
 }
 
 bool bench_memory(const Textures& textures, int frames) {
-  // Small pictures, as it is their number that counts.
-  Rig rig(make_world(120, textures, 4, 1000, 64, 48), "eye::camera");
-  for (int i = 0; i < 2000; ++i) rig.move_and_step();
-  const double before = resident_mib();
-  for (int i = 0; i < frames; ++i) rig.move_and_step();
-  const double after = resident_mib();
-  char what[100];
-  std::snprintf(what, sizeof what, "memory gained over %d frames", frames);
-  const bool is_kept = print(what, after - before, "MiB", 1, false);
+  bool is_kept = true;
+  {
+    // Small pictures, as it is their number that counts.
+    Rig rig(make_world(120, textures, 4, 1000, 64, 48), "eye::camera");
+    for (int i = 0; i < 2000; ++i) rig.move_and_step();
+    const double before = resident_mib();
+    for (int i = 0; i < frames; ++i) rig.move_and_step();
+    const double after = resident_mib();
+    char what[100];
+    std::snprintf(what, sizeof what, "memory gained over %d frames", frames);
+    is_kept = print(what, after - before, "MiB", 1, false);
+  }
   Rig full(make_world(120, textures, 0, 1000), "eye::camera");
   return bench_ring(full, 3.0 * width * height) && is_kept;
 }
