@@ -179,7 +179,8 @@ void Renderer::Impl::draw_sky(const Scene& scene, const View& view, const Lights
                 static_cast<float>(0.5 * (view.top + view.bottom) / half_height));
   set("zenith", colors.zenith);
   set("horizon", colors.horizon);
-  set("ground", colors.ground);
+  // Ground ends somewhere; beyond there is haze.
+  set("ground", scene.look.fog ? linear(scene.look.fog->color) : colors.ground);
   set("sun_glow", lights.suns.empty() ? Eigen::Vector3f::Zero() : colors.glow);
   set("sun_direction", lights.suns.empty() ? Eigen::Vector3f::UnitZ() : lights.suns.front().to_light);
   gl_.Disable(GL_CULL_FACE);
@@ -215,6 +216,9 @@ base::Result<void> Renderer::Impl::draw(const std::shared_ptr<const Scene>& scen
     store_.keep_only(*scene);
     shadow_.forget();
     scene_ = scene;
+  }
+  for (const auto& actor : scene->actors) {
+    if (actor.skin) store_.bend(actor, poses);
   }
   view_ = view;
   ++statistics_.draws;

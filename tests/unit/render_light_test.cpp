@@ -138,6 +138,15 @@ TEST(RenderLight, lamps_shine_on_round_things_too) {
   }
 }
 
+TEST(RenderLight, fog_lies_below_the_horizon_of_a_sky) {
+  WorldDef world = test::dark_world();
+  world.scene.sky = SkyDef{};
+  world.scene.fog = FogDef{"exponential", {0.8F, 0.7F, 0.6F, 1}, 1, 100, 0.1};
+  Studio studio(world);
+  EXPECT_TRUE(is_near(pixel(studio.picture(View::pinhole(at(0, 0, 1, 0, 0.3), 0.4, 32, 32)), 16, 16), linear_of({0.8F, 0.7F, 0.6F, 1})));
+  EXPECT_GT(pixel(studio.picture(View::pinhole(at(0, 0, 1, 0, -0.3), 0.4, 32, 32)), 16, 16)[2], 200) << "above it the sky is blue";
+}
+
 TEST(RenderLight, every_kind_of_fog_follows_its_formula) {
   for (const auto& [type, share] : {std::pair<const char*, double>("linear", (6 - 2) / 8.0),
                                     {"exponential", 1 - std::exp(-0.1 * 6)},
