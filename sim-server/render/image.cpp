@@ -136,6 +136,20 @@ base::Result<GreyImage> read_grey_image(const std::filesystem::path& file) {
   return grey;
 }
 
+namespace {
+// Where a symbolic link leads, also when nothing is there yet.
+std::filesystem::path behind_links(std::filesystem::path file) {
+  constexpr int most = 40;
+  std::error_code error;
+  for (int i = 0; i < most && std::filesystem::is_symlink(file, error); ++i) {
+    const auto next = std::filesystem::read_symlink(file, error);
+    if (error) break;
+    file = file.parent_path() / next;
+  }
+  return file;
+}
+}  // namespace
+
 base::Result<void> write_png(const Image& image, const std::filesystem::path& file) {
   if (image.width < 1 || image.height < 1 || image.rgba.size() != image.size_bytes()) return bad(file.string(), "has no pixels");
   bool is_opaque = true;
@@ -149,14 +163,19 @@ base::Result<void> write_png(const Image& image, const std::filesystem::path& fi
   writer.image.width = static_cast<png_uint_32>(image.width);
   writer.image.height = static_cast<png_uint_32>(image.height);
   writer.image.format = is_opaque ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
-  const std::string part = file.string() + ".part" + std::to_string(::getpid());
-  const void* pixels = is_opaque ? rgb.data() : image.rgba.data();
+  // The whole picture or none is seen under its name. A link stays one; a device or a pipe must not become a file.
   std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    return bad(file.string(), std::filesystem::is_directory(status) ? "is a folder" : "is no ordinary file");
+  const auto target = behind_links(file);
+  const std::string part = target.string() + ".part" + std::to_string(::getpid());
+  const void* pixels = is_opaque ? rgb.data() : image.rgba.data();
   if (png_image_write_to_file(&writer.image, part.c_str(), 0, pixels, 0, nullptr) == 0) {
     std::filesystem::remove(part, error);
     return bad(file.string(), writer.image.message);
   }
-  std::filesystem::rename(part, file, error);
+  std::filesystem::rename(part, target, error);
   if (!error) return {};
   const std::string why = error.message();
   std::filesystem::remove(part, error);

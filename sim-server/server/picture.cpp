@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/text.h"
 #include "devices/camera.h"
 #include "devices/laser.h"
 
@@ -87,6 +88,14 @@ const CameraPlaceSource* find_camera(Simulation& simulation, const std::string& 
   return nullptr;
 }
 
+std::vector<std::string> camera_names(Simulation& simulation) {
+  std::vector<std::string> names;
+  for (const auto& device : simulation.devices()) {
+    if (dynamic_cast<const CameraPlaceSource*>(device.get()) != nullptr) names.push_back(device->iface().name());
+  }
+  return names;
+}
+
 }  // namespace
 
 base::Result<View> view_of(Simulation& simulation, const Snapshot& world, const shm::ScreenshotRequest& request) {
@@ -96,10 +105,13 @@ base::Result<View> view_of(Simulation& simulation, const Snapshot& world, const 
   const Vector3d middle = box.center();
   const bool has_angle = request.view == Kind::from || request.view == Kind::follow;
   if (has_angle && request.span > widest_fov)
-    return base::Error{fmt::format("screenshot: field of view {}, expected at most {} rad", request.span, widest_fov)};
+    return base::Error{fmt::format("field of view {}, expected at most {} rad", request.span, widest_fov)};
   if (request.view == Kind::camera) {
     const auto* camera = find_camera(simulation, request.follow);
-    if (camera == nullptr) return base::Error{"no camera " + request.follow};
+    if (camera == nullptr) {
+      const auto names = camera_names(simulation);
+      return base::Error{"no camera " + base::in_quotes(request.follow) + (names.empty() ? "" : "; there is " + base::join(names, ", "))};
+    }
     const CameraDef& def = camera->camera_def();
     View view = View::pinhole(camera->camera_pose(), std::min(def.horizontal_fov, widest_fov), width, height);
     view.near_clip = def.near_clip;
@@ -111,7 +123,7 @@ base::Result<View> view_of(Simulation& simulation, const Snapshot& world, const 
   if (request.view == Kind::follow) {
     const auto found =
         std::find_if(world.scene->models.begin(), world.scene->models.end(), [&](const auto& m) { return m.name == request.follow; });
-    if (found == world.scene->models.end()) return base::Error{"screenshot: no model " + request.follow};
+    if (found == world.scene->models.end()) return base::Error{"no model " + request.follow};
     return behind((*world.poses)[found->canonical_link], found->radius, request.span, width, height);
   }
   if (request.view == Kind::top) {
@@ -160,24 +172,26 @@ Overlay overlay_of(Simulation& simulation, const Snapshot& world) {
   return overlay;
 }
 
-base::Result<Image> draw_picture(Simulation& simulation, const shm::ScreenshotRequest& request) {
+base::Result<PicturePlan> plan_picture(Simulation& simulation, const shm::ScreenshotRequest& request) {
   const auto content = request.with_collisions ? Scene::Content::collisions : Scene::Content::visuals;
-  const Snapshot world = simulation.pictures().snapshot(simulation.time(), content);
-  auto view = view_of(simulation, world, request);
+  PicturePlan plan{simulation.pictures().snapshot(simulation.time(), content), {}, {}};
+  auto view = view_of(simulation, plan.world, request);
   if (!view) return view.error();
   if (!view->is_parallel && request.view != shm::ScreenshotRequest::View::camera) {
     // The nearest thing may be the ground below. What lies close together far away needs a near plane that is not too near.
-    const Eigen::AlignedBox3d box = bounds_of(world);
+    const Eigen::AlignedBox3d box = bounds_of(plan.world);
     const Vector3d eye = view->pose.translation();
     view->near_clip = std::clamp(0.3 * std::min(box.exteriorDistance(eye), std::abs(eye.z() - box.min().z())), 0.05, 5.0);
     view->far_clip = std::max(200.0, 3 * box.diagonal().norm());
   }
   view->grid = simulation.world().scene.grid && request.view != shm::ScreenshotRequest::View::camera;
-  auto renderer = simulation.renderer();
-  if (!renderer) return renderer.error();
-  if (!request.with_scans) return draw_smooth(**renderer, world.scene, *world.poses, *view);
-  const Overlay overlay = overlay_of(simulation, world);
-  return draw_smooth(**renderer, world.scene, *world.poses, *view, &overlay);
+  plan.view = *view;
+  if (request.with_scans) plan.overlay = overlay_of(simulation, plan.world);
+  return plan;
+}
+
+base::Result<Image> draw_picture(Renderer& renderer, const PicturePlan& plan) {
+  return draw_smooth(renderer, plan.world.scene, *plan.world.poses, plan.view, plan.overlay ? &*plan.overlay : nullptr);
 }
 
 }  // namespace sim

@@ -4,7 +4,6 @@
 
 #include "base/log.h"
 #include "base/text.h"
-#include "server/picture.h"
 #include "server/server_loop.h"
 #include "world/world_loader.h"
 
@@ -149,14 +148,19 @@ struct ServerLoop::Handler {
     simulation.remove(*model);
     return {};
   }
+  // Of this moment; answered when it is drawn and written.
   shm::Reply operator()(const shm::ScreenshotRequest& request) {
     const auto& actors = simulation.world().actors;
     const bool is_actor = std::any_of(actors.begin(), actors.end(), [&](const ActorDef& a) { return a.name == request.follow; });
     if (request.view == shm::ScreenshotRequest::View::follow && !is_actor && !physics.find(request.follow)) return no_model(request.follow);
-    const auto image = draw_picture(simulation, request);
-    if (!image) return failed(image.error());
-    const auto written = write_png(*image, request.path);
-    return written ? shm::Reply{} : failed(written.error());
+    auto plan = plan_picture(simulation, request);
+    if (!plan) return failed(plan.error());
+    if (!loop.desk_) loop.desk_ = std::make_unique<PictureDesk>([board = &loop.board_] { board->wake(); });
+    shm::Reply reply;
+    reply.sim_time_ns = simulation.time().count();
+    reply.steps = simulation.steps();
+    loop.desk_->take({ticket, std::move(*plan), request.path, std::move(reply)});
+    return {};
   }
   shm::Reply operator()(const shm::StatsRequest&) {
     shm::Reply reply;
@@ -205,6 +209,9 @@ shm::Reply ServerLoop::handle(const shm::Request& request, const shm::RequestTic
 }
 
 void ServerLoop::handle_requests(When when) {
+  if (desk_) {
+    for (const auto& done : desk_->finished()) board_.reply(done.ticket, done.reply);
+  }
   auto waiting = std::exchange(postponed_, {});
   for (auto& asked : board_.poll()) waiting.push_back({std::move(asked), Clock::now()});
   for (auto& [asked, since] : waiting) {
@@ -221,7 +228,7 @@ void ServerLoop::handle_requests(When when) {
     }
     base::log(base::Level::debug, "sim-server", "request {} of pid {}", shm::request_name(asked.request), asked.pid);
     shm::Reply reply = handle(asked.request, asked.ticket);
-    if (std::holds_alternative<shm::StepRequest>(asked.request) && reply.status == shm::RequestStatus::ok) continue;
+    if (is_one_of<shm::StepRequest, shm::ScreenshotRequest>(asked.request) && reply.status == shm::RequestStatus::ok) continue;
     reply.sim_time_ns = simulation_.time().count();
     reply.steps = simulation_.steps();
     board_.reply(asked.ticket, reply);

@@ -11,6 +11,7 @@
 
 #include "base/result.h"
 #include "server/describe.h"
+#include "server/picture_desk.h"
 #include "server/recorder.h"
 #include "server/simulation.h"
 #include "shm/lockstep.h"
@@ -89,7 +90,8 @@ class ServerLoop {
     shm::RequestBoard::Asked asked;
     std::chrono::steady_clock::time_point since;
   };
-  std::vector<Postponed> postponed_;  // until the tick is over
+  std::vector<Postponed> postponed_;   // until the tick is over
+  std::unique_ptr<PictureDesk> desk_;  // made with the first picture
   std::map<ModelId, std::uint64_t> contacts_told_;
   std::uint64_t last_hash_ = 0, last_hash_steps_ = 0;
   std::uint32_t missing_ = 0;  // participants

@@ -34,15 +34,6 @@ base::Result<std::unique_ptr<Simulation>> Simulation::create(std::shared_ptr<con
   return s;
 }
 
-base::Result<Renderer*> Simulation::renderer() {
-  if (!renderer_) {
-    auto opened = Renderer::open();
-    if (!opened) return opened.error();
-    renderer_ = std::move(*opened);
-  }
-  return renderer_.get();
-}
-
 base::Result<void> Simulation::make_devices_of(ModelId model, std::vector<std::string>& left_out) {
   auto made = make_devices(*device_world_, model, left_out);
   if (!made) return made.error();
@@ -167,6 +158,7 @@ void Simulation::reset_poses() {
   }
   for (auto& device : devices_) device->reset();
   wrenches_.clear();
+  trails_.clear();
 }
 
 base::Result<ModelId> Simulation::spawn(const ModelDef& model, std::vector<std::string>& notes) {
@@ -191,7 +183,9 @@ void Simulation::remove(ModelId model) {
 
 base::Result<void> Simulation::set_pose(ModelId model, const Eigen::Isometry3d& pose) {
   auto done = physics_->set_model_pose(model, pose);
-  if (done) rays_->moved(model);
+  if (!done) return done;
+  rays_->moved(model);
+  if (model < trails_.size()) trails_[model] = Trail();  // it has not driven there
   return done;
 }
 

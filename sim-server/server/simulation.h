@@ -12,7 +12,6 @@
 #include "devices/ray_world.h"
 #include "devices/render_world.h"
 #include "physics/physics.h"
-#include "render/renderer.h"
 #include "server/statistics.h"
 #include "shm/writer.h"
 
@@ -63,8 +62,6 @@ class Simulation {
   const Physics& physics() const { return *physics_; }
   RayWorld& rays() { return *rays_; }
   RenderWorld& pictures() { return *pictures_; }
-  // For pictures on request; opened with the first.
-  base::Result<Renderer*> renderer();
   const WorldDef& world() const { return *world_; }
   const std::vector<std::unique_ptr<Device>>& devices() const { return devices_; }
   Device* device(std::string_view iface_name);
@@ -91,7 +88,6 @@ class Simulation {
   std::unique_ptr<Physics> physics_;
   std::unique_ptr<RayWorld> rays_;
   std::unique_ptr<RenderWorld> pictures_;
-  std::unique_ptr<Renderer> renderer_;
   std::unique_ptr<DeviceWorld> device_world_;
   std::vector<std::unique_ptr<Device>> devices_;  // by model, then as made
   std::vector<Device*> due_;

@@ -61,7 +61,7 @@ std::optional<shm::Iface> Control::open(shm::IfaceType type, const std::string& 
   return std::move(*iface);
 }
 
-std::optional<shm::Iface> Control::open(const std::string& text) {
+std::optional<shm::Iface> Control::open(const std::string& text, std::optional<shm::IfaceType> preferred) {
   // TYPE:NAME has one colon; names of models inside models have two in a row.
   const auto colon = text.find(':');
   if (colon != std::string::npos && text.compare(colon, 2, "::") != 0) {
@@ -74,6 +74,9 @@ std::optional<shm::Iface> Control::open(const std::string& text) {
     names.push_back(std::string(shm::to_text(found.name.type)) + ":" + found.name.iface);
   }
   if (matches.size() == 1) return open(matches.front().name.type, text);
+  for (const auto& match : matches) {
+    if (match.name.type == preferred) return open(match.name.type, text);
+  }
   if (matches.size() > 1) {
     std::vector<std::string> choices;
     for (const auto& match : matches) choices.push_back(std::string(shm::to_text(match.name.type)) + ":" + match.name.iface);
@@ -192,7 +195,7 @@ void screenshot(Control& control, const ScreenshotOptions& options) {
     request.view = View::from;
     request.pose = pose_of(options.from);
   }
-  control.ask(request, std::chrono::seconds(60));
+  control.ask(request, std::chrono::minutes(10));  // very large ones take their time; a dead server is noticed anyway
 }
 
 void contacts(Control& control, const std::string& model) {

@@ -335,8 +335,8 @@ void info(Control& control, const std::string& name) {
     std::cout << key << "  " << (value.is_string() ? value.get<std::string>() : value.dump()) << '\n';
 }
 
-static bool is_paused(Control& control) {
-  auto clock = shm::Iface::open(control.server_id(), shm::IfaceType::simulation, "world");
+bool is_paused(std::uint32_t server_id) {
+  auto clock = shm::Iface::open(server_id, shm::IfaceType::simulation, "world");
   return clock && clock->read() &&
          (clock->sample<shm::SimulationSample>().paused != 0 || clock->sample<shm::SimulationSample>().waiting_for != 0);
 }
@@ -353,7 +353,7 @@ void echo(Control& control, const std::string& name, int count) {
     if (what == shm::Wait::closed) return control.fail("iface " + name + ": the simulator is gone");
     if (what == shm::Wait::timed_out) {
       // Time stands still and somebody else listens already: what he has got is the present.
-      if (printed == 0 && is_paused(control)) last = 0;
+      if (printed == 0 && is_paused(control.server_id())) last = 0;
       continue;
     }
     Json sample;

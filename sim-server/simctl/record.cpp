@@ -124,6 +124,19 @@ std::string prepare(const std::string& folder) {
   return {};
 }
 
+std::string frame_file(const std::string& folder, int number) {
+  char file[32];
+  std::snprintf(file, sizeof file, "/frame-%06d.png", number);
+  return folder + file;
+}
+
+// And the folder, unless it holds something else.
+void remove_frames(const std::string& folder, int frames) {
+  std::error_code error;
+  for (int i = 1; i <= frames; ++i) std::filesystem::remove(frame_file(folder, i), error);
+  std::filesystem::remove(folder, error);
+}
+
 struct Film {
   int frames = 0;
   std::uint64_t missed = 0;
@@ -139,11 +152,18 @@ struct Film {
 base::Result<Film> take_frames(shm::Iface& camera, const std::string& folder, int frames, double seconds) {
   Film film;
   std::uint64_t last = 0;
+  bool has_said = false;
   while (!is_interrupted() && (frames <= 0 || film.frames < frames)) {
     const auto what = camera.wait(last, std::chrono::milliseconds(200));
     if (what == shm::Wait::closed)
       return film.frames > 0 ? base::Result<Film>(film) : base::Error{"iface " + camera.name() + ": the simulator is gone"};
-    if (what == shm::Wait::timed_out) continue;
+    if (what == shm::Wait::timed_out) {
+      if (!has_said && film.frames <= 1 && is_paused(camera.server_id())) {
+        std::cerr << "simctl: the simulation is paused; frames come when it runs" << std::endl;
+        has_said = true;
+      }
+      continue;
+    }
     const auto frame = camera.hold();
     if (!frame) continue;
     const auto now = frame->head().stamp.sim_time_ns;
@@ -152,9 +172,7 @@ base::Result<Film> take_frames(shm::Iface& camera, const std::string& folder, in
     if (film.frames > 0) film.missed += frame->sequence() - last - 1;
     last = frame->sequence();
     film.last_ns = now;
-    char file[32];
-    std::snprintf(file, sizeof file, "/frame-%06d.png", ++film.frames);
-    if (const auto written = write_frame(*frame, folder + file); !written) return written.error();
+    if (const auto written = write_frame(*frame, frame_file(folder, ++film.frames)); !written) return written.error();
   }
   return film;
 }
@@ -162,7 +180,7 @@ base::Result<Film> take_frames(shm::Iface& camera, const std::string& folder, in
 }  // namespace
 
 void record(Control& control, const std::string& name, const std::string& target, int frames, double seconds) {
-  auto camera = control.open(name);
+  auto camera = control.open(name, shm::IfaceType::camera);
   if (!camera) return;
   if (camera->type() != shm::IfaceType::camera)
     return control.fail("iface " + name + ": is a " + std::string(shm::to_text(camera->type())) + ", record takes a camera");
@@ -177,8 +195,7 @@ void record(Control& control, const std::string& name, const std::string& target
   if (is_encoded && film->frames > 0) {
     if (!encode(folder, film->rate(camera->info<shm::CameraInfo>().rate), target))
       return control.fail("record: " + std::string(encoder) + " could not write " + target + "; the frames are in " + folder);
-    std::error_code error;
-    std::filesystem::remove_all(folder, error);
+    remove_frames(folder, film->frames);
   }
   if (control.json()) return control.print(Json{{"frames", film->frames}, {"missed", film->missed}, {"rate", film->rate(0)}});
   std::cout << film->frames << " frames, " << film->missed << " missed\n";

@@ -22,8 +22,8 @@ class Control {
 
   // The server's reply; nothing when it refused or does not answer, which is printed.
   std::optional<shm::Reply> ask(const shm::Request& request, std::chrono::seconds limit = std::chrono::seconds(10));
-  // By NAME or TYPE:NAME; nothing when there is none, or several types have the name, which is printed.
-  std::optional<shm::Iface> open(const std::string& name);
+  // By NAME or TYPE:NAME; nothing when there is none, or several types have the name and none is the preferred one, which is printed.
+  std::optional<shm::Iface> open(const std::string& name, std::optional<shm::IfaceType> preferred = {});
   std::optional<shm::Iface> open(shm::IfaceType type, const std::string& name);
   void fail(const std::string& message);
   bool failed() const { return failed_; }
@@ -74,6 +74,9 @@ void dump(Control& control, const std::string& name);
 void clean(Control& control);
 // PNG frames into a folder, or an mp4 when ffmpeg is installed.
 void record(Control& control, const std::string& camera, const std::string& target, int frames, double seconds);
+
+// Time of the server stands still, or waits for participants.
+bool is_paused(std::uint32_t server_id);
 
 // True once SIGINT or SIGTERM came.
 bool is_interrupted();

@@ -2,6 +2,7 @@
 # encoder (a stand-in), without one and with a broken one.
 import json
 import os
+import stat
 import struct
 import subprocess
 import sys
@@ -161,8 +162,23 @@ def screenshots():
     ok("pose", "leader", "0.5", "1.5", "0.2", "0")
     ok("step", "50")
 
+    # Its trail is where it has driven, in its fan's colour; where it is put, a new one begins.
+    def behind_the_leader(*options):
+        return count([row[228:285] for row in screenshot("trail.png", "--top", "--span", "8", *options, size="400x300")[72:79]], bluer)
+
+    ok("velocity", "leader", "1", "0", "0")
+    ok("step", "1500")
+    assert behind_the_leader("--scans") > 50 and behind_the_leader() == 0
+    ok("velocity", "leader", "0", "0", "0")
+    ok("pose", "leader", "-1", "1.5", "0.2", "3.1416")
+    ok("step", "50")
+    assert behind_the_leader("--scans") == 0
+    ok("pose", "leader", "0.5", "1.5", "0.2", "0")
+    ok("step", "50")
+
     assert count(screenshot("seen.png", "--top"), is_orange) == 0
-    assert count(screenshot("shapes.png", "--top", "--show", "collisions"), is_orange) > 20
+    shapes = screenshot("shapes.png", "--top", "--show", "collisions")
+    assert 20 < count(shapes, is_orange) < 0.3 * 160 * 120, count(shapes, is_orange)  # not the ground
     assert screenshot("seen2.png", "--top", "--show", "visuals") == screenshot("seen3.png", "--top")
     for view in (["--top"], ["--follow", "leader"], ["--camera", "eye::camera"], ["--from", "-3 1.5 1 0 0.25 0"], []):
         for more in ([], ["--scans"], ["--show", "collisions"], ["--scans", "--show", "collisions"]):
@@ -187,7 +203,17 @@ def bad_screenshots():
     refused("screenshot", out, "--show", "ghosts", code=2, says="ghosts")
     refused("screenshot", place("no/such/folder/x.png"), says="no/such/folder")
     refused("screenshot", code=2)
+    refused("screenshot", work.name, says="is a folder")
     assert not os.path.exists(out)
+    # What is no file stays what it is; a link stays a link.
+    os.mkfifo(place("pipe"))
+    refused("screenshot", place("pipe"), "--size", "8x8", says="no ordinary file")
+    assert stat.S_ISFIFO(os.stat(place("pipe")).st_mode)
+    os.symlink(place("behind.png"), place("link.png"))
+    for _ in range(2):
+        ok("screenshot", place("link.png"), "--size", "8x8")
+        assert os.path.islink(place("link.png")) and read_png(place("behind.png"))[:2] == (8, 8)
+        os.truncate(place("behind.png"), 0)
 
 
 def records():
@@ -218,6 +244,10 @@ def records():
     os.chmod(f"{tools}/ffmpeg", 0o755)
     ok("record", "eye::camera", place("made.mp4"), "-n", "4", path=f"{tools}:{os.environ['PATH']}")
     asked = open(place("made.mp4")).read()
+    os.mkdir(place("again.mp4.frames"))
+    open(place("again.mp4.frames/note"), "w").close()
+    ok("record", "eye::camera", place("again.mp4"), "-n", "2", path=f"{tools}:{os.environ['PATH']}")
+    assert os.listdir(place("again.mp4.frames")) == ["note"], "only its own frames are its to remove"
     assert "-framerate" in asked and "made.mp4.frames/frame-%06d.png" in asked and not os.path.exists(place("made.mp4.frames")), asked
     with open(f"{tools}/ffmpeg", "w") as script:
         script.write("#!/bin/sh\nexit 1\n")

@@ -1,0 +1,65 @@
+#include "server/picture_desk.h"
+
+#include <utility>
+
+namespace sim {
+
+PictureDesk::PictureDesk(std::function<void()> on_done) : on_done_(std::move(on_done)) {}
+
+PictureDesk::~PictureDesk() {
+  state_.lock()->is_ending = true;
+  changed_.notify_all();
+}
+
+void PictureDesk::take(Order order) {
+  if (!thread_.joinable()) thread_ = std::jthread([this] { run(); });
+  ++under_way_;
+  state_.lock()->orders.push_back(std::move(order));
+  changed_.notify_all();
+}
+
+std::vector<PictureDesk::Done> PictureDesk::finished() {
+  if (under_way_ == 0) return {};
+  auto done = std::exchange(state_.lock()->done, {});
+  under_way_ -= done.size();
+  return done;
+}
+
+void PictureDesk::run() {
+  while (true) {
+    std::optional<Order> order;
+    {
+      auto state = state_.lock();
+      while (!state.wait_for(changed_, std::chrono::hours(1), [&] { return state->is_ending || !state->orders.empty(); })) {
+      }
+      if (state->is_ending) break;
+      order = std::move(state->orders.front());
+      state->orders.erase(state->orders.begin());
+    }
+    shm::Reply reply = make(*order);
+    state_.lock()->done.push_back({order->ticket, std::move(reply)});
+    order.reset();
+    on_done_();
+  }
+  renderer_.reset();  // in the thread that it belongs to
+}
+
+shm::Reply PictureDesk::make(const Order& order) {
+  shm::Reply reply = order.reply;
+  const auto fail = [&](const base::Error& error) {
+    reply.status = shm::RequestStatus::failed;
+    reply.message = error.message;
+    return reply;
+  };
+  if (!renderer_) {
+    auto opened = Renderer::open();
+    if (!opened) return fail(opened.error());
+    renderer_ = std::move(*opened);
+  }
+  const auto image = draw_picture(*renderer_, order.plan);
+  if (!image) return fail(image.error());
+  const auto written = write_png(*image, order.file);
+  return written ? reply : fail(written.error());
+}
+
+}  // namespace sim

@@ -1,0 +1,59 @@
+// Where ordered pictures are drawn and written, in a thread of their own: a picture takes as long as many steps, and time goes on
+// meanwhile. The stepping thread only, but for what `on_done` does.
+#pragma once
+
+#include <condition_variable>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "base/guarded.h"
+#include "server/picture.h"
+#include "shm/request_board.h"
+
+namespace sim {
+
+class PictureDesk {
+ public:
+  // Called in the desk's thread after each picture.
+  explicit PictureDesk(std::function<void()> on_done);
+  // Waits for the picture that is being drawn; those after it are forgotten.
+  ~PictureDesk();
+  PictureDesk(const PictureDesk&) = delete;
+  PictureDesk& operator=(const PictureDesk&) = delete;
+
+  struct Order {
+    shm::RequestTicket ticket;
+    PicturePlan plan;
+    std::filesystem::path file;
+    shm::Reply reply;  // when all goes well
+  };
+  void take(Order order);
+  // One load when nothing is ordered.
+  struct Done {
+    shm::RequestTicket ticket;
+    shm::Reply reply;
+  };
+  std::vector<Done> finished();
+
+ private:
+  struct State {
+    std::vector<Order> orders;
+    std::vector<Done> done;
+    bool is_ending = false;
+  };
+  void run();
+  shm::Reply make(const Order& order);
+
+  std::function<void()> on_done_;
+  std::size_t under_way_ = 0;
+  std::unique_ptr<Renderer> renderer_;  // the thread's; opened with the first picture
+  base::Guarded<State, base::Rank::buffer> state_;
+  std::condition_variable changed_;
+  std::jthread thread_;  // last: ends before what it uses
+};
+
+}  // namespace sim
