@@ -237,7 +237,7 @@ TEST(Physics, what_is_spawned_moves_and_what_is_deleted_is_gone_until_a_reset) {
 
 TEST(Physics, contact_forces_carry_the_weight) {
   Fixture f(world_of({ground(), body("box", BoxShape{}, at(0, 0, 0.5), 10)}));
-  f.physics.record_forces(1, true);
+  f.physics.record_forces(1);
   f.run(0.3);
   double up = 0;
   for (const auto& contact : f.physics.contacts(1)) {

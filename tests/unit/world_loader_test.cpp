@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "support/world_files.h"
+#include "world/iface_names.h"
 #include "world/plugin_kind.h"
 
 namespace sim {
@@ -308,7 +309,7 @@ TEST(WorldIncludes, models_nest_and_their_names_are_scoped) {
   EXPECT_EQ(arm.joint("wrist")->child, "left::palm");
   EXPECT_EQ(arm.plugins.at(0).scope, "left");
   const SensorDef& sensor = arm.link("left::palm")->sensors.at(0);
-  EXPECT_EQ(iface_name(arm.name, sensor.scope, sensor.name), "arm::left::touch");
+  EXPECT_EQ(iface_name(arm, sensor), "arm::left::touch");
 }
 
 TEST(WorldIncludes, an_older_model_in_a_newer_one_keeps_its_meaning) {

@@ -149,6 +149,8 @@ class ManagerImpl {
   // The module whose init function runs on this thread.
   static thread_local std::string current_module;
 
+  LogStreamBuf log_buffers;
+
  private:
   bool activate_all();
   void bind_to_processors();
@@ -181,7 +183,6 @@ class ManagerImpl {
   RTM::NumberingPolicyBase* numbering = nullptr;
   std::unique_ptr<rt::SignalWatcher> signals;
   std::vector<LogstreamBase*> log_plugins;
-  LogStreamBuf log_buffers;
   std::thread life;           // in a lock of the state; taken in by whoever sees it end
   std::string socket_folder;  // of the ORB; empty if none
 };
