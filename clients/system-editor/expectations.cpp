@@ -246,7 +246,10 @@ std::string problem_of(const Expectation& e, const Seen& seen) {
 Result<std::vector<Expectation>> read_expectations(const std::string& file) {
   int line = 0;
   try {
-    auto root = YAML::LoadFile(file);
+    const auto documents = YAML::LoadAllFromFile(file);
+    if (documents.size() > 1)
+      return Error{"file " + base::in_quotes(file) + ": holds " + std::to_string(documents.size()) + " YAML documents, expected one"};
+    auto root = documents.empty() ? YAML::Node() : documents.front();
     if (root.IsMap() && root["expect"]) root = root["expect"];
     if (!root.IsSequence()) return Error{"file " + base::in_quotes(file) + ": must hold a list of expectations"};
     std::vector<Expectation> expectations;
@@ -269,7 +272,6 @@ Result<Record> read_record(const std::string& file, double end) {
   std::ifstream in(file);
   if (!in) return Error{"record " + base::in_quotes(file) + ": cannot be read"};
   Record record;
-  double last = 0;
   for (std::string line; std::getline(in, line);) {
     std::istringstream words(line);
     std::string first;
@@ -286,8 +288,8 @@ Result<Record> read_record(const std::string& file, double end) {
     std::string model;
     words >> std::quoted(model) >> pose.x >> pose.y >> pose.z;
     if (!time || !words) return Error{"record " + base::in_quotes(file) + ": line " + base::in_quotes(line) + " is no pose"};
-    if (pose.time < last || pose.time > end) break;
-    last = pose.time;
+    if (pose.time < record.last || pose.time > end) break;
+    record.last = pose.time;
     record.poses[model].push_back(pose);
   }
   return record;

@@ -48,6 +48,7 @@ struct RecordedContact {
 struct Record {
   std::map<std::string, std::vector<RecordedPose>> poses;
   std::vector<RecordedContact> contacts;
+  double last = 0;  // [s], of the last pose
 };
 // What sim-server --record writes, until `end` [s] or a reset of the world.
 base::Result<Record> read_record(const std::string& file, double end);

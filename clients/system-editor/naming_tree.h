@@ -48,7 +48,6 @@ class NamingTree {
   Result<std::vector<const Entry*>> candidates(const Address& address) const;
 
  private:
-
   Entry root_;
 };
 

@@ -92,6 +92,12 @@ std::string telling_line(const std::string& file) {
   return telling;
 }
 
+std::string complaint(const std::string& file) {
+  const auto line = telling_line(file);
+  const auto level = level_of(line);
+  return level == LogLevel::warning || level == LogLevel::error ? ": " + line : "";
+}
+
 std::string last_lines(const std::string& file) {
   constexpr std::size_t enough = 40;
   const auto lines = lines_of(file);

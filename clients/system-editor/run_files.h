@@ -32,6 +32,8 @@ enum class LogLevel { none, info, warning, error };
 LogLevel level_of(const std::string& line);
 // The line of a log that tells most: the first error, else the last warning, else the last line.
 std::string telling_line(const std::string& file);
+// ": " and that line when it is a warning or an error; else nothing.
+std::string complaint(const std::string& file);
 // The last lines of a log under its name; nothing for one that is empty.
 std::string last_lines(const std::string& file);
 // What is no UTF-8, or no character that XML 1.0 allows, becomes a question mark.

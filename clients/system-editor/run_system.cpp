@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <thread>
 
 #include "base/text.h"
@@ -113,6 +114,12 @@ class Run {
   Result<void> judge_all() {
     auto record = read_record(place_.file("record.txt"), options_.duration_s + step_s_ / 2);
     if (!record) return record.error();
+    constexpr double record_period = 0.1;  // [s]
+    if (!record->poses.empty() && record->last < options_.duration_s - record_period - step_s_) {
+      std::string why;
+      if (simulator_) why = complaint(place_.file("sim-server.log"));
+      return fail("the record of the run ends at " + base::format_number(record->last) + " s, by a reset or a full disk" + why);
+    }
     seen_.record = std::move(*record);
     const auto verdicts = judge(expectations_, seen_);
     result_.verdicts.insert(result_.verdicts.end(), verdicts.begin(), verdicts.end());
@@ -143,7 +150,7 @@ class Run {
       if (host.process.is_running()) continue;
       const auto time = simulated_time();
       return fail("host of " + host.components + " " + host.process.how_it_ended() +
-                  (time && *time > 0 ? " at " + base::format_number(*time) + " s" : "") + ": " + telling_line(host.log));
+                  (time && *time > 0 ? " at " + base::format_number(*time) + " s" : "") + complaint(host.log));
     }
     return {};
   }
@@ -221,8 +228,8 @@ class Run {
   }
 
   // Of the simulator with our id, whoever's it is; an empty object when there is none.
-  Json statistics() const {
-    const auto text = simctl({"--json", "stats"});
+  Json statistics(std::chrono::milliseconds limit = call_limit) const {
+    const auto text = simctl({"--json", "stats"}, limit);
     auto json = text ? Json::parse(*text, nullptr, false) : Json();
     return json.is_object() ? json : Json::object();
   }
@@ -261,7 +268,9 @@ class Run {
     paths.push_back((libraries / "rtm-sim").string());
     const auto set = [](const std::string& key, const std::string& value) { return key + ":" + value; };
     const auto log = place_.new_file("rtcd-" + std::to_string(hosts_.size()) + ".log");
-    ProgramCall call{{own_program("rtcd")}, {{"RTMSIM_SERVER_ID", server_id_}, {"TMPDIR", place_.scratch("tmp")}}, log};
+    ProgramCall call{{own_program("rtcd"), "-f", place_.scratch("rtc.conf")},
+                     {{"RTMSIM_SERVER_ID", server_id_}, {"TMPDIR", place_.scratch("tmp")}},
+                     log};
     for (const auto& option : {set("corba.nameservers", server_), set("manager.modules.load_path", base::join(paths, ",")),
                                set("manager.modules.preload", "SimTimeContext.so"), set("exec_cxt.periodic.type", "SimTimeContext"),
                                set("manager.instance_name", "host" + std::to_string(hosts_.size())), set("manager.shutdown_auto", "NO"),
@@ -323,8 +332,40 @@ class Run {
     editor_.emplace(orb_, server_, false, std::chrono::milliseconds(call_limit));
     load(*editor_, file, false);
     if (!editor_->failed()) start(*editor_, file, false);
+    if (!editor_->failed()) {
+      if (const auto joined = wait_for_participants(); !joined) return joined;
+    }
     if (editor_->failed()) return fail("system " + options_.system + ": could not be wired and activated: " + editor_->problem());
     return {};
+  }
+
+  // Every context on simulated time takes part before the first step, or the run would not be the same each time.
+  Result<void> wait_for_participants() {
+    std::vector<std::string> expected;
+    for (const auto& component : system_.components) {
+      const auto view = editor_->component(component.instance + ".rtc", {.contexts = true});
+      if (!view) return view.error();
+      for (const auto& context : view->contexts) {
+        if (context.is_owned && context.is_running && property(context.properties, "type") == "SimTimeContext") {
+          expected.push_back(component.instance);
+          break;
+        }
+      }
+    }
+    std::string missing;
+    const auto waited = wait_until("simulated time", [&] {
+      const auto text = simctl({"--json", "participants"});
+      const auto json = text ? Json::parse(*text, nullptr, false) : Json();
+      std::set<std::string> there;
+      for (const auto& participant : json.is_array() ? json : Json::array()) there.insert(participant.value("name", ""));
+      missing.clear();
+      for (const auto& name : expected) {
+        if (!there.contains(name)) missing = name;
+      }
+      return missing.empty();
+    });
+    if (waited || missing.empty() || is_interrupted() || !check_children()) return waited;
+    return fail("component " + missing + ": does not take part in simulated time after " + std::to_string(start_limit.count()) + " s");
   }
 
   // The ends of all logs, for a report.
@@ -354,7 +395,9 @@ class Run {
 
   // Some steps of the simulator; given up when a process ends, or when time stands still for longer than a tick may take.
   Result<void> step(std::int64_t steps) {
-    auto stepping = ChildProcess::start({{own_program("simctl"), "-s", server_id_, "step", std::to_string(steps)}, {}, ""});
+    ProgramCall call{{own_program("simctl"), "-s", server_id_, "step", std::to_string(steps)}, {}, ""};
+    if (options_.in_real_time) call.words.push_back("--paced");
+    auto stepping = ChildProcess::start(call);
     if (!stepping) return stepping.error();
     std::uint64_t last = 0;
     auto moved = Clock::now();
@@ -366,22 +409,23 @@ class Run {
         const auto said = output_of(*stepping);
         return said ? Result<void>() : said.error();
       }
-      const auto now = statistics().value("steps", std::uint64_t{0});
+      const auto stats = statistics(1s);
+      const auto now = stats.value("steps", last);
+      last_time_ = stats.value("sim_time", last_time_);
       if (std::exchange(last, now) != now) moved = Clock::now();
       if (Clock::now() - moved > std::chrono::duration<double>(options_.hang_timeout_s)) return fail(who_hangs());
     }
   }
 
   std::string who_hangs() const {
-    const auto text = simctl({"--json", "participants"});
+    const auto text = simctl({"--json", "participants"}, 1s);
     const auto json = text ? Json::parse(*text, nullptr, false) : Json();
     std::vector<std::string> late;
     for (const auto& participant : json.is_array() ? json : Json::array()) {
       if (participant.value("late", false)) late.push_back(participant.value("name", "?"));
     }
-    const auto time = simulated_time();
     const auto end =
-        " at " + base::format_number(time.value_or(0)) + " s after " + base::format_number(options_.hang_timeout_s) + " s (--hang-timeout)";
+        " at " + base::format_number(last_time_) + " s after " + base::format_number(options_.hang_timeout_s) + " s (--hang-timeout)";
     return late.empty() ? "the simulator has not ended its step" + end : base::join(late, ", ") + ": has not ended its tick" + end;
   }
 
@@ -441,15 +485,27 @@ class Run {
         seen.text = "it did not end within " + std::to_string(command_limit.count()) + " s";
       }
     }
-    return {};
+    return check_children();
   }
 
   // Ends components first, so that they can say good-bye to the naming service.
   void stop() {
     for (auto& host : hosts_) host.process.terminate();
     hosts_.clear();
-    simulator_.reset();
+    if (simulator_) {
+      simulator_.reset();
+      remove_segments();
+    }
     naming_.reset();
+  }
+
+  // What a simulator that was killed leaves in shared memory; after an orderly end there is nothing. The id was ours alone.
+  void remove_segments() const {
+    const auto prefix = "rtmsim-" + std::to_string(getuid()) + "-" + server_id_ + ".";
+    std::error_code ignored;  // nobody else may be harmed by a file that stays
+    for (const auto& entry : std::filesystem::directory_iterator("/dev/shm", ignored)) {
+      if (entry.path().filename().string().starts_with(prefix)) std::filesystem::remove(entry.path(), ignored);
+    }
   }
 
   CORBA::ORB_var orb_;
@@ -461,6 +517,7 @@ class Run {
   std::string server_;
   std::string server_id_;
   double step_s_ = 0;
+  double last_time_ = 0;  // [s] of the simulation, when it was asked last
   Seen seen_;
   RunResult result_;
   std::optional<ChildProcess> naming_;

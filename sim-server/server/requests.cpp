@@ -68,6 +68,8 @@ struct ServerLoop::Handler {
     if (loop.step_ticket_) return refused(shm::RequestStatus::failed, "steps of another client are under way");
     loop.is_paused_ = true;
     loop.steps_to_do_ = static_cast<std::uint64_t>(request.steps);
+    loop.are_steps_paced_ = request.is_paced;
+    loop.start_pace();
     loop.step_ticket_ = ticket;
     return {};
   }

@@ -139,7 +139,7 @@ void ServerLoop::step() {
 
 bool ServerLoop::finish_moment() {
   // Nobody waits for the wall clock: pictures must not be late in simulated time.
-  simulation_.pictures().set_synchronous(options_.is_lockstep || options_.rtf <= 0 || steps_to_do_ > 0);
+  simulation_.pictures().set_synchronous(options_.is_lockstep || options_.rtf <= 0 || (steps_to_do_ > 0 && !are_steps_paced_));
   simulation_.sense(times_);
   if (recorder_) recorder_->record(simulation_.time(), simulation_.physics());
   publish_clock();
@@ -225,7 +225,7 @@ void ServerLoop::start_pace() {
 }
 
 void ServerLoop::pace() {
-  if (options_.rtf <= 0 || steps_to_do_ > 0) return;
+  if (options_.rtf <= 0 || (steps_to_do_ > 0 && !are_steps_paced_)) return;
   const auto due =
       pace_wall_ + std::chrono::nanoseconds(std::llround(static_cast<double>((simulation_.time() - pace_sim_).count()) / options_.rtf));
   auto now = Clock::now();
@@ -245,7 +245,8 @@ void ServerLoop::pace() {
       tend();
       const auto was_at = simulation_.time();
       handle_requests(When::between_steps);
-      if (is_paused_ || steps_to_do_ > 0 || simulation_.time() != was_at || is_fresh_moment_) return;
+      if ((is_paused_ && steps_to_do_ == 0) || (steps_to_do_ > 0 && !are_steps_paced_) || simulation_.time() != was_at || is_fresh_moment_)
+        return;
     }
   }
   times_.mark(Part::pace);

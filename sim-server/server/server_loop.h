@@ -85,6 +85,7 @@ class ServerLoop {
   bool is_paused_ = false;
   bool is_fresh_moment_ = true;  // the moment at time 0 has not been published yet
   std::uint64_t steps_to_do_ = 0;
+  bool are_steps_paced_ = false;
   std::optional<shm::RequestTicket> step_ticket_;
   struct Postponed {
     shm::RequestBoard::Asked asked;

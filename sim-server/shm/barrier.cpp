@@ -299,7 +299,7 @@ bool Barrier::tick(nanoseconds now, std::uint64_t steps) {
   refresh();
   state.last_now = now.count();
   if (now.count() < state.earliest_due) return true;
-  std::array<State::Member*, 256> due;  // no allocation in the loop; there are fewer slots than that
+  std::array<State::Member*, 256> due;  // no allocation in the loop; there are no more slots than that
   std::size_t begin = 0;
   bool is_complete = true;
   state.is_ticking = true;

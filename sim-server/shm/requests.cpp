@@ -36,7 +36,10 @@ struct Encoder {
 
   void operator()(const PauseRequest&) {}
   void operator()(const RunRequest&) {}
-  void operator()(const StepRequest& r) { raw.body.count = r.steps; }
+  void operator()(const StepRequest& r) {
+    raw.body.count = r.steps;
+    raw.body.flags = r.is_paced ? flag_1 : 0;
+  }
   void operator()(const ResetRequest& r) { raw.body.flags = r.poses_only ? flag_1 : 0; }
   void operator()(const GetPoseRequest& r) { name(r.name); }
   void operator()(const SetPoseRequest& r) {
@@ -153,7 +156,7 @@ std::optional<Pose> Decoder::pose() const {
 
 base::Result<Request> Decoder::step() const {
   if (body().count < 1 || body().count > max_steps) return fail("steps must be 1 to 1e9, got " + std::to_string(body().count));
-  return Request(StepRequest{body().count});
+  return Request(StepRequest{body().count, (body().flags & flag_1) != 0});
 }
 
 base::Result<Request> Decoder::set_pose() const {

@@ -16,6 +16,7 @@ struct PauseRequest {};
 struct RunRequest {};
 struct StepRequest {
   std::int64_t steps = 1;
+  bool is_paced = false;  // at the real-time factor, instead of as fast as possible
 };
 struct ResetRequest {
   bool poses_only = false;

@@ -407,7 +407,7 @@ typedef struct {
 enum {
   RTMSIM_REQUEST_PAUSE = 1,
   RTMSIM_REQUEST_RUN = 2,
-  RTMSIM_REQUEST_STEP = 3,     /* count = steps (1..1e9); pauses; answered when they are done */
+  RTMSIM_REQUEST_STEP = 3,     /* count = steps (1..1e9); pauses; answered when they are done; flags 1 = at the real-time factor */
   RTMSIM_REQUEST_RESET = 4,    /* world and time as at the start; keeps paused or running; flags 1: poses only, time goes on */
   RTMSIM_REQUEST_GET_POSE = 5, /* name = model or model::link; reply values 0..6 = pose x y z qw qx qy qz in the world */
   RTMSIM_REQUEST_SET_POSE =

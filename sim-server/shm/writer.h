@@ -34,7 +34,7 @@ struct IfaceSpec {
 
 // Specs of all types. Counts and sizes are taken from the infos; a count that is not plausible (0 beams, more than 2^24 values, frames
 // above 1 GiB) makes create() fail.
-IfaceSpec simulation_spec(const SimulationInfo& info, std::uint32_t request_slots = 32, std::uint32_t participants = 64);
+IfaceSpec simulation_spec(const SimulationInfo& info, std::uint32_t request_slots = 32, std::uint32_t participants = 256);
 IfaceSpec laser_spec(const std::string& name, const LaserInfo& info);
 IfaceSpec sonar_spec(const std::string& name, const SonarInfo& info, std::span<const Pose> poses);  // info.count is set to poses.size()
 IfaceSpec position2d_spec(const std::string& name, const Position2dInfo& info);

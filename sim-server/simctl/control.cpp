@@ -92,9 +92,9 @@ std::optional<shm::Iface> Control::open(const std::string& text, std::optional<s
   return std::nullopt;
 }
 
-void step(Control& control, std::int64_t steps) {
+void step(Control& control, std::int64_t steps, bool is_paced) {
   // Steps take as long as the world needs; a dead server is noticed anyway.
-  const auto reply = control.ask(shm::StepRequest{steps}, std::chrono::hours(24));
+  const auto reply = control.ask(shm::StepRequest{steps, is_paced}, std::chrono::hours(24));
   if (reply && control.json()) control.print({{"sim_time", static_cast<double>(reply->sim_time_ns) / 1e9}, {"steps", reply->steps}});
 }
 

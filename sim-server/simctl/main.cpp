@@ -71,7 +71,8 @@ void add_control(CLI::App& app, Work& work) {
   auto* step = app.add_subcommand("step", "Make physics steps and pause; returns when they are done");
   auto steps = option_value<std::int64_t>(1);
   step->add_option("N", *steps, "How many")->check(CLI::Range(1, 1000000000))->capture_default_str();
-  step->callback([&work, steps] { work = [steps](Control& c) { simctl::step(c, *steps); }; });
+  auto* paced = step->add_flag("--paced")->description("At the server's real-time factor, instead of as fast as possible");
+  step->callback([&work, steps, paced] { work = [steps, paced](Control& c) { simctl::step(c, *steps, paced->count() > 0); }; });
 
   auto* pose = app.add_subcommand("pose", "Show or set the pose of a model: pose MODEL [X Y [Z] YAW]");
   auto model = option_value<std::string>();

@@ -36,7 +36,7 @@ class Control {
 };
 
 // ---- control ----
-void step(Control& control, std::int64_t steps);
+void step(Control& control, std::int64_t steps, bool is_paced);
 void pose(Control& control, const std::string& model, const std::vector<double>& values);
 // Drives for so long [s] and stops, or until it is interrupted when `seconds` is 0: a robot obeys only as long as its commander lives.
 void velocity(Control& control, const std::string& iface, const std::vector<double>& values, double seconds);

@@ -188,7 +188,7 @@ def screenshots():
 def bad_screenshots():
     out = place("bad.png")
     for size in ("0x10", "10", "axb", "10x", "9000x10", "10x10x10"):
-        refused("screenshot", out, "--size", size, says="expected WIDTHxHEIGHT")
+        refused("screenshot", out, "--size", size, code=2, says="expected WIDTHxHEIGHT")
     refused("screenshot", out, "--follow", "nobody", says="nobody")
     refused("screenshot", out, "--camera", "nobody::camera", says="nobody::camera")
     refused("screenshot", out, "--camera", "leader::laser", says="leader::laser")
