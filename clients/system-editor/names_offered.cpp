@@ -12,6 +12,7 @@ namespace editor {
 namespace {
 
 constexpr std::chrono::milliseconds patience{500};
+constexpr std::chrono::seconds patience_with_modules{5};  // a manager looks into each file of its load path
 
 // The value of an option that stands before.
 std::string option_value(const std::vector<std::string>& words, const std::string& option, const std::string& otherwise) {
@@ -93,7 +94,7 @@ std::vector<base::Offer> types(const Editor& editor, const std::vector<std::stri
   const auto tree = editor.tree();
   const auto wanted = parse_address(option_value(words, "-m", option_value(words, "--manager", "")), "");
   if (!tree || !wanted) return offers;
-  const CallLimit limited(patience);
+  const CallLimit limited(patience_with_modules);
   for (const auto* entry : tree->objects()) {
     if (entry->kind != EntryKind::manager || entry->health != Health::alive) continue;
     if (!wanted->segments.empty() && !matches(wanted->segments.back(), entry->id, entry->kind_text)) continue;

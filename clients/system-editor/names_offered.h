@@ -5,7 +5,7 @@
 
 namespace editor {
 
-// Asks the name server of the words (or the default one), for half a second at most; nothing when it does not answer.
+// Asks the name server of the words (or the default one), half a second at most for a call; nothing when it does not answer.
 std::optional<std::vector<base::Offer>> names_offered(const std::string& value, const std::vector<std::string>& before,
                                                       const std::string& current);
 

@@ -95,6 +95,10 @@ std::optional<int> parse_command_line(CLI::App& app, const std::string& name, in
     for (const auto& offer : completion.offers) std::cout << offer.text << '\t' << offer.description << '\n';
     return 0;
   }
+  if (const auto word = unknown_command(app, {argv + 1, argv + argc}); !word.empty()) {
+    std::cerr << name << ": unknown command " << in_quotes(word) << "; see " << name << " --help\n";
+    return 2;
+  }
   try {
     app.parse(argc, argv);
     return std::nullopt;

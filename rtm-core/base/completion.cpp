@@ -1,6 +1,7 @@
 #include "base/completion.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/text.h"
 
@@ -111,6 +112,23 @@ void offer_options(const CLI::App& app, Completion& completion) {
 }
 
 }  // namespace
+
+std::string unknown_command(const CLI::App& app, const std::vector<std::string>& words) {
+  const auto commands = commands_of(app);
+  bool is_value = false;
+  for (const auto& word : words) {
+    if (std::exchange(is_value, false)) continue;
+    if (word.size() > 1 && word.front() == '-') {
+      const auto* option = find_option(app, word);
+      if (!option && word.find('=') == std::string::npos) return "";  // it is what is wrong
+      is_value = option && takes_value(option);
+      continue;
+    }
+    const bool is_known = commands.empty() || std::ranges::any_of(commands, [&](const CLI::App* one) { return one->get_name() == word; });
+    return is_known ? "" : word;
+  }
+  return "";
+}
 
 Completion complete(const CLI::App& app, const std::vector<std::string>& words, const Offers& offers) {
   Completion completion;

@@ -33,6 +33,9 @@ Completion complete(const CLI::App& app, const std::vector<std::string>& words, 
 // The subcommands that --help shows.
 std::vector<const CLI::App*> commands_of(const CLI::App& app);
 
+// The word that stands where a command of the program is expected, and is none; empty when there is no such.
+std::string unknown_command(const CLI::App& app, const std::vector<std::string>& words);
+
 // The script for bash or zsh.
 std::string completion_script(const std::string& name, const std::string& shell);
 

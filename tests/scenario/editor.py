@@ -33,6 +33,7 @@ def wrong_usage():
                   ["new", "N", "--rate", "0"]):
         line = refused(*words, code=2, says="--help").stderr
         assert line.count("\n") == 1 and len(line) < 250, line
+    refused("--json", "bogus", "x", code=2, says='unknown command "bogus"')
 
 
 # A command whose reader has gone ends, also when nothing is left to print.
@@ -96,7 +97,7 @@ def name_servers():
         context = next(name for name in rig.rtse("ls", path).split() if name.endswith(".host_cxt/"))
         assert "SourceAll" in rig.rtse("cat", f"{path}{context}SourceAll0.rtc"), path
     for server in (f"{rig.names}/", f"/{rig.names}", f"iiop:{rig.names}", f"corbaloc::{rig.names}/NameService"):
-        assert "SourceAll" in rig.rtse("--ns", server, "cat", "SourceAll0"), server
+        assert "SourceAll" in rig.call(f"{rig.bin_dir}/rtse", "--ns", server, "cat", "SourceAll0"), server
 
 
 # Names of the living are deleted with a word, contexts full of them only by force.
@@ -113,7 +114,7 @@ def why_not():
     up("SourceAll", "SinkAll", "EchoProvider")
     rig.rtse("con", "SourceAll0:long", "SinkAll0:long", "-i", "one")
     refused("con", "SourceAll0:long", "SinkAll0:long", says="are connected already")
-    refused("con", "SourceAll0:short", "SinkAll0:short", "-i", "one", says='id "one" is in use')
+    refused("con", "SourceAll0:long", "SinkAll0:long", "-i", "one", says='id "one" is in use')
     refused("con", "EchoProvider0:Echo", "EchoProvider0:Echo", says="to itself")
     refused("mgr", "create", "SinkAll?instance_name=SinkAll0", says="there is a component SinkAll0 already")
     refused("mgr", "create", "NoSuchType", says='no type "NoSuchType"')

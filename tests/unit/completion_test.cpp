@@ -58,5 +58,12 @@ TEST(Completion, asks_the_program_for_each_positional_and_offers_files_otherwise
   EXPECT_TRUE(third.files);
 }
 
+TEST(Completion, knows_the_word_that_is_no_command) {
+  const Program program;
+  EXPECT_EQ(unknown_command(program.app, {"--json", "-s", "list", "lost", "x"}), "lost");
+  EXPECT_EQ(unknown_command(program.app, {"-s", "7", "list", "lost"}), "");
+  EXPECT_EQ(unknown_command(program.app, {"--json"}), "");
+}
+
 }  // namespace
 }  // namespace base
