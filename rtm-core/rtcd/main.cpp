@@ -3,8 +3,10 @@
 #include <rtm/ManagerConfig.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -36,6 +38,31 @@ struct Description {
   }
 };
 
+// Modules of the load path that the words before name, and of the folders where ours are: beside the program, when built and when
+// installed.
+std::optional<std::vector<base::Offer>> modules_offered(const std::string& value, const std::vector<std::string>& before,
+                                                        const std::string& current) {
+  if (value != "MODULE" || current.find_first_of("/.") != std::string::npos) return std::nullopt;
+  std::error_code error;
+  const auto prefix = std::filesystem::read_symlink("/proc/self/exe", error).parent_path().parent_path();
+  std::vector<std::filesystem::path> folders = {prefix / "lib/rtm-sim", prefix / "lib"};
+  constexpr std::string_view key = "manager.modules.load_path:";
+  for (const auto& word : before) {
+    if (!word.starts_with(key)) continue;
+    for (const auto& folder : base::split_list(word.substr(key.size()))) folders.emplace_back(folder);
+  }
+  std::set<std::string> names;
+  for (const auto& folder : folders) {
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+      if (const auto& file = entry.path(); file.extension() == ".so" && !file.filename().string().starts_with("lib"))
+        names.insert(file.stem());
+    }
+  }
+  std::vector<base::Offer> offers;
+  for (const auto& name : names) offers.push_back({name});
+  return offers;
+}
+
 int fail(int code, const std::string& message) {
   std::cerr << "rtcd: " << message << '\n';
   return code;
@@ -53,6 +80,10 @@ bool take(std::vector<char*>& arguments, std::string_view option) {
 
 int main(int argc, char** argv) {
   std::vector<char*> arguments(argv, argv + argc);
+  if (arguments.size() > 1 && std::string_view(arguments[1]) == "--complete") {
+    Description description;
+    return base::parse_command_line(description.app, "rtcd", argc, argv, modules_offered).value_or(0);
+  }
   for (std::size_t i = 1; i < arguments.size(); ++i) {
     const std::string_view word = arguments[i];
     if (word != "--help" && word != "-h" && word != "--version" && word != "--man" && !word.starts_with("--completion")) continue;
