@@ -55,7 +55,7 @@ std::optional<std::vector<base::Offer>> modules_offered(const std::string& value
   for (const auto& folder : folders) {
     for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
       if (const auto& file = entry.path(); file.extension() == ".so" && !file.filename().string().starts_with("lib"))
-        names.insert(file.stem());
+        names.insert(file.stem().string());
     }
   }
   std::vector<base::Offer> offers;
