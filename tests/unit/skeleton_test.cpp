@@ -109,7 +109,7 @@ TEST(Skeleton, a_description_stays_in_its_comment) {
 TEST(Skeleton, a_service_port_has_several_interfaces_and_an_idl_file_several_services) {
   const Folder folder;
   const auto idl =
-      folder.write("Two.idl", "#include \"Base.idl\"\nmodule M { interface A { Base::T t(); }; interface B { void b(in long x); }; };\n");
+      folder.write("Two.idl", "#include \"Base.idl\"\nmodule M { interface A { Base::T get(); }; interface B { void put(in long x); }; };\n");
   folder.write("Base.idl", "module Base { struct T { long a; string b; }; };\n");
   auto component = follower();
   component.services = {{"port", "M::A", idl, true, "a"}, {"port", "M::B", idl, true, "b"}, {"other", "M::B", idl, false, "c"}};
@@ -119,7 +119,7 @@ TEST(Skeleton, a_service_port_has_several_interfaces_and_an_idl_file_several_ser
   const auto& implementation = files->at("include/TwoSVC_impl.h");
   EXPECT_NE(implementation.find("class ASVC_impl"), std::string::npos) << implementation;
   EXPECT_NE(implementation.find("class BSVC_impl"), std::string::npos) << implementation;
-  EXPECT_NE(implementation.find("  Base::T* t() override"), std::string::npos) << implementation;
+  EXPECT_NE(implementation.find("  Base::T* get() override"), std::string::npos) << implementation;
   const auto& source = files->at("src/Follower.cpp");
   EXPECT_EQ(source.find("addPort(m_portPort)"), source.rfind("addPort(m_portPort)")) << source;
   const auto& cmake = files->at("CMakeLists.txt");
