@@ -175,25 +175,25 @@ std::vector<std::pair<std::string, std::string>> good_values(const ComponentView
 }
 
 // Values that do not fit are left out and reported; the others are set.
-Result<void> restore_configuration(const Matched& matched, const SavedComponent& saved, bool dry_run) {
+Result<void> restore_configuration(const Matched& matched, const SavedComponent& saved, const LoadOptions& options) {
   const auto* component = matched.find(saved.path_uri, saved.instance);
   if (!component || !component->problem.empty()) return {};  // reported already, or optional
   std::vector<std::string> problems;
   for (const auto& set : saved.configuration_sets) {
-    const auto values = good_values(*component, set, problems);
+    const auto values = options.force ? set.values : good_values(*component, set, problems);
     if (values.empty()) continue;
-    if (dry_run) {
+    if (options.dry_run) {
       std::cout << "set configuration " + set.id + " of " + component->path + "\n";
       continue;
     }
     if (const auto done = set_values(*component, set.id, values); !done) return done;
   }
   const auto active = saved.active_set.empty() ? component->active_set : saved.active_set;
-  if (!active.empty() && !dry_run) {
+  if (!active.empty() && !options.dry_run) {
     if (const auto used = use_set(*component, active); !used) return used;
   }
   if (problems.empty()) return {};
-  return Error{"component " + component->path + ": " + base::join(problems, "; ")};
+  return Error{"component " + component->path + ": " + base::join(problems, "; ") + " (--force sets it all the same)"};
 }
 
 int context_index(const ComponentView& component, const std::string& context_id) {
@@ -306,10 +306,10 @@ void save(Editor& editor, const SaveOptions& options) {
   if (const auto written = write_system(system, options.file); !written) editor.fail(written.error());
 }
 
-void load(Editor& editor, const std::string& file, bool dry_run, bool with_states) {
-  const auto system = read_system(file);
+void load(Editor& editor, const LoadOptions& options) {
+  const auto system = read_system(options.file);
   if (!system) return editor.fail(system.error());
-  const auto matched = Matched::read(editor, *system, {.contexts = with_states, .connectors = true, .configuration = true});
+  const auto matched = Matched::read(editor, *system, {.contexts = options.with_states, .connectors = true, .configuration = true});
   if (!matched) return editor.fail(matched.error());
   for (const auto& missing : matched->missing()) editor.fail(missing);
   if (!matched->missing().empty()) return;
@@ -319,11 +319,11 @@ void load(Editor& editor, const std::string& file, bool dry_run, bool with_state
       return component && !component->is_required && !matched->find(target.path_uri, target.instance);
     };
     if (optional(saved.source) || optional(saved.target)) return {};
-    return restore_connection(*matched, saved, dry_run);
+    return restore_connection(*matched, saved, options.dry_run);
   });
-  for_all(editor, system->components, [&](const SavedComponent& saved) { return restore_configuration(*matched, saved, dry_run); });
-  if (!with_states || editor.failed()) return;
-  for_all(editor, system->components, [&](const SavedComponent& saved) { return restore_states(*matched, saved, dry_run); });
+  for_all(editor, system->components, [&](const SavedComponent& saved) { return restore_configuration(*matched, saved, options); });
+  if (!options.with_states || editor.failed()) return;
+  for_all(editor, system->components, [&](const SavedComponent& saved) { return restore_states(*matched, saved, options.dry_run); });
 }
 
 void start(Editor& editor, const std::string& file, bool dry_run) { move_all(editor, file, dry_run, Transition::activate); }

@@ -126,7 +126,13 @@ struct SaveOptions {
   bool yaml = false;
 };
 void save(Editor& editor, const SaveOptions& options);
-void load(Editor& editor, const std::string& file, bool dry_run, bool with_states = false);
+struct LoadOptions {
+  std::string file;
+  bool dry_run = false;
+  bool with_states = false;
+  bool force = false;  // also values that the components' own types and constraints forbid
+};
+void load(Editor& editor, const LoadOptions& options);
 void start(Editor& editor, const std::string& file, bool dry_run);
 void stop(Editor& editor, const std::string& file, bool dry_run);
 void teardown(Editor& editor, const std::string& file, bool dry_run);

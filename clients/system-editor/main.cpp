@@ -183,15 +183,12 @@ void add_systems(CLI::App& app, Work& work) {
     command->callback([&work, file, dry_run, function] { work = [=](Editor& e) { function(e, *file, *dry_run); }; });
   };
   auto* load = app.add_subcommand("load", "Restore connections and configuration of a saved system");
-  auto load_file = std::make_shared<std::string>();
-  auto load_dry_run = std::make_shared<bool>(false);
-  auto load_states = std::make_shared<bool>(false);
-  load->add_option("FILE", *load_file, "RTSProfile, XML or YAML; -: standard input")->required();
-  load->add_flag("--dry-run", *load_dry_run, "Say what would be done");
-  load->add_flag("--states", *load_states, "The components' states too: activate, deactivate and reset as saved");
-  load->callback([&work, load_file, load_dry_run, load_states] {
-    work = [=](Editor& e) { editor::load(e, *load_file, *load_dry_run, *load_states); };
-  });
+  auto load_options = std::make_shared<editor::LoadOptions>();
+  load->add_option("FILE", load_options->file, "RTSProfile, XML or YAML; -: standard input")->required();
+  load->add_flag("--dry-run", load_options->dry_run, "Say what would be done");
+  load->add_flag("--states", load_options->with_states, "The components' states too: activate, deactivate and reset as saved");
+  load->add_flag("--force", load_options->force, "Set also values that the components' own types and constraints forbid");
+  load->callback([&work, load_options] { work = [load_options](Editor& e) { editor::load(e, *load_options); }; });
   add("start", "Activate the components of a saved system", editor::start);
   add("stop", "Deactivate the components of a saved system", editor::stop);
   add("teardown", "Remove the connections of a saved system", editor::teardown);

@@ -267,11 +267,11 @@ def save_and_load():
         rig.rtse("conf", "ConfigDemo0", "use", names[0])
         wrong = rig.try_rtse("check", rig.path("system.xml"), "--state", "saved")
         assert wrong.returncode == 1 and "connection 0" in wrong.stderr and "ConfigDemo0" in wrong.stderr and "SinkAll0" in wrong.stderr, wrong.stderr
-        rig.rtse("load", "--states", rig.path(f"system.{ending}"))
+        rig.rtse("load", "--states", "--force", rig.path(f"system.{ending}"))
         assert states() == wanted_states, (states(), wanted_states)
         rig.rtse("check", rig.path("system.xml"), "--state", "saved")
         differences(wanted)
-        rig.rtse("load", "--states", rig.path(f"system.{ending}"))  # what stands already stays
+        rig.rtse("load", "--states", "--force", rig.path(f"system.{ending}"))  # what stands already stays
         differences(wanted)
     # The same after all processes were restarted.
     for process in (host, rig.running[0]):
@@ -279,7 +279,7 @@ def save_and_load():
     rig.naming()
     demo_host()
     rig.there(*demo)
-    rig.rtse("load", "--states", rig.path("system.xml"))
+    rig.rtse("load", "--states", "--force", rig.path("system.xml"))
     assert states() == wanted_states, (states(), wanted_states)
     differences(wanted)
 
