@@ -34,6 +34,8 @@ constexpr ConfigKey keys[] = {
     {"corba.master_manager", "localhost:2810", addresses},
     {"corba.update_master_manager.enable", "YES", boolean},
     {"corba.update_master_manager.interval", "10.0", number},
+    {"manager.update_master_manager.enable", "", boolean},
+    {"manager.update_master_manager.interval", "", number},
     {"corba.alternate_iiop_addresses", "", addresses},
     {"corba.ssl.*", ""},
     {"naming.enable", "YES", boolean},

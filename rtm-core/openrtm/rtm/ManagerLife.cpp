@@ -198,8 +198,11 @@ void ManagerImpl::start_timer_tasks() {
     for (const auto& component : held_components()) component->leaveTheDead();
   };
   peers->add(look_after_components, look, look);
-  if (servant != nullptr && !is_master() && flag("corba.update_master_manager.enable", true)) {
-    const auto interval = std::max(to_milliseconds(number("corba.update_master_manager.interval", 10.0)), std::chrono::milliseconds(100));
+  // Both spellings are in the documentation.
+  const bool greets = flag("manager.update_master_manager.enable", flag("corba.update_master_manager.enable", true));
+  if (servant != nullptr && !is_master() && greets) {
+    const double every = number("manager.update_master_manager.interval", number("corba.update_master_manager.interval", 10.0));
+    const auto interval = std::max(to_milliseconds(every), std::chrono::milliseconds(100));
     peers->add([this] { servant->greet_master(); }, interval, {});
   }
 }

@@ -17,6 +17,18 @@ static const char* const outside_spec[] =
     ""
   };
 
+void ServiceSVC_impl::take(const OutsideDemo::Note& what)
+  throw (CORBA::SystemException)
+{
+  m_last = what;
+}
+
+OutsideDemo::Note* ServiceSVC_impl::last() throw (CORBA::SystemException, PortableServer::POA::WrongPolicy)
+{
+  if (m_last.tm.sec == 0) throw CORBA::BAD_INV_ORDER();
+  return new OutsideDemo::Note(m_last);
+}
+
 Outside::Outside(RTC::Manager* manager)
   : RTC::DataFlowComponentBase(manager),
     m_inIn("in", m_in),

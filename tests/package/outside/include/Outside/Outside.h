@@ -15,8 +15,9 @@
 class ServiceSVC_impl : public virtual POA_OutsideDemo::Service, public virtual PortableServer::RefCountServantBase
 {
 public:
-  void take(const OutsideDemo::Note& what) { m_last = what; }
-  OutsideDemo::Note* last() { return new OutsideDemo::Note(m_last); }
+  void take(const OutsideDemo::Note& what)
+    throw (CORBA::SystemException);
+  OutsideDemo::Note* last() throw (CORBA::SystemException, PortableServer::POA::WrongPolicy);
 
 private:
   OutsideDemo::Note m_last;

@@ -1,0 +1,22 @@
+# Sources of 1.x may carry dynamic exception specifications, which C++17 took away. Where the definitions of a project have some, its files
+# are compiled with <rtm/throw_specifications.h>. OPENRTM_THROW_SPECIFICATIONS ON or OFF says so without looking.
+#   rtmsim_allow_throw_specifications(HEADER header TARGET target)
+function(rtmsim_allow_throw_specifications)
+  cmake_parse_arguments(PARSE_ARGV 0 arg "" "HEADER;TARGET" "")
+  set(found "${OPENRTM_THROW_SPECIFICATIONS}")
+  if("${found}" STREQUAL "")
+    file(GLOB_RECURSE sources ${CMAKE_SOURCE_DIR}/*.cpp ${CMAKE_SOURCE_DIR}/*.cc ${CMAKE_SOURCE_DIR}/*.cxx)
+    foreach(source IN LISTS sources)
+      # A statement ends with a semicolon, the head of a definition with its specification or a brace.
+      file(STRINGS "${source}" found REGEX "(^|\\)|const)[ \t]*throw[ \t]*\\([^()]*\\)[ \t]*{?[ \t]*$" LIMIT_COUNT 1)
+      if(NOT "${found}" STREQUAL "")
+        message(STATUS "OpenRTM: exception specifications as in ${source} become noexcept (OPENRTM_THROW_SPECIFICATIONS=OFF: they stay)")
+        set(found ON)
+        break()
+      endif()
+    endforeach()
+  endif()
+  if(found)
+    target_compile_options(${arg_TARGET} INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:SHELL:-include \"${arg_HEADER}\">")
+  endif()
+endfunction()
