@@ -7,6 +7,8 @@
 
 #include <streambuf>
 
+#include "rtm/SystemLogger.h"
+
 namespace RTC {
 
 class LogstreamBase {
@@ -21,5 +23,16 @@ class LogstreamBase {
 };
 
 using LogstreamFactory = coil::GlobalFactory<LogstreamBase>;
+
+// The log of this process as classic sources spell it: Manager::getLogStreamBuf().addStream(&buffer). A buffer is not called for what it
+// logs itself.
+class LogStreamBuf {
+ public:
+  void addStream(std::streambuf* buffer, bool = false) { addLogStreamBuffer(buffer); }
+  bool removeStream(std::streambuf* buffer) {
+    removeLogStreamBuffer(buffer);
+    return true;
+  }
+};
 
 }  // namespace RTC

@@ -40,6 +40,7 @@ namespace RTC {
 
 class CorbaNaming;
 class ExecutionContextBase;
+class LogStreamBuf;
 class Manager;
 class ManagerImpl;
 class ModuleManager;
@@ -94,7 +95,7 @@ class Manager {
   std::string configValue(const std::string& key) const;
   Logger& getLogger();
   int getLogLevel();
-  // Where stream buffers are added that want the log too.
+  // Where stream buffers are added that want the log too; <rtm/LogstreamBase.h> has its class.
   LogStreamBuf& getLogStreamBuf();
 
   // --- modules

@@ -16,6 +16,7 @@
 #include "core/component_argument.h"
 #include "core/signal_watcher.h"
 #include "core/task_runner.h"
+#include "rtm/LogstreamBase.h"
 #include "rtm/Manager.h"
 #include "rtm/ManagerActionListener.h"
 #include "rtm/NumberingPolicyBase.h"
@@ -28,7 +29,6 @@ class ManagerServant;
 namespace RTC {
 
 class ManagerConfig;
-class LogstreamBase;
 class ModuleManager;
 class NamingManager;
 

@@ -8,7 +8,6 @@
 #include <functional>
 #include <optional>
 #include <sstream>
-#include <streambuf>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -51,20 +50,9 @@ struct LogSettings {
 };
 // Replaces the settings of the whole process. Returns one line per file that cannot be written.
 std::vector<std::string> setLogSettings(const LogSettings& settings);
-// Lines also go to this stream buffer until it is removed; it is called by one thread at a time, and not for what it logs itself. A
-// coil::LogStreamBuffer gets the parts of each record instead of lines.
+// Lines also go to this stream buffer until it is removed; it is called by one thread at a time.
 void addLogStreamBuffer(std::streambuf* buffer);
 void removeLogStreamBuffer(std::streambuf* buffer);
-
-// The same as classic sources spell it: Manager::getLogStreamBuf().addStream(&buffer).
-class LogStreamBuf {
- public:
-  void addStream(std::streambuf* buffer, bool = false) { addLogStreamBuffer(buffer); }
-  bool removeStream(std::streambuf* buffer) {
-    removeLogStreamBuffer(buffer);
-    return true;
-  }
-};
 
 class Logger {
  public:
