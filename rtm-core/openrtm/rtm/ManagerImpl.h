@@ -129,6 +129,7 @@ class ManagerImpl {
 
   Manager& facade;
   Logger rtclog{"manager"};
+  LogStreamBuf log_buffers;
   mutable std::mutex config_mutex;  // guards config against our own writers; components read it as they like
   coil::Properties config;
   std::map<std::string, std::string> origins;  // of ManagerConfig
