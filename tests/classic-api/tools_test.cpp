@@ -29,6 +29,7 @@ class Ported : public RTC::DataFlowComponentBase {
 };
 
 RTC::Manager* started() {
+  if (RTC::Manager* running = RTC::Manager::instance_if_any()) return running;
   static std::vector<std::string> words{"tools", "-i", "-f", "none.conf", "-o", "naming.enable:NO", "-o", "manager.shutdown_on_nortcs:NO"};
   std::vector<char*> argv;
   for (auto& word : words) argv.push_back(word.data());
@@ -86,6 +87,9 @@ struct Record {
   int level;
   std::string name, date, message;
   bool operator==(const Record&) const = default;
+  friend std::ostream& operator<<(std::ostream& out, const Record& record) {
+    return out << record.level << ' ' << record.date << ' ' << record.name << ": " << record.message;
+  }
 };
 
 class Records : public coil::LogStreamBuffer {
@@ -110,12 +114,14 @@ TEST(Tools, a_log_plugin_gets_the_parts_of_each_record) {
   coil::Properties node;
   node["header"] = "x";
   ASSERT_TRUE(plugin.init(node));
+  started();
   RTC::setLogSettings({.level = RTC::Logger::RTL_WARN, .files = {}, .date_format = "day"});
-  started()->getLogStreamBuf().addStream(plugin.getStreamBuffer());
+  RTC::LogStreamBuf& log = RTC::Manager::instance().getLogStreamBuf();
+  log.addStream(plugin.getStreamBuffer());
   RTC::Logger rtclog("speaker");
   RTC_INFO(("unwanted"));
   RTC_WARN(("wanted %d", 1));
-  EXPECT_TRUE(started()->getLogStreamBuf().removeStream(plugin.getStreamBuffer()));
+  EXPECT_TRUE(log.removeStream(plugin.getStreamBuffer()));
   RTC_WARN(("too late"));
   RTC::setLogSettings({});
   EXPECT_EQ(plugin.records.seen, (std::vector<Record>{{RTC::Logger::RTL_WARN, "speaker", "day", "wanted 1"}}));
