@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "world/checks.h"
+#include "world/complaints.h"
 #include "world/plugin_kind.h"
 
 namespace sim {

@@ -5,10 +5,11 @@
 #include <string>
 #include <string_view>
 
-#include "world/complaints.h"
 #include "world/world_def.h"
 
 namespace sim {
+
+class Complaints;
 
 // Sonars are sensors of that type, and rays whose names begin with "sonar".
 bool is_sonar(const SensorDef& sensor);
