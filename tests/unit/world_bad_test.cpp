@@ -1,5 +1,6 @@
 // What hostile, broken and merely wrong files do to the loader: one line each, the rest of the world is there.
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include "support/world_files.h"
 
@@ -280,6 +281,22 @@ TEST(BadWorld, references_to_nothing_are_named) {
   EXPECT_EQ(findings_with(result, "nobody"), 1);
   EXPECT_GE(findings_with(result, "nowhere"), 1) << all_findings(result);
   EXPECT_EQ(findings_with(result, "no <uri>"), 1);
+}
+
+TEST(BadWorld, pipes_are_no_meshes) {
+  const WorldFiles files;
+  ASSERT_EQ(mkfifo((files.folder() / "pipe.dae").c_str(), 0600), 0);
+  const LoadResult result = files.load(model_of("<collision name='c'><geometry><mesh><uri>pipe.dae</uri></mesh></geometry></collision>"));
+  EXPECT_TRUE(result.dropped);
+  EXPECT_EQ(findings_with(result, "\"pipe.dae\" of collision \"c\" of link \"l\" of model \"m\" is not found"), 1) << all_findings(result);
+  EXPECT_TRUE(result.world.models.at(0).links[0].collisions.empty());
+}
+
+TEST(BadWorld, a_mesh_that_names_no_file_is_left_out) {
+  const LoadResult result =
+      WorldFiles().load(model_of("<collision name='c'><geometry><mesh><filename>a.dae</filename></mesh></geometry></collision>"));
+  EXPECT_TRUE(result.dropped);
+  EXPECT_EQ(findings_with(result, "has no <uri>; the collision is left out"), 1) << all_findings(result);
 }
 
 TEST(BadWorld, a_flood_of_findings_is_cut) {

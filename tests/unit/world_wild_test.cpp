@@ -276,9 +276,9 @@ TEST(ModelPath, finds_what_uris_mean) {
   files.write("models/box/meshes/a.dae", "x");
   const ModelPath path({files.folder()});
   const std::filesystem::path own = files.folder() / "models/box";
-  for (const char* uri :
-       {"model://box/meshes/a.dae", "model:///box/meshes/a.dae", "package://box/meshes/a.dae", "meshes/a.dae", "file://meshes/a.dae",
-        "https://fuel.ignitionrobotics.org/1.0/someone/models/Box/2/files/meshes/a.dae", "model://box/meshes/%61.dae"}) {
+  for (const char* uri : {"model://box/meshes/a.dae", "model:///box/meshes/a.dae", "package://box/meshes/a.dae", "$(find box)/meshes/a.dae",
+                          "meshes/a.dae", "file://meshes/a.dae",
+                          "https://fuel.ignitionrobotics.org/1.0/someone/models/Box/2/files/meshes/a.dae", "model://box/meshes/%61.dae"}) {
     const auto found = path.find(uri, own);
     ASSERT_TRUE(found.has_value()) << uri;
     EXPECT_EQ(found->filename(), "a.dae");
