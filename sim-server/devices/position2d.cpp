@@ -46,6 +46,18 @@ double wheel_radius(const ModelDef& model, std::uint32_t joint) {
   return 0;
 }
 
+// What the joints' own limits allow.
+double torque_of_joints(const ModelDef& model, const std::vector<std::uint32_t>& left, const std::vector<std::uint32_t>& right) {
+  double torque = strongest_torque;
+  for (const auto* side : {&left, &right}) {
+    for (const auto joint : *side) {
+      if (model.joints[joint].axes.empty()) continue;
+      if (const double effort = model.joints[joint].axes[0].effort; effort > 0) torque = std::min(torque, effort);
+    }
+  }
+  return torque;
+}
+
 double wheel_separation(const ModelDef& model, std::uint32_t left, std::uint32_t right) {
   const Eigen::Vector3d between = model.joints[left].pose_in_model.translation() - model.joints[right].pose_in_model.translation();
   return between.head<2>().norm();
@@ -101,7 +113,7 @@ base::Result<DriveSettings> DriveSettings::of(const ModelDef& model, const Plugi
                                    s.separation, s.radius)};
   }
   s.torque = p.number_of({"max_wheel_torque", "wheelTorque", "wheel_torque", "torque", "max_force", "MaxForce"})
-                 .value_or(is_of_gz_sim(plugin) ? strongest_torque : s.torque);
+                 .value_or(is_of_gz_sim(plugin) ? torque_of_joints(model, s.left, s.right) : s.torque);
   if (s.torque <= 0) s.torque = 5;
   s.max_speed = std::max(0.0, p.number_of({"max_linear_velocity", "max_velocity", "max_speed", "maxSpeed"}).value_or(0));
   s.max_yaw_rate = std::max(0.0, p.number_of({"max_angular_velocity", "max_yaw_rate", "max_turnrate"}).value_or(0));

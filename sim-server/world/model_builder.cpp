@@ -342,6 +342,7 @@ class ModelBuilder {
         link.visuals.push_back(std::move(*built));
       }
     }
+    take_retro_of_visuals(node, link);
     for (pugi::xml_node child : node.children("light")) {
       if (auto built = build_light(child, context_)) {
         built->pose = pose_in_link(child, built->pose, pose->second, resolved);
@@ -363,6 +364,22 @@ class ModelBuilder {
         context_.complaints.warn(child, describe_in_context(child) + " is not simulated and ignored");
     }
     model_.links.push_back(std::move(link));
+  }
+
+  // Lasers of gz-sim see the visuals: where collisions are silent about their reflection, that of the nearest visual counts.
+  static void take_retro_of_visuals(pugi::xml_node node, LinkDef& link) {
+    if (std::all_of(link.visuals.begin(), link.visuals.end(), [](const VisualDef& visual) { return visual.laser_retro == 0; })) return;
+    for (pugi::xml_node child : node.children("collision")) {
+      if (child.child("laser_retro")) return;
+    }
+    for (CollisionDef& collision : link.collisions) {
+      const auto distance = [&](const VisualDef& visual) {
+        return (visual.pose.translation() - collision.pose.translation()).squaredNorm();
+      };
+      collision.laser_retro = std::min_element(link.visuals.begin(), link.visuals.end(), [&](const VisualDef& a, const VisualDef& b) {
+                                return distance(a) < distance(b);
+                              })->laser_retro;
+    }
   }
 
   void finish_sensor(SensorDef& sensor, pugi::xml_node node, const std::string& scope, const LinkDef* link) {
@@ -464,6 +481,7 @@ class ModelBuilder {
     joint.provide_feedback = bool_at(ode, "provide_feedback", bool_at(node, "physics/provide_feedback", false));
     for (pugi::xml_node child_node : node.children("sensor")) {
       if (auto built = build_sensor(child_node, context_)) {
+        built->pose = pose_in_link(child_node, built->pose, frames.pose, resolved);
         finish_sensor(*built, child_node, scope, nullptr);
         if (auto* force = std::get_if<ForceTorqueDef>(&built->data)) force->joint = joint.name;
         joint.sensors.push_back(std::move(*built));

@@ -192,6 +192,45 @@ TEST(WildWorlds, saved_states_place_their_models) {
   EXPECT_TRUE(result.findings.empty()) << all_findings(result);
 }
 
+TEST(WildWorlds, saved_states_add_take_away_and_move_what_was_included) {
+  const WorldFiles files;
+  files.write_model("cup", "<model name='cup'><link name='l'/></model>");
+  const LoadResult result = files.load(
+      "<include><uri>model://cup</uri></include><model name='gone'><link name='l'/></model><light name='lamp' type='point'/>"
+      "<state world_name='w'><insertions><model name='new'><pose>1 0 0 0 0 0</pose><link name='l'/></model></insertions>"
+      "<deletions><name>gone</name></deletions><model name='cup'><pose>0 0 3 0 0 0</pose></model>"
+      "<model name='new'><pose>2 0 0 0 0 0</pose></model><light name='lamp'><pose>0 0 9 0 0 0</pose></light></state>",
+      "1.6");
+  EXPECT_TRUE(result.findings.empty()) << all_findings(result);
+  ASSERT_EQ(result.world.models.size(), 2U);
+  EXPECT_EQ(result.world.model("cup")->pose.translation(), Eigen::Vector3d(0, 0, 3));
+  EXPECT_EQ(result.world.model("new")->pose.translation(), Eigen::Vector3d(2, 0, 0));
+  EXPECT_EQ(result.world.lights.at(0).pose.translation(), Eigen::Vector3d(0, 0, 9));
+}
+
+TEST(WildWorlds, names_of_elements_in_camel_case_are_understood) {
+  const WorldFiles files;
+  const LoadResult result = files.load(model_of("<sensor name='s' type='imu'><updateRate>7</updateRate></sensor>"));
+  EXPECT_EQ(result.world.models.at(0).links.at(0).sensors.at(0).update_rate, 7);
+  EXPECT_EQ(findings_with(result, "<updateRate> in sensor \"s\" of link \"l\" of model \"m\" is taken as <update_rate>"), 1);
+}
+
+TEST(WildWorlds, reflections_of_visuals_count_where_collisions_say_nothing) {
+  const WorldFiles files;
+  const std::string box = "<geometry><box/></geometry>";
+  const LoadResult result =
+      files.load(model_of("<collision name='near'>" + box + "</collision><collision name='far'><pose>5 0 0 0 0 0</pose>" + box +
+                          "</collision><visual name='v'><laser_retro>500</laser_retro>" + box +
+                          "</visual><visual name='w'><pose>4 0 0 0 0 0</pose><laser_retro>20</laser_retro>" + box + "</visual>") +
+                 model_of("<collision name='c'><laser_retro>3</laser_retro>" + box +
+                              "</collision><visual name='v'><laser_retro>500</laser_retro>" + box + "</visual>",
+                          "n"));
+  const auto& collisions = result.world.model("m")->links.at(0).collisions;
+  EXPECT_EQ(collisions.at(0).laser_retro, 500);
+  EXPECT_EQ(collisions.at(1).laser_retro, 20);
+  EXPECT_EQ(result.world.model("n")->links.at(0).collisions.at(0).laser_retro, 3);
+}
+
 TEST(WildWorlds, unknown_things_get_one_line_each) {
   const WorldFiles files;
   const LoadResult result = files.load(
