@@ -12,6 +12,8 @@
 #include "base/guarded.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "render/assets.h"
+#include "render/scene.h"
 #include "server/server_loop.h"
 #include "shm/segment.h"
 #include "world/world_loader.h"
@@ -134,7 +136,16 @@ int run(const Options& options, Signals& signals) {
     }
   }
   dropped += left_out.size();
-  if (options.check) return loaded->dropped || dropped > 0 ? 1 : 0;
+  if (options.check) {
+    // Pictures are made when somebody looks; their files are read now.
+    Assets assets;
+    Scene::build(*world, assets);
+    for (const auto& line : assets.take_complaints()) {
+      std::fprintf(stderr, "%s: %s\n", options.world.c_str(), line.c_str());
+      ++dropped;
+    }
+    return loaded->dropped || dropped > 0 ? 1 : 0;
+  }
 
   std::optional<Recorder> recorder;
   if (!options.record.empty()) {

@@ -438,6 +438,15 @@ def check():
     with open(broken, "w") as file:
         file.write("<sdf version='1.9'><world name='w'><include><uri>model://no_such_model</uri></include></world></sdf>")
     assert server("--check", world=broken).wait(watchdog) == 1
+    # Files of pictures are read although nobody looks.
+    with open(f"{work.name}/torn.dae", "w") as file:
+        file.write("<COLLADA>")
+    with open(broken, "w") as file:
+        file.write(
+            "<sdf version='1.9'><world name='w'><model name='m'><link name='l'><visual name='v'><geometry><mesh>"
+            "<uri>torn.dae</uri></mesh></geometry></visual></link></model></world></sdf>"
+        )
+    assert server("--check", world=broken).wait(watchdog) == 1
     assert server("--check", world="/no/such/world.sdf").wait(watchdog) == 1
     assert server("--rtf", "-1").wait(watchdog) == 2
     assert not segments(), segments()
