@@ -75,7 +75,12 @@ class Reader {
     for (unsigned i = 0; i < node.mNumChildren; ++i) add_nodes(*node.mChildren[i], static_cast<int>(index));
   }
 
+  // Parts of a mesh, one for each material, share their bones.
   std::uint16_t add_bone(std::uint32_t node, const Eigen::Affine3d& from_mesh) {
+    for (std::size_t i = 0; i < skin_->bones.size(); ++i) {
+      const SkinBone& bone = skin_->bones[i];
+      if (bone.node == node && bone.from_mesh.matrix() == from_mesh.matrix()) return static_cast<std::uint16_t>(i);
+    }
     skin_->bones.push_back({node, from_mesh});
     return static_cast<std::uint16_t>(skin_->bones.size() - 1);
   }

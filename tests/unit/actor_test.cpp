@@ -236,7 +236,7 @@ TEST(Actor, two_with_one_skin_each_have_their_own_steps) {
   other.trajectories = {{0, "stand", 0, {{0, put(0, 20, 0)}, {100, put(0, 20, 0)}}}};
   Pasture field(pasture({one, other}));
   EXPECT_GT(difference(field.picture(0.3, 0), field.picture(0.3, 20)), 150);
-  EXPECT_LT(difference(field.picture(0.3, 0), field.picture(0.9, 20)), 20);
+  EXPECT_LT(difference(field.picture(0.3, 0), field.picture(0.9, 20)), 60) << "but for edges: it stands elsewhere";
 }
 
 TEST(Actor, it_steps_as_far_as_it_goes_and_stands_when_it_stands) {
