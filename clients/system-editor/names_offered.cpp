@@ -60,10 +60,15 @@ std::vector<base::Offer> names(const Editor& editor, const std::string& current,
   return offers;
 }
 
+// Where the port begins; a colon of the name server's address is none.
+std::size_t port_colon(const std::string& path) {
+  const auto slash = path.rfind('/');
+  return path.find(':', slash == std::string::npos ? 0 : slash);
+}
+
 // "NAME:" first, then "NAME:PORT".
 std::vector<base::Offer> ports(const Editor& editor, const std::string& current, const std::string& type) {
-  const auto slash = current.rfind('/');
-  const auto colon = current.find(':', slash == std::string::npos ? 0 : slash);
+  const auto colon = port_colon(current);
   if (colon == std::string::npos) return names(editor, current, {EntryKind::component}, ":");
   const auto component = editor.component(current.substr(0, colon), {});
   if (!component) return {};
@@ -123,7 +128,7 @@ std::optional<std::vector<base::Offer>> offered(const Editor& editor, const std:
   if (value == "--manager") return names(editor, current, {EntryKind::manager});
   if (value == "--set") return configuration(editor, words, true);
   if (value == "PORT") return ports(editor, current, command == "print" ? "DataOutPort" : command == "inject" ? "DataInPort" : "");
-  if (value == "PATH" && (command == "dis" || command == "cat") && current.find(':') != std::string::npos)
+  if (value == "PATH" && (command == "dis" || command == "cat") && port_colon(current) != std::string::npos)
     return ports(editor, current, "");
   if (value == "PATH" && (command == "ls" || command == "tree" || command == "cat" || command == "del"))
     return names(editor, current, {EntryKind::component, EntryKind::manager, EntryKind::other});
