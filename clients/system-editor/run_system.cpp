@@ -330,7 +330,7 @@ class Run {
     const auto file = place_.file("system.xml");
     if (const auto written = write_system(system_, file); !written) return written;
     editor_.emplace(orb_, server_, false, std::chrono::milliseconds(call_limit));
-    load(*editor_, file, false);
+    load(*editor_, {.file = file});
     if (!editor_->failed()) start(*editor_, file, false);
     if (!editor_->failed()) {
       if (const auto joined = wait_for_participants(); !joined) return joined;

@@ -213,19 +213,6 @@ void add_pictures(CLI::App& app, Work& work) {
   });
 }
 
-// The first word that is neither an option nor the value of one.
-std::string first_word(int argc, char** argv) {
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (word == "-s" || word == "--server-id" || word == "--completion") {
-      ++i;
-    } else if (!word.starts_with('-')) {
-      return word;
-    }
-  }
-  return {};
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -244,11 +231,6 @@ int main(int argc, char** argv) {
   add_looks(app, work);
   add_control(app, work);
   add_pictures(app, work);
-  if (const std::string word = first_word(argc, argv);
-      !word.empty() && app.get_subcommands([&](CLI::App* sub) { return sub->get_name() == word; }).empty()) {
-    std::cerr << "simctl: unknown command " << base::in_quotes(word) << "; see simctl --help\n";
-    return 2;
-  }
   if (const auto end = base::parse_command_line(app, "simctl", argc, argv, simctl::offers)) return *end;
   Control control(server_id, json);
   work(control);

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "base/text.h"
+#include "shm/requests.h"
 #include "support/simulation_fixture.h"
 #include "world/world_loader.h"
 
