@@ -217,10 +217,10 @@ def killed_display():
     start_display()
     frames = f"{system.work}/frames"
     host = start_player(frames, others=["VideoPlayer"])
-    system.rtse("act", "VideoPlayer1")
     first, second = noise(32 * 24 * 3, 1), noise(32 * 24 * 3, 2)
     send(32, 24, first)
     shows(32, 24, first)
+    system.rtse("act", "VideoPlayer1")  # its window lies over the other
     system.until("a second window", lambda: screen("title", player="VideoPlayer1"))
     display = next(process for process in system.running if process.args[0] == "Xvfb")
     system.running.remove(display)
