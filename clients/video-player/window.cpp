@@ -267,7 +267,9 @@ class Window::Screen {
           display_, [](Display*, void* screen) { static_cast<Screen*>(screen)->lose(); }, this);
   }
   [[noreturn]] void lose() {
-    for (const auto& pane : panes_) pane->lose();
+    for (const auto& pane : panes_) {
+      if (pane) pane->lose();  // one that is being closed is gone already
+    }
     state_.lock()->is_lost = true;
     changed_.notify_all();
     while (true) ::poll(nullptr, 0, -1);
