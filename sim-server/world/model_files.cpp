@@ -125,7 +125,11 @@ void ModelFiles::resolve_uris(pugi::xml_node entity, const fs::path& folder) {
       return;
     }
     const std::string uri = text_of(node);
-    if ((uri.empty() || uri == "__default__") && !is_shape) return;  // as Gazebo saves worlds
+    if (uri.empty() && !is_shape) return;
+    if (uri == "__default__" && !is_shape) {  // so Gazebo saves what was never said
+      lost.push_back(node);
+      return;
+    }
     const std::optional<fs::path> found = model_path_.find(uri, folder);
     if (found && !is_lfs_pointer_file(*found)) {
       node.text() = found->string().c_str();

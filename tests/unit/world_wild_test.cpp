@@ -154,6 +154,15 @@ TEST(WildWorlds, pointers_of_git_lfs_are_called_what_they_are) {
   EXPECT_EQ(link.visuals.size(), 2U);
 }
 
+TEST(WildWorlds, materials_that_gazebo_saved_by_default_are_no_findings) {
+  const WorldFiles files;
+  const LoadResult result = files.load(
+      model_of("<visual name='v'><geometry><box/></geometry><material><script><uri>__default__</uri><name>Gazebo/Red</name></script>"
+               "<shader type='pixel'><normal_map>__default__</normal_map></shader></material></visual>"));
+  EXPECT_TRUE(result.findings.empty()) << all_findings(result);
+  EXPECT_EQ(result.world.models.at(0).links.at(0).visuals.at(0).material->script, "Gazebo/Red");
+}
+
 TEST(WildWorlds, templates_are_called_what_they_are) {
   const WorldFiles files;
   const base::Result<LoadResult> result = files.load_text(
