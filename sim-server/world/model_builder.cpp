@@ -465,6 +465,11 @@ class ModelBuilder {
       const Eigen::Vector3d xyz = i < frames.axes.size() ? frames.axes[i] : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
       joint.axes.push_back(build_axis(node.child(i == 0 ? "axis" : "axis2"), xyz, joint.kind == JointDef::Kind::continuous));
     }
+    const bool has_cross = joint.kind == JointDef::Kind::universal || joint.kind == JointDef::Kind::revolute2;
+    if (has_cross && joint.axes[0].xyz.cross(joint.axes[1].xyz).norm() < 1e-3) {
+      joint.axes[1].xyz = joint.axes[0].xyz.unitOrthogonal();  // ODE ends the process for such a joint
+      context_.complaints.warn(node, describe_in_context(node) + " has two parallel axes; its second one is turned square to the first");
+    }
     // The element counts radians per metre, left-handed ones positive; 0 stands for a nut that does not travel.
     const double per_metre = number_at(node, "thread_pitch", -2 * std::numbers::pi);
     if (joint.kind == JointDef::Kind::screw && per_metre != 0) joint.thread_pitch = -2 * std::numbers::pi / per_metre;

@@ -299,6 +299,19 @@ TEST(BadWorld, a_mesh_that_names_no_file_is_left_out) {
   EXPECT_EQ(findings_with(result, "has no <uri>; the collision is left out"), 1) << all_findings(result);
 }
 
+TEST(BadWorld, parallel_axes_of_a_joint_are_mended) {
+  for (const std::string type : {"revolute2", "universal"}) {
+    for (const std::string axis2 : {"", "<axis2/>", "<axis2><xyz>0 0 -1</xyz></axis2>", "<axis2><xyz>0.0005 0 1</xyz></axis2>"}) {
+      const LoadResult result =
+          WorldFiles().load("<model name='m'><link name='a'/><link name='b'/><joint name='j' type='" + type +
+                            "'><parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz></axis>" + axis2 + "</joint></model>");
+      const JointDef& joint = result.world.models.at(0).joints.at(0);
+      EXPECT_NEAR(joint.axes.at(0).xyz.dot(joint.axes.at(1).xyz), 0, 1e-9) << type << axis2;
+      EXPECT_EQ(findings_with(result, "parallel axes"), 1) << all_findings(result);
+    }
+  }
+}
+
 TEST(BadWorld, a_flood_of_findings_is_cut) {
   const WorldFiles files;
   std::string content;
