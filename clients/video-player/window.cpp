@@ -216,6 +216,8 @@ class Window::Screen {
   void run(std::promise<base::Result<void>>& started) {
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");  // the manager ends the process, not the window
     SDL_SetHint(SDL_HINT_VIDEO_ALLOW_SCREENSAVER, "1");
+    // Pictures go to the X server as they are. GL would hang at the end of a process that has lost its display.
+    SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
     // Without this SDL would rather draw where nobody can see it than fail. The variable SDL_VIDEODRIVER still wins.
     SDL_SetHint(SDL_HINT_VIDEODRIVER, "x11,wayland");
     if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0)
@@ -262,9 +264,8 @@ class Window::Screen {
   void watch(const Pane& pane) {
     if (display_ != nullptr) return;
     display_ = pane.display();
-    if (display_ != nullptr)
-      XSetIOErrorExitHandler(
-          display_, [](Display*, void* screen) { static_cast<Screen*>(screen)->lose(); }, this);
+    // Of all connections: SDL has a second one, and Xlib's own handler ends the process before it asks that of a single connection.
+    if (display_ != nullptr) XSetIOErrorHandler([](Display*) -> int { one().lose(); });
   }
   [[noreturn]] void lose() {
     for (const auto& pane : panes_) {
