@@ -55,7 +55,7 @@ using NewObserver = Observer<POA_RTC::ComponentObserver, RTC::StatusKind>;
 
 std::vector<std::string> steps;
 
-FSM_TOP(Door) {
+FSM_TOPSTATE(Door) {
   FSM_STATE(Door);
   virtual void open() {}
   virtual void close() {}
@@ -74,7 +74,7 @@ FSM_SUBSTATE(Shut, Door) {
 };
 FSM_SUBSTATE(Locked, Shut) {
   FSM_STATE(Locked);
-  void open() override { steps.push_back("locked " + std::to_string(data().turns)); }
+  void open() override { steps.push_back("locked " + std::to_string(Shut::box().turns)); }
   RTC::ReturnCode_t onEntry() override { return steps.push_back("enter Locked"), RTC::RTC_OK; }
   RTC::ReturnCode_t onExit() override { return steps.push_back("leave Locked"), RTC::RTC_OK; }
 };
@@ -89,9 +89,83 @@ RTC::ReturnCode_t Door::onInit() {
 }
 void Shut::open() { setState<Ajar>(); }
 void Shut::lock(int n) {
-  data().turns += n;
+  box().turns += n;
   setState<Locked>();
 }
+
+// With history, data and events of its own, spelled as the generator of 2.0 does.
+FSM_TOPSTATE(Heater) {
+  struct Box {
+    int litres = 0;
+  };
+  FSM_STATE(Heater);
+  virtual void heat() {}
+  virtual void fill(int) {}
+  virtual void count() {}
+  virtual void trip() {}
+
+ private:
+  RTC::ReturnCode_t onInit() override;
+};
+FSM_SUBSTATE(On, Heater) {
+  FSM_STATE(On);
+  DEEPHISTORY();
+  void trip() override;
+  RTC::ReturnCode_t onInit() override;
+};
+FSM_SUBSTATE(Cold, On) {
+  FSM_STATE(Cold);
+  void heat() override;
+  void fill(int litres) override;
+};
+FSM_SUBSTATE(Warm, On) {
+  FSM_STATE(Warm);
+  HISTORY();
+  void heat() override;
+  void fill(int litres) override { TOP::box().litres += litres; }
+};
+FSM_SUBSTATE(Boiling, Warm) {
+  struct Box {
+    int bubbles = 0;
+  };
+  FSM_STATE(Boiling);
+  void init(int n) { bubbles = box().bubbles = n; }
+  void heat() override;
+  void count() override { bubbles = ++box().bubbles; }
+  static inline int bubbles = 0;
+};
+FSM_SUBSTATE(Rolling, Boiling) {
+  FSM_STATE(Rolling);
+  void heat() override {}
+};
+FSM_SUBSTATE(Tripped, Heater) {
+  struct Box {
+    int times = 0;
+  };
+  FSM_STATE(Tripped);
+  PERSISTENT();
+  void heat() override { setStateHistory<On>(); }
+  void trip() override { setStateHistory<Warm>(); }
+  RTC::ReturnCode_t onEntry() override { return times = ++box().times, RTC::RTC_OK; }
+  static inline int times = 0;
+};
+RTC::ReturnCode_t Heater::onInit() {
+  setState<On>();
+  return RTC::RTC_OK;
+}
+RTC::ReturnCode_t On::onInit() {
+  setState<Cold>();
+  return RTC::RTC_OK;
+}
+void On::trip() { setState<Tripped>(); }
+void Cold::heat() { setState<Warm>(); }
+void Cold::fill(int litres) {
+  if (litres < 0) throw std::runtime_error("no such amount");
+  setState<Warm>();
+  dispatch(Event(&TOP::fill, litres));
+}
+void Warm::heat() { setState<Boiling>(7); }
+void Boiling::heat() { setState<Rolling>(); }
 
 // --- observers and loggers
 
@@ -403,6 +477,54 @@ TEST(StaticFsm, enters_and_leaves_states_along_the_tree) {
   machine->open();
   EXPECT_EQ(machine.current_state(), "Locked");
   EXPECT_THAT(steps, ElementsAre("enter Shut", "enter Locked", "locked 2"));
+}
+
+TEST(StaticFsm, remembers_substates_as_their_state_says) {
+  RTC::Machine<Heater> machine;
+  EXPECT_EQ(machine.current_state(), "Cold");
+  for (int i = 0; i < 3; ++i) machine->heat();
+  EXPECT_EQ(machine.current_state(), "Rolling");
+  machine->trip();
+  EXPECT_STREQ(machine.currentState().name(), "Tripped");
+  machine->heat();
+  EXPECT_EQ(machine.current_state(), "Rolling") << "deep: the one that was current";
+  machine->trip();
+  machine->trip();
+  EXPECT_EQ(machine.current_state(), "Boiling") << "shallow: the one next to it";
+}
+
+TEST(StaticFsm, hands_dispatched_events_to_the_next_state) {
+  RTC::Machine<Heater> machine;
+  machine->fill(2);
+  EXPECT_EQ(machine.current_state(), "Warm");
+  EXPECT_EQ(machine.box().litres, 2) << "Cold has gone to Warm, which has filled";
+  machine.dispatch(&Heater::fill, 3);
+  EXPECT_EQ(machine.box().litres, 5);
+}
+
+TEST(StaticFsm, keeps_the_data_of_a_state_while_it_is_in_it) {
+  RTC::Machine<Heater> machine;
+  machine->heat();
+  machine->heat();
+  EXPECT_EQ(Boiling::bubbles, 7) << "what init(7) was given";
+  machine->count();
+  machine->count();
+  EXPECT_EQ(Boiling::bubbles, 9);
+  machine->trip();
+  machine->heat();
+  machine->count();
+  EXPECT_EQ(Boiling::bubbles, 1) << "new data";
+  EXPECT_EQ(Tripped::times, 1);
+  machine->trip();
+  EXPECT_EQ(Tripped::times, 2) << "its data is persistent";
+}
+
+TEST(StaticFsm, goes_on_after_a_handler_that_throws) {
+  RTC::Machine<Heater> machine;
+  EXPECT_THROW(machine->fill(-1), std::runtime_error);
+  EXPECT_EQ(machine.current_state(), "Cold");
+  machine->heat();
+  EXPECT_EQ(machine.current_state(), "Warm");
 }
 
 TEST(StaticFsm, handles_queued_events_when_it_is_told_to) {

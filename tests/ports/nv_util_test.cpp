@@ -77,7 +77,7 @@ TEST(IORUtil, references_are_taken_apart_and_put_together) {
   for (const char* wrong : {"", "IOR:", "IOR:0", "IOR:zz", "IOR:01000000ffffffff"}) EXPECT_FALSE(CORBA_IORUtil::toIOR(wrong, ior)) << wrong;
 }
 
-FSM_TOP(Door) {
+FSM_TOPSTATE(Door) {
   FSM_STATE(Door);
   virtual void open() { ++opened; }
   virtual void turn(RTC::TimedLong angle) { turned = angle.data; }

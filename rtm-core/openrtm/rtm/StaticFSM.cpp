@@ -59,34 +59,59 @@ void Engine::leave(const StateType& type) {
   if (component_) component_->preOnFsmExit(type.name);
   const ReturnCode_t code = state(type).onExit();
   if (component_) component_->postOnFsmExit(type.name, code);
+  if (!type.keeps_box) boxes_.erase(&type);
+}
+
+void Engine::request(const StateType& target, std::function<void(StateBase&)> init) {
+  requested_ = &target;
+  requested_init_ = std::move(init);
 }
 
 void Engine::settle() {
-  while (requested_) {
-    const StateType& target = *std::exchange(requested_, nullptr);
-    const StateType& source = *current_;
-    const std::vector<const StateType*> from = with_ancestors(source);
-    const std::vector<const StateType*> to = with_ancestors(target);
-    const auto is_in = [](const std::vector<const StateType*>& chain, const StateType* type) {
-      return std::find(chain.begin(), chain.end(), type) != chain.end();
-    };
-    if (component_) component_->preOnFsmStateChange(source.name);
-    // To itself: out and in again, but for the top, which is never left.
-    const bool again = &source == &target && target.parent;
-    for (const StateType* state : from) {
-      if (is_in(to, state) && !(again && state == &target)) continue;
-      leave(*state);
-      if (state->parent) history_[state->parent] = &source;
+  while (true) {
+    if (requested_) {
+      transit(*std::exchange(requested_, nullptr), std::exchange(requested_init_, nullptr));
+    } else if (!dispatched_.empty()) {
+      const auto event = std::move(dispatched_.front());
+      dispatched_.pop_front();
+      event(current());
+    } else {
+      return;
     }
-    set_current(target);
-    for (auto it = to.rbegin(); it != to.rend(); ++it)
-      if (!is_in(from, *it) || (again && *it == &target)) enter(**it);
-    if (component_) component_->preOnFsmInit(target.name);
-    const ReturnCode_t code = state(target).onInit();
-    if (component_) {
-      component_->postOnFsmInit(target.name, code);
-      component_->postOnFsmStateChange(target.name, code);
-    }
+  }
+}
+
+void Engine::transit(const StateType& target, const std::function<void(StateBase&)>& init) {
+  const StateType& source = *current_;
+  const std::vector<const StateType*> from = with_ancestors(source);
+  const std::vector<const StateType*> to = with_ancestors(target);
+  const auto is_in = [](const std::vector<const StateType*>& chain, const StateType* type) {
+    return std::find(chain.begin(), chain.end(), type) != chain.end();
+  };
+  if (component_) component_->preOnFsmStateChange(source.name);
+  // To itself: out and in again, but for the top, which is never left.
+  const bool again = &source == &target && target.parent;
+  history_.erase(&source);
+  for (const StateType* state : from) {
+    if (is_in(to, state) && !(again && state == &target)) continue;
+    leave(*state);
+    if (state->parent && state->parent->history != History::none)
+      history_[state->parent] = state->parent->history == History::deep ? &source : state;
+  }
+  set_current(target);
+  if (given_.first) boxes_[given_.first] = std::move(given_.second);
+  given_ = {};
+  for (auto it = to.rbegin(); it != to.rend(); ++it)
+    if (!is_in(from, *it) || (again && *it == &target)) enter(**it);
+  if (component_) component_->preOnFsmInit(target.name);
+  ReturnCode_t code = RTC_OK;
+  if (init)
+    init(state(target));
+  else
+    code = state(target).onInit();
+  if (component_) {
+    component_->postOnFsmInit(target.name, code);
+    component_->postOnFsmStateChange(target.name, code);
   }
 }
 

@@ -19,7 +19,7 @@
 
 namespace ElevatorFsm
 {
-  FSM_TOP(Top)
+  FSM_TOPSTATE(Top)
   {
     // What all states share.
     struct Box
@@ -52,14 +52,14 @@ namespace ElevatorFsm
     void arrived() override;
     void stop() override;
    private:
-    RTC::ReturnCode_t onEntry() override { std::cout << "moving to " << TOP::data().floor << std::endl; return RTC::RTC_OK; }
+    RTC::ReturnCode_t onEntry() override { std::cout << "moving to " << TOP::box().floor << std::endl; return RTC::RTC_OK; }
     RTC::ReturnCode_t onExit() override { std::cout << "at rest" << std::endl; return RTC::RTC_OK; }
   };
 
   inline RTC::ReturnCode_t Top::onInit() { setState<Waiting>(); return RTC::RTC_OK; }
   inline void Waiting::call(RTC::TimedLong floor)
   {
-    TOP::data().floor = static_cast<int>(floor.data);
+    TOP::box().floor = static_cast<int>(floor.data);
     setState<Moving>();
   }
   inline void Moving::arrived() { setState<Waiting>(); }
