@@ -34,7 +34,7 @@ configure_file(cmake/package/openrtm.pc.in ${PROJECT_BINARY_DIR}/package/openrtm
 install(FILES ${PROJECT_BINARY_DIR}/package/OpenRTMConfig.cmake ${PROJECT_BINARY_DIR}/OpenRTMConfigVersion.cmake
   cmake/omniorb.cmake cmake/idl.cmake cmake/component.cmake cmake/component_main.cpp.in
   DESTINATION ${package_cmake})
-foreach(name openrtm-aist openrtm2)
+foreach(name openrtm-aist openrtm2 libcoil)
   install(FILES ${PROJECT_BINARY_DIR}/package/openrtm.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig RENAME ${name}.pc)
 endforeach()
 foreach(name rtm rtm2)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <compare>
 #include <concepts>
+#include <ostream>
 
 namespace coil {
 
@@ -50,6 +51,9 @@ class TimeValue {
   friend constexpr auto operator<=>(T a, T b) {
     return a.usec_ <=> b.usec_;
   }
+
+  // In seconds.
+  friend std::ostream& operator<<(std::ostream& out, const TimeValue& time) { return out << time.getDouble(); }
 
  private:
   static constexpr TimeValue from(long long usec) { return TimeValue(std::chrono::microseconds(usec)); }

@@ -18,10 +18,16 @@ class Configuration;
 
 namespace RTC {
 
+// The names of 1.0.
+using OnUpdateCallback = ConfigurationSetNameListener;
+using OnUpdateParamCallback = ConfigurationParamListener;
+using OnSetConfigurationSetCallback = ConfigurationSetListener;
+using OnAddConfigurationAddCallback = ConfigurationSetListener;
+using OnRemoveConfigurationSetCallback = ConfigurationSetNameListener;
+using OnActivateSetCallback = ConfigurationSetNameListener;
+
 class ConfigAdmin {
  public:
-  using OnUpdateCallback = ConfigurationSetNameListener;
-
   // Sets live at conf.<set>.<parameter> of a component's properties.
   ConfigAdmin();
   explicit ConfigAdmin(const coil::Properties& conf);
@@ -81,6 +87,26 @@ class ConfigAdmin {
   void addConfigurationSetNameListener(ConfigurationSetNameListenerType type, ConfigurationSetNameListener* listener,
                                        bool autoclean = true);
   void removeConfigurationSetNameListener(ConfigurationSetNameListenerType type, ConfigurationSetNameListener* listener);
+
+  // 1.0; the callbacks stay the caller's.
+  void setOnUpdate(OnUpdateCallback* callback) {
+    addConfigurationSetNameListener(ConfigurationSetNameListenerType::ON_UPDATE_CONFIG_SET, callback, false);
+  }
+  void setOnUpdateParam(OnUpdateParamCallback* callback) {
+    addConfigurationParamListener(ConfigurationParamListenerType::ON_UPDATE_CONFIG_PARAM, callback, false);
+  }
+  void setOnSetConfigurationSet(OnSetConfigurationSetCallback* callback) {
+    addConfigurationSetListener(ConfigurationSetListenerType::ON_SET_CONFIG_SET, callback, false);
+  }
+  void setOnAddConfigurationSet(OnAddConfigurationAddCallback* callback) {
+    addConfigurationSetListener(ConfigurationSetListenerType::ON_ADD_CONFIG_SET, callback, false);
+  }
+  void setOnRemoveConfigurationSet(OnRemoveConfigurationSetCallback* callback) {
+    addConfigurationSetNameListener(ConfigurationSetNameListenerType::ON_REMOVE_CONFIG_SET, callback, false);
+  }
+  void setOnActivateSet(OnActivateSetCallback* callback) {
+    addConfigurationSetNameListener(ConfigurationSetNameListenerType::ON_ACTIVATE_CONFIG_SET, callback, false);
+  }
 
   // Where a line goes for each value that a bound variable cannot take. Set before the first update.
   void setLog(std::function<void(const std::string& line)> say) { say_ = std::move(say); }

@@ -13,7 +13,7 @@ const char* name_of(const char* const (&names)[size], int type) {
 }
 
 template <class Call>
-ConnectorListenerStatus guarded(Call call) {
+ConnectorListenerStatus::Enum guarded(Call call) {
   try {
     return call();
   } catch (const std::exception& e) {
@@ -24,10 +24,10 @@ ConnectorListenerStatus guarded(Call call) {
   return ConnectorListenerStatus::NO_CHANGE;
 }
 
-bool changes_data(ConnectorListenerStatus status) {
+bool changes_data(ConnectorListenerStatus::Enum status) {
   return status == ConnectorListenerStatus::DATA_CHANGED || status == ConnectorListenerStatus::BOTH_CHANGED;
 }
-bool changes_info(ConnectorListenerStatus status) {
+bool changes_info(ConnectorListenerStatus::Enum status) {
   return status == ConnectorListenerStatus::INFO_CHANGED || status == ConnectorListenerStatus::BOTH_CHANGED;
 }
 

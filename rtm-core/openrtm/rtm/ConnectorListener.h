@@ -40,28 +40,24 @@ enum ConnectorListenerType {
   CONNECTOR_LISTENER_NUM
 };
 
-// A base of the listeners, so that their bodies may say plain NO_CHANGE, and the names of ConnectorListenerStatus.
-struct ConnectorListenerStatusNames {
+// What a listener changed of its arguments. INFO_CHANGED: the new properties stay with the connection; DATA_CHANGED: the sample travels on
+// as the listener left it. A base of the listeners.
+class ConnectorListenerStatus {
+ public:
   enum Enum { NO_CHANGE = 0, INFO_CHANGED, DATA_CHANGED, BOTH_CHANGED };
 };
 
-// What a listener changed of its arguments. INFO_CHANGED: the new properties stay with the connection; DATA_CHANGED: the sample travels on
-// as the listener left it.
-class ConnectorListenerStatus : public ConnectorListenerStatusNames {
- public:
-  constexpr ConnectorListenerStatus(Enum value = NO_CHANGE) : value_(value) {}
-  constexpr operator Enum() const { return value_; }
-
- private:
-  Enum value_;
-};
-
-#define USE_CONNLISTENER_STATUS typedef ::RTC::ConnectorListenerStatus ReturnCode
+// The names for a listener's own scope, also one that is a template: there those of its bases are not found.
+#define USE_CONNLISTENER_STATUS                            \
+  typedef ::RTC::ConnectorListenerStatus::Enum ReturnCode; \
+  using ::RTC::ConnectorListenerStatus::NO_CHANGE;         \
+  using ::RTC::ConnectorListenerStatus::INFO_CHANGED;      \
+  using ::RTC::ConnectorListenerStatus::DATA_CHANGED;      \
+  using ::RTC::ConnectorListenerStatus::BOTH_CHANGED
 
 // A raw listener overrides one of the three call operators.
-class ConnectorDataListener : public ConnectorListenerStatusNames {
+class ConnectorDataListener : public ConnectorListenerStatus {
  public:
-  using ConnectorListenerStatus = ::RTC::ConnectorListenerStatus;  // found by sources outside namespace RTC, too
   USE_CONNLISTENER_STATUS;
   virtual ~ConnectorDataListener() = default;
   // 2.x.
@@ -106,9 +102,8 @@ class ConnectorDataListenerT : public ConnectorDataListener {
   }
 };
 
-class ConnectorListener : public ConnectorListenerStatusNames {
+class ConnectorListener : public ConnectorListenerStatus {
  public:
-  using ConnectorListenerStatus = ::RTC::ConnectorListenerStatus;  // found by sources outside namespace RTC, too
   USE_CONNLISTENER_STATUS;
   virtual ~ConnectorListener() = default;
   // A listener overrides one of the two: 1.2 and 2.x, 1.1.

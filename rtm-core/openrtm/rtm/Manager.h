@@ -2,11 +2,17 @@
 // No lock is held while components, listeners, modules or other processes are called. Components are deleted on the manager's own thread.
 #pragma once
 
+#include <rtm/ECFactory.h>
 #include <rtm/Factory.h>
+#include <rtm/ManagerActionListener.h>
+#include <rtm/ObjectManager.h>
 #include <rtm/RTC.h>
 #include <rtm/SystemLogger.h>
 
+// Authors rely on some of these headers without naming them.
 #include <coil/Properties.h>
+#include <coil/Signal.h>
+#include <coil/Timer.h>
 #include <coil/stringutil.h>
 
 #include <chrono>
@@ -32,9 +38,11 @@ class Orb;
 
 namespace RTC {
 
+class CorbaNaming;
 class ExecutionContextBase;
 class Manager;
 class ManagerImpl;
+class ModuleManager;
 class NamingManager;
 
 using ModuleInitProc = void (*)(Manager* manager);
