@@ -1,6 +1,7 @@
 #include "core/configuration.h"
 
 #include <algorithm>
+#include <unordered_map>
 
 #include "base/text.h"
 
@@ -26,12 +27,14 @@ Configuration::Set* Configuration::find(Data& data, std::string_view id) {
 const Configuration::Set* Configuration::find(const Data& data, std::string_view id) { return find(const_cast<Data&>(data), id); }
 
 void Configuration::merge(Set& to, const Set& from) {
+  std::unordered_map<std::string, std::size_t> known;
+  for (std::size_t i = 0; i < to.values.size(); ++i) known.emplace(to.values[i].first, i);
   for (const auto& [name, value] : from.values) {
-    const auto it = std::find_if(to.values.begin(), to.values.end(), [&](const auto& known) { return known.first == name; });
-    if (it == to.values.end())
+    const auto [at, is_new] = known.emplace(name, to.values.size());
+    if (is_new)
       to.values.emplace_back(name, value);
     else
-      it->second = value;
+      to.values[at->second].second = value;
   }
 }
 

@@ -230,6 +230,36 @@ TEST_F(ComponentContextTest, takes_part_in_the_one_of_another_component) {
   EXPECT_EQ(context->get_component_state(self), RTC::CREATED_STATE);
 }
 
+TEST_F(ComponentContextTest, attaches_only_what_is_a_context) {
+  probe->initialize();
+  RTC::RTObject_var self = probe->getObjRef();
+  RTC::ExecutionContext_var wrong = RTC::ExecutionContext::_unchecked_narrow(self);
+  EXPECT_EQ(probe->attach_context(wrong), -1);
+  EXPECT_EQ(probe->attach_context(RTC::ExecutionContext::_nil()), -1);
+  RTC::ExecutionContextList_var contexts = probe->get_participating_contexts();
+  EXPECT_EQ(contexts->length(), 0u);
+}
+
+TEST_F(ComponentContextTest, gives_its_thread_the_stack_that_was_asked_for) {
+  coil::Properties settings;
+  settings["exec_cxt.stack_size"] = "24M";
+  probe->setProperties(settings);
+  std::atomic<std::size_t> stack = 0;
+  probe->during = [&](const std::string& callback) {
+    if (callback != "onActivated") return;
+    pthread_attr_t attributes;
+    std::size_t octets = 0;
+    pthread_getattr_np(pthread_self(), &attributes);
+    pthread_attr_getstacksize(&attributes, &octets);
+    pthread_attr_destroy(&attributes);
+    stack = octets;
+  };
+  probe->initialize();
+  EXPECT_EQ(probe->activate(0), RTC::RTC_OK);
+  EXPECT_GE(stack, std::size_t{24} << 20) << "stacks of threads that have ended are used again when they are large enough";
+  probe->during = nullptr;
+}
+
 TEST_F(ComponentContextTest, leaves_foreign_ones_when_it_exits) {
   probe->initialize();
   RTC::ExecutionContext_var context = first_context(*probe);

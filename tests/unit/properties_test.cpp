@@ -81,6 +81,33 @@ TEST(Properties, nodes_are_found_made_and_taken_out) {
   EXPECT_EQ(p.removeNode("a"), nullptr);
 }
 
+TEST(Properties, many_children_are_found_like_few) {
+  coil::Properties p;
+  std::vector<std::string> names;
+  for (int i = 0; i < 100; ++i) {
+    names.push_back("a.n" + std::to_string(i));
+    p[names.back()] = std::to_string(i);
+  }
+  EXPECT_EQ(p.propertyNames(), names);
+  std::unique_ptr<coil::Properties> taken(p.getNode("a").removeNode("n50"));
+  EXPECT_EQ(p.findNode("a.n50"), nullptr);
+  taken.reset();
+  p["a.n50"] = "new";
+  EXPECT_EQ(p.getNode("a").getLeaf().back()->getValue(), std::string("new"));
+  coil::Properties copy(p);
+  copy["a.n7"] = "mine";
+  EXPECT_EQ(p["a.n7"], "7");
+  EXPECT_EQ(copy["a.n7"], "mine");
+  EXPECT_EQ(copy.findNode("a.n7")->getRoot(), copy.findNode("a"));
+  const coil::Properties moved(std::move(copy));
+  EXPECT_EQ(moved["a.n7"], "mine");
+  EXPECT_EQ(copy.findNode("a.n7"), nullptr);
+  p.getNode("a").clear();
+  EXPECT_EQ(p.findNode("a.n7"), nullptr);
+  p["a.n7"] = "again";
+  EXPECT_EQ(p.size(), 1);
+}
+
 TEST(Properties, copies_are_independent_and_a_subtree_may_replace_its_tree) {
   coil::Properties p;
   p["a.b.c"] = "1";

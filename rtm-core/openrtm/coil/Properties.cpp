@@ -220,6 +220,7 @@ Properties* Properties::removeNode(const std::string& leaf_name) {
   if (it == leaf_.end()) return nullptr;
   Properties* node = *it;
   leaf_.erase(it);
+  if (index_) index_->erase(leaf_name);
   node->root_ = nullptr;
   return node;
 }
@@ -227,6 +228,7 @@ Properties* Properties::removeNode(const std::string& leaf_name) {
 Properties* Properties::hasKey(const std::string& key) const { return child(key); }
 
 void Properties::clear() {
+  index_.reset();
   auto children = std::exchange(leaf_, {});
   for (Properties* node : children) delete node;
 }
@@ -239,6 +241,10 @@ Properties& Properties::operator<<(const Properties& other) {
 }
 
 Properties* Properties::child(std::string_view name) const {
+  if (index_) {
+    const auto found = index_->find(name);
+    return found == index_->end() ? nullptr : found->second;
+  }
   for (Properties* node : leaf_) {
     if (node->name_ == name) return node;
   }
@@ -263,8 +269,8 @@ Properties& Properties::make(std::string_view path) {
     if (next == nullptr) {
       auto made = std::make_unique<Properties>(std::string(step));
       made->root_ = node;
-      node->leaf_.push_back(made.get());
-      next = made.release();
+      next = made.get();
+      node->add_child(made.release());
     }
     node = next;
     path = rest;
@@ -272,17 +278,29 @@ Properties& Properties::make(std::string_view path) {
   return *node;
 }
 
+void Properties::add_child(Properties* node) {
+  constexpr std::size_t many = 32;
+  leaf_.push_back(node);
+  if (!index_ && leaf_.size() > many) {
+    index_ = std::make_unique<Index>();
+    for (Properties* known : leaf_) index_->emplace(known->name_, known);
+  } else if (index_) {
+    index_->emplace(node->name_, node);
+  }
+}
+
 void Properties::copy_children(const Properties& other) {
   leaf_.reserve(other.leaf_.size());
   for (const Properties* node : other.leaf_) {
     auto copy = std::make_unique<Properties>(*node);
     copy->root_ = this;
-    leaf_.push_back(copy.release());
+    add_child(copy.release());
   }
 }
 
 void Properties::adopt_children(Properties& other) noexcept {
   leaf_ = std::exchange(other.leaf_, {});
+  index_ = std::move(other.index_);
   for (Properties* node : leaf_) node->root_ = this;
 }
 

@@ -5,8 +5,10 @@
 #include <climits>
 #include <iosfwd>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 namespace coil {
@@ -83,6 +85,7 @@ class Properties {
   Properties* child(std::string_view name) const;
   const Properties* find(std::string_view path) const;
   Properties& make(std::string_view path);
+  void add_child(Properties* node);
   void copy_children(const Properties& other);
   void adopt_children(Properties& other) noexcept;
   void collect_names(const std::string& prefix, std::vector<std::string>& names) const;
@@ -93,6 +96,9 @@ class Properties {
   std::string default_value_;
   Properties* root_ = nullptr;
   std::vector<Properties*> leaf_;  // Owned. Plain pointers because getLeaf() has always shown them so.
+  // The children by name, once there are many.
+  using Index = std::unordered_map<std::string_view, Properties*>;
+  std::unique_ptr<Index> index_;
 };
 
 }  // namespace coil

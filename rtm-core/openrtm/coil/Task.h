@@ -1,8 +1,11 @@
 // An object with a thread of its own: derive and override svc(). activate() and wait() are called by one thread at a time.
 #pragma once
 
+#include <pthread.h>
+
 #include <atomic>
-#include <thread>
+#include <cstddef>
+#include <optional>
 
 #include "coil/NonCopyable.h"
 
@@ -28,9 +31,16 @@ class Task : private NonCopyable {
   virtual void reset();
   virtual void finalize();
 
+ protected:
+  // For the next activate(); 0: what the system gives. False when that is less than the system needs at least.
+  bool setStackSize(std::size_t octets);
+
  private:
+  static void* run(void* task) noexcept;
+
   std::atomic<bool> is_running_{false};
-  std::thread thread_;
+  std::optional<pthread_t> thread_;
+  std::size_t stack_size_ = 0;
 };
 
 }  // namespace coil

@@ -97,7 +97,7 @@ ReturnCode_t PeriodicECSharedComposite::onInitialize() {
     sdos[n] = SDOPackage::SDO::_duplicate(found[0]);
   }
   std::string ports = m_configsets.getConfigurationSet("default").getProperty("exported_ports");
-  if (ports.empty()) ports = m_properties.getProperty("exported_ports");
+  if (ports.empty()) ports = property("exported_ports");
   organization_->export_ports(ports);
   try {
     organization_->add_members(sdos);

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "base/text.h"
+#include "core/connector_settings.h"
 #include "core/workers.h"
 
 namespace RTC {
@@ -48,6 +49,10 @@ void PeriodicExecutionContext::init(coil::Properties& props) {
   priority_ = 0;
   if (const auto number = base::parse_integer(props.getProperty("priority")); number && *number >= 1 && *number <= 99)
     priority_ = static_cast<int>(*number);
+  const std::string stack = props.getProperty("stack_size");
+  const auto octets = stack.empty() ? std::size_t{0} : rt::parse_size(stack);
+  if (!octets || !setStackSize(*octets))
+    RTC_WARN(("stack_size must be a size from 16k on, like 256k or 8M, got %s", base::in_quotes(stack).c_str()));
 }
 
 RTC::ReturnCode_t PeriodicExecutionContext::onStarted() {

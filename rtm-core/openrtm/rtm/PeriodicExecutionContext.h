@@ -21,7 +21,7 @@ class PeriodicExecutionContext : public ExecutionContextServant<POA_RTC::Executi
   explicit PeriodicExecutionContext(const std::string& name = "periodic_ec");
   ~PeriodicExecutionContext() override;
 
-  // Also takes cpu_affinity (a comma list of processor numbers) and priority (1-99: real-time scheduling).
+  // Also takes cpu_affinity (a comma list of processor numbers), priority (1-99: real-time scheduling) and stack_size (like 256k).
   void init(coil::Properties& props) override;
 
   int open(void* args) override;

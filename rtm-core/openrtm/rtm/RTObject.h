@@ -3,6 +3,9 @@
 // of the execution context. What a callback throws becomes RTC_ERROR and one log line. No lock is held while a callback runs.
 #pragma once
 
+#include <coil/Guard.h>
+#include <coil/Mutex.h>
+#include <coil/OS.h>
 #include <coil/Properties.h>
 #include <coil/Time.h>
 #include <rtm/CORBA_SeqUtil.h>
@@ -15,7 +18,7 @@
 #include <rtm/SystemLogger.h>
 #include <rtm/idl/OpenRTMSkel.h>
 
-// Authors rely on some of these headers without naming them: coil/Time.h, CORBA_SeqUtil.h, NVUtil.h, iostream.
+// Authors rely on some of these headers without naming them: coil/Time.h, Mutex.h, Guard.h, OS.h, CORBA_SeqUtil.h, NVUtil.h, iostream.
 #include <chrono>
 #include <functional>
 #include <iostream>
@@ -357,6 +360,8 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
 
  protected:
   void shutdown();
+  // A copy of one property; unlike m_properties safe while others change them.
+  std::string property(const std::string& key, const std::string& otherwise = "") const;
   // Composites add themselves.
   void addOwnedOrganization(SDOPackage::Organization_impl* organization);
 
@@ -396,7 +401,6 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   void chooseClock();
   bool waitForCallbacks(std::chrono::steady_clock::time_point deadline);
   void complainAboutCallbacks(const char* consequence) const;
-  std::string property(const std::string& key, const std::string& otherwise = "") const;
   void waitForExiter();
   // Calls the author's function; what it throws is logged and RTC_ERROR.
   template <class Function>

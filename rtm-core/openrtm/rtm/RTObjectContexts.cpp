@@ -34,6 +34,16 @@ std::vector<Wanted> parse_contexts(const std::string& text) {
   return list;
 }
 
+// Asks the object itself when its reference does not say.
+bool is_context(ExecutionContext_ptr context) {
+  try {
+    const ExecutionContextService_var service = ExecutionContextService::_narrow(context);
+    return !CORBA::is_nil(service);
+  } catch (const CORBA::Exception&) {
+    return false;
+  }
+}
+
 // Contexts that have a name are one for all components of the process that ask for that type and name.
 class NamedContexts {
  public:
@@ -325,7 +335,7 @@ UniqueId RTObject_impl::bindContext(ExecutionContext_ptr exec_context) {
 }
 
 ExecutionContextHandle_t RTObject_impl::attach_context(ExecutionContext_ptr exec_context) {
-  if (CORBA::is_nil(exec_context)) return -1;
+  if (!is_context(exec_context)) return -1;
   // The same one again keeps its handle; it is told like the first time, because the context has just added the component.
   ExecutionContextHandle_t id = get_context_handle(exec_context);
   if (id < foreign_offset) {
