@@ -136,6 +136,9 @@ base::Result<std::string> to_orb_endpoint(std::string_view endpoint) {
   const auto port = colon == std::string_view::npos || is_bare_ipv6 ? std::string_view() : text.substr(colon + 1);
   if (auto checked = check_port(endpoint, port); !checked) return checked.error();
   if (host.empty()) host = "127.0.0.1";
+  if (host.find_first_of(" \t/") != std::string_view::npos || (host.find(':') != std::string_view::npos && !host.starts_with('['))) {
+    return base::Error{"end point " + base::in_quotes(endpoint) + ": expected host:port, :port, all, unix or giop:..."};
+  }
   return "giop:tcp:" + std::string(host) + ":" + std::string(port);
 }
 

@@ -1,10 +1,13 @@
 #include "core/config_file.h"
 
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "base/text.h"
 
@@ -88,6 +91,26 @@ void parse_line(std::string_view line, int number, ConfigText& result) {
   result.entries.push_back({std::move(key), without_escapes(base::trim(value)), number});
 }
 
+// Up to the end, which a pipe must reach without pauses of more than five seconds.
+base::Result<std::string> read_all(int file) {
+  constexpr int patience_ms = 5000;
+  std::string text;
+  char buffer[65536];
+  while (text.size() <= max_file_size) {
+    const auto size = read(file, buffer, sizeof buffer);
+    if (size == 0) return text;
+    if (size > 0) {
+      text.append(buffer, static_cast<std::size_t>(size));
+    } else if (errno == EAGAIN) {
+      pollfd ready{file, POLLIN, 0};
+      if (poll(&ready, 1, patience_ms) == 0) return base::Error{"does not end"};
+    } else if (errno != EINTR) {
+      return base::Error{"cannot be read"};
+    }
+  }
+  return base::Error{"larger than 16 MiB"};
+}
+
 }  // namespace
 
 ConfigText parse_config(std::string_view text) {
@@ -123,14 +146,12 @@ base::Result<std::string> read_text_file(const std::string& path) {
   const auto status = std::filesystem::status(path, error);
   if (error || !std::filesystem::exists(status)) return base::Error{"file " + base::in_quotes(path) + ": does not exist"};
   if (std::filesystem::is_directory(status)) return base::Error{"file " + base::in_quotes(path) + ": is a folder"};
-  if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(path, error) > max_file_size) {
-    return base::Error{"file " + base::in_quotes(path) + ": larger than 16 MiB"};
-  }
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return base::Error{"file " + base::in_quotes(path) + ": cannot be read"};
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
+  const int file = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);  // a pipe that nobody writes must not hold us up
+  if (file < 0) return base::Error{"file " + base::in_quotes(path) + ": cannot be read"};
+  auto text = read_all(file);
+  close(file);
+  if (!text) return base::Error{"file " + base::in_quotes(path) + ": " + text.error().message};
+  return text;
 }
 
 }  // namespace rt

@@ -32,7 +32,7 @@ struct ConfigText {
 // Takes what can be understood; the rest becomes findings.
 ConfigText parse_config(std::string_view text);
 
-// The whole file, at most 16 MiB. Fails with one line that names it.
+// The whole file, at most 16 MiB; devices and pipes as well, as far as they end. Fails with one line that names it.
 base::Result<std::string> read_text_file(const std::string& path);
 
 }  // namespace rt

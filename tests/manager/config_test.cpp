@@ -1,4 +1,8 @@
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
 
 #include <filesystem>
 #include <fstream>
@@ -56,6 +60,15 @@ TEST(ConfigFile, windows_line_ends_and_byte_order_marks_do_no_harm) {
 TEST(ConfigFile, a_missing_file_and_a_folder_are_named) {
   EXPECT_NE(read_text_file("/no/such/file").error().message.find("/no/such/file"), std::string::npos);
   EXPECT_NE(read_text_file("/tmp").error().message.find("folder"), std::string::npos);
+}
+
+TEST(ConfigFile, a_device_without_end_and_a_pipe_without_writer_hold_nobody_up) {
+  EXPECT_NE(read_text_file("/dev/zero").error().message.find("larger than 16 MiB"), std::string::npos);
+  EXPECT_EQ(read_text_file("/dev/null").value(), "");
+  const auto pipe = std::filesystem::temp_directory_path() / ("config_test." + std::to_string(getpid()));
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(read_text_file(pipe.string()).value(), "");
+  std::filesystem::remove(pipe);
 }
 
 TEST(ConfigKeys, known_keys_and_component_keys_draw_no_complaint) {

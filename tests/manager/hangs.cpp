@@ -1,9 +1,10 @@
-// Hangs: a component whose onExecute never returns. For tests of how a process ends.
+// Hangs: a component whose onExecute never returns. For tests of how a process ends, and of modules that fail.
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/Manager.h>
 
 #include <iostream>
 #include <semaphore>
+#include <stdexcept>
 
 class Hangs : public RTC::DataFlowComponentBase {
  public:
@@ -26,5 +27,10 @@ extern "C" {
 DLL_EXPORT void HangsInit(RTC::Manager* manager) {
   coil::Properties profile(hangs_spec);
   manager->registerFactory(profile, RTC::Create<Hangs>, RTC::Delete<Hangs>);
+}
+// Registers the component and then fails.
+DLL_EXPORT void HangsFail(RTC::Manager* manager) {
+  HangsInit(manager);
+  throw std::runtime_error("no licence");
 }
 }

@@ -74,6 +74,9 @@ TEST(Orb, an_end_point_in_use_is_one_line) {
 
 TEST(Orb, nonsense_settings_are_refused) {
   EXPECT_FALSE(Orb::start({.endpoints = {"host:port"}}).ok());
+  const auto nonsense = Orb::start({.endpoints = {"nonsense:::"}});
+  ASSERT_FALSE(nonsense.ok());
+  EXPECT_NE(nonsense.error().message.find("expected host:port"), std::string::npos) << nonsense.error().message;
   EXPECT_FALSE(Orb::start({.endpoints = {":70000"}}).ok());
   EXPECT_FALSE(Orb::start({.arguments = {"-ORBnoSuchThing", "1"}}).ok());
 }

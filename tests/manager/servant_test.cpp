@@ -4,6 +4,7 @@
 #include <rtm/NVUtil.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <future>
 
@@ -106,6 +107,25 @@ TEST_F(Servant, modules_are_shown_with_what_tools_look_for) {
   EXPECT_EQ(manager->unload_module(file.c_str()), RTC::RTC_OK);
   list = manager->get_factory_profiles();
   EXPECT_EQ(values_of(list, "implementation_id"), Strings{"PeriodicECSharedComposite"});
+}
+
+TEST_F(Servant, a_module_that_is_cut_short_or_fails_is_refused) {
+  const int port = support::free_port();
+  support::Process rtcd(at_port(port, {}));
+  RTM::Manager_var manager = manager_at(port);
+  ASSERT_FALSE(CORBA::is_nil(manager)) << rtcd.output();
+  const auto file = std::filesystem::temp_directory_path() / ("Cut" + std::to_string(getpid()) + ".so");
+  std::filesystem::copy_file(modules + "/FailOnRequest.so", file);
+  const auto whole = std::filesystem::file_size(file);
+  for (const auto size : {whole / 2, std::uintmax_t{3000}, std::uintmax_t{100}, std::uintmax_t{0}}) {
+    std::filesystem::resize_file(file, size);
+    EXPECT_EQ(manager->load_module(file.c_str(), "FailOnRequestInit"), RTC::RTC_ERROR) << size;
+  }
+  std::filesystem::remove(file);
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(manager->load_module("Hangs.so", "HangsFail"), RTC::RTC_ERROR) << "each time";
+  RTM::ModuleProfileList_var list = manager->get_factory_profiles();
+  EXPECT_EQ(values_of(list, "implementation_id"), Strings{"PeriodicECSharedComposite"}) << "what it registered has gone";
+  EXPECT_EQ(manager->load_module("Hangs.so", ""), RTC::RTC_OK);
 }
 
 TEST_F(Servant, the_log_follows_the_configuration_at_once) {
@@ -247,6 +267,31 @@ TEST_F(Servant, masters_and_slaves_are_listed_once_and_forgotten_when_told) {
   EXPECT_EQ(manager->remove_slave_manager(other), RTC::RTC_OK);
   EXPECT_EQ(manager->remove_slave_manager(other), RTC::BAD_PARAMETER);
   EXPECT_EQ(manager->add_master_manager(RTM::Manager::_nil()), RTC::BAD_PARAMETER);
+}
+
+TEST_F(Servant, managers_are_no_slaves_in_a_circle_and_nothing_else_is_one) {
+  std::vector<std::unique_ptr<support::Process>> processes;
+  std::vector<RTM::Manager_var> managers;
+  for (int i = 0; i < 3; ++i) {
+    const int port = support::free_port();
+    processes.push_back(
+        std::make_unique<support::Process>(at_port(port, {"-o", "corba.update_master_manager.enable:NO", "FailOnRequest"})));
+    managers.push_back(manager_at(port));
+    ASSERT_FALSE(CORBA::is_nil(managers.back())) << processes.back()->output();
+  }
+  EXPECT_EQ(managers[0]->add_slave_manager(managers[1]), RTC::RTC_OK);
+  EXPECT_EQ(managers[1]->add_slave_manager(managers[2]), RTC::RTC_OK);
+  EXPECT_EQ(managers[1]->add_slave_manager(managers[0]), RTC::BAD_PARAMETER);
+  EXPECT_EQ(managers[2]->add_slave_manager(managers[0]), RTC::BAD_PARAMETER);
+  RTC::RTCList_var components = managers[0]->get_components();
+  EXPECT_EQ(components->length(), 3u);
+  // A component said to be a manager, and one that has died.
+  RTM::Manager_var wrong = RTM::Manager::_unchecked_narrow(components[0]);
+  EXPECT_EQ(managers[0]->add_slave_manager(wrong), RTC::BAD_PARAMETER);
+  EXPECT_EQ(managers[0]->add_master_manager(wrong), RTC::BAD_PARAMETER);
+  processes[2]->signal(SIGKILL);
+  processes[2]->wait();
+  EXPECT_EQ(managers[0]->add_slave_manager(managers[2]), RTC::BAD_PARAMETER);
 }
 
 TEST_F(Servant, a_master_that_a_tool_has_named_stays_when_the_configured_one_is_away) {

@@ -368,13 +368,21 @@ class Foreign(unittest.TestCase):
         self.assertEqual(self.out.write(sample(b'')), PORT_OK)
 
     def test_references_of_an_earlier_life_do_not_count(self):
-        stale = str(Ior.make(IN_CDR, '127.0.0.1', 1, b'gone', 2))
         # As a tool sends back what it has saved.
-        back = Profile([self.into.ior, self.our_out.ior], [('corba_cdr.inport_ior', stale)])
-        self.assertEqual(self.into.connect(back), OK)
-        forth = Profile([self.our_in.ior, self.out.ior], [('corba_cdr.inport_ior', stale)])
-        self.assertEqual(self.out.connect(forth), OK)
-        self.assertEqual(self.echo(b'alive'), sample(b'alive'))
+        for interface, names in NAMES.items():
+            stale = Ior.make(names[0], '127.0.0.1', 1, b'gone', 2)
+            properties = [('interface_type', interface), (interface + '.inport_ior', str(stale)), (interface + '.inport_ref', stale)]
+            self.assertEqual(self.into.connect(Profile([self.into.ior, self.our_out.ior], properties)), OK)
+            forth = Profile([self.our_in.ior, self.out.ior], properties)
+            self.assertEqual(self.out.connect(forth), OK)
+            for key in ('inport_ior', 'inport_ref'):
+                values = [str(value) for name, value in forth.properties if name == 'dataport.%s.%s' % (interface, key)]
+                self.assertEqual(len(values), 1, key)
+                self.assertNotEqual(values[0], str(stale), key)
+            self.assertEqual(self.echo(b'alive'), sample(b'alive'))
+            self.our_in.disconnect_all()
+            self.our_out.disconnect_all()
+            self.expect_nothing_left()
 
     def test_refusals_have_their_codes(self):
         def code(*properties):
@@ -387,7 +395,8 @@ class Foreign(unittest.TestCase):
         self.assertEqual(code(('data_type', 'IDL:RTC/TimedLong:1.0')), BAD_PARAMETER)
         self.assertEqual(self.our_in.connect(Profile([self.out.ior])), BAD_PARAMETER)
         self.assertEqual(self.our_in.connect(Profile([self.our_in.ior, None])), BAD_PARAMETER)
-        self.assertEqual(self.our_in.disconnect('unknown'), BAD_PARAMETER)
+        for operation in ('disconnect', 'notify_disconnect'):
+            self.assertEqual(self.our_in.by_id(operation, 'unknown'), BAD_PARAMETER)
         self.expect_nothing_left()
 
     def test_a_connection_that_fails_is_taken_back_on_both_sides(self):

@@ -87,13 +87,16 @@ std::string name_of(RTM::Manager_ptr manager) {
   }
 }
 
-// A reference by object key (corbaloc) is equivalent to one by IOR only after its first call has been sent on.
-void settle(RTM::Manager_ptr manager) {
+// A manager answers there. Also: a reference by object key (corbaloc) is equivalent to one by IOR only after its first call has been sent
+// on.
+bool answers(RTM::Manager_ptr manager) {
   try {
     RTM::Manager_var brief = RTM::Manager::_duplicate(manager);
     corba::set_call_timeout(brief, peer_timeout);
-    brief->_non_existent();
-  } catch (const CORBA::Exception&) {  // it stays as it is
+    brief->is_master();
+    return true;
+  } catch (const CORBA::Exception&) {
+    return false;
   }
 }
 
@@ -104,6 +107,24 @@ bool add_unique(std::vector<RTM::Manager_var>& list, RTM::Manager_ptr manager) {
   }
   list.emplace_back(RTM::Manager::_duplicate(manager));
   return true;
+}
+
+// `wanted` is the manager, or one of its slaves, or of theirs.
+bool is_below(RTM::Manager_ptr manager, RTM::Manager_ptr wanted) {
+  constexpr std::size_t most = 100;
+  std::vector<RTM::Manager_var> family{RTM::Manager_var(RTM::Manager::_duplicate(manager))};
+  for (std::size_t i = 0; i < family.size() && family.size() < most; ++i) {
+    try {
+      corba::set_call_timeout(family[i], peer_timeout);
+      RTM::ManagerList_var slaves = family[i]->get_slave_managers();
+      for (CORBA::ULong k = 0; k < slaves->length(); ++k) {
+        if (!CORBA::is_nil(slaves[k])) add_unique(family, slaves[k]);
+      }
+    } catch (const CORBA::Exception&) {  // gone, with its slaves
+    }
+    if (family[i]->_is_equivalent(wanted)) return true;  // once it has been called: see answers()
+  }
+  return family.size() >= most;
 }
 
 RTM::ManagerList* to_list(const std::vector<RTM::Manager_var>& managers) {
@@ -298,33 +319,30 @@ RTM::ManagerList* ManagerServant::get_master_managers() {
 }
 
 RTC::ReturnCode_t ManagerServant::add_master_manager(RTM::Manager_ptr mgr) {
-  if (CORBA::is_nil(mgr)) return RTC::BAD_PARAMETER;
-  settle(mgr);
-  if (mgr->_is_equivalent(reference_)) return RTC::BAD_PARAMETER;
+  if (CORBA::is_nil(mgr) || !answers(mgr) || mgr->_is_equivalent(reference_)) return RTC::BAD_PARAMETER;
   const std::scoped_lock lock(mutex_);
   return add_unique(masters_, mgr) ? RTC::RTC_OK : RTC::BAD_PARAMETER;
 }
 
 RTC::ReturnCode_t ManagerServant::remove_master_manager(RTM::Manager_ptr mgr) {
   if (CORBA::is_nil(mgr)) return RTC::BAD_PARAMETER;
-  settle(mgr);
+  answers(mgr);  // one that has died may go as well
   const std::scoped_lock lock(mutex_);
   return std::erase_if(masters_, [&](const auto& known) { return known->_is_equivalent(mgr); }) > 0 ? RTC::RTC_OK : RTC::BAD_PARAMETER;
 }
 
 RTM::ManagerList* ManagerServant::get_slave_managers() { return to_list(living_slaves()); }
 
+// A manager asks its slaves for theirs: one that is above this one already would be asked without end.
 RTC::ReturnCode_t ManagerServant::add_slave_manager(RTM::Manager_ptr mgr) {
-  if (CORBA::is_nil(mgr)) return RTC::BAD_PARAMETER;
-  settle(mgr);
-  if (mgr->_is_equivalent(reference_)) return RTC::BAD_PARAMETER;
+  if (CORBA::is_nil(mgr) || !answers(mgr) || is_below(mgr, reference_)) return RTC::BAD_PARAMETER;
   const std::scoped_lock lock(mutex_);
   return add_unique(slaves_, mgr) ? RTC::RTC_OK : RTC::BAD_PARAMETER;
 }
 
 RTC::ReturnCode_t ManagerServant::remove_slave_manager(RTM::Manager_ptr mgr) {
   if (CORBA::is_nil(mgr)) return RTC::BAD_PARAMETER;
-  settle(mgr);
+  answers(mgr);  // one that has died may go as well
   const std::scoped_lock lock(mutex_);
   return std::erase_if(slaves_, [&](const auto& known) { return known->_is_equivalent(mgr); }) > 0 ? RTC::RTC_OK : RTC::BAD_PARAMETER;
 }

@@ -1,6 +1,7 @@
 #include "rtm/ModuleManager.h"
 
 #include <dlfcn.h>
+#include <elf.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
@@ -11,7 +12,9 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <mutex>
 
@@ -101,6 +104,23 @@ std::optional<std::string> output_of(const std::vector<std::string>& words, std:
 bool contains_stubs(const std::string& file) {
   const auto text = rt::read_text_file(file);
   return !text || text->find("_pof_") != std::string::npos;
+}
+
+// Of a library that is shorter than it says, the loader maps pages that are not there, and whoever touches them dies.
+bool is_cut_short(const std::string& file) {
+  std::error_code error;
+  const auto size = fs::file_size(file, error);
+  std::ifstream in(file, std::ios::binary);
+  Elf64_Ehdr header{};
+  if (error || !in.read(reinterpret_cast<char*>(&header), sizeof header)) return false;  // dlopen says what it is instead
+  if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 || header.e_ident[EI_CLASS] != ELFCLASS64) return false;
+  for (int i = 0; i < header.e_phnum; ++i) {
+    Elf64_Phdr segment{};
+    in.seekg(static_cast<std::streamoff>(header.e_phoff + static_cast<Elf64_Off>(i) * header.e_phentsize));
+    if (!in.read(reinterpret_cast<char*>(&segment), sizeof segment)) return true;
+    if (segment.p_filesz > size || segment.p_offset > size - segment.p_filesz) return true;
+  }
+  return false;
 }
 
 struct Module {
@@ -256,6 +276,7 @@ ReturnCode_t ModuleManager::load(const std::string& text, const std::string& ini
   if (impl_->find({}, file)) return RTC_OK;
   if (function.empty()) function = impl_->init_function(file);
 
+  if (is_cut_short(file)) return complain("is cut short");
   void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr) {
     const char* why = dlerror();
@@ -279,9 +300,12 @@ ReturnCode_t ModuleManager::load(const std::string& text, const std::string& ini
     failure = "unknown exception";
   }
   ManagerImpl::current_module.clear();
+  if (!failure.empty()) {  // it stays mapped: somebody may hold something of it
+    impl_->manager->impl_->forget_module(file);
+    return complain(function + " failed: " + failure);
+  }
   const std::scoped_lock lock(impl_->mutex);
   impl_->modules.push_back({file, function, handle, ExecutionContextFactory::instance().getIdentifiers().size() != contexts_before});
-  if (!failure.empty()) return complain(function + " failed: " + failure);
   return RTC_OK;
 }
 
