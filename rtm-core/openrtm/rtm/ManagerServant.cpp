@@ -18,6 +18,7 @@ namespace {
 constexpr std::size_t longest_name = std::size_t{64} << 10;
 constexpr std::chrono::seconds peer_timeout{2};
 constexpr std::chrono::seconds creation_timeout{10};
+constexpr std::chrono::seconds modules_timeout{30};  // each module is read in a process of its own
 
 template <class Sequence, class Element>
 void append(Sequence& sequence, const Element& element) {
@@ -176,7 +177,10 @@ void ManagerServant::append_from_slaves(List& list, Ask ask) {
 
 RTM::ModuleProfileList* ManagerServant::get_loadable_modules() {
   auto list = to_profiles(manager_.getLoadableModules());
-  append_from_slaves(list.inout(), [](RTM::Manager_ptr slave) { return RTM::ModuleProfileList_var(slave->get_loadable_modules()); });
+  append_from_slaves(list.inout(), [](RTM::Manager_ptr slave) {
+    corba::set_call_timeout(slave, modules_timeout);
+    return RTM::ModuleProfileList_var(slave->get_loadable_modules());
+  });
   return list._retn();
 }
 

@@ -34,13 +34,14 @@ std::vector<Wanted> parse_contexts(const std::string& text) {
   return list;
 }
 
-// Asks the object itself when its reference does not say.
+// Asks the object itself when its reference does not say; one that does not answer gets the benefit of the doubt.
 bool is_context(ExecutionContext_ptr context) {
+  if (CORBA::is_nil(context)) return false;
   try {
     const ExecutionContextService_var service = ExecutionContextService::_narrow(context);
     return !CORBA::is_nil(service);
   } catch (const CORBA::Exception&) {
-    return false;
+    return true;
   }
 }
 
