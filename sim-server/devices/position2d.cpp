@@ -11,7 +11,14 @@
 namespace sim {
 namespace {
 
-constexpr double stall_after = 0.5;  // [s]
+constexpr double stall_after = 0.5;       // [s]
+constexpr double strongest_torque = 1e6;  // [N m] of wheels that nothing but their grip holds back
+
+// gz-sim turns wheels as told whatever it takes; in Gazebo classic they have 5 N m when nothing is said.
+bool is_of_gz_sim(const PluginDef& plugin) {
+  return plugin.name.find("::systems::") != std::string::npos || plugin.filename.find("gz-sim") != std::string::npos ||
+         plugin.filename.find("ignition-gazebo") != std::string::npos;
+}
 
 // All joints that the children of these names mean.
 void add_joints(const ModelDef& model, const PluginDef& plugin, std::initializer_list<std::string_view> spellings,
@@ -36,6 +43,18 @@ double wheel_radius(const ModelDef& model, std::uint32_t joint) {
     if (const auto* cylinder = std::get_if<CylinderShape>(&collision.geometry)) return cylinder->radius;
   }
   return 0;
+}
+
+// What the joints' own limits allow.
+double torque_of_joints(const ModelDef& model, const std::vector<std::uint32_t>& left, const std::vector<std::uint32_t>& right) {
+  double torque = strongest_torque;
+  for (const auto* side : {&left, &right}) {
+    for (const auto joint : *side) {
+      if (model.joints[joint].axes.empty()) continue;
+      if (const double effort = model.joints[joint].axes[0].effort; effort > 0) torque = std::min(torque, effort);
+    }
+  }
+  return torque;
 }
 
 double wheel_separation(const ModelDef& model, std::uint32_t left, std::uint32_t right) {
@@ -92,7 +111,8 @@ base::Result<DriveSettings> DriveSettings::of(const ModelDef& model, const Plugi
     return base::Error{fmt::format("{}: plugin {}: wheel separation and radius must be positive, got {} and {}", plugin.source, plugin.name,
                                    s.separation, s.radius)};
   }
-  s.torque = p.number_of({"max_wheel_torque", "wheelTorque", "wheel_torque", "torque", "max_force"}).value_or(s.torque);
+  s.torque = p.number_of({"max_wheel_torque", "wheelTorque", "wheel_torque", "torque", "max_force", "MaxForce"})
+                 .value_or(is_of_gz_sim(plugin) ? torque_of_joints(model, s.left, s.right) : s.torque);
   if (s.torque <= 0) s.torque = 5;
   s.max_speed = std::max(0.0, p.number_of({"max_linear_velocity", "max_velocity", "max_speed", "maxSpeed"}).value_or(0));
   s.max_yaw_rate = std::max(0.0, p.number_of({"max_angular_velocity", "max_yaw_rate", "max_turnrate"}).value_or(0));

@@ -445,8 +445,10 @@ bool mend_model(pugi::xml_node model, Complaints& complaints) {
     next = nested.next_sibling("model");
     if (!mend_model(nested, complaints)) model.remove_child(nested);
   }
+  const bool has_lost_include = model.remove_attribute(lost_include_mark);
   if (!model.child("link") && !model.child("model")) {
-    complaints.drop(model, describe_in_context(model) + " has no link and is left out");
+    // A model that was to hold nothing but what is not found has had its line.
+    if (!has_lost_include) complaints.drop(model, describe_in_context(model) + " has no link and is left out");
     return false;
   }
   mend_names(model, complaints);

@@ -14,6 +14,8 @@ namespace sim {
 
 inline constexpr const char* line_mark = "_line";
 inline constexpr const char* file_mark = "_file";
+// On a model that was to include another which is not there and has had its line.
+inline constexpr const char* lost_include_mark = "_lost";
 
 struct Place {
   std::string file;

@@ -84,6 +84,9 @@ void append_skeleton(pugi::xml_node model, pugi::xml_node parent, const std::str
     for (const char* key : {"axis", "axis2"}) {
       if (const pugi::xml_node axis = joint.child(key)) copy_numbers(axis, bare.append_child(key), "xyz", "0 0 1");
     }
+    const std::string child = text_of(joint.child("child"));
+    for (pugi::xml_node sensor : joint.children("sensor"))
+      append_frame_of_pose(sensor, out, child == "world" ? "" : child, "_pose_of_" + std::to_string(frames++));
   }
   for (pugi::xml_node nested : model.children("model")) append_skeleton(nested, out, nested.attribute("name").value(), true);
 }

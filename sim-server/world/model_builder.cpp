@@ -461,6 +461,7 @@ class ModelBuilder {
     joint.provide_feedback = bool_at(ode, "provide_feedback", bool_at(node, "physics/provide_feedback", false));
     for (pugi::xml_node child_node : node.children("sensor")) {
       if (auto built = build_sensor(child_node, context_)) {
+        built->pose = pose_in_link(child_node, built->pose, frames.pose, resolved);
         finish_sensor(*built, child_node, scope, nullptr);
         if (auto* force = std::get_if<ForceTorqueDef>(&built->data)) force->joint = joint.name;
         joint.sensors.push_back(std::move(*built));

@@ -126,30 +126,30 @@ void ModelFiles::resolve_uris(pugi::xml_node entity, const fs::path& folder) {
     }
     const std::string uri = text_of(node);
     if (uri.empty() && !is_shape) return;
-    if (const std::optional<fs::path> found = model_path_.find(uri, folder)) {
+    const std::optional<fs::path> found = model_path_.find(uri, folder);
+    if (found && !is_lfs_pointer_file(*found)) {
       node.text() = found->string().c_str();
       return;
     }
+    const std::string fault(found ? lfs_pointer_fault : "is not found");
     if (is_shape) {
       const pugi::xml_node owner = node.parent().parent().parent();
       const bool is_seen = std::string_view(owner.name()) == "visual";
-      complaints_.drop(node, std::string(parent) + " file " + base::in_quotes(uri) + " of " + describe_in_context(owner) +
-                                 " is not found; " +
-                                 (is_seen ? "a magenta box stands in" : std::string("the ") + owner.name() + " is left out"));
+      complaints_.drop(node, std::string(parent) + " file " + base::in_quotes(uri) + " of " + describe_in_context(owner) + " " + fault +
+                                 "; " + (is_seen ? "a magenta box stands in" : std::string("the ") + owner.name() + " is left out"));
       if (is_seen)
         node.text() = missing_file;
       else
         lost.push_back(owner);
     } else if (is_script) {
       // The materials of Gazebo itself are built in.
-      if (uri.find("gazebo.material") == std::string::npos)
-        complaints_.warn(node, "material script " + base::in_quotes(uri) + " is not found");
+      if (uri.find("gazebo.material") == std::string::npos) complaints_.warn(node, "material script " + base::in_quotes(uri) + " " + fault);
       lost.push_back(node);
     } else if (name == "albedo_map" || name == "diffuse") {
-      complaints_.warn(node, "texture " + base::in_quotes(uri) + " is not found; a chequer stands in");
+      complaints_.warn(node, "texture " + base::in_quotes(uri) + " " + fault + "; a chequer stands in");
       node.text() = missing_file;
     } else {
-      complaints_.warn(node, (is_figure ? "animation or skin " : "texture ") + base::in_quotes(uri) + " is not found");
+      complaints_.warn(node, (is_figure ? "animation or skin " : "texture ") + base::in_quotes(uri) + " " + fault);
       lost.push_back(node);
     }
   };
@@ -323,6 +323,7 @@ void ModelFiles::expand_includes(pugi::xml_node model, const fs::path& folder) {
   for (pugi::xml_node include = model.child("include"), next; include; include = next) {
     next = include.next_sibling("include");
     const pugi::xml_node found = included(include, folder);
+    if (!found && !model.attribute(lost_include_mark)) model.append_attribute(lost_include_mark) = true;
     if (found && std::string_view(found.name()) != "model") {
       complaints_.drop(
           include, "a model is expected to be included in " + describe_in_context(model) + ", got " + describe(found) + "; it is left out");

@@ -2,31 +2,13 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "base/text.h"
 
 namespace sim {
 
 namespace {
-
-// "libgazebo_ros_diff_drive.so" -> "diffdrive", "ignition-gazebo6-diff-drive-system" -> "diffdrive", "gz::sim::systems::DiffDrive" ->
-// "diffdrive".
-std::string core_of(std::string_view text) {
-  std::string name = base::to_lower(text);
-  if (const std::size_t slash = name.rfind('/'); slash != std::string::npos) name.erase(0, slash + 1);
-  if (const std::size_t scope = name.rfind("::"); scope != std::string::npos) name.erase(0, scope + 2);
-  if (const std::size_t dot = name.find(".so"); dot != std::string::npos) name.erase(dot);
-  if (const std::size_t dot = name.find(".dll"); dot != std::string::npos) name.erase(dot);
-  name.erase(std::remove_if(name.begin(), name.end(), [](char c) { return c == '_' || c == '-' || c == ' ' || (c >= '0' && c <= '9'); }),
-             name.end());
-  for (std::string_view prefix : {"lib", "ignition", "gazeboros", "gazebo", "gzsim", "gz", "sim"}) {
-    if (name.starts_with(prefix) && name.size() > prefix.size() + 2) name.erase(0, prefix.size());
-  }
-  for (std::string_view suffix : {"system", "plugin"}) {
-    if (name.ends_with(suffix) && name.size() > suffix.size()) name.erase(name.size() - suffix.size());
-  }
-  return name;
-}
 
 const std::map<std::string_view, PluginKind>& table() {
   using enum PluginKind;
@@ -71,6 +53,8 @@ const std::map<std::string_view, PluginKind>& table() {
       {"altimeter", implied},
       {"magnetometer", implied},
       {"airpressure", implied},
+      {"airspeed", implied},
+      {"logicalcamera", implied},
       {"forcetorque", implied},
       {"posepublisher", implied},
       {"jointstatepublisher", implied},
@@ -79,6 +63,11 @@ const std::map<std::string_view, PluginKind>& table() {
       {"laserscan", implied},
       {"gpulaser", implied},
       {"raysensor", implied},
+      {"ray", implied},
+      {"gpuray", implied},
+      {"blocklaser", implied},
+      {"velodynelaser", implied},
+      {"velodynegpulaser", implied},
       {"camera", implied},
       {"depthcamera", implied},
       {"opennikinect", implied},
@@ -106,14 +95,40 @@ const std::map<std::string_view, PluginKind>& table() {
   return known;
 }
 
+// "libgazebo_ros_diff_drive.so", "ignition-gazebo6-diff-drive-system" and "gz::sim::systems::DiffDrive" are all "diffdrive": what makers
+// put before and after it goes step by step until the table knows the rest.
+std::optional<PluginKind> known_kind(std::string_view text) {
+  std::string name = base::to_lower(text);
+  if (const std::size_t slash = name.rfind('/'); slash != std::string::npos) name.erase(0, slash + 1);
+  if (const std::size_t scope = name.rfind("::"); scope != std::string::npos) name.erase(0, scope + 2);
+  if (const std::size_t dot = name.find(".so"); dot != std::string::npos) name.erase(dot);
+  if (const std::size_t dot = name.find(".dll"); dot != std::string::npos) name.erase(dot);
+  name.erase(std::remove_if(name.begin(), name.end(), [](char c) { return c == '_' || c == '-' || c == ' ' || (c >= '0' && c <= '9'); }),
+             name.end());
+  const auto look_up = [&]() -> std::optional<PluginKind> {
+    std::string_view core = name;
+    if (const auto found = table().find(core); found != table().end()) return found->second;
+    for (std::string_view suffix : {"system", "plugin"}) {
+      if (core.ends_with(suffix) && core.size() > suffix.size()) core.remove_suffix(suffix.size());
+    }
+    if (const auto found = table().find(core); found != table().end()) return found->second;
+    return std::nullopt;
+  };
+  for (std::string_view prefix : {"", "lib", "ignition", "gazeboros", "gazebo", "gzsim", "gz", "sim"}) {
+    if (!name.starts_with(prefix) || name.size() <= prefix.size() + 2) continue;
+    name.erase(0, prefix.size());
+    if (const auto found = look_up()) return found;
+  }
+  return look_up();
+}
+
 }  // namespace
 
 PluginKind kind_of_plugin(std::string_view filename, std::string_view name) {
-  if (const auto found = table().find(core_of(filename)); found != table().end()) return found->second;
+  if (const auto found = known_kind(filename)) return *found;
   // The name is the user's own word in Gazebo classic, so that only class names count.
   if (name.find("::") == std::string_view::npos) return PluginKind::unknown;
-  const auto found = table().find(core_of(name));
-  return found == table().end() ? PluginKind::unknown : found->second;
+  return known_kind(name).value_or(PluginKind::unknown);
 }
 
 std::string iface_own_name(const PluginDef& plugin) {

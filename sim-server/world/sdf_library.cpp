@@ -193,6 +193,26 @@ bool fits_type(const std::string& type, const std::string& text) {
   return true;
 }
 
+// "alwaysOn" -> "always_on".
+std::string snake_case(const std::string& name) {
+  std::string out;
+  for (char c : name) {
+    if (c >= 'A' && c <= 'Z' && !out.empty()) out += '_';
+    out += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  }
+  return out;
+}
+
+// Elements that newer versions or ROS know and that only name topics and frames of messages; and what belongs to a sensor of a type that
+// gets a line of its own.
+bool means_nothing_here(pugi::xml_node node, std::string_view name) {
+  for (std::string_view known : {"gz_frame_id", "ignition_frame_id", "optical_frame_id", "camera_info_topic", "trigger_topic",
+                                 "enable_metrics", "robotNamespace", "topicName", "frameName"}) {
+    if (name == known) return true;
+  }
+  return std::string_view(node.name()) == "sensor" && name == node.attribute("type").value();
+}
+
 std::string expectation(const std::string& type) {
   if (type == "bool") return "true or false";
   if (type == "int") return "a whole number";
@@ -315,15 +335,17 @@ void SdfLibrary::State::check(pugi::xml_node node, const sdf::ElementPtr& descri
     std::string name = child.name();
     if (name.find(':') != std::string::npos || name.starts_with('_')) continue;
     sdf::ElementPtr known = description->GetElementDescription(name);
-    if (const std::string lower = base::to_lower(name); !known && lower != name && description->GetElementDescription(lower)) {
-      complaints->warn(child, "<" + name.substr(0, 60) + "> in " + describe_in_context(node) + " is taken as <" + lower + ">");
-      child.set_name(lower.c_str());
-      known = description->GetElementDescription(lower);
-      name = lower;
+    for (const std::string& meant : {base::to_lower(name), snake_case(name)}) {
+      if (known || meant == name || !description->GetElementDescription(meant)) continue;
+      complaints->warn(child, "<" + name.substr(0, 60) + "> in " + describe_in_context(node) + " is taken as <" + meant + ">");
+      child.set_name(meant.c_str());
+      known = description->GetElementDescription(meant);
+      name = meant;
     }
     if (!known) {
-      complaints->warn(child, "unknown element <" + base::in_quotes(name).substr(1, base::in_quotes(name).size() - 2) + "> in " +
-                                  describe_in_context(node) + " is ignored");
+      if (!means_nothing_here(node, name))
+        complaints->warn(child, "unknown element <" + base::in_quotes(name).substr(1, base::in_quotes(name).size() - 2) + "> in " +
+                                    describe_in_context(node) + " is ignored");
       node.remove_child(child);
       continue;
     }

@@ -94,17 +94,36 @@ class Loader {
   std::optional<ResolvedWorld> whole_;             // when the world's own frames had to be resolved
 };
 
-// Files that Gazebo classic saved hold the models as they were made and, apart from them, where they were at the time.
+namespace {
+
+// Whether a saved state speaks of this child of the world.
+bool is_called(pugi::xml_node entity, std::string_view kind, std::string_view name) {
+  const std::string_view own_kind = entity.name();
+  if (own_kind != "include") return own_kind == kind && name == entity.attribute("name").value();
+  if (const std::string given = text_of(entity.child("name")); !given.empty()) return name == given;
+  const std::string uri = text_of(entity.child("uri"));
+  return name == std::string_view(uri).substr(uri.rfind('/') + 1);  // from the start when there is no slash
+}
+
+}  // namespace
+
+// Files that Gazebo classic saved hold the models as they were made and, apart from them, what was added, taken away and moved since.
 void Loader::apply_state(pugi::xml_node world) {
   for (pugi::xml_node state = world.child("state"); state; state = world.child("state")) {
-    for (pugi::xml_node saved : state.children("model")) {
-      const std::string_view name = saved.attribute("name").value();
+    for (pugi::xml_node added : state.child("insertions").children()) world.append_copy(added);
+    for (pugi::xml_node removed : state.child("deletions").children("name")) {
+      const std::string name = text_of(removed);
+      for (pugi::xml_node entity = world.first_child(), next; entity; entity = next) {
+        next = entity.next_sibling();
+        if (is_called(entity, "model", name) || is_called(entity, "light", name)) world.remove_child(entity);
+      }
+    }
+    for (pugi::xml_node saved : state.children()) {
+      const std::string_view kind = saved.name();
       const pugi::xml_node pose = saved.child("pose");
-      if (!pose || !parse_pose(pose)) continue;
+      if ((kind != "model" && kind != "light") || !pose || !parse_pose(pose)) continue;
       for (pugi::xml_node entity : world.children()) {
-        const bool is_model = std::string_view(entity.name()) == "model" && name == entity.attribute("name").value();
-        const bool is_include = std::string_view(entity.name()) == "include" && name == text_of(entity.child("name"));
-        if (!is_model && !is_include) continue;
+        if (!is_called(entity, kind, saved.attribute("name").value())) continue;
         entity.remove_child("pose");
         pugi::xml_node moved = entity.append_copy(pose);
         moved.remove_attribute("relative_to");

@@ -1,6 +1,7 @@
 #include "world/xml_file.h"
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <vector>
 
@@ -107,6 +108,17 @@ void append_xml(std::string& out, pugi::xml_node node, bool with_marks) {
 
 }  // namespace
 
+bool is_lfs_pointer(std::string_view text) { return text.starts_with("version https://git-lfs."); }
+
+bool is_lfs_pointer_file(const std::filesystem::path& path) {
+  std::error_code problem;
+  if (!std::filesystem::is_regular_file(path, problem)) return false;
+  std::array<char, 40> start{};
+  std::ifstream stream(path, std::ios::binary);
+  stream.read(start.data(), start.size());
+  return is_lfs_pointer({start.data(), static_cast<std::size_t>(stream.gcount())});
+}
+
 base::Result<std::string> read_file(const std::filesystem::path& path) {
   std::error_code problem;
   if (!std::filesystem::exists(path, problem)) return base::Error{path.string() + ": no such file"};
@@ -124,6 +136,7 @@ base::Result<pugi::xml_document> parse_xml(const std::string& text, const std::s
   const int file = complaints.add_file(file_name);
   if (text.size() > most_bytes) return base::Error{file_name + ": a text of at most 64 MiB is expected"};
   if (base::trim(text).empty()) return base::Error{file_name + ": is empty"};
+  if (is_lfs_pointer(text)) return base::Error{file_name + ": " + std::string(lfs_pointer_fault)};
   // Other encodings (a byte order mark of UTF-16) are left to the parser; lines are then only near.
   const bool is_bytes = text.find('\0') == std::string::npos;
   pugi::xml_document document;
@@ -141,6 +154,10 @@ base::Result<pugi::xml_document> parse_xml(const std::string& text, const std::s
     }
   }
   if (!parsed) {
+    if (const std::size_t code = text.find("<%"); code != std::string::npos) {
+      return base::Error{file_name + ":" + std::to_string(LineTable(text).line_at(code)) +
+                         ": is a template (<% ... %>); the world that erb makes of it is expected"};
+    }
     return base::Error{file_name + ":" +
                        std::to_string(lines.line_at(static_cast<std::size_t>(std::max<std::ptrdiff_t>(parsed.offset, 0)))) +
                        ": is not well-formed XML: " + base::to_lower(parsed.description())};

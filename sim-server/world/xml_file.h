@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <pugixml.hpp>
 #include <string>
+#include <string_view>
 
 #include "base/result.h"
 #include "world/complaints.h"
@@ -13,6 +14,11 @@ namespace sim {
 
 // The whole file. Fails for what is no regular file and for files that are larger than any world.
 base::Result<std::string> read_file(const std::filesystem::path& path);
+
+// What git leaves in place of a large file when its LFS content has not been fetched: three lines of text.
+bool is_lfs_pointer(std::string_view text);
+bool is_lfs_pointer_file(const std::filesystem::path& path);
+inline constexpr std::string_view lfs_pointer_fault = "is a Git LFS pointer in place of the file (fetch it with: git lfs pull)";
 
 // Fails for what is not XML (after mending quotes and stray end tags), too deep, or has too many elements. Entities of a document type are
 // not expanded.

@@ -389,6 +389,10 @@ TEST(WorldPlugins, are_known_under_the_names_of_all_simulators) {
        {"gz-sim-physics-system", "ignition-gazebo-scene-broadcaster-system", "libgazebo_ros_laser.so", "gz-sim-imu-system"}) {
     EXPECT_EQ(kind_of_plugin(name, "x"), PluginKind::implied) << name;
   }
+  for (const char* name : {"libSimpleTrackedVehiclePlugin.so", "libgazebo_ros_ackermann_drive.so", "gz-sim-track-controller-system"})
+    EXPECT_EQ(kind_of_plugin(name, "x"), PluginKind::unsupported_drive) << name;
+  for (const char* name : {"libRayPlugin.so", "libgazebo_ros_velodyne_gpu_laser.so", "libgazebo_ros_block_laser.so"})
+    EXPECT_EQ(kind_of_plugin(name, "x"), PluginKind::implied) << name;
   EXPECT_EQ(kind_of_plugin("libMyOwn.so", "diff_drive"), PluginKind::unknown);
 }
 
@@ -487,6 +491,18 @@ TEST(WorldFrames, poses_may_be_relative_to_frames_links_and_models) {
   EXPECT_TRUE(result.world.model("spoon")->pose.translation().isApprox(Eigen::Vector3d(0.2, 0, 1)));
   EXPECT_TRUE(result.world.model("spoon")->links[0].visuals[0].pose.translation().isApprox(Eigen::Vector3d(1, 0, 1)));
   EXPECT_TRUE(result.world.lights.at(0).pose.translation().isApprox(Eigen::Vector3d(0, 0, 2)));
+}
+
+TEST(WorldFrames, sensors_in_joints_may_be_relative_to_frames) {
+  const WorldFiles files;
+  const LoadResult result = files.load(
+      "<model name='m'><link name='base'/><link name='arm'><pose>3 0 0 0 0 0</pose></link><frame name='f'><pose>1 1 1 0 0 0</pose></frame>"
+      "<joint name='j' type='fixed'><pose>-1 0 0 0 0 0</pose><parent>base</parent><child>arm</child>"
+      "<sensor name='s' type='force_torque'><pose relative_to='f'>0 1 0 0 0 0</pose></sensor></joint>"
+      "<joint name='w' type='fixed'><parent>base</parent><child>world</child></joint></model>");
+  const JointDef& joint = result.world.models.at(0).joints.at(0);
+  EXPECT_TRUE(joint.pose_in_model.translation().isApprox(Eigen::Vector3d(2, 0, 0), 1e-12));
+  EXPECT_TRUE(joint.sensors.at(0).pose.translation().isApprox(Eigen::Vector3d(-1, 2, 1), 1e-12)) << all_findings(result);
 }
 
 TEST(WorldFrames, a_placement_frame_is_what_stands_at_the_pose) {

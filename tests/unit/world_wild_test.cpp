@@ -99,6 +99,67 @@ TEST(WildWorlds, newer_versions_are_read_as_the_newest_known) {
   }
 }
 
+TEST(WildWorlds, elements_that_only_name_topics_and_frames_of_messages_are_no_findings) {
+  const WorldFiles files;
+  const LoadResult result =
+      files.load(model_of("<sensor name='s' type='camera'><gz_frame_id>l</gz_frame_id><topicName>t</topicName><robotNamespace/><camera>"
+                          "<camera_info_topic>info</camera_info_topic><trigger_topic>now</trigger_topic></camera></sensor>"));
+  EXPECT_EQ(result.world.models.at(0).links.at(0).sensors.size(), 1U);
+  EXPECT_TRUE(result.findings.empty()) << all_findings(result);
+}
+
+TEST(WildWorlds, sensors_of_unknown_types_are_one_line_with_all_they_hold) {
+  const WorldFiles files;
+  const LoadResult result = files.load(model_of("<sensor name='s' type='air_speed'><air_speed><pressure/></air_speed></sensor>") +
+                                       "<plugin name='gz::sim::systems::AirSpeed' filename='gz-sim-air-speed-system'/>");
+  ASSERT_EQ(result.findings.size(), 1U) << all_findings(result);
+  EXPECT_THAT(result.findings[0].text(), HasSubstr("w.sdf:3: sensors of type \"air_speed\" are not simulated"));
+}
+
+TEST(WildWorlds, models_around_a_lost_one_go_with_it_in_one_line) {
+  const WorldFiles files;
+  const LoadResult result = files.load(
+      "<model name='chair_1'><include><uri>model://chair</uri></include><pose>1 2 3 0 0 0</pose></model>\n"
+      "<model name='desk'><link name='l'/><include><uri>model://lamp</uri></include></model>");
+  ASSERT_EQ(result.findings.size(), 2U) << all_findings(result);
+  EXPECT_EQ(findings_with(result, "w.sdf:3: model \"model://chair\" is not found"), 1);
+  EXPECT_EQ(findings_with(result, "w.sdf:4: model \"model://lamp\" is not found"), 1);
+  ASSERT_EQ(result.world.models.size(), 1U);
+  EXPECT_EQ(result.world.models[0].name, "desk");
+  EXPECT_TRUE(result.dropped);
+}
+
+TEST(WildWorlds, pointers_of_git_lfs_are_called_what_they_are) {
+  const WorldFiles files;
+  const std::string pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 1\n";
+  files.write("chair.dae", pointer);
+  files.write("wood.png", pointer);
+  files.write("lamp/model.sdf", pointer);
+  const LoadResult result = files.load(
+      model_of("<collision name='c'><geometry><mesh><uri>chair.dae</uri></mesh></geometry></collision>\n"
+               "<visual name='v'><geometry><mesh><uri>chair.dae</uri></mesh></geometry></visual>\n"
+               "<visual name='w'><geometry><box/></geometry><material><pbr><metal><albedo_map>wood.png</albedo_map></metal></pbr>"
+               "</material></visual>") +
+      "\n<include><uri>model://lamp</uri></include>");
+  ASSERT_EQ(result.findings.size(), 4U) << all_findings(result);
+  const std::string fault = "is a Git LFS pointer in place of the file (fetch it with: git lfs pull)";
+  EXPECT_EQ(findings_with(result, "w.sdf:3: mesh file \"chair.dae\" of collision \"c\" of link \"l\" of model \"m\" " + fault), 1);
+  EXPECT_EQ(findings_with(result, "w.sdf:4: mesh file \"chair.dae\" of visual \"v\" of link \"l\" of model \"m\" " + fault), 1);
+  EXPECT_EQ(findings_with(result, "w.sdf:5: texture \"wood.png\" " + fault), 1);
+  EXPECT_EQ(findings_with(result, "lamp/model.sdf: " + fault), 1);
+  const LinkDef& link = result.world.models.at(0).links.at(0);
+  EXPECT_TRUE(link.collisions.empty());
+  EXPECT_EQ(link.visuals.size(), 2U);
+}
+
+TEST(WildWorlds, templates_are_called_what_they_are) {
+  const WorldFiles files;
+  const base::Result<LoadResult> result = files.load_text(
+      "<sdf version='1.6'>\n<world name='w'>\n<% count = 3 %>\n<model name='m'><pose><%= count %> 0 0 0 0 0</pose></model></world></sdf>");
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().message, "w.sdf:3: is a template (<% ... %>); the world that erb makes of it is expected");
+}
+
 TEST(WildWorlds, names_that_clash_are_numbered) {
   const WorldFiles files;
   const LoadResult result = files.load(
@@ -127,6 +188,29 @@ TEST(WildWorlds, saved_states_place_their_models) {
       "1.6");
   EXPECT_EQ(result.world.models.at(0).pose.translation(), Eigen::Vector3d(7, 8, 9));
   EXPECT_TRUE(result.findings.empty()) << all_findings(result);
+}
+
+TEST(WildWorlds, saved_states_add_take_away_and_move_what_was_included) {
+  const WorldFiles files;
+  files.write_model("cup", "<model name='cup'><link name='l'/></model>");
+  const LoadResult result = files.load(
+      "<include><uri>model://cup</uri></include><model name='gone'><link name='l'/></model><light name='lamp' type='point'/>"
+      "<state world_name='w'><insertions><model name='new'><pose>1 0 0 0 0 0</pose><link name='l'/></model></insertions>"
+      "<deletions><name>gone</name></deletions><model name='cup'><pose>0 0 3 0 0 0</pose></model>"
+      "<model name='new'><pose>2 0 0 0 0 0</pose></model><light name='lamp'><pose>0 0 9 0 0 0</pose></light></state>",
+      "1.6");
+  EXPECT_TRUE(result.findings.empty()) << all_findings(result);
+  ASSERT_EQ(result.world.models.size(), 2U);
+  EXPECT_EQ(result.world.model("cup")->pose.translation(), Eigen::Vector3d(0, 0, 3));
+  EXPECT_EQ(result.world.model("new")->pose.translation(), Eigen::Vector3d(2, 0, 0));
+  EXPECT_EQ(result.world.lights.at(0).pose.translation(), Eigen::Vector3d(0, 0, 9));
+}
+
+TEST(WildWorlds, names_of_elements_in_camel_case_are_understood) {
+  const WorldFiles files;
+  const LoadResult result = files.load(model_of("<sensor name='s' type='imu'><updateRate>7</updateRate></sensor>"));
+  EXPECT_EQ(result.world.models.at(0).links.at(0).sensors.at(0).update_rate, 7);
+  EXPECT_EQ(findings_with(result, "<updateRate> in sensor \"s\" of link \"l\" of model \"m\" is taken as <update_rate>"), 1);
 }
 
 TEST(WildWorlds, unknown_things_get_one_line_each) {
