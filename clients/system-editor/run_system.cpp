@@ -31,7 +31,7 @@ using namespace std::chrono_literals;
 constexpr auto start_limit = 30s;
 constexpr auto call_limit = 5s;
 constexpr auto command_limit = 60s;  // of a command of the user's
-constexpr int highest_server = 9999;
+constexpr int lowest_server = 5000, highest_server = 9999;
 
 // A port of the loopback that nobody listens on just now.
 int free_port() {
@@ -170,12 +170,12 @@ class Run {
     return wait_until("naming service", [&] { return NamingTree::read(orb_, server_, 1000ms).ok(); });
   }
 
-  // Starts the simulator under an id that no other has. Ids below a thousand are for people.
+  // Starts the simulator under an id that no other has. Ids below five thousand are for people and their scripts.
   Result<void> start_simulator() {
     static std::atomic<unsigned> next{static_cast<unsigned>(getpid()) * 7};
     constexpr int tries = 50;
     for (int i = 0; i < tries; ++i) {
-      server_id_ = std::to_string(1000 + next.fetch_add(1) % (highest_server - 999));
+      server_id_ = std::to_string(lowest_server + next.fetch_add(1) % (highest_server - lowest_server + 1));
       if (server_pid()) continue;  // somebody's
       const auto started = try_simulator();
       if (started.ok()) {
@@ -497,8 +497,10 @@ class Run {
     for (auto& host : hosts_) host.process.terminate();
     hosts_.clear();
     if (simulator_) {
+      simulator_->terminate();
+      const bool is_killed = !simulator_->wait(call_limit) || simulator_->exit_code() >= 128;
       simulator_.reset();
-      remove_segments();
+      if (is_killed && !server_pid()) remove_segments();
     }
     naming_.reset();
   }

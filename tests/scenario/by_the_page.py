@@ -7,8 +7,10 @@ import subprocess
 import sys
 import time
 
+import server_ids
+
 bin_dir, source = sys.argv[1:]
-server_id = str(1000 + os.getpid() % 9000)
+server_id = server_ids.claim()
 watchdog = 60  # [s]; a bound on hanging, not on speed
 page = open(f"{source}/docs/shared-memory.md").read()
 number = {"int32_t": "i", "uint32_t": "I", "int64_t": "q", "uint64_t": "Q", "double": "d", "float": "f", "uint8_t": "B"}

@@ -10,8 +10,10 @@ import tempfile
 import time
 import zlib
 
+import server_ids
+
 bin_dir, lib_dir, source = sys.argv[1:]
-server_id = str(1000 + os.getpid() % 9000)
+server_id = server_ids.claim()
 with socket.socket() as probe:
     probe.bind(("127.0.0.1", 0))
     names = f"127.0.0.1:{probe.getsockname()[1]}"

@@ -10,8 +10,10 @@ import tempfile
 import time
 import zlib
 
+import server_ids
+
 bin_dir, source = sys.argv[1:]
-server_id = str(1000 + os.getpid() % 9000)
+server_id = server_ids.claim()
 watchdog = 60  # [s]; a bound on hanging, not on speed
 work = tempfile.TemporaryDirectory()
 

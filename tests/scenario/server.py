@@ -9,8 +9,10 @@ import sys
 import tempfile
 import time
 
+import server_ids
+
 case, bin_dir, source = sys.argv[1:]
-server_id = str(1000 + os.getpid() % 9000)
+server_id = server_ids.claim()
 course = f"{source}/worlds/obstacle_course.sdf"
 robot = "pioneer2dx"
 work = tempfile.TemporaryDirectory()

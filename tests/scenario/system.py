@@ -9,6 +9,8 @@ import sys
 import tempfile
 import time
 
+import server_ids
+
 watchdog = 60  # [s]; a bound on hanging, not on speed
 
 
@@ -30,7 +32,7 @@ def await_(what, ready, pause=0.02):
 class System:
     def __init__(self, bin_dir, lib_dir):
         self.bin_dir, self.lib_dir = bin_dir, lib_dir
-        self.server_id = str(1000 + 2 * (os.getpid() % 4000))
+        self.server_id = server_ids.claim(2)
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
             self.names = f"127.0.0.1:{probe.getsockname()[1]}"

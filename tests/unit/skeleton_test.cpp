@@ -108,8 +108,8 @@ TEST(Skeleton, a_description_stays_in_its_comment) {
 
 TEST(Skeleton, a_service_port_has_several_interfaces_and_an_idl_file_several_services) {
   const Folder folder;
-  const auto idl =
-      folder.write("Two.idl", "#include \"Base.idl\"\nmodule M { interface A { Base::T get(); }; interface B { void put(in long x); }; };\n");
+  const auto idl = folder.write(
+      "Two.idl", "#include \"Base.idl\"\nmodule M { interface A { Base::T get(); }; interface B { void put(in long x); }; };\n");
   folder.write("Base.idl", "module Base { struct T { long a; string b; }; };\n");
   auto component = follower();
   component.services = {{"port", "M::A", idl, true, "a"}, {"port", "M::B", idl, true, "b"}, {"other", "M::B", idl, false, "c"}};

@@ -150,7 +150,6 @@ class ManagerImpl {
   // The module whose init function runs on this thread.
   static thread_local std::string current_module;
 
-
  private:
   bool activate_all();
   void bind_to_processors();
