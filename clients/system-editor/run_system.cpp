@@ -6,13 +6,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <thread>
 
 #include "base/text.h"
@@ -20,18 +18,17 @@
 #include "interrupt.h"
 #include "port_values.h"
 #include "run_files.h"
+#include "run_simulator.h"
 
 namespace editor {
 namespace {
 
-using Json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr auto start_limit = 30s;
 constexpr auto call_limit = 5s;
 constexpr auto command_limit = 60s;  // of a command of the user's
-constexpr int lowest_server = 5000, highest_server = 9999;
 
 // A port of the loopback that nobody listens on just now.
 int free_port() {
@@ -51,7 +48,8 @@ int free_port() {
 // Everything of one run. Its end takes the processes down, the components before the simulator before the naming service.
 class Run {
  public:
-  Run(CORBA::ORB_ptr orb, const RunOptions& options) : orb_(CORBA::ORB::_duplicate(orb)), options_(options), place_(options.keep) {}
+  Run(CORBA::ORB_ptr orb, const RunOptions& options)
+      : orb_(CORBA::ORB::_duplicate(orb)), options_(options), place_(options.keep), simulator_(options_, place_) {}
 
   RunResult go() {
     const auto began = Clock::now();
@@ -113,13 +111,12 @@ class Run {
   }
 
   Result<void> judge_all() {
-    auto record = read_record(place_.file("record.txt"), options_.duration_s + step_s_ / 2);
+    auto record = read_record(place_.file("record.txt"), options_.duration_s + simulator_.step() / 2);
     if (!record) return record.error();
     constexpr double record_period = 0.1;  // [s]
-    if (!record->poses.empty() && record->last < options_.duration_s - record_period - step_s_) {
-      std::string why;
-      if (simulator_) why = complaint(place_.file("sim-server.log"));
-      return fail("the record of the run ends at " + base::format_number(record->last) + " s, by a reset or a full disk" + why);
+    if (!record->poses.empty() && record->last < options_.duration_s - record_period - simulator_.step()) {
+      return fail("the record of the run ends at " + base::format_number(record->last) + " s, by a reset or a full disk" +
+                  complaint(place_.file("sim-server.log")));
     }
     seen_.record = std::move(*record);
     const auto verdicts = judge(expectations_, seen_);
@@ -145,11 +142,10 @@ class Run {
   Result<void> check_children() {
     if (naming_ && !naming_->is_running())
       return fail("omniNames " + naming_->how_it_ended() + ": " + telling_line(place_.file("omninames.log")));
-    if (simulator_ && !simulator_->is_running())
-      return fail("sim-server " + simulator_->how_it_ended() + ": " + telling_line(place_.file("sim-server.log")));
+    if (const auto alive = simulator_.check(); !alive) return alive;
     for (auto& host : hosts_) {
       if (host.process.is_running()) continue;
-      const auto time = simulated_time();
+      const auto time = simulator_.time();
       return fail("host of " + host.components + " " + host.process.how_it_ended() +
                   (time && *time > 0 ? " at " + base::format_number(*time) + " s" : "") +
                   (host.process.exit_code() < 128 ? ": " + telling_line(host.log) : complaint(host.log)));
@@ -170,48 +166,10 @@ class Run {
     return wait_until("naming service", [&] { return NamingTree::read(orb_, server_, 1000ms).ok(); });
   }
 
-  // Starts the simulator under an id that no other has. Ids below five thousand are for people and their scripts.
   Result<void> start_simulator() {
-    static std::atomic<unsigned> next{static_cast<unsigned>(getpid()) * 7};
-    constexpr int tries = 50;
-    for (int i = 0; i < tries; ++i) {
-      server_id_ = std::to_string(lowest_server + next.fetch_add(1) % (highest_server - lowest_server + 1));
-      if (server_pid()) continue;  // somebody's
-      const auto started = try_simulator();
-      if (started.ok()) {
-        take_notes();
-        return started;
-      }
-      const auto owner = server_pid();
-      if (!owner) return started;
-      simulator_.reset();  // somebody was quicker
-    }
-    return fail("no server id is free");
-  }
-
-  Result<void> try_simulator() {
-    ProgramCall call{
-        {own_program("sim-server"), options_.world, "--server-id", server_id_, "--paused", "--lockstep", "--rtf",
-         options_.in_real_time ? "1" : "0", "--seed", std::to_string(options_.seed), "--record", place_.new_file("record.txt")},
-        {},
-        place_.new_file("sim-server.log")};
-    for (const auto& path : options_.resource_paths) call.words.insert(call.words.end(), {"--resource-path", path});
-    auto started = ChildProcess::start(call);
-    if (!started) return started.error();
-    simulator_.emplace(std::move(*started));
-    return wait_until("simulator", [&] {
-      const auto stats = statistics();
-      if (stats.value("pid", 0) != simulator_->pid()) return false;
-      step_s_ = stats.value("step", 0.0);
-      return step_s_ > 0;
-    });
-  }
-
-  // What the simulator has to say of the world's file.
-  void take_notes() {
-    for (const auto& line : lines_of(place_.file("sim-server.log"))) {
-      if (level_of(line) != LogLevel::info) result_.notes.push_back(line);
-    }
+    const auto started = simulator_.start([this](const auto& what, const auto& ready) { return wait_until(what, ready); });
+    if (started) result_.notes = simulator_.notes();
+    return started;
   }
 
   // What the components have to say that should not be missed.
@@ -227,27 +185,6 @@ class Run {
       if (count > enough)
         result_.notes.push_back("host of " + host.components + ": and " + std::to_string(count - enough) + " more such lines (--keep)");
     }
-  }
-
-  // Of the simulator with our id, whoever's it is; an empty object when there is none.
-  Json statistics(std::chrono::milliseconds limit = call_limit) const {
-    const auto text = simctl({"--json", "stats"}, limit);
-    auto json = text ? Json::parse(*text, nullptr, false) : Json();
-    return json.is_object() ? json : Json::object();
-  }
-  std::optional<pid_t> server_pid() const {
-    const auto stats = statistics();
-    return stats.contains("pid") ? std::optional(stats.value("pid", 0)) : std::nullopt;
-  }
-  std::optional<double> simulated_time() const {
-    const auto stats = simulator_ ? statistics() : Json::object();
-    return stats.contains("sim_time") ? std::optional(stats.value("sim_time", 0.0)) : std::nullopt;
-  }
-
-  Result<std::string> simctl(const std::vector<std::string>& words, std::chrono::milliseconds limit = call_limit) const {
-    ProgramCall call{{own_program("simctl"), "-s", server_id_}, {}, ""};
-    call.words.insert(call.words.end(), words.begin(), words.end());
-    return output_of(call, limit);
   }
 
   // "Type?instance_name=...&..." as managers create components.
@@ -274,7 +211,7 @@ class Run {
     std::ofstream(configuration) << "# empty\n";
     const auto log = place_.new_file("rtcd-" + std::to_string(hosts_.size()) + ".log");
     ProgramCall call{
-        {own_program("rtcd"), "-f", configuration}, {{"RTMSIM_SERVER_ID", server_id_}, {"TMPDIR", place_.scratch("tmp")}}, log};
+        {own_program("rtcd"), "-f", configuration}, {{"RTMSIM_SERVER_ID", simulator_.id()}, {"TMPDIR", place_.scratch("tmp")}}, log};
     for (const auto& option : {set("corba.nameservers", server_), set("manager.modules.load_path", base::join(paths, ",")),
                                set("manager.modules.preload", "SimTimeContext.so"), set("exec_cxt.periodic.type", "SimTimeContext"),
                                set("manager.instance_name", "host" + std::to_string(hosts_.size())), set("manager.shutdown_auto", "NO"),
@@ -327,7 +264,7 @@ class Run {
     for (auto& component : system_.components) {
       for (auto& set : component.configuration_sets) {
         for (auto& [key, value] : set.values) {
-          if (key == "server_id") value = server_id_;
+          if (key == "server_id") value = simulator_.id();
         }
       }
     }
@@ -358,10 +295,7 @@ class Run {
     }
     std::string missing;
     const auto waited = wait_until("simulated time", [&] {
-      const auto text = simctl({"--json", "participants"});
-      const auto json = text ? Json::parse(*text, nullptr, false) : Json();
-      std::set<std::string> there;
-      for (const auto& participant : json.is_array() ? json : Json::array()) there.insert(participant.value("name", ""));
+      const auto there = simulator_.participants();
       missing.clear();
       for (const auto& name : expected) {
         if (!there.contains(name)) missing = name;
@@ -382,73 +316,33 @@ class Run {
   Result<void> listen() { return ports_.listen(orb_, *editor_, expectations_); }
 
   Result<void> drive() {
-    auto left = static_cast<std::int64_t>(std::llround(options_.duration_s / step_s_));
-    const auto second = std::max<std::int64_t>(1, std::llround(1 / step_s_));
+    auto left = static_cast<std::int64_t>(std::llround(options_.duration_s / simulator_.step()));
+    const auto second = std::max<std::int64_t>(1, std::llround(1 / simulator_.step()));
     const bool shows = !options_.quiet && isatty(2);
     for (std::int64_t done = 0; left > 0;) {
       const auto steps = std::min(left, second);
-      if (const auto stepped = step(steps); !stepped) return stepped;
+      if (const auto stepped = simulator_.make_steps(steps, [this] { return check_children(); }); !stepped) return stepped;
       left -= steps;
       done += steps;
-      result_.simulated_s = static_cast<double>(done) * step_s_;
+      result_.simulated_s = static_cast<double>(done) * simulator_.step();
       if (shows) std::fprintf(stderr, "\r%6.1f of %.1f s", result_.simulated_s, options_.duration_s);
     }
     if (shows) std::fprintf(stderr, "\r                         \r");
     return check_children();
   }
 
-  // Some steps of the simulator; given up when a process ends, or when time stands still for longer than a tick may take.
-  Result<void> step(std::int64_t steps) {
-    ProgramCall call{{own_program("simctl"), "-s", server_id_, "step", std::to_string(steps)}, {}, ""};
-    if (options_.in_real_time) call.words.push_back("--paced");
-    auto stepping = ChildProcess::start(call);
-    if (!stepping) return stepping.error();
-    std::uint64_t last = 0;
-    auto moved = Clock::now();
-    for (;;) {
-      const auto ending = stepping->wait_or_interrupt(500ms);
-      if (ending == Ending::interrupted) return fail("run: interrupted");
-      if (const auto alive = check_children(); !alive) return alive;
-      if (ending == Ending::ended) {
-        const auto said = output_of(*stepping);
-        return said ? Result<void>() : said.error();
-      }
-      const auto stats = statistics(1s);
-      const auto now = stats.value("steps", last);
-      last_time_ = stats.value("sim_time", last_time_);
-      if (std::exchange(last, now) != now) moved = Clock::now();
-      if (Clock::now() - moved > std::chrono::duration<double>(options_.hang_timeout_s)) return fail(who_hangs());
-    }
-  }
-
-  std::string who_hangs() const {
-    const auto text = simctl({"--json", "participants"}, 1s);
-    const auto json = text ? Json::parse(*text, nullptr, false) : Json();
-    std::vector<std::string> late;
-    for (const auto& participant : json.is_array() ? json : Json::array()) {
-      if (participant.value("late", false)) late.push_back(participant.value("name", "?"));
-    }
-    const auto end =
-        " at " + base::format_number(last_time_) + " s after " + base::format_number(options_.hang_timeout_s) + " s (--hang-timeout)";
-    return late.empty() ? "the simulator has not ended its step" + end : base::join(late, ", ") + ": has not ended its tick" + end;
-  }
-
   // What can be seen only while everything still runs.
   Result<void> look() {
     seen_.values = ports_.end();
-    const auto stats = statistics();
+    const auto stats = simulator_.statistics(call_limit);
     if (!stats.contains("hash")) return fail("sim-server: does not answer");
     result_.state_hash = stats["hash"].is_string() ? stats["hash"].get<std::string>() : stats["hash"].dump();
     if (!options_.picture.empty()) {
       const auto file = std::filesystem::absolute(options_.picture).string();
-      const auto drawn = simctl({"screenshot", file, "--top", "--scans", "--size", "900x900"}, 60s);
+      const auto drawn = simulator_.simctl({"screenshot", file, "--top", "--scans", "--size", "900x900"}, 60s);
       if (!drawn) result_.verdicts.push_back({"picture " + options_.picture, drawn.error().message});
     }
-    if (const auto tree = simctl({"--json", "tree"})) {
-      const auto json = Json::parse(*tree, nullptr, false);
-      for (const auto& model : json.is_object() ? json.value("models", Json::array()) : Json::array())
-        seen_.models.push_back(model.value("name", ""));
-    }
+    seen_.models = simulator_.models();
     for (const auto& component : system_.components) {
       const auto view = editor_->component(component.instance + ".rtc", {.contexts = true});
       seen_.states[component.instance] = view ? state_text(view->state()) : "gone";
@@ -476,7 +370,7 @@ class Run {
       auto& seen = seen_.commands[expectation.command];
       auto started = ChildProcess::start(
           {{"sh", "-c", expectation.command},
-           {{"RTMSIM_RECORD", place_.file("record.txt")}, {"RTMSIM_SERVER_ID", server_id_}, {"RTCTREE_NAMESERVERS", server_}},
+           {{"RTMSIM_RECORD", place_.file("record.txt")}, {"RTMSIM_SERVER_ID", simulator_.id()}, {"RTCTREE_NAMESERVERS", server_}},
            ""});
       if (!started) return started.error();
       const auto ending = started->wait_or_interrupt(command_limit);
@@ -496,22 +390,8 @@ class Run {
   void stop() {
     for (auto& host : hosts_) host.process.terminate();
     hosts_.clear();
-    if (simulator_) {
-      simulator_->terminate();
-      const bool is_killed = !simulator_->wait(call_limit) || simulator_->exit_code() >= 128;
-      simulator_.reset();
-      if (is_killed && !server_pid()) remove_segments();
-    }
+    simulator_.end();
     naming_.reset();
-  }
-
-  // What a simulator that was killed leaves in shared memory; after an orderly end there is nothing. The id was ours alone.
-  void remove_segments() const {
-    const auto prefix = "rtmsim-" + std::to_string(getuid()) + "-" + server_id_ + ".";
-    std::error_code ignored;  // nobody else may be harmed by a file that stays
-    for (const auto& entry : std::filesystem::directory_iterator("/dev/shm", ignored)) {
-      if (entry.path().filename().string().starts_with(prefix)) std::filesystem::remove(entry.path(), ignored);
-    }
   }
 
   CORBA::ORB_var orb_;
@@ -521,13 +401,10 @@ class Run {
   std::vector<Expectation> expectations_;
   std::vector<ComponentProperty> properties_;
   std::string server_;
-  std::string server_id_;
-  double step_s_ = 0;
-  double last_time_ = 0;  // [s] of the simulation, when it was asked last
   Seen seen_;
   RunResult result_;
   std::optional<ChildProcess> naming_;
-  std::optional<ChildProcess> simulator_;
+  RunSimulator simulator_;
   std::vector<Host> hosts_;
   std::optional<Editor> editor_;
   PortValues ports_;

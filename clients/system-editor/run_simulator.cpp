@@ -1,0 +1,157 @@
+#include "run_simulator.h"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "base/text.h"
+
+namespace editor {
+namespace {
+
+using Json = nlohmann::json;
+using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+constexpr auto call_limit = 5s;
+constexpr int lowest_server = 5000, highest_server = 9999;  // those below are for people and their scripts
+const std::string log_name = "sim-server.log";
+
+Json parsed(const Result<std::string>& text) { return text ? Json::parse(*text, nullptr, false) : Json(); }
+
+}  // namespace
+
+Result<void> RunSimulator::start(const Wait& wait_until) {
+  static std::atomic<unsigned> next{static_cast<unsigned>(getpid()) * 7};
+  constexpr int tries = 50;
+  for (int i = 0; i < tries; ++i) {
+    id_ = std::to_string(lowest_server + next.fetch_add(1) % (highest_server - lowest_server + 1));
+    if (owner()) continue;  // somebody's
+    const auto started = try_start(wait_until);
+    if (started || !owner()) return started;
+    process_.reset();  // somebody was quicker
+  }
+  return Error{"no server id is free"};
+}
+
+Result<void> RunSimulator::try_start(const Wait& wait_until) {
+  ProgramCall call{{own_program("sim-server"), options_.world, "--server-id", id_, "--paused", "--lockstep", "--rtf",
+                    options_.in_real_time ? "1" : "0", "--seed", std::to_string(options_.seed), "--record", place_.new_file("record.txt")},
+                   {},
+                   place_.new_file(log_name)};
+  for (const auto& path : options_.resource_paths) call.words.insert(call.words.end(), {"--resource-path", path});
+  auto started = ChildProcess::start(call);
+  if (!started) return started.error();
+  process_.emplace(std::move(*started));
+  return wait_until("simulator", [&] {
+    const auto stats = statistics(call_limit);
+    if (stats.value("pid", 0) != process_->pid()) return false;
+    step_s_ = stats.value("step", 0.0);
+    return step_s_ > 0;
+  });
+}
+
+void RunSimulator::end() {
+  if (!process_) return;
+  process_->terminate();
+  const bool is_killed = !process_->wait(call_limit) || process_->exit_code() >= 128;
+  process_.reset();
+  if (is_killed && !owner()) remove_segments();
+}
+
+Result<void> RunSimulator::check() {
+  if (!process_ || process_->is_running()) return {};
+  return Error{"sim-server " + process_->how_it_ended() + ": " + telling_line(place_.file(log_name))};
+}
+
+std::vector<std::string> RunSimulator::notes() const {
+  std::vector<std::string> notes;
+  for (const auto& line : lines_of(place_.file(log_name))) {
+    if (level_of(line) != LogLevel::info) notes.push_back(line);
+  }
+  return notes;
+}
+
+Result<std::string> RunSimulator::simctl(const std::vector<std::string>& words, std::chrono::milliseconds limit) const {
+  ProgramCall call{{own_program("simctl"), "-s", id_}, {}, ""};
+  call.words.insert(call.words.end(), words.begin(), words.end());
+  return output_of(call, limit);
+}
+
+Json RunSimulator::statistics(std::chrono::milliseconds limit) const {
+  auto json = parsed(simctl({"--json", "stats"}, limit));
+  return json.is_object() ? json : Json::object();
+}
+
+// Of the simulator with our id, whoever's it is.
+std::optional<pid_t> RunSimulator::owner() const {
+  const auto stats = statistics(call_limit);
+  return stats.contains("pid") ? std::optional(stats.value("pid", 0)) : std::nullopt;
+}
+
+std::optional<double> RunSimulator::time() const {
+  const auto stats = process_ ? statistics(call_limit) : Json::object();
+  return stats.contains("sim_time") ? std::optional(stats.value("sim_time", 0.0)) : std::nullopt;
+}
+
+std::set<std::string> RunSimulator::participants() const {
+  std::set<std::string> names;
+  const auto json = parsed(simctl({"--json", "participants"}, call_limit));
+  for (const auto& participant : json.is_array() ? json : Json::array()) names.insert(participant.value("name", ""));
+  return names;
+}
+
+std::vector<std::string> RunSimulator::models() const {
+  std::vector<std::string> names;
+  const auto json = parsed(simctl({"--json", "tree"}, call_limit));
+  for (const auto& model : json.is_object() ? json.value("models", Json::array()) : Json::array()) names.push_back(model.value("name", ""));
+  return names;
+}
+
+Result<void> RunSimulator::make_steps(std::int64_t steps, const std::function<Result<void>()>& alive) {
+  ProgramCall call{{own_program("simctl"), "-s", id_, "step", std::to_string(steps)}, {}, ""};
+  if (options_.in_real_time) call.words.push_back("--paced");
+  auto stepping = ChildProcess::start(call);
+  if (!stepping) return stepping.error();
+  std::uint64_t last = 0;
+  auto moved = Clock::now();
+  for (;;) {
+    const auto ending = stepping->wait_or_interrupt(500ms);
+    if (ending == Ending::interrupted) return Error{"run: interrupted"};
+    if (const auto good = alive(); !good) return good;
+    if (ending == Ending::ended) {
+      const auto said = output_of(*stepping);
+      return said ? Result<void>() : said.error();
+    }
+    const auto stats = statistics(1s);
+    const auto now = stats.value("steps", last);
+    last_time_ = stats.value("sim_time", last_time_);
+    if (std::exchange(last, now) != now) moved = Clock::now();
+    if (Clock::now() - moved > std::chrono::duration<double>(options_.hang_timeout_s)) return Error{who_hangs()};
+  }
+}
+
+std::string RunSimulator::who_hangs() const {
+  const auto json = parsed(simctl({"--json", "participants"}, 1s));
+  std::vector<std::string> late;
+  for (const auto& participant : json.is_array() ? json : Json::array()) {
+    if (participant.value("late", false)) late.push_back(participant.value("name", "?"));
+  }
+  const auto end =
+      " at " + base::format_number(last_time_) + " s after " + base::format_number(options_.hang_timeout_s) + " s (--hang-timeout)";
+  return late.empty() ? "the simulator has not ended its step" + end : base::join(late, ", ") + ": has not ended its tick" + end;
+}
+
+// After an orderly end there is nothing. The id was ours alone.
+void RunSimulator::remove_segments() const {
+  const auto prefix = "rtmsim-" + std::to_string(getuid()) + "-" + id_ + ".";
+  std::error_code ignored;  // nobody else may be harmed by a file that stays
+  for (const auto& entry : std::filesystem::directory_iterator("/dev/shm", ignored)) {
+    if (entry.path().filename().string().starts_with(prefix)) std::filesystem::remove(entry.path(), ignored);
+  }
+}
+
+}  // namespace editor
