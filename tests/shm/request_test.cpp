@@ -4,6 +4,7 @@
 #include <random>
 #include <thread>
 
+#include "shm/process.h"
 #include "shm/request_board.h"
 #include "shm/shm_support.h"
 
@@ -209,6 +210,33 @@ TEST(RequestBoard, replies_may_come_later_and_in_any_order) {
     f.board.reply(asked->ticket, reply);
   }
   for (auto& client : clients) client.join();
+}
+
+// A client writes its slot in several words. The server may look between any two of them and must not ask twice for what it took once.
+TEST(RequestBoard, a_client_seen_while_it_takes_its_slot_is_served_once) {
+  BoardFixture f;
+  RequestSlot& slot = f.simulation->segment().as<RequestSlot>(AreaIndex::requests, 0);
+  const auto poll_after = [&](auto change) {
+    change();
+    f.board.wake();
+    return f.board.poll();
+  };
+  const ProcessMark mark = own_mark();
+  EXPECT_TRUE(poll_after([&] { store(slot.owner, (static_cast<std::uint64_t>(mark.pid) << 32) + 77); }).empty());
+  store(slot.pid_namespace, mark.pid_namespace);
+  // Asks before the server has seen its start time: what a board reads when the client goes on between reap and take.
+  const RawRequest request = encode(GetPoseRequest{"robot"});
+  const auto asked = poll_after([&] {
+    store(slot.id, std::uint64_t{5});
+    slot.kind = request.kind;
+    slot.body = request.body;
+    store(slot.state, static_cast<std::uint32_t>(RTMSIM_SLOT_ASKED));
+  });
+  ASSERT_EQ(asked.size(), 1U);
+  EXPECT_TRUE(poll_after([&] { store(slot.start_time, mark.start_time); }).empty()) << "the same request, taken twice";
+  EXPECT_TRUE(f.board.is_awaited(asked[0].ticket));
+  f.board.reply(asked[0].ticket, {});
+  EXPECT_EQ(load(slot.state), static_cast<std::uint32_t>(RTMSIM_SLOT_REPLIED));
 }
 
 TEST(RequestBoard, clients_beyond_the_slots_are_told_so) {
