@@ -25,7 +25,7 @@ Json to_json(const RunResult& result) {
             {"notes", result.notes}, {"state_hash", result.state_hash}, {"path", result.path_m},     {"simulated", result.simulated_s},
             {"wall", result.wall_s}, {"expectations", Json::array()}};
   for (const auto& verdict : result.verdicts)
-    json["expectations"].push_back({{"expectation", verdict.expectation}, {"problem", verdict.problem}});
+    json["expectations"].push_back({{"expectation", verdict.expectation}, {"problem", verdict.problem}, {"details", verdict.details}});
   return json;
 }
 
@@ -40,7 +40,7 @@ RunResult from_json(const Json& json, std::uint64_t seed) {
   result.simulated_s = json.value("simulated", 0.0);
   result.wall_s = json.value("wall", 0.0);
   for (const auto& entry : json.value("expectations", Json::array()))
-    result.verdicts.push_back({entry.value("expectation", ""), entry.value("problem", "")});
+    result.verdicts.push_back({entry.value("expectation", ""), entry.value("problem", ""), entry.value("details", "")});
   return result;
 }
 

@@ -346,7 +346,13 @@ double path_length(const std::vector<RecordedPose>& poses) {
 
 std::vector<Verdict> judge(const std::vector<Expectation>& expectations, const Seen& seen) {
   std::vector<Verdict> verdicts;
-  for (const auto& expectation : expectations) verdicts.push_back({expectation.text, problem_of(expectation, seen)});
+  for (const auto& expectation : expectations) {
+    Verdict verdict{expectation.text, problem_of(expectation, seen), ""};
+    const auto command = seen.commands.find(expectation.command);
+    if (!verdict.problem.empty() && expectation.kind == Expectation::Kind::command && command != seen.commands.end())
+      verdict.details = command->second.output;
+    verdicts.push_back(std::move(verdict));
+  }
   return verdicts;
 }
 

@@ -98,13 +98,16 @@ std::string complaint(const std::string& file) {
   return level == LogLevel::warning || level == LogLevel::error ? ": " + line : "";
 }
 
-std::string last_lines(const std::string& file) {
+std::string tail_of(const std::vector<std::string>& lines) {
   constexpr std::size_t enough = 40;
-  const auto lines = lines_of(file);
-  if (lines.empty()) return "";
-  std::string text = "--- " + std::filesystem::path(file).filename().string() + "\n";
+  std::string text;
   for (std::size_t i = lines.size() > enough ? lines.size() - enough : 0; i < lines.size(); ++i) text += lines[i] + "\n";
   return text;
+}
+
+std::string last_lines(const std::string& file) {
+  const auto lines = lines_of(file);
+  return lines.empty() ? "" : "--- " + std::filesystem::path(file).filename().string() + "\n" + tail_of(lines);
 }
 
 std::string printable(std::string_view text) {

@@ -34,6 +34,8 @@ LogLevel level_of(const std::string& line);
 std::string telling_line(const std::string& file);
 // ": " and that line when it is a warning or an error; else nothing.
 std::string complaint(const std::string& file);
+// The last 40 lines, each with its end.
+std::string tail_of(const std::vector<std::string>& lines);
 // The last lines of a log under its name; nothing for one that is empty.
 std::string last_lines(const std::string& file);
 // What is no UTF-8, or no character that XML 1.0 allows, becomes a question mark.

@@ -29,8 +29,10 @@ class Suite {
     seconds_ += time;
     return test;
   }
-  void fail(pugi::xml_node test, const std::string& why) {
-    test.append_child("failure").append_attribute("message") = printable(why).c_str();
+  void fail(pugi::xml_node test, const std::string& why, const std::string& details) {
+    auto node = test.append_child("failure");
+    node.append_attribute("message") = printable(why).c_str();
+    if (!details.empty()) node.text().set(printable(details).c_str());
     ++failures_;
   }
   void error(pugi::xml_node test, const std::string& why, const std::string& details) {
@@ -66,7 +68,7 @@ Result<void> write_junit(const std::string& file, const RunOptions& options, con
     if (!result.state_hash.empty()) whole.append_child("system-out").text().set(("state " + result.state_hash).c_str());
     for (const auto& verdict : result.verdicts) {
       const auto test = suite.add(group, verdict.expectation, 0);
-      if (!verdict.problem.empty()) suite.fail(test, verdict.problem);
+      if (!verdict.problem.empty()) suite.fail(test, verdict.problem, verdict.details);
     }
   }
   if (!suite.save(file)) return Error{"file " + base::in_quotes(file) + ": cannot be written"};

@@ -377,6 +377,7 @@ class Run {
       if (ending == Ending::interrupted) return fail("run: interrupted");
       const auto lines = base::split_list(started->said(), '\n');
       seen.text = lines.empty() ? "" : printable(lines.back());
+      seen.output = tail_of(lines);
       if (ending == Ending::ended) {
         seen.exit_code = started->exit_code();
       } else {

@@ -158,6 +158,9 @@ int run(const Options& options, Signals& signals) {
   loop_options.is_paused = options.is_paused;
   loop_options.is_lockstep = options.is_lockstep;
   loop_options.wait_for = options.wait_for;
+  if (!options.is_lockstep && options.participant_timeout > 0) {
+    std::fprintf(stderr, "sim-server: --participant-timeout has no effect without --lockstep: time waits for no participant\n");
+  }
   loop_options.participant_timeout = std::chrono::nanoseconds(std::llround(options.participant_timeout * 1e9));
   if (options.duration >= 0) loop_options.duration = std::chrono::nanoseconds(std::llround(options.duration * 1e9));
   loop_options.has_status_line = isatty(STDERR_FILENO) != 0;
@@ -185,7 +188,7 @@ int main(int argc, char** argv) {
   app.add_flag("-u,--paused", options.is_paused, "start paused");
   app.add_option("--rtf", options.rtf, "simulated seconds per second (1); 0: as fast as possible")->check(base::number_between(0.0, 1e6));
   app.add_flag("--lockstep", options.is_lockstep, "time passes only when all participants have finished their tick");
-  app.add_option("--wait-for", options.wait_for, "participants that must join before time starts (0)")->check(CLI::Range(0, 64));
+  app.add_option("--wait-for", options.wait_for, "participants that must join before time starts (0)")->check(CLI::Range(0, 256));
   app.add_option("--participant-timeout", options.participant_timeout, "seconds after which a hanging participant is dropped (0: never)")
       ->check(base::number_between(0.0, 1e6));
   app.add_option("--duration", options.duration, "end after so many simulated seconds")->check(base::number_between(0.0, 1e9));

@@ -104,7 +104,7 @@ def kinds():
         unmet = place.write("unmet.yaml", expectations(
             "path_length: {model: pioneer2dx, max: 0.1}", "reach: {model: pioneer2dx, region: [50, 50, 60, 60]}", "stay: {model: pioneer2dx, region: [50, 50, 60, 60]}",
             "no_contact: {model: pioneer2dx, except: []}", "value: {port: 'LaserObstacleAvoid0:velocity', member: data.vx, min: 5}",
-            "value: {port: 'RTCLaser0:range', member: data.nosuch, min: 0}", "state: {component: RTCLaser0, is: Inactive}", "command: 'echo that is why; exit 3'",
+            "value: {port: 'RTCLaser0:range', member: data.nosuch, min: 0}", "state: {component: RTCLaser0, is: Inactive}", "command: 'echo first of all; echo that is why; exit 3'",
             "path_length: {model: nobody, min: 1}"))
         code, out, err = place.run(avoidance, course, "--duration", "5", "--expect", unmet)
         assert code == 1 and out.startswith("FAILED"), (code, out, err)
@@ -113,6 +113,8 @@ def kinds():
                                 "value: {port: Laser": "expected at least 5", "value: {port: RTCL": "no number data.nosuch; they have", "state": "it is Active",
                                 "command": "exit code 3: that is why", "path_length: {model: nobody": "moving models: pioneer2dx"}.items():
             assert text in of(verdicts, beginning), (beginning, verdicts)
+        details = [failure.text for failure in xml.etree.ElementTree.parse(place.junit).getroot().iter("failure") if failure.text]
+        assert details == ["first of all\nthat is why\n"], details
         assert len(err.splitlines()) == 9 and verdicts["runs for 5 s"] == "" and verdicts["no component ends in an error"] == "", (err, verdicts)
 
 
