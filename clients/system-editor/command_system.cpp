@@ -1,7 +1,9 @@
 // save, load, start, stop, teardown: whole systems, as RTSProfile files.
 #include <algorithm>
+#include <cstdio>
 #include <ctime>
 #include <iostream>
+#include <map>
 #include <mutex>
 #include <set>
 
@@ -174,10 +176,30 @@ std::vector<std::pair<std::string, std::string>> good_values(const ComponentView
   return good;
 }
 
+// A key that no set of the component has is set all the same, as other tools do, but most likely it is misspelt.
+void tell_unknown_keys(const ComponentView& component, const SavedComponent& saved) {
+  std::set<std::string> known;
+  for (const auto& set : component.configuration_sets) {
+    for (const auto& [key, value] : set.values) known.insert(key);
+  }
+  std::map<std::string, std::vector<std::string>> unknown;  // key -> sets of the profile
+  for (const auto& set : saved.configuration_sets) {
+    for (const auto& [key, value] : set.values) {
+      if (!set.id.starts_with("_") && !known.contains(key)) unknown[key].push_back(set.id);
+    }
+  }
+  const auto names = known.empty() ? "none" : base::join(std::vector<std::string>(known.begin(), known.end()), ", ");
+  for (const auto& [key, sets] : unknown) {
+    std::fprintf(stderr, "rtse: component %s has no parameter %s (in set %s of the profile); parameters: %s\n", component.path.c_str(),
+                 key.c_str(), base::join(sets, ", ").c_str(), names.c_str());
+  }
+}
+
 // Values that do not fit are left out and reported; the others are set.
 Result<void> restore_configuration(const Matched& matched, const SavedComponent& saved, const LoadOptions& options) {
   const auto* component = matched.find(saved.path_uri, saved.instance);
   if (!component || !component->problem.empty()) return {};  // reported already, or optional
+  tell_unknown_keys(*component, saved);
   std::vector<std::string> problems;
   for (const auto& set : saved.configuration_sets) {
     const auto values = options.force ? set.values : good_values(*component, set, problems);

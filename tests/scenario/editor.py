@@ -88,6 +88,11 @@ def bad_values_in_files():
         file.write(text)
     rig.rtse("load", saved)
     assert json.loads(rig.rtse("--json", "check", saved)) == {"same": True, "differences": []}
+    # A key that the component does not have is told, and set as other tools do.
+    with open(saved, "w") as file:
+        file.write(text.replace('rts:name="gain"', 'rts:name="gian"'))
+    done = rig.try_rtse("load", saved)
+    assert done.returncode == 0 and done.stderr.count("\n") == 1 and "has no parameter gian" in done.stderr and "gain" in done.stderr, done
 
 
 # The forms in which tools of the field name a name server.

@@ -381,8 +381,10 @@ def ends():
     for with_signal in (signal.SIGTERM, signal.SIGINT):
         stop(started(), with_signal)
         stop(started("-u"), with_signal)
-    process = server("--rtf", "0", "--duration", "0.5")
+    process = server("--rtf", "0", "--duration", "0.5", "--participant-timeout", "1")
     assert process.wait(watchdog) == 0
+    process.log.seek(0)
+    assert "--participant-timeout has no effect without --lockstep" in process.log.read()
     assert not segments(), segments()
     # A signal that means nothing is not the last one that is heard.
     process = started()
