@@ -13,6 +13,7 @@
 #include "editor.h"
 #include "output.h"
 #include "tap.h"
+#include "typed_value.h"
 #include "value_codec.h"
 
 namespace editor {

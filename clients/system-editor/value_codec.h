@@ -20,8 +20,7 @@ base::Result<nlohmann::ordered_json> decode(CORBA::TypeCode_ptr type, std::span<
 // Missing members of objects are zero; unknown ones, wrong kinds and values out of range are errors that name the member.
 base::Result<std::vector<unsigned char>> encode(CORBA::TypeCode_ptr type, const nlohmann::ordered_json& value, bool little_endian = true);
 
-// What people type: JSON (a number, string or array for a Timed type means its data; the time stamp is then `now_ns`), or the form of
-// rtinject: RTC.TimedLong({time}, 42), members in order, nested.
-base::Result<nlohmann::ordered_json> parse_value(CORBA::TypeCode_ptr type, const std::string& text, std::int64_t now_ns);
+// The type behind typedefs, which say nothing on the wire.
+CORBA::TypeCode_var resolved(CORBA::TypeCode_ptr type);
 
 }  // namespace editor

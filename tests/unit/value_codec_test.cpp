@@ -5,6 +5,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "typed_value.h"
+
 namespace editor {
 namespace {
 
