@@ -31,6 +31,15 @@ bool offers(const PortView& port, const std::string& key, const std::string& val
   });
 }
 
+// An end with an encoding of its own may turn one type into another.
+bool is_converted(const Properties& properties) {
+  for (const auto* key : {"dataport.marshaling_type", "dataport.inport.marshaling_type", "dataport.outport.marshaling_type"}) {
+    const auto type = property(properties, key);
+    if (!type.empty() && type != "cdr") return true;
+  }
+  return false;
+}
+
 Result<void> check_data_ports(const std::vector<const PortView*>& ports, const Properties& properties) {
   const auto count = [&](const char* type) {
     return std::count_if(ports.begin(), ports.end(), [&](const auto* port) { return port->port_type() == type; });
@@ -40,7 +49,8 @@ Result<void> check_data_ports(const std::vector<const PortView*>& ports, const P
                  ", expected an OutPort and an InPort"};
   }
   for (const auto* port : ports) {
-    if (!port->data_type().empty() && !ports[0]->data_type().empty() && port->data_type() != ports[0]->data_type()) {
+    const bool are_known = !port->data_type().empty() && !ports[0]->data_type().empty();
+    if (are_known && port->data_type() != ports[0]->data_type() && !is_converted(properties)) {
       return Error{"ports " + ports[0]->full_name + " and " + port->full_name + ": carry different types, " + ports[0]->data_type() +
                    " and " + port->data_type()};
     }

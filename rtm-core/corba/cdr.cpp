@@ -69,6 +69,7 @@ std::shared_ptr<rt::Block> encode(const TypeOps& ops, const void* value, rt::Byt
 }
 
 bool decode(const TypeOps& ops, void* value, std::span<const std::byte> octets, rt::ByteOrder order) {
+  if (ops.codec) return ops.codec->decode(value, octets, order);
   if (reinterpret_cast<std::uintptr_t>(octets.data()) % 8 != 0) {
     // The decoder aligns by address.
     rt::Block aligned(octets.size());
@@ -87,6 +88,10 @@ bool decode(const TypeOps& ops, void* value, std::span<const std::byte> octets, 
   } catch (const std::exception&) {  // a length that no memory holds
     return false;
   }
+}
+
+_CORBA_Boolean CheckedStream::checkInputOverrun(_CORBA_ULong item_size, _CORBA_ULong items, omni::alignment_t align) {
+  return std::uint64_t{item_size} * items <= bufSize() && cdrMemoryStream::checkInputOverrun(item_size, items, align);
 }
 
 bool decode_safely(const TypeOps& ops, void* value, std::span<const std::byte> octets, rt::ByteOrder order) {

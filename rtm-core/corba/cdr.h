@@ -1,4 +1,5 @@
-// Values to octets and back: the plain CDR of data ports, no header, aligned from the first octet. Any thread.
+// Values to octets and back: the plain CDR of data ports, no header, aligned from the first octet, or what the type's codec makes of them.
+// Any thread.
 #pragma once
 
 #include <memory>
@@ -18,5 +19,11 @@ std::shared_ptr<rt::Block> encode(const TypeOps& ops, const void* value, rt::Byt
 
 // The same, but `value` stays as it is unless the octets are good, or becomes a default value where keeping it would be dear (above 4 KiB).
 [[nodiscard]] bool decode_safely(const TypeOps& ops, void* value, std::span<const std::byte> octets, rt::ByteOrder order);
+
+// A stream for the generated operators that refuses lengths beyond its end, however large. One thread at a time.
+class CheckedStream final : public cdrMemoryStream {
+ public:
+  _CORBA_Boolean checkInputOverrun(_CORBA_ULong item_size, _CORBA_ULong items, omni::alignment_t align = omni::ALIGN_1) override;
+};
 
 }  // namespace corba

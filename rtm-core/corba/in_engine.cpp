@@ -42,8 +42,17 @@ std::chrono::nanoseconds ConnectionPlan::caller_time() const {
   return (clock ? base::current_clock_or(*clock) : base::current_clock()).now();
 }
 
+TypeOps with_codec(const TypeOps& ops, const std::shared_ptr<Codec>& codec) {
+  TypeOps own = ops;
+  own.codec = codec;
+  return own;
+}
+
 InConnection::InConnection(const TypeOps& ops, ConnectionPlan plan, std::shared_ptr<rt::Mailbox> mailbox)
-    : ops_(ops), plan_(std::move(plan)), mailbox_(std::move(mailbox)), channel_(mailbox_->open(plan_.settings.buffer)) {
+    : plan_(std::move(plan)),
+      ops_(with_codec(ops, plan_.codec)),
+      mailbox_(std::move(mailbox)),
+      channel_(mailbox_->open(plan_.settings.buffer)) {
   if (plan_.settings.is_rendezvous) mailbox_->set_rendezvous(channel_, true);
 }
 
@@ -303,10 +312,11 @@ rt::PortStatus InEngine::read(const std::string& name, void* value, std::vector<
 }
 
 rt::PortStatus InEngine::deliver(const rt::Sample& received, InConnection& connection, void* value) {
+  const TypeOps& ops = connection.ops();
   const rt::Sample* sample = &received;
   rt::Sample changed;
   if (connection.events().is_observed(DataEvent::buffer_read)) {
-    EventData data(ops_, received);
+    EventData data(ops, received);
     connection.events().on_data(DataEvent::buffer_read, data);
     if (data.is_changed()) {
       changed = data.sample();
@@ -315,17 +325,17 @@ rt::PortStatus InEngine::deliver(const rt::Sample& received, InConnection& conne
     }
   }
   if (sample->value) {
-    ops_.assign(value, sample->value->address());
-  } else if (!decode_safely(ops_, value, sample->block->octets(), sample->order)) {
+    ops.assign(value, sample->value->address());
+  } else if (!decode_safely(ops, value, sample->block->octets(), sample->order)) {
     base::log(base::Level::warn, "data port", "connection {}: {} octets that are no {} are dropped", base::in_quotes(connection.name()),
-              sample->block->size(), ops_.type_id);
+              sample->block->size(), ops.type_id);
     mailbox_->forget_last(connection.channel());
     return rt::PortStatus::error;
   }
-  if (ops_.stamp && connection.settings().stamp == rt::StampPolicy::on_received && sample->received.count()) {
-    ops_.stamp(value, sample->received);
+  if (ops.stamp && connection.settings().stamp == rt::StampPolicy::on_received && sample->received.count()) {
+    ops.stamp(value, sample->received);
   }
-  if (ops_.stamp && connection.settings().stamp == rt::StampPolicy::on_read) ops_.stamp(value, connection.plan_.caller_time());
+  if (ops.stamp && connection.settings().stamp == rt::StampPolicy::on_read) ops.stamp(value, connection.plan_.caller_time());
   return rt::PortStatus::ok;
 }
 

@@ -27,6 +27,7 @@ struct ConnectionPlan {
   std::string name;
   rt::ConnectorSettings settings;
   std::shared_ptr<ConnectorEvents> events;
+  std::shared_ptr<Codec> codec;              // null: CDR
   bool peer_says_when_empty = false;         // the OutPort of a pull connection does not hand out old samples again
   std::shared_ptr<const base::Clock> clock;  // of the port's component, for time stamps; null: the calling thread's
 
@@ -34,6 +35,8 @@ struct ConnectionPlan {
   std::chrono::nanoseconds port_time() const;
   std::chrono::nanoseconds caller_time() const;
 };
+
+TypeOps with_codec(const TypeOps& ops, const std::shared_ptr<Codec>& codec);
 
 class InConnection final : public Receiver {
  public:
@@ -60,8 +63,8 @@ class InConnection final : public Receiver {
  private:
   friend class InEngine;
 
-  const TypeOps& ops_;
   const ConnectionPlan plan_;
+  const TypeOps ops_;  // with the connection's codec
   const std::shared_ptr<rt::Mailbox> mailbox_;
   const rt::Channel channel_;
   const std::shared_ptr<rt::BlockPool> pool_ = rt::BlockPool::make();

@@ -75,7 +75,7 @@ void tell(ConnectorEvents& events, DataEvent event, Changed& payload, rt::ByteOr
 
 // What a publisher's thread may still use after the connection has been closed.
 struct OutConnection::Line {
-  const TypeOps& ops;
+  const TypeOps ops;  // with the connection's codec
   const ConnectionPlan plan;
   const std::unique_ptr<Sender> sender;
   const std::shared_ptr<LossHandler> loss;
@@ -113,8 +113,9 @@ struct OutConnection::Line {
   }
 };
 
-OutConnection::OutConnection(const TypeOps& ops, ConnectionPlan plan, std::unique_ptr<Sender> sender, std::shared_ptr<LossHandler> loss)
-    : line_(std::make_shared<Line>(ops, std::move(plan), std::move(sender), std::move(loss))) {
+OutConnection::OutConnection(const TypeOps& ops, const ConnectionPlan& plan, std::unique_ptr<Sender> sender,
+                             std::shared_ptr<LossHandler> loss)
+    : line_(std::make_shared<Line>(with_codec(ops, plan.codec), plan, std::move(sender), std::move(loss))) {
   const auto& settings = line_->plan.settings;
   if (settings.subscription == rt::Subscription::flush) return;
   rt::Publisher::Hooks hooks;
@@ -132,8 +133,9 @@ OutConnection::OutConnection(const TypeOps& ops, ConnectionPlan plan, std::uniqu
   publisher_ = std::make_unique<rt::Publisher>(settings.subscription, settings.publisher, settings.buffer, std::move(hooks));
 }
 
-OutConnection::OutConnection(const TypeOps& ops, ConnectionPlan plan)
-    : line_(std::make_shared<Line>(ops, std::move(plan), nullptr, nullptr)), channel_(mailbox_.open(line_->plan.settings.buffer)) {}
+OutConnection::OutConnection(const TypeOps& ops, const ConnectionPlan& plan)
+    : line_(std::make_shared<Line>(with_codec(ops, plan.codec), plan, nullptr, nullptr)),
+      channel_(mailbox_.open(line_->plan.settings.buffer)) {}
 
 OutConnection::~OutConnection() { close(); }
 
@@ -150,9 +152,14 @@ void OutConnection::close() {
 
 bool OutConnection::waits_for_peer() const { return line_->sender && !publisher_ && !line_->is_direct(); }
 
-rt::PortStatus OutConnection::write(Payload& payload) {
-  if (line_->sender && !publisher_) return line_->send(payload, true);
-  return write_buffered(payload);
+rt::PortStatus OutConnection::write(Payload& shared) {
+  const auto write_it = [this](Payload& payload) {
+    return line_->sender && !publisher_ ? line_->send(payload, true) : write_buffered(payload);
+  };
+  const void* value = line_->ops.codec ? shared.value() : nullptr;
+  if (!value) return write_it(shared);
+  Payload own(line_->ops, value);
+  return write_it(own);
 }
 
 rt::PortStatus OutConnection::write_buffered(Payload& payload) {
@@ -231,7 +238,7 @@ void OutEngine::add(std::shared_ptr<OutConnection> connection) {
 rt::Refusal OutEngine::provide(ConnectionPlan plan, RTC::ConnectorProfile& profile) {
   const auto settings = plan.settings;
   const std::string id = plan.id;
-  auto connection = std::make_shared<OutConnection>(ops_, std::move(plan));
+  auto connection = std::make_shared<OutConnection>(ops_, plan);
   const corba::Line line = line_of(settings);
   switch (settings.interface) {
     case rt::Interface::corba_cdr:
@@ -265,7 +272,7 @@ rt::Refusal OutEngine::consume(ConnectionPlan plan, const RTC::ConnectorProfile&
                                                                 : make_cdr_sender(settings.interface, object, line);
     if (!sender) return {rt::ReturnCode::error, "the InPort gives no object of its interface_type to send to"};
   }
-  auto connection = std::make_shared<OutConnection>(ops_, std::move(plan), std::move(sender), loss_);
+  auto connection = std::make_shared<OutConnection>(ops_, plan, std::move(sender), loss_);
   add(connection);
   return {};
 }

@@ -19,9 +19,9 @@ namespace corba {
 class OutConnection final : public Source {
  public:
   // Push.
-  OutConnection(const TypeOps& ops, ConnectionPlan plan, std::unique_ptr<Sender> sender, std::shared_ptr<LossHandler> loss);
+  OutConnection(const TypeOps& ops, const ConnectionPlan& plan, std::unique_ptr<Sender> sender, std::shared_ptr<LossHandler> loss);
   // Pull.
-  OutConnection(const TypeOps& ops, ConnectionPlan plan);
+  OutConnection(const TypeOps& ops, const ConnectionPlan& plan);
   ~OutConnection() override;
 
   const std::string& id() const;

@@ -78,6 +78,11 @@ const Pieces& Payload::pieces(rt::ByteOrder order) {
   if (encoded.block) return encoded.pieces.emplace(Pieces{{encoded.block->octets()}, encoded.block->size()});
   const void* source = value();
   if (!source) throw CORBA::MARSHAL();
+  if (ops_.codec) {
+    encoded.block = ops_.codec->encode(source, order);
+    if (!encoded.block) throw CORBA::MARSHAL();
+    return encoded.pieces.emplace(Pieces{{encoded.block->octets()}, encoded.block->size()});
+  }
   encoded.stream = stream_pool().take();
   encoded.stream->start(order, !ops_.has_wide_text);
   ops_.encode(source, *encoded.stream);

@@ -153,15 +153,19 @@ std::vector<RTC::ConnectorProfile> PortServant::connections() const {
 
 RTC::PortProfile PortServant::profile() const {
   RTC::PortProfile profile;
-  auto state = state_.lock();
-  profile.name = state->name.c_str();
-  profile.interfaces = state->interfaces;
-  profile.port_ref = RTC::PortService::_duplicate(state->reference);
-  profile.owner = RTC::RTObject::_duplicate(state->owner);
-  profile.properties = state->properties;
-  for (const auto& connection : state->connections) {
-    if (connection.is_established && !connection.is_leaving) append<RTC::ConnectorProfile>(profile.connector_profiles, connection.profile);
+  {
+    auto state = state_.lock();
+    profile.name = state->name.c_str();
+    profile.interfaces = state->interfaces;
+    profile.port_ref = RTC::PortService::_duplicate(state->reference);
+    profile.owner = RTC::RTObject::_duplicate(state->owner);
+    profile.properties = state->properties;
+    for (const auto& connection : state->connections) {
+      if (connection.is_established && !connection.is_leaving)
+        append<RTC::ConnectorProfile>(profile.connector_profiles, connection.profile);
+    }
   }
+  complete(profile);
   return profile;
 }
 

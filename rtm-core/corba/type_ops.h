@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <memory>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <typeinfo>
@@ -25,6 +26,18 @@ struct ValueOf final : rt::Value {
   T value{};
 };
 
+// Another encoding than CDR for the values of one connection. Any thread.
+class Codec {
+ public:
+  virtual ~Codec() = default;
+  // The marshaling type of the connection.
+  virtual const std::string& name() const = 0;
+  // nullptr if the value cannot be encoded. Never throws.
+  virtual std::shared_ptr<rt::Block> encode(const void* value, rt::ByteOrder order) = 0;
+  // False if the octets are no value; `value` may be half written then. Never throws.
+  virtual bool decode(void* value, std::span<const std::byte> octets, rt::ByteOrder order) = 0;
+};
+
 struct TypeOps {
   std::string type_id;  // "IDL:RTC/TimedLong:1.0"
   const std::type_info* type;
@@ -36,6 +49,7 @@ struct TypeOps {
   void (*stamp)(void* value, std::chrono::nanoseconds time);  // nullptr if the type has no `tm`
   bool is_stamp_first;                                        // `tm` is the first member
   bool has_wide_text;                                         // or something else that is encoded from temporary memory
+  std::shared_ptr<Codec> codec{};                             // used instead of encode and decode if there is one
 };
 
 bool has_wide_text(CORBA::TypeCode_ptr code);

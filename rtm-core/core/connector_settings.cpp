@@ -115,8 +115,7 @@ void read_transport(const Reader& reader, ConnectorSettings& settings) {
     settings.interface = it->second;
   }
 
-  const auto marshaling = reader.text("marshaling_type");
-  if (!marshaling.empty() && marshaling != "cdr") reader.refuse(ReturnCode::error, "marshaling_type", "cdr");
+  if (const auto marshaling = reader.text("marshaling_type"); !marshaling.empty()) settings.marshaling = marshaling;
 
   const auto orders = base::split_list(base::to_lower(reader.text("serializer.cdr.endian")));
   if (orders.empty() || orders.front() == "little") {

@@ -45,6 +45,7 @@ struct ConnectorSettings {
   PublisherSettings publisher;
   BufferSettings buffer;  // of the side that was asked for
   ByteOrder order = ByteOrder::little;
+  std::string marshaling = "cdr";
   StampPolicy stamp = StampPolicy::none;
   bool allows_duplicate = false;
   bool is_rendezvous = false;                             // dataport.sync_readwrite

@@ -30,6 +30,41 @@ TEST_F(Rtcd, makes_connects_and_activates_what_its_configuration_names_and_leave
   EXPECT_TRUE(entries().empty());
 }
 
+TEST_F(Rtcd, a_module_brings_serializers_for_the_ports_of_others) {
+  const std::vector<std::string> with_wrappers{"-o", "manager.modules.preload:Wrappers.so"};
+  auto sinking = with_wrappers;
+  sinking.insert(sinking.end(), {"-o", "manager.components.precreate:SinkAll", "-o", "manager.components.preactivation:SinkAll0"});
+  support::Process sink(command(sinking));
+  ASSERT_TRUE(eventually([&] { return has("SinkAll0.rtc"); })) << sink.output();
+  const std::string there = "rtcname://" + names_.address() + "/SinkAll0.";
+  auto sourcing = with_wrappers;
+  sourcing.insert(sourcing.end(), {"-o", "manager.components.precreate:SourceAll", "-o",
+                                   "manager.components.preconnect:SourceAll0.short?port=" + there +
+                                       "double&outport.marshaling_type=cdr:RTC/TimedDouble:RTC/TimedShort,"
+                                       "SourceAll0.long?port=" +
+                                       there +
+                                       "long&marshaling_type=packed&packed.offset=5,"
+                                       "SourceAll0.float?port=" +
+                                       there + "float&marshaling_type=packed",
+                                   "-o", "manager.components.preactivation:SourceAll0"});
+  support::Process source(command(sourcing));
+  EXPECT_TRUE(sink.wait_for_output("double: 3")) << source.output();
+  EXPECT_TRUE(sink.wait_for_output("long: 3")) << source.output();
+  EXPECT_TRUE(source.wait_for_output("dataport.marshaling_type must be cdr for a IDL:RTC/TimedFloat:1.0, got \"packed\""))
+      << source.output();
+  RTC::RTObject_var made = component("SourceAll0.rtc");
+  const auto marshalings = [&](const char* port) {
+    RTC::PortService_var found = CORBA_RTCUtil::get_port_by_name(made, std::string("SourceAll0.") + port);
+    RTC::PortProfile_var profile = found->get_port_profile();
+    return NVUtil::toString(profile->properties, "dataport.marshaling_types");
+  };
+  EXPECT_EQ(marshalings("short"), "cdr,cdr:RTC/TimedDouble:RTC/TimedShort");
+  EXPECT_EQ(marshalings("long"), "cdr,packed");
+  EXPECT_EQ(marshalings("float"), "cdr");
+  EXPECT_EQ(source.stop(), 0);
+  EXPECT_EQ(sink.stop(), 0);
+}
+
 TEST_F(Rtcd, components_register_again_after_the_naming_service_restarts) {
   support::Process rtcd(command({"FailOnRequest"}));
   ASSERT_TRUE(eventually([&] { return has("FailOnRequest0.rtc"); })) << rtcd.output();

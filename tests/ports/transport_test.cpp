@@ -302,14 +302,20 @@ TEST_F(Samples, writers_in_two_threads_and_disconnecting_do_not_disturb_each_oth
   }
 }
 
+std::vector<unsigned char> octets_of(const RTC::ByteDataStreamBase& stream) {
+  std::vector<unsigned char> octets(stream.getDataLength());
+  stream.readData(octets.data(), octets.size());
+  return octets;
+}
+
 TEST(Payload, the_octets_are_the_plain_encoding) {
   RTC::TimedLong value{};
   value.tm.sec = 0x240;
   value.data = 0x12345678;
-  RTC::CORBA_CdrMemoryStream<RTC::TimedLong> stream;
+  RTC::CORBA_CdrSerializer<RTC::TimedLong> stream;
   ASSERT_TRUE(stream.serialize(value));
   const std::vector<unsigned char> expected = {0x40, 2, 0, 0, 0, 0, 0, 0, 0x78, 0x56, 0x34, 0x12};
-  EXPECT_EQ(std::vector<unsigned char>(stream.getBuffer(), stream.getBuffer() + stream.getDataLength()), expected);
+  EXPECT_EQ(octets_of(stream), expected);
 }
 
 TEST(Payload, lengths_that_overflow_32_bits_are_refused) {
@@ -330,12 +336,12 @@ TEST(Payload, long_arrays_are_aligned_as_if_copied) {
     RTC::CameraImage image{};
     image.format = "x";
     image.pixels.length(size);
-    RTC::CORBA_CdrMemoryStream<RTC::CameraImage> stream;
+    RTC::CORBA_CdrSerializer<RTC::CameraImage> stream;
     ASSERT_TRUE(stream.serialize(image));
     cdrMemoryStream plain;
     image >>= plain;
     ASSERT_EQ(stream.getDataLength(), plain.bufSize());
-    EXPECT_EQ(std::memcmp(stream.getBuffer(), plain.bufPtr(), plain.bufSize()), 0);
+    EXPECT_EQ(std::memcmp(octets_of(stream).data(), plain.bufPtr(), plain.bufSize()), 0);
   }
 }
 

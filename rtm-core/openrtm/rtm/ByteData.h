@@ -1,16 +1,22 @@
 // Octets of one sample as listeners see them. A value; one thread at a time.
 #pragma once
 
-#include <string>
 #include <vector>
 
 namespace RTC {
+
+class ByteDataStreamBase;
 
 class ByteData {
  public:
   ByteData() = default;
   ByteData(const unsigned char* data, unsigned long length) { writeData(data, length); }
+  // What a serializer holds.
+  ByteData(const ByteDataStreamBase& stream) { *this = stream; }
+  ByteData& operator=(const ByteDataStreamBase& stream);
   virtual ~ByteData() = default;
+  ByteData(const ByteData&) = default;
+  ByteData& operator=(const ByteData&) = default;
 
   unsigned char* getBuffer() { return octets_.data(); }
   const unsigned char* getBuffer() const { return octets_.data(); }
@@ -29,14 +35,6 @@ class ByteData {
  private:
   std::vector<unsigned char> octets_;
   bool is_little_ = true;
-};
-
-// A ByteData that encodes and decodes one type.
-template <class DataType>
-class ByteDataStream : public ByteData {
- public:
-  virtual bool serialize(const DataType& data) = 0;
-  virtual bool deserialize(DataType& data) = 0;
 };
 
 }  // namespace RTC

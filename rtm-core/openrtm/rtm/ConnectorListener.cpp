@@ -66,7 +66,7 @@ ConnectorDataListener::ReturnCode ConnectorDataListener::notify(ConnectorInfo& i
   const auto octets = data.octets();
   ByteData bytes(reinterpret_cast<const unsigned char*>(octets.data()), octets.size());
   bytes.isLittleEndian(data.order() == rt::ByteOrder::little);
-  const ReturnCode code = (*this)(info, bytes, "cdr");
+  const ReturnCode code = (*this)(info, bytes, data.ops().codec ? data.ops().codec->name() : "cdr");
   if (changes_data(code)) data.replace_octets(std::as_bytes(std::span(bytes.getBuffer(), bytes.getDataLength())));
   return code;
 }

@@ -1,16 +1,21 @@
 #include "rtm/DataPortBase.h"
 
+#include "base/text.h"
 #include "corba/in_engine.h"
+#include "corba/nv_list.h"
 #include "corba/out_engine.h"
+#include "rtm/Serializers.h"
 #include "rtm/data_port_support.h"
 
 namespace RTC {
 
 template <class Engine, class Connector, rt::Side side>
-DataPortBase<Engine, Connector, side>::DataPortBase(const char* name, std::unique_ptr<Engine> engine)
+DataPortBase<Engine, Connector, side>::DataPortBase(const char* name, std::unique_ptr<Engine> engine,
+                                                    const detail::Serializers& serializers)
     : PortBase(name),
       engine_(std::move(engine)),
       short_name_(detail::short_name(name)),
+      serializers_(serializers),
       listeners_(std::make_shared<ConnectorListeners>()) {
   for (const auto& [key, value] : detail::advertised_keys(side, engine_->ops().type_id)) addProperty(key, value);
 }
@@ -119,13 +124,18 @@ void DataPortBase<Engine, Connector, side>::removeConnectorListener(ConnectorLis
 }
 
 template <class Engine, class Connector, rt::Side side>
+void DataPortBase<Engine, Connector, side>::complete(PortProfile& profile) const {
+  corba::set_text(profile.properties, "dataport.marshaling_types", base::join(serializers_.names(), ","));
+}
+
+template <class Engine, class Connector, rt::Side side>
 void DataPortBase<Engine, Connector, side>::complete_profile(ConnectorProfile& profile) {
   detail::complete_data_profile(profile);
 }
 
 template <class Engine, class Connector, rt::Side side>
 ReturnCode_t DataPortBase<Engine, Connector, side>::prepare(ConnectorProfile& profile) {
-  return detail::check_connection(profile, m_properties, side, engine_->ops().type_id, rtclog);
+  return detail::check_connection(profile, m_properties, side, {engine_->ops().type_id, serializers_.names()}, rtclog);
 }
 
 template <class Engine, class Connector, rt::Side side>
@@ -152,6 +162,14 @@ ReturnCode_t DataPortBase<Engine, Connector, side>::open(ConnectorProfile& profi
   if (is_provider != provides) return RTC_OK;
   auto connector = std::make_shared<Connector>(*this, listeners_, detail::make_info(profile, m_properties));
   auto plan = detail::make_plan(profile, settings, connector);
+  // Inside a process the value itself is handed over.
+  if (settings.marshaling != "cdr" && settings.interface != rt::Interface::direct) {
+    plan.codec = serializers_.make(settings.marshaling, connector->profile().properties);
+    if (!plan.codec) {
+      RTC_WARN_STR("connection refused: no serializer can be made for dataport.marshaling_type " << base::in_quotes(settings.marshaling));
+      return RTC_ERROR;
+    }
+  }
   plan.clock = *clock_.lock();
   const rt::Refusal refusal = provides ? engine_->provide(std::move(plan), profile) : engine_->consume(std::move(plan), profile);
   if (refusal.code != rt::ReturnCode::ok) {

@@ -23,6 +23,10 @@ class OutEngine;
 
 namespace RTC {
 
+namespace detail {
+class Serializers;
+}
+
 template <class Engine, class Connector, rt::Side side>
 class DataPortBase : public PortBase, public DataPortStatus {
  public:
@@ -61,8 +65,11 @@ class DataPortBase : public PortBase, public DataPortStatus {
   ConnectorListeners& getListeners() { return *listeners_; }
 
  protected:
-  DataPortBase(const char* name, std::unique_ptr<Engine> engine);
+  // The serializers live as long as the port.
+  DataPortBase(const char* name, std::unique_ptr<Engine> engine, const detail::Serializers& serializers);
 
+  // Shows the serializers that are registered by now.
+  void complete(PortProfile& profile) const override;
   void complete_profile(ConnectorProfile& profile) override;
   ReturnCode_t prepare(ConnectorProfile& profile) override;
   bool allows_duplicate(const ConnectorProfile& profile) override;
@@ -79,6 +86,7 @@ class DataPortBase : public PortBase, public DataPortStatus {
   Connector* find(Match match) const;
 
   const std::string short_name_;
+  const detail::Serializers& serializers_;
   const std::shared_ptr<ConnectorListeners> listeners_;
   base::Guarded<std::shared_ptr<const base::Clock>, base::Rank::buffer> clock_;
 };

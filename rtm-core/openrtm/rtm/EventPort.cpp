@@ -5,6 +5,11 @@ namespace {
 
 struct Nothing {};
 
+class OnlyCdr final : public Serializers {
+  std::vector<std::string> names() const override { return {"cdr"}; }
+  std::shared_ptr<corba::Codec> make(const std::string&, const coil::Properties&) const override { return nullptr; }
+};
+
 }  // namespace
 
 const corba::TypeOps& any_type_ops() {
@@ -21,6 +26,11 @@ const corba::TypeOps& any_type_ops() {
       .has_wide_text = false,
   };
   return ops;
+}
+
+const Serializers& any_serializers() {
+  static const OnlyCdr all;
+  return all;
 }
 
 bool is_event(const ConnectorInfo& info, const std::string& event) {

@@ -8,6 +8,7 @@
 
 #include "rtm/ConnectorListener.h"
 #include "rtm/InPortBase.h"
+#include "rtm/Serializers.h"
 
 namespace RTC {
 
@@ -15,6 +16,8 @@ namespace detail {
 
 // A port that takes every type and keeps nothing.
 const corba::TypeOps& any_type_ops();
+// None but CDR: an event may be of any type.
+const Serializers& any_serializers();
 
 // Whether samples of this connection are that event.
 bool is_event(const ConnectorInfo& info, const std::string& event);
@@ -61,7 +64,7 @@ template <class FsmType>
 class EventInPort : public InPortBase {
  public:
   EventInPort(const char* name, FsmType& machine, int = 64, bool = false, bool = false, int = 0, int = 0)
-      : InPortBase(name, detail::any_type_ops()), machine_(machine) {}
+      : InPortBase(name, detail::any_type_ops(), detail::any_serializers()), machine_(machine) {}
   ~EventInPort() override { retire(); }
 
   // Nothing: events go to the machine as they arrive.

@@ -4,7 +4,8 @@
 
 namespace RTC {
 
-InPortBase::InPortBase(const char* name, const corba::TypeOps& type) : DataPortBase(name, std::make_unique<corba::InEngine>(type)) {}
+InPortBase::InPortBase(const char* name, const corba::TypeOps& type, const detail::Serializers& serializers)
+    : DataPortBase(name, std::make_unique<corba::InEngine>(type), serializers) {}
 
 InPortBase::~InPortBase() { retire(); }
 

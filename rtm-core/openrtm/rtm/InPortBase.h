@@ -9,7 +9,7 @@ namespace RTC {
 
 class InPortBase : public DataPortBase<corba::InEngine, InPortConnector, rt::Side::in> {
  public:
-  InPortBase(const char* name, const corba::TypeOps& type);
+  InPortBase(const char* name, const corba::TypeOps& type, const detail::Serializers& serializers);
   ~InPortBase() override;
 
   // False if there was nothing to read; the statuses tell why.

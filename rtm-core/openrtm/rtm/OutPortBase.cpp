@@ -5,8 +5,9 @@
 
 namespace RTC {
 
-OutPortBase::OutPortBase(const char* name, const corba::TypeOps& type)
-    : DataPortBase(name, std::make_unique<corba::OutEngine>(type, [this](const std::string& id) { drop_connection(id.c_str()); })) {}
+OutPortBase::OutPortBase(const char* name, const corba::TypeOps& type, const detail::Serializers& serializers)
+    : DataPortBase(name, std::make_unique<corba::OutEngine>(type, [this](const std::string& id) { drop_connection(id.c_str()); }),
+                   serializers) {}
 
 OutPortBase::~OutPortBase() { retire(); }
 

@@ -7,7 +7,7 @@ namespace RTC {
 
 class OutPortBase : public DataPortBase<corba::OutEngine, OutPortConnector, rt::Side::out> {
  public:
-  OutPortBase(const char* name, const corba::TypeOps& type);
+  OutPortBase(const char* name, const corba::TypeOps& type, const detail::Serializers& serializers);
   ~OutPortBase() override;
 
   // Writes the bound variable; false if there is no connection or one failed; the statuses tell which.

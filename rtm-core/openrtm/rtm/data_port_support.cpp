@@ -1,5 +1,7 @@
 #include "rtm/data_port_support.h"
 
+#include <algorithm>
+
 #include "base/text.h"
 #include "corba/connector_keys.h"
 #include "corba/nv_list.h"
@@ -23,8 +25,7 @@ std::vector<AdvertisedKey> advertised_keys(rt::Side side, const std::string& typ
                                      {"data_type", type_id},
                                      {"dataport.subscription_type", side == rt::Side::in ? "Any" : "block,flush,new,nonblock,periodic"},
                                      {"dataport.dataflow_type", "push,pull"},
-                                     {"dataport.interface_type", interfaces},
-                                     {"dataport.marshaling_types", "cdr"}};
+                                     {"dataport.interface_type", interfaces}};
   if (side == rt::Side::out) keys.push_back({"dataport.io_mode", "block,flush,new,nonblock,periodic"});
   for (const char* key : {"dataport.interface_option.corba_cdr", "dataport.interface_option.data_service",
                           "dataport.interface_option.direct", "dataport.interface_option.shared_memory"}) {
@@ -69,22 +70,46 @@ bool says_when_empty(const ConnectorProfile& profile) {
   return settings_of(profile, coil::Properties(), rt::Side::out).settings.buffer.empty != rt::EmptyPolicy::readback;
 }
 
-ReturnCode_t check_connection(ConnectorProfile& profile, const coil::Properties& port, rt::Side side, const std::string& type_id,
-                              Logger& rtclog) {
+namespace {
+
+// One end at least has an encoding of its own, whose octets may be those of another type.
+bool converts(const ConnectorProfile& profile, const std::string& own) {
+  if (own != "cdr") return true;
+  for (const char* key : {"dataport.marshaling_type", "dataport.inport.marshaling_type", "dataport.outport.marshaling_type"}) {
+    const std::string given = corba::find_text(profile.properties, key).value_or("");
+    if (const auto type = base::trim(given); !type.empty() && type != "cdr") return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+ReturnCode_t check_connection(ConnectorProfile& profile, const coil::Properties& port, rt::Side side, const Carries& own, Logger& rtclog) {
   const auto outcome = settings_of(profile, port, side);
   for (const auto& warning : outcome.warnings) RTC_WARN_STR(warning);
   if (outcome.refusal.code != rt::ReturnCode::ok) {
     RTC_WARN_STR("connection refused: " + outcome.refusal.reason);
     return static_cast<ReturnCode_t>(outcome.refusal.code);
   }
+  const std::string& marshaling = outcome.settings.marshaling;
+  if (std::ranges::find(own.marshalings, marshaling) == own.marshalings.end()) {
+    RTC_WARN_STR("connection refused: dataport.marshaling_type must be " + base::join(own.marshalings, " or ") + " for a " + own.type_id +
+                 ", got " + base::in_quotes(marshaling));
+    return RTC_ERROR;
+  }
+  const bool is_in = side == rt::Side::in;
+  if (marshaling != "cdr") {
+    corba::set_text(profile.properties, is_in ? "dataport.inport.marshaling_type" : "dataport.outport.marshaling_type", marshaling);
+  }
+  const bool any_type_fits = converts(profile, marshaling);
   for (const char* key : {"dataport.data_type", "dataport.inport.data_type", "dataport.outport.data_type"}) {
     const auto other = corba::find_text(profile.properties, key);
-    const bool is_own = std::string_view(key) == (side == rt::Side::in ? "dataport.inport.data_type" : "dataport.outport.data_type");
-    if (!other || is_own || rt::are_compatible_types(*other, type_id)) continue;
-    RTC_WARN_STR("connection refused: " + std::string(key) + " is " + base::in_quotes(*other) + ", this port has " + type_id);
+    const bool is_own = std::string_view(key) == (is_in ? "dataport.inport.data_type" : "dataport.outport.data_type");
+    if (!other || is_own || any_type_fits || rt::are_compatible_types(*other, own.type_id)) continue;
+    RTC_WARN_STR("connection refused: " + std::string(key) + " is " + base::in_quotes(*other) + ", this port has " + own.type_id);
     return BAD_PARAMETER;
   }
-  corba::set_text(profile.properties, side == rt::Side::in ? "dataport.inport.data_type" : "dataport.outport.data_type", type_id);
+  corba::set_text(profile.properties, is_in ? "dataport.inport.data_type" : "dataport.outport.data_type", own.type_id);
   return RTC_OK;
 }
 

@@ -33,8 +33,11 @@ bool says_when_empty(const ConnectorProfile& profile);
 void share_port_properties(ConnectorProfile& profile, const coil::Properties& port);
 
 // RTC_OK, or the code with which to refuse; says why in the log. Announces the type of this side in the profile.
-ReturnCode_t check_connection(ConnectorProfile& profile, const coil::Properties& port, rt::Side side, const std::string& type_id,
-                              Logger& rtclog);
+struct Carries {
+  std::string type_id;
+  std::vector<std::string> marshalings;
+};
+ReturnCode_t check_connection(ConnectorProfile& profile, const coil::Properties& port, rt::Side side, const Carries& own, Logger& rtclog);
 
 ConnectorInfo make_info(const ConnectorProfile& profile, const coil::Properties& port);
 corba::ConnectionPlan make_plan(const ConnectorProfile& profile, const rt::ConnectorSettings& settings,
