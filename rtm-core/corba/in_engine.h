@@ -38,7 +38,15 @@ struct ConnectionPlan {
 
 TypeOps with_codec(const TypeOps& ops, const std::shared_ptr<Codec>& codec);
 
-class InConnection final : public Receiver {
+// What waits in a connection to be read or sent. Any thread.
+class Waiting {
+ public:
+  virtual ~Waiting() = default;
+  virtual std::size_t unread() const = 0;
+  virtual void drop_unread() = 0;
+};
+
+class InConnection final : public Receiver, public Waiting {
  public:
   InConnection(const TypeOps& ops, ConnectionPlan plan, std::shared_ptr<rt::Mailbox> mailbox);
   ~InConnection() override;
@@ -58,7 +66,8 @@ class InConnection final : public Receiver {
   rt::PortStatus fetch(bool only_new);
   // Nothing is received any more; what was not read can still be read.
   void finish();
-  std::size_t unread() const { return mailbox_->unread(channel_); }
+  std::size_t unread() const override { return mailbox_->unread(channel_); }
+  void drop_unread() override { mailbox_->drop_unread(channel_); }
 
  private:
   friend class InEngine;

@@ -150,6 +150,13 @@ void OutConnection::close() {
   mailbox_.close(channel_);
 }
 
+std::size_t OutConnection::unread() const { return publisher_ ? publisher_->waiting() : line_->sender ? 0 : mailbox_.unread(channel_); }
+
+void OutConnection::drop_unread() {
+  if (publisher_) publisher_->drop_waiting();
+  if (!line_->sender) mailbox_.drop_unread(channel_);
+}
+
 bool OutConnection::waits_for_peer() const { return line_->sender && !publisher_ && !line_->is_direct(); }
 
 rt::PortStatus OutConnection::write(Payload& shared) {

@@ -16,7 +16,7 @@
 
 namespace corba {
 
-class OutConnection final : public Source {
+class OutConnection final : public Source, public Waiting {
  public:
   // Push.
   OutConnection(const TypeOps& ops, const ConnectionPlan& plan, std::unique_ptr<Sender> sender, std::shared_ptr<LossHandler> loss);
@@ -37,6 +37,9 @@ class OutConnection final : public Source {
   // The next sample, encoded; or as a value, for this process.
   rt::PortStatus give(rt::Sample& sample) override;
   rt::PortStatus give_value(rt::Sample& sample);
+  // A subscription flush keeps nothing.
+  std::size_t unread() const override;
+  void drop_unread() override;
   void close();
 
  private:

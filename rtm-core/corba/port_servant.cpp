@@ -101,9 +101,13 @@ RTC::PortService_ptr PortServant::reference() {
     base::log(base::Level::error, port_name(), "the port cannot be made an object: {}", e._name());
     return RTC::PortService::_nil();
   }
-  auto state = state_.lock();
-  if (CORBA::is_nil(state->reference)) state->reference = made._retn();
-  return state->reference.in();
+  {
+    auto state = state_.lock();
+    if (!CORBA::is_nil(state->reference)) return state->reference.in();
+    state->reference = RTC::PortService::_duplicate(made);
+  }
+  activated(made);
+  return state_.lock()->reference.in();
 }
 
 std::string PortServant::port_name() const { return state_.lock()->name; }

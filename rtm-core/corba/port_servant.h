@@ -74,6 +74,8 @@ class PortServant : public virtual POA_RTC::PortService, public virtual Portable
   // Undoes publish and subscribe, also after only one of them. `is_lost`: the other end is gone.
   virtual void unsubscribe(const RTC::ConnectorProfile& profile, bool is_lost) = 0;
   virtual void on_step(Step, RTC::ConnectorProfile&, RTC::ReturnCode_t) {}
+  // Once, on the thread that has made the port an object.
+  virtual void activated(RTC::PortService_ptr) {}
   // Adds to the PortProfile what may change while the port is there.
   virtual void complete(RTC::PortProfile&) const {}
   virtual bool allows_duplicate(const RTC::ConnectorProfile&) { return false; }

@@ -117,6 +117,10 @@ void read_transport(const Reader& reader, ConnectorSettings& settings) {
 
   if (const auto marshaling = reader.text("marshaling_type"); !marshaling.empty()) settings.marshaling = marshaling;
 
+  if (const auto buffer = reader.text("buffer_type"); !buffer.empty() && buffer != "ring_buffer") {
+    reader.refuse(ReturnCode::error, "buffer_type", "ring_buffer, the only one there is");
+  }
+
   const auto orders = base::split_list(base::to_lower(reader.text("serializer.cdr.endian")));
   if (orders.empty() || orders.front() == "little") {
     settings.order = ByteOrder::little;

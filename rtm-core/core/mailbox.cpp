@@ -166,6 +166,19 @@ std::size_t Mailbox::unread(Channel channel) const {
   return count;
 }
 
+void Mailbox::drop_unread(Channel channel) {
+  std::vector<Sample> dropped;  // destroyed without the lock, as in close
+  {
+    auto state = state_.lock();
+    Entry* entry = state->find(channel);
+    if (!entry) return;
+    while (!entry->ring.is_empty()) dropped.push_back(entry->ring.pop());
+    dropped.push_back(std::exchange(entry->last, {}));
+    if (entry->is_finished) state->erase(*entry);
+  }
+  freed_.notify_all();
+}
+
 void Mailbox::forget_last(Channel channel) {
   auto state = state_.lock();
   if (Entry* entry = state->find(channel)) entry->last = {};

@@ -42,6 +42,8 @@ class Mailbox {
   // from which the last sample came; before the first sample one channel that waits is enough to wait.
   ReadResult read(Channel channel = Channel::any);
   std::size_t unread(Channel channel = Channel::any) const;
+  // Throws away what is unread in that channel, and the last sample with it.
+  void drop_unread(Channel channel);
   // The last sample of that channel is not read again.
   void forget_last(Channel channel);
   // Writers wait for readers and readers for writers while this is set (dataport.sync_readwrite).

@@ -176,6 +176,17 @@ WriteResult Publisher::write(Sample sample) {
   return result;
 }
 
+std::size_t Publisher::waiting() const { return work_->state.lock()->queue.size(); }
+
+void Publisher::drop_waiting() {
+  std::vector<Sample> dropped;  // destroyed without the lock: samples may be large
+  {
+    auto state = work_->state.lock();
+    while (!state->queue.is_empty()) dropped.push_back(state->queue.pop());
+  }
+  work_->room.notify_all();
+}
+
 bool Publisher::request_stop() {
   bool is_busy = false;
   {

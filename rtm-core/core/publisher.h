@@ -33,6 +33,9 @@ class Publisher {
 
   // status: ok, buffer_full, buffer_timeout; connection_lost or precondition_not_met once it does not send any more.
   WriteResult write(Sample sample);
+  // Samples that wait to be sent.
+  std::size_t waiting() const;
+  void drop_waiting();
   // Samples that are not sent yet are dropped. Does not wait for one that is being sent: a peer that hangs must not hang others.
   void stop();
 

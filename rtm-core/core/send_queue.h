@@ -14,6 +14,8 @@ class SendQueue {
 
   bool is_empty() const { return ring_.is_empty(); }
   bool is_full() const { return ring_.is_full(); }
+  std::size_t size() const { return ring_.size(); }
+  Sample pop() { return ring_.pop(); }
   // True if an unsent sample was lost.
   bool push(Sample sample) { return ring_.push(std::move(sample)); }
 

@@ -15,7 +15,7 @@ target_sources(openrtm PRIVATE
   rtm/OpenHRPExecutionContext.cpp
   rtm/PeriodicECOrganization.cpp
   rtm/PeriodicECSharedComposite.cpp
-  rtm/PeriodicExecutionContext.cpp
+  rtm/PeriodicExecutionContext.cpp rtm/PeriodicLoop.cpp
   rtm/RTObject.cpp
   rtm/RTObjectCallbacks.cpp
   rtm/RTObjectContexts.cpp

@@ -4,11 +4,13 @@
 
 #include <rtm/CORBA_RTCUtil.h>
 #include <rtm/CorbaNaming.h>
+#include <rtm/CorbaPort.h>
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/DataInPort.h>
 #include <rtm/DataOutPort.h>
 #include <rtm/LogstreamBase.h>
 #include <rtm/Manager.h>
+#include <rtm/ManagerServant.h>
 #include <rtm/NamingManager.h>
 
 #include <thread>
@@ -133,6 +135,33 @@ TEST(Tools, what_a_factory_answers_can_be_compared_with_numbers) {
   EXPECT_TRUE(add() == 0);
   EXPECT_TRUE(add() != 0);
   EXPECT_TRUE(0 == factory.removeFactory("tools"));
+}
+
+// A port of an author's own and a host of components reach what their base classes hold.
+class OwnPort : public RTC::CorbaPort {
+ public:
+  using RTC::CorbaPort::CorbaPort;
+  RTC::PortService_ptr own() { return m_objref.in(); }
+};
+
+class Host : public RTC::Manager {
+ public:
+  RTM::ManagerServant* servant() { return m_mgrservant; }
+};
+
+TEST(Tools, protected_members_of_ports_and_the_manager_are_there) {
+  RTC::Manager* manager = started();
+  auto* component = manager->createComponent("Ported");
+  ASSERT_NE(component, nullptr);
+  OwnPort port("own");
+  EXPECT_TRUE(CORBA::is_nil(port.own()));
+  ASSERT_TRUE(component->addPort(port));
+  ASSERT_FALSE(CORBA::is_nil(port.own()));
+  EXPECT_TRUE(port.own()->_is_equivalent(port.getPortRef()));
+  component->removePort(port);
+  auto* host = static_cast<Host*>(manager);
+  ASSERT_NE(host->servant(), nullptr);
+  EXPECT_EQ(host->servant(), &manager->getManagerServant());
 }
 
 }  // namespace

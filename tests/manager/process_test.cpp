@@ -65,6 +65,31 @@ TEST_F(Rtcd, a_module_brings_serializers_for_the_ports_of_others) {
   EXPECT_EQ(sink.stop(), 0);
 }
 
+TEST_F(Rtcd, contexts_with_an_author_s_own_loop_run_stop_and_change_their_rate) {
+  const auto makes = [](const std::string& type) { return "SourceAll?execution_contexts=" + type + "(own)&ec.own.rate=100"; };
+  for (const std::string type : {"MembersLoop", "TimedLoop", "PhasesLoop", "ChronoLoop", "OwnLoopEC", "StepEC"}) {
+    support::Process rtcd(
+        command({"-o", "manager.modules.preload:LoopECs.so,StepEC.so(" + (type == "OwnLoopEC" ? type : "StepEC") + "Init)", "-o",
+                 "manager.components.precreate:" + makes(type) + ",SinkAll", "-o",
+                 "manager.components.preconnect:SourceAll0.long?port=SinkAll0.long", "-o",
+                 "manager.components.preactivation:SourceAll0,SinkAll0"}));
+    ASSERT_TRUE(rtcd.wait_for_output("long: 3\n")) << type << rtcd.output();
+    const bool says_members = type != "TimedLoop" || rtcd.wait_for_output("member SourceAll0 of 10000 us");
+    EXPECT_TRUE(says_members) << rtcd.output();
+    RTC::RTObject_var source = component("SourceAll0.rtc");
+    RTC::ExecutionContextList_var contexts = source->get_owned_contexts();
+    ASSERT_EQ(contexts->length(), 1u) << type;
+    RTC::ExecutionContext_ptr context = contexts[0];
+    EXPECT_EQ(context->set_rate(500), RTC::RTC_OK) << type;
+    EXPECT_EQ(context->get_rate(), 500.0) << type;
+    EXPECT_EQ(context->deactivate_component(source), RTC::RTC_OK) << type;
+    EXPECT_EQ(context->stop(), RTC::RTC_OK) << type;
+    EXPECT_EQ(context->start(), RTC::RTC_OK) << type;
+    EXPECT_EQ(context->activate_component(source), RTC::RTC_OK) << type;
+    EXPECT_EQ(rtcd.stop(), 0) << type;
+  }
+}
+
 TEST_F(Rtcd, components_register_again_after_the_naming_service_restarts) {
   support::Process rtcd(command({"FailOnRequest"}));
   ASSERT_TRUE(eventually([&] { return has("FailOnRequest0.rtc"); })) << rtcd.output();

@@ -34,6 +34,8 @@ TEST(ConnectorSettings, what_must_be_known_is_refused_when_it_is_not) {
   EXPECT_EQ(read({{"dataport.dataflow_type", "duplex"}}).refusal.code, ReturnCode::bad_parameter);
   EXPECT_EQ(read({{"dataport.interface_type", "corba_any"}}).refusal.code, ReturnCode::bad_parameter);
   EXPECT_EQ(read({{"dataport.serializer.cdr.endian", "middle"}}).refusal.code, ReturnCode::unsupported);
+  EXPECT_EQ(read({{"dataport.buffer_type", "ring_buffer"}}).refusal.code, ReturnCode::ok);
+  EXPECT_EQ(read({{"dataport.buffer_type", "my_buffer"}}).refusal.code, ReturnCode::error);
   EXPECT_EQ(read({{"dataport.marshaling_type", " xml "}}).settings.marshaling, "xml") << "the port knows which there are";
   for (const char* rate : {"", "0", "-1", "nan", "inf", "1e300", "x"}) {
     EXPECT_EQ(read({{"dataport.subscription_type", "periodic"}, {"dataport.publisher.push_rate", rate}}).refusal.code,

@@ -95,7 +95,8 @@ INSTANTIATE_TEST_SUITE_P(Ways, Serializing,
                                          Way{"data_service", "pull"}, Way{"shared_memory", "push"}, Way{"shared_memory", "pull"}),
                          [](const auto& way) { return std::string(way.param.interface) + "_" + way.param.dataflow; });
 using SerializingOnce = Serializing;
-INSTANTIATE_TEST_SUITE_P(Once, SerializingOnce, testing::Values(Way{"corba_cdr", "push"}));
+INSTANTIATE_TEST_SUITE_P(Once, SerializingOnce, testing::Values(Way{"corba_cdr", "push"}),
+                         [](const auto&) { return std::string("corba_cdr_push"); });
 
 TEST_P(Serializing, the_one_that_the_connection_names_makes_the_octets) {
   struct Raw : RTC::ConnectorDataListener {

@@ -128,6 +128,33 @@ TEST_P(Push, what_was_received_is_read_after_the_connection_has_ended) {
   EXPECT_TRUE(in.read()) << "readback";
 }
 
+TEST_P(Transport, the_buffers_of_a_connection_show_what_waits) {
+  RTC::TimedLong value{};
+  RTC::OutPort<RTC::TimedLong> out("A0.out", value);
+  RTC::InPort<RTC::TimedLong> in("B0.in", value);
+  auto plan =
+      profile({out.getPortRef(), in.getPortRef()}, {{"interface_type", interface}, {"dataflow_type", dataflow}, {"buffer.length", "3"}});
+  ASSERT_EQ(out.connect(plan), RTC::RTC_OK);
+  // Where the samples stay until they are read.
+  RTC::CdrBufferBase* keeping = dataflow == "push" ? in.connectors()[0]->getBuffer() : out.connectors()[0]->getBuffer();
+  RTC::CdrBufferBase* other = dataflow == "push" ? out.connectors()[0]->getBuffer() : in.connectors()[0]->getBuffer();
+  EXPECT_EQ(keeping->length(), 3u);
+  EXPECT_TRUE(keeping->empty());
+  for (value.data = 0; value.data < 5; ++value.data) ASSERT_TRUE(out.write());
+  EXPECT_EQ(keeping->readable(), 3u);
+  EXPECT_EQ(keeping->writable(), 0u);
+  EXPECT_TRUE(keeping->full());
+  EXPECT_TRUE(other->empty());
+  ASSERT_TRUE(in.read());
+  EXPECT_EQ(value.data, 2);
+  EXPECT_EQ(keeping->readable(), 2u);
+  keeping->reset();
+  EXPECT_EQ(keeping->readable(), 0u);
+  EXPECT_EQ(keeping->writable(), 3u);
+  EXPECT_FALSE(dataflow == "push" && in.read()) << "nor is the last one read again";
+  out.disconnect_all();
+}
+
 TEST_P(Push, what_nobody_reads_of_closed_connections_is_bounded) {
   RTC::TimedLong sent{};
   RTC::TimedLong received{};

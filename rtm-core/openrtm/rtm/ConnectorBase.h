@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "corba/event_data.h"
+#include "rtm/CdrBufferBase.h"
 #include "rtm/DataPortStatus.h"
 #include "rtm/idl/RTCStub.h"
 
@@ -40,6 +41,8 @@ class ConnectorBase : public DataPortStatus, public corba::ConnectorEvents {
   ConnectorInfo profile() const { return *info(); }
   const char* id() const { return id_.c_str(); }
   const char* name() const { return name_.c_str(); }
+  // What waits in this side of the connection.
+  CdrBufferBase* getBuffer() { return &buffer_; }
   // Takes the whole connection apart; the object is gone afterwards.
   DataPortStatus disconnect();
 
@@ -57,6 +60,7 @@ class ConnectorBase : public DataPortStatus, public corba::ConnectorEvents {
   const std::shared_ptr<ConnectorListeners> listeners_;
   const std::string name_;
   const std::string id_;
+  CdrBufferBase buffer_;
   mutable std::mutex mutex_;
   std::shared_ptr<ConnectorInfo> info_;
 };

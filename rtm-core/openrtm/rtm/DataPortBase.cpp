@@ -176,6 +176,10 @@ ReturnCode_t DataPortBase<Engine, Connector, side>::open(ConnectorProfile& profi
     RTC_WARN_STR("connection refused: " << refusal.reason);
     return static_cast<ReturnCode_t>(refusal.code);
   }
+  const auto all = engine_->connections();
+  for (const auto& connection : *all) {
+    if (connection->id() == connector->id()) connector->getBuffer()->show(connection, settings.buffer.length);
+  }
   if (provides) connector->setInfo(detail::make_info(profile, m_properties));
   connector->on_event(corba::ConnectorEvent::connect);
   return RTC_OK;

@@ -177,6 +177,11 @@ class Manager {
   // Runs `task` once, soon.
   void invoke(std::function<void()> task);
 
+ protected:
+  // Hosts of components reach the servant through a class derived from this one. nullptr if there is none: before init, after shutdown, or
+  // with manager.corba_servant NO.
+  RTM::ManagerServant* m_mgrservant = nullptr;
+
  private:
   friend class ManagerImpl;
   friend class ModuleManager;

@@ -247,6 +247,7 @@ void ManagerImpl::end() {
   }
   begin_step(in_orb);
   orb.reset();
+  facade.m_mgrservant = nullptr;
   if (servant != nullptr) servant->_remove_ref();
   servant = nullptr;
   begin_step(after_naming);

@@ -102,6 +102,7 @@ base::Result<void> ManagerImpl::start(const ManagerConfig& configuration, const 
   if (flag("manager.corba_servant", true)) {
     servant = new RTM::ManagerServant(facade);
     servant->activate();
+    facade.m_mgrservant = servant;
   }
   {
     const std::scoped_lock lock(config_mutex);

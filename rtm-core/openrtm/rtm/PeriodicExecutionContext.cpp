@@ -27,13 +27,22 @@ PeriodicExecutionContext::PeriodicExecutionContext(const std::string& name)
       worker_(std::make_unique<rt::PeriodicWorker>(context(), *steps_)) {
   setObjRef(RTC::ExecutionContextService_var(_this()));
   setKind(RTC::PERIODIC);
+  m_period = getPeriod();
 }
 
 PeriodicExecutionContext::~PeriodicExecutionContext() { endThread(); }
 
 void PeriodicExecutionContext::endThread() {
+  m_svc = false;
   worker_->stop();
   coil::Task::wait();
+}
+
+void PeriodicExecutionContext::runCycle(ExecutionContextBase& context) { static_cast<PeriodicExecutionContext&>(context).invokeWorker(); }
+
+RTC::ReturnCode_t PeriodicExecutionContext::onSetRate(double) {
+  m_period = getPeriod();
+  return RTC::RTC_OK;
 }
 
 void PeriodicExecutionContext::init(coil::Properties& props) {
@@ -58,14 +67,19 @@ void PeriodicExecutionContext::init(coil::Properties& props) {
 RTC::ReturnCode_t PeriodicExecutionContext::onStarted() {
   coil::Task::wait();
   worker_->reset();
+  m_svc = true;
   open(nullptr);
   return RTC::RTC_OK;
 }
 
 RTC::ReturnCode_t PeriodicExecutionContext::onStopping() {
+  m_svc = false;
   worker_->stop();
   if (isSteppingThread()) return RTC::RTC_OK;  // the thread ends after this cycle
-  if (!waitForCallbacks() && worker_->resume()) return RTC::RTC_ERROR;
+  if (!waitForCallbacks() && worker_->resume()) {
+    m_svc = true;
+    return RTC::RTC_ERROR;
+  }
   coil::Task::wait();
   return RTC::RTC_OK;
 }

@@ -2,9 +2,14 @@
 // while no component is active or changes its state. Classic contexts derive from it and replace svc().
 #pragma once
 
+#include <coil/Guard.h>
+#include <coil/Mutex.h>
 #include <coil/Task.h>
+#include <coil/TimeValue.h>
 #include <rtm/ExecutionContextServant.h>
+#include <rtm/PeriodicLoop.h>
 
+#include <atomic>
 #include <memory>
 #include <vector>
 
@@ -47,7 +52,27 @@ class PeriodicExecutionContext : public ExecutionContextServant<POA_RTC::Executi
   // True while the thread is to go on.
   bool threadRunning() const;
 
+  // What svc() of sources of 1.x and 2.x reads; a loop may as well call threadRunning, getPeriod, invokeWorkerPreDo, Do and PostDo.
+  using Guard = coil::Guard<coil::Mutex>;
+  using Comp = detail::LoopMember;
+  using CompItr = detail::LoopMembers::iterator;
+  // For each member in turn; the whole cycle is done at the first.
+  struct invoke_worker {
+    void operator()(const Comp& member) const {
+      if (member.context != nullptr) runCycle(*member.context);
+    }
+  };
+  detail::LoopMembers m_comps{*this};
+  detail::LoopWorker m_worker;        // 1.1
+  detail::LoopWorker m_workerthread;  // 1.2, 2.x
+  coil::Mutex m_svcmutex;
+  std::atomic<bool> m_svc{false};  // as threadRunning
+  bool m_nowait = false;
+  coil::TimeValue m_period;  // written by set_rate on the caller's thread, as ever
+  RTC::ReturnCode_t onSetRate(double rate) override;
+
  private:
+  static void runCycle(ExecutionContextBase& context);
   class Steps;
   std::unique_ptr<Steps> steps_;
   std::unique_ptr<rt::PeriodicWorker> worker_;
@@ -56,5 +81,9 @@ class PeriodicExecutionContext : public ExecutionContextServant<POA_RTC::Executi
 };
 
 }  // namespace RTC
+
+namespace RTC_exp {
+using RTC::PeriodicExecutionContext;
+}
 
 extern "C" void PeriodicExecutionContextInit(RTC::Manager* manager);

@@ -15,6 +15,11 @@ void PortBase::setName(const char* name) {
   set_port_name(name_);
 }
 
+void PortBase::setPortRef(PortService_ptr port_ref) {
+  set_reference(port_ref);
+  m_objref = RTC::PortService::_duplicate(port_ref);
+}
+
 void PortBase::setOwner(RTObject_ptr owner) { set_owner(owner); }
 
 void PortBase::init(coil::Properties& properties) {

@@ -28,7 +28,7 @@ class PortBase : public corba::PortServant {
   // A copy, without asking anyone.
   RTC::PortProfile getPortProfile() const { return profile(); }
   RTC::PortProfile getProfile() const { return profile(); }
-  void setPortRef(PortService_ptr port_ref) { set_reference(port_ref); }
+  void setPortRef(PortService_ptr port_ref);
   // Borrowed; activates the port at the first call.
   PortService_ptr getPortRef() { return reference(); }
   void setOwner(RTObject_ptr owner);
@@ -68,6 +68,7 @@ class PortBase : public corba::PortServant {
 
   Logger rtclog;
   coil::Properties m_properties;
+  PortService_var m_objref;  // from the first getPortRef on, at the latest since the component has the port
   ConnectionCallback* m_onPublishInterfaces = nullptr;
   ConnectionCallback* m_onSubscribeInterfaces = nullptr;
   ConnectionCallback* m_onConnected = nullptr;
@@ -80,6 +81,7 @@ class PortBase : public corba::PortServant {
   ReturnCode_t publish(ConnectorProfile& profile) final;
   ReturnCode_t subscribe(const ConnectorProfile& profile) final;
   void unsubscribe(const ConnectorProfile& profile, bool is_lost) final;
+  void activated(PortService_ptr port_ref) final { m_objref = RTC::PortService::_duplicate(port_ref); }
   void on_step(Step step, ConnectorProfile& profile, ReturnCode_t code) final;
 
   std::string name_;
