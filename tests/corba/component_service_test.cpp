@@ -209,6 +209,48 @@ TEST_F(ComponentServiceTest, tells_an_observer_of_the_first_version_everything) 
   EXPECT_FALSE(configuration->remove_service_profile("one"));
 }
 
+TEST_F(ComponentServiceTest, heartbeats_come_no_faster_than_asked_and_end_when_asked) {
+  probe->initialize();
+  SDOPackage::Configuration_var configuration = probe->get_configuration();
+  const auto add = [&](const char* id, Served<OldObserver>& observer, const char* enable, const char* interval) {
+    return configuration->add_service_profile(
+        service_profile(id, "IDL:OpenRTM/ComponentObserver:1.0", observer.reference(),
+                        {{"observed_status", "ALL"}, {"heartbeat.enable", enable}, {"heartbeat.interval", interval}}));
+  };
+  const auto beats = [](Served<OldObserver>& observer) {
+    std::lock_guard lock(observer->mutex);
+    return std::count(observer->heard.begin(), observer->heard.end(), std::pair(OpenRTM::HEARTBEAT, std::string()));
+  };
+  const auto wait_for_beats = [&](Served<OldObserver>& observer, std::ptrdiff_t further) {
+    const auto enough = beats(observer) + further;
+    std::unique_lock lock(observer->mutex);
+    return observer->condition.wait_for(lock, 60s, [&] {
+      return std::count(observer->heard.begin(), observer->heard.end(), std::pair(OpenRTM::HEARTBEAT, std::string())) >= enough;
+    });
+  };
+  Served<OldObserver> steady, quick, mute;
+  const auto start = std::chrono::steady_clock::now();
+  ASSERT_TRUE(add("steady", steady, "YES", "0.05"));
+  ASSERT_TRUE(add("quick", quick, "YES", "0.02"));
+  ASSERT_TRUE(add("mute", mute, "NO", "0.02"));
+  EXPECT_TRUE(wait_for_beats(steady, 5));
+  EXPECT_GE(std::chrono::steady_clock::now() - start, 4 * 50ms) << "no faster than asked";
+  EXPECT_GT(beats(quick), 0);
+  EXPECT_EQ(beats(mute), 0);
+
+  // Told again with other settings, and taken away: one that was on its way may still come.
+  ASSERT_TRUE(add("quick", quick, "NO", "0.02"));
+  auto before = beats(quick);
+  EXPECT_TRUE(wait_for_beats(steady, 3));
+  EXPECT_LE(beats(quick), before + 1);
+  ASSERT_TRUE(add("quick", quick, "YES", "0.02"));
+  EXPECT_TRUE(wait_for_beats(quick, 2));
+  ASSERT_TRUE(configuration->remove_service_profile("quick"));
+  before = beats(quick);
+  EXPECT_TRUE(wait_for_beats(steady, 3));
+  EXPECT_LE(beats(quick), before + 1);
+}
+
 TEST_F(ComponentServiceTest, tells_an_observer_of_the_second_version_only_what_it_asked_for) {
   probe->initialize();
   SDOPackage::Configuration_var configuration = probe->get_configuration();

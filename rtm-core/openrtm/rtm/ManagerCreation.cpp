@@ -258,8 +258,8 @@ std::vector<std::string> ManagerImpl::naming_names(RTObject_impl* component, con
 base::Result<RTObject_impl*> ManagerImpl::finish_creation(std::uint64_t id, const RegisteredFactory& source,
                                                           const rt::ComponentArgument& argument) {
   auto* component = state.lock()->records[id].component;
-  // What counts more comes later: the manager's settings, the type's specification, rtc.conf on the type, on the instance, the file that
-  // the argument names, the argument.
+  // What counts more comes later: the manager's defaults, the type's specification, what rtc.conf and options set for all, rtc.conf on the
+  // type, on the instance, the file that the argument names, the argument.
   coil::Properties properties = source.factory->profile();
   component->setProperties(properties);
   bool numbered = false;
@@ -272,8 +272,11 @@ base::Result<RTObject_impl*> ManagerImpl::finish_creation(std::uint64_t id, cons
   }
   component->setInstanceName(name->c_str());
   const std::string category = component->getCategory();
-  for (const auto& inherited = inherited_properties(); const auto& key : inherited.propertyNames()) {
-    if (properties.findNode(key) == nullptr || properties.getProperty(key).empty()) properties.setProperty(key, inherited.getProperty(key));
+  const auto inherited = inherited_properties();
+  for (const auto& key : inherited.propertyNames()) {
+    const auto* own = properties.findNode(key);
+    if (!where(key).empty() || own == nullptr || properties.getProperty(key).empty())
+      properties.setProperty(key, inherited.getProperty(key));
   }
   properties << configured_properties(category, component->getTypeName());
   properties << configured_properties(category, *name);

@@ -255,7 +255,11 @@ bool ManagerImpl::activate_all() {
       const std::scoped_lock lock(config_mutex);
       if (const auto* found = config.findNode("logger.logstream." + id)) node = *found;
     }
-    if (plugin == nullptr || node.size() == 0 || !plugin->init(node)) continue;
+    if (plugin == nullptr) continue;
+    if (node.size() == 0 || !plugin->init(node)) {
+      LogstreamFactory::instance().deleteObject(plugin);
+      continue;
+    }
     if (plugin->getStreamBuffer() != nullptr) addLogStreamBuffer(plugin->getStreamBuffer());
     log_plugins.push_back(plugin);
   }
