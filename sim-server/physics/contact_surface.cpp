@@ -6,6 +6,16 @@
 #include "physics/ode.h"
 
 namespace sim {
+namespace {
+
+Eigen::Vector3d velocity_at(dBodyID body, const dReal* place) {
+  if (body == nullptr) return Eigen::Vector3d::Zero();
+  dVector3 velocity;
+  dBodyGetPointVel(body, place[0], place[1], place[2], velocity);
+  return ode::vector(velocity);
+}
+
+}  // namespace
 
 dSurfaceParameters combine(const SurfaceDef& a, const SurfaceDef& b, double dt) {
   dSurfaceParameters s{};
@@ -53,6 +63,34 @@ bool friction_direction(const SurfaceDef& a, dGeomID geom_a, const SurfaceDef& b
   direction.normalize();
   out[0] = direction.x(), out[1] = direction.y(), out[2] = direction.z();
   return true;
+}
+
+void soften(dContact& contact, double weight, double erp, double layer, double dt) {
+  constexpr double sag = 1e-5;  // [m]
+  dSurfaceParameters& surface = contact.surface;
+  if (!(weight > 0) || !(erp > 0) || (surface.mode & dContactBounce) != 0) return;
+  const double cfm = erp * sag / (dt * weight);
+  if ((surface.mode & dContactSoftCFM) != 0 && surface.soft_cfm >= cfm) return;
+  surface.mode |= dContactSoftERP | dContactSoftCFM;
+  surface.soft_cfm = cfm;
+  surface.soft_erp = erp;
+  contact.geom.depth += layer;
+}
+
+void resist_sliding(dContact& contact, dBodyID a, dBodyID b, double load) {
+  constexpr double at_rest = 1e-6;  // [m/s]
+  dSurfaceParameters& surface = contact.surface;
+  if ((surface.mode & (dContactFDir1 | dContactSlip1 | dContactSlip2)) != 0 || surface.mu != surface.mu2) return;
+  if (!(surface.mu > 0) || surface.mu == dInfinity || !(load > 0)) return;
+  const Eigen::Vector3d normal = ode::vector(contact.geom.normal);
+  Eigen::Vector3d sliding = velocity_at(a, contact.geom.pos) - velocity_at(b, contact.geom.pos);
+  sliding -= normal * normal.dot(sliding);
+  const double speed = sliding.norm();
+  if (!(speed > at_rest)) return;
+  for (int i = 0; i < 3; ++i) contact.fdir1[i] = sliding[i] / speed;
+  // The force turns with the sliding: what of the velocity comes to lie across takes its share of the friction with it.
+  surface.mode |= dContactFDir1 | dContactSlip2;
+  surface.slip2 = speed / (surface.mu * load);
 }
 
 int reduce(dContactGeom* contacts, int count) {

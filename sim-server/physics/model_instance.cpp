@@ -68,6 +68,7 @@ ModelInstance::ModelInstance(ModelId id, std::shared_ptr<const Blueprint> bluepr
                              std::vector<std::string>& lost)
     : id_(id), blueprint_(std::move(blueprint)), base_(base) {
   ode::prepare_thread();
+  for (const Assembly& assembly : blueprint_->assemblies) mass_ += assembly.is_anchored ? 0 : assembly.mass;
   make_shapes(shapes, lost);
   place_anchored();
 }

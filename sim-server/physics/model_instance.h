@@ -38,6 +38,7 @@ class ModelInstance {
   const Blueprint& blueprint() const { return *blueprint_; }
   const std::shared_ptr<const Blueprint>& shared_blueprint() const { return blueprint_; }
   const Eigen::Isometry3d& base() const { return base_; }
+  double mass() const { return mass_; }  // of all that can move
   bool is_awake() const;
   void wake();
 
@@ -84,6 +85,7 @@ class ModelInstance {
   std::vector<JointInstance> joints_;
   std::vector<ShapeInstance> shapes_;
   std::vector<Eigen::Isometry3d> shape_in_body_;
+  double mass_ = 0;
   bool has_forces_ = false;
   bool gravity_ = true, is_kinematic_ = false;
   Aabb moving_box_;

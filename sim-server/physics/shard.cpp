@@ -52,10 +52,11 @@ bool can_be_pushed(dGeomID geom) {
 
 }  // namespace
 
-Shard::Shard(const PhysicsDef& physics) : physics_(physics), contact_joints_(dJointGroupCreate(0)) {
+Shard::Shard(const PhysicsDef& physics)
+    : physics_(physics), gravity_(physics.gravity.norm()), erp_(physics.erp.value_or(0.2)), contact_joints_(dJointGroupCreate(0)) {
   const dWorldID w = world_.id();
   dWorldSetGravity(w, physics.gravity.x(), physics.gravity.y(), physics.gravity.z());
-  dWorldSetERP(w, physics.erp.value_or(0.2));
+  dWorldSetERP(w, erp_);
   dWorldSetCFM(w, std::max(physics.cfm.value_or(1e-9), 1e-10));
   dWorldSetQuickStepNumIterations(w, std::clamp(physics.iterations, 1, 10000));
   if (physics.sor > 0) dWorldSetQuickStepW(w, physics.sor);
@@ -212,6 +213,12 @@ void Shard::add_contact(ModelInstance& model_a, ShapeInstance& a, ModelInstance*
   if (friction_direction(*a.surface, a.geom.id(), *b.surface, b.geom.id(), geometry.normal, joint_contact.fdir1)) {
     joint_contact.surface.mode |= dContactFDir1;
   }
+  const double weight_a = can_be_pushed(a.geom.id()) ? model_a.mass() * gravity_ : 0;
+  const double weight_b = model_b != nullptr && can_be_pushed(b.geom.id()) ? model_b->mass() * gravity_ : 0;
+  soften(joint_contact, std::max(weight_a, weight_b), erp_, physics_.contact_surface_layer, physics_.step);
+  const double lighter = weight_a > 0 && weight_b > 0 ? std::min(weight_a, weight_b) : std::max(weight_a, weight_b);
+  const auto usual_contacts = static_cast<double>(std::max<std::size_t>(model_a.previous_contacts.size(), 1));
+  resist_sliding(joint_contact, dGeomGetBody(a.geom.id()), dGeomGetBody(b.geom.id()), lighter / usual_contacts);
   const dJointID joint = dJointCreateContact(world_.id(), contact_joints_.id(), &joint_contact);
   dJointAttach(joint, dGeomGetBody(a.geom.id()), dGeomGetBody(b.geom.id()));
   if (model_a.records_forces || (model_b != nullptr && model_b->records_forces)) {

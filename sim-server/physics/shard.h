@@ -43,6 +43,7 @@ class Shard {
     std::size_t contact_a = 0, contact_b = 0;
   };
   const PhysicsDef& physics_;
+  const double gravity_, erp_;  // [m/s^2]; the world's error reduction
   ode::World world_;
   ode::JointGroup contact_joints_;
   std::deque<Feedback> feedback_;

@@ -133,7 +133,8 @@ TEST(Physics, ten_robots_drive_ten_minutes_and_none_sinks_tips_or_flies) {
     for (ModelId i = 1; i <= 10; ++i) {
       const auto pose = f.physics.model_pose(i);
       ASSERT_NEAR(pose.translation().z(), 0, 0.02) << f.physics.def(i).name << " at " << tenth;
-      ASSERT_GT(pose.linear()(2, 2), 0.95) << f.physics.def(i).name << " at " << tenth;
+      // Who is bumped from behind may put its nose on the floor, at 25 degrees.
+      ASSERT_GT(pose.linear()(2, 2), 0.85) << f.physics.def(i).name << " at " << tenth;
     }
   }
   EXPECT_TRUE(f.physics.take_complaints().empty());
@@ -245,6 +246,50 @@ TEST(Physics, contact_forces_carry_the_weight) {
     EXPECT_GT(contact.normal.z(), 0.99);
   }
   EXPECT_NEAR(up, 98, 0.5);
+}
+
+TEST(Physics, a_table_on_four_feet_loads_all_of_them_alike) {
+  ModelDef table = body("table", SphereShape{0.05}, at(0, 0, 0.05, 0.3), 40);
+  table.links[0].inertia = Eigen::Vector3d(4, 4, 4).asDiagonal();
+  table.links[0].collisions.clear();
+  for (const auto& [x, y] : {std::pair{0.4, 0.3}, {0.4, -0.3}, {-0.4, 0.3}, {-0.4, -0.3}}) {
+    CollisionDef foot;
+    foot.name = "foot";
+    foot.geometry = SphereShape{0.05};
+    foot.pose = at(x, y, 0);
+    table.links[0].collisions.push_back(foot);
+  }
+  Fixture f(world_of({ground(), table}));
+  f.physics.record_forces(1);
+  f.run(0.3);
+  ASSERT_EQ(f.physics.contacts(1).size(), 4U);
+  for (const auto& contact : f.physics.contacts(1)) EXPECT_NEAR(contact.force.z(), 98, 1);
+}
+
+// Coulomb: it comes to rest after v^2 / (2 mu g), on the line that it was pushed along.
+TEST(Physics, a_box_slides_as_far_in_every_direction) {
+  for (const double heading : {0.0, 0.3, std::numbers::pi / 4, 2.0}) {
+    ModelDef box = body("box", BoxShape{{0.5, 0.5, 0.1}}, at(0, 0, 0.05));
+    box.links[0].collisions[0].surface.mu = box.links[0].collisions[0].surface.mu2 = 0.5;
+    Fixture f(world_of({ground(), box}));
+    f.run(0.1);
+    ASSERT_TRUE(f.physics.set_model_twist(1, {{2 * std::cos(heading), 2 * std::sin(heading), 0}, {0, 0, 0}}));
+    f.run(1);
+    const Eigen::Vector3d line(std::cos(heading), std::sin(heading), 0), end = f.position("box");
+    EXPECT_NEAR(end.dot(line), 4 / (2 * 0.5 * 9.8), 0.01) << "heading " << heading;
+    EXPECT_NEAR(end.cross(line).z(), 0, 0.01) << "heading " << heading;
+  }
+}
+
+TEST(Physics, a_spinning_top_slides_on_a_straight_line) {
+  // Its edge rubs in all directions; together they only brake.
+  ModelDef disk = body("disk", CylinderShape{0.3, 0.05}, at(0, 0, 0.025));
+  Fixture f(world_of({ground(), disk}));
+  f.run(0.1);
+  ASSERT_TRUE(f.physics.set_model_twist(1, {{1, 0, 0}, {0, 0, 20}}));
+  f.run(2);
+  EXPECT_NEAR(f.position("disk").y(), 0, 0.03);
+  EXPECT_GT(f.position("disk").x(), 0.06) << "further than without spin, v^2 / (2 mu g) = 0.05 m";
 }
 
 TEST(Physics, shapes_of_every_kind_rest_on_each_other) {
