@@ -151,12 +151,13 @@ void make_plugin(Makers& m, const PluginDef& plugin) {
   switch (kind_of(plugin)) {
     case PluginKind::differential_drive:
     case PluginKind::skid_steer_drive:
+    case PluginKind::car_drive: {
+      const auto make_train = kind_of(plugin) == PluginKind::car_drive ? make_car : make_wheel_pairs;
+      auto train = make_train(m.world.physics, m.model, plugin);
       // A drive that is wrong is the world's fault, not the machine's: said, left out.
-      if (const auto settings = DriveSettings::of(def, plugin); !settings) {
-        m.left_out.push_back(settings.error().message);
-        return;
-      }
-      return m.take(Position2d::make(m.world, m.model, plugin));
+      if (!train) return m.left_out.push_back(train.error().message);
+      return m.take(Position2d::make(m.world, m.model, plugin, std::move(*train)));
+    }
     case PluginKind::velocity_control:
       for (const auto& other : def.plugins) {
         if (&other >= &plugin || other.scope != plugin.scope || kind_of(other) != PluginKind::velocity_control) continue;

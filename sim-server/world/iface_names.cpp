@@ -58,8 +58,7 @@ class Namer {
 
   void name(PluginDef& plugin) {
     const PluginKind kind = kind_of(plugin);
-    const bool is_drive = kind == PluginKind::differential_drive || kind == PluginKind::skid_steer_drive;
-    if (is_drive) plugin.iface = take(drives_, "plugin " + base::in_quotes(plugin.name), plugin.scope, iface_own_name(plugin));
+    if (is_wheel_drive(kind)) plugin.iface = take(drives_, "plugin " + base::in_quotes(plugin.name), plugin.scope, iface_own_name(plugin));
     // One way of moving for each model, so one name.
     if (kind == PluginKind::velocity_control || kind == PluginKind::trajectory_follower)
       plugin.iface = scoped_and_short(plugin.scope, "position3d");
@@ -124,9 +123,7 @@ std::string iface_name(const ModelDef& model, const SensorDef& sensor) {
 }
 
 std::string iface_name(const ModelDef& model, const PluginDef& plugin) {
-  const PluginKind kind = kind_of(plugin);
-  const bool is_driven = kind == PluginKind::differential_drive || kind == PluginKind::skid_steer_drive;
-  return after(model, plugin.iface, plugin.scope, is_driven ? iface_own_name(plugin) : "position3d");
+  return after(model, plugin.iface, plugin.scope, is_wheel_drive(kind_of(plugin)) ? iface_own_name(plugin) : "position3d");
 }
 
 }  // namespace sim

@@ -18,11 +18,11 @@ const std::map<std::string_view, PluginKind>& table() {
       {"rtmsimdiffdrive", differential_drive},
       {"skidsteerdrive", skid_steer_drive},
       {"skidsteer", skid_steer_drive},
+      {"ackermannsteering", car_drive},
+      {"ackermanndrive", car_drive},
       {"velocitycontrol", velocity_control},
       {"planarmove", velocity_control},
       {"trajectoryfollower", trajectory_follower},
-      {"ackermannsteering", unsupported_drive},
-      {"ackermanndrive", unsupported_drive},
       {"mecanumdrive", unsupported_drive},
       {"tricycledrive", unsupported_drive},
       {"omniwheeldrive", unsupported_drive},
@@ -129,6 +129,10 @@ PluginKind kind_of_plugin(std::string_view filename, std::string_view name) {
   // The name is the user's own word in Gazebo classic, so that only class names count.
   if (name.find("::") == std::string_view::npos) return PluginKind::unknown;
   return known_kind(name).value_or(PluginKind::unknown);
+}
+
+bool is_wheel_drive(PluginKind kind) {
+  return kind == PluginKind::differential_drive || kind == PluginKind::skid_steer_drive || kind == PluginKind::car_drive;
 }
 
 std::string iface_own_name(const PluginDef& plugin) {

@@ -8,9 +8,10 @@ namespace sim {
 enum class PluginKind {
   differential_drive,   // two driven wheels
   skid_steer_drive,     // several driven wheels on each side
+  car_drive,            // two steered wheels
   velocity_control,     // the model moves as it is told, without wheels
   trajectory_follower,  // the model follows way points
-  unsupported_drive,    // drives with other wheels: Ackermann steering, mecanum, tricycle, ...
+  unsupported_drive,    // drives with other wheels or none: mecanum, tricycle, tracks, rotors, ...
   implied,              // what it does is done by the simulator anyway (sensors, physics, clock, user interface of Gazebo)
   unknown,
 };
@@ -19,6 +20,9 @@ enum class PluginKind {
 // version), then by the class in the name ("gz::sim::systems::DiffDrive").
 PluginKind kind_of(const PluginDef& plugin);
 PluginKind kind_of_plugin(std::string_view filename, std::string_view name);
+
+// Those with an iface position2d.
+bool is_wheel_drive(PluginKind kind);
 
 // What the iface of a drive plugin is called after model and scope: the plugin's name, or "position2d" when that is missing or the name of
 // a class.

@@ -249,7 +249,7 @@ TEST(Drives, turn_a_heavy_robot_on_four_wheels_as_fast_as_their_slip_lets_them) 
 
 TEST(Drives, that_are_not_simulated_are_one_line_each) {
   const LoadResult result = load(folder / "drives.world");
-  for (const char* line : {"Ackermann", "mecanum", "tricycle"}) {
+  for (const char* line : {"tracked", "mecanum", "tricycle"}) {
     EXPECT_EQ(std::count_if(result.findings.begin(), result.findings.end(),
                             [&](const Finding& f) {
                               return base::to_lower(f.text()).find(base::to_lower(line)) != std::string::npos &&

@@ -252,7 +252,9 @@ TEST(WorldPlugins, are_known_under_the_names_of_all_simulators) {
        {"gz-sim-physics-system", "ignition-gazebo-scene-broadcaster-system", "libgazebo_ros_laser.so", "gz-sim-imu-system"}) {
     EXPECT_EQ(kind_of_plugin(name, "x"), PluginKind::implied) << name;
   }
-  for (const char* name : {"libSimpleTrackedVehiclePlugin.so", "libgazebo_ros_ackermann_drive.so", "gz-sim-track-controller-system"})
+  for (const char* name : {"gz-sim-ackermann-steering-system", "libgazebo_ros_ackermann_drive.so"})
+    EXPECT_EQ(kind_of_plugin(name, "x"), PluginKind::car_drive) << name;
+  for (const char* name : {"libSimpleTrackedVehiclePlugin.so", "libgazebo_ros_tricycle_drive.so", "gz-sim-track-controller-system"})
     EXPECT_EQ(kind_of_plugin(name, "x"), PluginKind::unsupported_drive) << name;
   for (const char* name : {"libRayPlugin.so", "libgazebo_ros_velodyne_gpu_laser.so", "libgazebo_ros_block_laser.so"})
     EXPECT_EQ(kind_of_plugin(name, "x"), PluginKind::implied) << name;

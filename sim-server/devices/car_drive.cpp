@@ -1,0 +1,200 @@
+// Cars: two wheels are steered so that all wheels roll about one centre, and every driven wheel turns as fast as its place on that circle
+// asks. The point that vx and va are of is the middle between the rear wheels.
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.h"
+#include "devices/drive_train.h"
+
+namespace sim {
+namespace {
+
+constexpr double slowest = 1e-3;   // [m/s] at which a yaw rate still tells a curve
+constexpr double steer_rate = 10;  // [rad/s]
+
+// Places in the model, from the middle between the rear wheels [m].
+struct Wheel {
+  std::uint32_t joint = 0;
+  double x = 0, y = 0;
+};
+
+struct Settings {
+  std::vector<Wheel> driven;
+  std::vector<Wheel> steered;             // by their steering joints
+  double wheel_base = 1, separation = 1;  // [m]
+  double radius = 0;                      // of a driven wheel [m]
+  double torque = strongest_torque;       // of a driven wheel [N m]
+  double steering_limit = 0.5;            // [rad], as if one wheel in the middle were steered
+  double steering_gain = 1;               // [1/s]: rate of the steering for each radian that is missing
+  double max_speed = 0, min_speed = 0;    // forward; backward, negative; 0: unlimited [m/s]
+  double max_acceleration = 0;            // 0: unlimited [m/s^2]
+  double rate = 0;                        // of samples [Hz]; 0: every step
+};
+
+Wheel place_of(const ModelDef& model, std::uint32_t joint) {
+  const Eigen::Vector3d place = model.joints[joint].pose_in_model.translation();
+  return {joint, place.x(), place.y()};
+}
+
+// Wheels and steering joints, from the middle between the wheels in the rear.
+base::Result<void> find_wheels(const ModelDef& model, const PluginDef& plugin, Settings& s) {
+  std::vector<std::uint32_t> driven, steered;
+  std::string missing;
+  const bool is_of_ros = plugin.parameters.child("rear_left_joint") != nullptr;
+  if (is_of_ros) {
+    add_joints(model, plugin, {"rear_left_joint", "rear_right_joint"}, driven, missing);
+  } else {
+    add_joints(model, plugin, {"left_joint", "right_joint"}, driven, missing);
+  }
+  add_joints(model, plugin, {"left_steering_joint", "right_steering_joint"}, steered, missing);
+  const auto error = [&](const std::string& what) {
+    return base::Error{fmt::format("{}: plugin {}: {}", plugin.source, plugin.name, what)};
+  };
+  if (!missing.empty()) return error(fmt::format("model {} has no joint {}", model.name, base::in_quotes(missing)));
+  if (driven.empty() || steered.empty()) {
+    return error(fmt::format("needs driven wheels ({}) and steering joints (left_steering_joint, right_steering_joint)",
+                             is_of_ros ? "rear_left_joint, rear_right_joint" : "left_joint, right_joint"));
+  }
+  for (const auto joint : driven) s.driven.push_back(place_of(model, joint));
+  for (const auto joint : steered) s.steered.push_back(place_of(model, joint));
+  const auto before = [](const Wheel& a, const Wheel& b) { return a.x < b.x; };
+  const auto aside = [](const Wheel& a, const Wheel& b) { return a.y < b.y; };
+  const double front = std::min_element(s.steered.begin(), s.steered.end(), before)->x;
+  const auto rearmost = std::min_element(s.driven.begin(), s.driven.end(), before)->x;
+  const auto [right, left] = std::minmax_element(s.driven.begin(), s.driven.end(), aside);
+  s.wheel_base = plugin.parameters.number_of({"wheel_base", "wheelBase"}).value_or(front - rearmost);
+  s.separation = plugin.parameters.number_of({"wheel_separation", "wheelSeparation"}).value_or(left->y - right->y);
+  const double middle = (left->y + right->y) / 2, rear = front - s.wheel_base;
+  for (auto* wheels : {&s.driven, &s.steered}) {
+    for (Wheel& wheel : *wheels) wheel.x -= rear, wheel.y -= middle;
+  }
+  return {};
+}
+
+base::Result<Settings> settings_of(const ModelDef& model, const PluginDef& plugin) {
+  const ParameterNode& p = plugin.parameters;
+  Settings s;
+  if (auto found = find_wheels(model, plugin, s); !found) return found.error();
+  s.radius = p.number_of({"wheel_radius", "wheelRadius"}).value_or(wheel_radius(model, s.driven[0].joint));
+  if (!(s.wheel_base > 0) || !(s.separation > 0) || !(s.radius > 0)) {
+    return base::Error{fmt::format("{}: plugin {}: wheel base, separation and radius must be positive, got {}, {} and {}", plugin.source,
+                                   plugin.name, s.wheel_base, s.separation, s.radius)};
+  }
+  const bool is_of_gz = is_of_gz_sim(plugin);
+  s.steering_limit = std::clamp(p.number_of({"steering_limit", "max_steer"}).value_or(is_of_gz ? 0.5 : 0.6), 0.01, 1.5);
+  s.steering_gain = std::max(0.01, p.number_of({"steer_p_gain"}).value_or(is_of_gz ? 1 : steer_rate));
+  for (const Wheel& wheel : s.driven) s.torque = std::min(s.torque, torque_of(model, wheel.joint));
+  s.max_speed = std::max(0.0, p.number_of({"max_velocity", "max_speed"}).value_or(0));
+  s.min_speed = std::min(0.0, p.number_of({"min_velocity"}).value_or(-s.max_speed));
+  s.max_acceleration = std::max(0.0, p.number_of({"max_acceleration"}).value_or(0));
+  s.rate = std::max(0.0, p.number_of({"odom_publish_frequency", "update_rate"}).value_or(0));
+  return s;
+}
+
+class Car final : public DriveTrain {
+ public:
+  Car(Physics& physics, ModelId model, Settings settings) : physics_(physics), model_(model), settings_(std::move(settings)) {
+    read_angles();
+  }
+
+  void describe(shm::Position2dInfo& info) const override {
+    info.drive = RTMSIM_DRIVE_CAR;
+    info.max_speed = settings_.max_speed;
+    info.max_acceleration = settings_.max_acceleration;
+    info.wheel_separation = settings_.separation;
+    info.wheel_radius = settings_.radius;
+  }
+
+  void drive(double asked_vx, double asked_va, bool motors_on, double dt) override {
+    const double fastest = settings_.max_speed > 0 ? settings_.max_speed : 1000;
+    const double vx = std::clamp(asked_vx, settings_.min_speed < 0 ? settings_.min_speed : -fastest, fastest);
+    const double tightest = std::sin(settings_.steering_limit) / settings_.wheel_base;
+    if (std::abs(asked_vx) > slowest) {
+      curvature_ = std::clamp(asked_va / asked_vx, -tightest, tightest);
+    } else if (asked_va != 0) {
+      curvature_ = std::copysign(tightest, asked_va);  // it cannot turn on the spot, but its wheels can
+    }
+    const double most = settings_.max_acceleration > 0 ? settings_.max_acceleration * dt : 1e9;
+    speed_ = motors_on ? speed_ + std::clamp(vx - speed_, -most, most) : 0;
+    steer(motors_on);
+    const double curve = steered_curvature();
+    for (const Wheel& wheel : settings_.driven) {
+      physics_.set_motor({model_, wheel.joint}, 0, speed_ * share(wheel, curve) / settings_.radius, motors_on ? settings_.torque : 0);
+    }
+  }
+
+  Travel travel() override {
+    const double curve = steered_curvature();
+    double forward = 0, speed = 0;
+    for (std::size_t i = 0; i < settings_.driven.size(); ++i) {
+      const Wheel& wheel = settings_.driven[i];
+      const JointState state = physics_.joint_state({model_, wheel.joint});
+      forward += settings_.radius * wrapped(state.position - angles_[i]) / share(wheel, curve);
+      speed += settings_.radius * state.velocity / share(wheel, curve);
+      angles_[i] = state.position;
+    }
+    const auto count = static_cast<double>(settings_.driven.size());
+    return {forward / count, forward / count * curve, speed / count, speed / count * curve};
+  }
+
+  std::array<double, 2> followed() const override { return {speed_, speed_ * curvature_}; }
+  double fastest_rim() const override { return std::abs(speed_); }
+  double rate() const override { return settings_.rate; }
+  void reset() override {
+    speed_ = curvature_ = 0;
+    read_angles();
+  }
+  void add_to(StateHash& hash) const override {
+    for (const double value : {speed_, curvature_}) hash.add(value);
+  }
+
+ private:
+  // How fast a wheel rolls, of the speed of the middle between the rear wheels, on a curve [1/m].
+  static double share(const Wheel& wheel, double curve) {
+    return std::max(std::hypot(1 - curve * wheel.y, curve * wheel.x), 0.05) * (curve * wheel.y > 1 ? -1 : 1);
+  }
+
+  void steer(bool motors_on) {
+    for (const Wheel& wheel : settings_.steered) {
+      const double angle = std::atan2(settings_.wheel_base * curvature_, 1 - curvature_ * wheel.y);
+      const double missing = angle - physics_.joint_state({model_, wheel.joint}).position;
+      const double rate = std::clamp(settings_.steering_gain * missing, -steer_rate, steer_rate);
+      // Very little is not worth keeping a parked car awake for.
+      const double torque = torque_of(physics_.def(model_), wheel.joint);
+      physics_.set_motor({model_, wheel.joint}, 0, std::abs(missing) < 1e-4 ? 0 : rate, motors_on ? torque : 0);
+    }
+  }
+
+  // The curve that the wheels are steered to now [1/m].
+  double steered_curvature() const {
+    double sum = 0;
+    for (const Wheel& wheel : settings_.steered) {
+      const double slope = std::tan(std::clamp(physics_.joint_state({model_, wheel.joint}).position, -1.5, 1.5));
+      sum += slope / (settings_.wheel_base + wheel.y * slope);
+    }
+    return sum / static_cast<double>(settings_.steered.size());
+  }
+
+  void read_angles() {
+    angles_.clear();
+    for (const Wheel& wheel : settings_.driven) angles_.push_back(physics_.joint_state({model_, wheel.joint}).position);
+  }
+
+  Physics& physics_;
+  ModelId model_;
+  Settings settings_;
+  double speed_ = 0, curvature_ = 0;  // that the motors follow [m/s], [1/m]
+  std::vector<double> angles_;        // of the driven wheels
+};
+
+}  // namespace
+
+MadeTrain make_car(Physics& physics, ModelId model, const PluginDef& plugin) {
+  auto settings = settings_of(physics.def(model), plugin);
+  if (!settings) return settings.error();
+  return std::unique_ptr<DriveTrain>(new Car(physics, model, std::move(*settings)));
+}
+
+}  // namespace sim

@@ -1,0 +1,60 @@
+// How a robot on wheels moves: what its motors do for a velocity that is asked for, and what the encoders of its wheels say. The stepping
+// thread only.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "devices/device.h"
+
+namespace sim {
+
+// What the encoders say of the last step, and the rates in its end.
+struct Travel {
+  double forward = 0, turn = 0;    // [m], [rad]
+  double speed = 0, yaw_rate = 0;  // [m/s], [rad/s]
+};
+
+class DriveTrain {
+ public:
+  virtual ~DriveTrain() = default;
+  // Name, sizes and limits of the drive in the iface's constants.
+  virtual void describe(shm::Position2dInfo& info) const = 0;
+  // Sets the motors for the next step of `dt`: on the way to forward speed `vx` [m/s] and yaw rate `va` [rad/s], within the limits.
+  virtual void drive(double vx, double va, bool motors_on, double dt) = 0;
+  // After each step, once.
+  virtual Travel travel() = 0;
+  // vx and va that the motors follow now, and the fastest of the wheels' rims [m/s].
+  virtual std::array<double, 2> followed() const = 0;
+  virtual double fastest_rim() const = 0;
+  virtual double rate() const = 0;  // of samples [Hz]; 0: every step
+  // The model is (again) at its initial state.
+  virtual void reset() = 0;
+  virtual void add_to(StateHash& hash) const = 0;
+};
+
+using MadeTrain = base::Result<std::unique_ptr<DriveTrain>>;
+
+// From the plugin element, in the spellings in use; what is missing is taken from the model. Fail with a line.
+// Wheels on both sides that turn at speeds of their own: differential and skid drives.
+MadeTrain make_wheel_pairs(Physics& physics, ModelId model, const PluginDef& plugin);
+// Two steered wheels in front, as gz-sim's AckermannSteering and gazebo_ros' Ackermann drive have them.
+MadeTrain make_car(Physics& physics, ModelId model, const PluginDef& plugin);
+
+// --- for the drives themselves
+
+inline constexpr double strongest_torque = 1e6;  // [N m] of wheels that nothing but their grip holds back
+
+// All joints that the children of these names mean; one that is not there goes into `missing`.
+void add_joints(const ModelDef& model, const PluginDef& plugin, std::initializer_list<std::string_view> spellings,
+                std::vector<std::uint32_t>& joints, std::string& missing);
+// Of the round collision of the wheel that a joint turns [m]; 0 without one.
+double wheel_radius(const ModelDef& model, std::uint32_t joint);
+// What a joint's own limit allows [N m].
+double torque_of(const ModelDef& model, std::uint32_t joint);
+// gz-sim turns wheels as told whatever it takes; in Gazebo classic they have a torque, 5 N m when nothing is said.
+bool is_of_gz_sim(const PluginDef& plugin);
+// Within (-pi, pi].
+double wrapped(double angle);
+
+}  // namespace sim
