@@ -147,7 +147,9 @@ void make_follower(Makers& m, const PluginDef& plugin) {
 
 void make_plugin(Makers& m, const PluginDef& plugin) {
   const ModelDef& def = m.world.physics.def(m.model);
-  if (kind_of(plugin) != PluginKind::unknown && !m.can_name(iface_name(def, plugin), "plugin " + plugin.name)) return;
+  const bool has_iface = is_wheel_drive(kind_of(plugin)) || kind_of(plugin) == PluginKind::velocity_control ||
+                         kind_of(plugin) == PluginKind::trajectory_follower;
+  if (has_iface && !m.can_name(iface_name(def, plugin), "plugin " + plugin.name)) return;
   switch (kind_of(plugin)) {
     case PluginKind::differential_drive:
     case PluginKind::skid_steer_drive:
@@ -172,6 +174,7 @@ void make_plugin(Makers& m, const PluginDef& plugin) {
     case PluginKind::trajectory_follower:
       return make_follower(m, plugin);
     case PluginKind::unsupported_drive:
+    case PluginKind::joint_controller:  // joint_hold has it
     case PluginKind::implied:
     case PluginKind::unknown:  // the loader has said so
       return;

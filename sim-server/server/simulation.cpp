@@ -41,6 +41,7 @@ base::Result<void> Simulation::make_devices_of(ModelId model, std::vector<std::s
     device->iface().set_resets(resets_);
     devices_.push_back(std::move(device));
   }
+  for (const JointHold& hold : joint_holds_of(*physics_, model, left_out)) holds_.push_back(hold);
   return {};
 }
 
@@ -50,6 +51,7 @@ void Simulation::sort_devices() {
 
 void Simulation::step(PartTimes& times) {
   const Moment moment{time_, world_->physics.step};
+  for (const JointHold& hold : holds_) hold.before_step(*physics_);  // a drive that has the same joint wins
   for (auto& device : devices_) device->before_step(moment);
   for (const auto& wrench : wrenches_) {
     if (physics_->exists(wrench.link.model)) (void)physics_->add_wrench(wrench.link, wrench.force, wrench.torque);
@@ -127,6 +129,7 @@ base::Result<void> Simulation::reset(std::vector<std::string>& notes) {
     }
   }
   std::erase_if(devices_, [&](const auto& device) { return device->model() >= initial_models_; });
+  std::erase_if(holds_, [&](const JointHold& hold) { return hold.joint.model >= initial_models_; });
   physics_->reset();
   wrenches_.clear();
   trails_.clear();
@@ -175,6 +178,7 @@ base::Result<ModelId> Simulation::spawn(const ModelDef& model, std::vector<std::
 
 void Simulation::remove(ModelId model) {
   std::erase_if(devices_, [&](const auto& device) { return device->model() == model; });
+  std::erase_if(holds_, [&](const JointHold& hold) { return hold.joint.model == model; });
   std::erase_if(wrenches_, [&](const Wrench& wrench) { return wrench.link.model == model; });
   if (model < trails_.size()) trails_[model] = Trail();
   rays_->remove(model);

@@ -9,6 +9,7 @@
 
 #include "base/result.h"
 #include "devices/device.h"
+#include "devices/joint_hold.h"
 #include "devices/ray_world.h"
 #include "devices/render_world.h"
 #include "physics/physics.h"
@@ -90,6 +91,7 @@ class Simulation {
   std::unique_ptr<RenderWorld> pictures_;
   std::unique_ptr<DeviceWorld> device_world_;
   std::vector<std::unique_ptr<Device>> devices_;  // by model, then as made
+  std::vector<JointHold> holds_;
   std::vector<Device*> due_;
   std::vector<Wrench> wrenches_;
   std::vector<Trail> trails_;

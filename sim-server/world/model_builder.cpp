@@ -186,6 +186,9 @@ PluginDef build_plugin(pugi::xml_node node, const std::string& scope, BuildConte
   if (kind_of(plugin) == PluginKind::unsupported_drive) {
     context.complaints.warn(node, "drive " + base::in_quotes(plugin.filename.empty() ? plugin.name : plugin.filename) + " (" +
                                       describe_in_context(node) + ") is not simulated; nothing drives the model");
+  } else if (kind_of(plugin) == PluginKind::joint_controller) {
+    context.complaints.warn(node,
+                            describe_in_context(node) + " is not commanded: its joints keep the position or speed that it starts with");
   } else if (kind_of(plugin) == PluginKind::unknown) {
     context.complaints.warn(node, "unknown plugin " + base::in_quotes(plugin.filename) + " (" + describe_in_context(node) + ") is ignored");
   }

@@ -1,0 +1,96 @@
+#include "devices/joint_hold.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.h"
+#include "devices/drive_train.h"
+#include "world/plugin_kind.h"
+#include "world/xml_values.h"
+
+namespace sim {
+namespace {
+
+using Kind = JointDef::Kind;
+
+constexpr double gain = 10;           // [1/s]: velocity for each unit that is missing
+constexpr double hardly_any = 1e-4;   // [rad] or [m]: not worth keeping a model awake for
+constexpr double usual_velocity = 2;  // [rad/s] or [m/s] towards a target
+
+bool is_driveable(const JointDef& joint) {
+  return joint.axes.size() == 1 && joint.kind != Kind::fixed && joint.kind != Kind::ball && joint.kind != Kind::gearbox;
+}
+
+JointHold hold_of(const ModelDef& model, ModelId id, std::uint32_t joint) {
+  const AxisDef& axis = model.joints[joint].axes[0];
+  JointHold hold{{id, joint}};
+  hold.turns = model.joints[joint].kind == Kind::revolute || model.joints[joint].kind == Kind::continuous;
+  hold.target = axis.initial_position;
+  hold.most = std::isfinite(axis.velocity) && axis.velocity > 0 ? axis.velocity : usual_velocity;
+  hold.effort = torque_of(model, joint);
+  return hold;
+}
+
+std::vector<double> numbers_of(const ParameterNode& parameters, std::string_view name) {
+  std::vector<double> numbers;
+  for (const ParameterNode& child : parameters.children) {
+    if (child.name != name) continue;
+    for (const double number : parse_numbers(child.text).value_or(std::vector<double>{})) numbers.push_back(number);
+  }
+  return numbers;
+}
+
+// The joints that the plugin names; those of arms (with limits on both sides) for one that names none.
+std::vector<std::uint32_t> joints_of(const ModelDef& model, const PluginDef& plugin, std::string& missing) {
+  std::vector<std::uint32_t> joints;
+  add_joints(model, plugin, {"joint_name", "joint"}, joints, missing);
+  if (!joints.empty() || !missing.empty()) return joints;
+  for (std::uint32_t j = 0; j < model.joints.size(); ++j) {
+    const JointDef& joint = model.joints[j];
+    if (joint.scope == plugin.scope && is_driveable(joint) && std::isfinite(joint.axes[0].lower) && std::isfinite(joint.axes[0].upper))
+      joints.push_back(j);
+  }
+  return joints;
+}
+
+}  // namespace
+
+void JointHold::before_step(Physics& physics) const {
+  double rate = velocity;
+  if (has_target) {
+    double missing = target - physics.joint_state(joint).position;
+    if (turns) missing = wrapped(missing);
+    rate = std::abs(missing) < hardly_any ? 0 : std::clamp(gain * missing, -most, most);
+  }
+  physics.set_motor(joint, 0, rate, effort);
+}
+
+std::vector<JointHold> joint_holds_of(const Physics& physics, ModelId model, std::vector<std::string>& left_out) {
+  std::vector<JointHold> holds;
+  const ModelDef& def = physics.def(model);
+  for (const PluginDef& plugin : def.plugins) {
+    if (kind_of(plugin) != PluginKind::joint_controller) continue;
+    std::string missing;
+    const auto joints = joints_of(def, plugin, missing);
+    if (!missing.empty()) {
+      left_out.push_back(
+          fmt::format("{}: plugin {}: model {} has no joint {}", plugin.source, plugin.name, def.name, base::in_quotes(missing)));
+    }
+    const auto targets = numbers_of(plugin.parameters, "initial_position");
+    const auto velocities = numbers_of(plugin.parameters, "initial_velocity");
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      if (!is_driveable(def.joints[joints[i]])) continue;
+      JointHold hold = hold_of(def, model, joints[i]);
+      if (i < targets.size()) hold.target = targets[i];
+      if (i < velocities.size() && velocities[i] != 0) hold.has_target = false, hold.velocity = velocities[i];
+      // Who comes first has the joint.
+      if (std::none_of(holds.begin(), holds.end(), [&](const JointHold& other) { return other.joint.joint == hold.joint.joint; }))
+        holds.push_back(hold);
+    }
+  }
+  return holds;
+}
+
+}  // namespace sim
