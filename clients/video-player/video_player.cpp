@@ -3,6 +3,8 @@
 #include <base/clock.h>
 #include <base/text.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <filesystem>
 
 // clang-format off
@@ -32,6 +34,8 @@ static const char* const videoplayer_spec[] = {
 
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr std::chrono::milliseconds longest_wait{50};
 constexpr std::chrono::milliseconds title_period{500};
 
@@ -48,6 +52,18 @@ class FrameListener : public RTC::ConnectorDataListenerT<RTC::CameraImage> {
   VideoPlayer& owner_;
   void (VideoPlayer::*call_)();
 };
+
+// The highest number of the files PREFIX-NUMBER.png in the folder; 0: there are none.
+std::uint64_t last_number(const fs::path& folder, const std::string& prefix) {
+  std::uint64_t last = 0;
+  std::error_code error;
+  for (fs::directory_iterator file(folder, error), end; !error && file != end; file.increment(error)) {
+    const auto name = file->path().filename().string();
+    unsigned long long number = 0;
+    if (std::sscanf(name.c_str(), (prefix + "-%18llu.png").c_str(), &number) == 1) last = std::max<std::uint64_t>(last, number);
+  }
+  return last;
+}
 
 bool in_real_time() { return dynamic_cast<const base::SystemClock*>(&base::current_clock()) != nullptr; }
 
@@ -68,20 +84,13 @@ RTC::ReturnCode_t VideoPlayer::onInitialize() {
 }
 
 RTC::ReturnCode_t VideoPlayer::onActivated(RTC::UniqueId) {
-  frames_ = recorded_ = saved_ = refused_ = frames_at_title_ = 0;
+  frames_ = refused_ = frames_at_title_ = 0;
   is_paused_ = false;
   dropped_.store(0, std::memory_order_relaxed);
   title_time_ = Clock::now();
   said_.clear();
-  if (!record_dir_.empty()) {
-    std::error_code error;
-    std::filesystem::create_directories(record_dir_, error);
-    if (error) {
-      RTC_ERROR(("record_dir %s cannot be made: %s", base::in_quotes(record_dir_).c_str(), error.message().c_str()));
-      return RTC::RTC_ERROR;
-    }
-    times_ = std::ofstream(std::filesystem::path(record_dir_) / "times.txt");
-  }
+  recording_to_.clear();
+  if (!open_records()) return RTC::RTC_ERROR;
   if (window_wanted_ == 0) return RTC::RTC_OK;
   auto opened = video::Window::open(getInstanceName());
   if (opened) {
@@ -94,15 +103,38 @@ RTC::ReturnCode_t VideoPlayer::onActivated(RTC::UniqueId) {
   return RTC::RTC_OK;
 }
 
-RTC::ReturnCode_t VideoPlayer::onDeactivated(RTC::UniqueId) {
+// The frames go on behind those that the folder has.
+bool VideoPlayer::open_records() {
+  if (record_dir_ == recording_to_) return true;
+  recording_to_ = record_dir_;
+  times_ = {};
+  if (record_dir_.empty()) return true;
+  std::error_code error;
+  fs::create_directories(record_dir_, error);
+  if (error) {
+    RTC_ERROR(("record_dir %s cannot be made: %s", base::in_quotes(record_dir_).c_str(), error.message().c_str()));
+    return false;
+  }
+  recorded_ = last_number(record_dir_, "frame");
+  times_ = std::ofstream(fs::path(record_dir_) / "times.txt", std::ios::app);
+  return true;
+}
+
+void VideoPlayer::close_window() {
+  if (!window_) return;
+  if (const auto closed = window_->close(); !closed) RTC_WARN(("the window: %s", closed.error().message.c_str()));
   window_.reset();
+}
+
+RTC::ReturnCode_t VideoPlayer::onDeactivated(RTC::UniqueId) {
+  close_window();
   RTC_INFO(("%s frames shown, %s dropped, %s refused", std::to_string(frames_).c_str(),
             std::to_string(dropped_.load(std::memory_order_relaxed)).c_str(), std::to_string(refused_).c_str()));
   return RTC::RTC_OK;
 }
 
 RTC::ReturnCode_t VideoPlayer::onAborting(RTC::UniqueId) {
-  window_.reset();
+  close_window();
   return RTC::RTC_OK;
 }
 
@@ -121,6 +153,7 @@ void VideoPlayer::wait_for_frame() {
 }
 
 RTC::ReturnCode_t VideoPlayer::onExecute(RTC::UniqueId ec_id) {
+  if (!open_records()) return RTC::RTC_ERROR;  // it may change meanwhile
   if (in_real_time() && !image_in_.isNew()) wait_for_frame();
   while (image_in_.isNew() && image_in_.read()) take(image_);
   if (window_) handle_events(ec_id);
@@ -144,18 +177,24 @@ void VideoPlayer::take(const RTC::CameraImage& image) {
   if (!record_dir_.empty()) record();
 }
 
-// The file's name; empty when there is none.
+// As the first number after the given one that is free. The file's name; empty when there is none.
 std::string VideoPlayer::save(const std::string& folder, const char* prefix, std::uint64_t& number) {
   if (picture_->rgb.empty()) return {};
-  char name[64];
-  std::snprintf(name, sizeof name, "%s-%06llu.png", prefix, static_cast<unsigned long long>(++number));
-  const auto file = (std::filesystem::path(folder) / name).string();
-  if (const auto written = video::write_png(*picture_, file); !written) {
+  fs::path file;
+  std::error_code error;
+  auto free = number;
+  do {
+    char name[64];
+    std::snprintf(name, sizeof name, "%s-%06llu.png", prefix, static_cast<unsigned long long>(++free));
+    file = fs::path(folder) / name;
+  } while (fs::exists(file, error));
+  if (const auto written = video::write_png(*picture_, file.string()); !written) {
     if (said_ != written.error().message) RTC_ERROR(("%s", written.error().message.c_str()));
     said_ = written.error().message;
     return {};
   }
-  return name;
+  number = free;
+  return file.filename().string();
 }
 
 void VideoPlayer::record() {
@@ -169,12 +208,17 @@ void VideoPlayer::handle_events(RTC::UniqueId ec_id) {
   const auto events = window_->events();
   if (!events.problem.empty() && events.problem != said_) RTC_ERROR(("%s", events.problem.c_str()));
   if (!events.problem.empty()) said_ = events.problem;
-  if (events.save) save(record_dir_.empty() ? "." : record_dir_, "picture", saved_);
+  if (events.save) {
+    const std::string folder = record_dir_.empty() ? "." : record_dir_;
+    auto last = last_number(folder, "picture");
+    save(folder, "picture", last);
+  }
   if (events.toggle_pause) {
     is_paused_ = !is_paused_;
     write_title();
   }
   if (!events.close && !events.lost) return;
+  if (events.close) close_window();
   window_.reset();
   if (events.lost && record_dir_.empty()) RTC_WARN(("the display has gone; set record_dir to get the frames as PNG files"));
   if (events.lost && !record_dir_.empty()) RTC_WARN(("the display has gone; the frames go to %s", record_dir_.c_str()));

@@ -2,7 +2,8 @@
 // its title; space pauses, s saves a PNG (in record_dir, or where the process works), q, escape or the window's button close it. A player
 // without window and record_dir has nothing left to do then: it deactivates itself; active again it has a new window. Without a display it
 // says so and writes to record_dir.
-// Configuration: record_dir: a folder for a PNG of every frame, and times.txt with the simulated time of each (empty: none); window 0 or 1.
+// Configuration: record_dir: a folder for a PNG of every frame, and times.txt with the simulated time of each (empty: none); what is there
+// already stays, and the numbers go on. window: 0 or 1.
 #pragma once
 
 #include <rtm/DataFlowComponentBase.h>
@@ -39,6 +40,8 @@ class VideoPlayer : public RTC::DataFlowComponentBase {
  private:
   using Clock = std::chrono::steady_clock;
 
+  bool open_records();
+  void close_window();
   void wait_for_frame();
   void take(const RTC::CameraImage& image);
   void handle_events(RTC::UniqueId ec_id);
@@ -57,7 +60,8 @@ class VideoPlayer : public RTC::DataFlowComponentBase {
   std::shared_ptr<const video::Picture> picture_ = std::make_shared<video::Picture>();
   bool is_paused_ = false;
   std::uint64_t frames_ = 0;
-  std::uint64_t recorded_ = 0, saved_ = 0;
+  std::string recording_to_;    // the record_dir that is open
+  std::uint64_t recorded_ = 0;  // the number of its last frame
   std::uint64_t refused_ = 0;
   std::atomic<std::uint64_t> dropped_{0};
   std::uint64_t frames_at_title_ = 0;

@@ -126,46 +126,39 @@ class Window::Pane {
   bool is_stale_ = false;  // what is on the display
 };
 
-// The thread of the display. One per process, as SDL is.
+// The thread of the display. One per process, as SDL is; it starts with the first window and lives to the end of the process.
 //
 // When the X server dies Xlib wants to end the process. Its handler for that does not return: the thread stays where it is for ever, and
-// whoever waits for it is told. Nobody but the thread touches the display, so nobody else can meet its end.
-class Window::Screen {
+// whoever waits for it is told. Nobody but the thread touches the display, so nobody else can meet its end. An X server that is stopped
+// holds the thread up, but nobody else for longer than a while; what was asked of it is done when the server goes on.
+class Window::Screen : public std::enable_shared_from_this<Screen> {
  public:
   static Screen& one() {
-    static Screen screen;
-    return screen;
+    struct Life {
+      ~Life() { screen->end(); }
+      std::shared_ptr<Screen> screen = std::make_shared<Screen>();  // a thread that is held up keeps it, too
+    };
+    static Life life;
+    return *life.screen;
   }
 
-  ~Screen() {
-    if (panes_open_ > 0) end();  // the process ends with its windows open
-  }
+  Screen() = default;
+  ~Screen() { ::close(bell_); }
+  Screen(const Screen&) = delete;
+  Screen& operator=(const Screen&) = delete;
 
   base::Result<void> open(const std::shared_ptr<Shared>& shared, const std::string& title) {
     const std::scoped_lock lock(turnstile_);
-    if (state_.lock()->is_lost) return lost();
-    if (panes_open_ == 0) {
-      if (auto started = start(); !started) return started;
-    }
-    base::Result<void> opened;
-    const bool is_there = run_there([&] {
-      auto pane = Pane::open(shared, title);
-      if (!pane) {
-        opened = pane.error();
-        return;
-      }
-      watch(**pane);
-      panes_.push_back(std::move(*pane));
-    });
-    if (!is_there) opened = lost();
-    if (opened) ++panes_open_;
-    if (panes_open_ == 0) end();
-    return opened;
+    if (!thread_.joinable()) thread_ = std::thread([self = shared_from_this()] { self->run(); });
+    const auto opened = std::make_shared<base::Result<void>>();
+    const auto answer = run_there([this, shared, title, opened] { *opened = open_pane(shared, title); });
+    if (answer) return *opened;
+    (void)give([this, shared] { close_pane(shared.get()); });  // it may come to be after all
+    return answer;
   }
-  void close(const Shared* shared) {
+  base::Result<void> close(const std::shared_ptr<Shared>& shared) {
     const std::scoped_lock lock(turnstile_);
-    run_there([&] { std::erase_if(panes_, [&](const auto& pane) { return pane->shared() == shared; }); });
-    if (--panes_open_ == 0) end();
+    return run_there([this, shared] { close_pane(shared.get()); });
   }
   // Any thread.
   void wake() const {
@@ -177,52 +170,79 @@ class Window::Screen {
   struct State {
     std::vector<std::function<void()>> tasks;
     std::uint64_t tasks_given = 0, tasks_done = 0;
+    std::uint64_t tasks_missed = 0;  // the last one that nobody waits for any more
     bool is_lost = false;
   };
 
-  static base::Error lost() { return base::Error{"the display of this process has gone"}; }
+  static constexpr std::chrono::seconds longest_answer{4};  // within what the runtime grants a callback
+  static constexpr std::chrono::seconds answer_when_held_up{1};
 
-  base::Result<void> start() {
-    std::promise<base::Result<void>> started;
-    is_ending_ = false;
-    display_ = nullptr;
-    thread_ = std::jthread([&] { run(started); });
-    auto result = started.get_future().get();
-    if (!result) thread_.join();
-    return result;
-  }
+  // The process ends, perhaps with windows open.
   void end() {
-    if (run_there([this] { is_ending_ = true; })) return thread_.join();
-    if (thread_.joinable()) thread_.detach();
-    for (auto& pane : panes_) (void)pane.release();  // there is nothing left that they could give back
-    panes_.clear();
+    if (!thread_.joinable()) return;
+    const auto ended = run_there([this] {
+      is_ending_ = true;
+      panes_.clear();
+      leave();
+    });
+    if (ended) return thread_.join();
+    thread_.detach();
   }
-  // False when the display has gone; then the work has not been finished and never will be.
-  bool run_there(const std::function<void()>& work) {
-    std::uint64_t number = 0;
-    {
-      auto state = state_.lock();
-      if (state->is_lost) return false;
-      state->tasks.push_back(work);
-      number = ++state->tasks_given;
-    }
-    wake();
+  // The number of the work that the thread is to do when it comes to it.
+  std::uint64_t give(std::function<void()> work) {
     auto state = state_.lock();
-    while (!state.wait_for(changed_, std::chrono::hours(1), [&] { return state->tasks_done >= number || state->is_lost; })) {
+    state->tasks.push_back(std::move(work));
+    wake();
+    return ++state->tasks_given;
+  }
+  // An error when the display has gone: the work is never finished. And when it does not answer in time: the work is done when it does.
+  base::Result<void> run_there(std::function<void()> work) {
+    const auto number = give(std::move(work));
+    auto state = state_.lock();
+    const auto is_answered = [&] { return state->tasks_done >= number || state->is_lost; };
+    const bool is_held_up = state->tasks_done < state->tasks_missed;
+    if (!state.wait_for(changed_, is_held_up ? answer_when_held_up : longest_answer, is_answered)) {
+      state->tasks_missed = number;
+      return base::Error{"the display does not answer"};
     }
-    return state->tasks_done >= number;
+    if (state->tasks_done < number) return base::Error{"the display of this process has gone"};
+    return {};
   }
 
-  void run(std::promise<base::Result<void>>& started) {
+  static base::Result<void> enter() {
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");  // the manager ends the process, not the window
     SDL_SetHint(SDL_HINT_VIDEO_ALLOW_SCREENSAVER, "1");
     // Pictures go to the X server as they are. GL would hang at the end of a process that has lost its display.
     SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
     // Without this SDL would rather draw where nobody can see it than fail. The variable SDL_VIDEODRIVER still wins.
     SDL_SetHint(SDL_HINT_VIDEODRIVER, "x11,wayland");
-    if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0)
-      return started.set_value(base::Error{std::string("the display cannot be used: ") + SDL_GetError()});
-    started.set_value({});
+    if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) return base::Error{std::string("the display cannot be used: ") + SDL_GetError()};
+    return {};
+  }
+  void leave() {
+    if (SDL_WasInit(SDL_INIT_VIDEO) == 0) return;
+    SDL_QuitSubSystem(SDL_INIT_VIDEO);
+    display_ = nullptr;
+  }
+  base::Result<void> open_pane(const std::shared_ptr<Shared>& shared, const std::string& title) {
+    if (panes_.empty()) {
+      if (auto entered = enter(); !entered) return entered;
+    }
+    auto pane = Pane::open(shared, title);
+    if (pane) {
+      watch(**pane);
+      panes_.push_back(std::move(*pane));
+      return {};
+    }
+    if (panes_.empty()) leave();
+    return pane.error();
+  }
+  void close_pane(const Shared* shared) {
+    std::erase_if(panes_, [&](const auto& pane) { return pane->shared() == shared; });
+    if (panes_.empty()) leave();
+  }
+
+  void run() {
     while (!is_ending_) {
       const bool was_busy = take_events();
       const auto tasks = std::exchange(state_.lock()->tasks, {});
@@ -235,7 +255,6 @@ class Window::Screen {
       // Drawing may have brought events along, which no longer wait in the connection.
       if (!was_busy && !is_ending_ && !take_events()) sleep();
     }
-    SDL_QuitSubSystem(SDL_INIT_VIDEO);
   }
   // Until somebody rings or the display has something to say.
   void sleep() const {
@@ -247,6 +266,7 @@ class Window::Screen {
     if (::read(bell_, &rings, sizeof rings) < 0) return;
   }
   bool take_events() {
+    if (panes_.empty()) return false;
     SDL_Event event;
     bool is_any = false;
     while (SDL_PollEvent(&event) != 0) handle(event), is_any = true;
@@ -260,12 +280,16 @@ class Window::Screen {
     }
   }
 
+  static inline thread_local Screen* of_this_thread_ = nullptr;
+
   // From the first window on the display is known.
   void watch(const Pane& pane) {
     if (display_ != nullptr) return;
     display_ = pane.display();
     // Of all connections: SDL has a second one, and Xlib's own handler ends the process before it asks that of a single connection.
-    if (display_ != nullptr) XSetIOErrorHandler([](Display*) -> int { one().lose(); });
+    if (display_ == nullptr) return;
+    of_this_thread_ = this;
+    XSetIOErrorHandler([](Display*) -> int { of_this_thread_->lose(); });
   }
   [[noreturn]] void lose() {
     for (const auto& pane : panes_) {
@@ -278,17 +302,16 @@ class Window::Screen {
 
   const int bell_ = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   std::mutex turnstile_;  // whoever opens or closes goes through here, one at a time, and waits for the display meanwhile
-  int panes_open_ = 0;
+  std::thread thread_;
   base::Guarded<State, base::Rank::buffer> state_;
   std::condition_variable changed_;
   std::vector<std::unique_ptr<Pane>> panes_;  // the thread's, like what follows
   Display* display_ = nullptr;                // of X11; SDL's
   bool is_ending_ = false;
-  std::jthread thread_;
 };
 
 Window::Window(std::shared_ptr<Shared> shared) : shared_(std::move(shared)) {}
-Window::~Window() { Screen::one().close(shared_.get()); }
+Window::~Window() { (void)close(); }
 
 base::Result<std::unique_ptr<Window>> Window::open(const std::string& title) {
   const auto has = [](const char* name) { return std::getenv(name) != nullptr && *std::getenv(name) != '\0'; };
@@ -296,6 +319,11 @@ base::Result<std::unique_ptr<Window>> Window::open(const std::string& title) {
   auto shared = std::make_shared<Shared>();
   if (auto opened = Screen::one().open(shared, title); !opened) return opened.error();
   return std::unique_ptr<Window>(new Window(std::move(shared)));
+}
+
+base::Result<void> Window::close() {
+  const auto shared = std::exchange(shared_, nullptr);
+  return shared ? Screen::one().close(shared) : base::Result<void>{};
 }
 
 void Window::show(std::shared_ptr<const Picture> picture) {

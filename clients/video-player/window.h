@@ -1,6 +1,6 @@
 // A window that shows pictures, by SDL2. SDL wants every call from the thread that opened the display, and has one queue of events for the
-// whole process; so the windows of a process share a thread of their own, which lives while there is one. Any thread may open, use and
-// close a window, several at the same time; nothing but open and the destructor waits for the display.
+// whole process; so the windows of a process share a thread of their own. Any thread may open, use and close a window, several at the same
+// time; nothing but open, close and the destructor waits for the display, and they for four seconds at most.
 #pragma once
 
 #include <base/result.h>
@@ -23,8 +23,11 @@ struct Events {
 
 class Window {
  public:
-  // Fails when there is no display. After one has gone the process gets no other: SDL cannot leave it.
+  // Fails when there is no display, or when it does not answer. After one has gone the process gets no other: SDL cannot leave it.
   static base::Result<std::unique_ptr<Window>> open(const std::string& title);
+  // Once; then the window must not be used any more. Fails when the display does not answer (an X server that is stopped); the window goes
+  // away as soon as it does.
+  base::Result<void> close();
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;

@@ -2,6 +2,7 @@
 import json
 import os
 import random
+import signal
 import subprocess
 import sys
 
@@ -241,6 +242,78 @@ def killed_display():
     assert host.wait(60) == 0, host.returncode
 
 
+# What one activation recorded or saved stays; the next ones go on behind it, each sequence with its own numbers and without gaps.
+def kept_records():
+    start_display()
+    frames = f"{system.work}/frames"
+    start_player(frames)
+    pictures = [noise(32 * 24 * 3, seed) for seed in range(5)]
+    is_file = lambda name, rgb: system.until(name, lambda: pixels.png(f"{frames}/{name}") == (32, 24, rgb))
+    send(32, 24, pictures[0])
+    is_file("frame-000001.png", pictures[0])
+    screen("key", "s")
+    is_file("picture-000001.png", pictures[0])
+    send(32, 24, pictures[1])
+    is_file("frame-000002.png", pictures[1])
+    system.rtse("deact", "VideoPlayer0")
+    system.rtse("act", "VideoPlayer0")
+    system.until("a window", lambda: screen("size"))
+    send(32, 24, pictures[2])
+    is_file("frame-000003.png", pictures[2])
+    shows(32, 24, pictures[2])
+    screen("key", "s")
+    is_file("picture-000002.png", pictures[2])
+    # Another folder while it is active; the first one again later.
+    system.rtse("conf", "VideoPlayer0", "set", "record_dir", f"{frames}/more")
+    system.until("the other folder", lambda: os.path.exists(f"{frames}/more/times.txt"))
+    send(32, 24, pictures[3])
+    is_file("more/frame-000001.png", pictures[3])
+    system.rtse("deact", "VideoPlayer0")
+    system.rtse("conf", "VideoPlayer0", "set", "record_dir", frames)
+    system.rtse("act", "VideoPlayer0")
+    system.until("a window", lambda: screen("size"))
+    send(32, 24, pictures[4])
+    is_file("frame-000004.png", pictures[4])
+    for number in (0, 1, 2):
+        is_file(f"frame-00000{number + 1}.png", pictures[number])
+    is_file("picture-000001.png", pictures[0])
+    with open(f"{frames}/times.txt") as file:
+        assert [line.split()[0] for line in file] == [f"frame-00000{n}.png" for n in (1, 2, 3, 4)]
+
+
+# An X server that is stopped holds the component up for a while, not for ever; when it goes on so do the windows. A process ends without it.
+def stopped_display():
+    start_display()
+    host = start_player()
+    display = next(process for process in system.running if process.args[0] == "Xvfb")
+    first, second = noise(32 * 24 * 3, 1), noise(32 * 24 * 3, 2)
+    send(32, 24, first)
+    shows(32, 24, first)
+    display.send_signal(signal.SIGSTOP)
+    system.rtse("deact", "VideoPlayer0")
+    says(host, "the window: the display does not answer")
+    system.until("an inactive player", lambda: state() == "Inactive")
+    system.rtse("act", "VideoPlayer0")
+    says(host, "no window: the display does not answer; set record_dir")
+    assert state() == "Active"
+    system.rtse("deact", "VideoPlayer0")
+    display.send_signal(signal.SIGCONT)
+    system.until("no window", lambda: screen("size", ok=False) == 3)
+
+    def has_window():
+        system.rtse("deact", "VideoPlayer0")
+        system.rtse("act", "VideoPlayer0")
+        return "no window" not in system.log(host).splitlines()[-1] and system.until("a window", lambda: screen("size"))
+
+    system.until("a window again", has_window)
+    send(32, 24, second)
+    shows(32, 24, second)
+    display.send_signal(signal.SIGSTOP)
+    host.terminate()
+    assert host.wait(60) == 0, host.returncode
+    assert system.log(host).count("the window: the display does not answer") == 2, system.log(host)
+
+
 # Players in one process share the display; what is typed reaches the one that is typed to.
 def two_players():
     start_display()
@@ -264,7 +337,7 @@ def two_players():
     system.until("a window", lambda: title(1))
 
 
-cases = {f.__name__: f for f in (formats, keys, resize, bad_images, two_players, no_display, wrong_display, killed_display)}
+cases = {f.__name__: f for f in (formats, keys, resize, bad_images, two_players, no_display, wrong_display, killed_display, kept_records, stopped_display)}
 with system:
     cases[case]()
 print("ok")
