@@ -4,10 +4,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
+#include <csetjmp>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
@@ -53,7 +58,33 @@ std::optional<base::BayerOrder> bayer_order(shm::Format format) {
   }
 }
 
-// Mosaics become colours, 16 bits of grey their high bytes.
+// Two octets a pixel, the low one first, as they are. libpng's simple interface would take them for linear light.
+bool write_wide_grey(std::FILE* file, png_structp png, png_infop info, const shm::FrameHead& head, const std::uint8_t* data) {
+  // libpng comes back here when something fails; nothing that has a destructor may be made below.
+  if (setjmp(png_jmpbuf(png)) != 0) return false;
+  png_init_io(png, file);
+  png_set_IHDR(png, info, head.width, head.height, 16, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
+  png_write_info(png, info);
+  png_set_swap(png);
+  for (std::uint32_t row = 0; row < head.height; ++row) png_write_row(png, data + static_cast<std::size_t>(row) * head.stride);
+  png_write_end(png, nullptr);
+  return true;
+}
+
+base::Result<void> write_wide_grey(const shm::FrameHead& head, const std::uint8_t* data, const std::string& path) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "wb"), std::fclose);
+  const auto fail = [](png_structp png, png_const_charp) { longjmp(png_jmpbuf(png), 1); };
+  const auto ignore = [](png_structp, png_const_charp) {};
+  png_structp png = file ? png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, fail, ignore) : nullptr;
+  png_infop info = png ? png_create_info_struct(png) : nullptr;
+  const bool is_written = info && write_wide_grey(file.get(), png, info, head, data) && std::fflush(file.get()) == 0;
+  png_destroy_write_struct(&png, &info);
+  if (is_written) return {};
+  return base::Error{"file " + base::in_quotes(path) + ": cannot be written: " + std::strerror(errno)};
+}
+
+// Mosaics become colours; 16 bits of grey stay 16 bits.
 base::Result<void> write_frame(const shm::HeldFrame& frame, const std::string& file) {
   const auto& head = frame.head();
   const auto format = static_cast<shm::Format>(head.format);
@@ -73,11 +104,7 @@ base::Result<void> write_frame(const shm::HeldFrame& frame, const std::string& f
     scratch.resize(stride * head.height);
     base::demosaic({data, frame.data().size()}, static_cast<int>(head.width), static_cast<int>(head.height), head.stride, *order, scratch);
   } else if (format == shm::Format::mono16) {
-    image.format = PNG_FORMAT_GRAY;
-    stride = head.width;
-    for (std::size_t row = 0; row < head.height; ++row) {
-      for (std::size_t column = 0; column < head.width; ++column) scratch.push_back(data[row * head.stride + 2 * column + 1]);
-    }
+    return write_wide_grey(head, data, file);
   } else {
     return base::Error{"record: frames of this format cannot be recorded"};
   }

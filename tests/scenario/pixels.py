@@ -19,8 +19,8 @@ def unfiltered(kind, row, above, pixel):
     return bytes(out)
 
 
-def png(path, channels=3):
-    """Width, height and the bytes of an 8-bit picture: grey (1), RGB (3) or RGBA (4)."""
+def png(path, channels=3, bits=8):
+    """Width, height and the bytes of a picture: grey (1), RGB (3) or RGBA (4); of 16 bits the high one comes first."""
     with open(path, "rb") as file:
         data = file.read()
     assert data[:8] == b"\x89PNG\r\n\x1a\n", f"{path}: no PNG"
@@ -30,13 +30,14 @@ def png(path, channels=3):
         body = data[at + 8 : at + 8 + length]
         if kind == b"IHDR":
             width, height = int.from_bytes(body[:4], "big"), int.from_bytes(body[4:8], "big")
-            assert body[8:10] == bytes((8, {1: 0, 3: 2, 4: 6}[channels])), f"{path}: expected 8 bits and {channels} channels"
+            assert body[8:10] == bytes((bits, {1: 0, 3: 2, 4: 6}[channels])), f"{path}: expected {bits} bits and {channels} channels"
         if kind == b"IDAT":
             packed += body
         at += length + 12
-    raw, step, rows = zlib.decompress(packed), channels * width + 1, [bytes(channels * width)]
+    pixel = channels * bits // 8
+    raw, step, rows = zlib.decompress(packed), pixel * width + 1, [bytes(pixel * width)]
     for y in range(height):
-        rows.append(unfiltered(raw[y * step], raw[y * step + 1 : (y + 1) * step], rows[-1], channels))
+        rows.append(unfiltered(raw[y * step], raw[y * step + 1 : (y + 1) * step], rows[-1], pixel))
     return width, height, b"".join(rows[1:])
 
 
