@@ -41,6 +41,7 @@ base::Result<void> Camera::take(Renderer& renderer, const std::shared_ptr<const 
     View& view = views[i];
     view.visibility_mask = def_.visibility_mask;
     view.wants_color = wanted != Output::depth;
+    view.wants_exact_depth = output_ != Output::color;  // whoever looks at the moment: the colours are always the same
     if (auto drawn = renderer.draw(scene, poses, view); !drawn) return drawn;
     const std::size_t count = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
     if (view.wants_color) {

@@ -53,6 +53,8 @@ SurfaceProgram::SurfaceProgram(GpuProgram built) : program(std::move(built)) {
                                                 {&normal_matrix, "normal_matrix"},
                                                 {&view_projection, "view_projection"},
                                                 {&repeat, "repeat"},
+                                                {&round_size, "round_size"},
+                                                {&round_eye, "round_eye"},
                                                 {&albedo, "albedo"},
                                                 {&emissive, "emissive"},
                                                 {&shine, "shine"},

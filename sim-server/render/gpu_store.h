@@ -35,7 +35,7 @@ class GpuProgram {
 struct SurfaceProgram {
   explicit SurfaceProgram(GpuProgram built);
   GpuProgram program;
-  GLint model, normal_matrix, view_projection, repeat;
+  GLint model, normal_matrix, view_projection, repeat, round_size, round_eye;
   GLint albedo, emissive, shine, ambient, fog_color, fog_range, eye;
   GLint sun_direction, sun_color, sun_specular;
   GLint lamp_position, lamp_color, lamp_specular, lamp_reach, spot_axis, spot_cone;

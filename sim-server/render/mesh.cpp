@@ -121,6 +121,7 @@ Mesh make_sphere(int rings, int segments) {
   }
   add_lathe(mesh, profile, segments);
   mesh.is_closed = true;
+  mesh.round = {RoundKind::capsule, 0.5F, 0};
   finish_shape(mesh);
   return mesh;
 }
@@ -131,6 +132,7 @@ Mesh make_cylinder(int segments) {
   add_disc(mesh, 0.5, 0.5, true, segments);
   add_disc(mesh, 0.5, -0.5, false, segments);
   mesh.is_closed = true;
+  mesh.round = {RoundKind::cylinder, 0.5F, 0.5F};
   finish_shape(mesh);
   return mesh;
 }
@@ -161,6 +163,7 @@ Mesh make_capsule(double radius, double length, int rings, int segments) {
   }
   add_lathe(mesh, profile, segments);
   mesh.is_closed = true;
+  mesh.round = {RoundKind::capsule, static_cast<float>(radius), static_cast<float>(0.5 * length)};
   finish_shape(mesh);
   return mesh;
 }

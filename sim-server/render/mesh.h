@@ -29,14 +29,22 @@ struct MeshPart {
   bool is_faceted = false;     // every triangle has one normal
 };
 
+// What the triangles of a round mesh stand for, in its axes: a capsule along z (a ball is one without length), or a cylinder.
+enum class RoundKind { none, capsule, cylinder };
+struct RoundShape {
+  RoundKind kind = RoundKind::none;
+  float radius = 0.5F, half_length = 0;  // half the way between the ends; of a capsule without them
+};
+
 // Three indices a triangle, counter-clockwise seen from outside.
 struct Mesh {
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;
   std::vector<MeshPart> parts;
   Eigen::AlignedBox3f bounds;  // of what the triangles use
-  bool is_closed = false;      // seen from outside only: its back faces never show and are not needed for its shadow
-  bool is_stand_in = false;    // for a mesh that could not be read; keeps its warning colour
+  RoundShape round;
+  bool is_closed = false;    // seen from outside only: its back faces never show and are not needed for its shadow
+  bool is_stand_in = false;  // for a mesh that could not be read; keeps its warning colour
 };
 
 // Fills in what follows from triangles and parts: bounds and facets.

@@ -26,10 +26,12 @@ struct View {
   bool is_parallel = false;
   std::uint32_t visibility_mask = 0xffffffff;
   bool wants_color = true;  // false: only read_depth() may follow; much cheaper
-  int shadow_size = 1024;   // pixels a side of the shadow map; 0: no shadows
-  int shadow_taps = 1;      // a side, for soft edges
-  bool grid = false;        // metre lines on ground planes
-  double pixel_scale = 1;   // pixels drawn per pixel that line widths and letters of overlays speak of
+  bool wants_exact_depth =
+      false;               // spheres, ellipsoids, cylinders and capsules are round; otherwise, and for parallel views, they have facets
+  int shadow_size = 1024;  // pixels a side of the shadow map; 0: no shadows
+  int shadow_taps = 1;     // a side, for soft edges
+  bool grid = false;       // metre lines on ground planes
+  double pixel_scale = 1;  // pixels drawn per pixel that line widths and letters of overlays speak of
 
   // Square pixels, the axis through the picture's middle; horizontal field of view in (0, pi) [rad].
   static View pinhole(const Eigen::Isometry3d& pose, double horizontal_fov, int width, int height);

@@ -48,11 +48,15 @@ MaterialDef material_of(const VisualDef& visual, const Mesh& mesh, std::uint32_t
   return visual.material && !mesh.is_stand_in ? *visual.material : mesh.parts[part].material;
 }
 
+constexpr double whole_plane = 200;  // [m] of an infinite one that are drawn
+
 VisualDef as_visual(const CollisionDef& collision) {
   VisualDef visual;
   visual.name = collision.name;
   visual.pose = collision.pose;
   visual.geometry = collision.geometry;
+  // Bodies stand on all of it, whatever is drawn of its visual.
+  if (auto* plane = std::get_if<PlaneShape>(&visual.geometry)) plane->size = plane->size.cwiseMax(whole_plane);
   visual.material = MaterialDef{};
   visual.material->diffuse = {1.0F, 0.55F, 0.1F, 1};
   return visual;

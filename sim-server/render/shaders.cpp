@@ -13,6 +13,7 @@ std::string header(const Features& f) {
   out += define("FOG", static_cast<int>(f.fog)) + define("SHADOW_TAPS", f.shadow_taps);
   out += define("DIRECTIONAL", f.directional) + define("POINTS", f.points) + define("SPOTS", f.spots);
   out += define("FACETED", f.faceted) + define("SHINE", f.shine);
+  out += define("ROUND", f.round != RoundKind::none) + define("CYLINDER", f.round == RoundKind::cylinder);
   // Where the shadow map is looked at is linear over a triangle, but for surfaces with a back whose normal turns round.
   out += define("SHADOW_AT_VERTEX", f.shadow_taps > 0 && !f.double_sided);
   out += define("POSITION", !f.depth_only && (f.specular || f.points + f.spots > 0 || f.fog != FogKind::none || f.normal_map || f.grid ||
@@ -66,8 +67,19 @@ out vec3 v_shadow;
 #if TEXTURE
 out vec2 v_uv;
 #endif
+#if ROUND
+uniform vec2 round_size;  // radius, half the length
+out vec3 v_hull;          // in the mesh
+#endif
 void main() {
+#if ROUND
+  // The triangles lie inside; these lie outside everywhere, by less than a hundredth.
+  vec3 axis = vec3(0.0, 0.0, CYLINDER == 1 ? position.z : clamp(position.z, -round_size.y, round_size.y));
+  v_hull = axis + (position - axis) * 1.01;
+  vec4 p = model * vec4(v_hull, 1.0);
+#else
   vec4 p = model * vec4(position, 1.0);
+#endif
 #if POSITION
   v_position = p.xyz;
 #endif
@@ -84,6 +96,47 @@ void main() {
 }
 )";
 
+// The depth of the pixel's ray where it enters a capsule (a sphere is one without length) or a cylinder, met from the triangle nearby so
+// that floats are enough; pixels whose ray does not are left out.
+constexpr const char* round_fragment = R"(
+#if ROUND
+in vec3 v_hull;
+uniform vec2 round_size;
+uniform vec3 round_eye;  // in the mesh
+uniform mat4 model;
+uniform mat4 view_projection;
+// The way from p along d to a ball about the z axis; along d.xy alone: to the endless cylinder.
+float entry(float a, float b, float c) {
+  float root = b * b - a * c;
+  if (root < 0.0) discard;
+  return (-b - sqrt(root)) / a;
+}
+void meet_round() {
+  vec3 p = v_hull, d = normalize(v_hull - round_eye);
+  float square = round_size.x * round_size.x;
+  float t = entry(max(dot(d.xy, d.xy), 1e-12), dot(p.xy, d.xy), dot(p.xy, p.xy) - square);
+#if CYLINDER
+  float turn = d.z < 0.0 ? -1.0 : 1.0, slope = max(abs(d.z), 1e-12), z = p.z * turn;
+  float over = (-round_size.y - z) / slope, under = (round_size.y - z) / slope;
+  float a = max(dot(d.xy, d.xy), 1e-12), b = dot(p.xy, d.xy);
+  float leave = min(-2.0 * b / a - t, under);
+  t = max(t, over);
+  if (t > leave) discard;
+#else
+  float z = p.z + t * d.z;
+  if (abs(z) > round_size.y) {
+    p.z -= clamp(z, -round_size.y, round_size.y);
+    t = entry(1.0, dot(p, d), dot(p, p) - square);
+  }
+#endif
+  vec4 clip = view_projection * (model * vec4(v_hull + t * d, 1.0));
+  float depth = 0.5 * clip.z / clip.w + 0.5;
+  if (depth < 0.0 || depth > 1.0) discard;
+  gl_FragDepth = depth;
+}
+#endif
+)";
+
 constexpr const char* surface_fragment = R"(
 #if TEXTURE
 in vec2 v_uv;
@@ -91,6 +144,9 @@ uniform sampler2D albedo_map;
 #endif
 #if DEPTH_ONLY
 void main() {
+#if ROUND
+  meet_round();
+#endif
 #if HOLES
   if (texture(albedo_map, v_uv).a < 0.5) discard;
 #endif
@@ -195,6 +251,9 @@ float lines(vec2 p, vec2 pixel, float step, float width) {
 }
 #endif
 void main() {
+#if ROUND
+  meet_round();
+#endif
   vec4 base = albedo;
   vec3 glow = emissive;
 #if EMISSIVE_MAP
@@ -296,7 +355,7 @@ std::string surface_vertex_source(const Features& features) { return header(feat
 std::string surface_fragment_source(const Features& features) {
   // The functions close the conditional that the declarations open: without colour there is nothing else.
   const std::string power = features.specular ? power_source(features.shine) : std::string();
-  return header(features) + surface_fragment + power + encode_source + surface_functions;
+  return header(features) + round_fragment + surface_fragment + power + encode_source + surface_functions;
 }
 
 std::string sky_vertex_source() {

@@ -20,6 +20,8 @@
 #include <compare>
 #include <string>
 
+#include "render/mesh.h"
+
 namespace sim {
 
 enum class FogKind { none, linear, exponential, quadratic };
@@ -34,8 +36,9 @@ struct Features {
   bool specular = false;
   int shine = 0;  // the exponent when it is a whole number up to 128, else 0
   bool double_sided = false;
-  bool faceted = false;  // every triangle has one normal
-  bool grid = false;     // metre lines on the ground
+  bool faceted = false;               // every triangle has one normal
+  RoundKind round = RoundKind::none;  // not none: met where it really is, not where its triangles are
+  bool grid = false;                  // metre lines on the ground
   FogKind fog = FogKind::none;
   int shadow_taps = 0;  // a side; 0: no shadow
   int directional = 0, points = 0, spots = 0;

@@ -11,6 +11,7 @@ Features features_of(const Drawable& drawable, const Picture& picture) {
   const Material& material = drawable.material;
   Features f;
   f.holes = material.texture && material.texture->has_holes;
+  if (view.wants_exact_depth && !view.is_parallel && !material.is_double_sided) f.round = drawable.mesh->round.kind;
   if (!view.wants_color) {
     f.depth_only = true;
     f.texture = f.holes;
@@ -144,6 +145,12 @@ base::Result<void> SurfacePass::draw(const Item& item) {
   if (current_->normal_matrix >= 0) {
     const Eigen::Matrix3f normals = item.model.topLeftCorner<3, 3>().inverse().transpose().cast<float>();
     gl_.UniformMatrix3fv(current_->normal_matrix, 1, GL_FALSE, normals.data());
+  }
+  if (current_->round_eye >= 0) {
+    const RoundShape& round = drawable.mesh->round;
+    gl_.Uniform2f(current_->round_size, round.radius, round.half_length);
+    const Eigen::Vector3f eye = item.model.inverse().topRightCorner<3, 1>().cast<float>();
+    gl_.Uniform3fv(current_->round_eye, 1, eye.data());
   }
   if (drawable.material.is_double_sided) {
     gl_.Disable(GL_CULL_FACE);

@@ -124,6 +124,42 @@ TEST(Camera, noise_has_its_mean_and_deviation_and_repeats_by_seed_and_time) {
   EXPECT_NE(rgb, set.color(same, 2000));
 }
 
+// Facets of such a ball lie centimetres beside it near its rim.
+TEST(Camera, balls_are_round_for_whoever_measures_them) {
+  WorldDef world = test::dark_world();
+  world.models.push_back(one_visual_model("ball", SphereShape{1.5}, at(4, 0, 0), glowing_material({1, 1, 1, 1})));
+  Set set(world);
+  CameraDef def;
+  std::vector<std::uint8_t> colors;
+  for (const auto output : {Camera::Output::depth, Camera::Output::color_and_depth}) {
+    Camera camera(def, output, 1);
+    set.take(camera, 5);
+    const double focal = camera.focal_length();
+    int seen = 0;
+    for (int x = 0; x < 320; ++x) {
+      const Eigen::Vector3d ray(1, (159.5 - x) / focal, 0.5 / focal);
+      const double a = ray.squaredNorm(), b = 4, c = 16 - 1.5 * 1.5;
+      const double root = b * b - a * c;
+      const float got = camera.depth()[static_cast<std::size_t>(120 * 320 + x)];
+      if (std::abs(root) < 0.05) continue;  // the rim
+      if (root < 0) {
+        EXPECT_TRUE(std::isinf(got)) << x;
+        continue;
+      }
+      EXPECT_NEAR(got, (b - std::sqrt(root)) / a, 0.001 + 0.001 * (b - std::sqrt(root)) / a) << x;
+      ++seen;
+    }
+    EXPECT_GT(seen, 150);
+    if (output == Camera::Output::color_and_depth) colors = set.color(camera, 5);
+  }
+  // The colours are the same whether somebody looks at the depth or not.
+  Camera camera(def, Camera::Output::color_and_depth, 1);
+  ASSERT_TRUE(camera.take(shared_renderer(), set.scene, set.poses, Eigen::Isometry3d::Identity(), 5, Camera::Output::color).ok());
+  std::vector<std::uint8_t> alone(camera.color_bytes());
+  camera.write_color(alone);
+  EXPECT_TRUE(alone == colors);
+}
+
 TEST(Camera, depth_noise_leaves_infinity_alone) {
   WorldDef world = test::dark_world();
   world.models.push_back(one_visual_model("wall", BoxShape{{0.1, 2, 20}}, at(3.05, 0, 0), glowing_material({1, 1, 1, 1})));

@@ -92,7 +92,7 @@ TEST(RenderGeometry, parallel_views_have_one_scale) {
   }
 }
 
-// A few of every shape, and a mesh, about the origin; curved ones small, as they are drawn with facets.
+// A few of every shape, and a mesh, about the origin.
 struct Thing {
   GeometryDef geometry;
   Eigen::Isometry3d pose;
@@ -105,15 +105,16 @@ std::vector<Thing> random_things(std::mt19937& random, const std::string& mesh) 
   for (int i = 0; i < 14; ++i) {
     const Eigen::Isometry3d pose = at(3 * unit(random), 3 * unit(random), 1 + unit(random), 3 * unit(random), unit(random), unit(random));
     GeometryDef geometry = BoxShape{{size(), size(), size()}};
-    if (i % 7 == 1) geometry = SphereShape{0.3};
-    if (i % 7 == 2) geometry = CylinderShape{0.25, size()};
-    if (i % 7 == 3) geometry = CapsuleShape{0.2, size()};
+    if (i % 7 == 1) geometry = SphereShape{0.5 + 0.3 * unit(random)};
+    if (i % 7 == 2) geometry = CylinderShape{0.5 + 0.3 * unit(random), size()};
+    if (i % 7 == 3) geometry = CapsuleShape{0.4 + 0.2 * unit(random), size()};
     if (i % 7 == 4) {
       MeshShape shape;
       shape.path = mesh;
       shape.scale = Vector3d(size(), -size(), size());
       geometry = shape;
     }
+    if (i == 13) geometry = EllipsoidShape{{0.4, 0.9, 0.6}};
     if (i % 7 == 5) geometry = PolylineShape{{{{-0.5, -0.4}, {0.6, -0.3}, {0.2, 0.5}}}, size()};
     things.push_back({geometry, pose});
   }
@@ -138,10 +139,7 @@ TEST(RenderGeometry, depth_agrees_with_the_ray_caster) {
     std::vector<std::string> notes;
     for (std::size_t i = 0; i < things.size(); ++i) {
       world.models.push_back(one_visual_model("t" + std::to_string(i), things[i].geometry, things[i].pose, plain_material({1, 1, 1, 1})));
-      const bool is_round = std::holds_alternative<SphereShape>(things[i].geometry) ||
-                            std::holds_alternative<CylinderShape>(things[i].geometry) ||
-                            std::holds_alternative<CapsuleShape>(things[i].geometry);
-      const RayShape shape{&things[i].geometry, Eigen::Isometry3d::Identity(), 0, is_round ? 1U : 0U};
+      const RayShape shape{&things[i].geometry, Eigen::Isometry3d::Identity(), 0, 0};
       rays.add_static(std::span(&shape, 1), things[i].pose, notes);
     }
     rays.commit();
@@ -152,22 +150,20 @@ TEST(RenderGeometry, depth_agrees_with_the_ray_caster) {
     View view = View::pinhole(camera, 0.9, 320, 240);
     view.near_clip = 0.05;
     view.far_clip = 60;
+    view.wants_exact_depth = true;
     const auto depth = studio.depth(view);
     const double focal = 160 / std::tan(0.45);
     const auto cast = [&](double x, double y) {
       const Vector3d ray(1, (160 - x) / focal, (120 - y) / focal);
-      const RayHit hit = rays.trace_one(camera.translation(), camera.linear() * ray.normalized(), 0.01F, 200);
-      const double steep = std::abs((camera.linear() * ray.normalized()).dot(hit.normal.cast<double>().normalized()));
-      return std::pair<double, bool>(hit.range / ray.norm(), hit.color == 1 && steep < 0.5);
+      return rays.trace_one(camera.translation(), camera.linear() * ray.normalized(), 0.01F, 200).range / ray.norm();
     };
     int compared = 0, on_things = 0;
     for (int y = 1; y < 240; y += 5) {
       for (int x = 1; x < 320; x += 5) {
-        const auto [expected, is_aslant] = cast(x + 0.5, y + 0.5);
-        if (is_aslant) continue;  // round things are drawn with facets
+        const double expected = cast(x + 0.5, y + 0.5);
         bool is_edge = false;
         for (const auto& [dx, dy] : {std::pair(-0.6, 0.0), std::pair(0.6, 0.0), std::pair(0.0, -0.6), std::pair(0.0, 0.6)}) {
-          const double beside = cast(x + 0.5 + dx, y + 0.5 + dy).first;
+          const double beside = cast(x + 0.5 + dx, y + 0.5 + dy);
           is_edge = is_edge || !(std::abs(beside - expected) < 0.03 * expected || (beside > 60 && expected > 60));
         }
         if (is_edge) continue;
@@ -215,6 +211,19 @@ TEST(RenderGeometry, collisions_are_drawn_only_when_asked_for) {
   const auto collisions = Studio(world, shared_renderer(), Scene::Content::collisions).picture(view);
   EXPECT_EQ(pixel(collisions, 32, 32)[0], 255);
   EXPECT_EQ(pixel(collisions, 50, 32)[0], 255);
+}
+
+TEST(RenderGeometry, a_plane_that_bodies_stand_on_is_drawn_far_beyond_its_visual) {
+  WorldDef world = dark_world();
+  ModelDef model = one_visual_model("m", PlaneShape{{0, 0, 1}, {1, 1}}, at(0, 0, 0), plain_material({0, 1, 0, 1}));
+  CollisionDef collision;
+  collision.name = "c";
+  collision.geometry = PlaneShape{};
+  model.links[0].collisions.push_back(collision);
+  world.models.push_back(model);
+  const View view = View::pinhole(at(0, 0, 2, 0, 0.1, 0), 0.8, 64, 64);
+  EXPECT_TRUE(std::isinf(Studio(world).depth(view)[60 * 64 + 32]));
+  EXPECT_LT(Studio(world, shared_renderer(), Scene::Content::collisions).depth(view)[40 * 64 + 32], 20);
 }
 
 TEST(RenderGeometry, large_level_sheets_are_ground_and_cast_no_shadow) {
