@@ -125,13 +125,24 @@ bool has_encoder() {
 }
 
 bool encode(const std::string& folder, double rate, const std::string& target) {
-  // Players want even sizes.
-  std::vector<std::string> words = {encoder,      "-loglevel",
-                                    "error",      "-y",
-                                    "-framerate", base::format_number(rate),
-                                    "-i",         folder + "/frame-%06d.png",
-                                    "-vf",        "pad=ceil(iw/2)*2:ceil(ih/2)*2",
-                                    "-pix_fmt",   "yuv420p",
+  // What ffmpeg is to read is a pattern, too.
+  std::string files;
+  for (const char c : folder) files += c == '%' ? "%%" : std::string(1, c);
+  files += "/frame-%06d.png";
+  // It would take the terminal's keys. Players want even sizes.
+  std::vector<std::string> words = {encoder,
+                                    "-nostdin",
+                                    "-loglevel",
+                                    "error",
+                                    "-y",
+                                    "-framerate",
+                                    base::format_number(rate),
+                                    "-i",
+                                    files,
+                                    "-vf",
+                                    "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+                                    "-pix_fmt",
+                                    "yuv420p",
                                     target};
   std::vector<char*> arguments;
   for (auto& word : words) arguments.push_back(word.data());

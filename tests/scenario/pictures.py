@@ -244,13 +244,14 @@ def records():
     with open(f"{tools}/ffmpeg", "w") as script:
         script.write('#!/bin/sh\nfor last; do :; done\necho "$@" > "$last"\n')
     os.chmod(f"{tools}/ffmpeg", 0o755)
-    ok("record", "eye::camera", place("made.mp4"), "-n", "4", path=f"{tools}:{os.environ['PATH']}")
-    asked = open(place("made.mp4")).read()
+    ok("record", "eye::camera", place("50%made.mp4"), "-n", "4", path=f"{tools}:{os.environ['PATH']}")
+    asked = open(place("50%made.mp4")).read()
     os.mkdir(place("again.mp4.frames"))
     open(place("again.mp4.frames/note"), "w").close()
     ok("record", "eye::camera", place("again.mp4"), "-n", "2", path=f"{tools}:{os.environ['PATH']}")
     assert os.listdir(place("again.mp4.frames")) == ["note"], "only its own frames are its to remove"
-    assert "-framerate" in asked and "made.mp4.frames/frame-%06d.png" in asked and not os.path.exists(place("made.mp4.frames")), asked
+    assert "-nostdin" in asked and "-framerate" in asked and "/50%%made.mp4.frames/frame-%06d.png" in asked, asked
+    assert not os.path.exists(place("50%made.mp4.frames")), asked
     with open(f"{tools}/ffmpeg", "w") as script:
         script.write("#!/bin/sh\nexit 1\n")
     refused("record", "eye::camera", place("bad.mp4"), "-n", "2", path=f"{tools}:{os.environ['PATH']}", says="could not write")
