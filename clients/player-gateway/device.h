@@ -1,0 +1,119 @@
+// What is common to all devices that a port shows: who is subscribed, where the samples come from, how a message reaches the clients. One
+// thread at a time.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "errands.h"
+#include "outbox.h"
+#include "protocol/message.h"
+#include "shm/layout.h"
+#include "source.h"
+#include "timeline.h"
+
+namespace gateway {
+
+// Whoever gets data; leaves all devices before it ends.
+class Client {
+ public:
+  virtual ~Client() = default;
+  virtual void deliver(const player::Address& device, std::uint8_t subtype, const SharedBytes& message) = 0;
+};
+
+struct Answer {
+  bool is_ack = false;
+  std::string payload;
+};
+inline Answer ack(std::string payload = {}) { return {true, std::move(payload)}; }
+inline Answer nack() { return {}; }
+using Later = std::function<void(Answer)>;
+
+// What devices share.
+struct Services {
+  Errands& errands;
+  Timeline& timeline;
+};
+
+class Device {
+ public:
+  Device(const player::Address& address, std::uint32_t robot, Services services);
+  virtual ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  const player::Address& address() const { return address_; }
+  // At most 62 characters.
+  std::string driver() const;
+
+  // The simulator has (again) what this device shows. Clients that are subscribed stay it.
+  void attach(std::shared_ptr<Source> source);
+  void detach();
+  const std::shared_ptr<Source>& source() const { return source_; }
+
+  // Counted per client. Refused while there is nothing to show.
+  base::Result<void> subscribe(Client& client);
+  // False when it was not subscribed.
+  bool unsubscribe(Client& client);
+  // Takes back all of the client's subscriptions.
+  void leave(Client& client);
+  bool is_subscribed(const Client& client) const;
+  bool is_used() const { return !subscribers_.empty(); }
+
+  // The source has a new sample or frame.
+  void take_sample();
+  // Nothing: `later` will be called with the answer, from the same thread.
+  std::optional<Answer> request(std::uint8_t subtype, const std::string& payload, const Later& later);
+  void command(Client& client, std::uint8_t subtype, const std::string& payload);
+
+ protected:
+  // All only while there is a source.
+  virtual void show_sample() {}
+  virtual std::optional<Answer> answer(std::uint8_t subtype, const std::string& payload, const Later& later) = 0;
+  virtual void obey(Client&, std::uint8_t /*subtype*/, const std::string& /*payload*/) {}
+  // A client that was subscribed no longer is.
+  virtual void forget(Client&) {}
+  virtual void on_attach() {}
+  // False for devices that never have data.
+  virtual bool has_data() const { return true; }
+
+  shm::Iface& iface() const { return source_->iface(); }
+  // To all subscribers, with one encoding.
+  void publish(std::uint8_t subtype, const std::string& payload, const shm::Stamp& stamp);
+  // Lets the simulator do it; the answer is an empty ack when it did.
+  std::nullopt_t ask(shm::Request request, const Later& later);
+
+  Services services_;
+
+ private:
+  struct Subscriber {
+    Client* client;
+    int count;
+  };
+  std::vector<Subscriber>::iterator find(const Client& client);
+  void remove(std::vector<Subscriber>::iterator subscriber);
+  base::Result<void> start_reading();
+  void stop_reading();
+
+  const player::Address address_;
+  const std::uint32_t robot_;
+  std::shared_ptr<Source> source_;
+  bool is_reading_ = false;
+  std::vector<Subscriber> subscribers_;
+  double last_time_ = 0;
+};
+
+// `type` is that of the source; nothing when the interface cannot show it.
+std::unique_ptr<Device> make_device(const player::Address& address, shm::IfaceType type, std::uint32_t robot, Services services);
+
+// ---- for the devices ----
+player::Pose3d to_pose3d(const shm::Pose& pose);
+// What clients may see of a range: never NaN, negative or infinite; no hit is max_range, too near is min_range.
+double seen_range(float range, double min_range, double max_range);
+
+}  // namespace gateway

@@ -1,0 +1,96 @@
+#include "errands.h"
+
+#include <errno.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <optional>
+#include <utility>
+
+#include "shm/request_board.h"
+
+namespace gateway {
+namespace {
+
+base::Result<shm::Reply> ask(std::optional<shm::Requester>& requester, std::uint32_t server_id, const shm::Request& request,
+                             std::chrono::nanoseconds left) {
+  if (left.count() <= 0) return base::Error{"the simulator has not answered in time"};
+  if (!requester || requester->simulation().status() != shm::Status::live) {
+    requester.reset();
+    auto opened = shm::Requester::open(server_id);
+    if (!opened) return opened.error();
+    requester.emplace(std::move(*opened));
+  }
+  auto reply = requester->ask(request, left);
+  if (!reply) {
+    requester.reset();
+    return reply;
+  }
+  if (reply->status != shm::RequestStatus::ok) return base::Error{reply->message};
+  return reply;
+}
+
+void ring(int descriptor) {
+  const std::uint64_t one = 1;
+  while (::write(descriptor, &one, sizeof one) < 0 && errno == EINTR) {
+  }
+}
+
+}  // namespace
+
+Errands::Errands(std::uint32_t server_id)
+    : server_id_(server_id),
+      descriptor_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+Errands::~Errands() {
+  thread_.request_stop();
+  thread_.join();
+  ::close(descriptor_);
+}
+
+void Errands::post(shm::Request request, Done done) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (jobs_.size() < max_waiting) {
+      jobs_.push_back({std::move(request), std::move(done), std::chrono::steady_clock::now() + limit});
+      posted_.notify_one();
+      return;
+    }
+    answers_.push_back({std::move(done), base::Error{"too many requests wait for the simulator"}});
+  }
+  ring(descriptor_);
+}
+
+void Errands::deliver() {
+  std::uint64_t count = 0;
+  while (::read(descriptor_, &count, sizeof count) < 0 && errno == EINTR) {
+  }
+  std::deque<Answer> answers;
+  {
+    const std::lock_guard lock(mutex_);
+    answers.swap(answers_);
+  }
+  for (Answer& answer : answers) answer.done(std::move(answer.reply));
+}
+
+void Errands::run(const std::stop_token& stop) {
+  std::optional<shm::Requester> requester;
+  while (true) {
+    Job job;
+    {
+      std::unique_lock lock(mutex_);
+      if (!posted_.wait(lock, stop, [&] { return !jobs_.empty(); }) || stop.stop_requested()) return;
+      job = std::move(jobs_.front());
+      jobs_.pop_front();
+    }
+    auto reply = ask(requester, server_id_, job.request, job.deadline - std::chrono::steady_clock::now());
+    {
+      const std::lock_guard lock(mutex_);
+      answers_.push_back({std::move(job.done), std::move(reply)});
+    }
+    ring(descriptor_);
+  }
+}
+
+}  // namespace gateway

@@ -1,0 +1,58 @@
+// Requests to the simulator that the event loop does not wait for: a thread asks, the loop gets the answer. The public functions belong to
+// one thread at a time, and answers are handed out in it.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+#include "base/result.h"
+#include "shm/requests.h"
+
+namespace gateway {
+
+class Errands {
+ public:
+  // Shorter than what a client waits for (5 s), so that it hears of a failure.
+  static constexpr std::chrono::seconds limit{3};
+  static constexpr std::size_t max_waiting = 1000;
+
+  using Done = std::function<void(base::Result<shm::Reply>)>;
+
+  explicit Errands(std::uint32_t server_id);
+  ~Errands();  // what has not been asked yet is dropped
+  Errands(const Errands&) = delete;
+  Errands& operator=(const Errands&) = delete;
+
+  // In the order of the calls. `done` is called by deliver(), with an error too when the simulator refused.
+  void post(shm::Request request, Done done);
+  // Readable when there are answers; an eventfd.
+  int descriptor() const { return descriptor_; }
+  void deliver();
+
+ private:
+  struct Job {
+    shm::Request request;
+    Done done;
+    std::chrono::steady_clock::time_point deadline;
+  };
+  struct Answer {
+    Done done;
+    base::Result<shm::Reply> reply;
+  };
+  void run(const std::stop_token& stop);
+
+  const std::uint32_t server_id_;
+  int descriptor_ = -1;
+  std::mutex mutex_;
+  std::condition_variable_any posted_;
+  std::deque<Job> jobs_;
+  std::deque<Answer> answers_;
+  std::jthread thread_;  // last: it uses the others
+};
+
+}  // namespace gateway

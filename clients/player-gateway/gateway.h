@@ -1,0 +1,76 @@
+// The gateway: ports, clients and the simulator in one event loop. One thread.
+#pragma once
+
+#include <sys/epoll.h>
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "alarm.h"
+#include "base/result.h"
+#include "errands.h"
+#include "listener.h"
+#include "mapping.h"
+#include "robot.h"
+#include "session.h"
+#include "simulator.h"
+#include "timeline.h"
+
+namespace gateway {
+
+struct Options {
+  std::uint32_t server_id = 0;
+  std::string address = "127.0.0.1";
+  std::uint16_t first_port = 6665;  // 0: any free ones
+  std::optional<std::vector<ConfiguredPort>> config;
+};
+
+class Gateway {
+ public:
+  explicit Gateway(Options options);
+  ~Gateway();
+
+  // Until SIGINT or SIGTERM, which must be blocked in all threads. Errors: a port that cannot be had.
+  base::Result<void> run();
+
+ private:
+  struct Port {
+    Listener listener;
+    std::unique_ptr<Robot> robot;
+    std::string said;  // what was printed of it
+  };
+
+  void add(int descriptor, std::uint64_t tag);
+  void serve_ports(std::vector<PortPlan> plans);
+  base::Result<void> open_port(std::uint16_t port);
+  void arrange(const std::vector<ListedIface>& ifaces);
+  void lose();
+  void accept(Port& port);
+  void set_accepting(bool is_accepting);
+  void handle(const epoll_event& event);
+  void take_samples();
+  void watch_sources();
+  void serve_clients();
+
+  const Options options_;
+  int epoll_ = -1, signals_ = -1;
+  Timeline timeline_;
+  Errands errands_;
+  Alarm alarm_;
+  Simulator simulator_;
+  std::vector<Port> ports_;  // only ever more
+  std::map<std::uint64_t, std::unique_ptr<Session>> sessions_;
+  std::uint64_t next_session_ = 0;
+  std::vector<std::string> missing_;  // of the mapping file, as said last
+  std::vector<SharedSegment> watched_;
+  bool is_accepting_ = true;
+  bool is_serving_ = false;  // all ports of the first world are open
+  bool is_over_ = false;
+  std::optional<base::Error> failed_;
+};
+
+}  // namespace gateway

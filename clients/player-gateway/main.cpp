@@ -1,0 +1,58 @@
+// player-gateway: lets clients of Player drive the robots of a simulation. See --help.
+#include <signal.h>
+
+#include <iostream>
+
+#include "base/command_line.h"
+#include "base/log.h"
+#include "gateway.h"
+
+namespace {
+
+// Before any thread is started, so that none of them gets the signals.
+void block_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  sigprocmask(SIG_BLOCK, &signals, nullptr);
+}
+
+int fail(const base::Error& error) {
+  std::cerr << "player-gateway: " << error.message << '\n';
+  return 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "player-gateway: let clients of Player drive the robots of a simulation\nServes the TCP protocol of Player 3.1: each robot of the "
+      "world on "
+      "a port of its own, or what a mapping file says. Prints a line for each port."};
+  base::add_standard_options(app, "player-gateway", RTMSIM_VERSION);
+  gateway::Options options;
+  std::string config;
+  bool is_quiet = false;
+  app.add_option("-s,--server-id", options.server_id, "Which simulator")
+      ->check(CLI::Range(0, 9999))
+      ->envname("RTMSIM_SERVER_ID")
+      ->capture_default_str();
+  auto* port = app.add_option("-p,--port", options.first_port, "Port of the first robot, the others follow; 0: any free ports")
+                   ->check(CLI::Range(0, 65535))
+                   ->capture_default_str();
+  app.add_option("--address", options.address, "Address to listen on; 0.0.0.0: all")->capture_default_str();
+  app.add_option("--config", config, "Mapping file: which port shows which devices (docs/player.md)")->excludes(port);
+  app.add_flag("-q,--quiet", is_quiet)->description("Say nothing of clients that come with bytes of another protocol");
+  if (const auto end = base::parse_command_line(app, "player-gateway", argc, argv)) return *end;
+  if (is_quiet) base::set_log_level(base::Level::warn);
+  if (!config.empty()) {
+    auto ports = gateway::read_config(config);
+    if (!ports) return fail(ports.error());
+    options.config = std::move(*ports);
+  }
+  block_signals();
+  gateway::Gateway gateway(std::move(options));
+  if (const auto done = gateway.run(); !done) return fail(done.error());
+  return 0;
+}

@@ -1,0 +1,246 @@
+#include "mapping.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "base/text.h"
+
+namespace gateway {
+namespace {
+
+constexpr std::string_view simulation_iface = "world";
+
+// Gives out the indexes of the devices of one port.
+class Numbering {
+ public:
+  explicit Numbering(std::vector<DevicePlan>& devices) : devices_(devices) {
+    for (const DevicePlan& one : devices) taken_.insert(one.address);
+  }
+  void add(player::Interface interface, const ListedIface& iface) {
+    player::Address address{interface, 0};
+    while (!taken_.insert(address).second) ++address.index;
+    devices_.push_back({address, iface.type, iface.name});
+  }
+
+ private:
+  std::vector<DevicePlan>& devices_;
+  std::set<player::Address> taken_;
+};
+
+std::string robot_of(const ListedIface& iface) { return iface.model.substr(0, iface.model.find("::")); }
+
+bool is_device(const ListedIface& iface) { return iface.type != shm::IfaceType::simulation && !interfaces_for(iface.type).empty(); }
+
+// All devices of a model. Rangers come last, so that those of lasers have the lower numbers.
+void add_robot(const std::string& robot, const std::vector<ListedIface>& ifaces, std::vector<DevicePlan>& devices) {
+  Numbering numbering(devices);
+  for (const bool is_second_round : {false, true}) {
+    for (const auto type : {shm::IfaceType::position2d, shm::IfaceType::position3d, shm::IfaceType::laser, shm::IfaceType::sonar,
+                            shm::IfaceType::camera, shm::IfaceType::gps, shm::IfaceType::imu, shm::IfaceType::bumper}) {
+      const auto interfaces = interfaces_for(type);
+      if (is_second_round && interfaces.size() < 2) continue;
+      for (const ListedIface& iface : ifaces) {
+        if (iface.type == type && robot_of(iface) == robot) numbering.add(interfaces[is_second_round ? 1 : 0], iface);
+      }
+    }
+  }
+}
+
+void add_simulation(std::vector<DevicePlan>& devices) {
+  const player::Address address{player::Interface::simulation, 0};
+  if (std::none_of(devices.begin(), devices.end(), [&](const DevicePlan& one) { return one.address == address; }))
+    devices.push_back({address, shm::IfaceType::simulation, std::string(simulation_iface)});
+}
+
+// ---- the file ----
+
+// Thrown by the readers below, caught in read_config.
+struct Wrong {
+  YAML::Mark mark;
+  std::string what;
+};
+
+std::string text_of(const YAML::Node& node, const char* what) {
+  if (!node.IsScalar()) throw Wrong{node.Mark(), std::string("expected ") + what};
+  return node.as<std::string>();
+}
+
+std::uint16_t port_of(const YAML::Node& node) {
+  const auto text = text_of(node, "a port");
+  const auto port = base::parse_integer(text);
+  if (!port || *port < 0 || *port > 65535) throw Wrong{node.Mark(), "port must be a number from 0 to 65535, got " + base::in_quotes(text)};
+  return static_cast<std::uint16_t>(*port);
+}
+
+player::Address address_of(const YAML::Node& node) {
+  const auto text = text_of(node, "INTERFACE:INDEX");
+  const auto colon = text.find(':');
+  const auto interface = player::parse_interface(text.substr(0, colon));
+  const auto index = colon == std::string::npos ? std::optional<std::int64_t>(0) : base::parse_integer(text.substr(colon + 1));
+  if (!interface || *interface == player::Interface::player || !index || *index < 0 || *index > 65535)
+    throw Wrong{node.Mark(), "expected INTERFACE:INDEX as in laser:0, got " + base::in_quotes(text)};
+  return {*interface, static_cast<std::uint16_t>(*index)};
+}
+
+bool can_show(player::Interface interface, shm::IfaceType type) {
+  const auto interfaces = interfaces_for(type);
+  return std::find(interfaces.begin(), interfaces.end(), interface) != interfaces.end();
+}
+
+ConfiguredDevice device_of(const YAML::Node& key, const YAML::Node& value) {
+  ConfiguredDevice device;
+  device.address = address_of(key);
+  device.iface = text_of(value, "the name of an iface");
+  // "sonar:pioneer::sonar": one colon ends a type, two separate names.
+  const auto colon = device.iface.find(':');
+  if (colon != std::string::npos && device.iface.compare(colon, 2, "::") != 0) {
+    device.type = shm::parse_type(device.iface.substr(0, colon));
+    if (!device.type || !can_show(device.address.interface, *device.type))
+      throw Wrong{value.Mark(),
+                  player::to_text(device.address) + " can't show an iface of type " + base::in_quotes(device.iface.substr(0, colon))};
+    device.iface.erase(0, colon + 1);
+  }
+  return device;
+}
+
+ConfiguredPort configured_port(const YAML::Node& node) {
+  if (!node.IsMap()) throw Wrong{node.Mark(), "expected a port with robots or devices"};
+  ConfiguredPort port;
+  bool has_port = false;
+  for (const auto& entry : node) {
+    const auto key = text_of(entry.first, "port, robots or devices");
+    if (key == "port") {
+      port.port = port_of(entry.second);
+      has_port = true;
+    } else if (key == "robots") {
+      if (!entry.second.IsSequence()) throw Wrong{entry.second.Mark(), "robots: expected a list of models"};
+      for (const auto& robot : entry.second) port.robots.push_back(text_of(robot, "the name of a model"));
+    } else if (key == "devices") {
+      if (!entry.second.IsMap()) throw Wrong{entry.second.Mark(), "devices: expected INTERFACE:INDEX: iface"};
+      for (const auto& device : entry.second) {
+        port.devices.push_back(device_of(device.first, device.second));
+        const auto& address = port.devices.back().address;
+        if (std::count_if(port.devices.begin(), port.devices.end(), [&](const auto& one) { return one.address == address; }) > 1)
+          throw Wrong{device.first.Mark(), player::to_text(address) + " is there twice"};
+      }
+    } else {
+      throw Wrong{entry.first.Mark(), "expected port, robots or devices, got " + base::in_quotes(key)};
+    }
+  }
+  if (!has_port) throw Wrong{node.Mark(), "port is missing"};
+  return port;
+}
+
+std::vector<ConfiguredPort> configured_ports(const YAML::Node& root) {
+  if (!root.IsMap() || root.size() != 1 || !root["ports"] || !root["ports"].IsSequence())
+    throw Wrong{root.Mark(), "expected a list called ports and nothing else"};
+  std::vector<ConfiguredPort> ports;
+  for (const auto& node : root["ports"]) {
+    ports.push_back(configured_port(node));
+    const auto number = ports.back().port;
+    if (number != 0 && std::count_if(ports.begin(), ports.end(), [&](const auto& one) { return one.port == number; }) > 1)
+      throw Wrong{node.Mark(), "port " + std::to_string(number) + " is there twice"};
+  }
+  if (ports.empty()) throw Wrong{root.Mark(), "there is no port"};
+  return ports;
+}
+
+}  // namespace
+
+std::vector<player::Interface> interfaces_for(shm::IfaceType type) {
+  using enum player::Interface;
+  switch (type) {
+    case shm::IfaceType::simulation:
+      return {simulation};
+    case shm::IfaceType::laser:
+      return {laser, ranger};
+    case shm::IfaceType::sonar:
+      return {sonar, ranger};
+    case shm::IfaceType::position2d:
+      return {position2d};
+    case shm::IfaceType::position3d:
+      return {position3d};
+    case shm::IfaceType::camera:
+      return {camera};
+    case shm::IfaceType::imu:
+      return {imu};
+    case shm::IfaceType::gps:
+      return {gps};
+    case shm::IfaceType::bumper:
+      return {bumper};
+    default:
+      return {};
+  }
+}
+
+base::Result<std::vector<ListedIface>> parse_list(std::string_view json) {
+  const auto list = nlohmann::json::parse(json, nullptr, false);
+  if (!list.is_object() || !list.contains("ifaces")) return base::Error{"the simulator's list of ifaces can't be read"};
+  std::vector<ListedIface> ifaces;
+  for (const auto& one : list["ifaces"]) {
+    const auto type = shm::parse_type(one.value("type", ""));
+    if (type) ifaces.push_back({*type, one.value("name", ""), one.value("model", "")});
+  }
+  return ifaces;
+}
+
+base::Result<std::vector<ConfiguredPort>> read_config(const std::string& path) {
+  try {
+    return configured_ports(YAML::LoadFile(path));
+  } catch (const Wrong& wrong) {
+    return base::Error{path + ":" + std::to_string(wrong.mark.line + 1) + ": " + wrong.what};
+  } catch (const YAML::BadFile&) {
+    return base::Error{"mapping " + path + " can't be read"};
+  } catch (const YAML::Exception& wrong) {
+    return base::Error{path + ":" + std::to_string(wrong.mark.line + 1) + ": " + wrong.msg};
+  }
+}
+
+std::vector<PortPlan> plan_by_world(const std::vector<ListedIface>& ifaces, std::uint16_t first_port) {
+  std::vector<std::string> robots;
+  for (const ListedIface& iface : ifaces) {
+    if (is_device(iface) && std::find(robots.begin(), robots.end(), robot_of(iface)) == robots.end()) robots.push_back(robot_of(iface));
+  }
+  std::vector<PortPlan> ports;
+  for (const std::string& robot : robots) {
+    const std::size_t port = first_port == 0 ? 0 : first_port + ports.size();
+    if (port > 65535) break;
+    ports.push_back({static_cast<std::uint16_t>(port), robot, {}});
+    add_robot(robot, ifaces, ports.back().devices);
+  }
+  if (ports.empty()) ports.push_back({first_port, "no robot", {}});
+  for (PortPlan& port : ports) add_simulation(port.devices);
+  return ports;
+}
+
+std::vector<PortPlan> plan_by_config(const std::vector<ConfiguredPort>& ports, const std::vector<ListedIface>& ifaces,
+                                     std::vector<std::string>& missing) {
+  std::vector<PortPlan> plans;
+  for (const ConfiguredPort& port : ports) {
+    PortPlan plan{port.port, base::join(port.robots, " "), {}};
+    for (const ConfiguredDevice& device : port.devices) {
+      const auto found = std::find_if(ifaces.begin(), ifaces.end(), [&](const ListedIface& one) {
+        return one.name == device.iface && (device.type ? one.type == *device.type : can_show(device.address.interface, one.type));
+      });
+      if (found != ifaces.end()) {
+        plan.devices.push_back({device.address, found->type, found->name});
+      } else if (device.address.interface != player::Interface::simulation) {
+        missing.push_back(player::to_text(device.address) + " of port " + std::to_string(port.port) + ": no iface " +
+                          base::in_quotes(device.iface));
+      }
+    }
+    for (const std::string& robot : port.robots) {
+      if (std::none_of(ifaces.begin(), ifaces.end(), [&](const ListedIface& one) { return is_device(one) && robot_of(one) == robot; }))
+        missing.push_back("port " + std::to_string(port.port) + ": no robot " + base::in_quotes(robot));
+      add_robot(robot, ifaces, plan.devices);
+    }
+    add_simulation(plan.devices);
+    plans.push_back(std::move(plan));
+  }
+  return plans;
+}
+
+}  // namespace gateway

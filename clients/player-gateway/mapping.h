@@ -1,0 +1,61 @@
+// Which port shows which devices of the world: one robot per port in world order, or what a file says. Values; any thread.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.h"
+#include "protocol/message.h"
+#include "shm/layout.h"
+
+namespace gateway {
+
+struct DevicePlan {
+  player::Address address;
+  shm::IfaceType type = shm::IfaceType::laser;
+  std::string iface;
+};
+
+struct PortPlan {
+  std::uint16_t port = 0;  // 0: any free one
+  std::string name;        // of the robots, for people
+  std::vector<DevicePlan> devices;
+};
+
+// An iface as the simulator lists it, in world order.
+struct ListedIface {
+  shm::IfaceType type;
+  std::string name;
+  std::string model;
+};
+// From the reply to a ListRequest. Ifaces of types that are not known are left out.
+base::Result<std::vector<ListedIface>> parse_list(std::string_view json);
+
+// A mapping file as written: see docs/player.md.
+struct ConfiguredDevice {
+  player::Address address;
+  std::optional<shm::IfaceType> type;  // nothing: the first that the interface can show
+  std::string iface;
+};
+struct ConfiguredPort {
+  std::uint16_t port = 0;
+  std::vector<std::string> robots;
+  std::vector<ConfiguredDevice> devices;
+};
+// Errors name the file, the line and what was expected.
+base::Result<std::vector<ConfiguredPort>> read_config(const std::string& path);
+
+// One port for each model of the world that has devices, from `first_port` (0: any free ones) on; one port without robot when there is
+// none. simulation:0 is on each.
+std::vector<PortPlan> plan_by_world(const std::vector<ListedIface>& ifaces, std::uint16_t first_port);
+// What of the file is there. Devices that are not are left out and, with `missing`, named.
+std::vector<PortPlan> plan_by_config(const std::vector<ConfiguredPort>& ports, const std::vector<ListedIface>& ifaces,
+                                     std::vector<std::string>& missing);
+
+// Interfaces that can show an iface of this type, the usual one first.
+std::vector<player::Interface> interfaces_for(shm::IfaceType type);
+
+}  // namespace gateway

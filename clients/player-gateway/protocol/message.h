@@ -1,0 +1,94 @@
+// Messages of Player 3.1: a header of 40 bytes and a payload, both in XDR; and the parser that cuts a stream into them. No sockets; a
+// parser belongs to one thread at a time.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "base/result.h"
+
+namespace player {
+
+inline constexpr std::size_t banner_size = 32;
+inline constexpr std::size_t header_size = 40;
+inline constexpr std::size_t max_message = 8'388'608;  // [bytes] decoded, of what any Player program takes
+
+// Codes of interfaces. Others exist; these are served.
+enum class Interface : std::uint16_t {
+  player = 1,
+  position2d = 4,
+  sonar = 5,
+  laser = 6,
+  gps = 13,
+  bumper = 14,
+  position3d = 30,
+  simulation = 31,
+  camera = 40,
+  imu = 60,
+  ranger = 62,
+};
+// "laser"; empty for what is not served.
+std::string_view to_text(Interface interface);
+std::optional<Interface> parse_interface(std::string_view name);
+
+enum class Type : std::uint8_t { data = 1, command = 2, request = 3, ack = 4, synch = 5, nack = 6 };
+
+// Of requests to the player device; synch messages have subtypes of their own.
+namespace player_request {
+inline constexpr std::uint8_t devlist = 1, driverinfo = 2, dev = 3, data = 4, datamode = 5, add_replace_rule = 10;
+}
+namespace synch {
+inline constexpr std::uint8_t ok = 1;
+}
+enum class Access : std::uint32_t { open = 1, close = 2, error = 3 };
+enum class DataMode : std::uint32_t { push = 1, pull = 2 };
+
+// A device on its port. Host and robot of the wire mean nothing to either end.
+struct Address {
+  Interface interface = Interface::player;
+  std::uint16_t index = 0;
+  auto operator<=>(const Address&) const = default;
+};
+// "laser:0", and "66:0" for what is not served.
+std::string to_text(const Address& address);
+
+struct Header {
+  Address address;
+  Type type = Type::request;
+  std::uint8_t subtype = 0;
+  double timestamp = 0;    // [s]
+  std::uint32_t size = 0;  // of the payload [bytes]
+};
+
+struct Message {
+  Header header;
+  std::string payload;
+};
+
+// Exactly banner_size bytes.
+std::string banner(std::string_view version);
+// The whole message. `robot`: the port.
+std::string encode(const Header& header, std::uint32_t robot, std::string_view payload = {});
+
+// Takes a stream in pieces of any size.
+class MessageParser {
+ public:
+  // Payloads that are longer are an error: nothing after them can be trusted.
+  explicit MessageParser(std::size_t max_payload) : max_payload_(max_payload) {}
+
+  void feed(std::string_view bytes);
+  // The next whole message; nothing while it has not come. After an error (a header that no Player program sends) it stays an error.
+  // Types that do not exist are left to the caller: `header.type` may be any byte.
+  base::Result<std::optional<Message>> next();
+  // [bytes] not yet taken out.
+  std::size_t pending() const { return buffer_.size() - start_; }
+
+ private:
+  std::size_t max_payload_;
+  std::string buffer_;
+  std::size_t start_ = 0;
+};
+
+}  // namespace player

@@ -1,0 +1,384 @@
+#include "protocol/payloads.h"
+
+#include <utility>
+
+namespace player {
+namespace {
+
+constexpr std::size_t max_driver_name = 63;  // clients write a zero behind it into a field of 64
+constexpr std::size_t max_name = 4096;
+constexpr std::size_t max_value = 65536;
+
+template <class Put>
+std::string written(Put put_all) {
+  XdrWriter out;
+  put_all(out);
+  return std::move(out.bytes());
+}
+
+// The value that `take` reads, if the payload is exactly that.
+template <class Take>
+auto whole(std::string_view payload, Take take) {
+  XdrReader in(payload);
+  auto value = take(in);
+  return in.is_complete() ? std::optional(std::move(value)) : std::nullopt;
+}
+
+}  // namespace
+
+void put(XdrWriter& out, const Pose2d& pose) {
+  for (const double value : {pose.x, pose.y, pose.a}) out.f64(value);
+}
+
+void put(XdrWriter& out, const Pose3d& pose) {
+  for (const double value : {pose.x, pose.y, pose.z, pose.roll, pose.pitch, pose.yaw}) out.f64(value);
+}
+
+void put(XdrWriter& out, const Size3d& size) {
+  for (const double value : {size.width, size.length, size.height}) out.f64(value);
+}
+
+void put(XdrWriter& out, const Address& address) {
+  out.u32(0);
+  out.u32(0);
+  out.u32(static_cast<std::uint16_t>(address.interface));
+  out.u32(address.index);
+}
+
+Pose2d take_pose2d(XdrReader& in) {
+  Pose2d pose;
+  for (double* value : {&pose.x, &pose.y, &pose.a}) *value = in.f64();
+  return pose;
+}
+
+Pose3d take_pose3d(XdrReader& in) {
+  Pose3d pose;
+  for (double* value : {&pose.x, &pose.y, &pose.z, &pose.roll, &pose.pitch, &pose.yaw}) *value = in.f64();
+  return pose;
+}
+
+Address take_address(XdrReader& in) {
+  in.u32();
+  in.u32();
+  Address address;
+  address.interface = static_cast<Interface>(in.small(0xffff));
+  address.index = static_cast<std::uint16_t>(in.small(0xffff));
+  return address;
+}
+
+// ---- player ----
+
+std::string encode(const DeviceRequest& request) {
+  return written([&](XdrWriter& out) {
+    put(out, request.address);
+    out.u32(request.access);
+    out.counted_text(std::string_view(request.driver).substr(0, max_driver_name - 1));
+  });
+}
+
+std::optional<DeviceRequest> decode_device_request(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    DeviceRequest request;
+    request.address = take_address(in);
+    request.access = in.u32();
+    request.driver = in.counted_text(64);
+    return request;
+  });
+}
+
+std::string encode(const DriverInfo& info) {
+  return written([&](XdrWriter& out) {
+    put(out, info.address);
+    out.counted_text(std::string_view(info.driver).substr(0, max_driver_name - 1));
+  });
+}
+
+std::optional<DriverInfo> decode_driver_info(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    DriverInfo info;
+    info.address = take_address(in);
+    info.driver = in.counted_text(64);
+    return info;
+  });
+}
+
+std::string encode_device_list(const std::vector<Address>& devices) {
+  return written([&](XdrWriter& out) {
+    out.count(devices.size());
+    for (const Address& device : devices) put(out, device);
+  });
+}
+
+std::optional<ReplaceRule> decode_replace_rule(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    ReplaceRule rule;
+    for (std::int32_t* value : {&rule.interface, &rule.index, &rule.type, &rule.subtype, &rule.replace}) *value = in.i32();
+    return rule;
+  });
+}
+
+// ---- position ----
+
+std::string encode(const Position2dState& state) {
+  return written([&](XdrWriter& out) {
+    put(out, state.pose);
+    put(out, state.velocity);
+    out.boolean(state.is_stalled);
+  });
+}
+
+std::optional<Position2dState> decode_position2d_state(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    Position2dState state;
+    state.pose = take_pose2d(in);
+    state.velocity = take_pose2d(in);
+    state.is_stalled = in.boolean();
+    return state;
+  });
+}
+
+std::string encode(const Position3dState& state) {
+  return written([&](XdrWriter& out) {
+    put(out, state.pose);
+    put(out, state.velocity);
+    out.boolean(state.is_stalled);
+  });
+}
+
+std::string encode(const Velocity2d& velocity) {
+  return written([&](XdrWriter& out) {
+    put(out, velocity.velocity);
+    out.boolean(velocity.is_enabled);
+  });
+}
+
+std::optional<Velocity2d> decode_velocity2d(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    Velocity2d velocity;
+    velocity.velocity = take_pose2d(in);
+    velocity.is_enabled = in.boolean();
+    return velocity;
+  });
+}
+
+std::optional<Pose3d> decode_velocity3d(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    const Pose3d velocity = take_pose3d(in);
+    in.boolean();
+    return velocity;
+  });
+}
+
+std::optional<Pose2d> decode_pose2d(std::string_view payload) { return whole(payload, take_pose2d); }
+std::optional<Pose3d> decode_pose3d(std::string_view payload) { return whole(payload, take_pose3d); }
+
+std::string encode_geometry(const Pose3d& pose, const Size3d& size) {
+  return written([&](XdrWriter& out) {
+    put(out, pose);
+    put(out, size);
+  });
+}
+
+std::optional<std::uint8_t> decode_byte(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) { return static_cast<std::uint8_t>(in.small(255)); });
+}
+
+std::optional<std::uint32_t> decode_u32(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) { return in.u32(); });
+}
+
+std::string encode_u32(std::uint32_t value) {
+  return written([&](XdrWriter& out) { out.u32(value); });
+}
+
+// ---- laser ----
+
+std::string encode(const LaserScan& scan) {
+  return written([&](XdrWriter& out) {
+    out.bytes().reserve(40 + 5 * scan.ranges.size());
+    for (const float value : {scan.min_angle, scan.max_angle, scan.resolution, scan.max_range}) out.f32(value);
+    out.count(scan.ranges.size());
+    for (const float range : scan.ranges) out.f32(range);
+    out.counted_bytes(scan.intensities);
+    out.u32(scan.id);
+  });
+}
+
+std::optional<LaserScan> decode_laser_scan(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    LaserScan scan;
+    for (float* value : {&scan.min_angle, &scan.max_angle, &scan.resolution, &scan.max_range}) *value = in.f32();
+    scan.ranges.resize(in.count(4, max_message / 4));
+    for (float& range : scan.ranges) range = in.f32();
+    scan.intensities = in.counted_bytes(max_message);
+    scan.id = in.u32();
+    return scan;
+  });
+}
+
+std::string encode(const LaserConfig& config) {
+  return written([&](XdrWriter& out) {
+    for (const float value : {config.min_angle, config.max_angle, config.resolution, config.max_range, config.range_resolution})
+      out.f32(value);
+    out.boolean(config.has_intensity);
+    out.f32(config.rate);
+  });
+}
+
+// ---- ranger ----
+
+std::string encode(const RangerGeometry& geometry) {
+  return written([&](XdrWriter& out) {
+    put(out, geometry.pose);
+    put(out, geometry.size);
+    out.count(geometry.element_poses.size());
+    for (const Pose3d& pose : geometry.element_poses) put(out, pose);
+    out.count(geometry.element_sizes.size());
+    for (const Size3d& size : geometry.element_sizes) put(out, size);
+  });
+}
+
+std::string encode(const RangerConfig& config) {
+  return written([&](XdrWriter& out) {
+    for (const double value :
+         {config.min_angle, config.max_angle, config.resolution, config.min_range, config.max_range, config.range_resolution, config.rate})
+      out.f64(value);
+  });
+}
+
+std::string encode_ranger_values(const std::vector<double>& values) {
+  return written([&](XdrWriter& out) {
+    out.count(values.size());
+    for (const double value : values) out.f64(value);
+  });
+}
+
+// ---- sonar ----
+
+std::string encode_sonar_ranges(const std::vector<float>& ranges) {
+  return written([&](XdrWriter& out) {
+    out.count(ranges.size());
+    for (const float range : ranges) out.f32(range);
+  });
+}
+
+std::string encode_poses(const std::vector<Pose3d>& poses) {
+  return written([&](XdrWriter& out) {
+    out.count(poses.size());
+    for (const Pose3d& pose : poses) put(out, pose);
+  });
+}
+
+// ---- camera ----
+
+std::string encode(const Image& image) {
+  return written([&](XdrWriter& out) {
+    out.bytes().reserve(40 + image.pixels.size());
+    for (const std::uint32_t value : {image.width, image.height, image.bits, static_cast<std::uint32_t>(image.format)}) out.u32(value);
+    out.u32(1);  // fdiv
+    out.u32(0);  // not compressed
+    out.counted_bytes(image.pixels);
+  });
+}
+
+std::string encode_camera_source(std::string_view norm, std::int32_t source) {
+  return written([&](XdrWriter& out) {
+    out.counted_text(norm);
+    out.i32(source);
+  });
+}
+
+// ---- simulation ----
+
+std::string encode(const NamedPose2d& request) {
+  return written([&](XdrWriter& out) {
+    out.counted_text(request.name);
+    put(out, request.pose);
+  });
+}
+
+std::optional<NamedPose2d> decode_named_pose2d(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    NamedPose2d request;
+    request.name = in.counted_text(max_name);
+    request.pose = take_pose2d(in);
+    return request;
+  });
+}
+
+std::string encode(const NamedPose3d& request) {
+  return written([&](XdrWriter& out) {
+    out.counted_text(request.name);
+    put(out, request.pose);
+    out.f64(request.sim_time);
+  });
+}
+
+std::optional<NamedPose3d> decode_named_pose3d(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    NamedPose3d request;
+    request.name = in.counted_text(max_name);
+    request.pose = take_pose3d(in);
+    request.sim_time = in.f64();
+    return request;
+  });
+}
+
+std::string encode(const Property& request) {
+  return written([&](XdrWriter& out) {
+    out.counted_text(request.name);
+    out.counted_text(request.property);
+    out.u32(request.index);
+    out.counted_bytes(request.value);
+  });
+}
+
+std::optional<Property> decode_property(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    Property request;
+    request.name = in.counted_text(max_name);
+    request.property = in.counted_text(max_name);
+    request.index = in.u32();
+    request.value = in.counted_bytes(max_value);
+    return request;
+  });
+}
+
+// ---- gps, imu, bumper ----
+
+std::string encode(const GpsState& state) {
+  return written([&](XdrWriter& out) {
+    out.u32(state.seconds);
+    out.u32(state.microseconds);
+    for (const std::int32_t value : {state.latitude, state.longitude, state.altitude}) out.i32(value);
+    for (const double value : {state.speed, state.course, state.utm_east, state.utm_north}) out.f64(value);
+    for (const std::uint32_t value : {state.quality, state.satellites, state.hdop, state.vdop}) out.u32(value);
+    out.f64(state.horizontal_error);
+    out.f64(state.vertical_error);
+  });
+}
+
+void put(XdrWriter& out, const ImuCalibrated& values) {
+  for (const float value : values.acceleration) out.f32(value);
+  for (const float value : values.angular_velocity) out.f32(value);
+  for (const float value : values.magnetic_field) out.f32(value);
+}
+
+std::string encode_bumpers(const std::vector<bool>& pressed) {
+  std::string bytes;
+  for (const bool one : pressed) bytes += one ? '\1' : '\0';
+  return written([&](XdrWriter& out) { out.counted_bytes(bytes); });
+}
+
+std::string encode_bumper_shapes(const std::vector<BumperShape>& shapes) {
+  return written([&](XdrWriter& out) {
+    out.count(shapes.size());
+    for (const BumperShape& shape : shapes) {
+      put(out, shape.pose);
+      out.f32(shape.length);
+      out.f32(shape.radius);
+    }
+  });
+}
+
+}  // namespace player

@@ -1,0 +1,182 @@
+// Payloads of the interfaces that are served, and the way to bytes and back. Lengths m, angles rad, counter-clockwise positive, x forward.
+// decode gives nothing for bytes that are not exactly the structure. Values; any thread.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "protocol/message.h"
+#include "protocol/xdr.h"
+
+namespace player {
+
+struct Pose2d {
+  double x = 0, y = 0, a = 0;
+};
+struct Pose3d {
+  double x = 0, y = 0, z = 0, roll = 0, pitch = 0, yaw = 0;
+};
+// In the order of the wire: y extent, x extent, z extent.
+struct Size3d {
+  double width = 0, length = 0, height = 0;
+};
+
+void put(XdrWriter& out, const Pose2d& pose);
+void put(XdrWriter& out, const Pose3d& pose);
+void put(XdrWriter& out, const Size3d& size);
+void put(XdrWriter& out, const Address& address);  // 16 bytes with host and robot
+Pose2d take_pose2d(XdrReader& in);
+Pose3d take_pose3d(XdrReader& in);
+Address take_address(XdrReader& in);
+
+// ---- player ----
+struct DeviceRequest {
+  Address address;
+  std::uint32_t access = 0;  // Access, or anything else
+  std::string driver;        // at most 63 characters
+};
+std::string encode(const DeviceRequest& request);
+std::optional<DeviceRequest> decode_device_request(std::string_view payload);
+
+struct DriverInfo {
+  Address address;
+  std::string driver;
+};
+std::string encode(const DriverInfo& info);
+std::optional<DriverInfo> decode_driver_info(std::string_view payload);
+
+std::string encode_device_list(const std::vector<Address>& devices);
+
+// -1: any.
+struct ReplaceRule {
+  std::int32_t interface = -1, index = -1, type = -1, subtype = -1;
+  std::int32_t replace = 0;  // 0 keep all, 1 the newest replaces the one before, 2 drop
+};
+std::optional<ReplaceRule> decode_replace_rule(std::string_view payload);
+
+// ---- position2d (data 1, command 1), position3d (the same numbers) ----
+struct Position2dState {
+  Pose2d pose, velocity;
+  bool is_stalled = false;
+};
+std::string encode(const Position2dState& state);
+std::optional<Position2dState> decode_position2d_state(std::string_view payload);
+struct Position3dState {
+  Pose3d pose, velocity;
+  bool is_stalled = false;
+};
+std::string encode(const Position3dState& state);
+struct Velocity2d {
+  Pose2d velocity;
+  bool is_enabled = true;  // motors
+};
+std::string encode(const Velocity2d& velocity);
+std::optional<Velocity2d> decode_velocity2d(std::string_view payload);
+std::optional<Pose3d> decode_velocity3d(std::string_view payload);
+std::optional<Pose2d> decode_pose2d(std::string_view payload);
+std::optional<Pose3d> decode_pose3d(std::string_view payload);
+
+// Pose and size: GET_GEOM of position2d, position3d and laser.
+std::string encode_geometry(const Pose3d& pose, const Size3d& size);
+
+// One byte in its cell: power, motor power, data type.
+std::optional<std::uint8_t> decode_byte(std::string_view payload);
+std::optional<std::uint32_t> decode_u32(std::string_view payload);
+std::string encode_u32(std::uint32_t value);
+
+// ---- laser ----
+struct LaserScan {
+  float min_angle = 0, max_angle = 0, resolution = 0, max_range = 0;
+  std::vector<float> ranges;  // never negative, never NaN: clients abort on them
+  std::string intensities;    // a byte per range, or none
+  std::uint32_t id = 0;
+};
+std::string encode(const LaserScan& scan);
+std::optional<LaserScan> decode_laser_scan(std::string_view payload);
+struct LaserConfig {
+  float min_angle = 0, max_angle = 0, resolution = 0, max_range = 0, range_resolution = 0;
+  bool has_intensity = false;
+  float rate = 0;  // [Hz]
+};
+std::string encode(const LaserConfig& config);
+
+// ---- ranger ----
+struct RangerGeometry {
+  Pose3d pose;
+  Size3d size;
+  std::vector<Pose3d> element_poses;
+  std::vector<Size3d> element_sizes;
+};
+std::string encode(const RangerGeometry& geometry);
+struct RangerConfig {
+  double min_angle = 0, max_angle = 0, resolution = 0, min_range = 0, max_range = 0, range_resolution = 0, rate = 0;
+};
+std::string encode(const RangerConfig& config);
+std::string encode_ranger_values(const std::vector<double>& values);
+
+// ---- sonar ----
+std::string encode_sonar_ranges(const std::vector<float>& ranges);
+std::string encode_poses(const std::vector<Pose3d>& poses);
+
+// ---- camera ----
+enum class ImageFormat : std::uint32_t { mono8 = 1, mono16 = 2, rgb888 = 5 };
+struct Image {
+  std::uint32_t width = 0, height = 0, bits = 0;
+  ImageFormat format = ImageFormat::rgb888;
+  std::string pixels;  // rows from the top, without gaps
+};
+std::string encode(const Image& image);
+std::string encode_camera_source(std::string_view norm, std::int32_t source);
+
+// ---- simulation ----
+struct NamedPose2d {
+  std::string name;
+  Pose2d pose;
+};
+std::string encode(const NamedPose2d& request);
+std::optional<NamedPose2d> decode_named_pose2d(std::string_view payload);
+struct NamedPose3d {
+  std::string name;
+  Pose3d pose;
+  double sim_time = 0;
+};
+std::string encode(const NamedPose3d& request);
+std::optional<NamedPose3d> decode_named_pose3d(std::string_view payload);
+struct Property {
+  std::string name, property;
+  std::uint32_t index = 0;
+  std::string value;  // raw bytes in the order of the host
+};
+std::string encode(const Property& request);
+std::optional<Property> decode_property(std::string_view payload);
+
+// ---- gps ----
+struct GpsState {
+  std::uint32_t seconds = 0, microseconds = 0;
+  std::int32_t latitude = 0, longitude = 0;                       // [degree * 1e7]
+  std::int32_t altitude = 0;                                      // [mm]
+  double speed = 0, course = 0;                                   // [m/s], clockwise from north
+  double utm_east = 0, utm_north = 0;                             // [cm], as client libraries read them
+  std::uint32_t quality = 0, satellites = 0, hdop = 0, vdop = 0;  // dop * 10
+  double horizontal_error = 0, vertical_error = 0;
+};
+std::string encode(const GpsState& state);
+
+// ---- imu ----
+struct ImuCalibrated {
+  float acceleration[3] = {}, angular_velocity[3] = {}, magnetic_field[3] = {};
+};
+void put(XdrWriter& out, const ImuCalibrated& values);
+
+// ---- bumper ----
+std::string encode_bumpers(const std::vector<bool>& pressed);
+struct BumperShape {
+  Pose3d pose;
+  float length = 0, radius = 0;
+};
+std::string encode_bumper_shapes(const std::vector<BumperShape>& shapes);
+
+}  // namespace player

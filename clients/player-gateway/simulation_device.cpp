@@ -1,0 +1,93 @@
+#include "simulation_device.h"
+
+#include <cmath>
+#include <cstring>
+
+#include "protocol/payloads.h"
+
+namespace gateway {
+namespace {
+
+constexpr std::uint8_t get_pose2d = 1, set_pose2d = 2, get_pose3d = 3, set_pose3d = 4, get_property = 5;
+constexpr std::uint8_t pause = 1, reset = 2;
+
+shm::Pose pose_of(const shm::Reply& reply) {
+  const double* v = reply.values;
+  return {v[0], v[1], v[2], v[3], v[4], v[5], v[6]};
+}
+
+template <class T>
+std::string bytes_of(T value) {
+  return {reinterpret_cast<const char*>(&value), sizeof value};
+}
+
+}  // namespace
+
+std::optional<Answer> Simulation::answer(std::uint8_t subtype, const std::string& payload, const Later& later) {
+  if (subtype == get_property) return property(payload);
+  const auto flat = subtype == get_pose2d || subtype == set_pose2d ? player::decode_named_pose2d(payload) : std::nullopt;
+  const auto full = subtype == get_pose3d || subtype == set_pose3d ? player::decode_named_pose3d(payload) : std::nullopt;
+  if (!flat && !full) return nack();
+  const auto& name = flat ? flat->name : full->name;
+  if (name.empty()) return nack();
+  switch (subtype) {
+    case get_pose2d:
+      services_.errands.post(shm::GetPoseRequest{name}, [later, name](const base::Result<shm::Reply>& reply) {
+        if (!reply) return later(nack());
+        const auto pose = to_pose3d(pose_of(*reply));
+        later(ack(player::encode(player::NamedPose2d{name, {pose.x, pose.y, pose.yaw}})));
+      });
+      return std::nullopt;
+    case get_pose3d:
+      services_.errands.post(shm::GetPoseRequest{name}, [later, name](const base::Result<shm::Reply>& reply) {
+        if (!reply) return later(nack());
+        later(ack(player::encode(player::NamedPose3d{name, to_pose3d(pose_of(*reply)), static_cast<double>(reply->sim_time_ns) / 1e3})));
+      });
+      return std::nullopt;
+    case set_pose2d: {
+      const auto& pose = flat->pose;
+      if (!std::isfinite(pose.x) || !std::isfinite(pose.y) || !std::isfinite(pose.a)) return nack();
+      return ask(shm::SetPoseRequest{name, shm::planar_pose(pose.x, pose.y, 0, pose.a), true}, later);
+    }
+    default: {
+      const auto& pose = full->pose;
+      for (const double value : {pose.x, pose.y, pose.z, pose.roll, pose.pitch, pose.yaw}) {
+        if (!std::isfinite(value)) return nack();
+      }
+      return ask(shm::SetPoseRequest{name, shm::euler_pose(pose.x, pose.y, pose.z, pose.roll, pose.pitch, pose.yaw), false}, later);
+    }
+  }
+}
+
+// Values are raw bytes in the order of this host, as everywhere. The client copies as many bytes as it has asked for.
+std::optional<Answer> Simulation::property(const std::string& payload) {
+  auto request = player::decode_property(payload);
+  if (!request || !iface().read()) return nack();
+  const auto& clock = iface().sample<shm::SimulationSample>();
+  const bool is_world = request->name == "world";
+  std::string value;
+  if (is_world && request->property == "sim_time") {
+    value = bytes_of(static_cast<double>(clock.stamp.sim_time_ns) / 1e9);
+  } else if (is_world && request->property == "state") {
+    value = bytes_of(static_cast<std::uint8_t>(clock.paused == 0 ? 1 : 0));
+  } else if (request->property == "time") {
+    value = bytes_of(static_cast<std::uint64_t>(clock.stamp.sim_time_ns / 1000));
+  }
+  if (value.empty() || request->value.size() < value.size()) return nack();
+  value.resize(request->value.size());
+  request->value = std::move(value);
+  return ack(player::encode(*request));
+}
+
+void Simulation::obey(Client&, std::uint8_t subtype, const std::string&) {
+  const auto nobody = [](const base::Result<shm::Reply>&) {};
+  if (subtype == reset) services_.errands.post(shm::ResetRequest{}, nobody);
+  if (subtype != pause || !iface().read()) return;
+  if (iface().sample<shm::SimulationSample>().paused != 0) {
+    services_.errands.post(shm::RunRequest{}, nobody);
+  } else {
+    services_.errands.post(shm::PauseRequest{}, nobody);
+  }
+}
+
+}  // namespace gateway

@@ -1,0 +1,74 @@
+#include "simulator.h"
+
+#include "base/log.h"
+
+namespace gateway {
+
+Simulator::Simulator(std::uint32_t server_id, Errands& errands, std::function<void(const std::vector<ListedIface>&)> on_list,
+                     std::function<void()> on_loss)
+    : server_id_(server_id), errands_(errands), on_list_(std::move(on_list)), on_loss_(std::move(on_loss)) {}
+
+void Simulator::look() {
+  if (world_ && world_->iface().status() != shm::Status::live) lose();
+  if (!world_) {
+    auto world = Source::open(server_id_, shm::IfaceType::simulation, "world", met_ + 1);
+    if (!world) return;
+    world_ = std::move(*world);
+    ++met_;
+    has_list_ = false;
+    found_.clear();
+  }
+  bool is_stale = !has_list_;
+  if (world_->iface().read()) {
+    const auto& sample = world_->iface().sample<shm::SimulationSample>();
+    is_stale = is_stale || listed_ != std::pair(sample.ifaces, sample.models);
+    listed_ = {sample.ifaces, sample.models};
+  }
+  for (const auto& source : sources()) is_stale = is_stale || source->iface().status() != shm::Status::live;
+  if (is_stale) list();
+}
+
+void Simulator::lose() {
+  base::log(base::Level::warn, "player-gateway", "simulator {} has ended; waiting for it", server_id_);
+  world_.reset();
+  found_.clear();
+  on_loss_();
+}
+
+void Simulator::list() {
+  if (is_listing_) return;
+  is_listing_ = true;
+  has_list_ = true;
+  errands_.post(shm::ListRequest{}, [this, met = met_](const base::Result<shm::Reply>& reply) {
+    is_listing_ = false;
+    auto ifaces = reply ? parse_list(reply->text) : base::Result<std::vector<ListedIface>>(reply.error());
+    if (ifaces && met == met_ && world_) return on_list_(*ifaces);
+    has_list_ = false;  // asked again at the next look
+  });
+}
+
+std::shared_ptr<Source> Simulator::find(shm::IfaceType type, const std::string& name) {
+  if (!world_) return nullptr;
+  if (type == shm::IfaceType::simulation) return world_;
+  auto& known = found_[{type, name}];
+  if (auto source = known.lock(); source && source->iface().status() == shm::Status::live) return source;
+  auto source = Source::open(server_id_, type, name, met_);
+  if (!source) {
+    base::log(base::Level::warn, "player-gateway", "{}", source.error().message);
+    return nullptr;
+  }
+  known = *source;
+  return *source;
+}
+
+std::vector<std::shared_ptr<Source>> Simulator::sources() {
+  std::vector<std::shared_ptr<Source>> used;
+  std::erase_if(found_, [&](const auto& entry) {
+    auto source = entry.second.lock();
+    if (source) used.push_back(std::move(source));
+    return entry.second.expired();
+  });
+  return used;
+}
+
+}  // namespace gateway

@@ -1,0 +1,236 @@
+// What waits for a client, time as clients want it, and which port shows what.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "device.h"
+#include "mapping.h"
+#include "outbox.h"
+#include "timeline.h"
+
+namespace gateway {
+namespace {
+
+using player::Address;
+using player::DataMode;
+using player::Interface;
+
+const Address laser{Interface::laser, 0}, drive{Interface::position2d, 0};
+
+SharedBytes shared(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
+
+// All that would be sent; a synch message is "S".
+std::string sent(Outbox& outbox) {
+  std::string all;
+  for (const auto& piece : outbox.pieces()) {
+    const auto rest = piece.bytes->substr(piece.sent);
+    all += rest.size() == player::header_size ? "S" : rest;
+  }
+  outbox.sent(outbox.size());
+  return all;
+}
+
+class Pull : public testing::Test {
+ protected:
+  Pull() { outbox.set_mode(DataMode::pull); }
+  std::string flushed() {
+    outbox.flush(1.0);
+    return sent(outbox);
+  }
+  Outbox outbox{6665};
+};
+
+TEST_F(Pull, data_waits_for_the_request_and_ends_with_one_synch) {
+  outbox.deliver(laser, 1, shared("l1"));
+  outbox.deliver(drive, 1, shared("d1"));
+  EXPECT_EQ(flushed(), "");
+  outbox.ask_for_data();
+  outbox.ask_for_data();
+  EXPECT_EQ(flushed(), "l1d1S");
+  outbox.deliver(laser, 1, shared("l2"));
+  EXPECT_EQ(flushed(), "");
+}
+
+TEST_F(Pull, there_is_no_synch_without_data) {
+  outbox.ask_for_data();
+  EXPECT_EQ(flushed(), "");
+  outbox.deliver(laser, 1, shared("l1"));
+  EXPECT_EQ(flushed(), "l1S");
+}
+
+TEST_F(Pull, the_newest_replaces_the_one_before_and_comes_last) {
+  outbox.deliver(laser, 1, shared("l1"));
+  outbox.deliver(laser, 2, shared("pose"));
+  outbox.deliver(drive, 1, shared("d1"));
+  outbox.deliver(laser, 1, shared("l2"));
+  outbox.ask_for_data();
+  EXPECT_EQ(flushed(), "posed1l2S");
+}
+
+TEST_F(Pull, a_rule_keeps_all_up_to_a_bound) {
+  EXPECT_TRUE(outbox.add_rule({.replace = 0}));
+  for (std::size_t i = 0; i < Outbox::max_kept + 3; ++i) outbox.deliver(laser, 1, shared(std::to_string(i) + " "));
+  outbox.ask_for_data();
+  const auto all = flushed();
+  EXPECT_TRUE(all.starts_with("3 4 5 ")) << all;
+  EXPECT_TRUE(all.ends_with("66 S")) << all;
+}
+
+TEST_F(Pull, the_first_rule_that_fits_counts_and_the_same_criteria_overwrite) {
+  EXPECT_TRUE(outbox.add_rule({.interface = 6, .replace = 2}));
+  EXPECT_TRUE(outbox.add_rule({.replace = 0}));
+  for (const char* text : {"1", "2"}) {
+    outbox.deliver(laser, 1, shared(std::string("l") + text));
+    outbox.deliver(drive, 1, shared(std::string("d") + text));
+  }
+  outbox.ask_for_data();
+  EXPECT_EQ(flushed(), "d1d2S");
+  EXPECT_TRUE(outbox.add_rule({.interface = 6, .replace = 1}));
+  outbox.deliver(laser, 1, shared("l3"));
+  outbox.ask_for_data();
+  EXPECT_EQ(flushed(), "l3S");
+  EXPECT_FALSE(outbox.add_rule({.replace = 7}));
+  EXPECT_FALSE(outbox.add_rule({.replace = -1}));
+}
+
+TEST_F(Pull, rules_without_end_are_refused) {
+  std::int32_t index = 0;
+  while (outbox.add_rule({.index = index, .replace = 1})) ASSERT_LT(++index, 100000);
+  EXPECT_EQ(index, static_cast<std::int32_t>(Outbox::max_rules));
+}
+
+TEST_F(Pull, nothing_comes_of_a_device_that_was_let_go) {
+  outbox.deliver(laser, 1, shared("l1"));
+  outbox.forget(laser);
+  outbox.ask_for_data();
+  EXPECT_EQ(flushed(), "");
+}
+
+TEST(Push, data_goes_at_once_and_is_replaced_while_the_socket_is_full) {
+  Outbox outbox(6665);
+  outbox.deliver(laser, 1, shared("l1"));
+  outbox.flush(1.0);
+  for (const char* text : {"l2", "l3", "l4"}) {
+    outbox.deliver(laser, 1, shared(text));
+    outbox.flush(1.0);
+  }
+  EXPECT_EQ(outbox.size(), 2U);
+  outbox.sent(1);
+  EXPECT_EQ(sent(outbox), "1");
+  outbox.flush(1.0);
+  EXPECT_EQ(sent(outbox), "l4");
+}
+
+TEST(Timeline, goes_on_after_resets_and_new_servers) {
+  Timeline time;
+  EXPECT_EQ(time.at(1, 0, 2'000'000'000), 2.0);
+  EXPECT_EQ(time.at(1, 0, 5'000'000'000), 5.0);
+  EXPECT_EQ(time.at(1, 1, 100'000'000), 5.1);             // reset
+  EXPECT_EQ(time.at(1, 0, 5'100'000'000), std::nullopt);  // from before
+  EXPECT_EQ(time.at(2, 0, 1'000'000'000), 6.1);           // another simulator
+  EXPECT_EQ(time.latest(), 6.1);
+}
+
+TEST(SeenRange, is_never_what_ends_a_client) {
+  const float inf = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(seen_range(std::numeric_limits<float>::quiet_NaN(), 0.1, 8), 8);
+  EXPECT_EQ(seen_range(inf, 0.1, 8), 8);
+  EXPECT_EQ(seen_range(-inf, 0.1, 8), 0.1);
+  EXPECT_EQ(seen_range(-1, 0, 8), 0);
+  EXPECT_EQ(seen_range(3, 0.1, 8), 3);
+}
+
+const std::vector<ListedIface> world = {{shm::IfaceType::truth, "box", "box"},
+                                        {shm::IfaceType::laser, "b::front", "b"},
+                                        {shm::IfaceType::laser, "b::rear", "b"},
+                                        {shm::IfaceType::sonar, "b::sonar", "b"},
+                                        {shm::IfaceType::position2d, "b::drive", "b"},
+                                        {shm::IfaceType::position2d, "a::drive", "a"},
+                                        {shm::IfaceType::camera, "a::arm::camera", "a::arm"}};
+
+std::string shown(const PortPlan& plan) {
+  std::string text = std::to_string(plan.port) + " " + plan.name + ":";
+  for (const auto& device : plan.devices) text += " " + player::to_text(device.address) + "=" + device.iface;
+  return text;
+}
+
+TEST(Mapping, each_robot_has_a_port_in_world_order) {
+  const auto plans = plan_by_world(world, 6665);
+  ASSERT_EQ(plans.size(), 2U);
+  EXPECT_EQ(shown(plans[0]),
+            "6665 b: position2d:0=b::drive laser:0=b::front laser:1=b::rear sonar:0=b::sonar ranger:0=b::front ranger:1=b::rear "
+            "ranger:2=b::sonar simulation:0=world");
+  EXPECT_EQ(shown(plans[1]), "6666 a: position2d:0=a::drive camera:0=a::arm::camera simulation:0=world");
+}
+
+TEST(Mapping, world_without_robots_has_one_port) {
+  const auto plans = plan_by_world({}, 7000);
+  ASSERT_EQ(plans.size(), 1U);
+  EXPECT_EQ(shown(plans[0]), "7000 no robot: simulation:0=world");
+}
+
+class MappingFile : public testing::Test {
+ protected:
+  ~MappingFile() override { std::filesystem::remove(path); }
+  base::Result<std::vector<ConfiguredPort>> read(const std::string& text) {
+    std::ofstream(path) << text;
+    return read_config(path);
+  }
+  const std::string path = testing::TempDir() + "mapping_" + std::to_string(getpid()) + ".yaml";
+};
+
+TEST_F(MappingFile, names_robots_and_devices) {
+  const auto ports =
+      read("ports:\n- port: 7000\n  robots: [b, a]\n- port: 0\n  devices:\n    laser:3: b::rear\n    ranger:0: sonar:b::sonar\n");
+  ASSERT_TRUE(ports) << ports.error().message;
+  std::vector<std::string> missing;
+  const auto plans = plan_by_config(*ports, world, missing);
+  ASSERT_EQ(plans.size(), 2U);
+  EXPECT_EQ(shown(plans[0]),
+            "7000 b a: position2d:0=b::drive laser:0=b::front laser:1=b::rear sonar:0=b::sonar ranger:0=b::front ranger:1=b::rear "
+            "ranger:2=b::sonar position2d:1=a::drive camera:0=a::arm::camera simulation:0=world");
+  EXPECT_EQ(shown(plans[1]), "0 : laser:3=b::rear ranger:0=b::sonar simulation:0=world");
+  EXPECT_TRUE(missing.empty());
+}
+
+TEST_F(MappingFile, what_is_not_in_the_world_is_named) {
+  const auto ports = read("ports:\n- port: 7000\n  robots: [c]\n  devices: {laser:0: b::drive}\n");
+  ASSERT_TRUE(ports) << ports.error().message;
+  std::vector<std::string> missing;
+  EXPECT_EQ(shown(plan_by_config(*ports, world, missing)[0]), "7000 c: simulation:0=world");
+  EXPECT_EQ(missing.size(), 2U);
+}
+
+TEST_F(MappingFile, errors_say_where) {
+  const auto error = [&](const std::string& text) {
+    const auto ports = read(text);
+    return ports ? std::string("accepted") : ports.error().message.substr(path.size());
+  };
+  EXPECT_EQ(error("ports:\n- port: 70000\n"), ":2: port must be a number from 0 to 65535, got \"70000\"");
+  EXPECT_EQ(error("ports:\n- port: 1\n- port: 1\n"), ":3: port 1 is there twice");
+  EXPECT_EQ(error("ports:\n- robots: [a]\n"), ":2: port is missing");
+  EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    lazer:0: x\n"), ":4: expected INTERFACE:INDEX as in laser:0, got \"lazer:0\"");
+  EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    laser:0: sonar:x\n"), ":4: laser:0 can't show an iface of type \"sonar\"");
+  EXPECT_EQ(error("ports:\n- port: 1\n  colour: red\n"), ":3: expected port, robots or devices, got \"colour\"");
+  EXPECT_EQ(error("port: 1\n"), ":1: expected a list called ports and nothing else");
+  EXPECT_EQ(error("ports: []\n"), ":1: there is no port");
+  EXPECT_NE(error("ports: [\n").find(":"), std::string::npos);
+  EXPECT_NE(error("").find("expected a list"), std::string::npos);
+  EXPECT_EQ(read_config("/nowhere/at/all.yaml").error().message, "mapping /nowhere/at/all.yaml can't be read");
+}
+
+TEST(List, that_cannot_be_read_is_an_error) {
+  EXPECT_FALSE(parse_list("no json"));
+  EXPECT_FALSE(parse_list("[]"));
+  EXPECT_FALSE(parse_list("{}"));
+  const auto list =
+      parse_list(R"({"ifaces": [{"type": "laser", "name": "a::l", "model": "a"}, {"type": "warp", "name": "x", "model": "a"}]})");
+  ASSERT_TRUE(list);
+  ASSERT_EQ(list->size(), 1U);
+  EXPECT_EQ((*list)[0].name, "a::l");
+}
+
+}  // namespace
+}  // namespace gateway
