@@ -29,7 +29,8 @@ std::uint32_t root(std::vector<std::uint32_t>& parents, std::uint32_t i) {
 }
 
 bool is_sound(const LinkDef& link) {
-  return link.pose.matrix().allFinite() && std::isfinite(link.mass) && link.mass > 0 && link.center_of_mass.allFinite() &&
+  return link.pose.matrix().allFinite() && (!link.start_pose || link.start_pose->matrix().allFinite()) && link.start_linear.allFinite() &&
+         link.start_angular.allFinite() && std::isfinite(link.mass) && link.mass > 0 && link.center_of_mass.allFinite() &&
          link.inertia.allFinite() && (link.inertia.ldlt().vectorD().array() > 0).all();
 }
 
@@ -178,6 +179,15 @@ void move_to_initial_positions(const ModelDef& model, Blueprint& blueprint) {
   }
 }
 
+void move_to_saved_places(const ModelDef& model, Blueprint& blueprint) {
+  for (Assembly& assembly : blueprint.assemblies) {
+    const LinkDef& link = model.links[assembly.links.front()];
+    if (link.start_pose) assembly.moved_at_start = *link.start_pose * link.pose.inverse();
+    assembly.start_linear = link.start_linear;
+    assembly.start_angular = link.start_angular;
+  }
+}
+
 }  // namespace
 
 std::pair<Eigen::Vector3d, Eigen::Vector3d> gear_anchors(const ModelDef& model, const JointDef& gearbox) {
@@ -237,6 +247,7 @@ base::Result<std::shared_ptr<const Blueprint>> Blueprint::of(std::shared_ptr<con
     if (!assembly.is_anchored) blueprint->is_static = false;
   }
   move_to_initial_positions(model, *blueprint);
+  move_to_saved_places(model, *blueprint);
   blueprint->canonical = index_of_link(model, model.canonical_link).value_or(0);
   return std::shared_ptr<const Blueprint>(std::move(blueprint));
 }

@@ -24,8 +24,9 @@ struct Assembly {
   Eigen::Isometry3d in_model = Eigen::Isometry3d::Identity();  // the body's frame at the start
   double linear_damping = 0, angular_damping = 0;
   double wind_mass = 0;  // of its links that the wind takes along
-  // Joints with an initial position move it, within the model, from where the file has it.
+  // Joints with an initial position or a saved state move it, within the model, from where the file has it.
   std::optional<Eigen::Isometry3d> moved_at_start;
+  Eigen::Vector3d start_linear{0, 0, 0}, start_angular{0, 0, 0};  // of its first link's origin, in the world
 };
 
 struct Blueprint {

@@ -168,14 +168,29 @@ void ModelInstance::make_joint(dWorldID world, const PhysicsDef& physics, std::u
 // After the joints were made: they count from the places that the file gives.
 void ModelInstance::take_initial_positions() {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    const auto& moved = blueprint_->assemblies[i].moved_at_start;
+    const Assembly& assembly = blueprint_->assemblies[i];
+    const auto& moved = assembly.moved_at_start;
     const dBodyID body = bodies_[i].id();
-    if (!moved || body == nullptr) continue;
-    const Eigen::Isometry3d pose = base_ * *moved * blueprint_->assemblies[i].in_model;
+    if (body == nullptr) continue;
+    if (!moved) continue;
+    const Eigen::Isometry3d pose = base_ * *moved * assembly.in_model;
     const Eigen::Quaterniond q(pose.linear());
     const dQuaternion ode_q = {q.w(), q.x(), q.y(), q.z()};
     dBodySetQuaternion(body, ode_q);
     dBodySetPosition(body, pose.translation().x(), pose.translation().y(), pose.translation().z());
+  }
+}
+
+void ModelInstance::take_initial_velocities() {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const Assembly& assembly = blueprint_->assemblies[i];
+    const dBodyID body = bodies_[i].id();
+    if (body == nullptr || (assembly.start_linear.isZero(0) && assembly.start_angular.isZero(0))) continue;
+    // The file tells that of the link's origin, ODE keeps that of the centre of mass.
+    const Eigen::Vector3d arm = ode::quaternion(dBodyGetQuaternion(body)) * blueprint_->link_in_body[assembly.links.front()].translation();
+    const Eigen::Vector3d linear = assembly.start_linear - assembly.start_angular.cross(arm);
+    dBodySetLinearVel(body, linear.x(), linear.y(), linear.z());
+    dBodySetAngularVel(body, assembly.start_angular.x(), assembly.start_angular.y(), assembly.start_angular.z());
   }
 }
 

@@ -28,6 +28,8 @@ class ModelInstance {
 
   // Makes bodies and joints in a world (of the model at its base pose); those it had are gone.
   void enter(dWorldID world, const PhysicsDef& physics);
+  // After enter(): those of a saved state.
+  void take_initial_velocities();
   // Moves what never moves, too. Only between enter() calls or for models without joints to the world.
   void set_base(const Eigen::Isometry3d& base);
 

@@ -91,6 +91,7 @@ void Physics::Impl::add(ModelId id, std::shared_ptr<const Blueprint> blueprint, 
         std::min_element(shards_.begin(), shards_.end(), [](const auto& a, const auto& b) { return a->models.size() < b->models.size(); });
     model->shard = static_cast<int>(smallest - shards_.begin());
     model->enter((*smallest)->world(), world_->physics);
+    model->take_initial_velocities();
     auto& list = (*smallest)->models;
     list.insert(std::lower_bound(list.begin(), list.end(), id, [](auto* m, ModelId i) { return m->id() < i; }), model.get());
   }

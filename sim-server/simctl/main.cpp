@@ -1,6 +1,7 @@
 // simctl: shows and controls a running simulation. See --help.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 
 #include "base/command_line.h"
@@ -167,7 +168,11 @@ void add_control(CLI::App& app, Work& work) {
 void add_pictures(CLI::App& app, Work& work) {
   auto* screenshot = app.add_subcommand("screenshot", "Write a picture of the world");
   auto options = option_value<simctl::ScreenshotOptions>();
-  screenshot->add_option("FILE", options->file, "PNG")->required();
+  screenshot->add_option("FILE", options->file, "PNG")->required()->check([](const std::string& file) {
+    const std::string ending = base::to_lower(std::filesystem::path(file).extension().string());
+    return ending.empty() || ending == ".png" ? std::string()
+                                              : "pictures are PNG; expected a name that ends in .png, got " + base::in_quotes(file);
+  });
   auto* from =
       screenshot->add_option("--from", options->from, "Camera at X Y Z ROLL PITCH YAW, six words or one")->expected(1, 6)->delimiter(' ');
   auto* follow = screenshot->add_option("--follow", options->follow, "From behind a model");

@@ -395,6 +395,24 @@ void collect_names(pugi::xml_node model, const std::string& prefix, std::set<std
   }
 }
 
+// A joint whose child is the world becomes one whose parent is: the same motion about the opposite axes.
+void swap_with_world(pugi::xml_node joint, const std::string& link) {
+  joint.child("parent").text() = "world";
+  joint.child("child").text() = link.c_str();
+  pugi::xml_node pose = joint.child("pose");
+  if (!pose) pose = joint.append_child("pose");
+  if (!pose.attribute("relative_to")) pose.append_attribute("relative_to") = "__model__";
+  for (const char* name : {"axis", "axis2"}) {
+    pugi::xml_node xyz = joint.child(name).child("xyz");
+    if (joint.child(name) && !xyz) (xyz = joint.child(name).append_child("xyz")).text() = "0 0 1";
+    const auto numbers = parse_numbers(text_of(xyz));
+    if (!numbers || numbers->size() != 3) continue;
+    const std::string opposite =
+        base::format_number(-(*numbers)[0]) + " " + base::format_number(-(*numbers)[1]) + " " + base::format_number(-(*numbers)[2]);
+    xyz.text() = opposite.c_str();
+  }
+}
+
 // Why the joint cannot be, or empty. Mends what can be mended.
 std::string fault_of(pugi::xml_node joint, const std::set<std::string>& names, Complaints& complaints) {
   static const std::map<std::string_view, int> axes{{"fixed", 0}, {"ball", 0},      {"revolute", 1},  {"continuous", 1}, {"prismatic", 1},
@@ -411,10 +429,9 @@ std::string fault_of(pugi::xml_node joint, const std::set<std::string>& names, C
   const std::string parent = text_of(joint.child("parent")), child = text_of(joint.child("child"));
   if (parent == child) return "joins " + base::in_quotes(parent) + " to itself";
   if (child == "world") {
-    if (type != "fixed") return "has the world as its child; the parent is expected to be the world";
-    joint.child("parent").text() = "world";
-    joint.child("child").text() = parent.c_str();
-    complaints.warn(joint, describe_in_context(joint) + " has the world as its child; parent and child are swapped");
+    swap_with_world(joint, parent);
+    complaints.warn(joint, describe_in_context(joint) + " has the world as its child; parent and child are swapped" +
+                               (type == "fixed" ? "" : ", its place and axes are taken in the model's frame"));
   }
   for (int i = 0; i < kind->second; ++i) {
     const char* name = i == 0 ? "axis" : "axis2";

@@ -326,9 +326,11 @@ struct LinkDef {
   std::string name;                                        // unique in its model; links of nested models carry their scope: "arm::hand"
   std::string scope;                                       // nested model it stands in, as in PluginDef
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // in the model, at the start
-  double mass = 1;                                         // positive
-  Eigen::Vector3d center_of_mass{0, 0, 0};                 // in the link
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();   // about the centre of mass, along the link's axes; positive definite
+  std::optional<Eigen::Isometry3d> start_pose;             // in the model, where a saved state has moved it away from `pose`
+  Eigen::Vector3d start_linear{0, 0, 0}, start_angular{0, 0, 0};  // velocity at the start, in the world
+  double mass = 1;                                                // positive
+  Eigen::Vector3d center_of_mass{0, 0, 0};                        // in the link
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();          // about the centre of mass, along the link's axes; positive definite
   bool gravity = true;
   bool kinematic = false;
   bool self_collide = false;

@@ -68,6 +68,8 @@ class Loader {
 
  private:
   void apply_state(pugi::xml_node world);
+  void collect_saved_links(pugi::xml_node saved, const std::string& model, const std::string& scope);
+  void move_to_saved_places(ModelDef& model) const;
   void collect(pugi::xml_node world, const fs::path& folder);
   void collect_population(pugi::xml_node population);
   void collect_include(pugi::xml_node world, pugi::xml_node include, const fs::path& folder);
@@ -84,6 +86,12 @@ class Loader {
   SdfLibrary library_;
   ModelFiles files_;
   Materials materials_;
+  struct SavedLink {
+    std::string model, link;                // with its scope
+    std::optional<Eigen::Isometry3d> pose;  // in the world
+    Eigen::Vector3d linear{0, 0, 0}, angular{0, 0, 0};
+  };
+  std::vector<SavedLink> saved_links_;
   pugi::xml_document holder_;
   pugi::xml_node copies_;
   std::vector<std::unique_ptr<pugi::xml_document>> documents_;
@@ -129,8 +137,41 @@ void Loader::apply_state(pugi::xml_node world) {
         pugi::xml_node moved = entity.append_copy(pose);
         moved.remove_attribute("relative_to");
       }
+      if (kind == "model") collect_saved_links(saved, saved.attribute("name").value(), {});
     }
     world.remove_child(state);
+  }
+}
+
+// Links of a state have their poses and velocities in the world.
+void Loader::collect_saved_links(pugi::xml_node saved, const std::string& model, const std::string& scope) {
+  const auto named = [&](pugi::xml_node node) { return (scope.empty() ? "" : scope + "::") + node.attribute("name").value(); };
+  for (pugi::xml_node link : saved.children("link")) {
+    SavedLink out{model, named(link), parse_pose(link.child("pose")), {}, {}};
+    const auto velocity = parse_numbers(text_of(link.child("velocity")));
+    if (velocity && velocity->size() == 6) {
+      out.linear = Eigen::Vector3d(velocity->data());
+      out.angular = Eigen::Vector3d(velocity->data() + 3);
+    }
+    const bool is_usable = (!out.pose || out.pose->matrix().allFinite()) && out.linear.allFinite() && out.angular.allFinite() &&
+                           (!out.pose || out.pose->translation().cwiseAbs().maxCoeff() < 1e9) && out.linear.cwiseAbs().maxCoeff() < 1000 &&
+                           out.angular.cwiseAbs().maxCoeff() < 1000;
+    if (is_usable) saved_links_.push_back(std::move(out));
+  }
+  for (pugi::xml_node inner : saved.children("model")) collect_saved_links(inner, model, named(inner));
+}
+
+void Loader::move_to_saved_places(ModelDef& model) const {
+  for (const SavedLink& saved : saved_links_) {
+    if (saved.model != model.name) continue;
+    const auto link = std::find_if(model.links.begin(), model.links.end(), [&](const LinkDef& l) { return l.name == saved.link; });
+    if (link == model.links.end()) continue;
+    if (saved.pose) {
+      const Eigen::Isometry3d place = model.pose.inverse() * *saved.pose;
+      if (!place.isApprox(link->pose, 1e-6)) link->start_pose = place;
+    }
+    link->start_linear = saved.linear;
+    link->start_angular = saved.angular;
   }
 }
 
@@ -315,6 +356,7 @@ void Loader::build_instances(WorldDef& world) {
       const auto placed = whole_->models.find(instance.name);
       if (placed != whole_->models.end()) model.pose = placed->second.pose;
     }
+    move_to_saved_places(model);
     world.models.push_back(std::move(model));
   }
 }

@@ -205,6 +205,9 @@ def bad_screenshots():
     refused("screenshot", out, "--show", "ghosts", code=2, says="ghosts")
     refused("screenshot", place("no/such/folder/x.png"), says="no/such/folder")
     refused("screenshot", code=2)
+    for other in "x.jpg", "x.JPEG", "x.tar.gz":
+        refused("screenshot", place(other), code=2, says="expected a name that ends in .png")
+        assert not os.path.exists(place(other)), other
     refused("screenshot", work.name, says="is a folder")
     assert not os.path.exists(out)
     # What is no file stays what it is; a link stays a link.

@@ -451,5 +451,56 @@ TEST(InitialPosition, of_joints_moves_all_that_hangs_on_them) {
   check("after a reset");
 }
 
+TEST(SavedState, starts_a_bent_arm_where_it_was_and_as_fast_as_it_was) {
+  // Level in the file, hanging down in the state, and swinging with 2 rad/s.
+  PhysicsFixture f(world_of_text(
+      "<model name='m'><pose>3 0 0 0 0 0</pose><link name='arm'><pose>0.5 0 2 0 0 0</pose>" + inertial() +
+          "</link><joint name='pivot' type='revolute'><pose>-0.5 0 0 0 0 0</pose><parent>world</parent><child>arm</child>" + axis("0 1 0") +
+          "</joint></model><state world_name='w'><model name='m'><pose>3 0 0 0 0 0</pose><link name='arm'><pose>3 0 1.5 0 "
+          "1.5707963267948966 "
+          "0</pose><velocity>-1 0 0 0 2 0</velocity></link></model></state>",
+      "1.6"));
+  const auto check = [&](const char* when) {
+    EXPECT_NEAR(f.physics.joint_state(f.joint("m", "pivot")).position, std::numbers::pi / 2, 1e-6) << when;
+    EXPECT_NEAR(f.physics.joint_state(f.joint("m", "pivot")).velocity, 2, 1e-6) << when;
+    EXPECT_LT((f.physics.link_pose(f.link("m::arm")).translation() - Eigen::Vector3d(3, 0, 1.5)).norm(), 1e-6) << when;
+  };
+  check("at the start");
+  double highest = 0;
+  for (int i = 0; i < 1000; ++i) {
+    f.physics.step();
+    highest = std::max(highest, f.physics.link_pose(f.link("m::arm")).translation().z());
+  }
+  // Energy: (0.03 + 0.25) kg m^2 * (2 rad/s)^2 / 2 lifts 1 kg by 0.057 m.
+  EXPECT_NEAR(highest - 1.5, 0.28 * 4 / 2 / g, 0.002);
+  f.physics.reset();
+  check("after a reset");
+}
+
+// Every way in which people tie a model to the world.
+TEST(Joints, between_a_link_and_the_world_hold_in_every_spelling) {
+  const std::string link = "<link name='arm'><pose>0 0 1 0 0 0</pose>" + inertial() + "</link>";
+  const std::string hinge = axis("0 1 0");
+  for (const auto& [version, model] : {
+           std::pair<std::string, std::string>{"1.4",
+                                               link + "<joint name='j' type='revolute'><parent>world</parent><child>arm</child>" + hinge},
+           {"1.6", link + "<joint name='j' type='revolute'><pose>0 0 0 0 0 0</pose><child>arm</child><parent>world</parent>" + hinge},
+           {"1.9", link + "<joint name='j' type='revolute'><parent>world</parent><child>arm</child>" + hinge},
+           {"1.7", link + "<joint name='j' type='revolute'><pose relative_to='arm'/><parent>world</parent><child>arm</child>" + hinge},
+           {"1.7",
+            link + "<frame name='f' attached_to='arm'/><joint name='j' type='revolute'><parent>world</parent><child>f</child>" + hinge},
+           {"1.8", "<model name='inner'>" + link +
+                       "</model><joint name='j' type='revolute'><parent>world</parent><child>inner::arm</child>" + hinge},
+       }) {
+    PhysicsFixture f(world_of_text("<model name='m'><pose>2 0 0 0 0 0</pose>" + model + "</joint></model>", version));
+    f.run(1);
+    const std::string name = model.find("inner") != std::string::npos ? "m::inner::arm" : "m::arm";
+    EXPECT_LT((f.physics.link_pose(f.link(name)).translation() - Eigen::Vector3d(2, 0, 1)).norm(), 1e-4) << version << " " << model;
+    ASSERT_TRUE(f.physics.add_wrench(f.link(name), {0, 0, 0}, {0, 10, 0}));
+    f.run(0.1);
+    EXPECT_GT(f.physics.link_twist(f.link(name)).angular.y(), 0.1) << version << " " << model;
+  }
+}
+
 }  // namespace
 }  // namespace sim

@@ -201,6 +201,47 @@ TEST(WildWorlds, saved_states_place_their_models) {
   EXPECT_TRUE(result.findings.empty()) << all_findings(result);
 }
 
+TEST(WildWorlds, joints_whose_child_is_the_world_move_the_other_way_round) {
+  const WorldFiles files;
+  for (const char* version : {"1.4", "1.6", "1.9"}) {
+    const LoadResult result = files.load(
+        "<model name='m'><pose>2 0 0 0 0 0</pose><link name='arm'><pose>0 0 1 0 0 0</pose></link><joint name='j' type='revolute'><pose>0 0 "
+        "0.5 0 "
+        "0 0</pose><parent>arm</parent><child>world</child><axis><xyz>0 1 0</xyz></axis></joint><joint name='k' "
+        "type='prismatic'><parent>arm"
+        "</parent><child>world</child><axis><xyz>0 0 1</xyz></axis></joint></model>",
+        version);
+    EXPECT_EQ(findings_with(result, "joint \"j\" of model \"m\" has the world as its child; parent and child are swapped, its place"), 1)
+        << version;
+    ASSERT_EQ(result.world.models.at(0).joints.size(), 2U) << version << all_findings(result);
+    const JointDef& j = *result.world.models[0].joint("j");
+    EXPECT_EQ(j.parent, "");
+    EXPECT_EQ(j.child, "arm");
+    EXPECT_TRUE(j.axes.at(0).xyz.isApprox(-Eigen::Vector3d::UnitY())) << version << j.axes[0].xyz.transpose();
+    EXPECT_TRUE(j.pose_in_model.translation().isApprox(Eigen::Vector3d(0, 0, 0.5))) << version << j.pose_in_model.translation().transpose();
+    EXPECT_TRUE(result.world.models[0].joint("k")->axes.at(0).xyz.isApprox(-Eigen::Vector3d::UnitZ())) << version;
+  }
+}
+
+TEST(WildWorlds, saved_states_bend_models_and_set_them_going) {
+  const WorldFiles files;
+  const LoadResult result = files.load(
+      "<model name='m'><pose>1 0 0 0 0 0</pose><link name='a'/><link name='b'><pose>0 0 1 0 0 0</pose></link><model name='n'><link "
+      "name='c'/>"
+      "</model></model><state world_name='w'><model name='m'><pose>7 8 9 0 0 0</pose><link name='a'><pose>7 8 9 0 0 0</pose></link><link "
+      "name='b'><pose>7 8 11 0 0 0</pose><velocity>1 2 3 4 5 6</velocity></link><link name='nowhere'><pose>0 0 0 0 0 0</pose></link><model "
+      "name='n'><link name='c'><pose>7 9 9 0 0 0</pose><velocity>nan 0 0 0 0 0</velocity></link></model></model></state>",
+      "1.6");
+  EXPECT_TRUE(result.findings.empty()) << all_findings(result);
+  const ModelDef& m = result.world.models.at(0);
+  EXPECT_FALSE(m.link("a")->start_pose) << "where it would be anyway";
+  ASSERT_TRUE(m.link("b")->start_pose);
+  EXPECT_TRUE(m.link("b")->start_pose->translation().isApprox(Eigen::Vector3d(0, 0, 2)));
+  EXPECT_EQ(m.link("b")->start_linear, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(m.link("b")->start_angular, Eigen::Vector3d(4, 5, 6));
+  EXPECT_FALSE(m.link("n::c")->start_pose) << "a state with a number that is none";
+}
+
 TEST(WildWorlds, saved_states_add_take_away_and_move_what_was_included) {
   const WorldFiles files;
   files.write_model("cup", "<model name='cup'><link name='l'/></model>");
