@@ -40,6 +40,7 @@ bool is_sound(const GeometryDef& geometry) {
   if (const auto* s = std::get_if<SphereShape>(&geometry)) return positive(s->radius);
   if (const auto* s = std::get_if<CylinderShape>(&geometry)) return positive(s->radius) && positive(s->length);
   if (const auto* s = std::get_if<CapsuleShape>(&geometry)) return positive(s->radius) && positive(s->length);
+  if (const auto* s = std::get_if<ConeShape>(&geometry)) return positive(s->radius) && positive(s->length);
   if (const auto* s = std::get_if<EllipsoidShape>(&geometry)) return positive(s->radii.minCoeff()) && s->radii.allFinite();
   if (const auto* s = std::get_if<PlaneShape>(&geometry)) return s->normal.allFinite() && s->normal.norm() > 0.5;
   if (const auto* s = std::get_if<MeshShape>(&geometry)) return s->scale.allFinite() && s->scale.cwiseAbs().minCoeff() > 0;

@@ -98,6 +98,10 @@ Geometry make_geometry(RTCDevice device, const GeometryDef& g, const Eigen::Isom
     const TriangleMesh mesh = ellipsoid_triangles(e->radii, 96, 192);
     return triangles(device, mesh.vertices, mesh.triangles, pose);
   }
+  if (const auto* c = std::get_if<ConeShape>(&g)) {
+    const TriangleMesh mesh = cone_triangles(*c, 192);
+    return triangles(device, mesh.vertices, mesh.triangles, pose);
+  }
   const auto mesh = cache.triangles(g);
   if (!mesh) {
     notes.push_back(mesh.error().message + "; rays do not see it");
@@ -117,6 +121,7 @@ std::string key_of(std::span<const RayShape> shapes) {
     if (const auto* s = std::get_if<SphereShape>(shape.geometry)) numbers(s->radius);
     if (const auto* c = std::get_if<CylinderShape>(shape.geometry)) numbers(c->radius, c->length);
     if (const auto* c = std::get_if<CapsuleShape>(shape.geometry)) numbers(c->radius, c->length);
+    if (const auto* c = std::get_if<ConeShape>(shape.geometry)) numbers(c->radius, c->length);
     if (const auto* e = std::get_if<EllipsoidShape>(shape.geometry)) numbers(e->radii.x(), e->radii.y(), e->radii.z());
     if (const auto* m2 = std::get_if<MeshShape>(shape.geometry)) {
       key += m2->path + "|" + m2->submesh;

@@ -125,6 +125,11 @@ std::shared_ptr<const Mesh> Assets::mesh(const GeometryDef& geometry) {
       if (!kept) kept = std::make_shared<Mesh>(make_capsule(shape.radius, shape.length));
       return kept;
     }
+    std::shared_ptr<const Mesh> operator()(const ConeShape& shape) {
+      auto& kept = assets.meshes_[fmt::format("cone|{}|{}", shape.radius, shape.length)];
+      if (!kept) kept = std::make_shared<Mesh>(make_cone(shape.radius, shape.length));
+      return kept;
+    }
     std::shared_ptr<const Mesh> operator()(const MeshShape& shape) { return assets.load(shape); }
     std::shared_ptr<const Mesh> operator()(const HeightmapShape& shape) { return assets.load(shape); }
     std::shared_ptr<const Mesh> operator()(const PolylineShape& shape) { return assets.load(shape); }

@@ -137,6 +137,16 @@ Mesh make_cylinder(int segments) {
   return mesh;
 }
 
+Mesh make_cone(double radius, double length, int segments) {
+  Mesh mesh;
+  const Eigen::Vector2d normal = Eigen::Vector2d(length, radius).normalized();
+  add_lathe(mesh, {{0, length / 2, normal, 0}, {radius, -length / 2, normal, 1}}, segments);
+  add_disc(mesh, radius, -length / 2, false, segments);
+  mesh.is_closed = true;
+  finish_shape(mesh);
+  return mesh;
+}
+
 Mesh make_plane() {
   Mesh mesh;
   add_vertex(mesh, {-0.5, 0.5, 0}, {0, 0, 1}, 0, 0);

@@ -68,6 +68,8 @@ Mesh make_cylinder(int segments = 40);
 Mesh make_plane();
 // Can't be scaled from a unit shape without losing its round ends.
 Mesh make_capsule(double radius, double length, int rings = 18, int segments = 36);
+// About the middle of its height, the tip above.
+Mesh make_cone(double radius, double length, int segments = 40);
 // A rectangular grid of heights: row 0 lies at +y, column 0 at -x, its middle at the origin.
 Mesh make_height_grid(int columns, int rows, double width, double depth, std::span<const float> heights);
 // Every triangle gets its own flat normal; u and v are metres along the sides.

@@ -30,6 +30,8 @@ const std::map<std::string_view, Rule>& rules() {
       {"sphere/radius", {positive, drop_owner}},
       {"cylinder/radius", {positive, drop_owner}},
       {"cylinder/length", {positive, drop_owner}},
+      {"cone/radius", {positive, drop_owner}},
+      {"cone/length", {positive, drop_owner}},
       {"capsule/radius", {positive, drop_owner}},
       {"capsule/length", {positive, drop_owner}},
       {"ellipsoid/radii", {positive3, drop_owner}},

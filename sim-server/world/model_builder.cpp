@@ -86,6 +86,7 @@ std::optional<GeometryDef> build_geometry(pugi::xml_node geometry, BuildContext&
   if (pugi::xml_node node = geometry.child("sphere")) return SphereShape{number_at(node, "radius", 1)};
   if (pugi::xml_node node = geometry.child("cylinder")) return CylinderShape{number_at(node, "radius", 1), number_at(node, "length", 1)};
   if (pugi::xml_node node = geometry.child("capsule")) return CapsuleShape{number_at(node, "radius", 0.5), number_at(node, "length", 1)};
+  if (pugi::xml_node node = geometry.child("cone")) return ConeShape{number_at(node, "radius", 0.5), number_at(node, "length", 1)};
   if (pugi::xml_node node = geometry.child("ellipsoid")) {
     if (std::string_view(geometry.parent().name()) == "collision") {
       context.complaints.note(node, "the ellipsoid of " + describe_in_context(geometry.parent()) + " is approximated");

@@ -342,6 +342,8 @@ void SdfLibrary::State::check(pugi::xml_node node, const sdf::ElementPtr& descri
       known = description->GetElementDescription(meant);
       name = meant;
     }
+    // Newer than this library, with the elements of a cylinder.
+    if (!known && name == "cone") known = description->GetElementDescription("cylinder");
     // Newer than this library; taken over as it is.
     if (!known && name == "shininess" && std::string_view(node.name()) == "material") {
       if (!fits_type("double", text_of(child))) {

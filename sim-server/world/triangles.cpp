@@ -276,6 +276,21 @@ std::string key_of(const GeometryDef& geometry) {
 
 }  // namespace
 
+TriangleMesh cone_triangles(const ConeShape& shape, int segments) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, shape.length / 2}, {0, 0, -shape.length / 2}};
+  for (int s = 0; s < segments; ++s) {
+    const double around = 2 * std::numbers::pi * s / segments;
+    mesh.vertices.emplace_back(shape.radius * std::cos(around), shape.radius * std::sin(around), -shape.length / 2);
+  }
+  for (int s = 0; s < segments; ++s) {
+    const auto a = static_cast<std::uint32_t>(2 + s), b = static_cast<std::uint32_t>(2 + (s + 1) % segments);
+    mesh.triangles.push_back({0, a, b});
+    mesh.triangles.push_back({1, b, a});
+  }
+  return mesh;
+}
+
 TriangleMesh ellipsoid_triangles(const Eigen::Vector3d& radii, int rings, int segments) {
   TriangleMesh mesh;
   const auto at = [&](int ring, int segment) {
@@ -309,6 +324,7 @@ base::Result<std::shared_ptr<const TriangleMesh>> TriangleCache::triangles(const
   if (const auto* shape = std::get_if<MeshShape>(&geometry)) mesh = read_mesh(*shape);
   if (const auto* shape = std::get_if<PolylineShape>(&geometry)) mesh = polyline_triangles(*shape);
   if (const auto* shape = std::get_if<EllipsoidShape>(&geometry)) mesh = ellipsoid_triangles(shape->radii);
+  if (const auto* shape = std::get_if<ConeShape>(&geometry)) mesh = cone_triangles(*shape);
   if (const auto* shape = std::get_if<HeightmapShape>(&geometry)) {
     const auto grid = heights(*shape);
     if (!grid) return grid.error();

@@ -38,6 +38,8 @@ class TriangleCache {
   std::map<std::string, std::shared_ptr<const HeightGrid>> grids_;
 };
 
+// A pyramid with so many sides.
+TriangleMesh cone_triangles(const ConeShape& shape, int segments = 32);
 // Ellipsoids are approximated by this many rings and segments.
 TriangleMesh ellipsoid_triangles(const Eigen::Vector3d& radii, int rings = 16, int segments = 32);
 

@@ -39,7 +39,7 @@ std::string ParameterNode::attribute(std::string_view attribute_name) const {
 
 std::string_view kind_of(const GeometryDef& geometry) {
   static constexpr std::array<std::string_view, std::variant_size_v<GeometryDef>> words{
-      "box", "sphere", "cylinder", "capsule", "ellipsoid", "plane", "mesh", "heightmap", "polyline"};
+      "box", "sphere", "cylinder", "capsule", "ellipsoid", "plane", "mesh", "heightmap", "polyline", "cone"};
   return words[geometry.index()];
 }
 

@@ -74,6 +74,11 @@ struct CapsuleShape {
   double radius = 1;
   double length = 1;
 };
+// Along z, centred, the tip above.
+struct ConeShape {
+  double radius = 0.5;
+  double length = 1;
+};
 struct EllipsoidShape {
   Eigen::Vector3d radii{1, 1, 1};
 };
@@ -106,8 +111,8 @@ struct PolylineShape {
   std::vector<std::vector<Eigen::Vector2d>> outlines;
   double height = 1;
 };
-using GeometryDef =
-    std::variant<BoxShape, SphereShape, CylinderShape, CapsuleShape, EllipsoidShape, PlaneShape, MeshShape, HeightmapShape, PolylineShape>;
+using GeometryDef = std::variant<BoxShape, SphereShape, CylinderShape, CapsuleShape, EllipsoidShape, PlaneShape, MeshShape, HeightmapShape,
+                                 PolylineShape, ConeShape>;
 
 // Word for messages: "box", "mesh", ...
 std::string_view kind_of(const GeometryDef& geometry);

@@ -292,6 +292,16 @@ TEST(Physics, a_spinning_top_slides_on_a_straight_line) {
   EXPECT_GT(f.position("disk").x(), 0.06) << "further than without spin, v^2 / (2 mu g) = 0.05 m";
 }
 
+TEST(Physics, a_cone_stands_on_its_base_and_not_on_its_tip) {
+  Fixture f(world_of(
+      {ground(), body("standing", ConeShape{0.3, 0.6}, at(0, 0, 0.31)), body("tipped", ConeShape{0.3, 0.6}, tilted(3, 0, 0.32, 3.1, 0))}));
+  EXPECT_TRUE(f.notes.empty()) << f.notes.front();
+  f.run(5);
+  EXPECT_NEAR(f.position("standing").z(), 0.3, 0.01);
+  EXPECT_GT(f.physics.model_pose(f.id("standing")).linear()(2, 2), 0.999);
+  EXPECT_GT(f.physics.model_pose(f.id("tipped")).linear()(2, 2), -0.7) << "lies on its side";
+}
+
 TEST(Physics, shapes_of_every_kind_rest_on_each_other) {
   PolylineShape prism{{{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {0, 0.2}, {-0.5, 0.5}}}, 0.5};
   Fixture f(world_of({ground(), fixed("prism", prism, at(0, 0, 0)), body("ball", SphereShape{0.2}, at(0.3, -0.2, 0.8)),

@@ -249,6 +249,23 @@ TEST(Rays, no_beam_slips_through_the_edge_of_a_box) {
   }
 }
 
+TEST(Rays, see_a_cone_where_its_side_is) {
+  TriangleCache triangles;
+  RayScene scene(triangles);
+  std::vector<std::string> notes;
+  const GeometryDef cone = ConeShape{1, 2};
+  const RayShape shape{&cone};
+  scene.add_static({&shape, 1}, at(5, 0, 1), notes);
+  scene.commit();
+  const std::vector<Eigen::Vector3f> directions(16, Eigen::Vector3f::UnitX());
+  const Beams beams(directions, 0, 30);
+  for (const double z : {0.1, 0.5, 1.0, 1.9}) {
+    std::vector<float> ranges(16);
+    scene.trace(beams, at(0, 0, z), ranges, {});
+    EXPECT_NEAR(ranges[0], 5 - (2 - z) / 2, 0.001) << z;
+  }
+}
+
 // Few moving bodies and many are found in different ways.
 TEST(Rays, a_crowd_is_seen_as_few_bodies_are) {
   std::mt19937 random(3);

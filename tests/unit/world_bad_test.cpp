@@ -117,6 +117,7 @@ TEST(BadWorld, bad_numbers_cost_the_object_they_stand_in_and_nothing_else) {
        "<radius> of collision \"bad\" of link \"l\" of model \"m\" must be a positive number, got \"-1\""},
       {shape("<sphere><radius>1e308</radius></sphere>"), "got \"1e308\""},
       {shape("<cylinder><radius>1</radius><length>0</length></cylinder>"), "got \"0\""},
+      {shape("<cone><radius>1</radius><length>-1</length></cone>"), "got \"-1\""},
       {shape("<capsule><radius>0</radius><length>1</length></capsule>"), "got \"0\""},
       {shape("<ellipsoid><radii>1 0 1</radii></ellipsoid>"), "got \"1 0 1\""},
       {shape("<plane><normal>0 0 0</normal></plane>"), "not all zero"},

@@ -42,6 +42,9 @@ TEST(WorldGeometry, every_kind_is_read) {
   const auto capsule = shape_of<CapsuleShape>("<capsule><radius>0.25</radius><length>3</length></capsule>");
   EXPECT_EQ(capsule.radius, 0.25);
   EXPECT_EQ(capsule.length, 3);
+  const auto cone = shape_of<ConeShape>("<cone><radius>0.25</radius><length>3</length></cone>");
+  EXPECT_EQ(cone.radius, 0.25);
+  EXPECT_EQ(cone.length, 3);
   EXPECT_EQ(shape_of<EllipsoidShape>("<ellipsoid><radii>1 2 3</radii></ellipsoid>").radii, Eigen::Vector3d(1, 2, 3));
   const auto plane = shape_of<PlaneShape>("<plane><normal>0 0 2</normal><size>5 6</size></plane>");
   EXPECT_EQ(plane.normal, Eigen::Vector3d(0, 0, 1));
