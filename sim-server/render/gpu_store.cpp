@@ -81,25 +81,31 @@ SurfaceProgram::SurfaceProgram(GpuProgram built) : program(std::move(built)) {
   for (const auto& [place, name] : all) *place = program.uniform(name);
 }
 
-const GpuMesh& GpuStore::mesh(const std::shared_ptr<const Mesh>& mesh) { return made(mesh); }
+const GpuMesh& GpuStore::mesh(const std::shared_ptr<const Mesh>& mesh) {
+  GpuMesh& gpu = made(mesh);
+  if (actors_.empty() || gpu.picture == picture_) return gpu;
+  gpu.picture = picture_;
+  if (const auto actor = actors_.find(mesh.get()); actor != actors_.end()) bend(gpu, *actor->second);
+  return gpu;
+}
 
-void GpuStore::bend(const SceneActor& actor, std::span<const Eigen::Isometry3d> poses) {
-  const Eigen::Isometry3d to_actor = poses[actor.link].inverse();
+void GpuStore::bend(GpuMesh& mesh, const SceneActor& actor) {
+  const Eigen::Isometry3d to_actor = poses_[actor.link].inverse();
   std::vector<Eigen::Isometry3d> bones;
-  for (std::size_t i = 0; i < actor.skin->skin.bones.size(); ++i) bones.push_back(to_actor * poses[actor.link + 1 + i]);
-  GpuMesh& gpu = made(actor.mesh);
+  for (std::size_t i = 0; i < actor.skin->skin.bones.size(); ++i) bones.push_back(to_actor * poses_[actor.link + 1 + i]);
   const auto is_same = [](const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) { return a.matrix() == b.matrix(); };
-  if (std::equal(bones.begin(), bones.end(), gpu.bones.begin(), gpu.bones.end(), is_same)) return;
+  if (std::equal(bones.begin(), bones.end(), mesh.bones.begin(), mesh.bones.end(), is_same)) return;
   sim::bend(actor.skin->skin, bones, bent_);
-  gl_.BindBuffer(GL_ARRAY_BUFFER, gpu.vertices.name());
+  gl_.BindBuffer(GL_ARRAY_BUFFER, mesh.vertices.name());
   gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(bent_.size() * sizeof(Vertex)), bent_.data(), GL_STREAM_DRAW);
-  gpu.bones = std::move(bones);
+  mesh.bones = std::move(bones);
 }
 
 GpuMesh& GpuStore::made(const std::shared_ptr<const Mesh>& mesh) {
   const auto found = meshes_.find(mesh);
   if (found != meshes_.end()) return found->second;
-  GpuMesh made{{gl_.GenVertexArrays, gl_.DeleteVertexArrays}, {gl_.GenBuffers, gl_.DeleteBuffers}, {gl_.GenBuffers, gl_.DeleteBuffers}, {}};
+  GpuMesh made{
+      {gl_.GenVertexArrays, gl_.DeleteVertexArrays}, {gl_.GenBuffers, gl_.DeleteBuffers}, {gl_.GenBuffers, gl_.DeleteBuffers}, {}, 0};
   gl_.BindVertexArray(made.vertex_array.name());
   gl_.BindBuffer(GL_ARRAY_BUFFER, made.vertices.name());
   gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh->vertices.size() * sizeof(Vertex)), mesh->vertices.data(), GL_STATIC_DRAW);
@@ -143,7 +149,16 @@ base::Result<SurfaceProgram*> GpuStore::program(const Features& features) {
   return kept.get();
 }
 
-void GpuStore::keep_only(const Scene& scene) {
+void GpuStore::begin(std::span<const Eigen::Isometry3d> poses) {
+  poses_ = poses;
+  ++picture_;
+}
+
+void GpuStore::enter(const Scene& scene) {
+  actors_.clear();
+  for (const auto& actor : scene.actors) {
+    if (actor.skin) actors_[actor.mesh.get()] = &actor;
+  }
   std::set<const void*> used;
   for (const auto& drawable : scene.drawables) {
     used.insert(drawable.mesh.get());

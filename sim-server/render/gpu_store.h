@@ -46,27 +46,33 @@ struct SurfaceProgram {
 struct GpuMesh {
   gl::Object vertex_array, vertices, indices;
   std::vector<Eigen::Isometry3d> bones;  // of an actor, relative to it; empty: at rest
+  std::uint64_t picture = 0;             // the last one that they were compared in
 };
 
 class GpuStore {
  public:
   explicit GpuStore(const gl::Functions& gl) : gl_(gl) {}
 
+  // Of an actor: its vertices are brought to where the bones are in this picture, unless they are there.
   const GpuMesh& mesh(const std::shared_ptr<const Mesh>& mesh);
-  // Of a mesh of an actor: brings its vertices to where the bones are, unless they are there.
-  void bend(const SceneActor& actor, std::span<const Eigen::Isometry3d> poses);
   GLuint texture(const std::shared_ptr<const Texture>& texture);
   base::Result<SurfaceProgram*> program(const Features& features);
 
-  // Forgets meshes and textures that the scene does not use.
-  void keep_only(const Scene& scene);
+  // From now on meshes and textures are this scene's; those that it does not use are forgotten. It lives until the next one.
+  void enter(const Scene& scene);
+  // The poses of the links live as long as the picture is drawn.
+  void begin(std::span<const Eigen::Isometry3d> poses);
 
  private:
   GpuMesh& made(const std::shared_ptr<const Mesh>& mesh);
+  void bend(GpuMesh& mesh, const SceneActor& actor);
 
   const gl::Functions& gl_;
   std::map<Features, std::unique_ptr<SurfaceProgram>> programs_;
   std::map<std::shared_ptr<const Mesh>, GpuMesh> meshes_;
+  std::map<const Mesh*, const SceneActor*> actors_;  // with a skin, by its mesh
+  std::span<const Eigen::Isometry3d> poses_;
+  std::uint64_t picture_ = 0;
   std::vector<Vertex> bent_;
   std::map<std::shared_ptr<const Texture>, gl::Object> textures_;
 };

@@ -30,6 +30,7 @@ class Renderer::Impl {
   Statistics statistics() const {
     Statistics out = statistics_;
     out.shadow_rebuilds = shadow_.rebuilds();
+    out.moving_shadows = shadow_.moving_drawn();
     return out;
   }
 
@@ -37,6 +38,7 @@ class Renderer::Impl {
   base::Result<void> check(const Scene& scene, std::span<const Eigen::Isometry3d> poses, const View& view) const;
   void resize(int width, int height);
   void choose(const Scene& scene, std::span<const Eigen::Isometry3d> poses, const View& view);
+  ShadowView shadow_view(std::span<const Eigen::Isometry3d> poses, const View& view) const;
   base::Result<void> draw_transparent(std::span<const Item> items);
   void draw_sky(const Scene& scene, const View& view, const Lights& lights);
   void draw_triangles(const std::vector<OverlayVertex>& triangles, const Eigen::Matrix4f& matrix, bool is_depth_tested);
@@ -149,6 +151,17 @@ void Renderer::Impl::choose(const Scene& scene, std::span<const Eigen::Isometry3
   statistics_.drawn = items_.size();
 }
 
+// Of the things that have been chosen.
+ShadowView Renderer::Impl::shadow_view(std::span<const Eigen::Isometry3d> poses, const View& view) const {
+  ShadowView out;
+  out.eye = view.pose.translation();
+  out.focus = out.eye + 20 * view.pose.linear().col(0);
+  out.planes = frustum_planes(projection_);
+  out.floor = std::numeric_limits<double>::infinity();
+  for (const auto& item : items_) out.floor = std::min(out.floor, item.drawable->bounds_at(poses[item.drawable->link]).min().z());
+  return out;
+}
+
 base::Result<void> Renderer::Impl::draw_transparent(std::span<const Item> items) {
   if (items.empty()) return {};
   surfaces_.resume();
@@ -213,24 +226,21 @@ base::Result<void> Renderer::Impl::draw(const std::shared_ptr<const Scene>& scen
   if (auto checked = check(*scene, poses, view); !checked) return checked;
   if (!context_->make_current()) return base::Error{"render: OSMesa refuses its own context"};
   if (scene_ != scene) {
-    store_.keep_only(*scene);
+    store_.enter(*scene);
     shadow_.forget();
     scene_ = scene;
   }
-  for (const auto& actor : scene->actors) {
-    if (actor.skin) store_.bend(actor, poses);
-  }
+  store_.begin(poses);
   view_ = view;
   ++statistics_.draws;
   projection_ = view_projection(view);
+  choose(*scene, poses, view);
   const Lights lights = view.wants_color ? collect_lights(*scene, poses, view) : Lights{};
   if (lights.has_shadow) {
-    const Eigen::Vector3d focus = view.pose.translation() + 20 * view.pose.linear().col(0);
-    if (auto done = shadow_.update(*scene, poses, lights.to_shadow_light, focus, view.shadow_size); !done) return done;
+    if (auto done = shadow_.update(*scene, poses, lights.to_shadow_light, shadow_view(poses, view), view.shadow_size); !done) return done;
     gl_.ActiveTexture(GL_TEXTURE2);
     gl_.BindTexture(GL_TEXTURE_2D, shadow_.texture());
   }
-  choose(*scene, poses, view);
 
   resize(view.width, view.height);
   gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());

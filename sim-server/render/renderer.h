@@ -60,6 +60,7 @@ class Renderer {
     std::uint64_t drawn = 0;            // drawables in the last picture
     std::uint64_t culled = 0;           // drawables outside the last picture's frustum
     std::uint64_t shadow_rebuilds = 0;  // of the static shadow map
+    std::uint64_t moving_shadows = 0;   // of moving drawables, in all pictures
   };
   Statistics statistics() const;
 

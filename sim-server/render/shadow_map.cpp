@@ -103,13 +103,55 @@ bool ShadowMap::still_fits(const Scene& scene, std::span<const Eigen::Isometry3d
   return true;
 }
 
+// Whether the shadow of the sphere round it, down to the floor, is not wholly on the outer side of one plane.
+bool ShadowMap::may_be_seen(const Drawable& drawable, const Eigen::Isometry3d& pose, const ShadowView& view) const {
+  constexpr double flattest = 0.05;  // below, shadows have no end
+  if (to_light_.z() < flattest) return true;
+  const Eigen::Vector3d centre = pose * drawable.centre;
+  const double radius = drawable.radius + 4 * texel_;
+  const double length = std::max(0.0, (centre.z() + radius - view.floor) / to_light_.z());
+  const Eigen::Vector3d begin = centre - view.eye, end = begin - length * to_light_;
+  return std::none_of(view.planes.begin(), view.planes.end(), [&](const Eigen::Vector4d& plane) {
+    return std::max(plane.head<3>().dot(begin), plane.head<3>().dot(end)) + plane.w() < -radius;
+  });
+}
+
+// What never moves, in both maps.
+base::Result<void> ShadowMap::rebuild(const Scene& scene, std::span<const Eigen::Isometry3d> poses) {
+  std::vector<bool> statics;
+  for (const auto& drawable : scene.drawables) statics.push_back(is_caster(drawable) && scene.links[drawable.link].is_static);
+  for (const auto& map : {&kept_, &working_}) {
+    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, map->name(), 0);
+    gl_.Disable(GL_SCISSOR_TEST);
+    gl_.Clear(GL_DEPTH_BUFFER_BIT);
+    gl_.Enable(GL_SCISSOR_TEST);
+    if (auto done = draw(scene, poses, statics); !done) return done;
+  }
+  dirty_.clear();
+  ++rebuilds_;
+  return {};
+}
+
 base::Result<void> ShadowMap::update(const Scene& scene, std::span<const Eigen::Isometry3d> poses, const Eigen::Vector3d& to_light,
-                                     const Eigen::Vector3d& focus, int size) {
+                                     const ShadowView& view, int size) {
   if (size != size_) allocate(size);
-  const bool is_kept = still_fits(scene, poses, to_light, focus, size) && gl_.CopyImageSubData != nullptr;
+  const bool is_kept = still_fits(scene, poses, to_light, view.focus, size) && gl_.CopyImageSubData != nullptr;
   bool has_moved = !is_kept;
   for (std::size_t i = 0; i < poses.size() && !has_moved; ++i) has_moved = !is_same(poses[i], poses_[i]);
-  if (!has_moved) return {};
+  if (!is_kept) {
+    is_valid_ = false;
+    fit(scene, poses, to_light, view.focus);
+  }
+  if (has_moved) drawn_.assign(scene.drawables.size(), false);
+  std::vector<bool> movers(scene.drawables.size(), false);
+  bool is_any = false;
+  for (std::size_t i = 0; i < movers.size(); ++i) {
+    const Drawable& drawable = scene.drawables[i];
+    movers[i] =
+        is_caster(drawable) && !scene.links[drawable.link].is_static && !drawn_[i] && may_be_seen(drawable, poses[drawable.link], view);
+    is_any = is_any || movers[i];
+  }
+  if (!has_moved && !is_any) return {};
 
   gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
   gl_.DrawBuffer(GL_NONE);
@@ -125,24 +167,20 @@ base::Result<void> ShadowMap::update(const Scene& scene, std::span<const Eigen::
   gl_.Disable(GL_BLEND);
   gl_.CullFace(GL_BACK);
   if (!is_kept) {
-    is_valid_ = false;
-    fit(scene, poses, to_light, focus);
-    for (const auto& map : {&kept_, &working_}) {
-      gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, map->name(), 0);
-      gl_.Disable(GL_SCISSOR_TEST);
-      gl_.Clear(GL_DEPTH_BUFFER_BIT);
-      gl_.Enable(GL_SCISSOR_TEST);
-      if (auto done = draw(scene, poses, true); !done) return done;
-    }
-    dirty_.clear();
-    ++rebuilds_;
-  } else {
+    if (auto done = rebuild(scene, poses); !done) return done;
+  } else if (has_moved) {
     restore_patches();
   }
   gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, working_.name(), 0);
-  if (auto done = draw(scene, poses, false); !done) return done;
+  if (auto done = draw(scene, poses, movers); !done) return done;
   gl_.Disable(GL_DEPTH_CLAMP);
   gl_.Disable(GL_SCISSOR_TEST);
+  for (std::size_t i = 0; i < movers.size(); ++i) {
+    if (!movers[i]) continue;
+    dirty_.push_back(patch_of(scene.drawables[i], poses[scene.drawables[i].link]));
+    drawn_[i] = true;
+    ++moving_drawn_;
+  }
   poses_.assign(poses.begin(), poses.end());
   is_valid_ = true;
   return {};
@@ -150,6 +188,7 @@ base::Result<void> ShadowMap::update(const Scene& scene, std::span<const Eigen::
 
 void ShadowMap::restore_patches() {
   for (const auto& p : dirty_) {
+    if (p.right <= p.left || p.top <= p.bottom) continue;
     gl_.CopyImageSubData(kept_.name(), GL_TEXTURE_2D, 0, p.left, p.bottom, 0, working_.name(), GL_TEXTURE_2D, 0, p.left, p.bottom, 0,
                          p.right - p.left, p.top - p.bottom, 1);
   }
@@ -164,13 +203,13 @@ ShadowMap::Patch ShadowMap::patch_of(const Drawable& drawable, const Eigen::Isom
   return {clamp(std::floor(x - radius)), clamp(std::floor(y - radius)), clamp(std::ceil(x + radius)), clamp(std::ceil(y + radius))};
 }
 
-base::Result<void> ShadowMap::draw(const Scene& scene, std::span<const Eigen::Isometry3d> poses, bool is_static) {
+base::Result<void> ShadowMap::draw(const Scene& scene, std::span<const Eigen::Isometry3d> poses, const std::vector<bool>& which) {
   const SurfaceProgram* current = nullptr;
-  for (const auto& drawable : scene.drawables) {
-    if (!is_caster(drawable) || scene.links[drawable.link].is_static != is_static) continue;
+  for (std::size_t i = 0; i < which.size(); ++i) {
+    if (!which[i]) continue;
+    const Drawable& drawable = scene.drawables[i];
     const Patch patch = patch_of(drawable, poses[drawable.link]);
     if (patch.right <= patch.left || patch.top <= patch.bottom) continue;
-    if (!is_static) dirty_.push_back(patch);
     Features features;
     features.depth_only = true;
     features.texture = features.holes = drawable.material.texture && drawable.material.texture->has_holes;

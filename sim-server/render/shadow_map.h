@@ -1,8 +1,9 @@
-// The shadow of the sun: a depth map seen along its rays. What never moves is drawn once and kept; what moves is drawn over a copy, and
-// only the patches it touched are put back. Ground planes are never in it. For the thread of the context.
+// The shadow of the sun: a depth map seen along its rays. What never moves is drawn once and kept; what moves is drawn over a copy if its
+// shadow may be seen, and only the patches it touched are put back. Ground planes are never in it. For the thread of the context.
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -10,14 +11,22 @@
 
 namespace sim {
 
+// Where a picture can show shadows: in a frustum, and not below all that it shows.
+struct ShadowView {
+  Eigen::Vector3d eye{0, 0, 0};
+  Eigen::Vector3d focus{0, 0, 0};         // the place that matters most
+  std::array<Eigen::Vector4d, 6> planes;  // frustum_planes(), relative to the eye
+  double floor = 0;                       // [m] z of the lowest point
+};
+
 class ShadowMap {
  public:
   ShadowMap(const gl::Functions& gl, GpuStore& store);
 
-  // Brings the map up to date for these poses; `to_light` is a unit vector, `focus` the place in the world that matters most. Changes the
-  // framebuffer, viewport and program in use. Cheap when nothing has moved.
+  // Brings the map up to date for these poses; `to_light` is a unit vector. Changes the framebuffer, viewport and program in use. Cheap
+  // when nothing has moved.
   base::Result<void> update(const Scene& scene, std::span<const Eigen::Isometry3d> poses, const Eigen::Vector3d& to_light,
-                            const Eigen::Vector3d& focus, int size);
+                            const ShadowView& view, int size);
   // Everything is drawn anew at the next update.
   void forget() { is_valid_ = false; }
 
@@ -27,6 +36,7 @@ class ShadowMap {
   double texel() const { return texel_; }  // [m]
   int size() const { return size_; }
   std::uint64_t rebuilds() const { return rebuilds_; }
+  std::uint64_t moving_drawn() const { return moving_drawn_; }
 
  private:
   // A rectangle of the map in pixels; empty when right <= left.
@@ -37,7 +47,9 @@ class ShadowMap {
   void fit(const Scene& scene, std::span<const Eigen::Isometry3d> poses, const Eigen::Vector3d& to_light, const Eigen::Vector3d& focus);
   bool still_fits(const Scene& scene, std::span<const Eigen::Isometry3d> poses, const Eigen::Vector3d& to_light,
                   const Eigen::Vector3d& focus, int size) const;
-  base::Result<void> draw(const Scene& scene, std::span<const Eigen::Isometry3d> poses, bool is_static);
+  bool may_be_seen(const Drawable& drawable, const Eigen::Isometry3d& pose, const ShadowView& view) const;
+  base::Result<void> rebuild(const Scene& scene, std::span<const Eigen::Isometry3d> poses);
+  base::Result<void> draw(const Scene& scene, std::span<const Eigen::Isometry3d> poses, const std::vector<bool>& which);
   void restore_patches();
   Patch patch_of(const Drawable& drawable, const Eigen::Isometry3d& pose) const;
   Eigen::Vector3d snapped(const Eigen::Vector3d& focus) const;
@@ -56,7 +68,8 @@ class ShadowMap {
   double texel_ = 0;
   std::vector<Eigen::Isometry3d> poses_;  // of the last update
   std::vector<Patch> dirty_;              // of working_: where it differs from kept_
-  std::uint64_t rebuilds_ = 0;
+  std::vector<bool> drawn_;               // which moving drawables are in working_
+  std::uint64_t rebuilds_ = 0, moving_drawn_ = 0;
 };
 
 }  // namespace sim

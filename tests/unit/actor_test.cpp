@@ -192,9 +192,10 @@ TEST(ActorMotion, begins_late_ends_once_or_never_begins) {
 // A camera beside the actor, at the height of its legs.
 struct Pasture : SimulationFixture {
   using SimulationFixture::SimulationFixture;
-  Image picture(double seconds, double y = 0) {
+  Image picture(double seconds, double y = 0) { return picture_from(put(0, y - 4, 0.6, M_PI / 2), seconds); }
+  Image picture_from(const Eigen::Isometry3d& eye, double seconds) {
     const Snapshot world = simulation->pictures().snapshot(std::chrono::nanoseconds(std::llround(seconds * 1e9)));
-    const View view = View::pinhole(put(0, y - 4, 0.6, M_PI / 2), 0.8, 160, 120);
+    const View view = View::pinhole(eye, 0.8, 160, 120);
     if (auto drawn = shared_renderer().draw(world.scene, *world.poses, view); !drawn) throw std::runtime_error(drawn.error().message);
     Image image{view.width, view.height, std::vector<std::uint8_t>(static_cast<std::size_t>(view.width * view.height) * 4)};
     shared_renderer().read_rgba(image.rgba);
@@ -225,6 +226,32 @@ TEST(Actor, its_limbs_move_in_the_picture_and_are_the_same_each_time) {
   EXPECT_EQ(first.rgba, field.picture(0.0).rgba);
   EXPECT_LT(difference(first, field.picture(1.25)), 5) << "a whole round later";
   EXPECT_TRUE(field.simulation->pictures().snapshot(std::chrono::nanoseconds(0)).scene->actors[0].animations[0]) << "it was read";
+}
+
+// The sun stands low behind it; the camera sees the ground where the shadows of its legs fall, and nothing of itself.
+TEST(Actor, the_shadows_of_its_limbs_move_with_them) {
+  ActorDef actor = walker();
+  actor.trajectories = {{0, "stand", 0, {{0, put(0, 0, 0)}, {100, put(0, 0, 0)}}}};
+  WorldDef world = pasture({actor});
+  world.scene.ambient = {0, 0, 0, 1};
+  world.lights.push_back(sun({0, 1, -0.4}, {0.8F, 0.8F, 0.8F, 1}, true));
+  world.models.push_back(one_visual_model("floor", PlaneShape{{0, 0, 1}, {40, 40}}, put(0, 0, 0), plain_material({1, 1, 1, 1})));
+  Pasture field(world);
+  const Eigen::Isometry3d from_above = test::at(0, 1.1, 2, M_PI / 2, M_PI / 2, 0);
+  const auto shadows = [&](double seconds) { return field.picture_from(from_above, seconds); };
+  const Image first = shadows(0.0);
+  const auto dark = [](const Image& image) {
+    int count = 0;
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4) count += image.rgba[i] < 40 ? 1 : 0;
+    return count;
+  };
+  EXPECT_GT(dark(first), 300);
+  EXPECT_GT(difference(first, shadows(0.3)), 150);
+  EXPECT_LT(difference(first, shadows(1.25)), 5) << "a whole round later";
+  world.lights.clear();
+  world.scene.ambient = {1, 1, 1, 1};
+  const Image ground = Pasture(world).picture_from(from_above, 0);
+  for (std::size_t i = 0; i < ground.rgba.size(); i += 4) ASSERT_EQ(ground.rgba[i], ground.rgba[0]) << "more than the ground is seen";
 }
 
 TEST(Actor, two_with_one_skin_each_have_their_own_steps) {

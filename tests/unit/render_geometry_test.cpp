@@ -128,59 +128,76 @@ std::string write_wedge() {
   return file.string();
 }
 
+// The depths of the picture from that place against rays through the middles of pixels; edges of things are left out. How many pixels of
+// things were compared.
+int compare_with_rays(const std::vector<Thing>& things, const Eigen::Isometry3d& camera, int stride, const std::string& what) {
+  WorldDef world = dark_world();
+  TriangleCache triangles;
+  RayScene rays(triangles);
+  std::vector<std::string> notes;
+  for (std::size_t i = 0; i < things.size(); ++i) {
+    world.models.push_back(one_visual_model("t" + std::to_string(i), things[i].geometry, things[i].pose, plain_material({1, 1, 1, 1})));
+    const RayShape shape{&things[i].geometry, Eigen::Isometry3d::Identity(), 0, 0};
+    rays.add_static(std::span(&shape, 1), things[i].pose, notes);
+  }
+  rays.commit();
+  EXPECT_TRUE(notes.empty());
+  Studio studio(world);
+  EXPECT_TRUE(studio.assets.take_complaints().empty());
+  View view = View::pinhole(camera, 0.9, 320, 240);
+  view.near_clip = 0.05;
+  view.far_clip = 60;
+  view.wants_exact_depth = true;
+  const auto depth = studio.depth(view);
+  const double focal = 160 / std::tan(0.45);
+  const auto cast = [&](double x, double y) {
+    const Vector3d ray(1, (160 - x) / focal, (120 - y) / focal);
+    return rays.trace_one(camera.translation(), camera.linear() * ray.normalized(), 0.01F, 200).range / ray.norm();
+  };
+  int compared = 0, on_things = 0;
+  for (int y = 1; y < 240; y += stride) {
+    for (int x = 1; x < 320; x += stride) {
+      const double expected = cast(x + 0.5, y + 0.5);
+      bool is_edge = false;
+      for (const auto& [dx, dy] : {std::pair(-0.6, 0.0), std::pair(0.6, 0.0), std::pair(0.0, -0.6), std::pair(0.0, 0.6)}) {
+        const double beside = cast(x + 0.5 + dx, y + 0.5 + dy);
+        is_edge = is_edge || !(std::abs(beside - expected) < 0.03 * expected || (beside > 60 && expected > 60));
+      }
+      if (is_edge) continue;
+      const float got = depth[static_cast<std::size_t>(y * 320 + x)];
+      ++compared;
+      if (expected > 60) {
+        EXPECT_TRUE(std::isinf(got)) << what << " pixel " << x << ' ' << y << ' ' << got;
+      } else {
+        EXPECT_NEAR(got, expected, 0.001 + 0.001 * expected) << what << " pixel " << x << ' ' << y;
+        on_things += (camera * Vector3d(expected, (160 - x) / focal * expected, (120 - y) / focal * expected)).z() > 0.05;
+      }
+    }
+  }
+  EXPECT_GT(compared, 4000 / stride) << what;
+  return on_things;
+}
+
 TEST(RenderGeometry, depth_agrees_with_the_ray_caster) {
   const std::string mesh = write_wedge();
   for (unsigned seed = 1; seed <= 5; ++seed) {
     std::mt19937 random(seed);
-    const auto things = random_things(random, mesh);
-    WorldDef world = dark_world();
-    TriangleCache triangles;
-    RayScene rays(triangles);
-    std::vector<std::string> notes;
-    for (std::size_t i = 0; i < things.size(); ++i) {
-      world.models.push_back(one_visual_model("t" + std::to_string(i), things[i].geometry, things[i].pose, plain_material({1, 1, 1, 1})));
-      const RayShape shape{&things[i].geometry, Eigen::Isometry3d::Identity(), 0, 0};
-      rays.add_static(std::span(&shape, 1), things[i].pose, notes);
-    }
-    rays.commit();
-    ASSERT_TRUE(notes.empty()) << notes.front();
-    Studio studio(world);
-    ASSERT_TRUE(studio.assets.take_complaints().empty());
-    const Eigen::Isometry3d camera = at(-7, 0.5, 2, 0.05, 0.15, 0.3);
-    View view = View::pinhole(camera, 0.9, 320, 240);
-    view.near_clip = 0.05;
-    view.far_clip = 60;
-    view.wants_exact_depth = true;
-    const auto depth = studio.depth(view);
-    const double focal = 160 / std::tan(0.45);
-    const auto cast = [&](double x, double y) {
-      const Vector3d ray(1, (160 - x) / focal, (120 - y) / focal);
-      return rays.trace_one(camera.translation(), camera.linear() * ray.normalized(), 0.01F, 200).range / ray.norm();
-    };
-    int compared = 0, on_things = 0;
-    for (int y = 1; y < 240; y += 5) {
-      for (int x = 1; x < 320; x += 5) {
-        const double expected = cast(x + 0.5, y + 0.5);
-        bool is_edge = false;
-        for (const auto& [dx, dy] : {std::pair(-0.6, 0.0), std::pair(0.6, 0.0), std::pair(0.0, -0.6), std::pair(0.0, 0.6)}) {
-          const double beside = cast(x + 0.5 + dx, y + 0.5 + dy);
-          is_edge = is_edge || !(std::abs(beside - expected) < 0.03 * expected || (beside > 60 && expected > 60));
-        }
-        if (is_edge) continue;
-        const float got = depth[static_cast<std::size_t>(y * 320 + x)];
-        ++compared;
-        if (expected > 60) {
-          EXPECT_TRUE(std::isinf(got)) << x << ' ' << y << ' ' << got;
-        } else {
-          EXPECT_NEAR(got, expected, 0.001 + 0.001 * expected) << "seed " << seed << " pixel " << x << ' ' << y;
-          on_things += (camera * Vector3d(expected, (160 - x) / focal * expected, (120 - y) / focal * expected)).z() > 0.05;
-        }
-      }
-    }
-    EXPECT_GT(compared, 800);
-    EXPECT_GT(on_things, 100);
+    EXPECT_GT(compare_with_rays(random_things(random, mesh), at(-7, 0.5, 2, 0.05, 0.15, 0.3), 5, "seed " + std::to_string(seed)), 100);
   }
   std::filesystem::remove(mesh);
+}
+
+// So near and large that a hundredth of the size is many pixels.
+TEST(RenderGeometry, large_round_things_are_round_up_to_their_rims) {
+  const GeometryDef shapes[] = {SphereShape{2}, CylinderShape{2, 1.5}, CapsuleShape{1.2, 2}, EllipsoidShape{{1, 2, 1.5}}};
+  for (const auto& shape : shapes) {
+    for (const auto& pose : {at(0, 0, 1), at(0, 0.3, 1, 0.5, 1.2, 0.4)}) {
+      for (const auto& camera : {at(-4, 0, 3.5, 0, 0.6), at(-3.5, 2.5, 1, -0.8, 0.1)}) {
+        const std::string what = "shape " + std::to_string(&shape - shapes);
+        EXPECT_GT(compare_with_rays({{shape, pose}, {PlaneShape{{0, 0, 1}, {400, 400}}, at(0, 0, -3)}}, camera, 3, what), 300) << what;
+      }
+    }
+  }
 }
 
 TEST(RenderGeometry, nothing_shows_before_the_near_and_behind_the_far_plane) {

@@ -161,6 +161,24 @@ TEST(RenderLight, every_kind_of_fog_follows_its_formula) {
   }
 }
 
+// By the distance from the eye, not by the depth; a linear one neither before its start nor beyond all of it.
+TEST(RenderLight, fog_counts_the_distance_of_each_pixel) {
+  const Vector3d wall = linear_of({0.2F, 0.3F, 0.9F, 1}), fog = linear_of({0.8F, 0.7F, 0.6F, 1});
+  for (const double depth : {1.0, 6.0, 30.0}) {
+    WorldDef world = dark_world();
+    world.scene.fog = FogDef{"linear", {0.8F, 0.7F, 0.6F, 1}, 2, 12, 0.1};
+    world.models.push_back(
+        one_visual_model("wall", BoxShape{{0.1, 200, 200}}, at(depth + 0.05, 0, 0), glowing_material({0.2F, 0.3F, 0.9F, 1})));
+    const Image image = Studio(world).picture(View::pinhole(at(0, 0, 0), 1.6, 63, 63));
+    const double focal = 31.5 / std::tan(0.8);
+    for (const auto& [x, y] : {std::pair(31, 31), {2, 31}, {31, 60}, {3, 4}}) {
+      const double distance = depth * std::hypot(1, (x - 31) / focal, (y - 31) / focal);
+      const double share = std::clamp((distance - 2) / 10, 0.0, 1.0);
+      EXPECT_TRUE(is_near(pixel(image, x, y), wall + share * (fog - wall))) << depth << " m, pixel " << x << ' ' << y;
+    }
+  }
+}
+
 TEST(RenderLight, light_goes_where_its_link_goes) {
   WorldDef world = dark_world();
   world.models.push_back(one_visual_model("floor", PlaneShape{{0, 0, 1}, {40, 40}}, at(0, 0, 0), plain_material({1, 1, 1, 1})));

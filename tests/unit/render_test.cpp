@@ -121,6 +121,49 @@ TEST(Render, shadows_of_moving_things_are_those_of_a_fresh_picture) {
   EXPECT_EQ(moving.renderer->statistics().shadow_rebuilds, 1U);
 }
 
+// From one to the other end of what the sun's rays say.
+TEST(Render, a_shadow_goes_where_its_thing_goes) {
+  WorldDef world = world_of({{at(0, 0, 2), {1, 1, 0.2}}});
+  world.lights.push_back(test::sun({1, 0, -1}, {0.8F, 0.8F, 0.8F, 1}, true));
+  Studio studio(world);
+  const View view = View::pinhole(at(2, 0, 10, 0, M_PI / 2), 1.0, 100, 100);
+  const double focal = 50 / std::tan(0.5);
+  const auto is_dark = [&](const Image& image, double x, double y) {
+    return pixel(image, static_cast<int>(50 - focal * y / 10), static_cast<int>(50 - focal * (x - 2) / 10))[0] < 40;
+  };
+  const Image before = studio.picture(view);
+  EXPECT_TRUE(is_dark(before, 2, 0));
+  EXPECT_FALSE(is_dark(before, 2, 2.5));
+  studio.poses[1].translation().y() = 2.5;
+  const Image after = studio.picture(view);
+  EXPECT_FALSE(is_dark(after, 2, 0)) << "the old one stays";
+  EXPECT_TRUE(is_dark(after, 2, 2.5));
+}
+
+// A picture of everything first has all shadows in the map; the pictures after it must not differ from those that leave out what they can.
+TEST(Render, only_shadows_that_nobody_sees_are_left_out) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  WorldDef world = world_of(random_boxes(random, 12));
+  world.lights.push_back(test::sun({1, -0.6, -1}, {0.8F, 0.8F, 0.8F, 1}, true));
+  const auto first = open_renderer(), second = open_renderer();
+  Studio all(world, *first), some(world, *second);
+  const View whole = View::pinhole(at(0, 0, 40, 0, M_PI / 2), 0.8, 32, 32);
+  for (int round = 0; round < 25; ++round) {
+    for (std::size_t i = 1; i < all.poses.size(); ++i) all.poses[i].translation() += 0.1 * Eigen::Vector3d(unit(random), unit(random), 0);
+    some.poses = all.poses;
+    (void)all.picture(whole);
+    for (const double yaw : {0.0, 1.5, 3.0}) {
+      const double z = 0.6 + unit(random) * 0.5;
+      const View view = View::pinhole(at(3 * unit(random), 3 * unit(random), z, yaw + unit(random), 0.3 * (1 + unit(random))), 0.7, 80, 60);
+      EXPECT_TRUE(all.picture(view).rgba == some.picture(view).rgba) << "round " << round << " yaw " << yaw;
+    }
+  }
+  const auto drawn = [](const Studio& studio) { return studio.renderer->statistics().moving_shadows; };
+  EXPECT_EQ(drawn(all), 25U * 12U) << "once for each place";
+  EXPECT_LT(drawn(some), drawn(all));
+}
+
 TEST(Render, same_calls_make_the_same_bytes_in_any_thread) {
   std::mt19937 random(5);
   WorldDef world = world_of(random_boxes(random, 10));
