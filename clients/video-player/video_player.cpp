@@ -84,7 +84,7 @@ RTC::ReturnCode_t VideoPlayer::onInitialize() {
 }
 
 RTC::ReturnCode_t VideoPlayer::onActivated(RTC::UniqueId) {
-  frames_ = refused_ = frames_at_title_ = 0;
+  frames_ = passed_ = refused_ = frames_at_title_ = 0;
   is_paused_ = false;
   dropped_.store(0, std::memory_order_relaxed);
   title_time_ = Clock::now();
@@ -128,8 +128,9 @@ void VideoPlayer::close_window() {
 
 RTC::ReturnCode_t VideoPlayer::onDeactivated(RTC::UniqueId) {
   close_window();
-  RTC_INFO(("%s frames shown, %s dropped, %s refused", std::to_string(frames_).c_str(),
-            std::to_string(dropped_.load(std::memory_order_relaxed)).c_str(), std::to_string(refused_).c_str()));
+  const auto passed = passed_ > 0 ? ", " + std::to_string(passed_) + " passed while it paused" : std::string();
+  RTC_INFO(("%s frames shown, %s dropped, %s refused%s", std::to_string(frames_).c_str(),
+            std::to_string(dropped_.load(std::memory_order_relaxed)).c_str(), std::to_string(refused_).c_str(), passed.c_str()));
   return RTC::RTC_OK;
 }
 
@@ -170,8 +171,11 @@ void VideoPlayer::refuse(const std::string& line) {
 void VideoPlayer::take(const RTC::CameraImage& image) {
   auto picture = video::to_picture(image);
   if (!picture) return refuse(picture.error().message);
+  if (is_paused_) {
+    ++passed_;
+    return;
+  }
   ++frames_;
-  if (is_paused_) return;
   picture_ = std::make_shared<const video::Picture>(std::move(*picture));
   if (window_) window_->show(picture_);
   if (!record_dir_.empty()) record();

@@ -62,6 +62,7 @@ class VideoPlayer : public RTC::DataFlowComponentBase {
   std::uint64_t frames_ = 0;
   std::string recording_to_;    // the record_dir that is open
   std::uint64_t recorded_ = 0;  // the number of its last frame
+  std::uint64_t passed_ = 0;    // good ones while it paused
   std::uint64_t refused_ = 0;
   std::atomic<std::uint64_t> dropped_{0};
   std::uint64_t frames_at_title_ = 0;

@@ -133,6 +133,7 @@ def keys():
     send(32, 24, second)
     system.until("a recorded frame", lambda: pixels.png(f"{system.work}/frames/frame-000003.png") == (32, 24, second))
     system.rtse("deact", "VideoPlayer0")
+    says(host, "3 frames shown", "0 refused, 1 passed while it paused")
     system.rtse("conf", "VideoPlayer0", "set", "record_dir", "")
     # Nothing to do without window and records: each way to close the window ends it, and it can start again.
     for close in (("key", "q"), ("key", "Escape"), ("close",)):
