@@ -263,11 +263,14 @@ bool bench_memory(const Textures& textures, int frames) {
     Rig rig(make_world(120, textures, 4, 1000, 64, 48), "eye::camera");
     for (int i = 0; i < 2000; ++i) rig.move_and_step();
     const double before = resident_mib();
-    for (int i = 0; i < frames; ++i) rig.move_and_step();
+    for (int i = 0; i < frames / 10; ++i) rig.move_and_step();
+    const double early = resident_mib();
+    for (int i = frames / 10; i < frames; ++i) rig.move_and_step();
     const double after = resident_mib();
-    char what[100];
+    char what[100], note[100];
     std::snprintf(what, sizeof what, "memory gained over %d frames", frames);
-    is_kept = print(what, after - before, "MiB", 1, false);
+    std::snprintf(note, sizeof note, "resident: %.2f MiB after %d frames, %.2f MiB after %d", early, frames / 10, after, frames);
+    is_kept = print(what, after - before, "MiB", 1, false, note);
   }
   Rig full(make_world(120, textures, 0, 1000), "eye::camera");
   return bench_ring(full, 3.0 * width * height) && is_kept;
@@ -276,8 +279,12 @@ bool bench_memory(const Textures& textures, int frames) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const bool is_quick = argc > 1 && std::strcmp(argv[1], "--quick") == 0;
-  const std::string only = argc > 2 && std::strcmp(argv[1], "--only") == 0 ? argv[2] : "";
+  bool is_quick = false;
+  std::string only;
+  for (int i = 1; i < argc; ++i) {
+    if (std::strcmp(argv[i], "--quick") == 0) is_quick = true;
+    if (std::strcmp(argv[i], "--only") == 0 && i + 1 < argc) only = argv[++i];
+  }
   const int rounds = is_quick ? 10 : 60;
   try {
     const Textures textures;
