@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/text.h"
+#include "world/frame_references.h"
 #include "world/xml_file.h"
 #include "world/xml_values.h"
 
@@ -483,6 +484,7 @@ bool mend_model(pugi::xml_node model, Complaints& complaints) {
                               base::in_quotes(reference.value()) + ", which does not exist; it is taken as if it referred to nothing");
     node.remove_attribute(reference);
   });
+  mend_circular_references(model, complaints);
   for (const char* key : {"canonical_link", "placement_frame"}) {
     const pugi::xml_attribute reference = model.attribute(key);
     if (reference && !std::string_view(reference.value()).empty() && !names.contains(reference.value())) {

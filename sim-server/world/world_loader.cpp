@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "world/checks.h"
 #include "world/complaints.h"
+#include "world/frame_references.h"
 #include "world/frame_skeleton.h"
 #include "world/iface_names.h"
 #include "world/materials.h"
@@ -76,6 +77,7 @@ class Loader {
   void add_instance(std::size_t distinct, pugi::xml_node named, pugi::xml_node pose_node, std::string name);
   std::size_t distinct_for(const std::string& key, pugi::xml_node node);
   static bool has_world_frames(pugi::xml_node world);
+  void mend_world_references(pugi::xml_node world);
   bool resolve_whole_world(pugi::xml_node world);
   void resolve_models();
   void resolve_batch(const std::vector<std::pair<std::string, std::size_t>>& batch);
@@ -270,8 +272,20 @@ bool Loader::has_world_frames(pugi::xml_node world) {
   return false;
 }
 
+void Loader::mend_world_references(pugi::xml_node world) {
+  std::vector<NamedPlace> places;
+  for (pugi::xml_node frame : world.children("frame")) places.push_back({frame.attribute("name").value(), frame, frame.child("pose"), {}});
+  for (const Instance& instance : instances_) places.push_back({instance.name, {}, instance.pose_node, {}});
+  for (const char* kind : {"light", "actor"}) {
+    for (pugi::xml_node thing : world.children(kind)) places.push_back({{}, {}, thing.child("pose"), {}});
+  }
+  mend_missing_references(places, complaints_);
+  mend_circular_references(places, complaints_);
+}
+
 // Models that stand relative to each other or to frames of the world are resolved in one go.
 bool Loader::resolve_whole_world(pugi::xml_node world) {
+  mend_world_references(world);
   pugi::xml_document document;
   pugi::xml_node sdf = document.append_child("sdf");
   sdf.append_attribute("version") = current_sdf_version;

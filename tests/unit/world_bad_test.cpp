@@ -37,6 +37,48 @@ TEST(BadWorld, from_before_sdformat_is_called_what_it_is) {
   }
 }
 
+// One bad reference costs that reference; the other frames are where they were.
+TEST(BadWorld, references_that_lead_nowhere_or_round_leave_the_others_alone) {
+  const std::string good =
+      "<frame name='good'><pose>5 0 0 0 0 0</pose></frame><model name='a'><pose relative_to='good'>1 0 0 0 0 0</pose><link "
+      "name='l'/></model>";
+  const std::string link = "<link name='l'/></model>";
+  const std::pair<std::string, std::string> bad[] = {
+      {"<frame name='b' attached_to='nosuch'/>", "attached to \"nosuch\", which does not exist"},
+      {"<frame name='b'><pose relative_to='nosuch'/></frame>", "relative to \"nosuch\", which does not exist"},
+      {"<frame name='b' attached_to='b'/>", "attached to \"b\", which leads back to it"},
+      {"<frame name='b' attached_to='c'/><frame name='c' attached_to='d'/><frame name='d' attached_to='b'/>", "which leads back to it"},
+      {"<frame name='b' attached_to='c'><pose relative_to='good'/></frame><frame name='c' attached_to='b'><pose "
+       "relative_to='good'/></frame>",
+       "which leads back"},
+      {"<model name='b'><pose relative_to='nosuch'>2 0 0 0 0 0</pose>" + link,
+       "model \"b\" stands relative to \"nosuch\", which does not exist"},
+      {"<model name='b'><pose relative_to='c'/>" + link + "<model name='c'><pose relative_to='b'/>" + link, "which leads back to it"},
+      {"<frame name='f' attached_to='b'/><model name='b'><pose relative_to='f'/>" + link, "which leads back to it"},
+      {"<light name='b' type='point'><pose relative_to='nosuch'>0 0 3 0 0 0</pose></light>",
+       "light \"b\" stands relative to \"nosuch\", which does not exist"},
+      {"<model name='b'><frame name='g' attached_to='h'/><frame name='h' attached_to='g'/>" + link, "which leads back to it"},
+      {"<model name='b'><link name='k'><pose relative_to='j'/></link><link name='l'/><joint name='j' "
+       "type='fixed'><parent>l</parent><child>k</child></joint></model>",
+       "link \"k\" of model \"b\" stands relative to \"j\", which leads back to it"},
+  };
+  const WorldFiles files;
+  for (const auto& [text, message] : bad) {
+    const LoadResult result = files.load(text + good);
+    EXPECT_FALSE(result.dropped) << text;
+    ASSERT_EQ(result.findings.size(), 1U) << text;
+    EXPECT_THAT(result.findings[0].text(), HasSubstr(message)) << text;
+    EXPECT_EQ(result.world.models.size(),
+              1U + (text.find("<model name='b'") != std::string::npos) + (text.find("<model name='c'") != std::string::npos))
+        << text;
+    for (const ModelDef& model : result.world.models) {
+      if (model.name == "a") {
+        EXPECT_NEAR(model.pose.translation().x(), 6, 1e-12) << text;
+      }
+    }
+  }
+}
+
 TEST(BadWorld, does_not_expand_entities) {
   std::string text = "<?xml version='1.0'?>\n<!DOCTYPE sdf [<!ENTITY a 'ha'>";
   for (char c = 'b'; c < 'z'; ++c) {
