@@ -19,13 +19,21 @@ namespace sim {
 namespace {
 
 constexpr int max_side = 16384;
+constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 30;
 
 base::Error bad(const std::string& name, const std::string& why) { return base::Error{"image " + name + ": " + why}; }
 
 base::Result<std::vector<std::uint8_t>> read_bytes(const std::filesystem::path& file) {
+  std::error_code error;
+  if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))
+    return bad(file.string(), "is no ordinary file");
   std::ifstream in(file, std::ios::binary);
   if (!in) return bad(file.string(), "cannot be opened");
-  std::vector<std::uint8_t> bytes((std::istreambuf_iterator<char>(in)), {});
+  const auto size = std::filesystem::file_size(file, error);
+  if (error || size > most_bytes) return bad(file.string(), "a file of at most 1 GiB is expected");
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
+  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  if (static_cast<std::uintmax_t>(in.gcount()) != size) return bad(file.string(), "cannot be read");
   return bytes;
 }
 

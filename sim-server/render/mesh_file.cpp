@@ -14,6 +14,7 @@
 
 #include "base/text.h"
 #include "render/skin.h"
+#include "world/mesh_io.h"
 
 namespace sim {
 namespace {
@@ -282,6 +283,7 @@ class Reader {
 base::Result<MeshFile> read_file(const MeshShape& shape, Skin* skin) {
   try {
     Assimp::Importer importer;
+    importer.SetIOHandler(new MeshIo);  // the importer's from now on
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 45.0F);

@@ -10,6 +10,7 @@
 
 #include "base/text.h"
 #include "render/skin.h"
+#include "world/mesh_io.h"
 
 namespace sim {
 namespace {
@@ -68,6 +69,7 @@ base::Result<SkinAnimation> read_skin_animation(const std::string& path, double 
   const auto bad = [&](const std::string& why) { return base::Error{fmt::format("animation {}: {}", path, why)}; };
   try {
     Assimp::Importer importer;
+    importer.SetIOHandler(new MeshIo);  // the importer's from now on
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
     const aiScene* scene = importer.ReadFile(path, 0);
     if (scene == nullptr) return bad(base::in_quotes(importer.GetErrorString()));

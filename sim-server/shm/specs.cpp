@@ -9,6 +9,7 @@ namespace shm {
 namespace {
 
 constexpr std::uint64_t max_values = std::uint64_t{1} << 24;
+constexpr std::uint64_t max_pixels = std::uint64_t{1} << 26;  // the loader of worlds (sensor_builder) leaves larger cameras out
 
 template <class Info>
 IfaceSpec make(IfaceType type, const std::string& name, const Info& info, std::size_t sample_size) {
@@ -60,7 +61,7 @@ IfaceSpec position3d_spec(const std::string& name, const Position3dInfo& info) {
 IfaceSpec camera_spec(IfaceType type, const std::string& name, const CameraInfo& info, std::uint32_t slots) {
   CameraInfo whole = info;
   const std::uint32_t pixel = bytes_per_pixel(static_cast<Format>(info.format));
-  const bool is_good = pixel > 0 && info.width > 0 && info.height > 0 && info.width <= max_values / info.height;
+  const bool is_good = pixel > 0 && info.width > 0 && info.height > 0 && info.width <= max_pixels / info.height;
   if (is_good && whole.stride == 0) whole.stride = whole.width * pixel;
   if (is_good && whole.frame_size == 0) whole.frame_size = static_cast<std::uint64_t>(whole.stride) * whole.height;
   const bool fits = is_good && whole.stride >= static_cast<std::uint64_t>(whole.width) * pixel &&

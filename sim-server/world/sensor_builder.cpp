@@ -14,6 +14,7 @@ namespace {
 
 constexpr int most_rays = 4000000;  // of one scan
 constexpr int most_pixels_a_side = 16384;
+constexpr double most_pixels = 1 << 26;  // an iface holds no larger frames
 
 const std::map<std::string_view, SensorKind>& kinds() {
   static const std::map<std::string_view, SensorKind> table{
@@ -170,6 +171,9 @@ std::optional<CameraDef> build_camera(pugi::xml_node sensor, pugi::xml_node node
   std::string wrong;
   if (camera.width < 1 || camera.width > most_pixels_a_side) wrong = must(sensor, "image width", "from 1 to 16384", camera.width);
   if (camera.height < 1 || camera.height > most_pixels_a_side) wrong = must(sensor, "image height", "from 1 to 16384", camera.height);
+  if (const double pixels = static_cast<double>(camera.width) * camera.height; wrong.empty() && pixels > most_pixels) {
+    wrong = must(sensor, "number of pixels", "at most 67108864", pixels);
+  }
   if (!(camera.horizontal_fov > 0.001 && camera.horizontal_fov <= 2 * std::numbers::pi + 1e-3)) {
     wrong = must(sensor, "horizontal field of view", "above 0.001 and at most a turn", camera.horizontal_fov);
   }

@@ -14,6 +14,7 @@
 #include <numbers>
 
 #include "base/text.h"
+#include "world/mesh_io.h"
 
 namespace sim {
 namespace {
@@ -65,6 +66,7 @@ void finish_mesh(const MeshShape& shape, TriangleMesh& mesh) {
 base::Result<TriangleMesh> read_mesh(const MeshShape& shape) {
   try {
     Assimp::Importer importer;
+    importer.SetIOHandler(new MeshIo);  // the importer's from now on
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |

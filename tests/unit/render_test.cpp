@@ -2,6 +2,7 @@
 #include "render/renderer.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -290,6 +291,29 @@ TEST(Render, a_mesh_file_is_drawn_with_its_own_materials) {
   // Up in the picture is +x, left is +y: the first triangle lies to the upper right.
   EXPECT_EQ(pixel(image, 50, 20), (std::array<int, 3>{255, 0, 0}));
   EXPECT_EQ(pixel(image, 20, 50), (std::array<int, 3>{0, 255, 0}));
+}
+
+// What a mesh names in its turn may be a pipe or a device, which would be read for ever.
+TEST(Render, pipes_and_devices_that_a_mesh_names_are_not_read) {
+  const auto folder = std::filesystem::temp_directory_path() / ("render_test_pipe_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  const std::string triangle = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nvt 0 0\nusemtl skin\nf 1/1 2/1 3/1\n";
+  std::ofstream(folder / "skin.mtl") << "newmtl skin\nmap_Kd /dev/zero\n";
+  std::ofstream(folder / "texture.obj") << "mtllib skin.mtl\n" << triangle;
+  std::ofstream(folder / "library.obj") << "mtllib pipe\n" << triangle;
+  Assets assets;
+  for (const char* name : {"texture.obj", "library.obj"}) {
+    MeshShape mesh;
+    mesh.path = (folder / name).string();
+    EXPECT_NE(assets.mesh(mesh), nullptr) << name;
+  }
+  EXPECT_NE(assets.texture("/dev/zero"), nullptr);
+  EXPECT_NE(assets.texture((folder / "pipe").string()), nullptr);
+  int told = 0;
+  for (const auto& line : assets.take_complaints()) told += line.find("is no ordinary file") != std::string::npos;
+  EXPECT_EQ(told, 2);
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace
