@@ -36,6 +36,11 @@ foreach(case wrong_usage closed_pipe hung_is_not_gone bad_values_in_files name_s
   set_tests_properties(editor.${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
 
+# Calls of the tools of others, by an ORB and IDL of its own.
+add_test(NAME classic_tools
+  COMMAND python3 -B -W ignore ${CMAKE_CURRENT_SOURCE_DIR}/scenario/classic_tools.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+set_tests_properties(classic_tools PROPERTIES LABELS integration TIMEOUT 300)
+
 add_test(NAME package.new_component_builds COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/new_component ${PROJECT_BINARY_DIR})
 set_tests_properties(package.new_component_builds PROPERTIES LABELS package TIMEOUT 300)
 

@@ -135,6 +135,8 @@ class In:
         return (kind,)
 
     def value(self, kind):
+        if kind in (0, 1):  # null, void
+            return None
         if kind == TK_STRING:
             return self.string()
         if kind == TK_OBJREF:

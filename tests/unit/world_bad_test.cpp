@@ -178,7 +178,7 @@ TEST(BadWorld, bad_numbers_cost_the_object_they_stand_in_and_nothing_else) {
       {"<sensor name='bad' type='camera'><camera><image><width>999999999</width><height>1</height></image></camera></sensor>",
        "from 1 to 16384"},
       {"<sensor name='bad' type='camera'><camera><image><width>12000</width><height>12000</height></image></camera></sensor>",
-       "number of pixels of sensor \"bad\" of link \"l\" of model \"m\" must be at most 67108864, got 144000000"},
+       "number of pixels of sensor \"bad\" of link \"l\" of model \"m\" must be at most 67108864, got 1.44e+08"},
       {"<sensor name='bad' type='camera'><camera><horizontal_fov>7</horizontal_fov></camera></sensor>", "field of view"},
       {"<sensor name='bad' type='camera'/>", "has no <camera>"},
       {"<sensor name='bad' type='rfid'/>", "sensors of type \"rfid\" are not simulated"},
