@@ -2,7 +2,10 @@
 
 #include <sys/prctl.h>
 
+#include <cerrno>
+#include <ctime>
 #include <optional>
+#include <utility>
 
 namespace rt {
 
@@ -12,6 +15,16 @@ namespace {
 void make_this_thread_punctual() { prctl(PR_SET_TIMERSLACK, 1UL); }
 
 }  // namespace
+
+bool Alarm::wait_until(std::chrono::steady_clock::time_point deadline) {
+  const auto since = deadline.time_since_epoch();
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(since);
+  const timespec time{static_cast<time_t>(seconds.count()), static_cast<long>(std::chrono::nanoseconds(since - seconds).count())};
+  while (sem_clockwait(&rings_, CLOCK_MONOTONIC, &time) != 0) {
+    if (errno != EINTR) return false;
+  }
+  return true;
+}
 
 void PeriodicWorker::run() {
   make_this_thread_punctual();
@@ -30,28 +43,30 @@ void PeriodicWorker::run() {
 }
 
 bool PeriodicWorker::sleep_while_idle() {
-  auto data = shared_.lock();
-  while (!data->stopping && !data->woken)
-    data.wait_until(condition_, std::chrono::steady_clock::now() + std::chrono::hours(24), [&] { return data->stopping || data->woken; });
-  data->has_left = data->stopping;
-  return !data->stopping;
+  while (true) {
+    {
+      auto data = shared_.lock();
+      if (data->stopping) return !(data->has_left = true);
+      if (data->woken) return true;
+    }
+    alarm_.wait_until(std::chrono::steady_clock::now() + std::chrono::hours(24));
+  }
 }
 
 bool PeriodicWorker::wait_for_deadline() {
   while (true) {
     const auto period = context_.period();
     const auto deadline = cycle_ + period;
+    // Without a sleep there is no time for extra transitions either: the next cycle makes them.
+    const bool is_over = std::chrono::steady_clock::now() >= deadline || !alarm_.wait_until(deadline);
     {
       auto data = shared_.lock();
       if (data->stopping) return !(data->has_left = true);
-      // Without a sleep there is no time for extra transitions either: the next cycle makes them.
-      if (std::chrono::steady_clock::now() >= deadline ||
-          !data.wait_until(condition_, deadline, [&] { return data->stopping || data->woken; })) {
+      if (is_over) {
         cycle_ = deadline;
         break;
       }
-      if (data->stopping) return !(data->has_left = true);
-      data->woken = false;
+      if (!std::exchange(data->woken, false)) continue;
     }
     steps_.transit();
     if (context_.is_idle()) return true;
@@ -67,7 +82,7 @@ bool PeriodicWorker::wait_for_deadline() {
 
 void PeriodicWorker::stop() {
   shared_.lock()->stopping = true;
-  condition_.notify_all();
+  alarm_.ring();
 }
 
 bool PeriodicWorker::resume() {
@@ -80,8 +95,7 @@ bool PeriodicWorker::resume() {
 void PeriodicWorker::reset() { *shared_.lock() = Data{}; }
 
 void PeriodicWorker::wake() {
-  shared_.lock()->woken = true;
-  condition_.notify_all();
+  if (!std::exchange(shared_.lock()->woken, true)) alarm_.ring();
 }
 
 bool PeriodicWorker::is_stopping() const { return shared_.lock()->stopping; }

@@ -3,6 +3,8 @@
 // the caller's, except a Crew's.
 #pragma once
 
+#include <semaphore.h>
+
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -23,6 +25,24 @@ class Steps {
   virtual void begin_tick(std::chrono::nanoseconds) {}
   virtual void transit() = 0;
   virtual void execute_and_update() = 0;
+};
+
+// Wakes one sleeper. A condition variable would cost a cycle one system call more: it leaves the mutex marked as waited for, and the next
+// unlock looks for the waiter. Any thread; one waits.
+class Alarm {
+ public:
+  Alarm() { sem_init(&rings_, 0, 0); }
+  ~Alarm() { sem_destroy(&rings_); }
+  Alarm(const Alarm&) = delete;
+  Alarm& operator=(const Alarm&) = delete;
+
+  // Not lost if nobody waits: it ends the next wait.
+  void ring() { sem_post(&rings_); }
+  // False at the deadline; true also for a ring from long ago.
+  bool wait_until(std::chrono::steady_clock::time_point deadline);
+
+ private:
+  sem_t rings_;
 };
 
 // Absolute deadlines: a late cycle is followed at once by the next until the delay is made good; more than 10 whole periods are given up
@@ -56,7 +76,7 @@ class PeriodicWorker {
   ExecutionContext& context_;
   Steps& steps_;
   base::Guarded<Data, base::Rank::buffer> shared_;
-  std::condition_variable condition_;
+  Alarm alarm_;
   std::chrono::steady_clock::time_point cycle_{};  // when the present cycle should have begun; run() only
 };
 
