@@ -1,6 +1,7 @@
 #include "corba/cdr.h"
 
 #include <cstdint>
+#include <cstring>
 
 #include "corba/payload.h"
 
@@ -88,6 +89,11 @@ bool decode(const TypeOps& ops, void* value, std::span<const std::byte> octets, 
   } catch (const std::exception&) {  // a length that no memory holds
     return false;
   }
+}
+
+void forget_contents(cdrMemoryStream& stream) {
+  std::memset(stream.bufPtr(), 0, stream.bufSize());
+  stream.rewindPtrs();
 }
 
 _CORBA_Boolean CheckedStream::checkInputOverrun(_CORBA_ULong item_size, _CORBA_ULong items, omni::alignment_t align) {

@@ -1,5 +1,7 @@
 #include "corba/gather_stream.h"
 
+#include "corba/cdr.h"
+
 namespace corba {
 namespace {
 
@@ -9,7 +11,7 @@ constexpr int shortest_borrowed = 4096;
 }  // namespace
 
 void GatherStream::start(rt::ByteOrder order, bool gathers) {
-  rewindPtrs();
+  forget_contents(*this);
   setByteSwapFlag(order == rt::ByteOrder::little);
   borrowed_.clear();
   gathers_ = gathers;

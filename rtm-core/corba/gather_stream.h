@@ -12,6 +12,7 @@ namespace corba {
 
 class GatherStream final : public cdrMemoryStream {
  public:
+  GatherStream() : cdrMemoryStream(0, true) {}
   // Forgets what was encoded before. Without `gathers` everything is copied.
   void start(rt::ByteOrder order, bool gathers);
   // What has been encoded since; good until the next start and as long as the encoded value stays as it is.

@@ -5,7 +5,9 @@
 #include <rtm/idl/ExtendedDataTypesSkel.h>
 #include <rtm/idl/InterfaceDataTypesSkel.h>
 
+#include <algorithm>
 #include <cstring>
+#include <tuple>
 
 #include "corba/call_timeout.h"
 #include "ports/support.h"
@@ -343,6 +345,29 @@ TEST(Payload, the_octets_are_the_plain_encoding) {
   ASSERT_TRUE(stream.serialize(value));
   const std::vector<unsigned char> expected = {0x40, 2, 0, 0, 0, 0, 0, 0, 0x78, 0x56, 0x34, 0x12};
   EXPECT_EQ(octets_of(stream), expected);
+}
+
+TEST(Payload, the_octets_between_members_are_zero_whatever_was_encoded_before) {
+  const auto orb = ports::start_orb();
+  RTC::TimedOctetSeq full{};
+  full.data.length(2000);
+  std::fill_n(full.data.get_buffer(), 2000, CORBA::Octet{0xff});
+  RTC::TimedDoubleSeq value{};
+  value.data.length(2);
+  value.data[0] = 0.0;
+  value.data[1] = 1.0;
+  RTC::CORBA_CdrMemoryStream own;
+  for (const auto order : {rt::ByteOrder::little, rt::ByteOrder::big}) {
+    std::ignore = corba::encode(corba::type_ops<RTC::TimedOctetSeq>(), &full, order);
+    const auto block = corba::encode(corba::type_ops<RTC::TimedDoubleSeq>(), &value, order);
+    ASSERT_TRUE(own.serializeCDR(full));
+    own.setEndian(order == rt::ByteOrder::little);
+    ASSERT_TRUE(own.serializeCDR(value));
+    ASSERT_EQ(block->size(), 32u);
+    ASSERT_EQ(own.getCdrDataLength(), 32u);
+    EXPECT_EQ(std::memcmp(block->data(), own.getBuffer(), 32), 0);
+    for (int i = 12; i < 24; ++i) EXPECT_EQ(block->data()[i], std::byte{0}) << "octet " << i;
+  }
 }
 
 TEST(Payload, lengths_that_overflow_32_bits_are_refused) {

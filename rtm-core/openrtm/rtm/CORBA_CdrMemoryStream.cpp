@@ -13,7 +13,7 @@ CORBA_CdrMemoryStream& CORBA_CdrMemoryStream::operator=(const CORBA_CdrMemoryStr
 }
 
 void CORBA_CdrMemoryStream::start() {
-  cdr_.rewindPtrs();
+  corba::forget_contents(cdr_);
   cdr_.setByteSwapFlag(is_little_);
 }
 
