@@ -5,6 +5,7 @@ rtmsim_headers_alone(openrtm_headers_alone ROOT ${PROJECT_SOURCE_DIR}/rtm-core/o
 # What authors use, name by name.
 rtmsim_test(classic_api_test classic-api/surface_test.cpp LIBRARIES openrtm)
 rtmsim_test(classic_tools_test classic-api/tools_test.cpp LIBRARIES openrtm)
+rtmsim_test(classic_context_test classic-api/context_test.cpp LIBRARIES openrtm)
 
 # Component sources in the style of every version of the API; that they compile is the test. LINKED: also as module and program.
 add_subdirectory(classic-api)

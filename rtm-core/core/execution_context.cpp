@@ -107,13 +107,13 @@ ReturnCode ExecutionContext::set_rate(double rate) {
   return ReturnCode::ok;
 }
 
-void ExecutionContext::set_lanes(std::size_t count) { lanes_.resize(std::max<std::size_t>(count, 1)); }
+void ExecutionContext::set_lanes(std::size_t count) { shared_.lock()->lanes.resize(std::max<std::size_t>(count, 1)); }
 
 MemberId ExecutionContext::add(std::shared_ptr<Participant> participant, std::size_t lane) {
   auto data = shared_.lock();
   const MemberId id = ++data->last_id;
   data->members.push_back(
-      std::make_shared<Member>(Member{.id = id, .participant = std::move(participant), .lane = lane < lanes_.size() ? lane : 0}));
+      std::make_shared<Member>(Member{.id = id, .participant = std::move(participant), .lane = lane < data->lanes.size() ? lane : 0}));
   ++data->version;
   return id;
 }
@@ -237,20 +237,34 @@ std::optional<ReturnCode> ExecutionContext::call_in_phase(Member& member, Action
   return code;
 }
 
-void ExecutionContext::refresh(std::size_t number) {
-  Lane& lane = lanes_[number];
-  std::vector<std::shared_ptr<Member>> old;  // what has left is destroyed without the lock
+ExecutionContext::Members ExecutionContext::begin_cycle(std::size_t number) {
+  Members old;  // what has left is destroyed without the lock
   auto data = shared_.lock();
-  if (lane.version == data->version) return;
-  old = std::exchange(lane.members, {});
-  std::ranges::copy_if(data->members, std::back_inserter(lane.members), [&](const auto& member) { return member->lane == number; });
+  Lane& lane = data->lanes[number];
+  lane.cycle_start = std::chrono::steady_clock::now();
+  if (lane.version == data->version) return lane.members;
+  auto members = std::make_shared<std::vector<std::shared_ptr<Member>>>();
+  std::ranges::copy_if(data->members, std::back_inserter(*members), [&](const auto& member) { return member->lane == number; });
+  old = std::exchange(lane.members, std::move(members));
   lane.version = data->version;
+  return lane.members;
+}
+
+ExecutionContext::Members ExecutionContext::members_of(std::size_t lane) const { return shared_.lock()->lanes[lane].members; }
+
+std::shared_ptr<ExecutionContext::Member> ExecutionContext::hold(MemberId id) const {
+  const auto data = shared_.lock();
+  const auto it = std::find_if(data->members.begin(), data->members.end(), [&](const auto& member) { return member->id == id; });
+  return it == data->members.end() ? nullptr : *it;
 }
 
 void ExecutionContext::transit(std::size_t lane) {
-  lanes_[lane].cycle_start = std::chrono::steady_clock::now();
-  refresh(lane);
-  for (const auto& member : lanes_[lane].members) transit(*member);
+  const Members members = begin_cycle(lane);
+  for (const auto& member : *members) transit(*member);
+}
+
+void ExecutionContext::transit_one(MemberId id) {
+  if (const auto member = hold(id)) transit(*member);
 }
 
 void ExecutionContext::transit(Member& member) {
@@ -283,33 +297,51 @@ void ExecutionContext::transit(Member& member) {
 }
 
 template <class Select>
-void ExecutionContext::run_phase(std::size_t lane, Select select) {
-  for (const auto& member : lanes_[lane].members) {
-    std::optional<Action> action;
-    {
-      auto data = shared_.lock();
-      if (!member->removed && may_call(*data) && !member->pending) action = select(actions_of(member->state));
-    }
-    if (!action || call_in_phase(*member, *action).value_or(ReturnCode::ok) == ReturnCode::ok) continue;
+void ExecutionContext::run_phase(Member& member, Select select) {
+  std::optional<Action> action;
+  {
     auto data = shared_.lock();
-    if (!member->removed && member->state == State::active) member->pending = Event::fail;
+    if (!member.removed && may_call(*data) && !member.pending) action = select(actions_of(member.state));
   }
+  if (!action || call_in_phase(member, *action).value_or(ReturnCode::ok) == ReturnCode::ok) return;
+  auto data = shared_.lock();
+  if (!member.removed && member.state == State::active) member.pending = Event::fail;
 }
 
+namespace {
+constexpr auto select_execute = [](const StateActions& actions) { return actions.execute; };
+constexpr auto select_update = [](const StateActions& actions) { return actions.state_update; };
+}  // namespace
+
 void ExecutionContext::execute(std::size_t lane) {
-  run_phase(lane, [](const StateActions& actions) { return actions.execute; });
+  const Members members = members_of(lane);
+  for (const auto& member : *members) run_phase(*member, select_execute);
+}
+
+void ExecutionContext::execute_one(MemberId id) {
+  if (const auto member = hold(id)) run_phase(*member, select_execute);
+}
+
+void ExecutionContext::update_one(MemberId id) {
+  if (const auto member = hold(id)) run_phase(*member, select_update);
 }
 
 void ExecutionContext::update(std::size_t lane) {
-  run_phase(lane, [](const StateActions& actions) { return actions.state_update; });
+  const Members members = members_of(lane);
+  for (const auto& member : *members) run_phase(*member, select_update);
   if (lane != 0) return;
-  const auto took = std::chrono::steady_clock::now() - lanes_[lane].cycle_start;
+  const auto now = std::chrono::steady_clock::now();
+  const auto start = shared_.lock()->lanes[lane].cycle_start;
+  count_cycle(now - start);
+}
+
+void ExecutionContext::count_cycle(std::chrono::nanoseconds took) {
   auto data = shared_.lock();
   if (!data->running) return;
   ContextStatistics& statistics = data->statistics;
   ++statistics.cycles;
   statistics.total_execution += took;
-  statistics.max_execution = std::max<std::chrono::nanoseconds>(statistics.max_execution, took);
+  statistics.max_execution = std::max(statistics.max_execution, took);
 }
 
 ContextStatistics ExecutionContext::statistics() const { return shared_.lock()->statistics; }

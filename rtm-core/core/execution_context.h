@@ -1,6 +1,7 @@
 // An execution context without a thread: who takes part, in which state, what is asked for, and the three phases of a cycle.
-// step() and the phases belong to one thread at a time, the stepping thread; with lanes, each lane has one. Everything else may be called
-// from any thread. No lock is held while a participant is called.
+// step() and the phases belong to one thread at a time, the stepping thread; with lanes, each lane has one. A second thread (contexts of
+// authors have them) may make a member be called twice at the same time, and does no other harm. Everything else may be called from any
+// thread. No lock is held while a participant is called.
 #pragma once
 
 #include <chrono>
@@ -107,6 +108,10 @@ class ExecutionContext {
   void transit(std::size_t lane = 0);
   void execute(std::size_t lane = 0);
   void update(std::size_t lane = 0);
+  // The same for one member, for contexts that choose the order themselves; nothing happens when it is none.
+  void transit_one(MemberId id);
+  void execute_one(MemberId id);
+  void update_one(MemberId id);
   void step() {
     transit();
     execute();
@@ -117,6 +122,8 @@ class ExecutionContext {
 
   ContextStatistics statistics() const;
   void count_missed(std::uint64_t cycles);
+  // For cycles of transit_one and its relatives.
+  void count_cycle(std::chrono::nanoseconds took);
 
  private:
   struct Member {
@@ -127,8 +134,10 @@ class ExecutionContext {
     std::optional<Event> pending{};
     bool removed = false;
   };
+  // A phase keeps the list it began with.
+  using Members = std::shared_ptr<const std::vector<std::shared_ptr<Member>>>;
   struct Lane {
-    std::vector<std::shared_ptr<Member>> members{};
+    Members members = std::make_shared<const std::vector<std::shared_ptr<Member>>>();
     std::uint64_t version = 0;
     std::chrono::steady_clock::time_point cycle_start{};
   };
@@ -148,8 +157,9 @@ class ExecutionContext {
     MemberId last_id = 0;
     std::vector<std::shared_ptr<Member>> members{};
     std::uint64_t version = 0;  // of members
-    std::vector<Call> calls{};  // in progress: one per lane at most
+    std::vector<Call> calls{};  // in progress
     ContextStatistics statistics{};
+    std::vector<Lane> lanes = std::vector<Lane>(1);
   };
   static bool may_call(const Data& data) { return data.running && !data.halted; }
   using Shared = base::Guarded<Data, base::Rank::context>;
@@ -161,16 +171,17 @@ class ExecutionContext {
   void call_all(Action action);
   // Nothing when the member has left or the context is stopped: it is not called then.
   std::optional<ReturnCode> call_in_phase(Member& member, Action action);
-  void refresh(std::size_t lane);
+  Members begin_cycle(std::size_t lane);
+  Members members_of(std::size_t lane) const;
+  std::shared_ptr<Member> hold(MemberId id) const;
   void transit(Member& member);
   template <class Select>
-  void run_phase(std::size_t lane, Select select);
+  void run_phase(Member& member, Select select);
 
   const std::string name_;
   std::function<void()> wake_;
   Shared shared_;
   std::condition_variable changed_;
-  std::vector<Lane> lanes_ = std::vector<Lane>(1);  // each its stepping thread's own
 };
 
 }  // namespace rt

@@ -5,6 +5,7 @@ target_sources(openrtm PRIVATE
   rtm/ECFactory.cpp
   rtm/ExecutionContextBase.cpp
   rtm/ExecutionContextMembers.cpp
+  rtm/ExecutionContextWorker.cpp
   rtm/ExtTrigExecutionContext.cpp
   rtm/ExtendedFsmServiceProvider.cpp
   rtm/ListenerNames.cpp

@@ -49,23 +49,30 @@ void ExecutionContextBase::init(coil::Properties& props) {
     RTC_WARN(("%s must be a number of seconds, got %s", key, base::in_quotes(text).c_str()));
     return otherwise;
   };
-  const auto read = [&](const char* sync, const char* timeout, const Impl::Patience& fallback) {
-    Impl::Patience patience = fallback;
+  struct Patience {
+    bool wait = true;
+    std::chrono::nanoseconds timeout = Impl::default_timeout;
+  };
+  const auto read = [&](const char* sync, const char* timeout, const Patience& fallback) {
+    Patience patience = fallback;
     if (const std::string text = props.getProperty(sync); !text.empty()) patience.wait = coil::toBool(text, "YES", "NO", patience.wait);
     patience.timeout = read_seconds(timeout, patience.timeout);
     return patience;
   };
-  const Impl::Patience any = read("sync_transition", "transition_timeout", Impl::Patience{});
-  const Impl::Patience activation = read("sync_activation", "activation_timeout", any);
-  const Impl::Patience deactivation = read("sync_deactivation", "deactivation_timeout", any);
-  const Impl::Patience reset = read("sync_reset", "reset_timeout", any);
+  const Patience any = read("sync_transition", "transition_timeout", Patience{});
+  const Patience activation = read("sync_activation", "activation_timeout", any);
+  const Patience deactivation = read("sync_deactivation", "deactivation_timeout", any);
+  const Patience reset = read("sync_reset", "reset_timeout", any);
   const auto callback_timeout = read_seconds("callback_timeout", default_callback_timeout);
+  m_syncActivation = activation.wait;
+  m_syncDeactivation = deactivation.wait;
+  m_syncReset = reset.wait;
   auto data = impl_->shared.lock();
   data->callback_timeout = callback_timeout;
   data->properties = props;
-  data->activation = activation;
-  data->deactivation = deactivation;
-  data->reset = reset;
+  data->activation = activation.timeout;
+  data->deactivation = deactivation.timeout;
+  data->reset = reset.timeout;
 }
 
 CORBA::Boolean ExecutionContextBase::isRunning() const { return impl_->context.is_running(); }

@@ -5,10 +5,12 @@
 
 #include <coil/Properties.h>
 #include <coil/Time.h>
+#include <rtm/ExecutionContextWorker.h>
 #include <rtm/RTObjectStateMachine.h>
 #include <rtm/SystemLogger.h>
 #include <rtm/idl/RTCSkel.h>
 
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <string>
@@ -80,6 +82,8 @@ class ExecutionContextBase {
   // The caller owns the profile.
   RTC::ExecutionContextProfile* getProfile();
   std::vector<RTC::LightweightRTObject_var> getComponents() const;
+  // Those of them that are no owners. For one thread at a time; good until the next call.
+  const RTC::RTCList& getComponentList() const;
 
   void setObjRef(RTC::ExecutionContextService_ptr ref);
   // A new reference.
@@ -157,8 +161,13 @@ class ExecutionContextBase {
   const rt::ExecutionContext& context() const;
 
   mutable Logger rtclog;
+  RTC_impl::ExecutionContextWorker m_worker{*this};
+  // Whether those who ask for a transition wait until it is made; init() sets them from the options sync_activation and its relatives.
+  std::atomic<bool> m_syncActivation{true}, m_syncDeactivation{true}, m_syncReset{true};
 
  private:
+  friend class RTC_impl::RTObjectStateMachine;
+  friend class RTC_impl::ExecutionContextWorker;
   struct Impl;
   class Joining;
   class Changing;

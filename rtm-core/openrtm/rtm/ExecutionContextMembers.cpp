@@ -51,6 +51,18 @@ std::vector<RTC::LightweightRTObject_var> ExecutionContextBase::getComponents() 
   return components;
 }
 
+const RTC::RTCList& ExecutionContextBase::getComponentList() const {
+  RTC::RTCList& list = impl_->component_list;
+  list.length(0);
+  for (const Impl::Member& member : impl_->snapshot()) {
+    if (member.owner) continue;
+    const CORBA::ULong n = list.length();
+    list.length(n + 1);
+    list[n] = RTC::RTObject::_unchecked_narrow(member.reference);
+  }
+  return list;
+}
+
 RTC::ReturnCode_t ExecutionContextBase::bindComponent(RTC::RTObject_impl* rtc) {
   if (rtc == nullptr) return RTC::BAD_PARAMETER;
   RTC::ExecutionContextService_var reference = getObjRef();
@@ -61,8 +73,12 @@ RTC::ReturnCode_t ExecutionContextBase::bindComponent(RTC::RTObject_impl* rtc) {
   const std::shared_ptr<RTObject_impl> counted(rtc, [](RTObject_impl* component) { component->_remove_ref(); });
   const rt::MemberId id = impl_->context.add(std::make_shared<LocalParticipant>(counted, handle));
   auto data = impl_->shared.lock();
-  data->members.push_back(
-      {.reference = RTC::LightweightRTObject::_duplicate(owner), .local = rtc, .id = id, .handle = handle, .owner = true});
+  data->members.push_back({.reference = RTC::LightweightRTObject::_duplicate(owner),
+                           .local = rtc,
+                           .id = id,
+                           .handle = handle,
+                           .owner = true,
+                           .machine = std::make_shared<RTC_impl::RTObjectStateMachine>(owner, handle, *this, id)});
   if (CORBA::is_nil(data->owner)) data->owner = owner;
   return RTC::RTC_OK;
 }
@@ -75,6 +91,7 @@ std::size_t ExecutionContextBase::unbindComponent(RTC::RTObject_impl* rtc, std::
     std::erase_if(data->members, [&](const Impl::Member& member) {
       if (member.local != rtc || !member.owner) return false;
       id = member.id;
+      Impl::retire(*data, member);
       return true;
     });
     data->owner = RTC::RTObject::_nil();
@@ -87,11 +104,20 @@ std::size_t ExecutionContextBase::unbindComponent(RTC::RTObject_impl* rtc, std::
 
 void ExecutionContextBase::dismissMembers() {
   std::vector<Impl::Member> members;
-  members.swap(impl_->shared.lock()->members);
+  {
+    auto data = impl_->shared.lock();
+    members.swap(data->members);
+    for (const Impl::Member& member : members) Impl::retire(*data, member);
+  }
   for (const Impl::Member& member : members) {
     impl_->context.remove(member.id, 0ns);
     if (!member.owner) Impl::detach(member, rtclog);
   }
+}
+
+void ExecutionContextBase::Impl::retire(Data& data, const Member& member) {
+  data.retired.push_back(member.machine);
+  if (data.retired.size() > max_retired) data.retired.pop_front();
 }
 
 void ExecutionContextBase::Impl::detach(const Member& member, Logger& rtclog) {
@@ -156,6 +182,7 @@ RTC::ReturnCode_t ExecutionContextBase::addComponent(RTC::LightweightRTObject_pt
   if (member.handle < 0) return RTC::RTC_ERROR;
   const std::size_t lane = laneOf(participant->name());
   member.id = impl_->context.add(std::move(participant), lane);
+  member.machine = std::make_shared<RTC_impl::RTObjectStateMachine>(member.reference, member.handle, *this, member.id);
   impl_->shared.lock()->members.push_back(member);
   return onAddedComponent(comp);
 }
@@ -171,6 +198,7 @@ RTC::ReturnCode_t ExecutionContextBase::removeComponent(RTC::LightweightRTObject
   {
     auto data = impl_->shared.lock();
     if (std::erase_if(data->members, [&](const Impl::Member& other) { return other.id == member->id; }) == 0) return RTC::BAD_PARAMETER;
+    Impl::retire(*data, *member);
   }
   const auto patience = std::max<std::chrono::nanoseconds>(deadline - std::chrono::steady_clock::now(), 0ns);
   if (!impl_->context.remove(member->id, patience)) complainAboutCallback("it leaves the context all the same");
@@ -183,13 +211,13 @@ RTC::ReturnCode_t ExecutionContextBase::activateComponent(RTC::LightweightRTObje
   if (!member) return RTC::BAD_PARAMETER;
   if (const auto code = onActivating(comp); code != RTC::RTC_OK) return code;
   if (const auto code = impl_->context.request(member->id, rt::Event::activate); code != rt::ReturnCode::ok) return corba::to_wire(code);
-  const Impl::Patience patience = impl_->shared.lock()->activation;
-  RTC_impl::RTObjectStateMachine machine(member->reference, member->handle, impl_->context, member->id, member->owner);
-  if (!patience.wait) return onActivated(&machine, 0);
+  const auto timeout = impl_->shared.lock()->activation;
+  RTC_impl::RTObjectStateMachine* machine = member->machine.get();
+  if (!m_syncActivation) return onActivated(machine, 0);
   if (impl_->context.is_stepping_thread()) return RTC::RTC_OK;
-  if (const auto code = onWaitingActivated(&machine, 0); code != RTC::RTC_OK) return code;
-  const auto code = impl_->context.wait(member->id, rt::Event::activate, patience.timeout);
-  return code == rt::ReturnCode::ok ? onActivated(&machine, 1) : corba::to_wire(code);
+  if (const auto code = onWaitingActivated(machine, 0); code != RTC::RTC_OK) return code;
+  const auto code = impl_->context.wait(member->id, rt::Event::activate, timeout);
+  return code == rt::ReturnCode::ok ? onActivated(machine, 1) : corba::to_wire(code);
 }
 
 RTC::ReturnCode_t ExecutionContextBase::deactivateComponent(RTC::LightweightRTObject_ptr comp) {
@@ -197,13 +225,13 @@ RTC::ReturnCode_t ExecutionContextBase::deactivateComponent(RTC::LightweightRTOb
   if (!member) return RTC::BAD_PARAMETER;
   if (const auto code = onDeactivating(comp); code != RTC::RTC_OK) return code;
   if (const auto code = impl_->context.request(member->id, rt::Event::deactivate); code != rt::ReturnCode::ok) return corba::to_wire(code);
-  const Impl::Patience patience = impl_->shared.lock()->deactivation;
-  RTC_impl::RTObjectStateMachine machine(member->reference, member->handle, impl_->context, member->id, member->owner);
-  if (!patience.wait) return onDeactivated(&machine, 0);
+  const auto timeout = impl_->shared.lock()->deactivation;
+  RTC_impl::RTObjectStateMachine* machine = member->machine.get();
+  if (!m_syncDeactivation) return onDeactivated(machine, 0);
   if (impl_->context.is_stepping_thread()) return RTC::RTC_OK;
-  if (const auto code = onWaitingDeactivated(&machine, 0); code != RTC::RTC_OK) return code;
-  const auto code = impl_->context.wait(member->id, rt::Event::deactivate, patience.timeout);
-  return code == rt::ReturnCode::ok ? onDeactivated(&machine, 1) : corba::to_wire(code);
+  if (const auto code = onWaitingDeactivated(machine, 0); code != RTC::RTC_OK) return code;
+  const auto code = impl_->context.wait(member->id, rt::Event::deactivate, timeout);
+  return code == rt::ReturnCode::ok ? onDeactivated(machine, 1) : corba::to_wire(code);
 }
 
 RTC::ReturnCode_t ExecutionContextBase::resetComponent(RTC::LightweightRTObject_ptr comp) {
@@ -211,13 +239,13 @@ RTC::ReturnCode_t ExecutionContextBase::resetComponent(RTC::LightweightRTObject_
   if (!member) return RTC::BAD_PARAMETER;
   if (const auto code = onResetting(comp); code != RTC::RTC_OK) return code;
   if (const auto code = impl_->context.request(member->id, rt::Event::reset); code != rt::ReturnCode::ok) return corba::to_wire(code);
-  const Impl::Patience patience = impl_->shared.lock()->reset;
-  RTC_impl::RTObjectStateMachine machine(member->reference, member->handle, impl_->context, member->id, member->owner);
-  if (!patience.wait) return onReset(&machine, 0);
+  const auto timeout = impl_->shared.lock()->reset;
+  RTC_impl::RTObjectStateMachine* machine = member->machine.get();
+  if (!m_syncReset) return onReset(machine, 0);
   if (impl_->context.is_stepping_thread()) return RTC::RTC_OK;
-  if (const auto code = onWaitingReset(&machine, 0); code != RTC::RTC_OK) return code;
-  const auto code = impl_->context.wait(member->id, rt::Event::reset, patience.timeout);
-  return code == rt::ReturnCode::ok ? onReset(&machine, 1) : corba::to_wire(code);
+  if (const auto code = onWaitingReset(machine, 0); code != RTC::RTC_OK) return code;
+  const auto code = impl_->context.wait(member->id, rt::Event::reset, timeout);
+  return code == rt::ReturnCode::ok ? onReset(machine, 1) : corba::to_wire(code);
 }
 
 RTC::LifeCycleState ExecutionContextBase::getComponentState(RTC::LightweightRTObject_ptr comp) const {
@@ -238,7 +266,7 @@ void ExecutionContextBase::calmComponent(RTC::LightweightRTObject_ptr comp, std:
   const auto member = impl_->find(comp);
   if (!member || !isRunning()) return;
   const auto left = [&] { return std::max<std::chrono::nanoseconds>(deadline - std::chrono::steady_clock::now(), 0ns); };
-  RTC_impl::RTObjectStateMachine machine(member->reference, member->handle, impl_->context, member->id, member->owner);
+  RTC_impl::RTObjectStateMachine* machine = member->machine.get();
   // A transition that is under way ends first; a deactivation that fails leads to the error state, and a reset out of it.
   for (int attempt = 0; attempt < 3 && !impl_->context.stuck_call(); ++attempt) {
     const rt::State state = impl_->context.state(member->id);
@@ -247,9 +275,9 @@ void ExecutionContextBase::calmComponent(RTC::LightweightRTObject_ptr comp, std:
     const rt::Event event = state == rt::State::error ? rt::Event::reset : rt::Event::deactivate;
     if (state == next && impl_->context.request(member->id, event) != rt::ReturnCode::ok) return;
     if (event == rt::Event::reset)
-      onWaitingReset(&machine, 0);
+      onWaitingReset(machine, 0);
     else
-      onWaitingDeactivated(&machine, 0);
+      onWaitingDeactivated(machine, 0);
     const rt::ReturnCode code = impl_->context.wait(member->id, event, left());
     if (left() == 0ns) {
       impl_->context.write_off_call();

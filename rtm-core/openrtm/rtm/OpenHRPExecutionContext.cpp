@@ -13,12 +13,24 @@ OpenHRPExecutionContext::OpenHRPExecutionContext(const std::string& name)
 
 OpenHRPExecutionContext::~OpenHRPExecutionContext() = default;
 
-void OpenHRPExecutionContext::tick() {
-  turns_->take([this] { invokeWorker(); });
+void OpenHRPExecutionContext::tick() { OpenHRPExecutionContext::invokeWorker(); }
+
+void OpenHRPExecutionContext::transitNow() { OpenHRPExecutionContext::invokeWorkerPreDo(); }
+
+void OpenHRPExecutionContext::invokeWorker() {
+  turns_->take([this] { ExecutionContextBase::invokeWorker(); });
 }
 
-void OpenHRPExecutionContext::transitNow() {
-  turns_->take([this] { invokeWorkerPreDo(); });
+void OpenHRPExecutionContext::invokeWorkerPreDo() {
+  turns_->take([this] { ExecutionContextBase::invokeWorkerPreDo(); });
+}
+
+void OpenHRPExecutionContext::invokeWorkerDo() {
+  turns_->take([this] { ExecutionContextBase::invokeWorkerDo(); });
+}
+
+void OpenHRPExecutionContext::invokeWorkerPostDo() {
+  turns_->take([this] { ExecutionContextBase::invokeWorkerPostDo(); });
 }
 
 RTC::ReturnCode_t OpenHRPExecutionContext::onWaitingActivated(RTC_impl::RTObjectStateMachine*, long int) {
@@ -39,6 +51,8 @@ RTC::ReturnCode_t OpenHRPExecutionContext::onWaitingReset(RTC_impl::RTObjectStat
 }  // namespace RTC
 
 extern "C" void OpenHRPExecutionContextInit(RTC::Manager*) {
-  RTC::ExecutionContextFactory::instance().addFactory("OpenHRPExecutionContext", RTC::ECCreate<RTC::OpenHRPExecutionContext>,
-                                                      RTC::ECDelete<RTC::OpenHRPExecutionContext>);
+  // The first name is that of all versions.
+  for (const char* name : {"SynchExtTriggerEC", "OpenHRPExecutionContext"})
+    RTC::ExecutionContextFactory::instance().addFactory(name, RTC::ECCreate<RTC::OpenHRPExecutionContext>,
+                                                        RTC::ECDelete<RTC::OpenHRPExecutionContext>);
 }

@@ -29,6 +29,11 @@ class OpenHRPExecutionContext : public ExecutionContextServant<POA_OpenRTM::ExtT
   RTC::ReturnCode_t onWaitingReset(RTC_impl::RTObjectStateMachine* comp, long int count) override;
   // Does the transitions that are asked for, on this thread, unless a cycle runs and will do them.
   void transitNow();
+  // For contexts of authors: each takes its turn; from inside a cycle it does nothing.
+  void invokeWorker();
+  void invokeWorkerPreDo();
+  void invokeWorkerDo();
+  void invokeWorkerPostDo();
 
  private:
   std::unique_ptr<rt::Turns> turns_;

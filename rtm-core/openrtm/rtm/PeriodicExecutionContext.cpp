@@ -35,10 +35,9 @@ PeriodicExecutionContext::~PeriodicExecutionContext() { endThread(); }
 void PeriodicExecutionContext::endThread() {
   m_svc = false;
   worker_->stop();
+  wakeLoop();
   coil::Task::wait();
 }
-
-void PeriodicExecutionContext::runCycle(ExecutionContextBase& context) { static_cast<PeriodicExecutionContext&>(context).invokeWorker(); }
 
 RTC::ReturnCode_t PeriodicExecutionContext::onSetRate(double) {
   m_period = getPeriod();
@@ -75,6 +74,7 @@ RTC::ReturnCode_t PeriodicExecutionContext::onStarted() {
 RTC::ReturnCode_t PeriodicExecutionContext::onStopping() {
   m_svc = false;
   worker_->stop();
+  wakeLoop();
   if (isSteppingThread()) return RTC::RTC_OK;  // the thread ends after this cycle
   if (!waitForCallbacks() && worker_->resume()) {
     m_svc = true;
@@ -84,7 +84,21 @@ RTC::ReturnCode_t PeriodicExecutionContext::onStopping() {
   return RTC::RTC_OK;
 }
 
-void PeriodicExecutionContext::onWakeUp() { worker_->wake(); }
+void PeriodicExecutionContext::onWakeUp() {
+  worker_->wake();
+  wakeLoop();
+}
+
+void PeriodicExecutionContext::wakeLoop() {
+  // Loops of 1.1 hold this mutex while they call components, which may ask for transitions: without it.
+  m_worker.running_ = true;
+  m_worker.cond_.broadcast();
+  {
+    const Guard guard(m_workerthread.mutex_);
+    m_workerthread.running_ = true;
+  }
+  m_workerthread.cond_.broadcast();
+}
 
 bool PeriodicExecutionContext::threadRunning() const { return !worker_->is_stopping(); }
 

@@ -52,19 +52,22 @@ class PeriodicExecutionContext : public ExecutionContextServant<POA_RTC::Executi
   // True while the thread is to go on.
   bool threadRunning() const;
 
-  // What svc() of sources of 1.x and 2.x reads; a loop may as well call threadRunning, getPeriod, invokeWorkerPreDo, Do and PostDo.
+  // What svc() of sources of 1.x and 2.x reads; a loop may as well call threadRunning, getPeriod, invokeWorkerPreDo, Do and PostDo, or step
+  // its members one by one. Nobody here makes running_ false; who asks for a transition, and the end of the thread, make it true.
   using Guard = coil::Guard<coil::Mutex>;
   using Comp = detail::LoopMember;
   using CompItr = detail::LoopMembers::iterator;
-  // For each member in turn; the whole cycle is done at the first.
   struct invoke_worker {
-    void operator()(const Comp& member) const {
-      if (member.context != nullptr) runCycle(*member.context);
-    }
+    void operator()(const Comp& member) const { member.run(); }
+  };
+  struct find_comp {
+    RTC::LightweightRTObject_var component;
+    explicit find_comp(RTC::LightweightRTObject_ptr which) : component(RTC::LightweightRTObject::_duplicate(which)) {}
+    bool operator()(const Comp& member) const { return member._sm.is(component); }
   };
   detail::LoopMembers m_comps{*this};
-  detail::LoopWorker m_worker;        // 1.1
-  detail::LoopWorker m_workerthread;  // 1.2, 2.x
+  detail::NamedWorker m_worker{*this};  // 1.1: the thread's state; 1.2 and 2.x: the members
+  detail::LoopWorker m_workerthread;    // 1.2 and 2.x
   coil::Mutex m_svcmutex;
   std::atomic<bool> m_svc{false};  // as threadRunning
   bool m_nowait = false;
@@ -72,7 +75,8 @@ class PeriodicExecutionContext : public ExecutionContextServant<POA_RTC::Executi
   RTC::ReturnCode_t onSetRate(double rate) override;
 
  private:
-  static void runCycle(ExecutionContextBase& context);
+  void wakeLoop();
+
   class Steps;
   std::unique_ptr<Steps> steps_;
   std::unique_ptr<rt::PeriodicWorker> worker_;
@@ -82,6 +86,7 @@ class PeriodicExecutionContext : public ExecutionContextServant<POA_RTC::Executi
 
 }  // namespace RTC
 
+// The name that 1.2 and 2.x give it.
 namespace RTC_exp {
 using RTC::PeriodicExecutionContext;
 }

@@ -1,20 +1,35 @@
 #include "rtm/PeriodicLoop.h"
 
-#include "rtm/ExecutionContextBase.h"
-
 namespace RTC::detail {
 
-std::size_t LoopMembers::size() {
-  members_.clear();
-  for (const auto& component : context_.getComponents()) {
-    members_.push_back({RTC::LightweightRTObject::_duplicate(component), members_.empty() ? &context_ : nullptr});
-  }
-  return members_.size();
+void LoopState::worker() const {
+  if (!m_sm.machine) return;
+  m_sm.machine->workerPreDo();
+  m_sm.machine->workerDo();
+  m_sm.machine->workerPostDo();
 }
 
-LoopMembers::iterator LoopMembers::begin() {
-  size();
-  return {this, 0};
+void LoopMember::run() const {
+  if (is_first) list->cycle_start_ = std::chrono::steady_clock::now();
+  _sm.worker();
+  if (is_last) list->worker_.countCycle(std::chrono::steady_clock::now() - list->cycle_start_.load());
+}
+
+LoopMembers::Snapshot LoopMembers::refresh() {
+  auto members = std::make_shared<std::vector<LoopMember>>();
+  for (auto& machine : worker_.members()) {
+    const RTC::LightweightRTObject_var component = machine->getRTObject();
+    members->push_back({._ref = component, ._sm = LoopState(std::move(machine)), .list = this, .is_first = members->empty()});
+  }
+  if (!members->empty()) members->back().is_last = true;
+  const std::lock_guard lock(mutex_);
+  members_ = std::move(members);
+  return members_;
+}
+
+LoopMember LoopMembers::operator[](std::size_t at) const {
+  const std::lock_guard lock(mutex_);
+  return at < members_->size() ? (*members_)[at] : LoopMember();
 }
 
 }  // namespace RTC::detail

@@ -1,19 +1,45 @@
+#include <rtm/ExecutionContextBase.h>
 #include <rtm/RTObjectStateMachine.h>
 
+#include "base/clock.h"
 #include "core/execution_context.h"
 
 namespace RTC_impl {
 
 RTObjectStateMachine::RTObjectStateMachine(RTC::LightweightRTObject_ptr component, RTC::ExecutionContextHandle_t handle,
-                                           rt::ExecutionContext& context, std::uint64_t member, bool owner)
-    : component_(RTC::LightweightRTObject::_duplicate(component)), handle_(handle), context_(&context), member_(member), owner_(owner) {}
+                                           RTC::ExecutionContextBase& context, std::uint64_t member)
+    : component_(RTC::LightweightRTObject::_duplicate(component)), handle_(handle), context_(context), member_(member) {}
 
 bool RTObjectStateMachine::isEquivalent(RTC::LightweightRTObject_ptr component) const {
   return !CORBA::is_nil(component) && component_->_is_equivalent(component);
 }
 
-RTC::LifeCycleState RTObjectStateMachine::getState() const { return static_cast<RTC::LifeCycleState>(context_->state(member_)); }
+RTC::LifeCycleState RTObjectStateMachine::getState() const { return static_cast<RTC::LifeCycleState>(context_.context().state(member_)); }
 
-RTC::LifeCycleState RTObjectStateMachine::getNextState() const { return static_cast<RTC::LifeCycleState>(context_->next_state(member_)); }
+RTC::LifeCycleState RTObjectStateMachine::getNextState() const {
+  return static_cast<RTC::LifeCycleState>(context_.context().next_state(member_));
+}
+
+void RTObjectStateMachine::goTo(RTC::LifeCycleState state) {
+  const rt::State from = context_.context().state(member_);
+  for (const rt::Transition& transition : rt::transitions) {
+    if (transition.from == from && static_cast<int>(transition.to) == state) context_.context().request(member_, transition.event);
+  }
+}
+
+void RTObjectStateMachine::workerPreDo() {
+  const base::ScopedClock clock(context_.contextClock());
+  context_.context().transit_one(member_);
+}
+
+void RTObjectStateMachine::workerDo() {
+  const base::ScopedClock clock(context_.contextClock());
+  context_.context().execute_one(member_);
+}
+
+void RTObjectStateMachine::workerPostDo() {
+  const base::ScopedClock clock(context_.contextClock());
+  context_.context().update_one(member_);
+}
 
 }  // namespace RTC_impl
