@@ -64,9 +64,10 @@ base::Result<void> find_wheels(const ModelDef& model, const PluginDef& plugin, S
   const double front = std::min_element(s.steered.begin(), s.steered.end(), before)->x;
   const auto rearmost = std::min_element(s.driven.begin(), s.driven.end(), before)->x;
   const auto [right, left] = std::minmax_element(s.driven.begin(), s.driven.end(), aside);
-  s.wheel_base = plugin.parameters.number_of({"wheel_base", "wheelBase"}).value_or(front - rearmost);
-  s.separation = plugin.parameters.number_of({"wheel_separation", "wheelSeparation"}).value_or(left->y - right->y);
-  const double middle = (left->y + right->y) / 2, rear = front - s.wheel_base;
+  // Where the wheels are decides the curve, not what the element says; many files keep its default of 1 m.
+  s.wheel_base = front - rearmost;
+  s.separation = left->y - right->y;
+  const double middle = (left->y + right->y) / 2, rear = rearmost;
   for (auto* wheels : {&s.driven, &s.steered}) {
     for (Wheel& wheel : *wheels) wheel.x -= rear, wheel.y -= middle;
   }

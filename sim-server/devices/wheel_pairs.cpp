@@ -2,6 +2,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/text.h"
@@ -37,6 +38,20 @@ double wheel_separation(const ModelDef& model, std::uint32_t left, std::uint32_t
   return between.head<2>().norm();
 }
 
+// Gazebo classic's own skid drive turns its wheels as told whatever it takes, too, and knows joints by these names without being told.
+bool is_skid_of_classic(const PluginDef& plugin) {
+  return base::to_lower(plugin.filename).find("skidsteerdriveplugin") != std::string::npos;
+}
+
+void add_joints_by_name(const ModelDef& model, const PluginDef& plugin, Settings& s) {
+  for (const auto& [side, names] :
+       {std::pair{&s.left, std::array{"left_front", "left_rear"}}, {&s.right, std::array{"right_front", "right_rear"}}}) {
+    for (const char* name : names) {
+      if (const auto joint = joint_of(model, plugin.scope, name)) side->push_back(*joint);
+    }
+  }
+}
+
 base::Result<Settings> settings_of(const ModelDef& model, const PluginDef& plugin) {
   const ParameterNode& p = plugin.parameters;
   Settings s;
@@ -53,6 +68,7 @@ base::Result<Settings> settings_of(const ModelDef& model, const PluginDef& plugi
   if (!missing.empty())
     return base::Error{
         fmt::format("{}: plugin {}: model {} has no joint {}", plugin.source, plugin.name, model.name, base::in_quotes(missing))};
+  if (s.left.empty() && s.right.empty() && is_skid_of_classic(plugin)) add_joints_by_name(model, plugin, s);
   if (s.left.empty() || s.right.empty()) {
     return base::Error{fmt::format("{}: plugin {}: needs a left and a right joint (left_joint, right_joint)", plugin.source, plugin.name)};
   }
@@ -67,6 +83,7 @@ base::Result<Settings> settings_of(const ModelDef& model, const PluginDef& plugi
   s.torque = p.number_of({"max_wheel_torque", "wheelTorque", "wheel_torque", "torque", "max_force", "MaxForce"})
                  .value_or(is_of_gz_sim(plugin) ? torque_of_joints(model, s.left, s.right) : s.torque);
   if (s.torque <= 0) s.torque = 5;
+  if (is_skid_of_classic(plugin)) s.torque = strongest_torque;
   s.max_speed = std::max(0.0, p.number_of({"max_linear_velocity", "max_velocity", "max_speed", "maxSpeed"}).value_or(0));
   s.max_yaw_rate = std::max(0.0, p.number_of({"max_angular_velocity", "max_yaw_rate", "max_turnrate"}).value_or(0));
   s.max_acceleration = std::max(

@@ -8,6 +8,10 @@
 namespace sim {
 namespace {
 
+bool is_carried_by(const std::optional<FluidDef>& fluid, const std::string& model) {
+  return fluid && (fluid->models.empty() || std::find(fluid->models.begin(), fluid->models.end(), model) != fluid->models.end());
+}
+
 constexpr double fastest = 5000;  // [m/s], [rad/s]: nothing that is simulated sanely gets there
 
 }  // namespace
@@ -36,6 +40,8 @@ void ModelInstance::make_shapes(ShapeStore& store, std::vector<std::string>& los
       shape->assembly = assembly;
       shape_in_body_.push_back(blueprint_->link_in_body[l] * collision.pose * geom_in_collision(collision.geometry));
       shapes_.push_back(std::move(*shape));
+      const auto solid = solid_properties(collision.geometry);
+      shape_volumes_.push_back(solid ? solid->volume : 0);
     }
   }
 }
@@ -112,6 +118,7 @@ void ModelInstance::enter(dWorldID world, const PhysicsDef& physics) {
   }
   has_forces_ =
       std::any_of(blueprint_->assemblies.begin(), blueprint_->assemblies.end(), [](const Assembly& a) { return a.wind_mass > 0; });
+  has_forces_ = has_forces_ || is_carried_by(physics.fluid, blueprint_->model->name);
   for (const auto j : blueprint_->joints) make_joint(world, physics, j);
   take_initial_positions();
   for (const auto& order : orders) {
@@ -207,6 +214,7 @@ void ModelInstance::apply_forces(dJointGroupID step_joints, const PhysicsDef& ph
   for (auto& joint : joints_) {
     if (joint.has_forces()) joint.apply(step_joints, physics.step);
   }
+  if (is_carried_by(physics.fluid, blueprint_->model->name)) float_in(*physics.fluid, physics.gravity);
   if (physics.wind.isZero()) return;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const dBodyID body = bodies_[i].id();
@@ -214,6 +222,24 @@ void ModelInstance::apply_forces(dJointGroupID step_joints, const PhysicsDef& ph
     if (body == nullptr || mass <= 0 || dBodyIsEnabled(body) == 0) continue;
     const Eigen::Vector3d force = mass * (physics.wind - ode::vector(dBodyGetLinearVel(body)));
     dBodyAddForce(body, force.x(), force.y(), force.z());
+  }
+}
+
+// Each shape is lifted by the fluid that it takes the place of, layer by layer, at its middle.
+void ModelInstance::float_in(const FluidDef& fluid, const Eigen::Vector3d& gravity) {
+  for (std::size_t i = 0; i < shapes_.size(); ++i) {
+    const dBodyID body = bodies_[shapes_[i].assembly].id();
+    if (body == nullptr || shape_volumes_[i] <= 0 || dBodyIsEnabled(body) == 0) continue;
+    const Aabb box = box_of(shapes_[i].geom.id());
+    const double low = box.low.z(), high = box.high.z();
+    double density = fluid.density, mean = fluid.density;
+    for (const auto& [height, above] : fluid.changes) {
+      mean += (above - density) * std::clamp((high - height) / std::max(high - low, 1e-9), 0.0, 1.0);
+      density = above;
+    }
+    const Eigen::Vector3d force = -mean * shape_volumes_[i] * gravity;
+    const dReal* place = dGeomGetPosition(shapes_[i].geom.id());
+    dBodyAddForceAtPos(body, force.x(), force.y(), force.z(), place[0], place[1], place[2]);
   }
 }
 

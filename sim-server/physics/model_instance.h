@@ -78,6 +78,7 @@ class ModelInstance {
   void make_body(dWorldID world, const Assembly& assembly);
   void make_joint(dWorldID world, const PhysicsDef& physics, std::uint32_t index);
   void take_initial_positions();
+  void float_in(const FluidDef& fluid, const Eigen::Vector3d& gravity);
   int assembly_of(const std::string& link) const;
 
   ModelId id_;
@@ -87,6 +88,7 @@ class ModelInstance {
   std::vector<JointInstance> joints_;
   std::vector<ShapeInstance> shapes_;
   std::vector<Eigen::Isometry3d> shape_in_body_;
+  std::vector<double> shape_volumes_;  // [m^3]; 0: not known
   double mass_ = 0;
   bool has_forces_ = false;
   bool gravity_ = true, is_kinematic_ = false;

@@ -190,7 +190,8 @@ PluginDef build_plugin(pugi::xml_node node, const std::string& scope, BuildConte
   } else if (kind_of(plugin) == PluginKind::joint_controller) {
     context.complaints.warn(node,
                             describe_in_context(node) + " is not commanded: its joints keep the position or speed that it starts with");
-  } else if (kind_of(plugin) == PluginKind::unknown) {
+  } else if (kind_of(plugin) == PluginKind::unknown ||
+             (kind_of(plugin) == PluginKind::buoyancy && std::string_view(node.parent().name()) != "world")) {
     context.complaints.warn(node, "unknown plugin " + base::in_quotes(plugin.filename) + " (" + describe_in_context(node) + ") is ignored");
   }
   return plugin;
@@ -306,7 +307,10 @@ class ModelBuilder {
     }
     for (pugi::xml_node link : node.children("link")) add_link(link, resolved, scope, place);
     for (pugi::xml_node joint : node.children("joint")) add_joint(joint, resolved, scope, place);
-    for (pugi::xml_node plugin : node.children("plugin")) model_.plugins.push_back(build_plugin(plugin, scope, context_));
+    for (pugi::xml_node plugin : node.children("plugin")) {
+      model_.plugins.push_back(build_plugin(plugin, scope, context_));
+      if (is_imu_without_sensor(model_.plugins.back())) add_imu(plugin, model_.plugins.back());
+    }
     for (pugi::xml_node gripper : node.children("gripper"))
       context_.complaints.warn(gripper, "grippers are not simulated; " + describe_in_context(gripper) + " is ignored");
   }
@@ -406,6 +410,45 @@ class ModelBuilder {
       }
     }
     contact->collisions = std::move(found);
+  }
+
+  // The plugins of ROS that are an IMU themselves, in a link that they name.
+  static bool is_imu_without_sensor(const PluginDef& plugin) {
+    return plugin.filename.ends_with("gazebo_ros_imu.so") && plugin.parameters.text_of({"bodyName", "body_name"}).has_value();
+  }
+
+  void add_imu(pugi::xml_node node, const PluginDef& plugin) {
+    const std::string body = *plugin.parameters.text_of({"bodyName", "body_name"});
+    const std::string name = scoped(plugin.scope, body);
+    const auto link = std::find_if(model_.links.begin(), model_.links.end(), [&](const LinkDef& l) { return l.name == name; });
+    if (link == model_.links.end()) {
+      context_.complaints.drop(
+          node, describe_in_context(node) + " names the link " + base::in_quotes(body) + ", which does not exist; there is no IMU");
+      return;
+    }
+    SensorDef sensor;
+    sensor.name = plugin.name;
+    sensor.scope = plugin.scope;
+    sensor.kind = SensorKind::imu;
+    sensor.type = "imu";
+    const auto triple = [&](const char* key) {
+      const auto numbers = parse_numbers(plugin.parameters.text_of({key}).value_or(""));
+      const bool is_sound = numbers && numbers->size() == 3 && Eigen::Vector3d(numbers->data()).cwiseAbs().maxCoeff() < 1e9;
+      return is_sound ? Eigen::Vector3d(numbers->data()) : Eigen::Vector3d(0, 0, 0);
+    };
+    const Eigen::Vector3d angles = triple("rpyOffset");
+    sensor.pose.translation() = triple("xyzOffset");
+    sensor.pose.rotate(Eigen::AngleAxisd(angles.z(), Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(angles.y(), Eigen::Vector3d::UnitY()) *
+                       Eigen::AngleAxisd(angles.x(), Eigen::Vector3d::UnitX()));
+    sensor.update_rate = std::clamp(plugin.parameters.number_of({"updateRate", "update_rate"}).value_or(0), 0.0, 1e6);
+    ImuDef imu;
+    if (const double noise = plugin.parameters.number_of({"gaussianNoise", "gaussian_noise"}).value_or(0); noise > 0 && noise < 1e6) {
+      for (auto* group : {&imu.angular_velocity, &imu.linear_acceleration}) {
+        for (NoiseDef& axis : *group) axis.kind = NoiseDef::Kind::gaussian, axis.stddev = noise;
+      }
+    }
+    sensor.data = imu;
+    link->sensors.push_back(std::move(sensor));
   }
 
   AxisDef build_axis(pugi::xml_node node, const Eigen::Vector3d& xyz, bool is_continuous) {

@@ -13,6 +13,7 @@ enum class PluginKind {
   trajectory_follower,  // the model follows way points
   joint_controller,     // joints keep the position or speed that it starts with
   unsupported_drive,    // drives with other wheels or none: mecanum, tricycle, tracks, rotors, ...
+  buoyancy,             // of the world
   implied,              // what it does is done by the simulator anyway (sensors, physics, clock, user interface of Gazebo)
   unknown,
 };

@@ -4,6 +4,7 @@
 
 #include "base/text.h"
 #include "world/model_builder.h"
+#include "world/plugin_kind.h"
 #include "world/xml_file.h"
 #include "world/xml_values.h"
 
@@ -47,7 +48,7 @@ pugi::xml_node default_physics(pugi::xml_node world, BuildContext& context) {
     if (!chosen || physics.attribute("default").as_bool()) chosen = physics;
   }
   const std::string type = chosen.attribute("type").value();
-  if (!type.empty() && type != "ode" && type != "ignored") {
+  if (!type.empty() && type != "ode" && type != "ignored" && type != "ignore") {
     context.complaints.note(chosen, "physics engine " + base::in_quotes(type) + " is not there; ODE is taken");
   }
   return chosen;
@@ -83,6 +84,26 @@ PhysicsDef build_physics(pugi::xml_node world, BuildContext& context) {
   physics.atmosphere_temperature = number_at(world, "atmosphere/temperature", physics.atmosphere_temperature);
   physics.atmosphere_pressure = number_at(world, "atmosphere/pressure", physics.atmosphere_pressure);
   return physics;
+}
+
+FluidDef build_fluid(const PluginDef& plugin) {
+  const auto density_of = [](const ParameterNode& node, std::initializer_list<std::string_view> spellings) {
+    return std::clamp(node.number_of(spellings).value_or(1000), 0.0, 1e6);
+  };
+  FluidDef fluid;
+  fluid.density = density_of(plugin.parameters, {"uniform_fluid_density", "fluid_density"});
+  if (const ParameterNode* graded = plugin.parameters.child("graded_buoyancy")) {
+    fluid.density = density_of(*graded, {"default_density"});
+    for (const ParameterNode& change : graded->children) {
+      const auto above = change.number_of({"above_depth"});
+      if (change.name == "density_change" && above) fluid.changes.emplace_back(*above, density_of(change, {"density"}));
+    }
+    std::stable_sort(fluid.changes.begin(), fluid.changes.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  }
+  for (const ParameterNode& child : plugin.parameters.children) {
+    if (child.name == "enable") fluid.models.push_back(child.text.substr(0, child.text.find("::")));
+  }
+  return fluid;
 }
 
 SceneDef build_scene(pugi::xml_node node, BuildContext& context) {
@@ -210,7 +231,10 @@ WorldDef build_world(pugi::xml_node node, const ResolvedWorld& resolved, BuildCo
     world.actors.push_back(build_actor(child, context));
     placed(child, world.actors.back().pose);
   }
-  for (pugi::xml_node child : node.children("plugin")) world.plugins.push_back(build_plugin(child, {}, context));
+  for (pugi::xml_node child : node.children("plugin")) {
+    world.plugins.push_back(build_plugin(child, {}, context));
+    if (kind_of(world.plugins.back()) == PluginKind::buoyancy) world.physics.fluid = build_fluid(world.plugins.back());
+  }
   if (const pugi::xml_node camera = child_at(node, "gui/camera/pose")) world.gui_camera = parse_pose(camera);
   return world;
 }

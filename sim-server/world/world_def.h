@@ -438,6 +438,13 @@ struct ActorDef {
 // --- the world
 // ------------------------------------------------------------------------------------------------------------------------------
 
+// What the plugin Buoyancy of gz-sim fills the world with.
+struct FluidDef {
+  double density = 1000;                           // below all changes [kg/m^3]
+  std::vector<std::pair<double, double>> changes;  // from this height [m] on up that density [kg/m^3]; ascending
+  std::vector<std::string> models;                 // that it carries; empty: all
+};
+
 struct PhysicsDef {
   enum class Solver { automatic, exact, iterative };  // automatic: nothing asked for; exact: "world"; iterative: "quick"
   double step = 0.001;                                // [s]
@@ -451,7 +458,8 @@ struct PhysicsDef {
   std::optional<double> cfm, erp;
   double contact_max_correcting_vel = 100;
   double contact_surface_layer = 0.001;
-  int max_contacts = 20;                                                 // per pair of collisions
+  int max_contacts = 20;  // per pair of collisions
+  std::optional<FluidDef> fluid;
   double atmosphere_temperature = 288.15, atmosphere_pressure = 101325;  // [K], [Pa] at sea level
 };
 

@@ -292,6 +292,29 @@ TEST(Physics, a_spinning_top_slides_on_a_straight_line) {
   EXPECT_GT(f.position("disk").x(), 0.06) << "further than without spin, v^2 / (2 mu g) = 0.05 m";
 }
 
+TEST(Physics, a_fluid_carries_what_is_lighter_and_lets_sink_what_is_heavier) {
+  WorldDef world = world_of({body("even", SphereShape{0.5}, at(0, 0, -5), 1000 * 4.0 / 3 * std::numbers::pi / 8),
+                             body("light", CylinderShape{0.5, 1}, at(3, 0, -5), 500 * std::numbers::pi / 4),
+                             body("heavy", BoxShape{{1, 1, 1}}, at(6, 0, -5), 2000), body("raft", BoxShape{{2, 2, 1}}, at(9, 0, 0.2), 1000),
+                             body("other", BoxShape{{1, 1, 1}}, at(12, 0, -5), 500)});
+  world.physics.fluid = FluidDef{1000, {{0, 0}}, {"even", "light", "heavy", "raft"}};
+  Fixture f(world);
+  f.run(0.5);
+  const double second = 0.5 * 0.5 * 0.5;  // t^2 / 2
+  EXPECT_NEAR(f.position("even").z(), -5, 1e-6);
+  EXPECT_NEAR(f.position("light").z(), -5 + 9.8 * second, 0.01) << "twice its weight lifts it";
+  EXPECT_NEAR(f.position("heavy").z(), -5 - 4.9 * second, 0.01);
+  EXPECT_NEAR(f.position("other").z(), -5 - 9.8 * second, 0.01) << "is not among the models that it carries";
+  // A raft of a quarter of the density bobs about the depth at which it floats.
+  double low = 9, high = -9;
+  for (int i = 0; i < 5000; ++i) {
+    f.physics.step();
+    low = std::min(low, f.position("raft").z()), high = std::max(high, f.position("raft").z());
+  }
+  EXPECT_NEAR(low, 0.2, 0.005);
+  EXPECT_NEAR(high, 0.3, 0.005);
+}
+
 TEST(Physics, a_cone_stands_on_its_base_and_not_on_its_tip) {
   Fixture f(world_of(
       {ground(), body("standing", ConeShape{0.3, 0.6}, at(0, 0, 0.31)), body("tipped", ConeShape{0.3, 0.6}, tilted(3, 0, 0.32, 3.1, 0))}));

@@ -223,6 +223,48 @@ TEST(WildWorlds, joints_whose_child_is_the_world_move_the_other_way_round) {
   }
 }
 
+TEST(WildWorlds, imus_that_are_plugins_of_their_own_are_sensors) {
+  const WorldFiles files;
+  for (const char* file : {"libgazebo_ros_imu.so", "libhector_gazebo_ros_imu.so"}) {
+    const std::string parameters =
+        "<bodyName>l</bodyName><topicName>imu</topicName><updateRate>50.0</updateRate><gaussianNoise>0.01</gaussianNoise><xyzOffset>1 2 3"
+        "</xyzOffset><rpyOffset>0 0 1.5707963</rpyOffset></plugin>";
+    const LoadResult result = files.load("<model name='m'><link name='l'/><plugin name='the_imu' filename='" + std::string(file) + "'>" +
+                                         parameters + "</model>");
+    EXPECT_TRUE(result.findings.empty()) << all_findings(result);
+    const auto& sensors = result.world.models.at(0).links.at(0).sensors;
+    ASSERT_EQ(sensors.size(), 1U) << file;
+    EXPECT_EQ(sensors[0].name, "the_imu");
+    EXPECT_EQ(sensors[0].update_rate, 50);
+    EXPECT_TRUE(sensors[0].pose.translation().isApprox(Eigen::Vector3d(1, 2, 3)));
+    EXPECT_TRUE((sensors[0].pose.linear() * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d::UnitY(), 1e-6));
+    EXPECT_EQ(std::get<ImuDef>(sensors[0].data).linear_acceleration[2].stddev, 0.01);
+    const LoadResult bad = files.load("<model name='m'><link name='other'/><plugin name='the_imu' filename='" + std::string(file) + "'>" +
+                                      parameters + "</model>");
+    EXPECT_EQ(findings_with(bad, "names the link \"l\", which does not exist; there is no IMU"), 1) << all_findings(bad);
+  }
+}
+
+TEST(WildWorlds, the_fluid_of_a_world_is_uniform_or_graded) {
+  const WorldFiles files;
+  const LoadResult uniform = files.load(
+      "<plugin filename='gz-sim-buoyancy-system' "
+      "name='gz::sim::systems::Buoyancy'><uniform_fluid_density>1025</uniform_fluid_density><enable>"
+      "sub::body</enable></plugin>");
+  EXPECT_TRUE(uniform.findings.empty()) << all_findings(uniform);
+  ASSERT_TRUE(uniform.world.physics.fluid);
+  EXPECT_EQ(uniform.world.physics.fluid->density, 1025);
+  EXPECT_EQ(uniform.world.physics.fluid->models, std::vector<std::string>{"sub"});
+  const LoadResult graded = files.load(
+      "<plugin filename='gz-sim-buoyancy-system' name='gz::sim::systems::Buoyancy'><graded_buoyancy><default_density>1000</default_density>"
+      "<density_change><above_depth>0</above_depth><density>1.125</density></density_change></graded_buoyancy></plugin>");
+  ASSERT_TRUE(graded.world.physics.fluid);
+  EXPECT_EQ(graded.world.physics.fluid->changes, (std::vector<std::pair<double, double>>{{0, 1.125}}));
+  const LoadResult of_classic = files.load("<model name='m'><link name='l'/><plugin name='b' filename='libBuoyancyPlugin.so'/></model>");
+  EXPECT_EQ(findings_with(of_classic, "libBuoyancyPlugin.so"), 1);
+  EXPECT_FALSE(of_classic.world.physics.fluid);
+}
+
 TEST(WildWorlds, saved_states_bend_models_and_set_them_going) {
   const WorldFiles files;
   const LoadResult result = files.load(
