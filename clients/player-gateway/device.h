@@ -108,8 +108,8 @@ class Device {
   double last_time_ = 0;
 };
 
-// `type` is that of the source; nothing when the interface cannot show it.
-std::unique_ptr<Device> make_device(const player::Address& address, shm::IfaceType type, std::uint32_t robot, Services services);
+// Nothing for interfaces that are not served. What is attached must be of a type that the interface can show (mapping.h).
+std::unique_ptr<Device> make_device(const player::Address& address, std::uint32_t robot, Services services);
 
 // ---- for the devices ----
 player::Pose3d to_pose3d(const shm::Pose& pose);

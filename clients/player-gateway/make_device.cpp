@@ -1,11 +1,13 @@
 // Which class shows what.
+#include "camera_device.h"
 #include "drive_devices.h"
 #include "range_devices.h"
+#include "sensor_devices.h"
 #include "simulation_device.h"
 
 namespace gateway {
 
-std::unique_ptr<Device> make_device(const player::Address& address, shm::IfaceType, std::uint32_t robot, Services services) {
+std::unique_ptr<Device> make_device(const player::Address& address, std::uint32_t robot, Services services) {
   using enum player::Interface;
   switch (address.interface) {
     case position2d:
@@ -20,9 +22,18 @@ std::unique_ptr<Device> make_device(const player::Address& address, shm::IfaceTy
       return std::make_unique<Ranger>(address, robot, services);
     case simulation:
       return std::make_unique<Simulation>(address, robot, services);
-    default:
-      return nullptr;
+    case camera:
+      return std::make_unique<Camera>(address, robot, services);
+    case gps:
+      return std::make_unique<Gps>(address, robot, services);
+    case imu:
+      return std::make_unique<Imu>(address, robot, services);
+    case bumper:
+      return std::make_unique<Bumper>(address, robot, services);
+    case player:
+      break;
   }
+  return nullptr;
 }
 
 }  // namespace gateway

@@ -10,7 +10,7 @@ void Robot::arrange(const PortPlan& plan, const FindSource& find_source) {
   std::vector<std::unique_ptr<Device>> before = std::exchange(devices_, {});
   for (const DevicePlan& wanted : plan.devices) {
     const auto known = std::find_if(before.begin(), before.end(), [&](const auto& one) { return one && one->address() == wanted.address; });
-    auto device = known != before.end() ? std::move(*known) : make_device(wanted.address, wanted.type, port_, services_);
+    auto device = known != before.end() ? std::move(*known) : make_device(wanted.address, port_, services_);
     if (!device) continue;
     if (auto source = find_source(wanted.type, wanted.iface)) {
       device->attach(std::move(source));

@@ -1,7 +1,12 @@
 # player-gateway before a peer of another make (player_peer.py), one case per run: player.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
+import json
 import math
+import random
 import re
+import resource
+import socket
 import struct
+import subprocess
 import sys
 
 from player_peer import *
@@ -53,14 +58,16 @@ class Rig(System):
         return [float(word) for word in self.simctl("pose", model).split()[:3]]
 
     def is_subscribed(self, iface):
-        import json
-
         return any(one["name"] == iface and one["subscribers"] > 0 for one in json.loads(self.simctl("--json", "list")))
 
-    def driven(self, model="first"):
-        import json
+    def json_echo(self, iface):
+        return json.loads(self.simctl("--json", "echo", iface, "-n", "1"))
 
-        return json.loads(self.simctl("--json", "echo", f"{model}::position2d", "-n", "1"))["velocity"][0]
+    def driven(self, model="first"):
+        return self.json_echo(f"{model}::position2d")["velocity"][0]
+
+    def try_gateway(self, *words):
+        return subprocess.run([f"{bin_dir}/player-gateway", "-s", self.server_id, *words], capture_output=True, text=True, timeout=60)
 
 
 def started(*options, robots=2):
@@ -398,4 +405,295 @@ def rangers():
         client.refused(RANGER, 1, 3, struct.pack(">I", 1))
 
 
-{function.__name__: function for function in (listing, drive, flow, rate, two_clients, gateway_ends, restart, late_and_changing, simulation, rangers)}[case]()
+flying = f"""<sdf version="1.9"><world name="sensors">
+  <spherical_coordinates><surface_model>EARTH_WGS84</surface_model><latitude_deg>36.06</latitude_deg><longitude_deg>140.13</longitude_deg><elevation>25</elevation></spherical_coordinates>
+  <include><uri>{source}/worlds/models/sun</uri></include>
+  <include><uri>{source}/worlds/models/ground_plane</uri></include>
+  <model name="flyer"><pose>0 0 2 0 0 0.5</pose><link name="l"><inertial><mass>3</mass><inertia><ixx>.03</ixx><iyy>.03</iyy><izz>.03</izz></inertia></inertial><gravity>false</gravity>
+    <sensor name="eye" type="camera"><update_rate>10</update_rate><camera><image><width>64</width><height>48</height></image></camera></sensor>
+    <sensor name="grey" type="camera"><update_rate>10</update_rate><camera><image><width>64</width><height>48</height><format>L8</format></image></camera></sensor></link>
+    <plugin name="gz::sim::systems::VelocityControl" filename="gz-sim-velocity-control-system"/></model>
+  <model name="faller"><pose>0 3 1 0 0 0.7</pose><link name="l"><inertial><mass>3</mass><inertia><ixx>.03</ixx><iyy>.03</iyy><izz>.03</izz></inertia></inertial>
+    <collision name="c"><geometry><box><size>.3 .3 .3</size></box></geometry></collision>
+    <sensor name="imu" type="imu"><update_rate>50</update_rate></sensor>
+    <sensor name="gps" type="navsat"><update_rate>20</update_rate></sensor>
+    <sensor name="bumper" type="contact"><update_rate>50</update_rate><contact><collision>c</collision></contact></sensor></link></model>
+</world></sdf>"""
+
+
+def sensors():
+    with Rig() as rig:
+        path = f"{rig.work}/flying.sdf"
+        with open(path, "w") as file:
+            file.write(flying)
+        rig.sim("--paused", world=path)
+        rig.gateway()
+        flyer, faller = Client(rig.ports[0]), Client(rig.ports[1])
+        assert flyer.devices() == [(POSITION3D, 0), (CAMERA, 0), (CAMERA, 1), (SIMULATION, 0)], flyer.devices()
+        assert faller.devices() == [(GPS, 0), (IMU, 0), (BUMPER, 0), (SIMULATION, 0)], faller.devices()
+        for device in ((GPS, 0), (IMU, 0), (BUMPER, 0)):
+            faller.subscribe(*device)
+        assert faller.read_until(BUMPER) == struct.pack(">IIBxxx", 1, 1, 0)  # in the air
+        for device in ((POSITION3D, 0), (CAMERA, 0), (CAMERA, 1)):
+            flyer.subscribe(*device)
+        rig.simctl("run")
+
+        for index, bits, code in ((0, 24, 5), (1, 8, 1)):
+            fields = Fields(flyer.read_until(CAMERA, index=index))
+            assert fields.take("6I") == (64, 48, bits, code, 1, 0)
+            picture = fields.raw()
+            fields.finish()
+            assert len(picture) == 64 * 48 * bits // 8 and len(set(picture)) > 1
+        assert len(flyer.demand(CAMERA, 0, 3)) == 24 + 8 + 64 * 48 * 3
+        fields = Fields(flyer.demand(CAMERA, 0, 1))
+        assert fields.raw() == b"\0" and fields.take("i") == 0
+        flyer.refused(CAMERA, 0, 2, text("PAL") + bytes(4))
+
+        assert len(flyer.demand(POSITION3D, 0, 1)) == 72
+        flyer.command(POSITION3D, 0, 1, struct.pack(">6dI", 0, 0, 0.5, 0, 0, 0, 1))
+        state = struct.unpack(">12dI", flyer.read_until(POSITION3D, good=lambda p: struct.unpack(">12dI", p)[8] > 0.4))
+        assert abs(state[6]) < 0.05 and abs(state[7]) < 0.05
+        flyer.demand(POSITION3D, 0, 6, struct.pack(">6d", 100, 0, 0, 0, 0, 0))  # SET_ODOM is 6 here
+        flyer.read_until(POSITION3D, good=lambda p: abs(struct.unpack(">12dI", p)[0] - 100) < 1)
+        flyer.demand(POSITION3D, 0, 5)
+        flyer.read_until(POSITION3D, good=lambda p: abs(struct.unpack(">12dI", p)[0]) < 1)
+        flyer.refused(POSITION3D, 0, 6, struct.pack(">6d", math.inf, 0, 0, 0, 0, 0))
+        flyer.close()
+        await_("a flyer that stands", lambda: all(abs(v) < 0.01 for v in rig.json_echo("flyer::position3d")["velocity"]))
+
+        gps = struct.unpack(">IIiiiddddIIIIdd", faller.read_until(GPS))
+        assert abs(gps[2] - 36.06e7) < 1e4 and abs(gps[3] - 140.13e7) < 1e4 and 24000 < gps[4] < 27000, gps
+        # Zone 54 has its meridian at 141 degrees: 0.87 degrees west of it.
+        assert 42_000_000 < gps[7] < 42_200_000 and 399_000_000 < gps[8] < 399_400_000, gps[7:9]
+        assert gps[9] == 1
+        assert faller.read_until(BUMPER, good=lambda p: p[8] == 1) == struct.pack(">IIBxxx", 1, 1, 1)  # it has landed
+        assert struct.unpack(">II6d2f", faller.demand(BUMPER, 0, 1))[:2] == (1, 1)
+        for kind, form in ((4, ">9f3d"), (1, ">6d"), (2, ">9f"), (3, ">9f4f"), (5, ">18d")):
+            if kind != 4:  # what it is at first
+                faller.demand(IMU, 0, 1, struct.pack(">I", kind))
+            values = struct.unpack(form, faller.read_until(IMU, subtype=kind))
+            if kind in (4, 2, 3):
+                assert abs(values[2] - 9.8) < 0.3, values
+            if kind in (4, 1):
+                assert abs(values[11 if kind == 4 else 5] - 0.7) < 0.05, values
+        faller.refused(IMU, 0, 1, struct.pack(">I", 6))
+
+
+# A mapping file: two robots on one port, and single devices.
+def config():
+    with Rig() as rig:
+        path = f"{rig.work}/ports.yaml"
+        with open(path, "w") as file:
+            file.write("ports:\n- port: 0\n  robots: [second, first]\n- port: 0\n  devices:\n    laser:2: first::laser\n    ranger:0: sonar:first::sonar\n    camera:0: first::eye\n")
+        rig.sim()
+        rig.process = rig.start(f"{bin_dir}/player-gateway", "--config", path)
+        ports = await_("ports", lambda: rig.shown(2))
+        await_("a complaint", lambda: 'camera:0 of port 0: no iface "first::eye"' in rig.log(rig.process))
+        both, single = Client(ports[0]), Client(ports[1])
+        assert [d for d in both.devices() if d[0] == POSITION2D] == [(POSITION2D, 0), (POSITION2D, 1)]
+        assert single.devices() == [(LASER, 2), (RANGER, 0), (SIMULATION, 0)], single.devices()
+        both.subscribe(POSITION2D, 1)
+        both.command(POSITION2D, 1, 1, velocity(0.3, 0, 0))
+        both.read_until(POSITION2D, index=1, good=lambda p: Position(p).velocity[0] > 0.25)
+        assert abs(rig.driven("second")) < 0.01
+        single.subscribe(LASER, 2)
+        single.read_until(LASER, index=2)
+        taken = rig.try_gateway("--port", str(ports[0]))
+        assert taken.returncode == 1 and f"port {ports[0]}" in taken.stderr and len(taken.stderr.splitlines()) == 1, taken.stderr
+        for words in (("--port", "70000"), ("--port", "x"), ("--port", "1", "--config", path), ("--nonsense",)):
+            wrong = rig.try_gateway(*words)
+            assert wrong.returncode == 2 and len(wrong.stderr.splitlines()) == 1, wrong
+        wrong = rig.try_gateway("--config", f"{rig.work}/none.yaml")
+        assert wrong.returncode == 1 and "none.yaml" in wrong.stderr
+        wrong = rig.try_gateway("--address", "nowhere", "--port", "0")
+        assert wrong.returncode == 1 and "nowhere" in wrong.stderr
+
+
+def nonsense(seed):
+    return random.Random(seed).randbytes(200)
+
+
+# Each item of what a server has to withstand. After each the gateway lives and serves another client at once.
+def bad_input():
+    with started() as rig:
+        port = rig.ports[0]
+        good = Client(port)
+        good.subscribe(POSITION2D)
+        good.subscribe(LASER)
+
+        def is_served():
+            rig.is_alive()
+            good.read_until(LASER)
+
+        def is_closed(data):
+            wire = Wire(port)
+            wire.send(data)
+            try:
+                while True:
+                    wire.next()
+            except (Closed, ConnectionResetError):
+                is_served()
+
+        # Connections that say nothing, half a header, close before or in the banner.
+        silent = [Wire(port) for _ in range(50)]
+        Wire(port, banner=False).close()
+        Wire(port, banner=False).reset()
+        half = Wire(port)
+        half.send(header(PLAYER, 0, REQ, 5, 4)[:20])
+        cut = Wire(port)
+        cut.send(message(PLAYER, 0, REQ, 5, struct.pack(">I", 2))[:41])
+        cut.close()
+        is_served()
+        for _ in range(1000):
+            Wire(port, banner=False).close()
+        is_served()
+
+        # What is no Player: scanners, headers that cannot be, sizes that are too large.
+        is_closed(b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n" + b"x" * 40)
+        is_closed(b"\xff" * 40)
+        for seed in range(20):
+            is_closed(b"\xff" + nonsense(seed))
+        for size in (0xFFFFFFFF, 0x7FFFFFFF, 33554433, 1048577):
+            is_closed(header(PLAYER, 0, REQ, 1, size) + bytes(1000))
+        is_closed(header(PLAYER, 0, 0x103, 5, 4) + bytes(4))
+        is_closed(header(PLAYER, 0, REQ, 0x105, 4) + bytes(4))
+        is_closed(header(0x10001, 0, REQ, 5, 4) + bytes(4))
+
+        # Byte by byte, and a thousand messages in one write.
+        slow = Client(port)
+        slow.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        for byte in message(LASER, 0, REQ, 3):
+            slow.send(bytes([byte]))
+        assert slow.next().kind == ACK
+        slow.send(message(LASER, 0, REQ, 3) * 1000)
+        for _ in range(1000):
+            assert slow.next().kind == ACK
+
+        # Wrong sizes and structures of every request: answered, and the stream stays in step.
+        probe = Client(port)
+        probe.subscribe(LASER)
+        probe.unsubscribe(LASER)
+        for subtype in (2, 3, 5, 7, 8, 10, 6, 9, 200):
+            for payload in (b"", b"\0", bytes(3), bytes(27), bytes(1000), b"\xff" * 28, b"\xff" * 64):
+                probe.refused(PLAYER, 0, subtype, payload)
+        for interface in (POSITION2D, LASER, SONAR, RANGER, SIMULATION):
+            for subtype in range(256):
+                for payload in (b"", bytes(2), b"\xff" * 40):
+                    kind, _ = probe.request(interface, 0, subtype, payload)
+                    assert kind in (ACK, NACK)
+        huge = struct.pack(">II", 0xFFFFFFFF, 0xFFFFFFFF)
+        for payload in (huge, huge + bytes(24), struct.pack(">II", 4, 5) + bytes(40), struct.pack(">II", 100, 100) + bytes(8)):
+            probe.refused(SIMULATION, 0, 1, payload)
+            probe.refused(SIMULATION, 0, 5, payload)
+            probe.refused(PLAYER, 0, 3, devaddr(LASER, 0) + struct.pack(">I", 1) + payload)
+
+        # Types that clients do not send are ignored; so are commands to what is not there or not open.
+        for kind in (0, DATA, ACK, SYNCH, NACK, 7, 255):
+            probe.send(message(PLAYER, 0, kind, 1, bytes(8)) + message(LASER, 0, kind, 1, bytes(8)))
+        for interface, index in ((POSITION2D, 0), (POSITION2D, 9), (LASER, 0), (77, 0), (PLAYER, 0), (PLAYER, 3)):
+            for subtype in (0, 1, 2, 3, 4, 255):
+                for payload in (b"", velocity(0.3, 0, 0), bytes(11)):
+                    probe.send(message(interface, index, CMD, subtype, payload))
+        probe.demand(LASER, 0, 3)
+        probe.refused(PLAYER, 1, 1)
+
+        # Devices: wrong access, closed without open, the player device itself.
+        for access in (0, ERROR, 200, 0xFFFFFFFF):
+            kind, answer = probe.request(PLAYER, 0, 3, dev_request(LASER, 0, access))
+            assert kind == NACK and struct.unpack_from(">I", answer, 16)[0] == ERROR
+        assert not probe.access(LASER, 0, CLOSE)
+        assert not probe.access(PLAYER, 0, OPEN)
+        assert not probe.access(LASER, 1, OPEN)
+        assert not probe.access(77, 0, OPEN)
+
+        # Numbers that are none: the robot stays where it is.
+        probe.subscribe(POSITION2D)
+        for value in (math.nan, math.inf, -math.inf):
+            for numbers in ((value, 0, 0), (0, value, 0), (0, 0, value)):
+                probe.command(POSITION2D, 0, 1, velocity(*numbers))
+            probe.refused(POSITION2D, 0, 5, struct.pack(">3d", 0, value, 0))
+        assert abs(rig.driven()) < 0.01
+        probe.command(POSITION2D, 0, 1, velocity(1e308, 1e308, -1e308))
+        probe.command(POSITION2D, 0, 1, velocity(0, 0, 0))
+
+        # Rules by the thousand, and rules of no kind.
+        accepted = sum(probe.request(PLAYER, 0, 10, struct.pack(">5i", -1, i, -1, -1, 1))[0] == ACK for i in range(2000))
+        assert 0 < accepted < 2000
+        probe.refused(PLAYER, 0, 10, struct.pack(">5i", -1, -1, -1, -1, 7))
+        is_served()
+        for wire in silent:
+            wire.close()
+
+
+# A client that never reads: its data and answers are bounded and delay nobody; one that vanishes in the middle of a picture too.
+def stuck():
+    with Rig() as rig:
+        path = f"{rig.work}/eye.sdf"
+        with open(path, "w") as file:
+            file.write("""<sdf version="1.9"><world name="eye"><model name="eye"><static>true</static><link name="l"><sensor name="big" type="camera"><update_rate>20</update_rate>
+<camera><image><width>640</width><height>480</height></image></camera></sensor></link></model></world></sdf>""")
+        rig.sim(world=path)
+        rig.gateway(robots=1)
+        lazy, greedy, reader = Client(rig.ports[0], pull=False), Client(rig.ports[0]), Client(rig.ports[0])
+        for client in (lazy, reader):
+            client.subscribe(CAMERA)
+        greedy.socket.settimeout(0.5)
+        try:
+            while True:  # until the gateway no longer listens to who does not read
+                greedy.send(message(PLAYER, 0, REQ, 1) * 100)
+        except TimeoutError:
+            pass
+        for _ in range(60):
+            reader.read_until(CAMERA)
+        with open(f"/proc/{rig.process.pid}/status") as file:
+            resident = int(re.search(r"VmRSS:\s+(\d+)", file.read())[1])
+        assert resident < 150_000, f"{resident} kB"
+        # The lazy one reads at last: what comes is whole, and after what the sockets held comes the present.
+        newest = reader.stamps[(CAMERA, 0, 1)]
+        while True:
+            got = lazy.next()
+            lazy.check_data(got)
+            assert len(got.payload) == 640 * 480 * 3 + 32
+            if got.stamp >= newest:
+                break
+        # Gone in the middle of a picture.
+        for _ in range(20):
+            gone = Client(rig.ports[0], pull=False)
+            gone.subscribe(CAMERA)
+            gone.take(100)
+            gone.reset()
+        reader.read_until(CAMERA)
+        rig.is_alive()
+
+
+# No descriptors left: who is connected is served, and new clients are when others have gone; nothing spins meanwhile.
+def exhausted():
+    with Rig() as rig:
+        rig.sim()
+        limits = resource.getrlimit(resource.RLIMIT_NOFILE)
+        resource.setrlimit(resource.RLIMIT_NOFILE, (64, limits[1]))
+        try:
+            rig.gateway()
+        finally:
+            resource.setrlimit(resource.RLIMIT_NOFILE, limits)
+        good = Client(rig.ports[0])
+        good.subscribe(LASER)
+        others = [Wire(rig.ports[0], banner=False) for _ in range(80)]
+        await_("a full table", lambda: "no file descriptors left" in rig.log(rig.process))
+        for _ in range(5):
+            good.read_until(LASER)
+        assert rig.log(rig.process).count("no file descriptors left") < 50  # a few a second, not thousands
+        for wire in others:
+            wire.close()
+
+        def connects():
+            try:
+                Client(rig.ports[0]).close()
+                return True
+            except (TimeoutError, AssertionError, Closed, ConnectionResetError):
+                return False
+
+        await_("a new client", connects)
+
+
+{function.__name__: function for function in (listing, drive, flow, rate, two_clients, gateway_ends, restart, late_and_changing, simulation, rangers, sensors, config, bad_input, stuck, exhausted)}[case]()

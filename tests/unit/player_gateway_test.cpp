@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <fstream>
 
+#include "camera_device.h"
 #include "device.h"
 #include "mapping.h"
 #include "outbox.h"
+#include "sensor_devices.h"
 #include "timeline.h"
 
 namespace gateway {
@@ -140,6 +142,59 @@ TEST(SeenRange, is_never_what_ends_a_client) {
   EXPECT_EQ(seen_range(-inf, 0.1, 8), 0.1);
   EXPECT_EQ(seen_range(-1, 0, 8), 0);
   EXPECT_EQ(seen_range(3, 0.1, 8), 3);
+}
+
+std::optional<player::Image> image_of(shm::Format format, std::uint32_t width, std::uint32_t height, std::uint32_t stride,
+                                      std::string_view data) {
+  shm::FrameHead head{};
+  head.width = width;
+  head.height = height;
+  head.format = static_cast<std::uint32_t>(format);
+  head.stride = stride;
+  return to_image(head, std::as_bytes(std::span(data)));
+}
+
+TEST(ToImage, colours_have_the_order_of_player_and_no_gaps) {
+  const auto pixels = [](shm::Format format, std::uint32_t stride, std::string_view data) {
+    const auto image = image_of(format, 2, 2, stride, data);
+    EXPECT_TRUE(image && image->bits == 24 && image->format == player::ImageFormat::rgb888);
+    return image ? image->pixels : std::string();
+  };
+  EXPECT_EQ(pixels(shm::Format::rgb8, 6, "rgbRGB123456"), "rgbRGB123456");
+  EXPECT_EQ(pixels(shm::Format::rgb8, 8, "rgbRGB..123456.."), "rgbRGB123456");
+  EXPECT_EQ(pixels(shm::Format::bgr8, 6, "bgrBGR321654"), "rgbRGB123456");
+  EXPECT_EQ(pixels(shm::Format::rgba8, 8, "rgb.RGB.123.456."), "rgbRGB123456");
+  EXPECT_EQ(pixels(shm::Format::bgra8, 8, "bgr.BGR.321.654."), "rgbRGB123456");
+  EXPECT_EQ(pixels(shm::Format::bayer_rggb8, 2, "7777"), "777777777777");
+}
+
+TEST(ToImage, grey_of_16_bits_has_the_high_byte_first) {
+  const auto wide = image_of(shm::Format::mono16, 2, 1, 4, "lhLH");
+  ASSERT_TRUE(wide);
+  EXPECT_EQ(wide->pixels, "hlHL");
+  EXPECT_EQ(wide->bits, 16U);
+  const auto narrow = image_of(shm::Format::mono8, 2, 2, 3, "ab.cd.");
+  ASSERT_TRUE(narrow);
+  EXPECT_EQ(narrow->pixels, "abcd");
+}
+
+TEST(ToImage, frame_that_is_no_picture_or_too_short_is_none) {
+  EXPECT_FALSE(image_of(shm::Format::depth_float, 1, 1, 4, "abcd"));
+  EXPECT_FALSE(image_of(shm::Format::rgb8, 2, 2, 6, "rgbRGB"));
+  EXPECT_FALSE(image_of(shm::Format::rgb8, 2, 2, 3, "rgbRGB123456"));
+  EXPECT_FALSE(image_of(shm::Format::rgb8, 0, 2, 0, ""));
+  EXPECT_FALSE(image_of(static_cast<shm::Format>(99), 1, 1, 4, "abcd"));
+}
+
+// On the central meridian of a zone the easting is 500 km, and at the equator the northing is 0; the quarter of the meridian is
+// 10001965.729 m.
+TEST(Utm, known_places) {
+  constexpr double degree = 3.14159265358979323846 / 180;
+  EXPECT_NEAR(to_utm(0, 9 * degree).east, 500000, 1e-6);
+  EXPECT_NEAR(to_utm(0, 9 * degree).north, 0, 1e-6);
+  EXPECT_NEAR(to_utm(90 * degree, 9 * degree).north, 0.9996 * 10001965.729, 0.01);
+  EXPECT_NEAR(to_utm(0, 12 * degree - 1e-12).east, 833978.557, 0.01);  // the edge of zone 32
+  EXPECT_NEAR(to_utm(-1e-9, 9 * degree).north, 10000000, 0.01);
 }
 
 const std::vector<ListedIface> world = {{shm::IfaceType::truth, "box", "box"},
