@@ -56,7 +56,7 @@ install(TARGETS base rt_core rt_corba openrtm coil rtm_idl LIBRARY DESTINATION $
 set(package_share ${PROJECT_BINARY_DIR}/share)
 set(package_pages)
 get_property(package_component_programs GLOBAL PROPERTY RTMSIM_COMPONENT_PROGRAMS)
-foreach(program rtcd rtse sim-server simctl player-gateway ${package_component_programs})
+foreach(program rtcd rtse sim-server simctl player-gateway follow ${package_component_programs})
   if(TARGET ${program})
     if(NOT program IN_LIST package_component_programs)
       install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

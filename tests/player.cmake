@@ -6,3 +6,10 @@ foreach(case listing drive flow rate two_clients gateway_ends restart late_and_c
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/player.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(player.${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
+
+rtmsim_test(leader_follower_test unit/leader_follower_test.cpp LIBRARIES leader_follower)
+foreach(case leader losses wrong_servers)
+  add_test(NAME follow.${case}
+    COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/follow.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+  set_tests_properties(follow.${case} PROPERTIES LABELS integration TIMEOUT 300)
+endforeach()
