@@ -4,13 +4,14 @@ import math
 import random
 import re
 import resource
+import signal
 import socket
 import struct
 import subprocess
 import sys
 
 from player_peer import *
-from system import System, await_
+from system import System, await_, is_stopped
 
 case, bin_dir, lib_dir, source = sys.argv[1:]
 
@@ -304,6 +305,27 @@ def restart():
             client.command(POSITION2D, 0, 1, velocity(0.3, 0, 0))
             client.read_until(POSITION2D, good=lambda p: Position(p).velocity[0] > 0.25)
         assert len(rig.lines()) == 2, rig.lines()
+
+
+# The simulator hangs: who asks it something is refused before a client's patience is over, everybody else is served as ever.
+def hung():
+    with started() as rig:
+        asking, other = Client(rig.ports[0]), Client(rig.ports[0])
+        asking.subscribe(SIMULATION)
+        other.subscribe(POSITION2D)
+        other.read()
+        rig.simulator.send_signal(signal.SIGSTOP)
+        await_("a simulator that hangs", lambda: is_stopped(rig.simulator))
+        asking.send(message(SIMULATION, 0, REQ, 1, text("first") + bytes(24)))
+        for _ in range(100):
+            other.demand(POSITION2D, 0, 1)
+            assert len(other.devices()) == 6
+        asking.socket.settimeout(5)  # as long as libplayerc waits
+        got = asking.next()
+        assert (got.kind, got.key()) == (NACK, (SIMULATION, 0, 1)), got
+        rig.simulator.send_signal(signal.SIGCONT)
+        other.read()
+        asking.demand(SIMULATION, 0, 1, text("first") + bytes(24))
 
 
 # Started before the simulator, the gateway waits; a model that comes later gets a port, one that goes leaves it without devices.
@@ -696,4 +718,4 @@ def exhausted():
         await_("a new client", connects)
 
 
-{function.__name__: function for function in (listing, drive, flow, rate, two_clients, gateway_ends, restart, late_and_changing, simulation, rangers, sensors, config, bad_input, stuck, exhausted)}[case]()
+{function.__name__: function for function in (listing, drive, flow, rate, two_clients, gateway_ends, restart, hung, late_and_changing, simulation, rangers, sensors, config, bad_input, stuck, exhausted)}[case]()
