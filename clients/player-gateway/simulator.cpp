@@ -1,5 +1,7 @@
 #include "simulator.h"
 
+#include <algorithm>
+
 #include "base/log.h"
 
 namespace gateway {
@@ -18,14 +20,16 @@ void Simulator::look() {
     has_list_ = false;
     found_.clear();
   }
-  bool is_stale = !has_list_;
+  std::pair<std::uint32_t, std::uint32_t> present = listed_;
   if (world_->iface().read()) {
     const auto& sample = world_->iface().sample<shm::SimulationSample>();
-    is_stale = is_stale || listed_ != std::pair(sample.ifaces, sample.models);
-    listed_ = {sample.ifaces, sample.models};
+    present = {sample.ifaces, sample.models};
   }
-  for (const auto& source : sources()) is_stale = is_stale || source->iface().status() != shm::Status::live;
-  if (is_stale) list();
+  const auto used = sources();
+  const bool is_one_gone = std::any_of(used.begin(), used.end(), [](const auto& one) { return one->is_closed(); });
+  if (is_listing_ || (has_list_ && present == listed_ && !is_one_gone)) return;
+  listed_ = present;  // what comes after the list was asked for is seen at the next look
+  list();
 }
 
 void Simulator::lose() {
@@ -36,7 +40,6 @@ void Simulator::lose() {
 }
 
 void Simulator::list() {
-  if (is_listing_) return;
   is_listing_ = true;
   has_list_ = true;
   errands_.post(shm::ListRequest{}, [this, met = met_](const base::Result<shm::Reply>& reply) {
@@ -51,7 +54,7 @@ std::shared_ptr<Source> Simulator::find(shm::IfaceType type, const std::string& 
   if (!world_) return nullptr;
   if (type == shm::IfaceType::simulation) return world_;
   auto& known = found_[{type, name}];
-  if (auto source = known.lock(); source && source->iface().status() == shm::Status::live) return source;
+  if (auto source = known.lock(); source && !source->is_closed()) return source;
   auto source = Source::open(server_id_, type, name, met_);
   if (!source) {
     base::log(base::Level::warn, "player-gateway", "{}", source.error().message);

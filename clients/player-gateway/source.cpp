@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "shm/words.h"
+
 namespace gateway {
 
 base::Result<std::shared_ptr<Source>> Source::open(std::uint32_t server_id, shm::IfaceType type, const std::string& name,
@@ -10,6 +12,8 @@ base::Result<std::shared_ptr<Source>> Source::open(std::uint32_t server_id, shm:
   if (!iface) return iface.error();
   return std::shared_ptr<Source>(new Source(std::move(*iface), server));
 }
+
+bool Source::is_closed() const { return shm::load(iface_.segment().header().state) != RTMSIM_STATE_LIVE; }
 
 base::Result<void> Source::add_reader() {
   if (readers_ == 0) {

@@ -19,6 +19,8 @@ class Source {
 
   shm::Iface& iface() { return iface_; }
   std::uint64_t server() const { return server_; }
+  // Its simulator has taken it away, or another has come. One load; a simulator that was killed says nothing.
+  bool is_closed() const;
 
   // Each needs its end. Fails when the iface is gone or has no lease left.
   base::Result<void> add_reader();
