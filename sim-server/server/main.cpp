@@ -105,10 +105,9 @@ int run(const Options& options, Signals& signals) {
 
   auto access = shm::parse_access(options.shm_mode, options.shm_group);
   if (!access) return fail(access.error().message);
-  // Who only looks takes no server's place; ids of this kind cannot be asked for. Nobody else removes what such a one leaves when it is
-  // killed.
-  const std::uint32_t server_id = options.check ? 100'000'000 + static_cast<std::uint32_t>(getpid()) : options.server_id;
-  if (options.check) shm::remove_stale();
+  // Who only looks takes no server's place; ids of this kind cannot be asked for.
+  const std::uint32_t server_id = options.check ? shm::first_unnamed_server + static_cast<std::uint32_t>(getpid()) : options.server_id;
+  if (options.check) shm::remove_stale(shm::first_unnamed_server);
   auto server = shm::Server::start({.server_id = server_id, .access = *access});
   if (!server) return fail(server.error().message);
   shm::SimulationInfo info{};

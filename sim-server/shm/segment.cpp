@@ -405,10 +405,10 @@ std::vector<Found> find_segments(std::uint32_t server_id) {
   return found;
 }
 
-std::vector<std::string> remove_stale(std::optional<std::uint32_t> server_id) {
+std::vector<std::string> remove_stale(std::uint32_t first_server, std::uint32_t last_server) {
   std::vector<std::string> removed;
   for (const auto& name : all_names()) {
-    if (name.uid != ::geteuid() || (server_id && name.server_id != *server_id)) continue;
+    if (name.uid != ::geteuid() || name.server_id < first_server || name.server_id > last_server) continue;
     auto eviction = evict(name);
     if (eviction && eviction->judgement == Judgement::removed) removed.push_back(name.text());
   }

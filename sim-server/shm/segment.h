@@ -109,8 +109,11 @@ struct Found {
 std::vector<Found> find_segments();
 std::vector<Found> find_segments(std::uint32_t server_id);
 
-// Removes the segments of dead servers that belong to this user; returns their names.
-std::vector<std::string> remove_stale(std::optional<std::uint32_t> server_id = std::nullopt);
+// Server ids from this one on are of `sim-server --check`, whose segments no next server of the same id replaces.
+inline constexpr std::uint32_t first_unnamed_server = 100'000'000;
+
+// Removes the segments of dead servers with these ids that belong to this user; returns their names.
+std::vector<std::string> remove_stale(std::uint32_t first_server = 0, std::uint32_t last_server = ~std::uint32_t{0});
 
 // Removes all names that this process has made, for one that ends without destructors. Readers are told.
 void remove_own();

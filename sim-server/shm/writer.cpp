@@ -162,7 +162,7 @@ Server::Server(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Server::~Server() = default;
 
 base::Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options) {
-  remove_stale(options.server_id);
+  remove_stale(options.server_id, options.server_id);
   for (const Found& found : find_segments(options.server_id)) {
     if (found.name.uid != ::geteuid() || !found.is_alive) continue;
     if (found.server.pid != own_mark().pid) {

@@ -481,8 +481,8 @@ void dump(Control& control, const std::string& name) {
   control.print(json);
 }
 
-void clean(Control& control) {
-  const auto removed = shm::remove_stale();
+void clean(Control& control, bool is_of_one_server) {
+  const auto removed = is_of_one_server ? shm::remove_stale(control.server_id(), control.server_id()) : shm::remove_stale();
   if (control.json()) return control.print(Json(removed));
   for (const auto& name : removed) std::cout << "removed " << name << '\n';
 }

@@ -53,7 +53,11 @@ void add_looks(CLI::App& app, Work& work) {
   tree->add_option("MODEL", *model, "One model only");
   tree->callback([&work, model] { work = [model](Control& c) { simctl::tree(c, *model); }; });
 
-  add_simple(app, work, "clean", "Remove what crashed servers have left in shared memory", simctl::clean);
+  auto* clean = app.add_subcommand("clean", "Remove what crashed servers have left in shared memory; with -s, what that one has");
+  clean->callback([&app, &work] {
+    const bool is_named = app.get_option("--server-id")->count() > 0;
+    work = [is_named](Control& c) { simctl::clean(c, is_named); };
+  });
 }
 
 void add_control(CLI::App& app, Work& work) {

@@ -71,7 +71,7 @@ void stats(Control& control);
 void participants(Control& control);
 void tree(Control& control, const std::string& model);
 void dump(Control& control, const std::string& name);
-void clean(Control& control);
+void clean(Control& control, bool is_of_one_server);
 // PNG frames into a folder, or an mp4 when ffmpeg is installed.
 void record(Control& control, const std::string& camera, const std::string& target, int frames, double seconds);
 

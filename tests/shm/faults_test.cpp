@@ -203,8 +203,26 @@ TEST(Faults, a_server_killed_at_random_points_is_replaced_at_once_and_its_reader
   EXPECT_EQ(asker.kill_now(), SIGKILL);
   EXPECT_EQ(participant.kill_now(), SIGKILL);
   EXPECT_FALSE(Iface::open(id, IfaceType::laser, "laser"));
-  remove_stale(id);
+  remove_stale(id, id);
   EXPECT_TRUE(find_segments(id).empty());
+}
+
+// What is cleaned up for one server, or for those that only check a world, is theirs: readers of another dead server see it as it died.
+TEST(Faults, cleaning_up_leaves_other_servers_alone) {
+  const std::uint32_t id = fresh_server_id(), other = fresh_server_id();
+  for (const std::uint32_t server : {id, other}) {
+    Helper process("serve", server);
+    while (!Iface::open(server, IfaceType::laser, "laser")) std::this_thread::yield();
+    EXPECT_EQ(process.kill_now(), SIGKILL);
+  }
+  const auto left = find_segments(other).size();
+  ASSERT_GT(left, 0U);
+  remove_stale(first_unnamed_server);
+  remove_stale(id, id);
+  EXPECT_TRUE(find_segments(id).empty());
+  EXPECT_EQ(find_segments(other).size(), left);
+  remove_stale(other, other);
+  EXPECT_TRUE(find_segments(other).empty());
 }
 
 TEST(Faults, a_living_server_is_refused_and_a_dead_one_replaced) {
@@ -244,7 +262,7 @@ TEST(Faults, of_several_servers_that_start_at_once_exactly_one_gets_a_stale_name
     } while (survivors != 1 && std::chrono::steady_clock::now() < deadline);
     EXPECT_EQ(survivors, 1);
     servers.clear();
-    remove_stale(id);
+    remove_stale(id, id);
   }
 }
 
