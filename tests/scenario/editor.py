@@ -53,6 +53,21 @@ def closed_pipe():
     assert done.returncode == 1 and "cannot be written" in done.stderr, done
 
 
+# Ports of different types are connected when one end turns the one type into the other.
+def converted_types():
+    host = up("SourceAll", "SinkAll", options=("-o", "manager.modules.preload:Wrappers.so"))
+    ports = ("SourceAll0:short", "SinkAll0:double")
+    refused("con", *ports, says="carry different types")
+    refused("con", *ports, "-p", "dataport.outport.marshaling_type=cdr", says="carry different types")
+    rig.rtse("con", *ports, "-p", "dataport.outport.marshaling_type=cdr:RTC/TimedDouble:RTC/TimedShort")
+    rig.rtse("act", "SinkAll0", "SourceAll0")
+    await_("numbers that came as others", lambda: "double: 3.0" in rig.log(host))
+    rig.rtse("save", rig.path("converted.xml"))
+    rig.rtse("teardown", rig.path("converted.xml"))
+    rig.rtse("load", rig.path("converted.xml"))
+    rig.rtse("check", rig.path("converted.xml"))
+
+
 # A process that only hangs is not gone; one that died is.
 def hung_is_not_gone():
     up("SourceAll")
