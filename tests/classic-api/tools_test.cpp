@@ -12,8 +12,14 @@
 #include <rtm/Manager.h>
 #include <rtm/ManagerServant.h>
 #include <rtm/NamingManager.h>
+#include <rtm/RingBuffer.h>
+#include <rtm/config_rtc.h>
 
 #include <thread>
+
+#ifndef ORB_IS_OMNIORB
+#error "headers that older tools have generated find no ORB"
+#endif
 
 namespace {
 
@@ -162,6 +168,46 @@ TEST(Tools, protected_members_of_ports_and_the_manager_are_there) {
   auto* host = static_cast<Host*>(manager);
   ASSERT_NE(host->servant(), nullptr);
   EXPECT_EQ(host->servant(), &manager->getManagerServant());
+}
+
+TEST(Tools, interfaces_have_repository_ids_as_data_types_have) {
+  EXPECT_STREQ(CORBA_Util::toRepositoryId<RTC::TimedLong>(), "IDL:RTC/TimedLong:1.0");
+  EXPECT_STREQ(CORBA_Util::toRepositoryId<RTC::RTObject>(), "IDL:omg.org/RTC/RTObject:1.0");
+  EXPECT_STREQ(CORBA_Util::toRepositoryIdOfObject<RTC::RTObject>(), "IDL:omg.org/RTC/RTObject:1.0");
+}
+
+TEST(Tools, a_ring_buffer_keeps_its_length_and_its_policies) {
+  RTC::RingBuffer<int> buffer(2);
+  int value = 0;
+  EXPECT_EQ(buffer.read(value), RTC::BufferStatus::BUFFER_EMPTY);
+  for (int i = 1; i <= 3; ++i) EXPECT_EQ(buffer.write(i), RTC::BufferStatus::BUFFER_OK);
+  EXPECT_TRUE(buffer.full());
+  EXPECT_EQ(buffer.get(value), RTC::BufferStatus::BUFFER_OK);
+  EXPECT_EQ(value, 2);
+  EXPECT_EQ(buffer.read(value), RTC::BufferStatus::BUFFER_OK);
+  EXPECT_EQ(buffer.read(value), RTC::BufferStatus::BUFFER_OK);
+  EXPECT_EQ(value, 3);
+  EXPECT_TRUE(buffer.empty());
+  value = 0;
+  EXPECT_EQ(buffer.read(value), RTC::BufferStatus::BUFFER_OK);  // the last again
+  EXPECT_EQ(value, 3);
+  EXPECT_EQ(buffer.read(value, 0, 1000), RTC::BufferStatus::TIMEOUT);
+
+  coil::Properties policies;
+  policies["length"] = "1";
+  policies["write.full_policy"] = "do_nothing";
+  policies["read.empty_policy"] = "block";
+  policies["read.timeout"] = "60";
+  buffer.init(policies);
+  EXPECT_EQ(buffer.length(), 1u);
+  EXPECT_EQ(buffer.write(5), RTC::BufferStatus::BUFFER_OK);
+  EXPECT_EQ(buffer.write(6), RTC::BufferStatus::BUFFER_FULL);
+  EXPECT_EQ(buffer.read(value), RTC::BufferStatus::BUFFER_OK);
+  std::thread writer([&] { buffer.write(7); });
+  EXPECT_EQ(buffer.read(value), RTC::BufferStatus::BUFFER_OK);
+  EXPECT_EQ(value, 7);
+  writer.join();
+  EXPECT_STREQ(RTC::BufferStatus::toString(RTC::BufferStatus::TIMEOUT), "TIMEOUT");
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "rtm/PortCallback.h"
 #include "rtm/Serializers.h"
 #include "rtm/Timestamp.h"
+#include "rtm/Typename.h"
 
 namespace RTC {
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <coil/config_coil.h>
+#include <rtm/config_rtc.h>
 #include <rtm/version.h>
 
 #include <rtm/idl/RTCSkel.h>

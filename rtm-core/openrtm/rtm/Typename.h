@@ -1,12 +1,15 @@
-// The repository id of a data type. Any thread.
+// The repository id of a data type or of an interface. Any thread.
 #pragma once
 
 #include "corba/type_ops.h"
 
-// "IDL:RTC/TimedLong:1.0".
+// "IDL:RTC/TimedLong:1.0", "IDL:OpenRTM/Logger:1.0".
 template <class DataType>
 const char* toTypename() {
-  return corba::type_ops<DataType>().type_id.c_str();
+  if constexpr (requires { DataType::_PD_repoId; })
+    return DataType::_PD_repoId;
+  else
+    return corba::type_ops<DataType>().type_id.c_str();
 }
 
 template <class DataType>
@@ -26,6 +29,10 @@ const char* toRepositoryId() {
 }
 template <class DataType>
 const char* toRepositoryIdOfStruct() {
+  return ::toTypename<DataType>();
+}
+template <class DataType>
+const char* toRepositoryIdOfObject() {
   return ::toTypename<DataType>();
 }
 
