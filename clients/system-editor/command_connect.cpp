@@ -1,6 +1,7 @@
 // con, dis.
 #include <algorithm>
 #include <iostream>
+#include <set>
 
 #include "base/text.h"
 #include "editor.h"
@@ -213,8 +214,10 @@ void disconnect_all(Editor& editor, const std::string& path) {
     if (!component) return editor.fail(component.error());
     ports = component->ports;
   }
+  std::set<std::string> ids;  // both ends may be among the ports
   for (const auto& port : ports) {
     for (const auto& connector : port.connectors) {
+      if (!ids.insert(connector.id).second) continue;
       if (const auto done = disconnect_connector(port, connector.id); !done) editor.fail(done.error());
     }
   }

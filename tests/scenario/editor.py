@@ -129,6 +129,14 @@ def delete_names():
     assert "deleted" in rig.rtse("del", "--force", context)
 
 
+# A component that is connected to itself has each connection twice; it is taken apart once.
+def disconnect_own_ports():
+    up("Filter")
+    rig.rtse("con", "Filter0:out", "Filter0:in", "-i", "loop")
+    rig.rtse("dis", "Filter0")
+    refused("dis", "-i", "loop", says="no port has it")
+
+
 # The reasons are told apart.
 def why_not():
     up("SourceAll", "SinkAll", "EchoProvider")
