@@ -103,6 +103,7 @@ class MembersContext : public virtual RTC::PeriodicExecutionContext {
       {
         Guard guard(m_worker.mutex_);
         while (!m_worker.running_) m_worker.cond_.wait();
+        Guard another(m_workerthread.mutex_);
         std::for_each(m_comps.begin(), m_comps.end(), invoke_worker());
       }
       coil::sleep(m_period);
@@ -197,6 +198,7 @@ TEST(AuthorContext, finds_its_members_and_their_states) {
     if (callback == "onActivated") context->get_component_state(self);
     if (callback == "onExecute") {
       EXPECT_EQ(context->activate_component(self), RTC::PRECONDITION_NOT_MET);
+      EXPECT_EQ(context->set_rate(700), RTC::RTC_OK);
     }
   };
   ASSERT_EQ(context->activate_component(self), RTC::RTC_OK);

@@ -90,14 +90,8 @@ void PeriodicExecutionContext::onWakeUp() {
 }
 
 void PeriodicExecutionContext::wakeLoop() {
-  // Loops of 1.1 hold this mutex while they call components, which may ask for transitions: without it.
-  m_worker.running_ = true;
-  m_worker.cond_.broadcast();
-  {
-    const Guard guard(m_workerthread.mutex_);
-    m_workerthread.running_ = true;
-  }
-  m_workerthread.cond_.broadcast();
+  m_worker.wake();
+  m_workerthread.wake();
 }
 
 bool PeriodicExecutionContext::threadRunning() const { return !worker_->is_stopping(); }

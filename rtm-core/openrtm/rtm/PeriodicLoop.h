@@ -22,7 +22,8 @@ class ExecutionContextBase;
 
 namespace detail {
 
-// Waits with the mutex that it was made with (1.x) or with a lock that the caller has (2.x). Any thread.
+// Waits with the mutex that it was made with (1.x) or with a lock that the caller has (2.x). Waits end now and then without a signal. Any
+// thread.
 class LoopCondition {
  public:
   explicit LoopCondition(coil::Mutex& mutex) : mutex_(mutex) {}
@@ -31,15 +32,16 @@ class LoopCondition {
   void notify_one() { condition_.notify_one(); }
   void notify_all() { condition_.notify_all(); }
   bool wait() {
-    condition_.wait(mutex_);
+    condition_.wait_for(mutex_, longest_);
     return true;
   }
   template <class Lock>
   void wait(Lock& lock) {
-    condition_.wait(lock);
+    condition_.wait_for(lock, longest_);
   }
 
  private:
+  static constexpr std::chrono::milliseconds longest_{50};
   std::condition_variable_any condition_;
   coil::Mutex& mutex_;
 };
@@ -49,6 +51,13 @@ struct LoopWorker {
   coil::Mutex mutex_;
   LoopCondition cond_{mutex_};
   std::atomic<bool> running_{true};
+  // Does not wait for the mutex: loops hold it while they call components, which may hang or ask for transitions themselves. A loop that
+  // has just seen running_ false and begins to wait sees it true when its wait ends by itself.
+  void wake() {
+    running_ = true;
+    if (mutex_.try_lock()) mutex_.unlock();
+    cond_.broadcast();
+  }
 };
 
 // Under one name two things of different versions.
