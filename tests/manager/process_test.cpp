@@ -73,7 +73,8 @@ TEST_F(Rtcd, contexts_with_an_author_s_own_loop_run_stop_and_change_their_rate) 
                  "manager.components.precreate:" + makes(type) + ",SinkAll", "-o",
                  "manager.components.preconnect:SourceAll0.long?port=SinkAll0.long", "-o",
                  "manager.components.preactivation:SourceAll0,SinkAll0"}));
-    ASSERT_TRUE(rtcd.wait_for_output("long: 3\n")) << type << rtcd.output();
+    // Any sample: StepEC is faster than the sink, whose buffer drops some.
+    ASSERT_TRUE(rtcd.wait_for_output("long: ")) << type << rtcd.output();
     const bool says_members = type != "TimedLoop" || rtcd.wait_for_output("member SourceAll0 of 10000 us");
     EXPECT_TRUE(says_members) << rtcd.output();
     RTC::RTObject_var source = component("SourceAll0.rtc");
