@@ -1,5 +1,6 @@
 #include "render/frustum.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sim {
@@ -38,6 +39,16 @@ std::array<Eigen::Vector4d, 6> frustum_planes(const Eigen::Matrix4d& m) {
   }
   for (auto& plane : planes) plane /= plane.head<3>().norm();
   return planes;
+}
+
+bool is_box_outside(const Eigen::AlignedBox3d& box, const Eigen::Matrix4d& place, const std::array<Eigen::Vector4d, 6>& planes) {
+  const Eigen::Vector3d centre = (place * box.center().homogeneous()).head<3>();
+  const Eigen::Matrix3d sides = place.topLeftCorner<3, 3>() * (0.5 * box.sizes()).asDiagonal();
+  return std::any_of(planes.begin(), planes.end(), [&](const Eigen::Vector4d& plane) {
+    const Eigen::Vector3d normal = plane.head<3>();
+    const double reach = (normal.transpose() * sides).cwiseAbs().sum();
+    return normal.dot(centre) + plane.w() < -reach - 1e-6 * (1 + reach);
+  });
 }
 
 View View::pinhole(const Eigen::Isometry3d& pose, double horizontal_fov, int width, int height) {

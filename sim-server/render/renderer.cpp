@@ -141,6 +141,11 @@ void Renderer::Impl::choose(const Scene& scene, std::span<const Eigen::Isometry3
     }
     Item item{&drawable, centre.norm() - drawable.radius, (pose * drawable.in_link).matrix()};
     item.model.topRightCorner<3, 1>() -= eye;
+    // Finer than its sphere: a camera hangs within that of what carries it.
+    if (is_box_outside(drawable.bounds(), item.model, planes)) {
+      ++statistics_.culled;
+      continue;
+    }
     items_.push_back(item);
   }
   const auto group = [](const Item& item) { return item.drawable->material.is_transparent ? 2 : item.drawable->is_ground ? 1 : 0; };
@@ -158,7 +163,12 @@ ShadowView Renderer::Impl::shadow_view(std::span<const Eigen::Isometry3d> poses,
   out.focus = out.eye + 20 * view.pose.linear().col(0);
   out.planes = frustum_planes(projection_);
   out.floor = std::numeric_limits<double>::infinity();
-  for (const auto& item : items_) out.floor = std::min(out.floor, item.drawable->bounds_at(poses[item.drawable->link]).min().z());
+  out.ceiling = -out.floor;
+  for (const auto& item : items_) {
+    const Eigen::AlignedBox3d box = item.drawable->bounds_at(poses[item.drawable->link]);
+    out.floor = std::min(out.floor, box.min().z());
+    out.ceiling = std::max(out.ceiling, box.max().z());
+  }
   return out;
 }
 

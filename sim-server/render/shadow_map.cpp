@@ -103,14 +103,15 @@ bool ShadowMap::still_fits(const Scene& scene, std::span<const Eigen::Isometry3d
   return true;
 }
 
-// Whether the shadow of the sphere round it, down to the floor, is not wholly on the outer side of one plane.
+// Whether the shadow of the sphere round it, from the ceiling to the floor, is not wholly on the outer side of one plane.
 bool ShadowMap::may_be_seen(const Drawable& drawable, const Eigen::Isometry3d& pose, const ShadowView& view) const {
   constexpr double flattest = 0.05;  // below, shadows have no end
   if (to_light_.z() < flattest) return true;
   const Eigen::Vector3d centre = pose * drawable.centre;
   const double radius = drawable.radius + 4 * texel_;
-  const double length = std::max(0.0, (centre.z() + radius - view.floor) / to_light_.z());
-  const Eigen::Vector3d begin = centre - view.eye, end = begin - length * to_light_;
+  const auto way_to = [&](double z) { return std::max(0.0, (centre.z() - z) / to_light_.z()); };
+  const Eigen::Vector3d begin = centre - way_to(view.ceiling + radius) * to_light_ - view.eye;
+  const Eigen::Vector3d end = centre - way_to(view.floor - radius) * to_light_ - view.eye;
   return std::none_of(view.planes.begin(), view.planes.end(), [&](const Eigen::Vector4d& plane) {
     return std::max(plane.head<3>().dot(begin), plane.head<3>().dot(end)) + plane.w() < -radius;
   });

@@ -11,12 +11,12 @@
 
 namespace sim {
 
-// Where a picture can show shadows: in a frustum, and not below all that it shows.
+// Where a picture can show shadows: in a frustum, neither above nor below all that it shows.
 struct ShadowView {
   Eigen::Vector3d eye{0, 0, 0};
   Eigen::Vector3d focus{0, 0, 0};         // the place that matters most
   std::array<Eigen::Vector4d, 6> planes;  // frustum_planes(), relative to the eye
-  double floor = 0;                       // [m] z of the lowest point
+  double floor = 0, ceiling = 0;          // [m] z of the lowest and the highest point
 };
 
 class ShadowMap {

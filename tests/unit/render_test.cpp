@@ -187,6 +187,46 @@ TEST(Render, same_calls_make_the_same_bytes_in_any_thread) {
   EXPECT_EQ(images[0].rgba, images[2].rgba);
 }
 
+TEST(Render, what_carries_the_camera_and_is_not_in_its_view_is_not_drawn) {
+  WorldDef world = test::dark_world();
+  world.models.push_back(one_visual_model("carrier", BoxShape{{4, 1, 0.2}}, at(0, 0, 0.2, 0.3), plain_material({1, 1, 1, 1})));
+  const auto renderer = open_renderer();
+  Studio studio(world, *renderer);
+  (void)studio.picture(View::pinhole(at(0, 0, 0, 0, M_PI / 2), 1.0, 64, 64));
+  EXPECT_EQ(studio.renderer->statistics().drawn, 0U);
+  (void)studio.picture(View::pinhole(at(0, 0, 0, 0, -M_PI / 2), 1.0, 64, 64));
+  EXPECT_EQ(studio.renderer->statistics().drawn, 1U);
+}
+
+// Long things, of which a view often sees an end alone.
+TEST(Render, what_reaches_into_the_view_is_drawn) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (int round = 0; round < 40; ++round) {
+    const Box box{at(4 + unit(random), 2 * unit(random), 2 * unit(random), 3 * unit(random), unit(random), unit(random)), {4, 0.4, 0.3}};
+    WorldDef world = test::dark_world();
+    world.models.push_back(one_visual_model("bar", BoxShape{box.size}, box.pose, glowing_material({1, 1, 1, 1})));
+    Studio studio(world);
+    for (int look = 0; look < 8; ++look) {
+      const Eigen::Isometry3d camera = at(0, 0, 0, 0.8 * unit(random), 0.8 * unit(random), unit(random));
+      const Image image = studio.picture(View::pinhole(camera, 0.3, 24, 24));
+      const double focal = 12 / std::tan(0.15);
+      int wrong = 0;
+      for (int y = 0; y < 24; ++y) {
+        for (int x = 0; x < 24; ++x) {
+          const auto meets = [&](double dx, double dy) {
+            return std::isfinite(ray_to_box(
+                {0, 0, 0}, camera.linear() * Eigen::Vector3d(1, (11.5 - x + dx) / focal, (11.5 - y + dy) / focal), box.pose, box.size));
+          };
+          const bool is_whole = meets(-0.6, -0.6) && meets(0.6, -0.6) && meets(-0.6, 0.6) && meets(0.6, 0.6);
+          wrong += is_whole && pixel(image, x, y)[0] != 255 ? 1 : 0;
+        }
+      }
+      EXPECT_EQ(wrong, 0) << "round " << round << " look " << look;
+    }
+  }
+}
+
 TEST(Render, what_lies_outside_the_view_is_not_drawn) {
   WorldDef world = test::dark_world();
   for (int i = 0; i < 10; ++i)
