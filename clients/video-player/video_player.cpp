@@ -37,6 +37,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::milliseconds longest_wait{50};
+constexpr std::chrono::milliseconds longest_work{100}, longest_tick{1000};  // of reading in one cycle
 constexpr std::chrono::milliseconds title_period{500};
 
 class FrameListener : public RTC::ConnectorDataListenerT<RTC::CameraImage> {
@@ -156,7 +157,13 @@ void VideoPlayer::wait_for_frame() {
 RTC::ReturnCode_t VideoPlayer::onExecute(RTC::UniqueId ec_id) {
   if (!open_records()) return RTC::RTC_ERROR;  // it may change meanwhile
   if (in_real_time() && !image_in_.isNew()) wait_for_frame();
-  while (image_in_.isNew() && image_in_.read()) take(image_);
+  // Frames may come faster than they can be recorded. What is left after this time waits for the next cycle, or is dropped: keys,
+  // configuration and transitions must have their turn. In simulated time a cycle takes all that has come, as far as anybody can wait.
+  const auto end = Clock::now() + (in_real_time() ? longest_work : longest_tick);
+  while (image_in_.isNew() && image_in_.read()) {
+    take(image_);
+    if (Clock::now() >= end) break;
+  }
   if (window_) handle_events(ec_id);
   update_title();
   return RTC::RTC_OK;
@@ -177,6 +184,7 @@ void VideoPlayer::take(const RTC::CameraImage& image) {
   }
   ++frames_;
   picture_ = std::make_shared<const video::Picture>(std::move(*picture));
+  picture_time_ = image.tm.sec + image.tm.nsec * 1e-9;
   if (window_) window_->show(picture_);
   if (!record_dir_.empty()) record();
 }
@@ -244,8 +252,8 @@ void VideoPlayer::write_title() {
   if (!window_) return;
   char title[200];
   std::snprintf(title, sizeof title, "%s  %dx%d  %.1f frames/s  t = %.2f s  dropped %llu%s", getInstanceName(), picture_->width,
-                picture_->height, rate_, image_.tm.sec + image_.tm.nsec * 1e-9,
-                static_cast<unsigned long long>(dropped_.load(std::memory_order_relaxed)), is_paused_ ? "  paused" : "");
+                picture_->height, rate_, picture_time_, static_cast<unsigned long long>(dropped_.load(std::memory_order_relaxed)),
+                is_paused_ ? "  paused" : "");
   window_->set_title(title);
 }
 

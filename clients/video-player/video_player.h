@@ -58,6 +58,7 @@ class VideoPlayer : public RTC::DataFlowComponentBase {
 
   std::unique_ptr<video::Window> window_;
   std::shared_ptr<const video::Picture> picture_ = std::make_shared<video::Picture>();
+  double picture_time_ = 0;  // [s] of simulated time
   bool is_paused_ = false;
   std::uint64_t frames_ = 0;
   std::string recording_to_;    // the record_dir that is open

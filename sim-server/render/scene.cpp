@@ -97,12 +97,14 @@ class Builder {
     seen.link = index;
     seen.skin = actor.skin.empty() ? nullptr : assets_.skin(actor.skin, actor.skin_scale);
     if (seen.skin) add_skin(actor, seen);
-    if (!actor.skin.empty() && !seen.skin) {
+    if (!actor.skin.empty() && !seen.skin && content_ == Scene::Content::visuals) {
       VisualDef missing;
       missing.geometry = MeshShape{missing_file, {}, false, Eigen::Vector3d::Ones()};
       add(missing, index);
     }
-    for (const auto& visual : actor.visuals) add(visual, index);
+    for (const auto& visual : actor.visuals) {
+      if (content_ == Scene::Content::visuals) add(visual, index);  // actors are met by nothing
+    }
     entry.link_count = static_cast<std::uint32_t>(scene_.links.size()) - index;
     measure(entry);
     scene_.models.push_back(std::move(entry));
@@ -141,7 +143,7 @@ class Builder {
     const auto bones = bone_poses(skin, nullptr, 0, false);
     for (std::size_t i = 0; i < bones.size(); ++i)
       scene_.links.push_back({actor.name + "::" + skin.nodes[skin.bones[i].node].name, false, actor.pose * bones[i]});
-    add(VisualDef{}, seen.link, mesh);
+    if (content_ == Scene::Content::visuals) add(VisualDef{}, seen.link, mesh);
   }
 
   // Bounds that hold every pose of the animations.

@@ -178,6 +178,7 @@ void remove_frames(const std::string& folder, int frames) {
 struct Film {
   int frames = 0;
   std::uint64_t missed = 0;
+  bool is_cut = false;  // the simulator ended before all was taken
   std::int64_t first_ns = 0, last_ns = 0;
 
   // Frames a simulated second, as they came.
@@ -193,8 +194,11 @@ base::Result<Film> take_frames(shm::Iface& camera, const std::string& folder, in
   bool has_said = false;
   while (!is_interrupted() && (frames <= 0 || film.frames < frames)) {
     const auto what = camera.wait(last, std::chrono::milliseconds(200));
-    if (what == shm::Wait::closed)
-      return film.frames > 0 ? base::Result<Film>(film) : base::Error{"iface " + camera.name() + ": the simulator is gone"};
+    if (what == shm::Wait::closed) {
+      if (film.frames == 0) return base::Error{"iface " + camera.name() + ": the simulator is gone"};
+      film.is_cut = frames > 0 || seconds > 0;
+      break;
+    }
     if (what == shm::Wait::timed_out) {
       if (!has_said && film.frames <= 1 && is_paused(camera.server_id())) {
         std::cerr << "simctl: the simulation is paused; frames come when it runs" << std::endl;
@@ -235,6 +239,7 @@ void record(Control& control, const std::string& name, const std::string& target
       return control.fail("record: " + std::string(encoder) + " could not write " + target + "; the frames are in " + folder);
     remove_frames(folder, film->frames);
   }
+  if (film->is_cut) control.fail("iface " + name + ": the simulator is gone after " + std::to_string(film->frames) + " frames");
   if (control.json()) return control.print(Json{{"frames", film->frames}, {"missed", film->missed}, {"rate", film->rate(0)}});
   std::cout << film->frames << " frames, " << film->missed << " missed\n";
 }

@@ -271,7 +271,25 @@ def recorded_formats():
         assert (width, height, octets) == (20, 12, bytes(pixel) * 240), f"{name}: {octets[:12]}"
 
 
-cases = {f.__name__: f for f in (slow_reader, only_for_readers, restarted_server, stopped_player, killed_player_and_server, recorded_formats)}
+# A simulator that dies before all is recorded: what came is kept, and the line and the exit status say that it is not all.
+def recorded_end():
+    server = system.server(world)
+    frames = f"{system.work}/frames"
+    words = [f"{bin_dir}/simctl", "-s", system.server_id, "record", "robot::eye", frames, "-n", "100000"]
+    recorder = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    try:
+        system.until("frames", lambda: os.path.exists(f"{frames}/frame-000003.png"))
+        server.kill()
+        server.wait()
+        out, err = recorder.communicate(timeout=60)
+    finally:
+        recorder.kill()
+        recorder.wait()
+    assert recorder.returncode == 1 and "the simulator is gone after" in err and "frames, " in out, f"{recorder.returncode} {out} {err}"
+    system.simctl("clean")
+
+
+cases = {f.__name__: f for f in (slow_reader, only_for_readers, restarted_server, stopped_player, killed_player_and_server, recorded_formats, recorded_end)}
 with system:
     cases[case]()
 print("ok")

@@ -1,4 +1,5 @@
-// FrameSource: sends the image in a file to the OutPort `image` each time the configuration `frame` names another file. The file: a line
+// FrameSource: sends the image in a file to the OutPort `image` each time the configuration `frame` names another file, or with `repeat` 1
+// in each cycle. The file: a line
 // "WIDTH HEIGHT BPP FORMAT" (FORMAT may be missing), then the octets.
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/DataOutPort.h>
@@ -24,6 +25,7 @@ static const char* const framesource_spec[] = {
     "language", "C++",
     "lang_type", "compile",
     "conf.default.frame", "",
+    "conf.default.repeat", "0",
     ""};
 // clang-format on
 
@@ -33,10 +35,14 @@ class FrameSource : public RTC::DataFlowComponentBase {
   RTC::ReturnCode_t onInitialize() override {
     addOutPort("image", image_out_);
     bindParameter("frame", frame_, "");
+    bindParameter("repeat", repeat_, "0");
     return RTC::RTC_OK;
   }
   RTC::ReturnCode_t onExecute(RTC::UniqueId) override {
-    if (frame_ == sent_) return RTC::RTC_OK;
+    if (frame_ == sent_) {
+      if (repeat_ != 0) image_out_.write();
+      return RTC::RTC_OK;
+    }
     sent_ = frame_;
     std::ifstream file(frame_, std::ios::binary);
     std::string line, format;
@@ -54,6 +60,7 @@ class FrameSource : public RTC::DataFlowComponentBase {
 
  private:
   std::string frame_, sent_;
+  int repeat_ = 0;
   RTC::CameraImage image_;
   RTC::OutPort<RTC::CameraImage> image_out_;
 };

@@ -179,7 +179,7 @@ def screenshots():
     ok("step", "50")
 
     assert count(screenshot("seen.png", "--top"), is_orange) == 0
-    shapes = screenshot("shapes.png", "--top", "--show", "collisions")
+    shapes = screenshot("shapes.png", "--top", "--span", "10", "--show", "collisions")
     assert 20 < count(shapes, is_orange) < 0.3 * 160 * 120, count(shapes, is_orange)  # not the ground
     assert screenshot("seen2.png", "--top", "--show", "visuals") == screenshot("seen3.png", "--top")
     for view in (["--top"], ["--follow", "leader"], ["--camera", "eye::camera"], ["--from", "-3 1.5 1 0 0.25 0"], []):

@@ -282,6 +282,29 @@ def kept_records():
         assert [line.split()[0] for line in file] == [f"frame-00000{n}.png" for n in (1, 2, 3, 4)]
 
 
+# Frames that come faster than they can be written: they are dropped and counted; keys, configuration and the end go on working.
+def slow_recording():
+    start_display()
+    frames = f"{system.work}/frames"
+    host = start_player(frames)
+    send(1600, 1200, noise(1600 * 1200 * 3, 1))
+    system.rtse("conf", "FrameSource0", "set", "repeat", "1")
+    system.until("recorded frames", lambda: os.path.exists(f"{frames}/frame-000005.png"))
+    system.until("a title with dropped frames", lambda: int(screen("title").split("dropped ")[1].split()[0]) > 0)
+    screen("key", "space")
+    system.until("a title that says so", lambda: "paused" in screen("title"))
+    at = screen("title").split("t = ")[1].split()[0]
+    system.until("no frames in the title", lambda: " 0.0 frames/s" in screen("title"))
+    assert screen("title").split("t = ")[1].split()[0] == at, "the time of the picture that is shown"
+    screen("key", "space")
+    system.until("a title that says so", lambda: "paused" not in screen("title"))
+    system.rtse("conf", "VideoPlayer0", "set", "record_dir", f"{frames}/more")
+    system.until("the other folder", lambda: os.path.exists(f"{frames}/more/frame-000001.png"))
+    system.rtse("deact", "VideoPlayer0")
+    says(host, "frames shown", "dropped", "0 refused")
+    assert state() == "Inactive"
+
+
 # An X server that is stopped holds the component up for a while, not for ever; when it goes on so do the windows. A process ends without it.
 def stopped_display():
     start_display()
@@ -338,7 +361,7 @@ def two_players():
     system.until("a window", lambda: title(1))
 
 
-cases = {f.__name__: f for f in (formats, keys, resize, bad_images, two_players, no_display, wrong_display, killed_display, kept_records, stopped_display)}
+cases = {f.__name__: f for f in (formats, keys, resize, bad_images, two_players, no_display, wrong_display, killed_display, kept_records, slow_recording, stopped_display)}
 with system:
     cases[case]()
 print("ok")

@@ -278,6 +278,14 @@ TEST(Actor, it_steps_as_far_as_it_goes_and_stands_when_it_stands) {
   EXPECT_LT(difference(whole, rest), 20);
 }
 
+TEST(Actor, it_is_not_among_what_bodies_meet) {
+  Assets assets;
+  const auto seen = Scene::build(pasture({walker()}), assets), met = Scene::build(pasture({walker()}), assets, Scene::Content::collisions);
+  EXPECT_FALSE(seen->drawables.empty());
+  EXPECT_TRUE(met->drawables.empty());
+  EXPECT_EQ(met->links.size(), seen->links.size());
+}
+
 TEST(Actor, one_whose_skin_or_animation_is_missing_is_seen_all_the_same) {
   ActorDef actor = walker();
   actor.animations[0].path = "/nowhere/walk.dae";
