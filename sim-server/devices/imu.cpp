@@ -46,12 +46,8 @@ Imu::Imu(DeviceWorld& world, Mount mount, const SensorDef& sensor, std::unique_p
 }
 
 void Imu::after_step(const Moment& moment) {
-  if (!writer_->is_subscribed()) {
-    has_velocity_ = has_acceleration_ = false;
-    return;
-  }
+  // Always, so that the first sample of who comes later is right as well.
   const Eigen::Vector3d velocity = world_.physics.point_velocity(mount_.link, mount_.in_world(world_.physics).translation());
-  has_acceleration_ = has_velocity_;
   acceleration_ = has_velocity_ ? ((velocity - velocity_) / moment.dt).eval() : Eigen::Vector3d::Zero();
   velocity_ = velocity;
   has_velocity_ = true;
@@ -87,7 +83,7 @@ void Imu::show(const Moment& moment) {
 void Imu::reset() {
   schedule_.restart();
   noise_ = fresh_noise_;
-  has_velocity_ = has_acceleration_ = false;
+  has_velocity_ = false;
   acceleration_.setZero();
 }
 

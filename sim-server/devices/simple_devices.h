@@ -62,7 +62,7 @@ class Imu final : public Device {
   bool has_orientation_;
   Eigen::Matrix3d reference_;  // columns: axes of the frame that the orientation is told against, in the world
   Eigen::Vector3d velocity_{0, 0, 0}, acceleration_{0, 0, 0};
-  bool has_velocity_ = false, has_acceleration_ = false;
+  bool has_velocity_ = false;
   std::unique_ptr<shm::IfaceWriter> writer_;
 };
 

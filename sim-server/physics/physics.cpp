@@ -342,7 +342,8 @@ Twist Physics::link_twist(LinkId link) const {
 
 base::Result<void> Physics::set_model_pose(ModelId model, const Eigen::Isometry3d& pose) {
   if (!pose.matrix().allFinite() || !is_sane(pose.translation(), 1e8)) {
-    return base::Error{fmt::format("model {}: pose must be finite", def(model).name)};
+    return base::Error{fmt::format("model {}: pose must be finite and within 1e8 m of the origin, got {:g} {:g} {:g}", def(model).name,
+                                   pose.translation().x(), pose.translation().y(), pose.translation().z())};
   }
   ModelInstance& instance = impl_->at(model);
   const bool has_anchors = std::any_of(instance.blueprint().assemblies.begin(), instance.blueprint().assemblies.end(),

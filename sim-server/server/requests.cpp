@@ -133,8 +133,14 @@ struct ServerLoop::Handler {
   }
   shm::Reply operator()(const shm::SpawnRequest& request) {
     const auto pose = request.has_pose ? std::optional(from_pose(request.pose)) : std::nullopt;
-    const auto loaded = load_model(request.sdf, request.name, pose, loop.model_path_);
+    if (request.name.size() > shm::max_name_length) {
+      return refused(shm::RequestStatus::bad_request,
+                     "name of a model must have at most " + std::to_string(shm::max_name_length) + " bytes");
+    }
+    auto loaded = load_model(request.sdf, request.name, pose, loop.model_path_);
     if (!loaded) return failed(loaded.error());
+    // A name that nobody asked for gives way.
+    if (request.name.empty()) loaded->model.name = unused_name(loaded->model.name);
     for (const auto& finding : loaded->findings) base::log(base::Level::warn, "sim-server", "{}", finding.text());
     std::vector<std::string> notes;
     const auto id = simulation.spawn(loaded->model, notes);
@@ -143,6 +149,11 @@ struct ServerLoop::Handler {
     shm::Reply reply;
     reply.message = physics.def(*id).name;
     return reply;
+  }
+  std::string unused_name(const std::string& name) const {
+    std::string unused = name;
+    for (int i = 1; physics.find(unused); ++i) unused = name + "_" + std::to_string(i);
+    return unused;
   }
   shm::Reply operator()(const shm::DeleteRequest& request) {
     const auto model = physics.find(request.model);

@@ -368,7 +368,7 @@ base::Result<void> Iface::command(CommandKind kind, std::span<const double> valu
   Command fresh{};
   if (values.size() > std::size(fresh.values)) return fail("of " + std::to_string(values.size()) + " values, at most 12 are possible");
   for (double value : values) {
-    if (!std::isfinite(value)) return fail("value must be finite, got " + base::format_number(value));
+    if (!(std::abs(value) <= 1e9)) return fail("value must be finite and within 1e9, got " + base::format_number(value));
   }
   if (auto good = state.ensure_lease(); !good) return good;
   if (state.status(true) != Status::live) return fail("has nobody to follow it: the server has ended");

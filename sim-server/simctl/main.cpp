@@ -42,7 +42,7 @@ void add_looks(CLI::App& app, Work& work) {
   auto name = option_value<std::string>();
   auto count = option_value(0);
   echo->add_option("IFACE", *name, "NAME, or TYPE:NAME")->required();
-  echo->add_option("-n,--count", *count, "End after so many samples")->check(CLI::NonNegativeNumber);
+  echo->add_option("-n,--count", *count, "End after so many samples")->check(base::number_between(0, 1e9));
   echo->callback([&work, name, count] { work = [name, count](Control& c) { simctl::echo(c, *name, *count); }; });
 
   add_simple(app, work, "stats", "Show time, speed, state hash and where the time goes", simctl::stats);
@@ -215,7 +215,7 @@ void add_pictures(CLI::App& app, Work& work) {
   auto seconds = option_value(0.0);
   record->add_option("CAMERA", *camera_name, "camera iface")->required();
   record->add_option("TARGET", *target, "File.mp4 or folder")->required();
-  record->add_option("-n,--count", *frames, "End after so many frames")->check(CLI::NonNegativeNumber);
+  record->add_option("-n,--count", *frames, "End after so many frames")->check(base::number_between(0, 1e9));
   record->add_option("--for", *seconds, "End after so many simulated seconds")->check(base::number_between(0.0, 1e9));
   record->callback([&work, camera_name, target, frames, seconds] {
     work = [=](Control& c) { simctl::record(c, *camera_name, *target, *frames, *seconds); };

@@ -388,7 +388,7 @@ base::Result<LoadResult> Loader::world(const std::string& text, const fs::path& 
     const char* hint = sdf.child("model") ? "; a model is meant to be included in a world or spawned" : "";
     return base::Error{name + ": a <world> is expected in it" + hint};
   }
-  if (world.next_sibling("world")) complaints_.warn(world.next_sibling("world"), "only the first <world> of a file is loaded");
+  if (world.next_sibling("world")) complaints_.drop(world.next_sibling("world"), "only the first <world> of a file is loaded");
   apply_state(world);
   if (!files_.complete(world, folder)) return base::Error{name + ": the world is not fit to be used"};
   collect(world, folder);

@@ -122,6 +122,9 @@ def requests():
     assert read("spawn", "sick_lms200", "--pose", "0", "0", "3", "0")["name"] == "sick_lms200"  # by its name alone
     ok("delete", "sick_lms200")
     refused("spawn", box, "--name", "crate", says="crate")
+    assert read("spawn", box)["name"] == "crate_1"  # nobody asked for the name of the file
+    ok("delete", "crate_1")
+    refused("spawn", box, "--name", "x" * 300, says="at most 200 bytes")
     ok("delete", "crate")
     refused("pose", "crate", says="crate")
     near(position(robot), start)
@@ -183,7 +186,7 @@ def bad_requests():
     for words in (["pose", "nobody"], ["pose", "nobody", "1", "2", "0"], ["delete", "nobody"], ["contacts", "nobody"], ["echo", "nobody"],
                   ["info", "nobody"], ["velocity", "nobody", "1", "0", "0"], ["pose", robot, "nan", "0", "0"], ["pose", robot, "inf", "0", "0"],
                   ["velocity", f"{robot}::position2d", "nan", "0", "0"], ["spawn", "<sdf version='1.9'><model"], ["spawn", "/no/such/file.sdf"],
-                  ["spawn", f"<sdf version='1.9'><model name='{robot}'><link name='l'/></model></sdf>"],
+                  ["velocity", f"{robot}::position2d", "1e308", "0", "0"], ["pose", robot, "1e9", "0", "0"],
                   ["spawn", "<sdf version='1.9'><model name='m'><pose>nan 0 0 0 0 0</pose><link name='l'/></model></sdf>"]):
         refused(*words)
     refused("screenshot", f"{work.name}/x.png", "--from", "1 2 3", code=2, says="expected 6 numbers")

@@ -255,6 +255,19 @@ TEST(Imu, feels_gravity_at_rest_nothing_in_free_fall_and_turns_with_the_body) {
   EXPECT_NEAR(2 * std::atan2(q[3], q[0]), 0.7 + 2 * 0.5, 0.02);
 }
 
+TEST(Imu, feels_nothing_in_free_fall_from_its_first_sample_on) {
+  ModelDef falling = body("falling", BoxShape{{0.4, 0.4, 0.4}}, at(0, 0, 100));
+  SensorDef imu = sensor("imu", SensorKind::imu, Eigen::Isometry3d::Identity());
+  imu.data = ImuDef{};
+  falling.links[0].sensors.push_back(imu);
+  SimulationFixture f(world_of({falling}));
+  f.run(0.2);
+  auto late = f.open(IfaceType::imu, "falling::imu");
+  f.simulation->answer_new_subscribers();
+  ASSERT_TRUE(late.read());
+  EXPECT_NEAR(late.sample<shm::ImuSample>().acceleration[2], 0, 0.01);
+}
+
 TEST(Gps, one_second_of_arc_north_is_where_the_ellipsoid_says) {
   SphericalDef place;
   place.latitude = 45;
