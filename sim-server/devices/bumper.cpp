@@ -26,8 +26,15 @@ Bumper::Bumper(DeviceWorld& world, Mount mount, const SensorDef& sensor, std::un
   for (const auto& collision : world.physics.def(mount.link.model).links[mount.link.link].collisions) {
     collisions_.push_back(names.empty() || std::find(names.begin(), names.end(), collision.name) != names.end());
   }
-  // Always: who subscribes while the body sleeps wants the forces that it fell asleep with.
-  world_.physics.record_forces(mount_.link.model);
+  record();
+}
+
+// Always: who subscribes while the body sleeps wants the forces that it fell asleep with.
+void Bumper::record() { world_.physics.record_forces(mount_.link.model); }
+
+void Bumper::reset() {
+  schedule_.restart();
+  record();  // the model has been made anew
 }
 
 void Bumper::measure(const Moment&) {

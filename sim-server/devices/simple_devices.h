@@ -98,10 +98,11 @@ class Bumper final : public Device {
   bool wants_sample(const Moment& moment) override { return schedule_.is_due(moment.time) && writer_->is_subscribed(); }
   void measure(const Moment& moment) override;
   void publish(const Moment& moment) override;
-  void reset() override { schedule_.restart(); }
+  void reset() override;
 
  private:
   Bumper(DeviceWorld& world, Mount mount, const SensorDef& sensor, std::unique_ptr<shm::IfaceWriter> writer);
+  void record();
   DeviceWorld& world_;
   Mount mount_;
   std::vector<bool> collisions_;  // of the link: those that count

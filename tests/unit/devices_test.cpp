@@ -341,6 +341,10 @@ TEST(Bumper, tells_the_forces_of_a_body_that_slept_before_anybody_asked) {
   EXPECT_EQ(f.simulation->physics().statistics().contacts, 4U) << "it touches the floor also while it sleeps";
   EXPECT_NEAR(weight("box::bumper"), 98, 1);
   EXPECT_NEAR(weight("box::other"), 98, 1) << "the first one's client has gone";
+  std::vector<std::string> notes;
+  ASSERT_TRUE(f.simulation->reset(notes));
+  f.run(0.3);
+  EXPECT_NEAR(weight("box::bumper"), 98, 1) << "after a reset";
 }
 
 ModelDef helicopter() {
