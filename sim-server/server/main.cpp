@@ -191,7 +191,9 @@ int main(int argc, char** argv) {
   app.add_option("--participant-timeout", options.participant_timeout, "seconds after which a hanging participant is dropped (0: never)")
       ->check(base::number_between(0.0, 1e6));
   app.add_option("--duration", options.duration, "end after so many simulated seconds")->check(base::number_between(0.0, 1e9));
-  app.add_option("--seed", options.seed, "of all noise (1)");
+  app.add_option("--seed", options.seed, "of all noise (1)")->check([](const std::string& text) {
+    return text.starts_with("-") ? "expected a whole number that is not negative, got " + text : std::string();
+  });
   app.add_option("--resource-path", options.resource_paths,
                  "folder with models; repeatable (also RTMSIM_RESOURCE_PATH, GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH)")
       ->expected(1)

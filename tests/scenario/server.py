@@ -196,6 +196,9 @@ def bad_requests():
     refused("step", "many", code=2)
     refused("velocity", robot, "1", code=2)
     refused("rtf", "nan", code=2)
+    refused("echo", f"{robot}::position2d", "-n", "-1", code=2, says="-1")
+    seeded = subprocess.run([f"{bin_dir}/sim-server", course, "--seed", "-1"], capture_output=True, text=True)
+    assert seeded.returncode == 2 and len(seeded.stderr.splitlines()) == 1 and "not negative, got -1" in seeded.stderr, seeded
     refused("screenshot", f"{work.name}/x.png", "--size", "0x0", code=2)
     refused("nosuch", code=2, says='unknown command "nosuch"')
     nobody = subprocess.run([f"{bin_dir}/simctl", "-s", "999", "--json", "list"], capture_output=True, text=True)  # tests have ids from 1000 on
