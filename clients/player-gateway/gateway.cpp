@@ -102,6 +102,12 @@ void Gateway::handle(const epoll_event& event) {
 void Gateway::arrange(const std::vector<ListedIface>& ifaces) {
   std::vector<std::string> missing;
   auto plans = options_.config ? plan_by_config(*options_.config, ifaces, missing) : plan_by_world(ifaces, options_.first_port);
+  if (!options_.config && arranged_for_ == simulator_.met()) {
+    std::vector<std::string> robots;
+    for (const Port& port : ports_) robots.push_back(port.robot->name());
+    plans = keep_ports(std::move(plans), robots, options_.first_port);
+  }
+  arranged_for_ = simulator_.met();
   if (missing != missing_) {
     for (const auto& one : missing) base::log(base::Level::warn, "player-gateway", "{}", one);
     missing_ = std::move(missing);
@@ -129,7 +135,8 @@ void Gateway::serve_ports(std::vector<PortPlan> plans) {
     std::printf("%s\n", line.c_str());
     std::fflush(stdout);
   }
-  for (std::size_t i = plans.size(); i < ports_.size(); ++i) ports_[i].robot->arrange({}, find);
+  // Of a world that had more robots.
+  for (std::size_t i = plans.size(); i < ports_.size(); ++i) ports_[i].robot->arrange({0, std::string(no_robot), {}}, find);
   is_serving_ = true;
 }
 

@@ -67,6 +67,7 @@ class Gateway {
   std::uint64_t next_session_ = 0;
   std::vector<std::string> missing_;  // of the mapping file, as said last
   std::vector<SharedSegment> watched_;
+  std::uint64_t arranged_for_ = 0;  // which simulator the ports show
   bool is_accepting_ = true;
   bool is_serving_ = false;  // all ports of the first world are open
   bool is_over_ = false;

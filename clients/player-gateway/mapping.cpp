@@ -211,9 +211,34 @@ std::vector<PortPlan> plan_by_world(const std::vector<ListedIface>& ifaces, std:
     ports.push_back({static_cast<std::uint16_t>(port), robot, {}});
     add_robot(robot, ifaces, ports.back().devices);
   }
-  if (ports.empty()) ports.push_back({first_port, "no robot", {}});
+  if (ports.empty()) ports.push_back({first_port, std::string(no_robot), {}});
   for (PortPlan& port : ports) add_simulation(port.devices);
   return ports;
+}
+
+std::vector<PortPlan> keep_ports(std::vector<PortPlan> plans, const std::vector<std::string>& robots, std::uint16_t first_port) {
+  std::vector<PortPlan> kept;
+  for (const std::string& robot : robots) {
+    const auto found = std::find_if(plans.begin(), plans.end(), [&](const PortPlan& one) { return one.name == robot; });
+    if (found == plans.end()) {
+      kept.push_back({0, robot, {}});
+      continue;
+    }
+    kept.push_back(std::move(*found));
+    plans.erase(found);
+  }
+  for (PortPlan& plan : plans) {
+    if (plan.name == no_robot) continue;  // the last robot is gone
+    const auto unused = std::find_if(kept.begin(), kept.end(), [](const PortPlan& one) { return one.name == no_robot; });
+    const std::size_t port = first_port == 0 ? 0 : first_port + kept.size();
+    if (unused != kept.end()) {
+      *unused = std::move(plan);
+    } else if (port <= 65535) {
+      plan.port = static_cast<std::uint16_t>(port);
+      kept.push_back(std::move(plan));
+    }
+  }
+  return kept;
 }
 
 std::vector<PortPlan> plan_by_config(const std::vector<ConfiguredPort>& ports, const std::vector<ListedIface>& ifaces,

@@ -19,6 +19,8 @@ struct DevicePlan {
   std::string iface;
 };
 
+inline constexpr std::string_view no_robot = "no robot";
+
 struct PortPlan {
   std::uint16_t port = 0;  // 0: any free one
   std::string name;        // of the robots, for people
@@ -51,6 +53,9 @@ base::Result<std::vector<ConfiguredPort>> read_config(const std::string& path);
 // One port for each model of the world that has devices, from `first_port` (0: any free ones) on; one port without robot when there is
 // none. simulation:0 is on each.
 std::vector<PortPlan> plan_by_world(const std::vector<ListedIface>& ifaces, std::uint16_t first_port);
+// The same in the order of ports that are open already and were given to these robots: each keeps its port, new ones come at the end, and
+// what is gone leaves a port without devices. A port without robot is free for the first new one.
+std::vector<PortPlan> keep_ports(std::vector<PortPlan> plans, const std::vector<std::string>& robots, std::uint16_t first_port);
 // What of the file is there. Devices that are not are left out and, with `missing`, named.
 std::vector<PortPlan> plan_by_config(const std::vector<ConfiguredPort>& ports, const std::vector<ListedIface>& ifaces,
                                      std::vector<std::string>& missing);

@@ -28,6 +28,8 @@ class Simulator {
   std::shared_ptr<Source> find(shm::IfaceType type, const std::string& name);
   // All that were found and are used.
   std::vector<std::shared_ptr<Source>> sources();
+  // Counts the simulators that were met.
+  std::uint64_t met() const { return met_; }
   bool is_there() const { return world_ != nullptr; }
 
  private:

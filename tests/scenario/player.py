@@ -347,6 +347,14 @@ def late_and_changing():
         await_("an empty port", lambda: third.devices() == [])
         client.read_until(LASER)
         assert third.access(LASER, 0, CLOSE)
+        # A robot keeps its port when the one before it goes.
+        second = Client(ports[1])
+        second.subscribe(POSITION2D)
+        rig.simctl("delete", "first")
+        await_("a port that is empty too", lambda: client.devices() == [])
+        second.command(POSITION2D, 0, 1, velocity(0.3, 0, 0))
+        second.read_until(POSITION2D, good=lambda p: Position(p).velocity[0] > 0.25)
+        assert rig.driven("second") > 0.2
 
 
 def simulation():

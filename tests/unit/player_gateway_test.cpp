@@ -226,6 +226,23 @@ TEST(Mapping, world_without_robots_has_one_port) {
   EXPECT_EQ(shown(plans[0]), "7000 no robot: simulation:0=world");
 }
 
+TEST(Mapping, robots_keep_their_ports_while_others_come_and_go) {
+  const auto names = [](const std::vector<PortPlan>& plans) {
+    std::string text;
+    for (const auto& plan : plans) text += std::to_string(plan.port) + " " + plan.name + (plan.devices.empty() ? " - " : " ");
+    return text;
+  };
+  const auto with = [&](std::vector<std::string> robots) {
+    std::vector<ListedIface> ifaces;
+    for (const auto& robot : robots) ifaces.push_back({shm::IfaceType::laser, robot + "::laser", robot});
+    return plan_by_world(ifaces, 7000);
+  };
+  EXPECT_EQ(names(keep_ports(with({"b", "c"}), {"a", "b"}, 7000)), "0 a - 7000 b 7002 c ");  // the numbers of open ports mean nothing
+  EXPECT_EQ(names(keep_ports(with({"a", "b"}), {"a", "b"}, 7000)), "7000 a 7001 b ");
+  EXPECT_EQ(names(keep_ports(with({}), {"a"}, 7000)), "0 a - ");
+  EXPECT_EQ(names(keep_ports(with({"a", "b"}), {std::string(no_robot)}, 7000)), "7000 a 7001 b ");
+}
+
 class MappingFile : public testing::Test {
  protected:
   ~MappingFile() override { std::filesystem::remove(path); }
