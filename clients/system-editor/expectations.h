@@ -68,7 +68,7 @@ struct SeenValue {
 struct SeenCommand {
   std::optional<int> exit_code;
   std::string text;
-  std::string output;  // its last lines
+  std::string output = {};  // its last lines
 };
 
 // All that a run has shown.
@@ -83,7 +83,7 @@ struct Seen {
 struct Verdict {
   std::string expectation;
   std::string problem;  // empty: fulfilled
-  std::string details;  // what a command that failed had said: its last lines
+  std::string details = {};  // what a command that failed had said: its last lines
 };
 std::vector<Verdict> judge(const std::vector<Expectation>& expectations, const Seen& seen);
 
