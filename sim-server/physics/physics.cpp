@@ -44,6 +44,7 @@ class Physics::Impl {
 
   std::shared_ptr<const WorldDef> world_;
   WorkerPool& pool_;
+  WorkerPool::Pace pace_;
   ShapeStore store_;
   std::vector<std::shared_ptr<const Blueprint>> initial_;  // by ModelId; null: cannot be simulated
   std::vector<std::unique_ptr<Shard>> shards_;             // outlive the models
@@ -212,7 +213,8 @@ void Physics::Impl::put_back_insane(Shard& shard) {
 }
 
 void Physics::Impl::step() {
-  pool_.run(shards_.size(), [&](std::size_t i) { shards_[i]->step(statics_, steps_); });
+  const auto step_one = [&](std::size_t i) { shards_[i]->step(statics_, steps_); };
+  pool_.run(shards_.size(), step_one, pace_);
   ++steps_;
   bool has_left = false;
   for (auto& shard : shards_) {

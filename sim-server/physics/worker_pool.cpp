@@ -1,8 +1,17 @@
 #include "physics/worker_pool.h"
 
-namespace sim {
+#include <chrono>
 
-WorkerPool::WorkerPool(int threads) {
+namespace sim {
+namespace {
+
+// [us]. Apart, so that the choice does not flutter.
+constexpr double worth_sharing = 150;
+constexpr double not_worth_sharing = 60;
+
+}  // namespace
+
+WorkerPool::WorkerPool(int threads, Sharing sharing) : sharing_(sharing) {
   for (int i = 1; i < threads; ++i) workers_.emplace_back([this] { work(); });
 }
 
@@ -52,6 +61,22 @@ void WorkerPool::run(std::size_t count, const std::function<void(std::size_t)>& 
   finished_.wait(lock, [&] { return running_ == 0 && next_ >= count_; });
   count_ = next_ = 0;
   part_ = nullptr;
+}
+
+void WorkerPool::run(std::size_t count, const std::function<void(std::size_t)>& part, Pace& pace) {
+  if (sharing_ == Sharing::always) return run(count, part);
+  const auto start = std::chrono::steady_clock::now();
+  if (pace.is_shared) {
+    run(count, part);
+  } else {
+    for (std::size_t i = 0; i < count; ++i) part(i);
+  }
+  const double taken = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+  pace.microseconds += (taken - pace.microseconds) / 8;
+  const bool is_to_be_shared = pace.microseconds > (pace.is_shared ? not_worth_sharing : worth_sharing);
+  if (is_to_be_shared == pace.is_shared) return;
+  pace.is_shared = is_to_be_shared;
+  pace.microseconds = (worth_sharing + not_worth_sharing) / 2;
 }
 
 }  // namespace sim

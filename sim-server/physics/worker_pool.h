@@ -13,8 +13,17 @@ namespace sim {
 
 class WorkerPool {
  public:
+  // Of work that is done again and again: how long it takes, and so whether other threads are worth waking for it. The parts of a run of a
+  // few dozen microseconds are done before the others have woken up and got the lock.
+  struct Pace {
+    double microseconds = 0;  // smoothed
+    bool is_shared = false;
+  };
+
+  enum class Sharing { when_worth_it, always };
+
   // At least 1; 1 has no thread of its own and runs everything in the caller's.
-  explicit WorkerPool(int threads);
+  explicit WorkerPool(int threads, Sharing sharing = Sharing::when_worth_it);
   ~WorkerPool();
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
@@ -22,6 +31,8 @@ class WorkerPool {
   int threads() const { return static_cast<int>(workers_.size()) + 1; }
   // part(0) .. part(count - 1), each once; returns when all are done. The parts do not throw.
   void run(std::size_t count, const std::function<void(std::size_t)>& part);
+  // As run, in the caller's thread alone while that is quicker and nobody said otherwise.
+  void run(std::size_t count, const std::function<void(std::size_t)>& part, Pace& pace);
 
  private:
   void work();
@@ -33,6 +44,7 @@ class WorkerPool {
   const std::function<void(std::size_t)>* part_ = nullptr;
   std::size_t next_ = 0, count_ = 0, running_ = 0;
   bool is_ending_ = false;
+  Sharing sharing_;
   std::vector<std::thread> workers_;
 };
 

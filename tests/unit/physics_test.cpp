@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
+#include <thread>
+
 #include "support/worlds.h"
 
 namespace sim {
@@ -12,7 +16,9 @@ using namespace test;
 
 struct Fixture {
   explicit Fixture(WorldDef def, int threads = 1)
-      : pool(threads), world(std::make_shared<const WorldDef>(std::move(def))), physics(world, pool, triangles, notes, dropped) {}
+      : pool(threads, WorkerPool::Sharing::always),
+        world(std::make_shared<const WorldDef>(std::move(def))),
+        physics(world, pool, triangles, notes, dropped) {}
   void run(double seconds) {
     const auto steps = static_cast<int>(std::lround(seconds / physics.step_length()));
     for (int i = 0; i < steps; ++i) physics.step();
@@ -162,6 +168,33 @@ TEST(Physics, the_run_does_not_depend_on_the_number_of_threads) {
   EXPECT_GT(one.physics.statistics().moves_between_shards, 0U);
   EXPECT_EQ(one.hash(), two.hash());
   EXPECT_EQ(one.hash(), three.hash());
+}
+
+// Waking a thread takes longer than short work; each part of a step of ten robots is short.
+TEST(WorkerPool, shares_work_while_that_is_worth_it) {
+  WorkerPool pool(2);
+  WorkerPool::Pace pace;
+  const auto run_until = [&](bool is_shared, const auto& part) {
+    for (int i = 0; i < 100'000 && pace.is_shared != is_shared; ++i) pool.run(4, part, pace);
+    return pace.is_shared == is_shared;
+  };
+  std::atomic<int> done{0};
+  const auto long_part = [&](std::size_t) {
+    ++done;
+    const auto end = std::chrono::steady_clock::now() + std::chrono::microseconds(200);
+    while (std::chrono::steady_clock::now() < end) {
+    }
+  };
+  EXPECT_TRUE(run_until(true, long_part));
+  done = 0;
+  pool.run(4, long_part, pace);
+  EXPECT_EQ(done, 4);
+  const auto caller = std::this_thread::get_id();
+  EXPECT_TRUE(run_until(false, [&](std::size_t) { ++done; }));
+  bool is_alone = true;
+  pool.run(
+      4, [&](std::size_t) { is_alone = is_alone && std::this_thread::get_id() == caller; }, pace);
+  EXPECT_TRUE(is_alone);
 }
 
 TEST(Physics, a_run_after_a_reset_is_the_same_to_the_bit) {
