@@ -82,7 +82,7 @@ struct Seen {
 
 struct Verdict {
   std::string expectation;
-  std::string problem;  // empty: fulfilled
+  std::string problem;       // empty: fulfilled
   std::string details = {};  // what a command that failed had said: its last lines
 };
 std::vector<Verdict> judge(const std::vector<Expectation>& expectations, const Seen& seen);
