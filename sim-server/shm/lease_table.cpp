@@ -8,11 +8,26 @@
 namespace shm {
 namespace {
 
+constexpr std::uint32_t no_command = ~std::uint32_t{0};  // a kind that poll_command passes over
+
 std::size_t count_of(const Segment& segment) { return segment.area(AreaIndex::leases).count; }
 Lease& lease_at(const Segment& segment, std::size_t index) { return segment.as<Lease>(AreaIndex::leases, index); }
 void change_epoch(const Segment& segment) { word(segment.header().lease_epoch).fetch_add(1, std::memory_order_acq_rel); }
 
+// Nobody is to be taken for the author of what the one before has written, which may have died in the middle of it. For whoever owns the
+// lease alone.
+void forget_command(Lease& lease) {
+  Command none{};
+  none.sequence = load(lease.command.sequence, std::memory_order_relaxed);
+  none.kind = no_command;
+  const std::uint64_t lock = load(lease.command_lock, std::memory_order_relaxed) | 1;
+  store(lease.command_lock, lock, std::memory_order_relaxed);  // seen by whoever sees a word of the copy
+  copy_in(&lease.command, &none, sizeof none);
+  store(lease.command_lock, lock + 1);  // pairs with the acquire in IfaceWriter::poll_command
+}
+
 void clear(Lease& lease) {
+  forget_command(lease);
   for (auto& hold : lease.holds) store(hold, 0U, std::memory_order_seq_cst);
   store(lease.flags, 0U);
   store(lease.start_time, std::uint64_t{0});
@@ -69,9 +84,6 @@ std::optional<std::size_t> take_lease(const Segment& segment, std::uint64_t owne
     store(lease.pid_namespace, mark.pid_namespace);
     store(lease.start_time, mark.start_time);
     std::strncpy(lease.name, own_program().c_str(), sizeof lease.name - 1);
-    // The one before may have died while it wrote a command.
-    const std::uint64_t lock = load(lease.command_lock);
-    store(lease.command_lock, lock + lock % 2);
     store(lease.flags, flags);
     change_epoch(segment);
     return i;

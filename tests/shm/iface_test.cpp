@@ -246,6 +246,32 @@ TEST(Iface, the_end_of_the_writer_wakes_a_waiting_reader_at_once) {
   EXPECT_EQ(reader.status(), Status::live);
 }
 
+// The place of a client that went, perhaps in the middle of a command, is soon another's, who has said nothing yet.
+TEST(Iface, commands_of_a_client_that_went_are_not_taken_for_those_of_the_next) {
+  Fixture f;
+  auto writer = f.make(position2d_spec("base", {}));
+  Lease& lease = writer->segment().as<Lease>(AreaIndex::leases, 0);
+  for (const bool dies_while_writing : {false, true}) {
+    std::optional<Iface> first(f.open(IfaceType::position2d, "base"));
+    ASSERT_TRUE(first->command_velocity(1, 1, 1));
+    ASSERT_NE(load(lease.owner), 0U);
+    if (dies_while_writing) {
+      store(lease.command_lock, load(lease.command_lock) + 1);
+      lease.command.values[0] = 2;
+      store(lease.owner, std::uint64_t{0});  // as the server does when it finds the process dead
+    }
+    first.reset();
+    Iface second = f.open(IfaceType::position2d, "base");
+    ASSERT_TRUE(second.subscribe());
+    ASSERT_NE(load(lease.owner), 0U) << "the same place";
+    Command command{};
+    EXPECT_NE(writer->poll_command(command), CommandChange::fresh) << dies_while_writing;
+    ASSERT_TRUE(second.command_velocity(3, 3, 3));
+    EXPECT_EQ(writer->poll_command(command), CommandChange::fresh);
+    EXPECT_EQ(command.values[0], 3);
+  }
+}
+
 TEST(Iface, a_reader_never_sees_a_torn_sample) {
   Fixture f;
   auto writer = f.make(laser_spec("a", laser_info(361)));
