@@ -64,7 +64,8 @@ counter-clockwise positive; quaternions are (w, x, y, z). Fields marked [atomic]
   switched on while time stands still shows the present at once, where the server would find the lease within a second. Such a sample disturbs nothing that comes later, not even the noise.
 - **Frames.** Put slot + 1 into a `holds` word of the own lease, then check that the slot's `lock` still is the frame; the writer leaves held slots alone and counts what it must drop.
 - **Commands** lie in the leases: make `command_lock` odd, write the command, make it even; then store (number of commands + 1) << 16 | index of the lease in `command_latest` of the header,
-  which names the one in force. When its owner dies or lets go, the robot stops.
+  which names the one in force. When its owner dies or lets go, the robot stops. Who takes a lease or gives it back first writes a command of kind 0xffffffff into it
+  in the same way, since the place may still hold one, or half of one, of somebody else; the server does so for the dead.
 - **Requests** go through a slot of one's own: `idle` - `asked` - `replying` - `replied`; texts longer than a piece travel in several rounds of the same id.
 - **Stale segments** (pid, start time, boot id of the server) are replaced by the next server; a living server's name is refused. Mode 0600 unless `--shm-mode` or `--shm-group` say otherwise.
 - The server keeps private copies of every size and index: what a client scribbles cannot make it read or write elsewhere. A file that somebody cuts short ends no process either: whoever has
