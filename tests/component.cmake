@@ -1,5 +1,5 @@
 rtmsim_test(component_core_test unit/execution_context_test.cpp unit/configuration_test.cpp LIBRARIES rt_core LABELS core)
-rtmsim_test(component_test corba/component_test.cpp corba/component_context_test.cpp corba/component_service_test.cpp corba/hanging_callback_test.cpp LIBRARIES openrtm LABELS corba)
+rtmsim_test(component_test corba/component_test.cpp corba/component_context_test.cpp corba/component_service_test.cpp corba/component_observer_test.cpp corba/hanging_callback_test.cpp LIBRARIES openrtm LABELS corba)
 add_executable(component_peer corba/component_peer.cpp)
 target_link_libraries(component_peer PRIVATE openrtm GTest::gtest rtmsim_settings)
 target_include_directories(component_peer PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})

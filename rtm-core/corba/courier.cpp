@@ -19,7 +19,7 @@ Courier::~Courier() {
 void Courier::send(Message message) {
   {
     auto data = shared_.lock();
-    if (data->stopping || data->gave_up || data->waiting.size() >= most_waiting) return;
+    if (data->stopping || data->is_finishing || data->gave_up || data->waiting.size() >= most_waiting) return;
     data->waiting.push_back(std::move(message));
   }
   condition_.notify_one();
@@ -36,6 +36,16 @@ void Courier::repeat(std::vector<Regular> regulars) {
   condition_.notify_one();
 }
 
+void Courier::finish(std::chrono::nanoseconds patience) {
+  {
+    auto data = shared_.lock();
+    data->is_finishing = true;
+    data->regulars.clear();
+    data.wait_for(finished_, patience, [&] { return data->stopping || data->gave_up || (data->waiting.empty() && !data->is_carrying); });
+  }
+  stop();
+}
+
 void Courier::stop() {
   std::deque<Message> dropped;  // destroyed without the lock
   {
@@ -44,6 +54,7 @@ void Courier::stop() {
     dropped.swap(data->waiting);
   }
   condition_.notify_one();
+  finished_.notify_all();
 }
 
 void Courier::run() {
@@ -51,6 +62,8 @@ void Courier::run() {
     Message message;
     {
       auto data = shared_.lock();
+      data->is_carrying = false;
+      if (data->is_finishing && data->waiting.empty()) finished_.notify_all();
       while (!message) {
         if (data->stopping || data->gave_up) return;
         if (!data->waiting.empty()) {
@@ -71,6 +84,7 @@ void Courier::run() {
         }
         if (!message) data.wait_until(condition_, wake, [&] { return data->stopping || data->rescheduled || !data->waiting.empty(); });
       }
+      data->is_carrying = true;
     }
     if (!carry(message)) return;
   }
@@ -92,6 +106,7 @@ bool Courier::carry(const Message& message) {
     data->gave_up = true;
     dropped.swap(data->waiting);
   }
+  finished_.notify_all();
   base::log(base::Level::warn, name_, "the peer does not answer and gets nothing any more: {}", reason);
   return false;
 }

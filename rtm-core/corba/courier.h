@@ -33,6 +33,8 @@ class Courier {
     Message message;
   };
   void repeat(std::vector<Regular> regulars);
+  // What was sent before is still carried, for as long as `patience`; then as stop(). Not from a message.
+  void finish(std::chrono::nanoseconds patience = std::chrono::seconds(1));
   // Nothing is carried after return, but for one message that may be on its way.
   void stop();
 
@@ -45,6 +47,8 @@ class Courier {
   struct Data {
     bool stopping = false;
     bool gave_up = false;
+    bool is_finishing = false;
+    bool is_carrying = false;
     bool rescheduled = false;
     std::deque<Message> waiting{};
     std::vector<Due> regulars{};
@@ -55,6 +59,7 @@ class Courier {
   const std::string name_;
   base::Guarded<Data, base::Rank::buffer> shared_;
   std::condition_variable condition_;
+  std::condition_variable finished_;
   std::thread thread_;
 };
 

@@ -118,7 +118,7 @@ class Link {
     courier_.repeat(std::move(regulars));
   }
 
-  void stop() { courier_.stop(); }
+  void finish() { courier_.finish(); }
 
  private:
   corba::Courier courier_;
@@ -371,7 +371,7 @@ class ObserverConsumer final : public SdoServiceConsumerBase {
 
   void finalize() override {
     listeners_.reset();
-    if (link_) link_->stop();
+    if (link_) link_->finish();
     link_.reset();
   }
 

@@ -4,6 +4,7 @@
 #include <rtm/SystemLogger.h>
 #include <rtm/idl/LoggerSkel.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -54,7 +55,7 @@ class LoggerConsumer final : public SdoServiceConsumerBase {
 
   void finalize() override {
     if (sink_) removeLogSink(*std::exchange(sink_, std::nullopt));
-    if (courier_) courier_->stop();
+    if (courier_) courier_->finish();
     courier_.reset();
   }
 
@@ -71,7 +72,8 @@ class LoggerConsumer final : public SdoServiceConsumerBase {
     corba::set_call_timeout(logger, std::chrono::seconds(1));
     profile_ = profile;
     const auto level = Logger::parseLevel(NVUtil::toString(profile.properties, "logger.log_level"));
-    const std::vector<std::string> filter = base::split_list(NVUtil::toString(profile.properties, "logger.filter"));
+    std::vector<std::string> filter = base::split_list(NVUtil::toString(profile.properties, "logger.filter"));
+    if (std::ranges::any_of(filter, [](const std::string& name) { return base::equal_ignoring_case(name, "ALL"); })) filter.clear();
     const auto courier = std::make_shared<corba::Courier>("logger service");
     courier_ = courier;
     // What the courier itself logs would come back here for ever.
