@@ -225,18 +225,25 @@ TEST_F(ComponentObserverTest, tells_observers_what_changes_in_ports_profile_and_
   probe->removeOutPort(out);
 }
 
-TEST_F(ComponentObserverTest, tells_the_end_of_a_component_before_it_has_ended) {
-  for (int i = 0; i < 20; ++i) {
-    Owned<> component(nullptr, "Short0");
-    component->initialize();
-    Served<NewObserver> observer;
-    SDOPackage::Configuration_var configuration = component->get_configuration();
-    ASSERT_TRUE(configuration->add_service_profile(
-        service_profile("end", "IDL:omg.org/RTC/ComponentObserver:1.0", observer.reference(), {{"observed_status", "ALL"}})));
-    component->exit();
-    std::lock_guard lock(observer->mutex);
-    EXPECT_THAT(observer->heard, Contains(std::pair(RTC::RTC_STATUS, std::string("FINALIZE:0"))));
+// A peer on a slow line.
+class SlowObserver : public NewObserver {
+ public:
+  void update_status(RTC::StatusKind kind, const char* hint) override {
+    std::this_thread::sleep_for(20ms);
+    NewObserver::update_status(kind, hint);
   }
+};
+
+TEST_F(ComponentObserverTest, tells_the_end_of_a_component_before_it_has_ended) {
+  probe->initialize();
+  Served<SlowObserver> observer;
+  SDOPackage::Configuration_var configuration = probe->get_configuration();
+  ASSERT_TRUE(configuration->add_service_profile(
+      service_profile("end", "IDL:omg.org/RTC/ComponentObserver:1.0", observer.reference(), {{"observed_status", "ALL"}})));
+  probe->activate(0);
+  probe->exit();
+  std::lock_guard lock(observer->mutex);
+  EXPECT_THAT(observer->heard, Contains(std::pair(RTC::RTC_STATUS, std::string("FINALIZE:0"))));
 }
 
 class LogReader : public POA_OpenRTM::Logger {
