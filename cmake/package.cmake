@@ -52,6 +52,7 @@ install(DIRECTORY idl/ DESTINATION ${package_include}/rtm/idl FILES_MATCHING PAT
 install(DIRECTORY idl/ext/ DESTINATION ${package_include}/rtm/ext FILES_MATCHING PATTERN "*.idl")
 
 install(TARGETS base rt_core rt_corba openrtm coil rtm_idl LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS rtcprof RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 # Manual page and completion of each program, printed by the program itself.
 set(package_share ${PROJECT_BINARY_DIR}/share)
 set(package_pages)

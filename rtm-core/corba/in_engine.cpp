@@ -61,6 +61,11 @@ InConnection::~InConnection() { mailbox_->close(channel_); }
 void InConnection::finish() { mailbox_->finish(channel_); }
 
 rt::PortStatus InConnection::receive(rt::Sample sample) {
+  if (sample.block && !ops_.codec && !ops_.shape.fits(sample.block->octets(), sample.order)) {
+    base::log(base::Level::warn, "data port", "connection {}: {} octets that are no {} are refused", base::in_quotes(plan_.name),
+              sample.block->size(), ops_.type_id);
+    return rt::PortStatus::error;
+  }
   if (plan_.settings.stamp == rt::StampPolicy::on_received) sample.received = plan_.port_time();
   ConnectorEvents& events = *plan_.events;
   if (events.is_observed(DataEvent::received)) {

@@ -11,6 +11,7 @@
 #include <type_traits>
 #include <typeinfo>
 
+#include "corba/shape.h"
 #include "core/sample.h"
 
 // Lives in the global namespace so that the operators which omniidl writes there are found whatever order headers come in.
@@ -49,6 +50,7 @@ struct TypeOps {
   void (*stamp)(void* value, std::chrono::nanoseconds time);  // nullptr if the type has no `tm`
   bool is_stamp_first;                                        // `tm` is the first member
   bool has_wide_text;                                         // or something else that is encoded from temporary memory
+  Shape shape{};                                              // of its values in CDR
   std::shared_ptr<Codec> codec{};                             // used instead of encode and decode if there is one
 };
 
@@ -76,6 +78,7 @@ TypeOps make_type_ops() {
   const CORBA::TypeCode_var code = type_code_of<T>();
   ops.type_id = code->id();
   ops.has_wide_text = has_wide_text(code);
+  ops.shape = Shape(code);
   ops.type = &typeid(T);
   ops.make = []() -> std::shared_ptr<rt::Value> { return std::make_shared<ValueOf<T>>(); };
   ops.copy = [](const void* value) -> std::shared_ptr<rt::Value> { return std::make_shared<ValueOf<T>>(*static_cast<const T*>(value)); };

@@ -85,11 +85,13 @@ struct Running {
   }
 };
 
-enum class Verdict { refused, value, cannot_be_encoded };
+enum class Verdict { refused, value, cannot_be_encoded, has_no_shape };
 
 Verdict judge(const corba::TypeOps& ops, const Octets& octets, rt::ByteOrder order) {
   const auto value = ops.make();
+  const bool fits = ops.shape.fits(octets, order);
   if (!corba::decode_safely(ops, value->address(), octets, order)) return Verdict::refused;
+  if (!fits) return Verdict::has_no_shape;
   corba::EventData data(ops, value->address(), order);
   const auto again = data.octets();
   if (again.empty() && !octets.empty() && !ops.has_wide_text) return Verdict::cannot_be_encoded;
@@ -106,10 +108,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   const auto& [ops, original] = running.seeds[(data[0] >> 1) % running.seeds.size()];
   const auto* first = reinterpret_cast<const std::byte*>(data);
-  if (judge(*ops, Octets(first + 1, first + size), data[0] & 1 ? rt::ByteOrder::little : rt::ByteOrder::big) ==
-      Verdict::cannot_be_encoded) {
-    std::abort();
-  }
+  const auto verdict = judge(*ops, Octets(first + 1, first + size), data[0] & 1 ? rt::ByteOrder::little : rt::ByteOrder::big);
+  if (verdict == Verdict::cannot_be_encoded || verdict == Verdict::has_no_shape) std::abort();
   return 0;
 }
 
@@ -132,8 +132,9 @@ int main(int argc, char** argv) {
     mutate(octets, random);
     const auto verdict = judge(*ops, octets, random() % 2 ? rt::ByteOrder::little : rt::ByteOrder::big);
     good += verdict == Verdict::value;
-    if (verdict != Verdict::cannot_be_encoded) continue;
-    std::printf("a %s that was decoded cannot be encoded\n", ops->type_id.c_str());
+    if (verdict != Verdict::cannot_be_encoded && verdict != Verdict::has_no_shape) continue;
+    std::printf("a %s that was decoded %s\n", ops->type_id.c_str(),
+                verdict == Verdict::has_no_shape ? "was to be refused" : "cannot be encoded");
     return 1;
   }
   std::printf("%lu of %lu payloads were values\n", good, runs);

@@ -335,23 +335,55 @@ TEST_F(Faults, a_peer_that_refuses_or_gives_no_object_leaves_nothing) {
   EXPECT_TRUE(out.connectors().empty());
 }
 
-TEST_F(Faults, payloads_that_are_no_value_are_dropped) {
+TEST_F(Faults, payloads_that_are_no_value_are_refused) {
   const auto port = connect_and_steal();
   sent.data = 3;
   ASSERT_TRUE(out.write());
   ASSERT_TRUE(in.read());
-  received.data = 77;
   for (const CORBA::ULong size : {0u, 3u, 11u}) {
     OpenRTM::CdrData octets(size);
     octets.length(size);
-    EXPECT_EQ(port->put(octets), OpenRTM::PORT_OK);
-    EXPECT_TRUE(in.isNew());
-    EXPECT_FALSE(in.read()) << size;
-    EXPECT_EQ(received.data, 77);
+    EXPECT_EQ(port->put(octets), OpenRTM::PORT_ERROR);
+    EXPECT_FALSE(in.isNew()) << size;
   }
+  EXPECT_TRUE(in.read()) << "the last good one again";
+  EXPECT_EQ(received.data, 3);
+  sent.data = 4;
   EXPECT_TRUE(out.write());
   EXPECT_TRUE(in.read());
-  EXPECT_EQ(received.data, 3);
+  EXPECT_EQ(received.data, 4);
+}
+
+TEST_F(Faults, a_refused_payload_takes_no_place_of_one_that_waits) {
+  auto plan = profile({out.getPortRef(), in.getPortRef()}, {{"inport.buffer.length", "1"}});
+  ASSERT_EQ(out.connect(plan), RTC::RTC_OK);
+  const CORBA::Object_var object = orb->orb()->string_to_object(NVUtil::toString(plan.properties, "dataport.corba_cdr.inport_ior").c_str());
+  const OpenRTM::InPortCdr_var port = OpenRTM::InPortCdr::_narrow(object);
+  sent.data = 5;
+  ASSERT_TRUE(out.write());
+  EXPECT_EQ(port->put(OpenRTM::CdrData()), OpenRTM::PORT_ERROR);
+  ASSERT_TRUE(in.read());
+  EXPECT_EQ(received.data, 5);
+}
+
+// What only decoding shows.
+TEST_F(Faults, a_text_without_its_end_is_dropped_when_it_is_read) {
+  RTC::TimedString text{};
+  text.data = "before";
+  RTC::OutPort<RTC::TimedString> text_out("A0.text", text);
+  RTC::InPort<RTC::TimedString> text_in("B0.text", text);
+  auto plan = profile({text_out.getPortRef(), text_in.getPortRef()});
+  ASSERT_EQ(text_out.connect(plan), RTC::RTC_OK);
+  const CORBA::Object_var object = orb->orb()->string_to_object(NVUtil::toString(plan.properties, "dataport.corba_cdr.inport_ior").c_str());
+  const OpenRTM::InPortCdr_var port = OpenRTM::InPortCdr::_narrow(object);
+  OpenRTM::CdrData octets(16);
+  octets.length(16);
+  std::memset(octets.get_buffer(), 'x', 16);
+  const CORBA::ULong length = 4;
+  std::memcpy(octets.get_buffer() + 8, &length, 4);
+  EXPECT_EQ(port->put(octets), OpenRTM::PORT_OK);
+  EXPECT_FALSE(text_in.read());
+  EXPECT_STREQ(text.data, "before");
 }
 
 TEST_F(Faults, lengths_without_the_octets_are_refused) {
@@ -368,7 +400,7 @@ TEST_F(Faults, lengths_without_the_octets_are_refused) {
     lie.length(20);
     std::memset(lie.get_buffer(), 0, 20);
     std::memcpy(lie.get_buffer() + 8, &length, 4);
-    EXPECT_EQ(port->put(lie), OpenRTM::PORT_OK);
+    EXPECT_EQ(port->put(lie), OpenRTM::PORT_ERROR);
     EXPECT_FALSE(seq_in.read());
     EXPECT_EQ(octets.data.length(), 2u);
   }

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "ports/support.h"
@@ -144,6 +145,12 @@ TYPED_TEST(GoldenPayload, is_read_and_written_by_ports) {
     const auto from_little = little.put(wanted);
     const auto from_big = big.put(bytes_of(entry["big_endian"]));
     ASSERT_TRUE(from_little && from_big) << id;
+    for (std::size_t size = 0; size < wanted.size(); ++size) {
+      Bytes cut(wanted.begin(), wanted.begin() + static_cast<std::ptrdiff_t>(size));
+      EXPECT_FALSE(corba::type_ops<TypeParam>().shape.fits(std::as_bytes(std::span(cut)), rt::ByteOrder::little))
+          << id << " cut to " << size;
+      EXPECT_FALSE(little.put(cut)) << id << " cut to " << size;
+    }
     const Bytes written = writer.write(*from_little);
     EXPECT_EQ(writer.write(*from_big), written) << id;
     ASSERT_EQ(written.size(), wanted.size()) << id;

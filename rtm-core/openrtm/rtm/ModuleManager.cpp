@@ -45,18 +45,25 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, error);
 }
 
-// Beside the libraries, as they are built and installed; else wherever PATH has it.
-std::string profile_program_path() {
+// Where this library is: PREFIX/lib, or PREFIX/lib/ARCHITECTURE.
+fs::path library_folder() {
   Dl_info info{};
-  if (dladdr(reinterpret_cast<void*>(&profile_program_path), &info) != 0 && info.dli_fname != nullptr) {
-    const auto path = fs::path(real_path(info.dli_fname)).parent_path().parent_path() / "bin" / profile_program;
-    if (is_file(path)) return path.string();
+  if (dladdr(reinterpret_cast<void*>(&library_folder), &info) == 0 || info.dli_fname == nullptr) return {};
+  return fs::path(real_path(info.dli_fname)).parent_path();
+}
+
+// Of the same installation or build folder; else wherever PATH has it.
+std::string profile_program_path() {
+  const auto lib = library_folder();
+  for (const auto& prefix : {lib.parent_path(), lib.parent_path().parent_path()}) {
+    if (const auto path = prefix / "bin" / profile_program; is_file(path)) return path.string();
   }
   return profile_program;
 }
 
-// What the program prints on stdout; nothing when it fails or takes too long, in which case it is killed.
-std::optional<std::string> output_of(const std::vector<std::string>& words, std::chrono::seconds patience) {
+// What the program prints on stdout; nothing when it fails or takes too long, in which case it is killed. `start_error`: why it does not
+// start, or 0.
+std::optional<std::string> output_of(const std::vector<std::string>& words, std::chrono::seconds patience, int& start_error) {
   constexpr std::size_t longest = std::size_t{4} << 20;
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) return std::nullopt;
@@ -69,12 +76,12 @@ std::optional<std::string> output_of(const std::vector<std::string>& words, std:
   for (const auto& word : words) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);
   pid_t child = -1;
-  const int failed = posix_spawnp(&child, argv[0], &actions, nullptr, argv.data(), environ);
+  start_error = posix_spawnp(&child, argv[0], &actions, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   close(ends[1]);
   std::string output;
   bool complete = false;
-  if (failed == 0) {
+  if (start_error == 0) {
     const auto deadline = steady_clock::now() + patience;
     while (output.size() < longest) {
       const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - steady_clock::now()).count();
@@ -158,11 +165,9 @@ struct ModuleManager::Impl {
     auto paths = base::split_list(manager->configValue("manager.modules.load_path"));
     for (const auto& path : base::split_list(manager->configValue("manager.modules.C++.load_paths"))) paths.push_back(path);
     for (const auto& path : paths) folders.emplace_back(rt::expand_format(path, nothing));
-    // Last, the modules that were installed with the program, PREFIX/bin/rtcd and PREFIX/lib/rtm-sim.
+    // Last, the modules that were installed with this library.
     std::error_code error;
-    const auto program = fs::read_symlink("/proc/self/exe", error);
-    if (const auto installed = program.parent_path().parent_path() / "lib" / "rtm-sim"; !error && fs::is_directory(installed, error))
-      folders.push_back(installed);
+    if (const auto installed = library_folder() / "rtm-sim"; fs::is_directory(installed, error)) folders.push_back(installed);
     return folders;
   }
 
@@ -210,7 +215,13 @@ struct ModuleManager::Impl {
     }
     auto command = profile_command();
     command.push_back(file.string());
-    const auto output = output_of(command, std::chrono::seconds(10));
+    int start_error = 0;
+    const auto output = output_of(command, std::chrono::seconds(10), start_error);
+    if (start_error != 0) {
+      base::log(base::Level::warn, "manager", "{}, which tells what is in {}, does not start: {}", command.front(), file.string(),
+                std::strerror(start_error));
+      return {};
+    }
     std::string block;
     std::string_view rest = output ? std::string_view(*output) : std::string_view();
     while (!rest.empty()) {

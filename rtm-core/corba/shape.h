@@ -1,0 +1,41 @@
+// Whether octets can be a value of an IDL type, told without building the value: what is cut short, counts more than it brings, or holds an
+// enumerator that is none is refused before anybody reads it. Immutable, so any thread.
+#pragma once
+
+#include <omniORB4/CORBA.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/sample.h"
+
+namespace corba {
+
+class Shape {
+ public:
+  // Fits everything.
+  Shape() = default;
+  explicit Shape(CORBA::TypeCode_ptr code);
+
+  // `octets`: CDR without a head, aligned from the first octet (CORBA 3.1 part 2, 9.3). Never refuses what omniORB decodes; of types with
+  // wide text, unions, references, any, fixed and long double it says no more than up to the first of those. What follows the value is not
+  // looked at. Never throws; takes time with the number of elements, but not for arrays of numbers.
+  bool fits(std::span<const std::byte> octets, rt::ByteOrder order) const;
+
+ private:
+  enum class Kind : std::uint8_t { unknown, number, enumeration, text, sequence, array, structure };
+  struct Node {
+    Kind kind = Kind::unknown;
+    std::uint8_t size = 0;        // of a number, and of every number in an array or structure that holds nothing else; else 0
+    std::uint64_t count = 0;      // such numbers; enumerators; most elements (0: any number) or letters
+    std::vector<Node> members{};  // the element of sequences and arrays
+  };
+  class Walk;
+
+  static Node compile(CORBA::TypeCode_ptr code, int depth);
+
+  Node root_;
+};
+
+}  // namespace corba
