@@ -65,6 +65,7 @@ ReturnCode ExecutionContext::stop(std::chrono::nanoseconds timeout) {
     data->running = false;
     data->halted = false;
   }
+  changed_.notify_all();
   call_all(Action::shutdown);
   return ReturnCode::ok;
 }
@@ -201,15 +202,25 @@ ReturnCode ExecutionContext::request(MemberId id, Event event) {
 }
 
 ReturnCode ExecutionContext::wait(MemberId id, Event event, std::chrono::nanoseconds timeout) {
+  return wait_until_settled(id, event, timeout, false);
+}
+
+ReturnCode ExecutionContext::wait_while_running(MemberId id, Event event, std::chrono::nanoseconds timeout) {
+  return wait_until_settled(id, event, timeout, true);
+}
+
+ReturnCode ExecutionContext::wait_until_settled(MemberId id, Event event, std::chrono::nanoseconds timeout, bool gives_up_when_stopped) {
   if (is_stepping_thread()) return ReturnCode::ok;
   const Transition* wanted = nullptr;
   for (const Transition& transition : transitions)
     if (transition.event == event) wanted = &transition;
   auto data = shared_.lock();
-  const bool settled = data.wait_for(changed_, timeout, [&] {
+  const auto is_settled = [&] {
     const Member* member = find(*data, id);
     return !member || !member->pending;
-  });
+  };
+  data.wait_for(changed_, timeout, [&] { return is_settled() || (gives_up_when_stopped && !data->running); });
+  const bool settled = is_settled();
   const Member* member = find(*data, id);
   if (!member) return ReturnCode::bad_parameter;
   if (!settled) return member->pending == Event::fail ? ReturnCode::precondition_not_met : ReturnCode::error;

@@ -91,6 +91,8 @@ class ExecutionContext {
   // Waits for the end of a request: precondition_not_met when it ended in another state than asked for, error when the time is over.
   // On the stepping thread it returns ok at once.
   ReturnCode wait(MemberId id, Event event, std::chrono::nanoseconds timeout);
+  // As wait(), but error also as soon as the context is stopped, since no transition comes then.
+  ReturnCode wait_while_running(MemberId id, Event event, std::chrono::nanoseconds timeout);
   // Waits until nobody is called on another thread; false when the time is over.
   bool wait_until_quiet(std::chrono::nanoseconds timeout);
   // Nobody waits for the call that runs now any more: remove() and wait_until_quiet() fail at once as long as it lasts.
@@ -126,6 +128,7 @@ class ExecutionContext {
   void count_cycle(std::chrono::nanoseconds took);
 
  private:
+  ReturnCode wait_until_settled(MemberId id, Event event, std::chrono::nanoseconds timeout, bool gives_up_when_stopped);
   struct Member {
     MemberId id;
     std::shared_ptr<Participant> participant;

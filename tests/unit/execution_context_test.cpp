@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <future>
 #include <limits>
 
 #include "base/log.h"
@@ -314,6 +315,15 @@ TEST_F(ExecutionContextTest, does_not_wait_on_the_stepping_thread) {
 TEST_F(ExecutionContextTest, a_wait_ends_with_an_error_when_the_time_is_over) {
   context.request(id, Event::activate);
   EXPECT_EQ(context.wait(id, Event::activate, 1ms), ReturnCode::error);
+}
+
+TEST_F(ExecutionContextTest, a_wait_for_a_running_context_ends_when_it_stops) {
+  ASSERT_EQ(context.request(id, Event::activate), ReturnCode::ok);
+  auto stopped = std::async(std::launch::async, [this] { return context.wait_while_running(id, Event::activate, 60s); });
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(context.stop(), ReturnCode::ok);
+  EXPECT_EQ(stopped.get(), ReturnCode::error);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, 30s) << "not the whole time-out";
 }
 
 TEST_F(ExecutionContextTest, is_idle_while_nobody_is_active_or_about_to_be) {

@@ -278,7 +278,8 @@ void ExecutionContextBase::calmComponent(RTC::LightweightRTObject_ptr comp, std:
       onWaitingReset(machine, 0);
     else
       onWaitingDeactivated(machine, 0);
-    const rt::ReturnCode code = impl_->context.wait(member->id, event, left());
+    const rt::ReturnCode code = impl_->context.wait_while_running(member->id, event, left());
+    if (!isRunning()) return;
     if (left() == 0ns) {
       impl_->context.write_off_call();
       return;
