@@ -116,8 +116,9 @@ TEST_F(Servant, a_module_that_is_cut_short_or_fails_is_refused) {
   ASSERT_FALSE(CORBA::is_nil(manager)) << rtcd.output();
   const auto file = std::filesystem::temp_directory_path() / ("Cut" + std::to_string(getpid()) + ".so");
   std::filesystem::copy_file(modules + "/FailOnRequest.so", file);
-  const auto whole = std::filesystem::file_size(file);
-  for (const auto size : {whole / 2, std::uintmax_t{3000}, std::uintmax_t{100}, std::uintmax_t{0}}) {
+  // Each within what the loader maps: behind that stand names for debuggers, without which a module runs.
+  for (const std::uintmax_t size : {12000, 3000, 100, 0}) {
+    ASSERT_LT(size, std::filesystem::file_size(file));
     std::filesystem::resize_file(file, size);
     EXPECT_EQ(manager->load_module(file.c_str(), "FailOnRequestInit"), RTC::RTC_ERROR) << size;
   }
