@@ -15,6 +15,8 @@ ExecutionContext::ExecutionContext(std::string name, double rate) : name_(std::m
 
 bool ExecutionContext::is_running() const { return shared_.lock()->running; }
 
+bool ExecutionContext::is_halted() const { return shared_.lock()->halted; }
+
 double ExecutionContext::rate() const { return shared_.lock()->rate; }
 
 std::chrono::nanoseconds ExecutionContext::period() const { return std::chrono::nanoseconds(std::llround(1e9 / rate())); }

@@ -59,6 +59,7 @@ class ExecutionContext {
   explicit ExecutionContext(std::string name = "execution context", double rate = 1000.0);
 
   bool is_running() const;
+  bool is_halted() const;
   // Call every member's startup (shutdown) action. Fail when it runs (is stopped) already. After stop() has succeeded no phase calls
   // anybody. It waits for a call that runs on another thread; when that does not return in time the answer is error and it runs on.
   ReturnCode start();

@@ -121,6 +121,19 @@ class MembersContext : public virtual RTC::PeriodicExecutionContext {
   }
 };
 
+// Only workerDo, until the context says that it stops.
+class PlainContext : public virtual RTC_exp::PeriodicExecutionContext {
+ public:
+  int svc() override {
+    do {
+      coil::sleep(coil::TimeValue(getPeriod()));
+      const RTC::RTCList& list = getComponentList();
+      for (CORBA::ULong i = 0; i < list.length(); ++i) m_worker.findComponent(list[i])->workerDo();
+    } while (isRunning());
+    return 0;
+  }
+};
+
 template <class Context>
 void add(const char* name) {
   RTC::ExecutionContextFactory::instance().addFactory(name, coil::Creator<RTC::ExecutionContextBase, Context>,
@@ -131,6 +144,7 @@ RTC::ExecutionContext_ptr context_of(RTC::RTObject_impl& component, const char* 
   add<BackwardsContext>("BackwardsContext");
   add<HandContext>("HandContext");
   add<MembersContext>("MembersContext");
+  add<PlainContext>("PlainContext");
   component.getProperties()["execution_contexts"] = type;
   EXPECT_EQ(component.initialize(), RTC::RTC_OK);
   return component.getExecutionContext(0);
@@ -208,6 +222,29 @@ TEST(AuthorContext, finds_its_members_and_their_states) {
   RTC::ExecutionContextService_var service = RTC::ExecutionContextService::_narrow(context);
   RTC::ExecutionContextProfile_var profile = service->get_profile();
   EXPECT_GE(std::stoi(NVUtil::toString(profile->properties, "statistics.cycles")), 3);
+}
+
+TEST(AuthorContext, may_call_nothing_but_the_do_of_its_members) {
+  Owned<> owner(nullptr, "Plain0"), guest(nullptr, "Guest0");
+  RTC::ExecutionContext_var context = context_of(*owner, "PlainContext");
+  ASSERT_EQ(context->set_rate(500), RTC::RTC_OK);
+  guest->getProperties()["execution_contexts"] = "none";
+  ASSERT_EQ(guest->initialize(), RTC::RTC_OK);
+  RTC::RTObject_var member = guest->getObjRef();
+  ASSERT_EQ(context->add_component(member), RTC::RTC_OK);
+  for (auto* one : {&*owner, &*guest}) {
+    RTC::RTObject_var reference = one->getObjRef();
+    ASSERT_EQ(context->activate_component(reference), RTC::RTC_OK);
+    ASSERT_TRUE(one->wait_for("onExecute", 3));
+    ASSERT_EQ(context->deactivate_component(reference), RTC::RTC_OK);
+    EXPECT_EQ(one->trace().back(), "onDeactivated");
+  }
+  EXPECT_EQ(context->stop(), RTC::RTC_OK);
+  EXPECT_FALSE(context->is_running());
+  EXPECT_EQ(context->start(), RTC::RTC_OK);
+  EXPECT_EQ(context->activate_component(member), RTC::RTC_OK);
+  EXPECT_EQ(context->deactivate_component(member), RTC::RTC_OK);
+  EXPECT_EQ(context->remove_component(member), RTC::RTC_OK);
 }
 
 TEST(AuthorContext, the_triggered_context_is_there_under_the_name_of_1_1) {

@@ -67,9 +67,9 @@ TEST_F(Rtcd, a_module_brings_serializers_for_the_ports_of_others) {
 
 TEST_F(Rtcd, contexts_with_an_author_s_own_loop_run_stop_and_change_their_rate) {
   const auto makes = [](const std::string& type) { return "SourceAll?execution_contexts=" + type + "(own)&ec.own.rate=100"; };
-  for (const std::string type : {"MembersLoop", "TimedLoop", "PhasesLoop", "ChronoLoop", "OwnLoopEC", "StepEC"}) {
+  for (const std::string type : {"MembersLoop", "TimedLoop", "PhasesLoop", "ChronoLoop", "OwnLoopEC", "StepEC", "CycleEC"}) {
     support::Process rtcd(
-        command({"-o", "manager.modules.preload:LoopECs.so,StepEC.so(" + (type == "OwnLoopEC" ? type : "StepEC") + "Init)", "-o",
+        command({"-o", "manager.modules.preload:LoopECs.so,CycleEC.so,StepEC.so(" + (type == "OwnLoopEC" ? type : "StepEC") + "Init)", "-o",
                  "manager.components.precreate:" + makes(type) + ",SinkAll", "-o",
                  "manager.components.preconnect:SourceAll0.long?port=SinkAll0.long", "-o",
                  "manager.components.preactivation:SourceAll0,SinkAll0"}));

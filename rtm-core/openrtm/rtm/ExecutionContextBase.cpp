@@ -75,7 +75,7 @@ void ExecutionContextBase::init(coil::Properties& props) {
   data->reset = reset.timeout;
 }
 
-CORBA::Boolean ExecutionContextBase::isRunning() const { return impl_->context.is_running(); }
+CORBA::Boolean ExecutionContextBase::isRunning() const { return impl_->context.is_running() && !impl_->context.is_halted(); }
 
 // Only one of start and stop at a time: what the hooks do (threads) must not be undone meanwhile.
 class ExecutionContextBase::Changing {

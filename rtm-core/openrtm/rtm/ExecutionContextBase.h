@@ -44,6 +44,7 @@ class ExecutionContextBase {
   // Ends all memberships at once, without waiting for callbacks: for a context that ends.
   void dismissMembers();
 
+  // False from the moment on that stop() begins, so that loops of authors end with it.
   CORBA::Boolean isRunning() const;
   // onStartup (onShutdown) of every member is called on the calling thread. stop() waits for a callback that runs; when that does not
   // return within callbackTimeout() the answer is RTC_ERROR, a log line names it, and the context runs on when it does return.
@@ -82,7 +83,7 @@ class ExecutionContextBase {
   // The caller owns the profile.
   RTC::ExecutionContextProfile* getProfile();
   std::vector<RTC::LightweightRTObject_var> getComponents() const;
-  // Those of them that are no owners. For one thread at a time; good until the next call.
+  // The same as a sequence, which loops of authors step through. For one thread at a time; good until the next call.
   const RTC::RTCList& getComponentList() const;
 
   void setObjRef(RTC::ExecutionContextService_ptr ref);

@@ -55,7 +55,6 @@ const RTC::RTCList& ExecutionContextBase::getComponentList() const {
   RTC::RTCList& list = impl_->component_list;
   list.length(0);
   for (const Impl::Member& member : impl_->snapshot()) {
-    if (member.owner) continue;
     const CORBA::ULong n = list.length();
     list.length(n + 1);
     list[n] = RTC::RTObject::_unchecked_narrow(member.reference);

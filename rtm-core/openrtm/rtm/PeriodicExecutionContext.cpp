@@ -34,6 +34,7 @@ PeriodicExecutionContext::~PeriodicExecutionContext() { endThread(); }
 
 void PeriodicExecutionContext::endThread() {
   m_svc = false;
+  context().halt();  // loops of authors ask isRunning()
   worker_->stop();
   wakeLoop();
   coil::Task::wait();

@@ -69,7 +69,8 @@ class PeriodicExecutionContext : public ExecutionContextServant<POA_RTC::Executi
   detail::NamedWorker m_worker{*this};  // 1.1: the thread's state; 1.2 and 2.x: the members
   detail::LoopWorker m_workerthread;    // 1.2 and 2.x
   coil::Mutex m_svcmutex;
-  std::atomic<bool> m_svc{false};  // as threadRunning
+  std::atomic<bool> m_svc{false};        // as threadRunning
+  std::atomic<bool>& m_running = m_svc;  // 1.0
   bool m_nowait = false;
   coil::TimeValue m_period;  // written by set_rate on the caller's thread, as ever
   RTC::ReturnCode_t onSetRate(double rate) override;

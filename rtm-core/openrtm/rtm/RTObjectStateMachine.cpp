@@ -34,6 +34,7 @@ void RTObjectStateMachine::workerPreDo() {
 
 void RTObjectStateMachine::workerDo() {
   const base::ScopedClock clock(context_.contextClock());
+  context_.context().transit_one(member_);
   context_.context().execute_one(member_);
 }
 

@@ -29,7 +29,8 @@ class RTObjectStateMachine {
 
   // Asks for the transition to that state, which the next workerPreDo makes. Nothing happens when there is none.
   void goTo(RTC::LifeCycleState state);
-  // The parts of a cycle for this component alone: transitions; onExecute (onError); onStateUpdate.
+  // The parts of a cycle for this component alone: transitions; onExecute (onError); onStateUpdate. workerDo makes a transition that
+  // waits, for loops that call nothing else.
   void workerPreDo();
   void workerDo();
   void workerPostDo();
