@@ -2,6 +2,12 @@
 include(CMakePackageConfigHelpers)
 
 set(package_include ${CMAKE_INSTALL_INCLUDEDIR}/rtm-sim)
+set(package_libraries rtmsim_openrtm rtmsim_corba rtmsim_core rtmsim_base rtmsim_coil rtmsim_idl)
+list(TRANSFORM package_libraries PREPEND -l OUTPUT_VARIABLE PACKAGE_LINK_LIBRARIES)
+list(JOIN PACKAGE_LINK_LIBRARIES " " PACKAGE_LINK_LIBRARIES)
+list(TRANSFORM package_libraries REPLACE "(.+)" "lib\\1.so" OUTPUT_VARIABLE PACKAGE_LINK_FILES)
+list(JOIN PACKAGE_LINK_FILES " " PACKAGE_LINK_FILES)
+list(JOIN package_libraries " " PACKAGE_LIBRARIES)
 set(package_cmake ${CMAKE_INSTALL_LIBDIR}/cmake/OpenRTM)
 
 # The same template twice: absolute paths of the build tree, paths relative to the file for the installation.
@@ -41,6 +47,25 @@ foreach(name rtm rtm2)
   configure_file(cmake/package/rtm-skelwrapper ${PROJECT_BINARY_DIR}/bin/${name}-skelwrapper COPYONLY)
   install(PROGRAMS ${PROJECT_BINARY_DIR}/package/rtm-config DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME ${name}-config)
   install(PROGRAMS cmake/package/rtm-skelwrapper DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME ${name}-skelwrapper)
+endforeach()
+
+# Where and under which names older build files look: folders of headers by version, libraries by name.
+configure_file(cmake/package/library.so.in ${PROJECT_BINARY_DIR}/package/library.so @ONLY)
+foreach(name RTC RTCSkel coil RTC2 coil2 hrtm rtmCamera rtmManipulator rtmCamera2 rtmManipulator2)
+  install(FILES ${PROJECT_BINARY_DIR}/package/library.so DESTINATION ${CMAKE_INSTALL_LIBDIR} RENAME lib${name}.so)
+endforeach()
+foreach(link openrtm-2.1:rtm-sim coil-2.1:rtm-sim rtm/idl:../rtm-sim/rtm/idl)
+  string(REPLACE ":" ";" link ${link})
+  list(GET link 0 name)
+  list(GET link 1 target)
+  install(CODE "
+    set(link \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/${name}\")
+    if(NOT EXISTS \"\${link}\")
+      message(STATUS \"Installing: \${link}\")
+      cmake_path(GET link PARENT_PATH folder)
+      file(MAKE_DIRECTORY \"\${folder}\")
+      file(CREATE_LINK ${target} \"\${link}\" SYMBOLIC)
+    endif()")
 endforeach()
 
 foreach(layer base core corba openrtm/rtm openrtm/coil)

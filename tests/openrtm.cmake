@@ -21,5 +21,7 @@ add_test(NAME package.tutorial COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/tutor
 set_tests_properties(package.tutorial PROPERTIES LABELS package TIMEOUT 300 ENVIRONMENT "SANITIZE=${RTMSIM_SANITIZE}")
 add_test(NAME package.examples COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/examples ${PROJECT_BINARY_DIR})
 set_tests_properties(package.examples PROPERTIES LABELS package TIMEOUT 300)
+add_test(NAME package.builds COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/builds ${PROJECT_BINARY_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/classic-api/peers)
+set_tests_properties(package.builds PROPERTIES LABELS package TIMEOUT 600 ENVIRONMENT "SANITIZE=${RTMSIM_SANITIZE}")
 add_test(NAME package.peers COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/peers build ${PROJECT_BINARY_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/classic-api/peers)
 set_tests_properties(package.peers PROPERTIES LABELS package TIMEOUT 900 ENVIRONMENT "SANITIZE=${RTMSIM_SANITIZE}")

@@ -35,6 +35,12 @@ class Bank
     return RTC::RTC_OK;
   }
 
+  virtual RTC::ReturnCode_t onActivated(RTC::UniqueId ec_id)
+  {
+    std::cout << "the bank is open" << std::endl;
+    return RTC::RTC_OK;
+  }
+
  protected:
   RTC::CorbaPort m_AccountPort;
   AccountSVC_impl m_account;
