@@ -168,6 +168,64 @@ TEST(Tools, protected_members_of_ports_and_the_manager_are_there) {
   auto* host = static_cast<Host*>(manager);
   ASSERT_NE(host->servant(), nullptr);
   EXPECT_EQ(host->servant(), &manager->getManagerServant());
+  // As hosts do that are not sure.
+  const RTM::Manager_var before = RTM::Manager::_duplicate(host->servant()->getObjRef());
+  EXPECT_TRUE(host->servant()->createINSManager());
+  EXPECT_TRUE(before->_is_equivalent(host->servant()->getObjRef()));
+}
+
+// Data ports of an author's own look after their connections by themselves.
+class CountingOut : public RTC::OutPort<RTC::TimedLong> {
+ public:
+  using RTC::OutPort<RTC::TimedLong>::OutPort;
+  using RTC::OutPort<RTC::TimedLong>::write;
+  bool write(RTC::TimedLong& value) override {
+    Guard guard(m_connectorsMutex);
+    if (m_connectors.empty()) return false;
+    names.clear();
+    for (size_t i(0), len(m_connectors.size()); i < len; ++i) names.push_back(m_connectors[i]->name());
+    for (ConnectorList::value_type connector : m_connectors) names.push_back(connector->profile().name);
+    return OutPort::write(value);
+  }
+  std::vector<std::string> names;
+};
+
+class LookingIn : public RTC::InPort<RTC::TimedLong> {
+ public:
+  using RTC::InPort<RTC::TimedLong>::InPort;
+  bool waits() { return m_connectors.size() == 1 && m_connectors.at(0)->getBuffer()->readable() == 1; }
+  std::size_t before() const {
+    const ConnectorList list = m_connectors;
+    return list.size();
+  }
+};
+
+TEST(Tools, data_ports_of_authors_find_their_connections) {
+  RTC::Manager* manager = started();
+  auto* component = manager->createComponent("Ported");
+  ASSERT_NE(component, nullptr);
+  RTC::TimedLong sent, received;
+  CountingOut out("counted", sent);
+  LookingIn in("looked", received);
+  ASSERT_TRUE(component->addOutPort("counted", out));
+  ASSERT_TRUE(component->addInPort("looked", in));
+  EXPECT_EQ(in.before(), 0u);
+  EXPECT_FALSE(out.write());
+  RTC::PortService_ptr from = out.getPortRef();
+  RTC::PortService_ptr to = in.getPortRef();
+  coil::Properties settings;
+  ASSERT_EQ(CORBA_RTCUtil::connect("wire", settings, from, to), RTC::RTC_OK);
+  sent.data = 7;
+  EXPECT_TRUE(out.write());
+  EXPECT_EQ(out.names, (std::vector<std::string>{"wire", "wire"}));
+  EXPECT_TRUE(in.waits());
+  EXPECT_TRUE(in.read());
+  EXPECT_EQ(received.data, 7);
+  ASSERT_EQ(out.disconnect_all(), RTC::RTC_OK);
+  EXPECT_FALSE(out.write());
+  EXPECT_EQ(in.before(), 0u);
+  component->removeOutPort(out);
+  component->removeInPort(in);
 }
 
 TEST(Tools, interfaces_have_repository_ids_as_data_types_have) {

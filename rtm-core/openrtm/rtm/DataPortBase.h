@@ -5,6 +5,9 @@
 #include <string>
 #include <vector>
 
+#include <coil/Guard.h>
+#include <coil/Mutex.h>
+
 #include "base/guarded.h"
 #include "corba/type_ops.h"
 #include "core/connector_settings.h"
@@ -25,7 +28,27 @@ namespace RTC {
 
 namespace detail {
 class Serializers;
-}
+
+// connectors() as ports of authors know them: a member that changes with the connections. begin() and size() look again; what they found is
+// there by index. For the thread that holds m_connectorsMutex.
+template <class Port>
+class ConnectorsView {
+ public:
+  explicit ConnectorsView(const Port& port) : port_(port) {}
+  auto begin() { return (found_ = port_.connectors()).begin(); }
+  auto end() { return found_.end(); }
+  std::size_t size() { return (found_ = port_.connectors()).size(); }
+  bool empty() { return size() == 0; }
+  // nullptr where there is none (any more).
+  auto operator[](std::size_t at) const -> typename Port::ConnectorList::value_type { return at < found_.size() ? found_[at] : nullptr; }
+  auto at(std::size_t at) const { return found_.at(at); }
+  operator typename Port::ConnectorList() const { return port_.connectors(); }
+
+ private:
+  const Port& port_;
+  typename Port::ConnectorList found_{};
+};
+}  // namespace detail
 
 template <class Engine, class Connector, rt::Side side>
 class DataPortBase : public PortBase, public DataPortStatus {
@@ -78,6 +101,10 @@ class DataPortBase : public PortBase, public DataPortStatus {
   void unsubscribeInterfaces(const ConnectorProfile& profile) override;
 
   const std::unique_ptr<Engine> engine_;
+  // The names of 1.x and 2.x.
+  using Guard = coil::Guard<coil::Mutex>;
+  detail::ConnectorsView<DataPortBase> m_connectors{*this};
+  mutable coil::Mutex m_connectorsMutex;
 
  private:
   // Makes the connection in publishInterfaces if this side provides the object, else in subscribeInterfaces.

@@ -146,6 +146,15 @@ void ManagerServant::activate() {
   manager_.impl_->orb->publish(manager_.configValue("manager.name"), reference_);
 }
 
+bool ManagerServant::createINSManager() {
+  try {
+    if (CORBA::is_nil(reference_)) activate();
+  } catch (const CORBA::Exception& e) {
+    base::log(base::Level::warn, "manager", "the manager's object cannot be made: {}", corba::to_text(e));
+  }
+  return !CORBA::is_nil(reference_);
+}
+
 void ManagerServant::deactivate() {
   try {
     manager_.impl_->orb->withdraw(manager_.configValue("manager.name"));

@@ -22,6 +22,8 @@ class ManagerServant final : public POA_RTM::Manager {
   // Activates the servant in the root POA and under the manager's name in the INS POA.
   void activate();
   void deactivate();
+  // The same as activate() for hosts of components that find no reference; false when it is of no use.
+  bool createINSManager();
   // Borrowed; nil before activate.
   RTM::Manager_ptr getObjRef() const { return reference_.in(); }
 
