@@ -187,6 +187,11 @@ rt::Refusal InEngine::provide(ConnectionPlan plan, RTC::ConnectorProfile& profil
     case rt::Interface::direct:
       add_local(id, connection);
       break;
+    case rt::Interface::foreign:
+      connection->served_ = connection->plan_.carrier->serve(std::weak_ptr<Receiver>(connection), profile);
+      if (!connection->served_)
+        return {rt::ReturnCode::error, "the InPort's end of interface_type " + settings.foreign_interface + " cannot be made, or refuses"};
+      break;
   }
   if (connection->provider_) publish_reference(profile, settings.interface, rt::Side::in, *connection->provider_);
   add(connection);
@@ -203,6 +208,10 @@ rt::Refusal InEngine::consume(ConnectionPlan plan, const RTC::ConnectorProfile& 
     if (!source) return {rt::ReturnCode::error, "interface_type direct: the OutPort is not in this process"};
     if (*source->ops().type != *ops_.type) return {rt::ReturnCode::bad_parameter, "the OutPort sends " + source->ops().type_id};
     connection->fetcher_ = std::make_unique<DirectFetcher>(source);
+  } else if (settings.interface == rt::Interface::foreign) {
+    connection->fetcher_ = connection->plan_.carrier->make_fetcher(profile);
+    if (!connection->fetcher_)
+      return {rt::ReturnCode::error, "the InPort's end of interface_type " + settings.foreign_interface + " cannot be made, or refuses"};
   } else {
     const CORBA::Object_var object = published_reference(profile, settings.interface, rt::Side::out);
     connection->fetcher_ = settings.interface == rt::Interface::shared_memory ? make_shared_memory_fetcher(object, line)
@@ -229,6 +238,7 @@ bool InEngine::close(const std::string& id) {
   }
   if (closed->settings().interface == rt::Interface::direct) remove_local_in(id);
   closed->provider_.reset();  // the servant holds the connection
+  closed->served_.reset();
   closed->finish();
   tidy();
   closed->events().on_event(ConnectorEvent::disconnect);

@@ -28,6 +28,7 @@ struct ConnectionPlan {
   rt::ConnectorSettings settings;
   std::shared_ptr<ConnectorEvents> events;
   std::shared_ptr<Codec> codec;              // null: CDR
+  std::shared_ptr<Carrier> carrier;          // of foreign interfaces
   bool peer_says_when_empty = false;         // the OutPort of a pull connection does not hand out old samples again
   std::shared_ptr<const base::Clock> clock;  // of the port's component, for time stamps; null: the calling thread's
 
@@ -79,6 +80,7 @@ class InConnection final : public Receiver, public Waiting {
   const std::shared_ptr<rt::BlockPool> pool_ = rt::BlockPool::make();
   std::unique_ptr<Provider> provider_;  // push
   std::unique_ptr<Fetcher> fetcher_;    // pull
+  std::shared_ptr<void> served_;        // push by a foreign interface
   base::Guarded<rt::Sample, base::Rank::connector> last_fetched_;
 };
 

@@ -258,6 +258,11 @@ rt::Refusal OutEngine::provide(ConnectionPlan plan, RTC::ConnectorProfile& profi
     case rt::Interface::direct:
       add_local(id, connection);
       break;
+    case rt::Interface::foreign:
+      connection->served_ = plan.carrier->serve(std::weak_ptr<Source>(connection), profile);
+      if (!connection->served_)
+        return {rt::ReturnCode::error, "the OutPort's end of interface_type " + settings.foreign_interface + " cannot be made, or refuses"};
+      break;
   }
   if (connection->provider_) publish_reference(profile, settings.interface, rt::Side::out, *connection->provider_);
   add(connection);
@@ -273,6 +278,10 @@ rt::Refusal OutEngine::consume(ConnectionPlan plan, const RTC::ConnectorProfile&
     if (!receiver) return {rt::ReturnCode::error, "interface_type direct: the InPort is not in this process"};
     if (*receiver->ops().type != *ops_.type) return {rt::ReturnCode::bad_parameter, "the InPort takes " + receiver->ops().type_id};
     sender = std::make_unique<DirectSender>(std::move(receiver));
+  } else if (settings.interface == rt::Interface::foreign) {
+    sender = plan.carrier->make_sender(profile);
+    if (!sender)
+      return {rt::ReturnCode::error, "the OutPort's end of interface_type " + settings.foreign_interface + " cannot be made, or refuses"};
   } else {
     const CORBA::Object_var object = published_reference(profile, settings.interface, rt::Side::in);
     sender = settings.interface == rt::Interface::shared_memory ? make_shared_memory_sender(object, line)
@@ -297,6 +306,7 @@ bool OutEngine::close(const std::string& id) {
   }
   if (closed->settings().interface == rt::Interface::direct) remove_local_out(id);
   closed->provider_.reset();  // the servant holds the connection
+  closed->served_.reset();
   closed->close();
   closed->events().on_event(ConnectorEvent::disconnect);
   return true;

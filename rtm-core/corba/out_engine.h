@@ -54,6 +54,7 @@ class OutConnection final : public Source, public Waiting {
   rt::Mailbox mailbox_;                       // pull
   rt::Channel channel_ = rt::Channel::any;
   std::unique_ptr<Provider> provider_;  // pull
+  std::shared_ptr<void> served_;        // pull by a foreign interface
 };
 
 class OutEngine {

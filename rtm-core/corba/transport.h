@@ -11,6 +11,7 @@
 #include "core/connector_settings.h"
 #include "core/port_status.h"
 #include "core/sample.h"
+#include "rtm/idl/RTCStub.h"
 
 namespace corba {
 
@@ -55,6 +56,18 @@ class Provider {
   virtual CORBA::Object_ptr reference() const = 0;
   // The reference with the type of its interface.
   virtual CORBA::Any as_any() const = 0;
+};
+
+// A transport of an author, for one connection. Called without a lock; nothing throws, what fails is in the log.
+class Carrier {
+ public:
+  virtual ~Carrier() = default;
+  // The end that reaches the peer by what the profile says; nullptr when it cannot be made.
+  virtual std::unique_ptr<Sender> make_sender(const RTC::ConnectorProfile& profile) = 0;
+  virtual std::unique_ptr<Fetcher> make_fetcher(const RTC::ConnectorProfile& profile) = 0;
+  // The end that the peer reaches: there as long as the result lives. May add to the profile what the peer must know. nullptr as above.
+  virtual std::shared_ptr<void> serve(std::weak_ptr<Receiver> receiver, RTC::ConnectorProfile& profile) = 0;
+  virtual std::shared_ptr<void> serve(std::weak_ptr<Source> source, RTC::ConnectorProfile& profile) = 0;
 };
 
 // What all calls of one connection share.

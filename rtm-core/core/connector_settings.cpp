@@ -95,7 +95,7 @@ std::string without_blanks(std::string_view text) {
   return result;
 }
 
-void read_transport(const Reader& reader, ConnectorSettings& settings) {
+void read_transport(const Reader& reader, const std::vector<std::string>& foreign, ConnectorSettings& settings) {
   const auto dataflow = base::to_lower(without_blanks(reader.text("dataflow_type")));
   if (dataflow == "push") {
     settings.dataflow = Dataflow::push;
@@ -108,11 +108,16 @@ void read_transport(const Reader& reader, ConnectorSettings& settings) {
   constexpr std::array interfaces = {
       std::pair{std::string_view("corba_cdr"), Interface::corba_cdr}, std::pair{std::string_view("data_service"), Interface::data_service},
       std::pair{std::string_view("shared_memory"), Interface::shared_memory}, std::pair{std::string_view("direct"), Interface::direct}};
-  const auto it = std::ranges::find(interfaces, reader.text("interface_type"), [](const auto& entry) { return entry.first; });
-  if (it == interfaces.end()) {
-    reader.refuse(ReturnCode::bad_parameter, "interface_type", "corba_cdr, data_service, shared_memory or direct");
-  } else {
+  const std::string_view interface = reader.text("interface_type");
+  if (const auto it = std::ranges::find(interfaces, interface, [](const auto& entry) { return entry.first; }); it != interfaces.end()) {
     settings.interface = it->second;
+  } else if (std::ranges::find(foreign, interface) != foreign.end()) {
+    settings.interface = Interface::foreign;
+    settings.foreign_interface = interface;
+  } else {
+    std::string expected = "corba_cdr, data_service, shared_memory";
+    for (const std::string& name : foreign) expected += ", " + name;
+    reader.refuse(ReturnCode::bad_parameter, "interface_type", expected + " or direct");
   }
 
   if (const auto marshaling = reader.text("marshaling_type"); !marshaling.empty()) settings.marshaling = marshaling;
@@ -159,11 +164,11 @@ void read_subscription(const Reader& reader, ConnectorSettings& settings) {
 
 }  // namespace
 
-ConnectorSettingsOutcome read_connector_settings(const KeyValues& properties, Side side) {
+ConnectorSettingsOutcome read_connector_settings(const KeyValues& properties, Side side, const std::vector<std::string>& foreign) {
   ConnectorSettingsOutcome outcome;
   ConnectorSettings& settings = outcome.settings;
   const Reader reader(properties, side, outcome);
-  read_transport(reader, settings);
+  read_transport(reader, foreign, settings);
   read_subscription(reader, settings);
 
   reader.count("buffer.length", settings.buffer.length, 1, longest_buffer);

@@ -15,7 +15,7 @@ namespace rt {
 
 using KeyValues = std::map<std::string, std::string, std::less<>>;
 
-enum class Interface { corba_cdr, data_service, shared_memory, direct };
+enum class Interface { corba_cdr, data_service, shared_memory, direct, foreign };  // foreign: a transport of an author
 enum class Dataflow { push, pull };
 enum class Subscription { flush, newest, periodic };  // "flush", "new", "periodic"
 enum class PushPolicy { all, fifo, skip, newest };    // "all", "fifo", "skip", "new"
@@ -40,6 +40,7 @@ struct PublisherSettings {
 
 struct ConnectorSettings {
   Interface interface = Interface::corba_cdr;
+  std::string foreign_interface{};  // its name
   Dataflow dataflow = Dataflow::push;
   Subscription subscription = Subscription::flush;
   PublisherSettings publisher;
@@ -67,7 +68,8 @@ struct ConnectorSettingsOutcome {
 };
 
 // Reads the `dataport.*` keys; `dataport.inport.*` or `dataport.outport.*` of that side override them.
-ConnectorSettingsOutcome read_connector_settings(const KeyValues& properties, Side side);
+// `foreign`: the names of transports of authors.
+ConnectorSettingsOutcome read_connector_settings(const KeyValues& properties, Side side, const std::vector<std::string>& foreign = {});
 
 // Octets of "8M", "64k", "1000"; nothing if it is no size.
 std::optional<std::size_t> parse_size(std::string_view text);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "coil/Properties.h"
 #include "coil/Singleton.h"
 
 namespace coil {
@@ -53,15 +54,23 @@ class Factory {
     return ids;
   }
 
-  FactoryReturn addFactory(const Identifier& id, CreatorType creator, DestructorType destructor) {
+  // The properties tell users of this factory about the objects.
+  FactoryReturn addFactory(const Identifier& id, CreatorType creator, DestructorType destructor, const Properties& properties = {}) {
     if (!creator || !destructor) return FactoryReturn::INVALID_ARG;
     std::lock_guard lock(mutex_);
-    return makers_.emplace(id, Maker{creator, destructor}).second ? FactoryReturn::OK : FactoryReturn::ALREADY_EXISTS;
+    return makers_.emplace(id, Maker{creator, destructor, properties}).second ? FactoryReturn::OK : FactoryReturn::ALREADY_EXISTS;
   }
 
   FactoryReturn removeFactory(const Identifier& id) {
     std::lock_guard lock(mutex_);
     return makers_.erase(id) != 0 ? FactoryReturn::OK : FactoryReturn::NOT_FOUND;
+  }
+
+  // Empty for an unknown identifier.
+  Properties getProperties(const Identifier& id) const {
+    std::lock_guard lock(mutex_);
+    const auto it = makers_.find(id);
+    return it == makers_.end() ? Properties() : it->second.properties;
   }
 
   // nullptr for an unknown identifier.
@@ -131,6 +140,7 @@ class Factory {
   struct Maker {
     CreatorType create{};
     DestructorType destroy{};
+    Properties properties{};
   };
   struct Entry {
     Identifier id;

@@ -12,7 +12,13 @@ class Waiting;
 
 namespace RTC {
 
-class CdrBufferBase {
+class ByteData;
+
+template <class DataType>
+class BufferBase;
+
+template <>
+class BufferBase<ByteData> {
  public:
   // Places for samples: dataport.buffer.length.
   std::size_t length() const;
@@ -34,5 +40,7 @@ class CdrBufferBase {
   std::weak_ptr<corba::Waiting> waiting_;
   std::size_t length_ = 0;
 };
+
+using CdrBufferBase = BufferBase<ByteData>;
 
 }  // namespace RTC

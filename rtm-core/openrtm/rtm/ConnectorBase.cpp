@@ -1,7 +1,12 @@
 #include "rtm/ConnectorBase.h"
 
+#include <cstring>
+
+#include "corba/transport.h"
+#include "rtm/ByteData.h"
 #include "rtm/ConnectorListener.h"
 #include "rtm/PortBase.h"
+#include "rtm/data_port_support.h"
 
 namespace RTC {
 
@@ -45,6 +50,39 @@ void ConnectorBase::on_event(corba::ConnectorEvent event) {
   const auto current = info();
   bool info_changed = false;
   holder.notify(*current, info_changed);
+}
+
+void InPortConnector::serve(std::weak_ptr<corba::Receiver> receiver, bool is_little) {
+  receiver_ = std::move(receiver);
+  is_little_ = is_little;
+}
+
+DataPortStatus InPortConnector::write(const ByteData& data) {
+  const auto receiver = receiver_.lock();
+  if (!receiver) return PORT_ERROR;
+  auto block = receiver->pool().take(data.getDataLength());
+  if (block->size() > 0) std::memcpy(block->data(), data.getBuffer(), block->size());
+  rt::Sample sample;
+  sample.block = std::move(block);
+  sample.order = is_little_ ? rt::ByteOrder::little : rt::ByteOrder::big;
+  return detail::to_classic(receiver->receive(std::move(sample)));
+}
+
+void OutPortConnector::serve(std::weak_ptr<corba::Source> source, bool is_little) {
+  source_ = std::move(source);
+  is_little_ = is_little;
+}
+
+DataPortStatus OutPortConnector::read(ByteData& data) {
+  const auto source = source_.lock();
+  if (!source) return PORT_ERROR;
+  rt::Sample sample;
+  const rt::PortStatus status = source->give(sample);
+  if (status != rt::PortStatus::ok || !sample.block) return detail::to_classic(status);
+  data.setDataLength(sample.block->size());
+  if (sample.block->size() > 0) std::memcpy(data.getBuffer(), sample.block->data(), sample.block->size());
+  data.setEndian(is_little_);
+  return PORT_OK;
 }
 
 }  // namespace RTC

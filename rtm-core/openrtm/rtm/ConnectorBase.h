@@ -14,8 +14,14 @@
 #include "rtm/DataPortStatus.h"
 #include "rtm/idl/RTCStub.h"
 
+namespace corba {
+class Receiver;
+class Source;
+}  // namespace corba
+
 namespace RTC {
 
+class ByteData;
 class PortBase;
 class ConnectorListeners;
 
@@ -46,6 +52,7 @@ class ConnectorBase : public DataPortStatus, public corba::ConnectorEvents {
   // Takes the whole connection apart; the object is gone afterwards.
   DataPortStatus disconnect();
 
+  ConnectorListeners& listeners() { return *listeners_; }
   // What listeners get from now on.
   void setInfo(ConnectorInfo info);
   bool is_observed(corba::DataEvent event) const override;
@@ -68,11 +75,27 @@ class ConnectorBase : public DataPortStatus, public corba::ConnectorEvents {
 class InPortConnector : public ConnectorBase {
  public:
   using ConnectorBase::ConnectorBase;
+  // What a transport of an author has brought: waits in the port from now on. PORT_ERROR on connections of other transports.
+  DataPortStatus write(const ByteData& data);
+  void serve(std::weak_ptr<corba::Receiver> receiver, bool is_little);
+  bool isLittleEndian() const { return is_little_; }
+
+ private:
+  std::weak_ptr<corba::Receiver> receiver_;
+  bool is_little_ = true;
 };
 
 class OutPortConnector : public ConnectorBase {
  public:
   using ConnectorBase::ConnectorBase;
+  // The next sample, for a transport of an author: PORT_OK, BUFFER_EMPTY, BUFFER_TIMEOUT or PORT_ERROR.
+  DataPortStatus read(ByteData& data);
+  void serve(std::weak_ptr<corba::Source> source, bool is_little);
+  bool isLittleEndian() const { return is_little_; }
+
+ private:
+  std::weak_ptr<corba::Source> source_;
+  bool is_little_ = true;
 };
 
 }  // namespace RTC

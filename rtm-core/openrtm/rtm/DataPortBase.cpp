@@ -4,6 +4,7 @@
 #include "corba/in_engine.h"
 #include "corba/nv_list.h"
 #include "corba/out_engine.h"
+#include "rtm/InterfacePlugins.h"
 #include "rtm/Serializers.h"
 #include "rtm/data_port_support.h"
 
@@ -126,6 +127,7 @@ void DataPortBase<Engine, Connector, side>::removeConnectorListener(ConnectorLis
 template <class Engine, class Connector, rt::Side side>
 void DataPortBase<Engine, Connector, side>::complete(PortProfile& profile) const {
   corba::set_text(profile.properties, "dataport.marshaling_types", base::join(serializers_.names(), ","));
+  detail::show_interfaces_of_authors(profile, side);
 }
 
 template <class Engine, class Connector, rt::Side side>
@@ -171,6 +173,7 @@ ReturnCode_t DataPortBase<Engine, Connector, side>::open(ConnectorProfile& profi
     }
   }
   plan.clock = *clock_.lock();
+  if (settings.interface == rt::Interface::foreign) plan.carrier = detail::make_author_carrier(settings, connector);
   const rt::Refusal refusal = provides ? engine_->provide(std::move(plan), profile) : engine_->consume(std::move(plan), profile);
   if (refusal.code != rt::ReturnCode::ok) {
     RTC_WARN_STR("connection refused: " << refusal.reason);

@@ -7,6 +7,20 @@
 
 #include <rtm/idl/RTCSkel.h>
 
+// Sources of every age count on these coming along.
+#include <algorithm>
+#include <cassert>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iomanip>
+#include <iostream>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
 namespace coil {
 class Properties;
 }

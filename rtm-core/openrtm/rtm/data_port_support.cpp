@@ -6,6 +6,7 @@
 #include "corba/connector_keys.h"
 #include "corba/nv_list.h"
 #include "rtm/CORBA_SeqUtil.h"
+#include "rtm/InterfacePlugins.h"
 #include "rtm/NVUtil.h"
 
 namespace RTC::detail {
@@ -18,8 +19,24 @@ std::string short_name(const std::string& name) {
   return dot == std::string::npos ? name : name.substr(dot + 1);
 }
 
+namespace {
+constexpr const char* interfaces = "corba_cdr,data_service,direct,shared_memory";
+}
+
+void show_interfaces_of_authors(PortProfile& profile, rt::Side side) {
+  const auto names = interfaces_of_authors(side);
+  if (names.empty()) return;
+  corba::set_text(profile.properties, "dataport.interface_type", std::string(interfaces) + "," + base::join(names, ","));
+  for (const std::string& name : names) {
+    const coil::Properties options = options_of_author_interface(name, side);
+    corba::set_text(profile.properties, "dataport.interface_option." + name, "");
+    for (const std::string& key : options.propertyNames()) {
+      corba::set_text(profile.properties, "dataport.interface_option." + name + "." + key, options.getProperty(key));
+    }
+  }
+}
+
 std::vector<AdvertisedKey> advertised_keys(rt::Side side, const std::string& type_id) {
-  const std::string interfaces = "corba_cdr,data_service,direct,shared_memory";
   std::vector<AdvertisedKey> keys = {{"port.port_type", side == rt::Side::in ? "DataInPort" : "DataOutPort"},
                                      {"dataport.data_type", type_id},
                                      {"data_type", type_id},
@@ -51,7 +68,7 @@ rt::ConnectorSettingsOutcome settings_of(const ConnectorProfile& profile, const 
   for (auto& [name, value] : corba::to_key_values(profile.properties)) {
     if (!value.empty()) values[name] = value;
   }
-  return rt::read_connector_settings(values, side);
+  return rt::read_connector_settings(values, side, interfaces_of_authors(side));
 }
 
 void share_port_properties(ConnectorProfile& profile, const coil::Properties& port) {

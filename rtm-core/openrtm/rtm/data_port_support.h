@@ -21,6 +21,9 @@ struct AdvertisedKey {
 };
 std::vector<AdvertisedKey> advertised_keys(rt::Side side, const std::string& type_id);
 
+// Adds what has been registered by now.
+void show_interfaces_of_authors(PortProfile& profile, rt::Side side);
+
 // Fills in what a client may leave out, and takes out what must not be trusted.
 void complete_data_profile(ConnectorProfile& profile);
 
