@@ -30,11 +30,13 @@ PeriodicExecutionContext::PeriodicExecutionContext(const std::string& name)
   m_period = getPeriod();
 }
 
-PeriodicExecutionContext::~PeriodicExecutionContext() { endThread(); }
+PeriodicExecutionContext::~PeriodicExecutionContext() {
+  context().halt();  // loops of authors ask isRunning()
+  endThread();
+}
 
 void PeriodicExecutionContext::endThread() {
   m_svc = false;
-  context().halt();  // loops of authors ask isRunning()
   worker_->stop();
   wakeLoop();
   coil::Task::wait();
