@@ -1,0 +1,269 @@
+// Reads every `any` that the code generated from our IDL reads. omniORB trusts the lengths and depths that come with one (4.2.5): a length
+// near 2^32, a value type, or an any in an any in an any end the process that receives it. So what comes is checked while it is copied, and
+// only a copy that checks out is given to omniORB. The linker puts this in the place of CORBA::Any::operator<<= (see CMakeLists.txt).
+#include <omniORB4/CORBA.h>
+#include <omniORB4/minorCode.h>
+
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+extern "C" {
+void checked_any(CORBA::Any* any, cdrStream& stream) asm("__wrap__ZN5CORBA3AnylSER9cdrStream");
+void omniorb_any(CORBA::Any* any, cdrStream& stream) asm("__real__ZN5CORBA3AnylSER9cdrStream");
+}
+
+namespace {
+
+// Far beyond what anybody sends: properties are texts, references, sometimes numbers or a structure.
+constexpr int most_levels = 8;  // an any in an any; omniORB's time doubles with each
+constexpr int deepest_type = 16;
+constexpr std::uint32_t longest_type_code = 1 << 16;  // [octets]
+
+struct Type {
+  std::uint32_t kind = CORBA::tk_null;
+  std::uint32_t count = 0;      // bound, length or number of enumerators
+  std::vector<Type> members{};  // of structures; the element of sequences and arrays; what an alias means
+};
+
+[[noreturn]] void refuse(cdrStream& stream) {
+  OMNIORB_THROW(MARSHAL, _OMNI_NS(MARSHAL_InvalidTypeCodeKind), static_cast<CORBA::CompletionStatus>(stream.completion()));
+}
+
+// The parameters of a type code, an encapsulation: CORBA 3.1 part 2, 9.3.5.
+class Encapsulation {
+ public:
+  Encapsulation(cdrStream& whole, std::span<const CORBA::Octet> octets) : whole_(whole), octets_(octets) {
+    if (octets.empty()) refuse(whole);
+    is_swapped_ = (octets[0] != 0) != (omni::myByteOrder != 0);
+    at_ = 1;
+  }
+
+  std::uint32_t number() {
+    at_ = (at_ + 3) & ~std::size_t{3};
+    std::uint32_t value = 0;
+    std::memcpy(&value, take(sizeof value).data(), sizeof value);
+    return is_swapped_ ? __builtin_bswap32(value) : value;
+  }
+  void skip_text() { take(number()); }
+
+  Type type(int depth) {
+    if (depth > deepest_type) refuse(whole_);
+    Type type{number()};
+    switch (type.kind) {
+      case CORBA::tk_string:
+      case CORBA::tk_wstring:
+        type.count = number();
+        break;
+      case CORBA::tk_objref:
+      case CORBA::tk_struct:
+      case CORBA::tk_enum:
+      case CORBA::tk_alias:
+      case CORBA::tk_sequence:
+      case CORBA::tk_array:
+        parameters(type, whole_, take(number()), depth);
+        break;
+      default:
+        if (!is_basic(type.kind)) refuse(whole_);
+    }
+    return type;
+  }
+
+  // Reads what follows the kind.
+  static void parameters(Type& type, cdrStream& whole, std::span<const CORBA::Octet> octets, int depth) {
+    Encapsulation in(whole, octets);
+    if (type.kind != CORBA::tk_sequence && type.kind != CORBA::tk_array) {
+      in.skip_text();  // repository id
+      in.skip_text();  // name
+    }
+    switch (type.kind) {
+      case CORBA::tk_struct: {
+        const std::uint32_t members = in.number();
+        if (members == 0) refuse(whole);  // without octets there is no end to how many there could be
+        for (std::uint32_t i = 0; i < members; ++i) {
+          in.skip_text();
+          type.members.push_back(in.element(depth));
+        }
+        break;
+      }
+      case CORBA::tk_enum:
+        type.count = in.number();
+        for (std::uint32_t i = 0; i < type.count; ++i) in.skip_text();
+        break;
+      case CORBA::tk_alias:
+        type.members.push_back(in.element(depth));
+        break;
+      case CORBA::tk_sequence:
+      case CORBA::tk_array:
+        type.members.push_back(in.element(depth));
+        type.count = in.number();
+        if (type.kind == CORBA::tk_array && type.count == 0) refuse(whole);
+        break;
+      default:
+        break;
+    }
+  }
+
+  static bool is_basic(std::uint32_t kind) {
+    switch (kind) {
+      case CORBA::tk_short:
+      case CORBA::tk_long:
+      case CORBA::tk_ushort:
+      case CORBA::tk_ulong:
+      case CORBA::tk_float:
+      case CORBA::tk_double:
+      case CORBA::tk_boolean:
+      case CORBA::tk_char:
+      case CORBA::tk_octet:
+      case CORBA::tk_any:
+      case CORBA::tk_TypeCode:
+      case CORBA::tk_longlong:
+      case CORBA::tk_ulonglong:
+      case CORBA::tk_wchar:
+        return true;
+      default:
+        return false;  // also an indirection, which only types that hold themselves need
+    }
+  }
+
+ private:
+  Type element(int depth) { return type(depth + 1); }
+
+  std::span<const CORBA::Octet> take(std::size_t size) {
+    if (at_ > octets_.size() || size > octets_.size() - at_) refuse(whole_);
+    const auto taken = octets_.subspan(at_, size);
+    at_ += size;
+    return taken;
+  }
+
+  cdrStream& whole_;
+  const std::span<const CORBA::Octet> octets_;
+  bool is_swapped_ = false;
+  std::size_t at_ = 0;
+};
+
+// Everything that is read is also written.
+class CheckedCopy {
+ public:
+  CheckedCopy(cdrStream& from, cdrStream& to) : from_(from), to_(to) {}
+
+  void any(int level) {
+    if (level > most_levels) refuse(from_);
+    const Type type = type_code();
+    if (type.kind != CORBA::tk_null && type.kind != CORBA::tk_void) value(type, level);
+  }
+
+ private:
+  std::uint32_t number() {
+    const CORBA::ULong value = from_.unmarshalULong();
+    to_.marshalULong(value);
+    return value;
+  }
+
+  Type type_code() {
+    Type type{number()};
+    switch (type.kind) {
+      case CORBA::tk_null:
+      case CORBA::tk_void:
+        break;
+      case CORBA::tk_string:
+      case CORBA::tk_wstring:
+        type.count = number();
+        break;
+      case CORBA::tk_objref:
+      case CORBA::tk_struct:
+      case CORBA::tk_enum:
+      case CORBA::tk_alias:
+      case CORBA::tk_sequence:
+      case CORBA::tk_array: {
+        const std::uint32_t size = number();
+        if (size > longest_type_code) refuse(from_);
+        std::vector<CORBA::Octet> octets(size);
+        from_.get_octet_array(octets.data(), static_cast<int>(size));
+        to_.put_octet_array(octets.data(), static_cast<int>(size));
+        Encapsulation::parameters(type, from_, octets, 1);
+        break;
+      }
+      default:
+        if (!Encapsulation::is_basic(type.kind)) refuse(from_);
+    }
+    return type;
+  }
+
+  void value(const Type& type, int level) {
+    switch (type.kind) {
+      case CORBA::tk_short:
+      case CORBA::tk_ushort:
+        return to_.marshalUShort(from_.unmarshalUShort());
+      case CORBA::tk_long:
+      case CORBA::tk_ulong:
+        return to_.marshalULong(from_.unmarshalULong());
+      case CORBA::tk_longlong:
+      case CORBA::tk_ulonglong:
+        return to_.marshalULongLong(from_.unmarshalULongLong());
+      case CORBA::tk_float:
+        return to_.marshalFloat(from_.unmarshalFloat());
+      case CORBA::tk_double:
+        return to_.marshalDouble(from_.unmarshalDouble());
+      case CORBA::tk_boolean:
+        return to_.marshalBoolean(from_.unmarshalBoolean());
+      case CORBA::tk_octet:
+        return to_.marshalOctet(from_.unmarshalOctet());
+      case CORBA::tk_char:
+        return to_.marshalChar(from_.unmarshalChar());
+      case CORBA::tk_wchar:
+        return to_.marshalWChar(from_.unmarshalWChar());
+      case CORBA::tk_string: {
+        const CORBA::String_var text = from_.unmarshalString(static_cast<int>(type.count));
+        return to_.marshalString(text, static_cast<int>(type.count));
+      }
+      case CORBA::tk_wstring: {
+        const CORBA::WString_var text = from_.unmarshalWString(static_cast<int>(type.count));
+        return to_.marshalWString(text, static_cast<int>(type.count));
+      }
+      case CORBA::tk_objref: {
+        const CORBA::Object_var object = CORBA::Object::_unmarshalObjRef(from_);
+        return CORBA::Object::_marshalObjRef(object, to_);
+      }
+      case CORBA::tk_enum:
+        if (number() >= type.count) refuse(from_);
+        return;
+      case CORBA::tk_any:
+        return any(level + 1);
+      case CORBA::tk_TypeCode:
+        type_code();
+        return;
+      case CORBA::tk_alias:
+        return value(type.members.front(), level);
+      case CORBA::tk_struct:
+        for (const Type& member : type.members) value(member, level);
+        return;
+      case CORBA::tk_sequence: {
+        const std::uint32_t length = number();
+        if (type.count != 0 && length > type.count) refuse(from_);
+        return times(length, type.members.front(), level);
+      }
+      case CORBA::tk_array:
+        return times(type.count, type.members.front(), level);
+      default:
+        refuse(from_);
+    }
+  }
+
+  // Each takes at least an octet: a count that is no count ends with the message.
+  void times(std::uint32_t count, const Type& element, int level) {
+    for (std::uint32_t i = 0; i < count; ++i) value(element, level);
+  }
+
+  cdrStream& from_;
+  cdrStream& to_;
+};
+
+}  // namespace
+
+void checked_any(CORBA::Any* any, cdrStream& stream) {
+  cdrMemoryStream copy;
+  CheckedCopy(stream, copy).any(1);
+  omniorb_any(any, copy);
+}
