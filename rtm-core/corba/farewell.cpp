@@ -25,10 +25,14 @@ using Clock = std::chrono::steady_clock;
 constexpr auto patience = std::chrono::milliseconds(1000);
 // Of one of the calls by which a process that hangs is tried again; the end of the ORB waits for the last of them.
 constexpr auto attempt = std::chrono::milliseconds(300);
+// Between two of them, the longer the process has hung.
+constexpr auto longest_pause = std::chrono::milliseconds(1000);
+constexpr auto longest_hang = std::chrono::minutes(10);
 
 struct Message {
   RTC::PortService_var port;
   std::string connector_id;
+  Clock::time_point deadline;
 };
 
 struct State {
@@ -52,7 +56,7 @@ bool leave_message(const std::string& address, RTC::PortService_ptr port, const 
   auto state = Table::instance().state.lock();
   const auto found = state->untold.find(address);
   if (found == state->untold.end()) return false;
-  found->second.push_back({RTC::PortService::_duplicate(port), connector_id});
+  found->second.push_back({RTC::PortService::_duplicate(port), connector_id, Clock::now() + port_call_timeout()});
   return true;
 }
 
@@ -61,43 +65,55 @@ bool is_time_out(const CORBA::SystemException& problem) {
          (dynamic_cast<const CORBA::TRANSIENT*>(&problem) && problem.minor() == omni::TRANSIENT_CallTimedout);
 }
 
-// Until all is told or the process has hung for as long as a call may take.
+// Whether the process was reached. It is asked something harmless until it answers: what waits in its sockets when it wakes must not end a
+// connection that was made anew under the same id.
+bool deliver(const Message& message, bool is_awake) {
+  try {
+    limit_calls(message.port, std::min(port_call_timeout(), attempt));
+    if (!is_awake) message.port->_non_existent();
+    message.port->notify_disconnect(message.connector_id.c_str());
+  } catch (const CORBA::SystemException& e) {
+    return !is_time_out(e);  // any other problem is an answer, too
+  } catch (const CORBA::Exception&) {
+    // Of another make, and odd: it has got the message.
+  }
+  return true;
+}
+
+// Until each message is delivered or past its deadline.
 void tell_late(const std::string& address) {
   const omni_thread::ensure_self known_to_the_orb;  // time-outs need it
   auto& table = Table::instance();
-  const auto deadline = Clock::now() + port_call_timeout();
-  for (bool gives_up = false;;) {
+  const auto start = Clock::now();
+  bool is_awake = false;
+  while (true) {
     std::deque<Message> dropped;  // let go without the lock
     Message message;
     {
       auto state = table.state.lock();
       auto& messages = state->untold[address];
-      if (messages.empty() || state->is_ending || gives_up) {
+      if (messages.empty() || state->is_ending) {
         dropped = std::move(messages);
         state->untold.erase(address);
         break;
       }
       message = messages.front();
     }
-    try {
-      limit_calls(message.port, std::min(port_call_timeout(), attempt));
-      message.port->notify_disconnect(message.connector_id.c_str());
-    } catch (const CORBA::SystemException& e) {
-      gives_up = is_time_out(e) && Clock::now() >= deadline;
-      if (is_time_out(e)) continue;  // any other problem is an answer, too
-    } catch (const CORBA::Exception&) {
-      // Of another make, and odd: it has got the message.
-    }
-    table.state.lock()->untold[address].pop_front();
+    is_awake = deliver(message, is_awake);
+    auto state = table.state.lock();
+    if (is_awake || Clock::now() >= message.deadline)
+      state->untold[address].pop_front();
+    else
+      state.wait_for(table.changed, std::min<Clock::duration>((Clock::now() - start) / 4, longest_pause), [&] { return state->is_ending; });
   }
 }
 
-void tell_later(const std::string& address, RTC::PortService_ptr port, const char* connector_id) {
+void tell_later(const std::string& address, RTC::PortService_ptr port, const char* connector_id, Clock::duration lasts) {
   {
     auto state = Table::instance().state.lock();
     if (state->is_ending) return;
     const bool has_thread = state->untold.contains(address);
-    state->untold[address].push_back({RTC::PortService::_duplicate(port), connector_id});
+    state->untold[address].push_back({RTC::PortService::_duplicate(port), connector_id, Clock::now() + lasts});
     if (has_thread) return;
     ++state->threads;
   }
@@ -116,6 +132,7 @@ void end_farewells() {
   auto& table = Table::instance();
   auto state = table.state.lock();
   state->is_ending = true;
+  table.changed.notify_all();
   state.wait_for(table.changed, attempt * 10, [&] { return state->threads == 0; });
 }
 
@@ -127,11 +144,19 @@ std::optional<RTC::ReturnCode_t> take_leave(RTC::PortService_ptr port, const cha
     limit_calls(port, std::min(port_call_timeout(), patience) * static_cast<int>(left));
     return port->notify_disconnect(connector_id);
   } catch (const CORBA::SystemException& e) {
-    if (is_time_out(e)) tell_later(address, port, connector_id);  // or it is dead, and there is nobody to tell
+    if (is_time_out(e)) tell_later(address, port, connector_id, port_call_timeout());  // or it is dead, and there is nobody to tell
   } catch (const CORBA::Exception&) {
     // Of another make, and odd.
   }
   return std::nullopt;
+}
+
+void take_leave_when_awake(RTC::PortService_ptr port, const char* connector_id) {
+  try {
+    tell_later(process_address(port), port, connector_id, longest_hang);
+  } catch (const CORBA::SystemException&) {
+    // Nothing to reach it by.
+  }
 }
 
 }  // namespace corba

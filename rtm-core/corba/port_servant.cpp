@@ -290,6 +290,8 @@ RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile) {
   RTC::ReturnCode_t code = reserve(profile, allows_duplicate(profile));
   if (code != RTC::RTC_OK) return code;
 
+  const std::string id = profile.connector_id.in();
+  const RTC::PortServiceList ports = profile.ports;
   bool is_next_told = false;
   bool is_published = false;
   try {
@@ -302,6 +304,13 @@ RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile) {
     if (code == RTC::RTC_OK) {
       code = join_next(profile, self);
       is_next_told = code != RTC::PRECONDITION_NOT_MET;
+      if (id != profile.connector_id.in() || profile.ports.length() != ports.length()) {
+        base::log(base::Level::warn, port_name(), "the next port of connection {} answers with another id or other ports",
+                  base::in_quotes(profile.name.in()));
+        code = RTC::RTC_ERROR;
+      }
+      profile.connector_id = id.c_str();
+      profile.ports = ports;
       tell(Step::next_connected, profile, code);
     }
     if (code == RTC::RTC_OK) {
@@ -414,6 +423,7 @@ RTC::ReturnCode_t PortServant::leave(std::string_view connector_id, bool tells_n
     profile = connection->profile;
   }
   forget_peers(id, *loss_);
+  if (is_lost) tell_lost(profile);
   tell(Step::notify_disconnect, profile, RTC::RTC_OK);
   if (tells_next) tell(Step::next_disconnected, profile, leave_next(profile));
   tell(Step::unsubscribed, profile, RTC::RTC_OK);
@@ -432,6 +442,12 @@ RTC::ReturnCode_t PortServant::leave(std::string_view connector_id, bool tells_n
   }
   tell(Step::disconnected, profile, RTC::RTC_OK);
   return RTC::RTC_OK;
+}
+
+// A process that only hung still thinks that it is connected, and would refuse to be connected again.
+void PortServant::tell_lost(const RTC::ConnectorProfile& profile) {
+  for (CORBA::ULong i = 0; i < profile.ports.length(); ++i)
+    if (!is_same(profile.ports[i], reference())) take_leave_when_awake(profile.ports[i], profile.connector_id);
 }
 
 RTC::ReturnCode_t PortServant::leave_next(const RTC::ConnectorProfile& profile) {

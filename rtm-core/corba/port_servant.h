@@ -122,6 +122,7 @@ class PortServant : public virtual POA_RTC::PortService, public virtual Portable
   RTC::ReturnCode_t join_next(RTC::ConnectorProfile& profile, int self);
   RTC::ReturnCode_t leave(std::string_view connector_id, bool tells_next, bool is_lost);
   RTC::ReturnCode_t leave_next(const RTC::ConnectorProfile& profile);
+  void tell_lost(const RTC::ConnectorProfile& profile);
   // Tells the ports of a connection to take it apart, in order, until one answers; its answer.
   RTC::ReturnCode_t break_up(const RTC::ConnectorProfile& profile);
   void tell(Step step, RTC::ConnectorProfile& profile, RTC::ReturnCode_t code);

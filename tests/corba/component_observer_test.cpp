@@ -279,14 +279,16 @@ TEST_F(ComponentObserverTest, publishes_log_records_to_a_logger) {
 TEST_F(ComponentObserverTest, publishes_the_records_of_all_when_a_logger_asks_for_all) {
   probe->initialize();
   SDOPackage::Configuration_var configuration = probe->get_configuration();
-  Served<LogReader> reader;
-  ASSERT_TRUE(configuration->add_service_profile(
-      service_profile("log", "IDL:OpenRTM/Logger:1.0", reader.reference(), {{"logger.log_level", "WARN"}, {"logger.filter", "ALL"}})));
-  RTC::Logger("Somebody").write(RTC::Logger::RTL_WARN, "for you");
-  EXPECT_TRUE(configuration->remove_service_profile("log"));
-  std::lock_guard lock(reader->mutex);
-  ASSERT_THAT(reader->records, SizeIs(1)) << "what was written before it was removed";
-  EXPECT_STREQ(reader->records[0].loggername, "Somebody");
+  for (const char* filter : {"ALL", "A,L,L", ""}) {
+    Served<LogReader> reader;
+    ASSERT_TRUE(configuration->add_service_profile(
+        service_profile("log", "IDL:OpenRTM/Logger:1.0", reader.reference(), {{"logger.log_level", "WARN"}, {"logger.filter", filter}})));
+    RTC::Logger("Somebody").write(RTC::Logger::RTL_WARN, "for you");
+    EXPECT_TRUE(configuration->remove_service_profile("log"));
+    std::lock_guard lock(reader->mutex);
+    ASSERT_THAT(reader->records, SizeIs(1)) << filter << ": what was written before it was removed";
+    EXPECT_STREQ(reader->records[0].loggername, "Somebody");
+  }
 }
 
 TEST_F(ComponentObserverTest, refuses_services_that_are_not_what_they_say) {

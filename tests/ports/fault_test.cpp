@@ -282,6 +282,29 @@ TEST_F(Faults, leaving_a_peer_that_hangs_takes_a_moment_for_all_its_connections_
   EXPECT_TRUE(ports::eventually([&] { return RTC::ConnectorProfileList_var(far->get_connector_profiles())->length() == 0; }));
 }
 
+TEST_F(Faults, a_peer_that_was_dropped_while_it_hung_is_told_and_can_be_connected_again) {
+  for (const char* subscription : {"flush", "new"}) {
+    ports::Peer peer;
+    RTC::TimedOctetSeq value{};
+    RTC::OutPort<RTC::TimedOctetSeq> octets("A0.octets", value);
+    const RTC::PortService_var far = peer.port("in");
+    auto plan = profile({octets.getPortRef(), far}, {{"call_timeout", "0.2"}, {"subscription_type", subscription}});
+    plan.connector_id = "the same";
+    ASSERT_EQ(octets.connect(plan), RTC::RTC_OK);
+    stop_process(peer);
+    EXPECT_TRUE(ports::eventually([&] {
+      octets.write();
+      return octets.connectors().empty();
+    }));
+    peer.process().signal(SIGCONT);
+    EXPECT_TRUE(ports::eventually([&] { return RTC::ConnectorProfileList_var(far->get_connector_profiles())->length() == 0; }));
+    auto again = plan;
+    ASSERT_EQ(octets.connect(again), RTC::RTC_OK) << subscription;
+    EXPECT_TRUE(octets.write());
+    octets.disconnect_all();
+  }
+}
+
 TEST_F(Faults, the_end_does_not_wait_for_a_peer_that_hangs_and_was_left) {
   ports::Peer peer;
   {
@@ -295,6 +318,34 @@ TEST_F(Faults, the_end_does_not_wait_for_a_peer_that_hangs_and_was_left) {
   const auto start = std::chrono::steady_clock::now();
   orb.reset();
   EXPECT_LT(std::chrono::steady_clock::now() - start, corba::port_call_timeout() / 2);
+}
+
+TEST_F(Faults, a_peer_that_answers_with_another_connection_leaves_nothing_behind) {
+  class Liar : public StrangePort {
+   public:
+    using StrangePort::StrangePort;
+    RTC::ReturnCode_t notify_connect(RTC::ConnectorProfile& plan) override {
+      if (changes_ports)
+        plan.ports.length(0);
+      else
+        plan.connector_id = "another";
+      return RTC::RTC_OK;
+    }
+    bool changes_ports = false;
+  };
+  ports::Local<Liar> liar("dataport.corba_cdr.inport_ior", in.getPortRef());
+  const RTC::PortService_var reference = liar._this();
+  for (const bool changes_ports : {false, true}) {
+    liar.changes_ports = changes_ports;
+    auto plan = profile({out.getPortRef(), reference});
+    plan.connector_id = "mine";
+    EXPECT_EQ(out.connect(plan), RTC::RTC_ERROR);
+    EXPECT_TRUE(out.connectors().empty());
+    auto good = profile({out.getPortRef(), in.getPortRef()});
+    good.connector_id = "mine";
+    EXPECT_EQ(out.connect(good), RTC::RTC_OK) << "the id is free";
+    EXPECT_EQ(out.disconnect_all(), RTC::RTC_OK);
+  }
 }
 
 TEST_F(Faults, a_dead_port_in_the_list_ends_the_connection) {

@@ -73,7 +73,10 @@ class LoggerConsumer final : public SdoServiceConsumerBase {
     profile_ = profile;
     const auto level = Logger::parseLevel(NVUtil::toString(profile.properties, "logger.log_level"));
     std::vector<std::string> filter = base::split_list(NVUtil::toString(profile.properties, "logger.filter"));
-    if (std::ranges::any_of(filter, [](const std::string& name) { return base::equal_ignoring_case(name, "ALL"); })) filter.clear();
+    // rtvlog without a filter sends the letters of ALL one by one.
+    const bool is_spelled = base::equal_ignoring_case(base::join(filter, ""), "ALL");
+    if (is_spelled || std::ranges::any_of(filter, [](const std::string& name) { return base::equal_ignoring_case(name, "ALL"); }))
+      filter.clear();
     const auto courier = std::make_shared<corba::Courier>("logger service");
     courier_ = courier;
     // What the courier itself logs would come back here for ever.
