@@ -56,7 +56,10 @@ class Loft : public Pigeon<Base> {
   }
   void setListener(RTC::ConnectorInfo& info, RTC::ConnectorListenersBase* listeners) override {
     EXPECT_EQ(info.name, "test");
-    EXPECT_NE(listeners, nullptr);
+    // The port tells them by itself.
+    RTC::ByteData data;
+    listeners->notifyIn(RTC::ConnectorDataListenerType::ON_RECEIVED, info, data);
+    listeners->notify(RTC::ConnectorListenerType::ON_SENDER_EMPTY, info);
   }
   void setConnector(Connector* its) override {
     connector = its;
@@ -79,6 +82,21 @@ class OutLoft : public OutTown {
   OutLoft() { setInterfaceType("pigeon"); }
   void setBuffer(RTC::CdrBufferBase* buffer) override { EXPECT_TRUE(buffer->empty()); }
 };
+
+RTC::DataPortStatus arrived(RTC::BufferStatus status) {
+  switch (status) {
+    case RTC::BufferStatus::OK:
+      return RTC::DataPortStatus::PORT_OK;
+    case RTC::BufferStatus::FULL:
+      return RTC::DataPortStatus::SEND_FULL;
+    case RTC::BufferStatus::EMPTY:
+      return RTC::DataPortStatus::BUFFER_EMPTY;
+    case RTC::BufferStatus::TIMEOUT:
+      return RTC::DataPortStatus::SEND_TIMEOUT;
+    default:
+      return RTC::DataPortStatus::PORT_ERROR;
+  }
+}
 
 // The one who flies.
 template <class Base, class Reached>
@@ -108,14 +126,14 @@ class Flying : public Pigeon<Base> {
 class Outbound : public Flying<RTC::InPortConsumer, InTown> {
  public:
   RTC::DataPortStatus put(RTC::ByteData& data) override {
-    return visit([&](RTC::InPortConnector& there) { return there.write(data); });
+    return visit([&](RTC::InPortConnector& there) { return arrived(there.write(data)); });
   }
 };
 
 class Homing : public Flying<RTC::OutPortConsumer, OutTown> {
  public:
   RTC::DataPortStatus get(RTC::ByteData& data) override {
-    return visit([&](RTC::OutPortConnector& there) { return there.read(data); });
+    return visit([&](RTC::OutPortConnector& there) { return arrived(there.read(data)); });
   }
 };
 
@@ -200,6 +218,7 @@ TEST_F(AuthorTransport, tells_listeners_and_fills_the_buffer_of_the_port) {
   ASSERT_EQ(connect("main"), RTC::RTC_OK);
   for (sent.data = 1; sent.data <= 4; ++sent.data) ASSERT_TRUE(out.write());
   EXPECT_EQ(in.connectors().at(0)->getBuffer()->readable(), 4u);
+  EXPECT_TRUE(in.connectors().at(0)->isLittleEndian());
   EXPECT_EQ(sends.values, 10);
   EXPECT_EQ(receives.values, 10);
   EXPECT_EQ(writes.values, 10);
@@ -207,7 +226,12 @@ TEST_F(AuthorTransport, tells_listeners_and_fills_the_buffer_of_the_port) {
     ASSERT_TRUE(in.read());
     EXPECT_EQ(received.data, i);
   }
+  // What was not read yet outlives the two ends.
+  sent.data = 5;
+  ASSERT_TRUE(out.write());
   disconnect();
+  ASSERT_TRUE(in.read());
+  EXPECT_EQ(received.data, 5);
   out.removeConnectorDataListener(RTC::ConnectorDataListenerType::ON_SEND, &sends);
   in.removeConnectorDataListener(RTC::ConnectorDataListenerType::ON_RECEIVED, &receives);
   in.removeConnectorDataListener(RTC::ConnectorDataListenerType::ON_BUFFER_WRITE, &writes);

@@ -23,6 +23,22 @@ TEST(ConnectorSettings, defaults_are_those_of_the_wire) {
   EXPECT_FALSE(outcome.settings.allows_duplicate);
 }
 
+TEST(ConnectorSettings, transports_of_authors_are_known_by_their_names) {
+  const KeyValues values = {{"dataport.interface_type", "pigeon"}, {"dataport.dataflow_type", "pull"}};
+  const auto known = read_connector_settings(values, Side::out, {"owl", "pigeon"});
+  EXPECT_EQ(known.refusal.code, ReturnCode::ok);
+  EXPECT_EQ(known.settings.interface, Interface::foreign);
+  EXPECT_EQ(known.settings.foreign_interface, "pigeon");
+  const auto unknown = read_connector_settings(values, Side::out, {"owl"});
+  EXPECT_EQ(unknown.refusal.code, ReturnCode::bad_parameter);
+  EXPECT_EQ(unknown.refusal.reason,
+            "dataport.interface_type must be corba_cdr, data_service, shared_memory, owl or direct, got \"pigeon\"");
+  // Nobody takes the place of ours.
+  EXPECT_EQ(read_connector_settings({{"dataport.interface_type", "direct"}, {"dataport.dataflow_type", "push"}}, Side::in, {"direct"})
+                .settings.interface,
+            Interface::direct);
+}
+
 TEST(ConnectorSettings, one_side_overrides_both) {
   const KeyValues values = {{"dataport.buffer.length", "3"}, {"dataport.inport.buffer.length", "5"}};
   EXPECT_EQ(read(values, Side::in).settings.buffer.length, 5u);

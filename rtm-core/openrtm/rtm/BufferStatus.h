@@ -10,11 +10,17 @@ struct BufferStatus {
   static constexpr Enum FULL = BUFFER_FULL;
   static constexpr Enum EMPTY = BUFFER_EMPTY;
 
+  constexpr BufferStatus(Enum value = BUFFER_OK) : value_(value) {}
+  constexpr operator Enum() const { return value_; }
+
   static constexpr const char* toString(Enum status) {
     constexpr const char* names[] = {"BUFFER_OK",     "BUFFER_ERROR", "BUFFER_FULL",         "BUFFER_EMPTY",
                                      "NOT_SUPPORTED", "TIMEOUT",      "PRECONDITION_NOT_MET"};
     return status >= BUFFER_OK && status <= PRECONDITION_NOT_MET ? names[status] : "UNKNOWN";
   }
+
+ private:
+  Enum value_;
 };
 
 }  // namespace RTC

@@ -6,7 +6,6 @@
 #include "rtm/ByteData.h"
 #include "rtm/ConnectorListener.h"
 #include "rtm/PortBase.h"
-#include "rtm/data_port_support.h"
 
 namespace RTC {
 
@@ -52,20 +51,39 @@ void ConnectorBase::on_event(corba::ConnectorEvent event) {
   holder.notify(*current, info_changed);
 }
 
+namespace {
+
+BufferStatus to_buffer_status(rt::PortStatus status) {
+  switch (status) {
+    case rt::PortStatus::ok:
+      return BufferStatus::OK;
+    case rt::PortStatus::buffer_full:
+      return BufferStatus::FULL;
+    case rt::PortStatus::buffer_empty:
+      return BufferStatus::EMPTY;
+    case rt::PortStatus::buffer_timeout:
+      return BufferStatus::TIMEOUT;
+    default:
+      return BufferStatus::BUFFER_ERROR;
+  }
+}
+
+}  // namespace
+
 void InPortConnector::serve(std::weak_ptr<corba::Receiver> receiver, bool is_little) {
   receiver_ = std::move(receiver);
   is_little_ = is_little;
 }
 
-DataPortStatus InPortConnector::write(const ByteData& data) {
+BufferStatus InPortConnector::write(const ByteData& data) {
   const auto receiver = receiver_.lock();
-  if (!receiver) return PORT_ERROR;
+  if (!receiver) return BufferStatus::PRECONDITION_NOT_MET;
   auto block = receiver->pool().take(data.getDataLength());
   if (block->size() > 0) std::memcpy(block->data(), data.getBuffer(), block->size());
   rt::Sample sample;
   sample.block = std::move(block);
   sample.order = is_little_ ? rt::ByteOrder::little : rt::ByteOrder::big;
-  return detail::to_classic(receiver->receive(std::move(sample)));
+  return to_buffer_status(receiver->receive(std::move(sample)));
 }
 
 void OutPortConnector::serve(std::weak_ptr<corba::Source> source, bool is_little) {
@@ -73,16 +91,17 @@ void OutPortConnector::serve(std::weak_ptr<corba::Source> source, bool is_little
   is_little_ = is_little;
 }
 
-DataPortStatus OutPortConnector::read(ByteData& data) {
+BufferStatus OutPortConnector::read(ByteData& data) {
   const auto source = source_.lock();
-  if (!source) return PORT_ERROR;
+  if (!source) return BufferStatus::PRECONDITION_NOT_MET;
   rt::Sample sample;
   const rt::PortStatus status = source->give(sample);
-  if (status != rt::PortStatus::ok || !sample.block) return detail::to_classic(status);
+  if (status != rt::PortStatus::ok) return to_buffer_status(status);
+  if (!sample.block) return BufferStatus::BUFFER_ERROR;
   data.setDataLength(sample.block->size());
   if (sample.block->size() > 0) std::memcpy(data.getBuffer(), sample.block->data(), sample.block->size());
   data.setEndian(is_little_);
-  return PORT_OK;
+  return BufferStatus::OK;
 }
 
 }  // namespace RTC

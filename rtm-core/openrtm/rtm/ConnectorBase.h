@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "corba/event_data.h"
+#include "rtm/BufferStatus.h"
 #include "rtm/CdrBufferBase.h"
 #include "rtm/DataPortStatus.h"
 #include "rtm/idl/RTCStub.h"
@@ -75,8 +76,9 @@ class ConnectorBase : public DataPortStatus, public corba::ConnectorEvents {
 class InPortConnector : public ConnectorBase {
  public:
   using ConnectorBase::ConnectorBase;
-  // What a transport of an author has brought: waits in the port from now on. PORT_ERROR on connections of other transports.
-  DataPortStatus write(const ByteData& data);
+  // What a transport of an author has brought: waits in the port from now on. OK, FULL, TIMEOUT or BUFFER_ERROR, after the end of the
+  // connection and on those of other transports PRECONDITION_NOT_MET.
+  BufferStatus write(const ByteData& data);
   void serve(std::weak_ptr<corba::Receiver> receiver, bool is_little);
   bool isLittleEndian() const { return is_little_; }
 
@@ -88,8 +90,8 @@ class InPortConnector : public ConnectorBase {
 class OutPortConnector : public ConnectorBase {
  public:
   using ConnectorBase::ConnectorBase;
-  // The next sample, for a transport of an author: PORT_OK, BUFFER_EMPTY, BUFFER_TIMEOUT or PORT_ERROR.
-  DataPortStatus read(ByteData& data);
+  // The next sample, for a transport of an author: OK, EMPTY, TIMEOUT or BUFFER_ERROR, else as above.
+  BufferStatus read(ByteData& data);
   void serve(std::weak_ptr<corba::Source> source, bool is_little);
   bool isLittleEndian() const { return is_little_; }
 

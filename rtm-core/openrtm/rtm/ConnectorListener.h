@@ -141,6 +141,15 @@ class ConnectorListeners {
  public:
   ConnectorDataListenerHolder connectorData_[CONNECTOR_DATA_LISTENER_NUM];
   ConnectorListenerHolder connector_[CONNECTOR_LISTENER_NUM];
+
+  // Transports of authors call these when something happens. Listeners hear of it from the port already, so nobody is told twice.
+  ConnectorListenerStatus::Enum notifyIn(ConnectorDataListenerType, ConnectorInfo&, ByteData&) {
+    return ConnectorListenerStatus::NO_CHANGE;
+  }
+  ConnectorListenerStatus::Enum notifyOut(ConnectorDataListenerType, ConnectorInfo&, ByteData&) {
+    return ConnectorListenerStatus::NO_CHANGE;
+  }
+  ConnectorListenerStatus::Enum notify(ConnectorListenerType, ConnectorInfo&) { return ConnectorListenerStatus::NO_CHANGE; }
 };
 using ConnectorListenersBase = ConnectorListeners;
 
