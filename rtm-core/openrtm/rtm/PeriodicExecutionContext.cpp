@@ -40,6 +40,7 @@ void PeriodicExecutionContext::endThread() {
   worker_->stop();
   wakeLoop();
   coil::Task::wait();
+  context().resume();  // for the next thread
 }
 
 RTC::ReturnCode_t PeriodicExecutionContext::onSetRate(double) {
