@@ -327,7 +327,7 @@ TEST(Surface, components_have_what_authors_inherit) {
   EXPECT_EQ(manager->getComponent("Surface0"), component);
   EXPECT_EQ(manager->getComponents().size(), 1u);
   EXPECT_FALSE(CORBA::is_nil(manager->getORB()) || CORBA::is_nil(manager->theORB()));
-  EXPECT_FALSE(CORBA::is_nil(manager->getPOA()) || CORBA::is_nil(manager->thePOA()));
+  EXPECT_FALSE(CORBA::is_nil(manager->getPOA()) || CORBA::is_nil(manager->thePOA()) || CORBA::is_nil(manager->theShortCutPOA()));
   EXPECT_EQ(manager->getConfig()["naming.enable"], "NO");
   EXPECT_EQ(manager->load("nowhere"), RTC::BAD_PARAMETER);
   EXPECT_EQ(manager->unload("nowhere"), RTC::BAD_PARAMETER);

@@ -3,8 +3,22 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <sstream>
 
 namespace {
+
+TEST(StringUtil, lines_end_as_on_every_system) {
+  std::istringstream in("one\r\ntwo\n\nlast");
+  std::string line;
+  std::string all;
+  std::vector<int> lengths;
+  while (in) {
+    lengths.push_back(coil::getlinePortable(in, line));
+    all += line + "|";
+  }
+  EXPECT_EQ(all, "one|two||last|");
+  EXPECT_EQ(lengths, (std::vector<int>{3, 3, 0, 4}));
+}
 
 TEST(StringUtil, a_1x_call_changes_the_variable) {
   std::string s = "  A b ";

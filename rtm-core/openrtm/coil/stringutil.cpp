@@ -93,6 +93,12 @@ std::string toUpper(std::string&& str) { return upper(std::move(str)); }
 std::string toLower(const std::string& str) { return lower(str); }
 ChangedString toLower(std::string& str) { return {str, lower(str)}; }
 std::string toLower(std::string&& str) { return lower(std::move(str)); }
+int getlinePortable(std::istream& in, std::string& line) {
+  std::getline(in, line);
+  if (line.ends_with('\r')) line.pop_back();
+  return static_cast<int>(line.size());
+}
+
 std::string eraseBlank(const std::string& str) { return without_blanks(str); }
 ChangedString eraseBlank(std::string& str) { return {str, without_blanks(str)}; }
 std::string eraseBlank(std::string&& str) { return without_blanks(std::move(str)); }

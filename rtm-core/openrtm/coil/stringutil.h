@@ -74,6 +74,9 @@ std::string toLower(const std::string& str);
 ChangedString toLower(std::string& str);
 std::string toLower(std::string&& str);
 
+// The next line without its end, "\n" or "\r\n"; returns its length.
+int getlinePortable(std::istream& in, std::string& line);
+
 // Without any blank (space, tab) / those at the head / at the tail / at both ends.
 std::string eraseBlank(const std::string& str);
 ChangedString eraseBlank(std::string& str);

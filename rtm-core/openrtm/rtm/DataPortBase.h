@@ -1,12 +1,12 @@
 // What InPorts and OutPorts have in common: their connections as component authors see them. Any thread.
 #pragma once
 
+#include <coil/Guard.h>
+#include <coil/Mutex.h>
+
 #include <memory>
 #include <string>
 #include <vector>
-
-#include <coil/Guard.h>
-#include <coil/Mutex.h>
 
 #include "base/guarded.h"
 #include "corba/type_ops.h"

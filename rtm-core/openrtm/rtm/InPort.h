@@ -1,6 +1,9 @@
 // A port that receives values of one type into a variable of the component. One thread at a time reads.
 #pragma once
 
+#include <coil/OS.h>
+#include <coil/TimeMeasure.h>
+
 #include <string>
 
 #include "rtm/InPortBase.h"

@@ -10,8 +10,11 @@
 #include <rtm/SystemLogger.h>
 
 // Authors rely on some of these headers without naming them.
+#include <coil/Guard.h>
+#include <coil/Mutex.h>
 #include <coil/Properties.h>
 #include <coil/Signal.h>
+#include <coil/Task.h>
 #include <coil/Timer.h>
 #include <coil/stringutil.h>
 
@@ -165,6 +168,8 @@ class Manager {
   CORBA::ORB_ptr theORB() { return getORB(); }
   PortableServer::POA_ptr getPOA();
   PortableServer::POA_ptr thePOA() { return getPOA(); }
+  // Calls inside a process are short in every adapter.
+  PortableServer::POA_ptr theShortCutPOA() { return getPOA(); }
   PortableServer::POAManager_ptr getPOAManager();
   PortableServer::POAManager_ptr thePOAManager() { return getPOAManager(); }
   RTM::ManagerServant& getManagerServant();

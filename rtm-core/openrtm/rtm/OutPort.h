@@ -1,6 +1,9 @@
 // A port that sends values of one type. Any thread.
 #pragma once
 
+#include <coil/OS.h>
+#include <coil/TimeMeasure.h>
+
 #include "rtm/OutPortBase.h"
 #include "rtm/PortCallback.h"
 #include "rtm/Serializers.h"
