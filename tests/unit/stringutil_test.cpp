@@ -12,7 +12,7 @@ TEST(StringUtil, lines_end_as_on_every_system) {
   std::string line;
   std::string all;
   std::vector<int> lengths;
-  while (in) {
+  while (in.good()) {
     lengths.push_back(coil::getlinePortable(in, line));
     all += line + "|";
   }
