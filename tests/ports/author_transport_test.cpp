@@ -252,6 +252,17 @@ TEST_F(AuthorTransport, is_in_the_profile_of_ports_made_before_it_with_its_optio
   EXPECT_EQ(alive, 0);
 }
 
+TEST_F(AuthorTransport, says_what_it_is_in_a_profile) {
+  OutLoft loft;
+  SDOPackage::NVList profile;
+  NVUtil::setStringValue(profile, "dataport.interface_type", "corba_cdr");
+  loft.publishInterfaceProfile(profile);
+  EXPECT_EQ(NVUtil::toString(profile, "dataport.interface_type"), "corba_cdr,pigeon");
+  EXPECT_EQ(NVUtil::find_index(profile, "dataport.dataflow_type"), -1);
+  // A connection for another interface is none for it.
+  EXPECT_FALSE(loft.publishInterface(profile));
+}
+
 TEST_F(AuthorTransport, refuses_connections_that_one_of_its_ends_refuses) {
   for (const char* dataflow : {"push", "pull"}) {
     for (const char* street : {"closed", "lost"}) {

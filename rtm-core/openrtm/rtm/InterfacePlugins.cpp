@@ -15,7 +15,11 @@
 namespace RTC {
 
 void InterfaceProvider::publishInterfaceProfile(SDOPackage::NVList& properties) {
-  NVUtil::appendStringValue(properties, "dataport.interface_type", interface_type_.c_str());
+  for (const auto& [key, value] :
+       {std::pair("dataport.interface_type", &interface_type_), std::pair("dataport.dataflow_type", &dataflow_type_),
+        std::pair("dataport.subscription_type", &subscription_type_)}) {
+    if (!value->empty()) NVUtil::appendStringValue(properties, key, value->c_str());
+  }
   NVUtil::append(properties, m_properties);
 }
 
