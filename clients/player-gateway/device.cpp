@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/log.h"
+#include "served.h"
 
 namespace gateway {
 
@@ -83,7 +84,26 @@ void Device::take_sample() {
 }
 
 std::optional<Answer> Device::request(std::uint8_t subtype, const std::string& payload, const Later& later) {
-  return source_ ? answer(subtype, payload, later) : nack();
+  if (!source_) return nack();
+  return player::universal_request::is_one(subtype) ? answer_universal(subtype, payload) : answer(subtype, payload, later);
+}
+
+Answer Device::answer_universal(std::uint8_t subtype, const std::string& payload) {
+  if (subtype == player::universal_request::capabilities) {
+    const auto asked = player::decode_capability(payload);
+    return asked && is_served(address_.interface, asked->type, asked->subtype) ? ack() : nack();
+  }
+  auto request = player::decode_driver_property(subtype, payload);
+  if (!request) return nack();
+  if (!player::universal_request::is_get(subtype)) return set_property(*request) ? ack() : nack();
+  auto value = property(request->key);
+  if (!value || value->index() != request->value.index()) return nack();
+  request->value = std::move(*value);
+  return ack(player::encode(*request));
+}
+
+std::optional<player::PropertyValue> Device::property(const std::string& key) const {
+  return key == "iface" ? std::optional<player::PropertyValue>(iface().name()) : std::nullopt;
 }
 
 void Device::command(Client& client, std::uint8_t subtype, const std::string& payload) {

@@ -13,6 +13,7 @@
 #include "errands.h"
 #include "outbox.h"
 #include "protocol/message.h"
+#include "protocol/payloads.h"
 #include "shm/layout.h"
 #include "source.h"
 #include "timeline.h"
@@ -76,6 +77,9 @@ class Device {
   virtual void show_sample() {}
   virtual std::optional<Answer> answer(std::uint8_t subtype, const std::string& payload, const Later& later) = 0;
   virtual void obey(Client&, std::uint8_t /*subtype*/, const std::string& /*payload*/) {}
+  // Of the driver, by name: read by requests of clients, and set if it can be.
+  virtual std::optional<player::PropertyValue> property(const std::string& key) const;
+  virtual bool set_property(const player::DriverProperty&) { return false; }
   // A client that was subscribed no longer is.
   virtual void forget(Client&) {}
   virtual void on_attach() {}
@@ -97,6 +101,8 @@ class Device {
   };
   std::vector<Subscriber>::iterator find(const Client& client);
   void remove(std::vector<Subscriber>::iterator subscriber);
+  // Those that each interface has: capabilities and properties.
+  Answer answer_universal(std::uint8_t subtype, const std::string& payload);
   base::Result<void> start_reading();
   void stop_reading();
 

@@ -1,17 +1,23 @@
 #include "drive_devices.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "protocol/payloads.h"
 
 namespace gateway {
 namespace {
 
-constexpr std::uint8_t data_state = 1, command_velocity_subtype = 1;
+constexpr std::uint8_t data_state = 1;
 
+namespace command {
+constexpr std::uint8_t velocity = 1, pose = 2, heading = 4;
+}
 namespace request2d {
-constexpr std::uint8_t get_geometry = 1, motor_power = 2, velocity_mode = 3, position_mode = 4, set_odometry = 5, reset_odometry = 6;
+constexpr std::uint8_t get_geometry = 1, motor_power = 2, velocity_mode = 3, position_mode = 4, set_odometry = 5, reset_odometry = 6,
+                       speed_pid = 7, position_pid = 8, speed_profile = 9;
 }
 // The last two are the other way round than in position2d.
 namespace request3d {
@@ -25,23 +31,35 @@ bool is_finite(std::initializer_list<double> values) {
   return true;
 }
 
+bool is_positive(double value) { return std::isfinite(value) && value > 0; }
+
 template <class Info>
 std::string geometry(const Info& info) {
   return player::encode_geometry(to_pose3d(info.pose), {.width = info.size[1], .length = info.size[0], .height = info.size[2]});
 }
 
-// Drives follow velocities; the mode that they are in is the one that can be chosen.
-Answer choose_mode(const std::string& payload, bool is_position_mode) {
+// The kind of the latest command is the mode; a request can only ask whether there is such a mode.
+Answer choose_mode(const std::string& payload, bool has_mode) {
   const auto state = player::decode_u32(payload);
-  return state && !(is_position_mode && *state != 0) ? ack() : nack();
+  return state && (has_mode || *state == 0) ? ack() : nack();
 }
 
 }  // namespace
 
 Drive::~Drive() = default;
 
-void Drive::command_velocity(Client& client, std::span<const double> values) {
-  if (iface().command(shm::CommandKind::velocity, values)) commander_ = &client;
+bool Drive::command_velocity(Client& client, std::span<const double> values) {
+  if (!iface().command(shm::CommandKind::velocity, values)) return false;
+  commander_ = &client;
+  return true;
+}
+
+void Drive::take_over(Client& client) {
+  if (commander_ != nullptr && iface().is_commander()) {
+    commander_ = &client;
+  } else {
+    command_velocity(client, std::array<double, 6>{});
+  }
 }
 
 void Drive::forget(Client& client) {
@@ -67,6 +85,7 @@ void Position2d::show_sample() {
   state.velocity = {sample.velocity[0], sample.velocity[1], sample.velocity[2]};
   state.is_stalled = sample.stalled != 0;
   publish(data_state, player::encode(state), sample.stamp);
+  go_on(sample);
 }
 
 std::optional<Answer> Position2d::answer(std::uint8_t subtype, const std::string& payload, const Later& later) {
@@ -76,26 +95,139 @@ std::optional<Answer> Position2d::answer(std::uint8_t subtype, const std::string
     case request2d::motor_power:
       return switch_motors(payload, later);
     case request2d::velocity_mode:
+      return choose_mode(payload, true);
     case request2d::position_mode:
-      return choose_mode(payload, subtype == request2d::position_mode);
+      return choose_mode(payload, !is_car());
     case request2d::set_odometry: {
       const auto pose = player::decode_pose2d(payload);
       if (!pose || !is_finite({pose->x, pose->y, pose->a})) return nack();
+      give_up();
       return ask(shm::ResetOdometryRequest{.iface = iface().name(), .x = pose->x, .y = pose->y, .a = pose->a}, later);
     }
     case request2d::reset_odometry:
+      give_up();
       return ask(shm::ResetOdometryRequest{.iface = iface().name()}, later);
+    case request2d::speed_pid:
+    case request2d::position_pid: {  // the drive follows its velocities by itself: there is nothing to tune
+      const auto gains = player::decode_pid(payload);
+      return gains && is_finite({gains->p, gains->i, gains->d}) ? ack() : nack();
+    }
+    case request2d::speed_profile:
+      return set_profile(payload) ? ack() : nack();
     default:
       return nack();
   }
 }
 
 void Position2d::obey(Client& client, std::uint8_t subtype, const std::string& payload) {
-  if (subtype != command_velocity_subtype) return;
+  if (subtype == command::pose) return drive_to(client, payload);
+  if (subtype == command::heading) return keep_heading(client, payload);
+  if (subtype != command::velocity) return;
   const auto command = player::decode_velocity2d(payload);
   if (!command) return;
   const auto& wanted = command->velocity;
-  command_velocity(client, command->is_enabled ? std::array{wanted.x, wanted.y, wanted.a} : std::array{0.0, 0.0, 0.0});
+  if (command_velocity(client, command->is_enabled ? std::array{wanted.x, wanted.y, wanted.a} : std::array{0.0, 0.0, 0.0})) end_goal();
+}
+
+void Position2d::drive_to(Client& client, const std::string& payload) {
+  const auto command = player::decode_pose_command2d(payload);
+  if (!command || is_car()) return;
+  const auto &pose = command->pose, &velocity = command->velocity;
+  if (!is_finite({pose.x, pose.y, pose.a, velocity.x, velocity.y, velocity.a})) return;
+  if (!command->is_enabled) {
+    command_velocity(client, std::array{0.0, 0.0, 0.0});
+    return end_goal();
+  }
+  take_over(client);
+  const bool is_known = pursuer_ != nullptr && asked_ == payload && std::holds_alternative<PoseControl>(goal_);
+  pursuer_ = &client;
+  if (is_known) return;  // many say it again and again
+  goal_ = PoseControl(pose, limits(std::hypot(velocity.x, velocity.y), std::abs(velocity.a)));
+  asked_ = payload;
+}
+
+void Position2d::keep_heading(Client& client, const std::string& payload) {
+  const auto command = player::decode_heading_command(payload);
+  if (!command || !is_finite({command->speed, command->angle})) return;
+  take_over(client);
+  pursuer_ = &client;
+  goal_ = Heading{command->speed, command->angle};
+}
+
+void Position2d::go_on(const shm::Position2dSample& sample) {
+  if (pursuer_ == nullptr) return;
+  if (!iface().is_commander()) return end_goal();  // somebody else drives now
+  if (resets_.value_or(sample.stamp.resets) != sample.stamp.resets) return give_up();
+  resets_ = sample.stamp.resets;
+  const player::Pose2d odometry{sample.odometry[0], sample.odometry[1], sample.odometry[2]};
+  player::Pose2d velocity;
+  if (auto* way = std::get_if<PoseControl>(&goal_)) {
+    if (way->has_arrived()) return;
+    velocity = way->next(odometry);
+  } else if (const auto* heading = std::get_if<Heading>(&goal_)) {
+    velocity = {heading->speed, 0, turn_towards(odometry.a, heading->angle, limits(0, 0))};
+  }
+  command_velocity(*pursuer_, std::array{velocity.x, velocity.y, velocity.a});
+}
+
+void Position2d::end_goal() {
+  pursuer_ = nullptr;
+  goal_ = {};
+  resets_.reset();
+}
+
+void Position2d::give_up() {
+  if (pursuer_ == nullptr) return;
+  if (iface().is_commander()) command_velocity(*pursuer_, std::array{0.0, 0.0, 0.0});
+  end_goal();
+}
+
+void Position2d::forget(Client& client) {
+  if (pursuer_ == &client) end_goal();
+  Drive::forget(client);
+}
+
+bool Position2d::is_car() const { return iface().info<shm::Position2dInfo>().drive == RTMSIM_DRIVE_CAR; }
+
+DriveLimits Position2d::limits(double speed, double turn) const {
+  const auto& info = iface().info<shm::Position2dInfo>();
+  const auto within = [](double value, double limit) { return limit > 0 ? std::min(value, limit) : value; };
+  DriveLimits all;
+  all.speed = within(speed > 0 ? speed : speed_, info.max_speed);
+  all.turn = within(turn > 0 ? turn : turn_, info.max_yaw_rate);
+  all.acceleration = within(acceleration_, info.max_acceleration);
+  all.turn_acceleration = within(all.turn_acceleration, info.max_yaw_acceleration);
+  if (info.rate > 0) all.rate = info.rate;
+  all.is_holonomic = info.drive == RTMSIM_DRIVE_HOLONOMIC;
+  return all;
+}
+
+bool Position2d::set_profile(const std::string& payload) {
+  const auto profile = player::decode_speed_profile(payload);
+  if (!profile || !is_positive(profile->speed) || !is_positive(profile->acceleration)) return false;
+  speed_ = profile->speed;
+  acceleration_ = profile->acceleration;
+  asked_.clear();
+  return true;
+}
+
+std::optional<player::PropertyValue> Position2d::property(const std::string& key) const {
+  if (key == "speed") return speed_;
+  if (key == "turn") return turn_;
+  if (key == "acceleration") return acceleration_;
+  return Drive::property(key);
+}
+
+bool Position2d::set_property(const player::DriverProperty& wanted) {
+  const auto* value = std::get_if<double>(&wanted.value);
+  if (value == nullptr || !is_positive(*value)) return false;
+  for (const auto& [key, place] : {std::pair("speed", &speed_), std::pair("turn", &turn_), std::pair("acceleration", &acceleration_)}) {
+    if (wanted.key != key) continue;
+    *place = *value;
+    asked_.clear();
+    return true;
+  }
+  return false;
 }
 
 // ---- position3d ----
@@ -118,7 +250,7 @@ std::optional<Answer> Position3d::answer(std::uint8_t subtype, const std::string
       return switch_motors(payload, later);
     case request3d::velocity_mode:
     case request3d::position_mode:
-      return choose_mode(payload, subtype == request3d::position_mode);
+      return choose_mode(payload, subtype == request3d::velocity_mode);
     case request3d::set_odometry: {
       const auto pose = player::decode_pose3d(payload);
       if (!pose || !is_finite({pose->x, pose->y, pose->z, pose->roll, pose->pitch, pose->yaw})) return nack();
@@ -135,7 +267,7 @@ std::optional<Answer> Position3d::answer(std::uint8_t subtype, const std::string
 }
 
 void Position3d::obey(Client& client, std::uint8_t subtype, const std::string& payload) {
-  if (subtype != command_velocity_subtype) return;
+  if (subtype != command::velocity) return;
   const auto v = player::decode_velocity3d(payload);
   if (v) command_velocity(client, std::array{v->x, v->y, v->z, v->roll, v->pitch, v->yaw});
 }

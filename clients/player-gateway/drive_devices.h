@@ -1,7 +1,12 @@
 // position2d and position3d: odometry out, velocities in. One thread at a time.
 #pragma once
 
+#include <optional>
+#include <string>
+#include <variant>
+
 #include "device.h"
+#include "pose_control.h"
 
 namespace gateway {
 
@@ -12,22 +17,53 @@ class Drive : public Device {
   ~Drive() override;
 
  protected:
-  void command_velocity(Client& client, std::span<const double> values);
-  void forget(Client& client) final;
+  // False when the values can't be a command, or there is no simulator: then all stays as it was.
+  bool command_velocity(Client& client, std::span<const double> values);
+  // From now on the robot follows this client. One that followed another client goes on as it was, any other stands.
+  void take_over(Client& client);
+  void forget(Client& client) override;
   std::optional<Answer> switch_motors(const std::string& payload, const Later& later);
 
  private:
   Client* commander_ = nullptr;
 };
 
+// Also drives to poses of its odometry and keeps headings: one velocity per sample, as pose_control.h says. That ends with any other
+// command, also one from elsewhere; when the client lets go; and when the odometry is set or the world is reset, since the goal is no
+// longer where it was. Cars, which can't turn on the spot, keep headings only.
 class Position2d final : public Drive {
  public:
   using Drive::Drive;
 
  private:
+  struct Heading {
+    double speed = 0, angle = 0;  // [m/s], [rad]
+  };
+
   void show_sample() override;
   std::optional<Answer> answer(std::uint8_t subtype, const std::string& payload, const Later& later) override;
   void obey(Client& client, std::uint8_t subtype, const std::string& payload) override;
+  void forget(Client& client) override;
+  void on_attach() override { end_goal(); }
+  std::optional<player::PropertyValue> property(const std::string& key) const override;
+  bool set_property(const player::DriverProperty& wanted) override;
+
+  bool is_car() const;
+  void drive_to(Client& client, const std::string& payload);
+  void keep_heading(Client& client, const std::string& payload);
+  void go_on(const shm::Position2dSample& sample);
+  void end_goal();
+  // Ends the goal, if there is one, and stops the robot.
+  void give_up();
+  bool set_profile(const std::string& payload);
+  // Of a way with these speeds (0: as set), within what the robot can do.
+  DriveLimits limits(double speed, double turn) const;
+
+  Client* pursuer_ = nullptr;  // who gave the goal; nothing without one
+  std::variant<std::monostate, PoseControl, Heading> goal_;
+  std::string asked_;                    // the command that the goal was given by; empty: a new one would mean something else
+  std::optional<std::uint32_t> resets_;  // of the world, when the goal was first pursued
+  double speed_ = 0.4, turn_ = 1, acceleration_ = 0.5;  // of ways to a pose, unless a command says otherwise [m/s, rad/s, m/s^2]
 };
 
 class Position3d final : public Drive {

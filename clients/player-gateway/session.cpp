@@ -22,9 +22,6 @@ void set_flag(int socket, int level, int option) {
   ::setsockopt(socket, level, option, &on, sizeof on);
 }
 
-// Of the universal requests; properties and capabilities are none of ours.
-constexpr std::uint8_t first_universal = 247;
-
 }  // namespace
 
 Session::Session(int socket, std::string peer, Robot& robot, const Timeline& timeline)
@@ -84,7 +81,7 @@ void Session::handle(const player::Message& message) {
   if (header.type != player::Type::request) return;  // clients have nothing else to say
   if (is_player && header.address.index == 0) return handle_player(message);
   Device* device = robot_.find(header.address);
-  if (device == nullptr || header.subtype >= first_universal) return answer(header, nack());
+  if (device == nullptr) return answer(header, nack());
   is_waiting_ = true;
   const auto later = [weak = std::weak_ptr(self_), header](const Answer& given) {
     const auto self = weak.lock();

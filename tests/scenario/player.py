@@ -90,7 +90,6 @@ def listing():
             assert name.startswith(b"rtm-sim ") and name.endswith(b"\0"), name
         client.refused(PLAYER, 0, 2, devaddr(LASER, 7) + struct.pack(">II", 0, 0))
         client.refused(PLAYER, 0, 7, struct.pack(">II", 0, 0))  # AUTH
-        client.refused(LASER, 0, 255, struct.pack(">II", 1, 1))  # CAPABILITIES
         client.refused(LASER, 3, 1)
         client.refused(66, 0, 1)
 
@@ -125,7 +124,153 @@ def drive():
         client.demand(POSITION2D, 0, 6)
         client.read_until(POSITION2D, good=lambda p: abs(Position(p).pose[0]) < 0.1)
         client.demand(POSITION2D, 0, 3, struct.pack(">I", 0))
-        client.refused(POSITION2D, 0, 4, struct.pack(">I", 1))  # no position control
+        client.demand(POSITION2D, 0, 4, struct.pack(">I", 1))
+        client.refused(POSITION2D, 0, 4)
+
+
+def pose_command(x, y, a, speed=0.0, turn=0.0, state=1):
+    return struct.pack(">6dI", x, y, a, speed, 0, turn, state)
+
+
+def reached(client, x, y, a):
+    def is_there(payload):
+        state = Position(payload)
+        near = math.hypot(state.pose[0] - x, state.pose[1] - y) < 0.02 and abs(math.remainder(state.pose[2] - a, 2 * math.pi)) < 0.02
+        return near and max(map(abs, state.velocity)) < 0.005
+
+    return Position(client.read_until(POSITION2D, good=is_there))
+
+
+def stands(client):
+    client.read_until(POSITION2D, good=lambda p: max(map(abs, Position(p).velocity)) < 0.005)
+
+
+def moves(client, at_least=0.1):
+    return Position(client.read_until(POSITION2D, good=lambda p: Position(p).velocity[0] > at_least))
+
+
+# CMD_POS: poses of the odometry are reached, at the speed that is asked for, and everything that ends the way ends it.
+def position():
+    with started("--rtf", "3") as rig:
+        client = Client(rig.ports[0])
+        client.subscribe(POSITION2D)
+        client.command(POSITION2D, 0, 2, pose_command(1.0, 0.5, -1.0))
+        reached(client, 1.0, 0.5, -1.0)
+        x, y, yaw = rig.truth()[0], rig.truth()[1], float(rig.simctl("pose", "first").split()[-1])
+        assert math.hypot(x - 1.0, y - 0.5) < 0.05 and abs(yaw + 1.0) < 0.05, (x, y, yaw)
+        # As GoTo in a loop: each is the same goal; and slower.
+        fastest, state = 0, None
+        while state is None or math.hypot(state.pose[0] + 0.5, state.pose[1]) > 0.02 or abs(state.pose[2] - 3.0) > 0.02:
+            client.command(POSITION2D, 0, 2, pose_command(-0.5, 0, 3.0, 0.2, 0.6))
+            state = Position(client.read_until(POSITION2D))
+            fastest = max(fastest, state.velocity[0])
+            assert abs(state.velocity[2]) < 0.65, state.velocity
+        assert 0.18 < fastest < 0.21, fastest
+        # A speed profile is the speed of what follows, and a velocity ends a way.
+        client.demand(POSITION2D, 0, 9, struct.pack(">ff", 0.15, 0.5))
+        client.command(POSITION2D, 0, 2, pose_command(2.5, 0, 0))
+        assert moves(client, 0.14).velocity[0] < 0.16
+        client.command(POSITION2D, 0, 1, velocity(0, 0, 0.3))
+        client.read_until(POSITION2D, good=lambda p: abs(Position(p).velocity[2] - 0.3) < 0.01 and Position(p).velocity[0] < 0.01)
+        assert Position(client.read_until(POSITION2D)).velocity[0] < 0.01
+        # What is no command changes nothing.
+        for bad in (pose_command(math.nan, 0, 0), pose_command(0, 0, 0, math.inf), pose_command(1, 1, 1)[:-4], struct.pack(">3dI", 1e300, 0, 0, 1)):
+            client.command(POSITION2D, 0, 2, bad)
+        assert abs(Position(client.read_until(POSITION2D)).velocity[2] - 0.3) < 0.01
+        # Ends too: state 0, a new odometry, another client's command, one from elsewhere, a reset.
+        for end in (
+            lambda: client.command(POSITION2D, 0, 2, pose_command(0, 0, 0, state=0)),
+            lambda: client.demand(POSITION2D, 0, 5, struct.pack(">3d", 0, 0, 0)),
+            lambda: client.demand(POSITION2D, 0, 6),
+            lambda: other_command(rig),
+            lambda: rig.simctl("velocity", "first::position2d", "0", "0", "0", "--for", "0.1"),
+            lambda: rig.simctl("reset"),
+        ):
+            here = Position(client.read_until(POSITION2D)).pose
+            client.command(POSITION2D, 0, 2, pose_command(here[0] + 9 * math.cos(here[2]), here[1] + 9 * math.sin(here[2]), 0))
+            moves(client)
+            end()
+            stands(client)
+            rig.simctl("step", "300")
+            rig.simctl("run")
+            stands(client)
+        # Not reachable any more: the client lets go, and is gone.
+        for leave in (lambda one: one.unsubscribe(POSITION2D), lambda one: one.reset()):
+            second = Client(rig.ports[0])
+            second.subscribe(POSITION2D)
+            here = Position(second.read_until(POSITION2D)).pose
+            second.command(POSITION2D, 0, 2, pose_command(here[0] - 9, here[1], 0))
+            second.read_until(POSITION2D, good=lambda p: max(map(abs, Position(p).velocity)) > 0.1)
+            leave(second)
+            stands(client)
+            second.close()
+
+
+def other_command(rig):
+    other = Client(rig.ports[0])
+    other.subscribe(POSITION2D)
+    other.command(POSITION2D, 0, 1, velocity(0, 0, 0))
+    other.demand(POSITION2D, 0, 1)
+    other.close()
+
+
+# VEL_HEAD turns to the heading by the shorter way and keeps it while driving.
+def heading():
+    with started("--rtf", "3") as rig:
+        client = Client(rig.ports[0])
+        client.subscribe(POSITION2D)
+        client.demand(POSITION2D, 0, 5, struct.pack(">3d", 0, 0, 3.0))
+        client.command(POSITION2D, 0, 4, struct.pack(">dd", 0.2, -2.5))
+        first = Position(client.read_until(POSITION2D, good=lambda p: abs(Position(p).velocity[2]) > 0.3))
+        assert first.velocity[2] > 0, first.velocity
+        client.read_until(POSITION2D, good=lambda p: abs(Position(p).pose[2] + 2.5) < 0.01)
+        state = Position(client.read_until(POSITION2D, good=lambda p: abs(Position(p).velocity[2]) < 0.01))
+        assert abs(state.pose[2] + 2.5) < 0.02 and abs(state.velocity[0] - 0.2) < 0.01, (state.pose, state.velocity)
+        client.unsubscribe(POSITION2D)
+        watcher = Client(rig.ports[0])
+        watcher.subscribe(POSITION2D)
+        stands(watcher)
+
+
+# Capabilities, properties of drivers and what tunes a drive: each request is answered, and says what is true.
+def properties():
+    with started() as rig:
+        client = Client(rig.ports[0])
+
+        def can(interface, kind, subtype):
+            return client.request(interface, 0, 255, struct.pack(">II", kind, subtype))[0] == ACK
+
+        assert all(can(POSITION2D, CMD, subtype) for subtype in (1, 2, 4)) and not can(POSITION2D, CMD, 3)
+        assert all(can(POSITION2D, REQ, subtype) for subtype in range(1, 10)) and not can(POSITION2D, REQ, 10)
+        assert can(LASER, DATA, 1) and not can(LASER, DATA, 2) and not can(LASER, REQ, 6) and not can(LASER, CMD, 1)
+        assert can(SIMULATION, CMD, 1) and not can(SIMULATION, DATA, 1)
+        assert can(SONAR, REQ, 255) and not can(SONAR, 0, 0) and not can(SONAR, 0x103, 1) and not can(SONAR, REQ, 0x101)
+        client.refused(POSITION2D, 0, 255)
+        client.refused(POSITION2D, 0, 255, struct.pack(">IIII", REQ, 1, 1, 1))
+        client.refused(PLAYER, 0, 255, struct.pack(">II", REQ, 1))
+        # Each with the type of value that it has.
+        key, number = text("speed"), text("speed") + struct.pack(">d", 0)
+        assert client.demand(POSITION2D, 0, 252, number) == key + struct.pack(">d", 0.4)
+        client.demand(POSITION2D, 0, 251, key + struct.pack(">d", 0.3))
+        assert client.demand(POSITION2D, 0, 252, number) == key + struct.pack(">d", 0.3)
+        for bad in (0.0, -1.0, math.nan, math.inf):
+            client.refused(POSITION2D, 0, 251, key + struct.pack(">d", bad))
+        client.refused(POSITION2D, 0, 254, key + struct.pack(">i", 0))
+        client.refused(POSITION2D, 0, 253, key + struct.pack(">i", 1))
+        client.refused(POSITION2D, 0, 248, key + struct.pack(">I", 1))
+        client.refused(POSITION2D, 0, 252, text("colour") + struct.pack(">d", 0))
+        client.refused(POSITION2D, 0, 252, struct.pack(">II", 0xFFFFFFFF, 0xFFFFFFFF))
+        client.refused(POSITION2D, 0, 252)
+        assert client.demand(LASER, 0, 250, text("iface") + struct.pack(">II", 0, 0)) == text("iface") + text("first::laser")
+        client.refused(LASER, 0, 249, text("iface") + text("second::laser"))
+        for pid in (7, 8):
+            client.demand(POSITION2D, 0, pid, struct.pack(">3f", 1, 0.1, 0.01))
+            client.refused(POSITION2D, 0, pid, struct.pack(">3f", 1, math.nan, 0))
+            client.refused(POSITION2D, 0, pid)
+        client.demand(POSITION2D, 0, 9, struct.pack(">2f", 0.25, 1))
+        assert client.demand(POSITION2D, 0, 252, number) == key + struct.pack(">d", 0.25)
+        client.refused(POSITION2D, 0, 9, struct.pack(">2f", 0, 1))
+        client.refused(POSITION2D, 0, 9, struct.pack(">2f", 1, math.inf))
 
 
 # SYNCH waits for data, also when the request comes first; requests that repeat have one SYNCH; PUSH has none.
@@ -725,4 +870,4 @@ def exhausted():
         await_("a new client", connects)
 
 
-{function.__name__: function for function in (listing, drive, flow, rate, two_clients, gateway_ends, restart, hung, late_and_changing, simulation, rangers, sensors, config, bad_input, stuck, exhausted)}[case]()
+{function.__name__: function for function in (listing, drive, position, heading, properties, flow, rate, two_clients, gateway_ends, restart, hung, late_and_changing, simulation, rangers, sensors, config, bad_input, stuck, exhausted)}[case]()

@@ -215,10 +215,12 @@ class Client(Wire):
 
     def read_until(self, interface, subtype=1, index=0, good=lambda payload: True):
         """The payload of the next such data that is good."""
-        while True:
+        got = None
+        for _ in range(5000):
             for got in self.read():
                 if got.key() == (interface, index, subtype) and good(got.payload):
                     return got.payload
+        raise AssertionError(f"{interface}:{index} has no such data; the last was {got}: {got.payload[:52].hex()}")
 
     def command(self, interface, index, subtype, payload=b""):
         self.send(message(interface, index, CMD, subtype, payload))

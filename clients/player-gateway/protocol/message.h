@@ -39,6 +39,13 @@ enum class Type : std::uint8_t { data = 1, command = 2, request = 3, ack = 4, sy
 namespace player_request {
 inline constexpr std::uint8_t devlist = 1, driverinfo = 2, dev = 3, data = 4, datamode = 5, add_replace_rule = 10;
 }
+// Of requests that each interface has. Properties of drivers are read and set by requests of their own for each type of value.
+namespace universal_request {
+inline constexpr std::uint8_t set_bool = 247, get_bool = 248, set_string = 249, get_string = 250, set_double = 251, get_double = 252,
+                              set_int = 253, get_int = 254, capabilities = 255;
+inline constexpr bool is_one(std::uint8_t subtype) { return subtype >= set_bool; }
+inline constexpr bool is_get(std::uint8_t subtype) { return subtype % 2 == 0; }
+}  // namespace universal_request
 namespace synch {
 inline constexpr std::uint8_t ok = 1;
 }

@@ -1,5 +1,6 @@
 #include "protocol/payloads.h"
 
+#include <type_traits>
 #include <utility>
 
 namespace player {
@@ -117,6 +118,43 @@ std::optional<ReplaceRule> decode_replace_rule(std::string_view payload) {
   });
 }
 
+// ---- what each interface has ----
+
+std::optional<Capability> decode_capability(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    const std::uint32_t type = in.u32();
+    return Capability{type, in.u32()};
+  });
+}
+
+std::string encode(const DriverProperty& property) {
+  return written([&](XdrWriter& out) {
+    out.counted_text(property.key);
+    std::visit(
+        [&out]<class T>(const T& value) {
+          if constexpr (std::is_same_v<T, std::int32_t>) out.i32(value);
+          if constexpr (std::is_same_v<T, double>) out.f64(value);
+          if constexpr (std::is_same_v<T, std::string>) out.counted_text(value);
+          if constexpr (std::is_same_v<T, bool>) out.boolean(value);
+        },
+        property.value);
+  });
+}
+
+std::optional<DriverProperty> decode_driver_property(std::uint8_t subtype, std::string_view payload) {
+  using namespace universal_request;
+  if (subtype < set_bool || subtype > get_int) return std::nullopt;
+  return whole(payload, [subtype](XdrReader& in) {
+    DriverProperty property;
+    property.key = in.counted_text(max_name);
+    if (subtype == get_int || subtype == set_int) property.value = in.i32();
+    if (subtype == get_double || subtype == set_double) property.value = in.f64();
+    if (subtype == get_string || subtype == set_string) property.value = std::string(in.counted_text(max_value));
+    if (subtype == get_bool || subtype == set_bool) property.value = in.boolean();
+    return property;
+  });
+}
+
 // ---- position ----
 
 std::string encode(const Position2dState& state) {
@@ -158,6 +196,38 @@ std::optional<Velocity2d> decode_velocity2d(std::string_view payload) {
     velocity.velocity = take_pose2d(in);
     velocity.is_enabled = in.boolean();
     return velocity;
+  });
+}
+
+std::optional<PoseCommand2d> decode_pose_command2d(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    PoseCommand2d command;
+    command.pose = take_pose2d(in);
+    command.velocity = take_pose2d(in);
+    command.is_enabled = in.boolean();
+    return command;
+  });
+}
+
+std::optional<HeadingCommand> decode_heading_command(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    const double speed = in.f64();
+    return HeadingCommand{speed, in.f64()};
+  });
+}
+
+std::optional<Pid> decode_pid(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    Pid pid;
+    for (float* value : {&pid.p, &pid.i, &pid.d}) *value = in.f32();
+    return pid;
+  });
+}
+
+std::optional<SpeedProfile> decode_speed_profile(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    const float speed = in.f32();
+    return SpeedProfile{speed, in.f32()};
   });
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "protocol/message.h"
@@ -57,6 +58,20 @@ struct ReplaceRule {
 };
 std::optional<ReplaceRule> decode_replace_rule(std::string_view payload);
 
+// ---- what each interface has (universal_request) ----
+struct Capability {
+  std::uint32_t type = 0, subtype = 0;
+};
+std::optional<Capability> decode_capability(std::string_view payload);
+using PropertyValue = std::variant<std::int32_t, double, std::string, bool>;
+struct DriverProperty {
+  std::string key;
+  PropertyValue value;
+};
+std::string encode(const DriverProperty& property);
+// The type of the value is that of the request. Nothing for capabilities.
+std::optional<DriverProperty> decode_driver_property(std::uint8_t subtype, std::string_view payload);
+
 // ---- position2d (data 1, command 1), position3d (the same numbers) ----
 struct Position2dState {
   Pose2d pose, velocity;
@@ -75,6 +90,23 @@ struct Velocity2d {
 };
 std::string encode(const Velocity2d& velocity);
 std::optional<Velocity2d> decode_velocity2d(std::string_view payload);
+struct PoseCommand2d {
+  Pose2d pose, velocity;  // where to, and how fast at most; 0: as the server likes
+  bool is_enabled = true;
+};
+std::optional<PoseCommand2d> decode_pose_command2d(std::string_view payload);
+struct HeadingCommand {
+  double speed = 0, angle = 0;
+};
+std::optional<HeadingCommand> decode_heading_command(std::string_view payload);
+struct Pid {
+  float p = 0, i = 0, d = 0;
+};
+std::optional<Pid> decode_pid(std::string_view payload);
+struct SpeedProfile {
+  float speed = 0, acceleration = 0;
+};
+std::optional<SpeedProfile> decode_speed_profile(std::string_view payload);
 std::optional<Pose3d> decode_velocity3d(std::string_view payload);
 std::optional<Pose2d> decode_pose2d(std::string_view payload);
 std::optional<Pose3d> decode_pose3d(std::string_view payload);
