@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace follow {
 namespace {
@@ -53,7 +54,20 @@ std::vector<Cluster> find_clusters(const Scan& scan, const Pose& mount, double j
 
 std::optional<double> LeaderTracker::unseen(double time) const { return place_ ? std::optional(time - seen_at_) : std::nullopt; }
 
+bool LeaderTracker::has_jumped(const Pose& odometry, double time) const {
+  if (!last_time_) return false;
+  const double passed = time - *last_time_;
+  if (passed < 0) return true;
+  const double driven = std::hypot(odometry.x - last_odometry_.x, odometry.y - last_odometry_.y);
+  const double turned = std::abs(std::remainder(odometry.a - last_odometry_.a, 2 * std::numbers::pi));
+  constexpr double fastest_turn = 2;  // [rad/s]: twice what it is told at most
+  return driven > settings_.odometry_jump + 2 * settings_.max_speed * passed || turned > settings_.odometry_jump + fastest_turn * passed;
+}
+
 std::optional<Sighting> LeaderTracker::update(const Scan& scan, const Pose& mount, const Pose& odometry, double time) {
+  if (has_jumped(odometry, time)) place_.reset();
+  last_odometry_ = odometry;
+  last_time_ = time;
   if (place_ && time - seen_at_ > settings_.forget) place_.reset();
   const double gate = place_ ? settings_.gate + settings_.max_speed * (time - seen_at_) : 0;
   const Cluster* best = nullptr;

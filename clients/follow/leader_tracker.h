@@ -38,6 +38,9 @@ struct TrackerSettings {
   double widest = 0.8;                      // [m] of what may be the leader later: walls are wider
   double max_speed = 0.5;                   // [m/s] by which the gate grows while it is not seen
   double forget = 5;                        // [s] after which any leader will do
+  // More than the robot can drive [m] or turn [rad] from one scan to the next, besides what max_speed explains: the odometry has been set,
+  // or the world is another one.
+  double odometry_jump = 0.5;
 };
 
 struct Sighting {
@@ -49,15 +52,20 @@ class LeaderTracker {
  public:
   explicit LeaderTracker(const TrackerSettings& settings = {}) : settings_(settings) {}
 
-  // `odometry` and `time` [s] are those of the scan. Nothing when the leader is not in it.
+  // `odometry` and `time` [s] are those of the scan. Nothing when the leader is not in it. When the odometry jumps, or time goes back, the
+  // place of the leader means nothing any more: any leader will do.
   std::optional<Sighting> update(const Scan& scan, const Pose& mount, const Pose& odometry, double time);
   // [s] since it was seen last; nothing when it never was.
   std::optional<double> unseen(double time) const;
 
  private:
+  bool has_jumped(const Pose& odometry, double time) const;
+
   TrackerSettings settings_;
   std::optional<Point> place_;  // in the frame of the odometry
   double seen_at_ = 0;
+  Pose last_odometry_;
+  std::optional<double> last_time_;  // of the scan before
 };
 
 }  // namespace follow

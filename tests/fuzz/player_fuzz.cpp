@@ -34,6 +34,9 @@ std::vector<std::string> make_seeds() {
       message(Interface::laser, data, 1, player::encode(player::LaserScan{-1, 1, 0.5F, 8, {1, 2, 3, 4, 5}, "abcde", 7})),
       message(Interface::simulation, request, 1, player::encode(player::NamedPose2d{"robot", {1, 2, 3}})),
       message(Interface::simulation, request, 3, player::encode(player::NamedPose3d{"robot", {1, 2, 3, 4, 5, 6}, 7})),
+      message(Interface::position2d, request, player::universal_request::set_double, player::encode(player::DriverProperty{"speed", 0.5})),
+      message(Interface::position2d, request, player::universal_request::get_string,
+              player::encode(player::DriverProperty{"iface", std::string("one")})),
       message(Interface::simulation, request, 5, player::encode(player::Property{"world", "sim_time", 0, std::string(8, '\0')})),
   };
 }
@@ -75,6 +78,15 @@ bool decode_all(std::string_view payload) {
   static_cast<void>(decode_pose2d(payload));
   static_cast<void>(decode_pose3d(payload));
   static_cast<void>(decode_velocity3d(payload));
+  static_cast<void>(decode_pose_command2d(payload));
+  static_cast<void>(decode_heading_command(payload));
+  static_cast<void>(decode_pid(payload));
+  static_cast<void>(decode_speed_profile(payload));
+  static_cast<void>(decode_capability(payload));
+  for (unsigned subtype = 0; subtype < 256; ++subtype) {
+    const auto decode = [subtype](std::string_view bytes) { return decode_driver_property(static_cast<std::uint8_t>(subtype), bytes); };
+    if (universal_request::is_one(static_cast<std::uint8_t>(subtype)) && !comes_back(decode(payload), decode)) return false;
+  }
   return comes_back(decode_device_request(payload), decode_device_request) && comes_back(decode_driver_info(payload), decode_driver_info) &&
          comes_back(decode_velocity2d(payload), decode_velocity2d) &&
          comes_back(decode_position2d_state(payload), decode_position2d_state) &&

@@ -101,6 +101,26 @@ TEST(Tracker, leader_that_jumps_away_or_hides_is_lost_and_found_again_near_where
   EXPECT_TRUE(tracker.update(Scene({{6, 1, 0.2}}).scan(), origin, origin, 8));  // any leader will do by now
 }
 
+// A new simulator, a reset, an odometry that somebody has set: where the leader was says nothing, and the wait for it makes its gate wide.
+TEST(Tracker, odometry_that_jumps_makes_it_look_for_any_leader_ahead) {
+  const Scene scene({{1.2, 0, 0.2}, {2, 1.6, 0.3}});
+  for (const Pose& before : {Pose{2.6, 1.8, 0}, Pose{0, 0, 1}, Pose{0, 0, -3}}) {
+    LeaderTracker tracker;
+    ASSERT_TRUE(tracker.update(Scene({{2, 0, 0.2}}).scan(), origin, before, 1));
+    const auto leader = tracker.update(scene.scan(), origin, origin, 1.1);
+    ASSERT_TRUE(leader) << before.x << ' ' << before.a;
+    EXPECT_NEAR(leader->distance, 1.03, 0.05);
+    EXPECT_NEAR(leader->bearing, 0, 0.02);
+  }
+  LeaderTracker tracker;  // of a server whose time goes back
+  ASSERT_TRUE(tracker.update(Scene({{2, 1.6, 0.3}}).scan(), origin, origin, 100));
+  const auto leader = tracker.update(scene.scan(), origin, origin, 1);
+  ASSERT_TRUE(leader);
+  EXPECT_NEAR(leader->distance, 1.03, 0.05);
+  // Fast and late is no jump.
+  ASSERT_TRUE(tracker.update(Scene({{2, 1.6, 0.3}, {1.2, 0, 0.2}}).scan(), origin, {0.3, 0, 0.4}, 1.4));
+}
+
 TEST(Tracker, wall_beside_the_leader_is_not_taken_for_it) {
   LeaderTracker tracker;
   ASSERT_TRUE(tracker.update(Scene({{2, 0, 0.2}}).scan(), origin, origin, 1));

@@ -176,6 +176,39 @@ TEST(PlayerPayload, velocity_command_is_28_bytes_and_nothing_else) {
   EXPECT_FALSE(decode_velocity2d(""));
 }
 
+TEST(PlayerPayload, pose_command_is_52_bytes_and_heading_command_16) {
+  const auto pose = decode_pose_command2d(
+      bytes("3ff0000000000000 4000000000000000 3fe0000000000000 3fd0000000000000 0000000000000000 bfe0000000000000 00000000"));
+  ASSERT_TRUE(pose);
+  EXPECT_EQ(pose->pose.y, 2);
+  EXPECT_EQ(pose->velocity.x, 0.25);
+  EXPECT_EQ(pose->velocity.a, -0.5);
+  EXPECT_FALSE(pose->is_enabled);
+  const auto heading = decode_heading_command(bytes("3fd0000000000000 bfe0000000000000"));
+  ASSERT_TRUE(heading);
+  EXPECT_EQ(heading->speed, 0.25);
+  EXPECT_EQ(heading->angle, -0.5);
+  EXPECT_FALSE(decode_heading_command(bytes("3fd0000000000000")));
+}
+
+TEST(PlayerPayload, property_of_a_driver_has_the_type_of_its_request) {
+  using namespace universal_request;
+  const auto key = bytes("00000004 00000004 6b657900");  // "key"
+  const auto number = decode_driver_property(get_int, key + bytes("fffffffe"));
+  ASSERT_TRUE(number);
+  EXPECT_EQ(number->key, "key");
+  EXPECT_EQ(number->value, PropertyValue(std::int32_t{-2}));
+  EXPECT_EQ(encode(*number), key + bytes("fffffffe"));
+  EXPECT_EQ(decode_driver_property(set_double, key + bytes("3fd0000000000000"))->value, PropertyValue(0.25));
+  EXPECT_EQ(decode_driver_property(set_bool, key + bytes("00000001"))->value, PropertyValue(true));
+  const auto text = bytes("00000003 00000003 68690000");  // "hi"
+  EXPECT_EQ(decode_driver_property(set_string, key + text)->value, PropertyValue(std::string("hi")));
+  EXPECT_EQ(encode(DriverProperty{"key", std::string("hi")}), key + text);
+  EXPECT_FALSE(decode_driver_property(get_int, key));
+  EXPECT_FALSE(decode_driver_property(get_double, key + bytes("00000001")));
+  EXPECT_FALSE(decode_driver_property(capabilities, key + bytes("00000001")));
+}
+
 TEST(PlayerPayload, laser_scan_has_ranges_and_bytes_of_intensity) {
   const LaserScan scan{-0.5F, 0.5F, 0.5F, 8.0F, {1.0F, 2.0F, 8.0F}, std::string("\x01\x00\xff", 3), 7};
   const auto encoded = encode(scan);
