@@ -48,8 +48,8 @@ Answer choose_mode(const std::string& payload, bool has_mode) {
 
 Drive::~Drive() = default;
 
-bool Drive::command_velocity(Client& client, std::span<const double> values) {
-  if (!iface().command(shm::CommandKind::velocity, values)) return false;
+bool Drive::command(Client& client, shm::CommandKind kind, std::span<const double> values) {
+  if (!iface().command(kind, values)) return false;
   commander_ = &client;
   return true;
 }
@@ -250,16 +250,18 @@ std::optional<Answer> Position3d::answer(std::uint8_t subtype, const std::string
       return switch_motors(payload, later);
     case request3d::velocity_mode:
     case request3d::position_mode:
-      return choose_mode(payload, subtype == request3d::velocity_mode);
+      return choose_mode(payload, true);
     case request3d::set_odometry: {
       const auto pose = player::decode_pose3d(payload);
       if (!pose || !is_finite({pose->x, pose->y, pose->z, pose->roll, pose->pitch, pose->yaw})) return nack();
+      give_up();
       return ask(shm::ResetOdometryRequest{.iface = iface().name(),
                                            .is_3d = true,
                                            .pose = shm::euler_pose(pose->x, pose->y, pose->z, pose->roll, pose->pitch, pose->yaw)},
                  later);
     }
     case request3d::reset_odometry:
+      give_up();
       return ask(shm::ResetOdometryRequest{.iface = iface().name(), .is_3d = true}, later);
     default:
       return nack();
@@ -267,9 +269,27 @@ std::optional<Answer> Position3d::answer(std::uint8_t subtype, const std::string
 }
 
 void Position3d::obey(Client& client, std::uint8_t subtype, const std::string& payload) {
-  if (subtype != command::velocity) return;
-  const auto v = player::decode_velocity3d(payload);
-  if (v) command_velocity(client, std::array{v->x, v->y, v->z, v->roll, v->pitch, v->yaw});
+  if (subtype == command::velocity) {
+    const auto v = player::decode_velocity3d(payload);
+    if (v && command_velocity(client, std::array{v->x, v->y, v->z, v->roll, v->pitch, v->yaw})) pursuer_ = nullptr;
+  } else if (subtype == command::pose) {
+    const auto wanted = player::decode_pose_command3d(payload);
+    if (!wanted) return;
+    const auto& p = wanted->pose;
+    const bool is_done = wanted->is_enabled ? command(client, shm::CommandKind::pose, std::array{p.x, p.y, p.z, p.roll, p.pitch, p.yaw})
+                                            : command_velocity(client, std::array<double, 6>{});
+    if (is_done) pursuer_ = wanted->is_enabled ? &client : nullptr;
+  }
+}
+
+void Position3d::give_up() {
+  if (pursuer_ != nullptr && iface().is_commander()) command_velocity(*pursuer_, std::array<double, 6>{});
+  pursuer_ = nullptr;
+}
+
+void Position3d::forget(Client& client) {
+  if (pursuer_ == &client) pursuer_ = nullptr;
+  Drive::forget(client);
 }
 
 }  // namespace gateway

@@ -18,7 +18,8 @@ class Drive : public Device {
 
  protected:
   // False when the values can't be a command, or there is no simulator: then all stays as it was.
-  bool command_velocity(Client& client, std::span<const double> values);
+  bool command_velocity(Client& client, std::span<const double> values) { return command(client, shm::CommandKind::velocity, values); }
+  bool command(Client& client, shm::CommandKind kind, std::span<const double> values);
   // From now on the robot follows this client. One that followed another client goes on as it was, any other stands.
   void take_over(Client& client);
   void forget(Client& client) override;
@@ -66,14 +67,22 @@ class Position2d final : public Drive {
   double speed_ = 0.4, turn_ = 1, acceleration_ = 0.5;  // of ways to a pose, unless a command says otherwise [m/s, rad/s, m/s^2]
 };
 
+// The drive itself flies to poses of its odometry, as fast as it can; that ends like the ways of a Position2d.
 class Position3d final : public Drive {
  public:
   using Drive::Drive;
 
  private:
+  // Stops a robot that is on its way to a pose for a client: the pose would be elsewhere.
+  void give_up();
+
   void show_sample() override;
   std::optional<Answer> answer(std::uint8_t subtype, const std::string& payload, const Later& later) override;
   void obey(Client& client, std::uint8_t subtype, const std::string& payload) override;
+  void on_attach() override { pursuer_ = nullptr; }
+  void forget(Client& client) override;
+
+  Client* pursuer_ = nullptr;  // whose last command was a pose
 };
 
 }  // namespace gateway

@@ -25,7 +25,7 @@ bool is_served(player::Interface interface, std::uint32_t type, std::uint32_t su
     case position2d:
       return has({1}, {1, 2, 4}, {1, 2, 3, 4, 5, 6, 7, 8, 9});
     case position3d:
-      return has({1}, {1}, {1, 2, 3, 4, 5, 6});
+      return has({1}, {1, 2}, {1, 2, 3, 4, 5, 6});
     case laser:
       return has({1}, {}, {1, 2, 3, 4, 5});
     case sonar:

@@ -596,6 +596,49 @@ flying = f"""<sdf version="1.9"><world name="sensors">
 </world></sdf>"""
 
 
+# CMD_POS in 3D: a pose of the odometry, and what ends the way to it.
+def flight():
+    with Rig() as rig:
+        path = f"{rig.work}/flying.sdf"
+        with open(path, "w") as file:
+            file.write(flying)
+        rig.sim("--rtf", "3", world=path)
+        rig.gateway()
+        client, watcher = Client(rig.ports[0]), Client(rig.ports[0])
+        for one in (client, watcher):
+            one.subscribe(POSITION3D)
+        client.demand(POSITION3D, 0, 4, struct.pack(">I", 1))
+
+        def state(payload):
+            return struct.unpack(">12dI", payload)
+
+        def fly(x, y, z, yaw, enabled=1):
+            client.command(POSITION3D, 0, 2, struct.pack(">12dI", x, y, z, 0, 0, yaw, *(6 * [0]), enabled))
+
+        def is_still(payload):
+            return max(map(abs, state(payload)[6:12])) < 0.01
+
+        def flies(payload):
+            return max(map(abs, state(payload)[6:9])) > 0.3
+
+        fly(1, -0.5, 0.7, 1)
+        there = (1, -0.5, 0.7, 0, 0, 1)
+        client.read_until(POSITION3D, good=lambda p: is_still(p) and all(abs(a - b) < 0.03 for a, b in zip(state(p), there)))
+        fly(math.nan, 0, 0, 0)
+        for end in (
+            lambda: fly(0, 0, 0, 0, 0),
+            lambda: client.demand(POSITION3D, 0, 6, struct.pack(">6d", 100, 0, 0, 0, 0, 0)),
+            lambda: client.demand(POSITION3D, 0, 5),
+            lambda: client.command(POSITION3D, 0, 1, struct.pack(">6dI", *(6 * [0]), 1)),
+            client.close,
+        ):
+            at = state(watcher.read_until(POSITION3D))
+            fly(at[0] + 30, at[1], at[2], 0)
+            watcher.read_until(POSITION3D, good=flies)
+            end()
+            watcher.read_until(POSITION3D, good=is_still)
+
+
 def sensors():
     with Rig() as rig:
         path = f"{rig.work}/flying.sdf"
@@ -870,4 +913,4 @@ def exhausted():
         await_("a new client", connects)
 
 
-{function.__name__: function for function in (listing, drive, position, heading, properties, flow, rate, two_clients, gateway_ends, restart, hung, late_and_changing, simulation, rangers, sensors, config, bad_input, stuck, exhausted)}[case]()
+{function.__name__: function for function in (listing, drive, position, heading, properties, flow, rate, two_clients, gateway_ends, restart, hung, late_and_changing, simulation, rangers, flight, sensors, config, bad_input, stuck, exhausted)}[case]()

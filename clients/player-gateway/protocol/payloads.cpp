@@ -209,6 +209,16 @@ std::optional<PoseCommand2d> decode_pose_command2d(std::string_view payload) {
   });
 }
 
+std::optional<PoseCommand3d> decode_pose_command3d(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    PoseCommand3d command;
+    command.pose = take_pose3d(in);
+    command.velocity = take_pose3d(in);
+    command.is_enabled = in.boolean();
+    return command;
+  });
+}
+
 std::optional<HeadingCommand> decode_heading_command(std::string_view payload) {
   return whole(payload, [](XdrReader& in) {
     const double speed = in.f64();

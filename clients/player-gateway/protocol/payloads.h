@@ -95,6 +95,11 @@ struct PoseCommand2d {
   bool is_enabled = true;
 };
 std::optional<PoseCommand2d> decode_pose_command2d(std::string_view payload);
+struct PoseCommand3d {
+  Pose3d pose, velocity;
+  bool is_enabled = true;
+};
+std::optional<PoseCommand3d> decode_pose_command3d(std::string_view payload);
 struct HeadingCommand {
   double speed = 0, angle = 0;
 };
