@@ -232,6 +232,53 @@ def heading():
         stands(watcher)
 
 
+def wheel(name, parent, x, y):
+    return f"""<link name='{name}'><pose>{x} {y} 0.2 -1.5708 0 0</pose><inertial><mass>3</mass><inertia><ixx>.04</ixx><iyy>.04</iyy><izz>.06</izz></inertia></inertial>
+<collision name='c'><geometry><cylinder><radius>0.2</radius><length>0.1</length></cylinder></geometry></collision></link>
+<joint name='{name}_joint' type='revolute'><parent>{parent}</parent><child>{name}</child><axis><xyz>0 0 1</xyz></axis></joint>"""
+
+
+def knuckle(side, y):
+    return f"""<link name='{side}_knuckle'><pose>1 {y} 0.2 0 0 0</pose><inertial><mass>1</mass><inertia><ixx>.01</ixx><iyy>.01</iyy><izz>.01</izz></inertia></inertial></link>
+<joint name='{side}_steering' type='revolute'><parent>body</parent><child>{side}_knuckle</child><axis><xyz>0 0 1</xyz><limit><lower>-0.8</lower><upper>0.8</upper></limit></axis></joint>"""
+
+
+car = f"""<sdf version="1.9"><world name="car"><include><uri>{source}/worlds/models/ground_plane</uri></include><model name="car">
+<link name='body'><pose>0.5 0 0.35 0 0 0</pose><inertial><mass>60</mass><inertia><ixx>4</ixx><iyy>8</iyy><izz>10</izz></inertia></inertial>
+<collision name='c'><geometry><box><size>1.4 0.5 0.2</size></box></geometry></collision></link>
+{knuckle("left", 0.4)}{knuckle("right", -0.4)}{wheel("front_left", "left_knuckle", 1, 0.4)}{wheel("front_right", "right_knuckle", 1, -0.4)}
+{wheel("rear_left", "body", 0, 0.4)}{wheel("rear_right", "body", 0, -0.4)}
+<plugin filename='libgazebo_ros_ackermann_drive.so' name='drive'><front_left_joint>front_left_joint</front_left_joint><front_right_joint>front_right_joint</front_right_joint>
+<rear_left_joint>rear_left_joint</rear_left_joint><rear_right_joint>rear_right_joint</rear_right_joint><left_steering_joint>left_steering</left_steering_joint>
+<right_steering_joint>right_steering</right_steering_joint><max_steer>0.6458</max_steer><max_speed>20</max_speed></plugin></model></world></sdf>"""
+
+
+# A car has no poses, but headings.
+def cars():
+    with Rig() as rig:
+        path = f"{rig.work}/car.sdf"
+        with open(path, "w") as file:
+            file.write(car)
+        rig.sim("--rtf", "3", world=path)
+        rig.gateway(robots=1)
+        client = Client(rig.ports[0])
+        client.subscribe(POSITION2D)
+        client.refused(POSITION2D, 0, 4, struct.pack(">I", 1))
+        client.demand(POSITION2D, 0, 4, struct.pack(">I", 0))
+        client.command(POSITION2D, 0, 1, velocity(0.5, 0, 0))
+        moves(client, 0.4)
+        client.command(POSITION2D, 0, 2, pose_command(-3, 0, 0))
+        start = Position(client.read_until(POSITION2D)).pose[0]
+        client.read_until(POSITION2D, good=lambda p: Position(p).pose[0] > start + 1)  # as if nothing had been said
+        assert Position(client.read_until(POSITION2D)).velocity[0] > 0.4
+        client.command(POSITION2D, 0, 4, struct.pack(">dd", 0.5, 1.2))
+        client.read_until(POSITION2D, good=lambda p: abs(Position(p).pose[2] - 1.2) < 0.02 and abs(Position(p).velocity[2]) < 0.02)
+        client.close()
+        watcher = Client(rig.ports[0])
+        watcher.subscribe(POSITION2D)
+        stands(watcher)
+
+
 # Capabilities, properties of drivers and what tunes a drive: each request is answered, and says what is true.
 def properties():
     with started() as rig:
@@ -913,4 +960,4 @@ def exhausted():
         await_("a new client", connects)
 
 
-{function.__name__: function for function in (listing, drive, position, heading, properties, flow, rate, two_clients, gateway_ends, restart, hung, late_and_changing, simulation, rangers, flight, sensors, config, bad_input, stuck, exhausted)}[case]()
+{function.__name__: function for function in (listing, drive, position, heading, cars, properties, flow, rate, two_clients, gateway_ends, restart, hung, late_and_changing, simulation, rangers, flight, sensors, config, bad_input, stuck, exhausted)}[case]()
