@@ -214,13 +214,14 @@ class Client(Wire):
             data.append(got)
 
     def read_until(self, interface, subtype=1, index=0, good=lambda payload: True):
-        """The payload of the next such data that is good."""
-        got = None
-        for _ in range(5000):
+        """The payload of the next such data that is good; it must come within a minute of simulated time."""
+        first = None
+        while True:
             for got in self.read():
                 if got.key() == (interface, index, subtype) and good(got.payload):
                     return got.payload
-        raise AssertionError(f"{interface}:{index} has no such data; the last was {got}: {got.payload[:52].hex()}")
+                first = first or got.stamp
+                assert got.stamp < first + 60, f"{interface}:{index} has no such data; the last was {got}: {got.payload[:52].hex()}"
 
     def command(self, interface, index, subtype, payload=b""):
         self.send(message(interface, index, CMD, subtype, payload))
