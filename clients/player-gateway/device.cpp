@@ -83,6 +83,13 @@ void Device::take_sample() {
   if (source_ && is_reading_) show_sample();
 }
 
+void Device::show_latest(Client& newcomer) {
+  if (!source_ || !is_reading_ || !source_->has_sample()) return;
+  newcomer_ = &newcomer;
+  show_sample();
+  newcomer_ = nullptr;
+}
+
 std::optional<Answer> Device::request(std::uint8_t subtype, const std::string& payload, const Later& later) {
   if (!source_) return nack();
   return player::universal_request::is_one(subtype) ? answer_universal(subtype, payload) : answer(subtype, payload, later);
@@ -118,7 +125,9 @@ void Device::publish(std::uint8_t subtype, const std::string& payload, const shm
   services_.timeline.note(last_time_);
   player::Header header{.address = address_, .type = player::Type::data, .subtype = subtype, .timestamp = last_time_, .size = 0};
   const auto message = std::make_shared<const std::string>(player::encode(header, robot_, payload));
-  for (const Subscriber& one : subscribers_) one.client->deliver(address_, subtype, message);
+  for (const Subscriber& one : subscribers_) {
+    if (newcomer_ == nullptr || newcomer_ == one.client) one.client->deliver(address_, subtype, message);
+  }
 }
 
 std::nullopt_t Device::ask(shm::Request request, const Later& later) {

@@ -68,6 +68,8 @@ class Device {
 
   // The source has a new sample or frame.
   void take_sample();
+  // What others who read the source have got already: a newcomer does not wait for the next one, which never comes while time stands still.
+  void show_latest(Client& newcomer);
   // Nothing: `later` will be called with the answer, from the same thread.
   std::optional<Answer> request(std::uint8_t subtype, const std::string& payload, const Later& later);
   void command(Client& client, std::uint8_t subtype, const std::string& payload);
@@ -87,7 +89,7 @@ class Device {
   virtual bool has_data() const { return true; }
 
   shm::Iface& iface() const { return source_->iface(); }
-  // To all subscribers, with one encoding.
+  // To all subscribers, or the newcomer, with one encoding.
   void publish(std::uint8_t subtype, const std::string& payload, const shm::Stamp& stamp);
   // Lets the simulator do it; the answer is an empty ack when it did.
   std::nullopt_t ask(shm::Request request, const Later& later);
@@ -111,6 +113,7 @@ class Device {
   std::shared_ptr<Source> source_;
   bool is_reading_ = false;
   std::vector<Subscriber> subscribers_;
+  Client* newcomer_ = nullptr;  // the only one that a sample is shown to just now
   double last_time_ = 0;
 };
 

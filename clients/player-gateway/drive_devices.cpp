@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint8_t data_state = 1;
 
-namespace command {
+namespace commands {
 constexpr std::uint8_t velocity = 1, pose = 2, heading = 4;
 }
 namespace request2d {
@@ -48,7 +48,7 @@ Answer choose_mode(const std::string& payload, bool has_mode) {
 
 Drive::~Drive() = default;
 
-bool Drive::command(Client& client, shm::CommandKind kind, std::span<const double> values) {
+bool Drive::tell(Client& client, shm::CommandKind kind, std::span<const double> values) {
   if (!iface().command(kind, values)) return false;
   commander_ = &client;
   return true;
@@ -120,9 +120,9 @@ std::optional<Answer> Position2d::answer(std::uint8_t subtype, const std::string
 }
 
 void Position2d::obey(Client& client, std::uint8_t subtype, const std::string& payload) {
-  if (subtype == command::pose) return drive_to(client, payload);
-  if (subtype == command::heading) return keep_heading(client, payload);
-  if (subtype != command::velocity) return;
+  if (subtype == commands::pose) return drive_to(client, payload);
+  if (subtype == commands::heading) return keep_heading(client, payload);
+  if (subtype != commands::velocity) return;
   const auto command = player::decode_velocity2d(payload);
   if (!command) return;
   const auto& wanted = command->velocity;
@@ -148,7 +148,8 @@ void Position2d::drive_to(Client& client, const std::string& payload) {
 
 void Position2d::keep_heading(Client& client, const std::string& payload) {
   const auto command = player::decode_heading_command(payload);
-  if (!command || !is_finite({command->speed, command->angle})) return;
+  constexpr double fastest = 1e9;  // that a command may be: the robot would go on as before, led by nobody
+  if (!command || !(std::abs(command->speed) <= fastest) || !std::isfinite(command->angle)) return;
   take_over(client);
   pursuer_ = &client;
   goal_ = Heading{command->speed, command->angle};
@@ -269,14 +270,14 @@ std::optional<Answer> Position3d::answer(std::uint8_t subtype, const std::string
 }
 
 void Position3d::obey(Client& client, std::uint8_t subtype, const std::string& payload) {
-  if (subtype == command::velocity) {
+  if (subtype == commands::velocity) {
     const auto v = player::decode_velocity3d(payload);
     if (v && command_velocity(client, std::array{v->x, v->y, v->z, v->roll, v->pitch, v->yaw})) pursuer_ = nullptr;
-  } else if (subtype == command::pose) {
+  } else if (subtype == commands::pose) {
     const auto wanted = player::decode_pose_command3d(payload);
     if (!wanted) return;
     const auto& p = wanted->pose;
-    const bool is_done = wanted->is_enabled ? command(client, shm::CommandKind::pose, std::array{p.x, p.y, p.z, p.roll, p.pitch, p.yaw})
+    const bool is_done = wanted->is_enabled ? tell(client, shm::CommandKind::pose, std::array{p.x, p.y, p.z, p.roll, p.pitch, p.yaw})
                                             : command_velocity(client, std::array<double, 6>{});
     if (is_done) pursuer_ = wanted->is_enabled ? &client : nullptr;
   }

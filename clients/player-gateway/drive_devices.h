@@ -18,8 +18,8 @@ class Drive : public Device {
 
  protected:
   // False when the values can't be a command, or there is no simulator: then all stays as it was.
-  bool command_velocity(Client& client, std::span<const double> values) { return command(client, shm::CommandKind::velocity, values); }
-  bool command(Client& client, shm::CommandKind kind, std::span<const double> values);
+  bool command_velocity(Client& client, std::span<const double> values) { return tell(client, shm::CommandKind::velocity, values); }
+  bool tell(Client& client, shm::CommandKind kind, std::span<const double> values);
   // From now on the robot follows this client. One that followed another client goes on as it was, any other stands.
   void take_over(Client& client);
   void forget(Client& client) override;

@@ -136,6 +136,7 @@ void Session::open_or_close(const player::Message& message) {
   if (!request) return answer(message.header, nack());
   Device* device = robot_.find(request->address);
   bool is_done = false;
+  const bool is_new = device != nullptr && !device->is_subscribed(*this);
   if (device != nullptr && request->access == static_cast<std::uint32_t>(player::Access::open)) {
     const auto opened = device->subscribe(*this);
     is_done = opened.ok();
@@ -147,6 +148,7 @@ void Session::open_or_close(const player::Message& message) {
   request->driver = is_done ? device->driver() : std::string();
   if (!is_done) request->access = static_cast<std::uint32_t>(player::Access::error);
   answer(message.header, {is_done, player::encode(*request)});
+  if (is_new && is_done) device->show_latest(*this);
 }
 
 void Session::answer(const player::Header& asked, const Answer& given) {

@@ -19,6 +19,7 @@ base::Result<void> Source::add_reader() {
   if (readers_ == 0) {
     // What was published before is old: a sensor that nobody used has stopped long ago.
     seen_ = iface_.sequence();
+    has_sample_ = false;
     if (auto good = iface_.subscribe(); !good) return good;
   }
   ++readers_;
@@ -42,12 +43,14 @@ bool Source::take_news() {
   if (sequence <= seen_) return false;
   if (shm::has_frames(iface_.type())) {
     seen_ = sequence;
+    has_sample_ = true;
     return true;
   }
   if (!iface_.read()) return false;
   const auto& stamp = iface_.sample<shm::Stamp>();
   seen_ = stamp.sequence;
-  return stamp.valid != 0;
+  has_sample_ = stamp.valid != 0;
+  return has_sample_;
 }
 
 }  // namespace gateway

@@ -26,6 +26,8 @@ class Source {
   base::Result<void> add_reader();
   void remove_reader();
   bool is_read() const { return readers_ > 0; }
+  // There was news since somebody reads.
+  bool has_sample() const { return has_sample_; }
   // For the alarm; nothing when the iface has been replaced.
   SharedSegment segment();
 
@@ -39,6 +41,7 @@ class Source {
   std::uint64_t server_;
   int readers_ = 0;
   std::uint64_t seen_ = 0;  // sequence number
+  bool has_sample_ = false;
   SharedSegment segment_;
 };
 

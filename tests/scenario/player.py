@@ -326,6 +326,14 @@ def flow():
         client = Client(rig.ports[0])
         client.subscribe(LASER)
         assert client.read()[0].interface == LASER  # what a sensor shows when somebody comes while time stands still
+        client.subscribe(RANGER)  # the same sensor
+        assert client.read()[0].interface == RANGER
+        client.unsubscribe(RANGER)
+        second = Client(rig.ports[0])
+        second.subscribe(LASER)
+        second.subscribe(LASER)
+        assert [one.interface for one in second.read()] == [LASER]
+        second.close()
         client.send(message(PLAYER, 0, REQ, 4) * 3)
         for _ in range(3):
             got = client.next()
