@@ -30,13 +30,11 @@ PeriodicExecutionContext::PeriodicExecutionContext(const std::string& name)
   m_period = getPeriod();
 }
 
-PeriodicExecutionContext::~PeriodicExecutionContext() {
-  context().halt();  // loops of authors ask isRunning()
-  endThread();
-}
+PeriodicExecutionContext::~PeriodicExecutionContext() { endThread(); }
 
 void PeriodicExecutionContext::endThread() {
   m_svc = false;
+  context().halt();  // loops of authors ask isRunning()
   worker_->stop();
   wakeLoop();
   coil::Task::wait();
