@@ -35,8 +35,13 @@ struct Message {
   Clock::time_point deadline;
 };
 
+struct Process {
+  std::deque<Message> untold;
+  bool hangs = false;  // a call has taken its time-out
+};
+
 struct State {
-  std::map<std::string, std::deque<Message>> untold;  // by the address of the process that hangs; each has a thread that tries
+  std::map<std::string, Process> processes;  // by address; each has a thread that tries
   int threads = 0;
   bool is_ending = true;  // also before the beginning
 };
@@ -54,9 +59,9 @@ struct Table {
 // False if the process is not known to hang.
 bool leave_message(const std::string& address, RTC::PortService_ptr port, const char* connector_id) {
   auto state = Table::instance().state.lock();
-  const auto found = state->untold.find(address);
-  if (found == state->untold.end()) return false;
-  found->second.push_back({RTC::PortService::_duplicate(port), connector_id, Clock::now() + port_call_timeout()});
+  const auto found = state->processes.find(address);
+  if (found == state->processes.end() || !found->second.hangs) return false;
+  found->second.untold.push_back({RTC::PortService::_duplicate(port), connector_id, Clock::now() + port_call_timeout()});
   return true;
 }
 
@@ -91,29 +96,33 @@ void tell_late(const std::string& address) {
     Message message;
     {
       auto state = table.state.lock();
-      auto& messages = state->untold[address];
+      auto& messages = state->processes[address].untold;
       if (messages.empty() || state->is_ending) {
         dropped = std::move(messages);
-        state->untold.erase(address);
+        state->processes.erase(address);
         break;
       }
       message = messages.front();
     }
     is_awake = deliver(message, is_awake);
     auto state = table.state.lock();
+    Process& process = state->processes[address];
+    process.hangs = !is_awake;
     if (is_awake || Clock::now() >= message.deadline)
-      state->untold[address].pop_front();
+      process.untold.pop_front();
     else
       state.wait_for(table.changed, std::min<Clock::duration>((Clock::now() - start) / 4, longest_pause), [&] { return state->is_ending; });
   }
 }
 
-void tell_later(const std::string& address, RTC::PortService_ptr port, const char* connector_id, Clock::duration lasts) {
+void tell_later(const std::string& address, RTC::PortService_ptr port, const char* connector_id, bool hangs, Clock::duration lasts) {
   {
     auto state = Table::instance().state.lock();
     if (state->is_ending) return;
-    const bool has_thread = state->untold.contains(address);
-    state->untold[address].push_back({RTC::PortService::_duplicate(port), connector_id, Clock::now() + lasts});
+    const bool has_thread = state->processes.contains(address);
+    Process& process = state->processes[address];
+    process.hangs = process.hangs || hangs;
+    process.untold.push_back({RTC::PortService::_duplicate(port), connector_id, Clock::now() + lasts});
     if (has_thread) return;
     ++state->threads;
   }
@@ -144,7 +153,7 @@ std::optional<RTC::ReturnCode_t> take_leave(RTC::PortService_ptr port, const cha
     limit_calls(port, std::min(port_call_timeout(), patience) * static_cast<int>(left));
     return port->notify_disconnect(connector_id);
   } catch (const CORBA::SystemException& e) {
-    if (is_time_out(e)) tell_later(address, port, connector_id, port_call_timeout());  // or it is dead, and there is nobody to tell
+    if (is_time_out(e)) tell_later(address, port, connector_id, true, port_call_timeout());  // or it is dead, and there is nobody to tell
   } catch (const CORBA::Exception&) {
     // Of another make, and odd.
   }
@@ -153,7 +162,7 @@ std::optional<RTC::ReturnCode_t> take_leave(RTC::PortService_ptr port, const cha
 
 void take_leave_when_awake(RTC::PortService_ptr port, const char* connector_id) {
   try {
-    tell_later(process_address(port), port, connector_id, longest_hang);
+    tell_later(process_address(port), port, connector_id, false, longest_hang);
   } catch (const CORBA::SystemException&) {
     // Nothing to reach it by.
   }

@@ -13,7 +13,7 @@ namespace corba {
 std::optional<RTC::ReturnCode_t> take_leave(RTC::PortService_ptr port, const char* connector_id, CORBA::ULong left);
 
 // For a connection that was dropped because the port's process did not answer: says notify_disconnect to the port when the process has
-// woken, within ten minutes; nothing if it is dead. Returns at once. Nobody waits for that process any more until then.
+// woken, within ten minutes; nothing if it is dead. Returns at once.
 void take_leave_when_awake(RTC::PortService_ptr port, const char* connector_id);
 
 // Only between these two are those that did not answer told later: while there is an ORB. The end waits for the calls in progress, a

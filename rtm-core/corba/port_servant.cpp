@@ -423,7 +423,6 @@ RTC::ReturnCode_t PortServant::leave(std::string_view connector_id, bool tells_n
     profile = connection->profile;
   }
   forget_peers(id, *loss_);
-  if (is_lost) tell_lost(profile);
   tell(Step::notify_disconnect, profile, RTC::RTC_OK);
   if (tells_next) tell(Step::next_disconnected, profile, leave_next(profile));
   tell(Step::unsubscribed, profile, RTC::RTC_OK);
@@ -440,6 +439,7 @@ RTC::ReturnCode_t PortServant::leave(std::string_view connector_id, bool tells_n
       state->connections.erase(state->connections.begin() + (connection - state->connections.data()));
     }
   }
+  if (is_lost) tell_lost(profile);
   tell(Step::disconnected, profile, RTC::RTC_OK);
   return RTC::RTC_OK;
 }
