@@ -181,6 +181,85 @@ TEST_F(Composite, tools_make_change_and_take_one_apart_over_the_wire) {
   EXPECT_EQ(far.stop(), 0) << far.output();
 }
 
+TEST_F(Composite, rtc_conf_makes_none_that_is_a_member_of_itself) {
+  support::Process rtcd(command({"SourceAll?instance_name=Near", "SinkAll?instance_name=Other",
+                                 "PeriodicECSharedComposite?instance_name=Whole&conf.default.members=Near|Whole|Other"}));
+  RTC::RTObject_var whole = wait_for("Whole.rtc");
+  EXPECT_EQ(member_ids(organization_of(whole)), (Strings{"Near", "Other"})) << rtcd.output();
+  EXPECT_TRUE(own_context(whole)->is_running());
+  EXPECT_EQ(CORBA_RTCUtil::activate(whole), RTC::RTC_OK);
+  EXPECT_TRUE(rtcd.wait_for_output("no component \"Whole\" that could be a member")) << rtcd.output();
+  EXPECT_EQ(rtcd.stop(), 0) << rtcd.output();
+}
+
+TEST_F(Composite, one_that_would_contain_itself_is_refused_however_long_the_way) {
+  support::Process boss(command({"PeriodicECSharedComposite?instance_name=A", "PeriodicECSharedComposite?instance_name=B",
+                                 "SourceAll?instance_name=S", "SourceAll?instance_name=T"}));
+  support::Process far(members_command({"PeriodicECSharedComposite?instance_name=C", "SourceAll?instance_name=U"}));
+  RTC::RTObject_var a = wait_for("A.rtc");
+  RTC::RTObject_var b = wait_for("B.rtc");
+  RTC::RTObject_var c = wait_for("C.rtc");
+  RTC::RTObject_var s = wait_for("S.rtc");
+  RTC::RTObject_var t = wait_for("T.rtc");
+  RTC::RTObject_var u = wait_for("U.rtc");
+  const auto refuses = [&](RTC::RTObject_ptr composite, const SDOPackage::SDOList& members) {
+    SDOPackage::Organization_var organization = organization_of(composite);
+    const Strings before = member_ids(organization);
+    EXPECT_THROW(organization->add_members(members), SDOPackage::InvalidParameter);
+    EXPECT_THROW(organization->set_members(members), SDOPackage::InvalidParameter);
+    EXPECT_EQ(member_ids(organization), before);
+    SDOPackage::OrganizationList_var organizations = t->get_organizations();
+    EXPECT_EQ(organizations->length(), 0u) << "nobody of the list has joined";
+    EXPECT_TRUE(own_context(t)->is_running());
+  };
+  EXPECT_TRUE(organization_of(a)->add_members(sdos({s})));
+  refuses(a, sdos({a}));
+  refuses(a, sdos({t, a}));
+  EXPECT_TRUE(organization_of(c)->add_members(sdos({u})));
+  EXPECT_TRUE(organization_of(b)->add_members(sdos({c})));
+  refuses(c, sdos({b}));
+  EXPECT_TRUE(organization_of(a)->add_members(sdos({b})));
+  refuses(b, sdos({t, a}));
+  refuses(c, sdos({t, a}));
+  EXPECT_EQ(member_ids(organization_of(a)), (Strings{"S", "B"}));
+  EXPECT_TRUE(own_context(a)->is_running());
+  // Out of the way it is no circle any more.
+  EXPECT_TRUE(organization_of(a)->set_members(sdos({s})));
+  EXPECT_EQ(CORBA_RTCUtil::activate(a), RTC::RTC_OK);
+  EXPECT_TRUE(eventually([&] { return state_in(own_context(a), s) == RTC::ACTIVE_STATE; }));
+  EXPECT_EQ(CORBA_RTCUtil::deactivate(a), RTC::RTC_OK);
+  EXPECT_TRUE(organization_of(b)->set_members(sdos({a})));
+  EXPECT_EQ(boss.stop(), 0) << boss.output();
+  EXPECT_EQ(far.stop(), 0) << far.output();
+}
+
+TEST_F(Composite, two_that_take_each_other_at_the_same_time_do_not_both_succeed) {
+  support::Process boss(command({"PeriodicECSharedComposite?instance_name=A"}));
+  support::Process far(members_command({"PeriodicECSharedComposite?instance_name=B"}));
+  RTC::RTObject_var a = wait_for("A.rtc");
+  RTC::RTObject_var b = wait_for("B.rtc");
+  const auto add = [](SDOPackage::Organization_ptr organization, RTC::RTObject_ptr member) {
+    try {
+      organization->add_members(sdos({member}));
+    } catch (const SDOPackage::InvalidParameter&) {
+    }
+  };
+  SDOPackage::Organization_var of_a = organization_of(a);
+  SDOPackage::Organization_var of_b = organization_of(b);
+  for (int round = 0; round < 50; ++round) {
+    std::thread other([&] { add(of_b, a); });
+    add(of_a, b);
+    other.join();
+    ASSERT_TRUE(member_ids(of_a).empty() || member_ids(of_b).empty()) << round;
+    EXPECT_TRUE(of_a->set_members(sdos({})));
+    EXPECT_TRUE(of_b->set_members(sdos({})));
+  }
+  EXPECT_TRUE(own_context(a)->is_running());
+  EXPECT_TRUE(own_context(b)->is_running());
+  EXPECT_EQ(boss.stop(), 0) << boss.output();
+  EXPECT_EQ(far.stop(), 0) << far.output();
+}
+
 TEST_F(Composite, a_member_that_exits_leaves_and_one_that_is_killed_costs_nothing) {
   support::Process boss(command({"PeriodicECSharedComposite?instance_name=Whole", "SourceAll?instance_name=A"}));
   support::Process far(members_command({"SourceAll?instance_name=B", "SourceAll?instance_name=C"}));

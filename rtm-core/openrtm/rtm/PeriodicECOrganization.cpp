@@ -1,9 +1,15 @@
 #include <rtm/PeriodicECOrganization.h>
 #include <rtm/RTObject.h>
 
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <optional>
+
 #include "base/log.h"
 #include "base/text.h"
 #include "corba/orb.h"
+#include "corba/remote_participant.h"
 
 namespace SDOPackage {
 
@@ -24,6 +30,56 @@ bool attempt(const std::string& id, const char* what, Function function) {
 }
 
 RTC::ExecutionContext_ptr own_context(RTC::RTObject_impl& composite) { return composite.getExecutionContext(0); }
+
+// Looks for one organization among components, their members, the members of these, and so on. Holds no lock.
+class MemberSearch {
+ public:
+  static constexpr std::chrono::milliseconds answer_time{1000};  // of each that is asked; who does not answer has no members
+  static constexpr std::chrono::seconds whole_time{5};
+
+  explicit MemberSearch(const std::string& organization) : wanted_(organization) {}
+
+  void add(SDO_ptr sdo) { waiting_.push_back(SDO::_duplicate(sdo)); }
+  // Why these components cannot be members of that organization; nothing when they can.
+  std::optional<std::string> complain() {
+    for (; !waiting_.empty() && !is_found_ && !is_late(); waiting_.pop_front()) {
+      try {
+        look_into(waiting_.front());
+      } catch (const CORBA::Exception& exception) {
+        base::log(base::Level::debug, speaker, "a member of a member does not answer: {}", corba::to_text(exception));
+      }
+    }
+    if (is_found_) return "the composite would be a member of itself";
+    if (!waiting_.empty()) return "it takes too long to find out what the members of the members are";
+    return std::nullopt;
+  }
+  bool has_met_composites() const { return !seen_.empty(); }
+
+ private:
+  void look_into(SDO_ptr component) {
+    CORBA::Object_var asked = corba::impatient_copy(component, answer_time);
+    SDO_var sdo = SDO::_unchecked_narrow(asked);
+    OrganizationList_var organizations = sdo->get_owned_organizations();
+    for (CORBA::ULong i = 0; i < organizations->length() && !is_found_ && !is_late(); ++i) {
+      asked = corba::impatient_copy(organizations[i], answer_time);
+      if (CORBA::is_nil(asked)) continue;
+      Organization_var organization = Organization::_unchecked_narrow(asked);
+      CORBA::String_var id = organization->get_organization_id();
+      is_found_ = id.in() == wanted_;
+      if (is_found_ || !seen_.insert(id.in()).second) continue;
+      SDOList_var members = organization->get_members();
+      for (CORBA::ULong k = 0; k < members->length(); ++k)
+        if (!CORBA::is_nil(members[k])) add(members[k]);
+    }
+  }
+  bool is_late() const { return std::chrono::steady_clock::now() > deadline_; }
+
+  const std::string wanted_;
+  const std::chrono::steady_clock::time_point deadline_ = std::chrono::steady_clock::now() + whole_time;
+  std::deque<SDO_var> waiting_;
+  std::set<std::string> seen_;
+  bool is_found_ = false;
+};
 
 }  // namespace
 
@@ -74,28 +130,53 @@ void PeriodicECOrganization::leave(const Member& member) {
   });
 }
 
-CORBA::Boolean PeriodicECOrganization::add_members(const SDOList& sdo_list) {
-  const std::vector<Member> joining = ask(sdo_list);
+CORBA::Boolean PeriodicECOrganization::add_members(const SDOList& sdo_list) { return take_in(ask(sdo_list), false); }
+
+CORBA::Boolean PeriodicECOrganization::set_members(const SDOList& sdos) { return take_in(ask(sdos), true); }
+
+bool PeriodicECOrganization::take_in(const std::vector<Member>& joining, bool others_leave) {
+  CORBA::String_var id = get_organization_id();
+  const auto search = [&](bool& has_met_composites) {
+    MemberSearch members(id.in());
+    for (const Member& member : joining) members.add(member.sdo);
+    auto complaint = members.complain();
+    has_met_composites = members.has_met_composites();
+    return complaint;
+  };
+  bool has_composites = false;
+  std::optional<std::string> complaint = search(has_composites);  // nobody has to wait for that
+  if (complaint) throw InvalidParameter(complaint->c_str());
+
+  const auto is_one_of = [](const std::vector<Member>& list, const Member& member) {
+    return std::any_of(list.begin(), list.end(), [&](const Member& other) { return other.id == member.id; });
+  };
   bool all = true;
   turns_.take([&] {
     if (closed_) return;
+    const std::vector<Member> before = members();
+    appendMembers(joining);
+    // Of two composites that take each other at the same time, both have told now what they want: at least one of them sees it.
+    if (has_composites) complaint = search(has_composites);
+    if (complaint) {
+      replaceMembers(before);
+      return;
+    }
+    if (others_leave) {
+      Member old;
+      for (const Member& member : before)
+        if (!is_one_of(joining, member)) takeMember(member.id, old);
+      for (const Member& member : before) leave(member);
+    }
     for (const Member& member : joining) {
-      if (join(member))
-        appendMembers({member});
-      else
-        all = false;
+      if (join(member)) continue;
+      all = false;
+      Member failed;
+      if (others_leave || !is_one_of(before, member)) takeMember(member.id, failed);
     }
     update_ports();
   });
+  if (complaint) throw InvalidParameter(complaint->c_str());
   return all;
-}
-
-CORBA::Boolean PeriodicECOrganization::set_members(const SDOList& sdos) {
-  const std::vector<Member> joining = ask(sdos);
-  turns_.take([&] {
-    for (const Member& member : replaceMembers({})) leave(member);
-  });
-  return joining.empty() || add_members(sdos);
 }
 
 CORBA::Boolean PeriodicECOrganization::remove_member(const char* id) {

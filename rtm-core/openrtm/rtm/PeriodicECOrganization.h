@@ -23,6 +23,8 @@ class PeriodicECOrganization : public Organization_impl {
   // The composite must live until close().
   explicit PeriodicECOrganization(RTC::RTObject_impl& composite);
 
+  // InvalidParameter, and nothing changes, when the composite would be a member of itself, also by way of other composites, as far as these
+  // answer; it takes 5 s at most to find out, twice.
   CORBA::Boolean add_members(const SDOList& sdo_list) override;
   CORBA::Boolean set_members(const SDOList& sdos) override;
   CORBA::Boolean remove_member(const char* id) override;
@@ -38,6 +40,7 @@ class PeriodicECOrganization : public Organization_impl {
   void reset_members();
 
  private:
+  bool take_in(const std::vector<Member>& joining, bool others_leave);
   bool join(const Member& member);
   void leave(const Member& member);
   void update_ports();
