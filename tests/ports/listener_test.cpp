@@ -156,4 +156,27 @@ TEST_F(Listeners, the_information_has_the_properties_without_prefix) {
   EXPECT_EQ(in.getConnectorByName("nobody"), nullptr);
 }
 
+TEST_F(Listeners, the_information_has_the_properties_of_the_port_below_those_of_the_connection) {
+  auto bare = profile({out.getPortRef(), in.getPortRef()});
+  ASSERT_EQ(out.connect(bare), RTC::RTC_OK);
+  EXPECT_EQ(out.getConnectorProfiles().at(0).properties.getProperty("subscription_type"), "") << "not all that the port could do";
+  out.disconnect_all();
+  coil::Properties of_port;
+  of_port["mine"] = "1";
+  of_port["dataport.theirs"] = "2";
+  of_port["subscription_type"] = "new";
+  out.init(of_port);
+  in.init(of_port);
+  auto plan = profile({out.getPortRef(), in.getPortRef()}, {{"subscription_type", "flush"}});
+  ASSERT_EQ(out.connect(plan), RTC::RTC_OK);
+  for (const auto& [info, type] :
+       {std::pair(out.getConnectorProfiles().at(0), "DataOutPort"), std::pair(in.getConnectorProfiles().at(0), "DataInPort")}) {
+    EXPECT_EQ(info.properties.getProperty("data_type"), "IDL:RTC/TimedLong:1.0");
+    EXPECT_EQ(info.properties.getProperty("port.port_type"), type);
+    EXPECT_EQ(info.properties.getProperty("mine"), "1");
+    EXPECT_EQ(info.properties.getProperty("theirs"), "2");
+    EXPECT_EQ(info.properties.getProperty("subscription_type"), "flush");
+  }
+}
+
 }  // namespace

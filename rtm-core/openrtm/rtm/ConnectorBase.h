@@ -26,7 +26,8 @@ class ByteData;
 class PortBase;
 class ConnectorListeners;
 
-// `ports` are stringified references; `properties` are the connection's without the prefix "dataport.".
+// `ports` are stringified references; `properties` are the port's own (with its `data_type`), over them the connection's without the prefix
+// "dataport.".
 class ConnectorInfo {
  public:
   ConnectorInfo() = default;

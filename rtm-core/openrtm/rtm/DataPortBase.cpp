@@ -162,7 +162,7 @@ ReturnCode_t DataPortBase<Engine, Connector, side>::open(ConnectorProfile& profi
   // Whoever receives the calls provides the object.
   const bool is_provider = (settings.dataflow == rt::Dataflow::push) == (side == rt::Side::in);
   if (is_provider != provides) return RTC_OK;
-  auto connector = std::make_shared<Connector>(*this, listeners_, detail::make_info(profile, m_properties));
+  auto connector = std::make_shared<Connector>(*this, listeners_, detail::make_info(profile, m_properties, side, engine_->ops().type_id));
   auto plan = detail::make_plan(profile, settings, connector);
   // Inside a process the value itself is handed over.
   if (settings.marshaling != "cdr" && settings.interface != rt::Interface::direct) {
@@ -183,7 +183,7 @@ ReturnCode_t DataPortBase<Engine, Connector, side>::open(ConnectorProfile& profi
   for (const auto& connection : *all) {
     if (connection->id() == connector->id()) connector->getBuffer()->show(connection, settings.buffer.length);
   }
-  if (provides) connector->setInfo(detail::make_info(profile, m_properties));
+  if (provides) connector->setInfo(detail::make_info(profile, m_properties, side, engine_->ops().type_id));
   connector->on_event(corba::ConnectorEvent::connect);
   return RTC_OK;
 }

@@ -21,7 +21,9 @@ std::string short_name(const std::string& name) {
 
 namespace {
 constexpr const char* interfaces = "corba_cdr,data_service,direct,shared_memory";
-}
+
+const char* port_type(rt::Side side) { return side == rt::Side::in ? "DataInPort" : "DataOutPort"; }
+}  // namespace
 
 void show_interfaces_of_authors(PortProfile& profile, rt::Side side) {
   const auto names = interfaces_of_authors(side);
@@ -37,7 +39,7 @@ void show_interfaces_of_authors(PortProfile& profile, rt::Side side) {
 }
 
 std::vector<AdvertisedKey> advertised_keys(rt::Side side, const std::string& type_id) {
-  std::vector<AdvertisedKey> keys = {{"port.port_type", side == rt::Side::in ? "DataInPort" : "DataOutPort"},
+  std::vector<AdvertisedKey> keys = {{"port.port_type", port_type(side)},
                                      {"dataport.data_type", type_id},
                                      {"data_type", type_id},
                                      {"dataport.subscription_type", side == rt::Side::in ? "Any" : "block,flush,new,nonblock,periodic"},
@@ -130,12 +132,15 @@ ReturnCode_t check_connection(ConnectorProfile& profile, const coil::Properties&
   return RTC_OK;
 }
 
-ConnectorInfo make_info(const ConnectorProfile& profile, const coil::Properties& port) {
+ConnectorInfo make_info(const ConnectorProfile& profile, const coil::Properties& port, rt::Side side, const std::string& type_id) {
   ConnectorInfo info;
   info.name = profile.name.in();
   info.id = profile.connector_id.in();
   info.ports = CORBA_SeqUtil::refToVstring(profile.ports);
+  info.properties["port.port_type"] = port_type(side);
+  info.properties["data_type"] = type_id;
   info.properties << port;
+  if (const coil::Properties* dataport = port.findNode("dataport")) info.properties << *dataport;
   const coil::Properties all = NVUtil::toProperties(profile.properties);
   if (const coil::Properties* dataport = all.findNode("dataport")) info.properties << *dataport;
   if (info.properties.getProperty("io_mode").empty()) {

@@ -42,7 +42,9 @@ struct Carries {
 };
 ReturnCode_t check_connection(ConnectorProfile& profile, const coil::Properties& port, rt::Side side, const Carries& own, Logger& rtclog);
 
-ConnectorInfo make_info(const ConnectorProfile& profile, const coil::Properties& port);
+// What listeners learn: the type and kind of this side, the port's own properties and `dataport.*` of the connection; later ones count
+// more.
+ConnectorInfo make_info(const ConnectorProfile& profile, const coil::Properties& port, rt::Side side, const std::string& type_id);
 corba::ConnectionPlan make_plan(const ConnectorProfile& profile, const rt::ConnectorSettings& settings,
                                 std::shared_ptr<ConnectorBase> connector);
 
