@@ -396,6 +396,34 @@ TEST(Keys, modules_are_preloaded_or_searched_or_neither) {
   EXPECT_EQ(manager.make("SinkAll"), "SinkAll0");
 }
 
+TEST(Keys, without_absolute_paths_no_way_leads_out_of_the_load_path) {
+  support::TemporaryFolder folder;
+  const auto load = folder.path() / "load";
+  const auto outside = folder.path() / "outside";
+  std::filesystem::create_directories(load / "inner");
+  std::filesystem::create_directories(outside);
+  const std::string file = "FailOnRequest.so";
+  std::filesystem::copy_file(modules + "/" + file, outside / file);
+  std::filesystem::copy_file(modules + "/" + file, load / "inner" / file);
+  std::filesystem::create_symlink(outside / file, load / "Link.so");
+  std::filesystem::create_directory_symlink("../outside", load / "away");
+  std::filesystem::create_directory_symlink("load", folder.path() / "path");  // the load path itself may be one
+  const std::string from_here = std::filesystem::relative(outside / file).string();
+  {
+    Started manager({"manager.modules.load_path:" + (folder.path() / "path").string(), "manager.modules.abs_path_allowed:NO"});
+    const auto load_module = [&](const std::string& name) { return manager->load(name, "FailOnRequestInit"); };
+    for (const std::string& name :
+         {"../outside/" + file, std::string("Link.so"), std::string("Link"), "away/" + file, "inner/../../outside/" + file, from_here}) {
+      EXPECT_EQ(load_module(name), RTC::PRECONDITION_NOT_MET) << name;
+    }
+    EXPECT_EQ(manager.make("FailOnRequest"), "");
+    EXPECT_EQ(load_module("inner/../inner/" + file), RTC::RTC_OK);
+    EXPECT_EQ(manager.make("FailOnRequest"), "FailOnRequest0");
+  }
+  Started manager({"manager.modules.load_path:" + load.string()});
+  EXPECT_EQ(manager->load("../outside/" + file), RTC::RTC_OK) << "allowed unless it is forbidden";
+}
+
 class Local final : public RTM::LocalServiceBase {
  public:
   bool init(const coil::Properties& properties) override {

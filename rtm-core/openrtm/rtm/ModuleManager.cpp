@@ -171,6 +171,16 @@ struct ModuleManager::Impl {
     return folders;
   }
 
+  // Whether a file, by its real path, is in one of these folders or below.
+  bool is_in_load_path(const fs::path& file) const {
+    for (const auto& path : load_path()) {
+      const fs::path folder = fs::path(real_path(path)) / "";  // weakly_canonical keeps or drops a slash at the end
+      const auto up = file.lexically_relative(folder.parent_path());
+      if (!up.empty() && *up.begin() != "..") return true;
+    }
+    return false;
+  }
+
   // With the dot.
   std::vector<std::string> suffixes() const {
     auto list = base::split_list(manager->configValue("manager.modules.C++.suffixes"));
@@ -281,8 +291,10 @@ ReturnCode_t ModuleManager::load(const std::string& text, const std::string& ini
   if (name.empty() || name.size() > 4096) return complain("not the name of a file"), BAD_PARAMETER;
   const auto file = findFile(name);
   if (file.empty()) return complain("not found; looked in " + impl_->manager->configValue("manager.modules.load_path")), BAD_PARAMETER;
-  if (fs::path(name).is_absolute() && !base::parse_bool(impl_->manager->configValue("manager.modules.abs_path_allowed")).value_or(true)) {
-    return complain("absolute paths are not allowed by manager.modules.abs_path_allowed"), PRECONDITION_NOT_MET;
+  if (!base::parse_bool(impl_->manager->configValue("manager.modules.abs_path_allowed")).value_or(true)) {
+    const char* const forbidden = " is not allowed by manager.modules.abs_path_allowed";
+    if (fs::path(name).is_absolute()) return complain(std::string("an absolute path") + forbidden), PRECONDITION_NOT_MET;
+    if (!impl_->is_in_load_path(file)) return complain(file + ", outside manager.modules.load_path," + forbidden), PRECONDITION_NOT_MET;
   }
   if (impl_->find({}, file)) return RTC_OK;
   if (function.empty()) function = impl_->init_function(file);
