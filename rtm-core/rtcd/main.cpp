@@ -34,7 +34,7 @@ struct Description {
     app.add_flag("--with-naming")->description("Start omniNames when the first of corba.nameservers does not answer, stop it at the end");
     app.footer(
         "Exit code: 0 ended as asked, 1 failed, 2 wrong command line\n"
-        "SIGTERM ends it; so does SIGINT, unless it was started with SIGINT ignored, as in the background of a script");
+        "SIGTERM ends it; so do SIGINT and SIGHUP, unless it was started with them ignored, as in the background of a script or by nohup");
   }
 };
 

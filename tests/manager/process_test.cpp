@@ -350,7 +350,7 @@ TEST_F(Rtcd, leaves_nothing_behind_whatever_ends_it) {
     int exit_code;
   };
   for (const auto& [signal, component, exit_code] :
-       {Case{SIGTERM, "FailOnRequest", 0}, Case{SIGINT, "FailOnRequest", 0}, Case{SIGTERM, "Hangs", 1}}) {
+       {Case{SIGTERM, "FailOnRequest", 0}, Case{SIGINT, "FailOnRequest", 0}, Case{SIGHUP, "FailOnRequest", 0}, Case{SIGTERM, "Hangs", 1}}) {
     support::TemporaryFolder folder;
     const int port = support::free_port();
     support::Process rtcd(
@@ -367,6 +367,26 @@ TEST_F(Rtcd, leaves_nothing_behind_whatever_ends_it) {
     EXPECT_EQ(rtcd.wait(), exit_code) << rtcd.output();
     EXPECT_TRUE(eventually([&] { return !support::is_listening(port) && files() == 0; })) << component << ' ' << signal;
   }
+}
+
+// As SIGTERM does: its terminal has been closed.
+TEST_F(Rtcd, takes_its_names_back_when_its_terminal_goes_unless_started_by_nohup) {
+  support::Process rtcd(command({"FailOnRequest"}));
+  ASSERT_TRUE(eventually([&] { return has("FailOnRequest0.rtc"); })) << rtcd.output();
+  rtcd.signal(SIGHUP);
+  EXPECT_EQ(rtcd.wait(), 0) << rtcd.output();
+  EXPECT_FALSE(has("FailOnRequest0.rtc"));
+
+  auto words = command({"-p", std::to_string(support::free_port()), "FailOnRequest?instance_name=Kept"});
+  words.insert(words.begin(), "nohup");
+  support::Process kept(words);
+  ASSERT_TRUE(eventually([&] { return has("Kept.rtc"); })) << kept.output();
+  kept.signal(SIGHUP);
+  RTC::RTObject_var still = component("Kept.rtc");
+  EXPECT_EQ(CORBA_RTCUtil::activate(still), RTC::RTC_OK);
+  EXPECT_EQ(CORBA_RTCUtil::deactivate(still), RTC::RTC_OK);
+  EXPECT_TRUE(has("Kept.rtc")) << kept.output();
+  EXPECT_EQ(kept.stop(), 0) << kept.output();
 }
 
 TEST_F(Rtcd, a_name_of_another_living_process_is_taken_with_a_warning_and_given_back_by_nobody_else) {

@@ -70,8 +70,9 @@ base::Result<void> ManagerImpl::start(const ManagerConfig& configuration, const 
   start_logging();
   for (const auto& warning : configuration.warnings()) RTC_WARN(("%s", warning.c_str()));
   bind_to_processors();
-  // From now on a signal finds somebody who ends everything properly, also while the rest starts.
-  signals = std::make_unique<rt::SignalWatcher>(std::vector<int>{SIGINT, SIGTERM}, [this](int number) {
+  // From now on a signal finds somebody who ends everything properly, also while the rest starts. One that nohup or a script
+  // has us ignore stays ignored.
+  signals = std::make_unique<rt::SignalWatcher>(std::vector<int>{SIGINT, SIGTERM, SIGHUP}, [this](int number) {
     request_end();
     auto locked = state.lock();
     while (!locked.wait_for(changed, std::chrono::hours(1), [&] { return locked->life_is_over; })) {
