@@ -1,22 +1,48 @@
-# Sources of 1.x may carry dynamic exception specifications, which C++17 took away. Where the definitions of a project have some, its files
-# are compiled with <rtm/throw_specifications.h>. OPENRTM_THROW_SPECIFICATIONS ON or OFF says so without looking.
+# Sources of 1.x may carry dynamic exception specifications, which C++17 took away. Where the definitions of a project or the declarations of
+# its headers have some, its files are compiled with <rtm/throw_specifications.h>. OPENRTM_THROW_SPECIFICATIONS ON or OFF says so without
+# looking.
 #   rtmsim_allow_throw_specifications(HEADER header TARGET target)
 function(rtmsim_allow_throw_specifications)
   cmake_parse_arguments(PARSE_ARGV 0 arg "" "HEADER;TARGET" "")
   set(found "${OPENRTM_THROW_SPECIFICATIONS}")
   if("${found}" STREQUAL "")
-    file(GLOB_RECURSE sources ${CMAKE_SOURCE_DIR}/*.cpp ${CMAKE_SOURCE_DIR}/*.cc ${CMAKE_SOURCE_DIR}/*.cxx)
-    foreach(source IN LISTS sources)
-      # A statement ends with a semicolon, the head of a definition with its specification or a brace.
-      file(STRINGS "${source}" found REGEX "(^|\\)|const)[ \t]*throw[ \t]*\\([^()]*\\)[ \t]*{?[ \t]*$" LIMIT_COUNT 1)
-      if(NOT "${found}" STREQUAL "")
-        message(STATUS "OpenRTM: exception specifications as in ${source} become noexcept (OPENRTM_THROW_SPECIFICATIONS=OFF: they stay)")
-        set(found ON)
-        break()
-      endif()
-    endforeach()
+    rtmsim_find_throw_specification(found)
   endif()
   if(found)
     target_compile_options(${arg_TARGET} INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:SHELL:-include \"${arg_HEADER}\">")
   endif()
+endfunction()
+
+# ON or OFF.
+function(rtmsim_find_throw_specification result)
+  set(${result} OFF PARENT_SCOPE)
+  # A statement ends with a semicolon, the head of a definition with its specification or a brace.
+  set(definition "(^|\\)|const)[ \t]*throw[ \t]*\\([^()]*\\)[ \t]*({.*)?$")
+  # A declaration ends with a semicolon, too. On a line of its own only one that names a type in a namespace, or none, is surely no statement.
+  set(declaration "(\\)|const)[ \t]*throw[ \t]*\\([^()]*\\)[ \t]*(=[ \t]*0[ \t]*)?;")
+  set(end_of_declaration "^[ \t]*throw[ \t]*\\(([ \t]*|[^()]*::[^()]*)\\)[ \t]*(=[ \t]*0[ \t]*)?;")
+  set(comment_or_statement "^[ \t]*(//|\\*|/\\*)|(^|[^A-Za-z0-9_])(if|while|for|else)([^A-Za-z0-9_]|$)")
+  set(patterns)
+  foreach(extension cpp cc cxx h hpp hh)
+    list(APPEND patterns ${CMAKE_SOURCE_DIR}/*.${extension})
+  endforeach()
+  file(GLOB_RECURSE sources ${patterns})
+  foreach(source IN LISTS sources)
+    string(FIND "${source}" "${CMAKE_BINARY_DIR}/" at)
+    if(at EQUAL 0 AND NOT CMAKE_BINARY_DIR STREQUAL CMAKE_SOURCE_DIR)
+      continue()  # generated
+    endif()
+    set(regex "${definition}")
+    if(source MATCHES "\\.h[^.]*$")
+      set(regex "${definition}|${declaration}|${end_of_declaration}")
+    endif()
+    file(STRINGS "${source}" lines REGEX "${regex}")
+    foreach(line IN LISTS lines)
+      if(NOT line MATCHES "${comment_or_statement}")
+        message(STATUS "OpenRTM: exception specifications as in ${source} become noexcept (OPENRTM_THROW_SPECIFICATIONS=OFF: they stay)")
+        set(${result} ON PARENT_SCOPE)
+        return()
+      endif()
+    endforeach()
+  endforeach()
 endfunction()

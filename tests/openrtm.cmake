@@ -23,5 +23,7 @@ add_test(NAME package.examples COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/examp
 set_tests_properties(package.examples PROPERTIES LABELS package TIMEOUT 300)
 add_test(NAME package.builds COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/builds ${PROJECT_BINARY_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/classic-api/peers)
 set_tests_properties(package.builds PROPERTIES LABELS package TIMEOUT 600 ENVIRONMENT "SANITIZE=${RTMSIM_SANITIZE}")
+add_test(NAME package.throw_specifications COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/throw_specifications ${PROJECT_SOURCE_DIR}/cmake)
+set_tests_properties(package.throw_specifications PROPERTIES LABELS package TIMEOUT 120)
 add_test(NAME package.peers COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/peers build ${PROJECT_BINARY_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/classic-api/peers)
 set_tests_properties(package.peers PROPERTIES LABELS package TIMEOUT 900 ENVIRONMENT "SANITIZE=${RTMSIM_SANITIZE}")

@@ -101,6 +101,22 @@ TEST_F(Precedence, the_file_of_an_option_wins_over_that_of_the_environment_and_t
   }
 }
 
+TEST_F(Precedence, a_file_of_the_environment_that_is_not_there_is_a_warning) {
+  const std::string missing = (folder_.path() / "missing.conf").string();
+  const std::vector<std::string> environment = {"RTC_MANAGER_CONFIG=" + missing};
+  config("manager.components.precreate: FailOnRequest\n");
+  {
+    support::Process rtcd({program, "-a"}, environment, folder_.path().string());
+    EXPECT_TRUE(rtcd.wait_for_output("RTC_MANAGER_CONFIG: file \"" + missing + "\": does not exist")) << rtcd.output();
+    EXPECT_TRUE(eventually([&] { return has("FailOnRequest0.rtc"); })) << "the next place counts: " << rtcd.output();
+    EXPECT_EQ(rtcd.stop(), 0) << rtcd.output();
+  }
+  support::Process rtcd({program, "-a", "-f", "rtc.conf"}, environment, folder_.path().string());
+  EXPECT_TRUE(eventually([&] { return has("FailOnRequest0.rtc"); })) << rtcd.output();
+  EXPECT_EQ(rtcd.stop(), 0) << rtcd.output();
+  EXPECT_EQ(rtcd.output().find("RTC_MANAGER_CONFIG"), std::string::npos) << "-f comes first: " << rtcd.output();
+}
+
 TEST_F(Precedence, lines_win_over_a_component_s_file_and_instances_over_types) {
   const auto of_type = file("type.conf",
                             "conf.default.how: throw\nconf.default.fail_in: onError\nmy.a: type file\nmy.b: type file\n"

@@ -24,15 +24,19 @@ const char* const ManagerConfig::config_file_path[] = {"/etc/rtc.conf", "/etc/rt
 
 namespace {
 
-// The file to read; empty if there is none. The error: a file that was asked for does not exist.
-base::Result<std::string> find_file(const rt::ManagerArguments& arguments) {
+// The file to read; empty if there is none. The error: a file that was asked for does not exist. In the environment that is a warning only.
+base::Result<std::string> find_file(const rt::ManagerArguments& arguments, std::vector<std::string>& warnings) {
   const auto exists = [](const std::string& path) { return std::filesystem::exists(path); };
+  const auto missing = [](const std::string& path) { return ": file " + base::in_quotes(path) + ": does not exist"; };
   if (arguments.config_file) {
     if (exists(*arguments.config_file)) return *arguments.config_file;
-    if (!arguments.ignore_no_config) return base::Error{"option -f: file " + base::in_quotes(*arguments.config_file) + ": does not exist"};
+    if (!arguments.ignore_no_config) return base::Error{"option -f" + missing(*arguments.config_file)};
     return std::string();
   }
-  if (const char* named = std::getenv("RTC_MANAGER_CONFIG"); named != nullptr && *named != '\0' && exists(named)) return std::string(named);
+  if (const char* named = std::getenv("RTC_MANAGER_CONFIG"); named != nullptr && *named != '\0') {
+    if (exists(named)) return std::string(named);
+    warnings.push_back("RTC_MANAGER_CONFIG" + missing(named));
+  }
   if (exists("./rtc.conf")) return std::string("./rtc.conf");
   for (const auto* path = ManagerConfig::config_file_path; *path != nullptr; ++path) {
     if (exists(*path)) return std::string(*path);
@@ -76,7 +80,7 @@ bool ManagerConfig::init(int argc, char** argv, bool strict) {
   }
   properties_.setDefaults(default_config);
 
-  const auto file = find_file(*arguments);
+  const auto file = find_file(*arguments, warnings_);
   if (!file) return fail(2, file.error().message);
   file_ = *file;
   if (!file_.empty()) {
