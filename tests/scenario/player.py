@@ -462,11 +462,11 @@ def two_clients():
 
 # The gateway dies: the robot stops. The gateway is told to end: the same, and exit code 0.
 def gateway_ends():
-    for how in ("kill", "terminate"):
+    for how, subtype, command in (("kill", 1, velocity(0.3, 0, 0)), ("terminate", 1, velocity(0.3, 0, 0)), ("kill", 2, pose_command(2.5, 0, 0))):
         with started() as rig:
             client = Client(rig.ports[0])
             client.subscribe(POSITION2D)
-            client.command(POSITION2D, 0, 1, velocity(0.3, 0, 0))
+            client.command(POSITION2D, 0, subtype, command)
             client.read_until(POSITION2D, good=lambda p: Position(p).velocity[0] > 0.25)
             getattr(rig.process, how)()
             code = rig.process.wait(20)
@@ -490,7 +490,8 @@ def restart():
         for _ in range(5):
             client.read_until(LASER)  # stamps are checked in each read
         for way in (rig.kill, lambda process: (process.terminate(), process.wait(20))):
-            client.command(POSITION2D, 0, 1, velocity(0.1, 0, 0))
+            client.command(POSITION2D, 0, 2, pose_command(9, 0, 0))  # ends with its simulator
+            moves(client)
             way(rig.simulator)
             await_("a simulator that is missed", lambda: "has ended" in rig.log(rig.process))
             await_("refusals", lambda: client.request(POSITION2D, 0, 1)[0] == NACK)
@@ -501,7 +502,9 @@ def restart():
             rig.sim()
             while client.next().kind != SYNCH:  # the round that was asked for before
                 pass
-            client.read_until(LASER)
+            for _ in range(3):
+                client.read_until(LASER)
+            assert abs(Position(client.read_until(POSITION2D)).velocity[0]) < 0.01
             client.command(POSITION2D, 0, 1, velocity(0.3, 0, 0))
             client.read_until(POSITION2D, good=lambda p: Position(p).velocity[0] > 0.25)
         assert len(rig.lines()) == 2, rig.lines()
