@@ -10,7 +10,8 @@ namespace {
 
 constexpr double stall_after = 0.5;  // [s]
 
-std::array<double, 3> size_of(const ModelDef& model) {
+// Of all its boxes, spheres and cylinders, along the axes of the model.
+Eigen::AlignedBox3d box_of(const ModelDef& model) {
   Eigen::AlignedBox3d box;
   for (const auto& link : model.links) {
     for (const auto& collision : link.collisions) {
@@ -24,8 +25,7 @@ std::array<double, 3> size_of(const ModelDef& model) {
       box.extend((pose.translation() + reach).eval());
     }
   }
-  if (box.isEmpty()) return {0, 0, 0};
-  return {box.sizes().x(), box.sizes().y(), box.sizes().z()};
+  return box.isEmpty() ? Eigen::AlignedBox3d(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()) : box;
 }
 
 }  // namespace
@@ -34,9 +34,13 @@ base::Result<std::unique_ptr<Device>> Position2d::make(DeviceWorld& world, Model
                                                        std::unique_ptr<DriveTrain> train) {
   const ModelDef& def = world.physics.def(model);
   shm::Position2dInfo info{};
+  const Eigen::AlignedBox3d box = box_of(def);
+  const Eigen::Vector3d centre = box.center(), size = box.sizes();
   info.pose = shm::identity_pose;
-  const auto size = size_of(def);
-  std::copy(size.begin(), size.end(), info.size);
+  info.pose.x = centre.x();
+  info.pose.y = centre.y();
+  info.pose.z = centre.z();
+  for (int i = 0; i < 3; ++i) info.size[i] = size[i];
   train->describe(info);
   info.rate = train->rate() > 0 ? train->rate() : 1 / world.world.physics.step;
   shm::set_text(info.model, scoped_model(def, plugin.scope));

@@ -103,6 +103,7 @@ def drive():
         client.demand(POSITION2D, 0, 2, struct.pack(">I", 1))
         geometry = struct.unpack(">9d", client.demand(POSITION2D, 0, 1))
         assert 0.2 < geometry[6] < 0.5 and 0.3 < geometry[7] < 0.6, geometry  # width, length
+        assert abs(geometry[0] + 0.045) < 0.01 and abs(geometry[1]) < 0.001, geometry  # its body reaches further back
         scan = Laser(client.read_until(LASER))
         assert len(scan.ranges) == 181 and abs(scan.min_angle + math.pi / 2) < 1e-4 and abs(scan.resolution - math.pi / 180) < 1e-4
         assert abs(scan.ranges[90] - 2.9) < 0.1, scan.ranges[90]  # the wall ahead
