@@ -38,7 +38,8 @@ void announce(std::uint32_t& waiting) { store(waiting, 1U, std::memory_order_seq
 
 void ring(std::uint32_t& word, std::uint32_t& waiting) {
   if (load(waiting, std::memory_order_seq_cst) == 0) return;  // pairs with announce
-  // A sleeper that announces itself between these two lines finds the word changed already, or is woken.
+  // A sleeper that announces itself between these two lines finds the word changed already, or is woken. One that has seen the change and
+  // is about to wait for the next loses its announcement: sleepers wait for a limited time, or look at `waiting` again after the word.
   store(waiting, 0U, std::memory_order_seq_cst);
   futex_wake(word, INT_MAX);
 }
