@@ -1,5 +1,4 @@
 # player-gateway before a peer of another make (player_peer.py), one case per run: player.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
-import json
 import math
 import random
 import re
@@ -7,75 +6,9 @@ import resource
 import signal
 import socket
 import struct
-import subprocess
-import sys
 
-from player_peer import *
-from system import System, await_, is_stopped
-
-case, bin_dir, lib_dir, source = sys.argv[1:]
-
-world = f"""<sdf version="1.9"><world name="two">
-  <physics name="default" type="ode"><max_step_size>0.002</max_step_size></physics>
-  <include><uri>{source}/worlds/models/ground_plane</uri></include>
-  <include><uri>{source}/worlds/models/pioneer2dx_sick</uri><name>first</name><pose>0 0 0 0 0 0</pose></include>
-  <include><uri>{source}/worlds/models/pioneer2dx_sick</uri><name>second</name><pose>0 4 0 0 0 0</pose></include>
-  <model name="wall"><static>true</static><pose>3 0 0.3 0 0 0</pose><link name="link"><collision name="c"><geometry><box><size>0.2 12 0.6</size></box></geometry></collision></link></model>
-</world></sdf>"""
-
-
-class Rig(System):
-    def __init__(self):
-        super().__init__(bin_dir, lib_dir)
-        self.world = f"{self.work}/two.sdf"
-        with open(self.world, "w") as file:
-            file.write(world)
-
-    def sim(self, *options, world=None):
-        self.simulator = self.server(world or self.world, *options)
-        return self.simulator
-
-    # With any free ports; ports[i] is that of the i-th robot.
-    def gateway(self, *options, robots=2):
-        self.process = self.start(f"{bin_dir}/player-gateway", *(options or ("--port", "0")))
-        self.ports = await_("the gateway", lambda: self.shown(robots))
-        return self.ports
-
-    def lines(self):
-        return re.findall(r"^port (\d+): (.*?):((?: \w+:\d+)*)$", self.log(self.process), re.M)
-
-    def shown(self, robots):
-        assert self.process.poll() is None, self.log(self.process)
-        ports = {}
-        for port, _, _ in self.lines():
-            ports[int(port)] = None
-        assert len(ports) >= robots
-        return list(ports)
-
-    def is_alive(self):
-        assert self.process.poll() is None, self.log(self.process)
-
-    def truth(self, model="first"):
-        return [float(word) for word in self.simctl("pose", model).split()[:3]]
-
-    def is_subscribed(self, iface):
-        return any(one["name"] == iface and one["subscribers"] > 0 for one in json.loads(self.simctl("--json", "list")))
-
-    def json_echo(self, iface):
-        return json.loads(self.simctl("--json", "echo", iface, "-n", "1"))
-
-    def driven(self, model="first"):
-        return self.json_echo(f"{model}::position2d")["velocity"][0]
-
-    def try_gateway(self, *words):
-        return subprocess.run([f"{bin_dir}/player-gateway", "-s", self.server_id, *words], capture_output=True, text=True, timeout=60)
-
-
-def started(*options, robots=2):
-    rig = Rig()
-    rig.sim(*options)
-    rig.gateway(robots=robots)
-    return rig
+from player_rig import *
+from system import await_, is_stopped
 
 
 def listing():
@@ -127,157 +60,6 @@ def drive():
         client.demand(POSITION2D, 0, 3, struct.pack(">I", 0))
         client.demand(POSITION2D, 0, 4, struct.pack(">I", 1))
         client.refused(POSITION2D, 0, 4)
-
-
-def pose_command(x, y, a, speed=0.0, turn=0.0, state=1):
-    return struct.pack(">6dI", x, y, a, speed, 0, turn, state)
-
-
-def reached(client, x, y, a):
-    def is_there(payload):
-        state = Position(payload)
-        near = math.hypot(state.pose[0] - x, state.pose[1] - y) < 0.02 and abs(math.remainder(state.pose[2] - a, 2 * math.pi)) < 0.02
-        return near and max(map(abs, state.velocity)) < 0.005
-
-    return Position(client.read_until(POSITION2D, good=is_there))
-
-
-def stands(client):
-    client.read_until(POSITION2D, good=lambda p: max(map(abs, Position(p).velocity)) < 0.005)
-
-
-def moves(client, at_least=0.1):
-    return Position(client.read_until(POSITION2D, good=lambda p: Position(p).velocity[0] > at_least))
-
-
-# CMD_POS: poses of the odometry are reached, at the speed that is asked for, and everything that ends the way ends it.
-def position():
-    with started("--rtf", "3") as rig:
-        client = Client(rig.ports[0])
-        client.subscribe(POSITION2D)
-        client.command(POSITION2D, 0, 2, pose_command(1.0, 0.5, -1.0))
-        reached(client, 1.0, 0.5, -1.0)
-        x, y, yaw = rig.truth()[0], rig.truth()[1], float(rig.simctl("pose", "first").split()[-1])
-        assert math.hypot(x - 1.0, y - 0.5) < 0.05 and abs(yaw + 1.0) < 0.05, (x, y, yaw)
-        # As GoTo in a loop: each is the same goal; and slower.
-        fastest, state = 0, None
-        while state is None or math.hypot(state.pose[0] + 0.5, state.pose[1]) > 0.02 or abs(state.pose[2] - 3.0) > 0.02:
-            client.command(POSITION2D, 0, 2, pose_command(-0.5, 0, 3.0, 0.2, 0.6))
-            state = Position(client.read_until(POSITION2D))
-            fastest = max(fastest, state.velocity[0])
-            assert abs(state.velocity[2]) < 0.65, state.velocity
-        assert 0.18 < fastest < 0.21, fastest
-        # A speed profile is the speed of what follows, and a velocity ends a way.
-        client.demand(POSITION2D, 0, 9, struct.pack(">ff", 0.15, 0.5))
-        client.command(POSITION2D, 0, 2, pose_command(2.5, 0, 0))
-        assert moves(client, 0.14).velocity[0] < 0.16
-        client.command(POSITION2D, 0, 1, velocity(0, 0, 0.3))
-        client.read_until(POSITION2D, good=lambda p: abs(Position(p).velocity[2] - 0.3) < 0.01 and Position(p).velocity[0] < 0.01)
-        assert Position(client.read_until(POSITION2D)).velocity[0] < 0.01
-        # What is no command changes nothing.
-        for bad in (pose_command(math.nan, 0, 0), pose_command(0, 0, 0, math.inf), pose_command(1, 1, 1)[:-4], struct.pack(">3dI", 1e300, 0, 0, 1)):
-            client.command(POSITION2D, 0, 2, bad)
-        assert abs(Position(client.read_until(POSITION2D)).velocity[2] - 0.3) < 0.01
-        # Ends too: state 0, a new odometry, another client's command, one from elsewhere, a reset.
-        for end in (
-            lambda: client.command(POSITION2D, 0, 2, pose_command(0, 0, 0, state=0)),
-            lambda: client.demand(POSITION2D, 0, 5, struct.pack(">3d", 0, 0, 0)),
-            lambda: client.demand(POSITION2D, 0, 6),
-            lambda: other_command(rig),
-            lambda: rig.simctl("velocity", "first::position2d", "0", "0", "0", "--for", "0.1"),
-            lambda: rig.simctl("reset"),
-        ):
-            here = Position(client.read_until(POSITION2D)).pose
-            client.command(POSITION2D, 0, 2, pose_command(here[0] + 9 * math.cos(here[2]), here[1] + 9 * math.sin(here[2]), 0))
-            moves(client)
-            end()
-            stands(client)
-            rig.simctl("step", "300")
-            rig.simctl("run")
-            stands(client)
-        # Not reachable any more: the client lets go, and is gone.
-        for leave in (lambda one: one.unsubscribe(POSITION2D), lambda one: one.reset()):
-            second = Client(rig.ports[0])
-            second.subscribe(POSITION2D)
-            here = Position(second.read_until(POSITION2D)).pose
-            second.command(POSITION2D, 0, 2, pose_command(here[0] - 9, here[1], 0))
-            second.read_until(POSITION2D, good=lambda p: max(map(abs, Position(p).velocity)) > 0.1)
-            leave(second)
-            stands(client)
-            second.close()
-
-
-def other_command(rig):
-    other = Client(rig.ports[0])
-    other.subscribe(POSITION2D)
-    other.command(POSITION2D, 0, 1, velocity(0, 0, 0))
-    other.demand(POSITION2D, 0, 1)
-    other.close()
-
-
-# VEL_HEAD turns to the heading by the shorter way and keeps it while driving.
-def heading():
-    with started("--rtf", "3") as rig:
-        client = Client(rig.ports[0])
-        client.subscribe(POSITION2D)
-        client.demand(POSITION2D, 0, 5, struct.pack(">3d", 0, 0, 3.0))
-        client.command(POSITION2D, 0, 4, struct.pack(">dd", 0.2, -2.5))
-        first = Position(client.read_until(POSITION2D, good=lambda p: abs(Position(p).velocity[2]) > 0.3))
-        assert first.velocity[2] > 0, first.velocity
-        client.read_until(POSITION2D, good=lambda p: abs(Position(p).pose[2] + 2.5) < 0.01)
-        state = Position(client.read_until(POSITION2D, good=lambda p: abs(Position(p).velocity[2]) < 0.01))
-        assert abs(state.pose[2] + 2.5) < 0.02 and abs(state.velocity[0] - 0.2) < 0.01, (state.pose, state.velocity)
-        client.unsubscribe(POSITION2D)
-        watcher = Client(rig.ports[0])
-        watcher.subscribe(POSITION2D)
-        stands(watcher)
-
-
-def wheel(name, parent, x, y):
-    return f"""<link name='{name}'><pose>{x} {y} 0.2 -1.5708 0 0</pose><inertial><mass>3</mass><inertia><ixx>.04</ixx><iyy>.04</iyy><izz>.06</izz></inertia></inertial>
-<collision name='c'><geometry><cylinder><radius>0.2</radius><length>0.1</length></cylinder></geometry></collision></link>
-<joint name='{name}_joint' type='revolute'><parent>{parent}</parent><child>{name}</child><axis><xyz>0 0 1</xyz></axis></joint>"""
-
-
-def knuckle(side, y):
-    return f"""<link name='{side}_knuckle'><pose>1 {y} 0.2 0 0 0</pose><inertial><mass>1</mass><inertia><ixx>.01</ixx><iyy>.01</iyy><izz>.01</izz></inertia></inertial></link>
-<joint name='{side}_steering' type='revolute'><parent>body</parent><child>{side}_knuckle</child><axis><xyz>0 0 1</xyz><limit><lower>-0.8</lower><upper>0.8</upper></limit></axis></joint>"""
-
-
-car = f"""<sdf version="1.9"><world name="car"><include><uri>{source}/worlds/models/ground_plane</uri></include><model name="car">
-<link name='body'><pose>0.5 0 0.35 0 0 0</pose><inertial><mass>60</mass><inertia><ixx>4</ixx><iyy>8</iyy><izz>10</izz></inertia></inertial>
-<collision name='c'><geometry><box><size>1.4 0.5 0.2</size></box></geometry></collision></link>
-{knuckle("left", 0.4)}{knuckle("right", -0.4)}{wheel("front_left", "left_knuckle", 1, 0.4)}{wheel("front_right", "right_knuckle", 1, -0.4)}
-{wheel("rear_left", "body", 0, 0.4)}{wheel("rear_right", "body", 0, -0.4)}
-<plugin filename='libgazebo_ros_ackermann_drive.so' name='drive'><front_left_joint>front_left_joint</front_left_joint><front_right_joint>front_right_joint</front_right_joint>
-<rear_left_joint>rear_left_joint</rear_left_joint><rear_right_joint>rear_right_joint</rear_right_joint><left_steering_joint>left_steering</left_steering_joint>
-<right_steering_joint>right_steering</right_steering_joint><max_steer>0.6458</max_steer><max_speed>20</max_speed></plugin></model></world></sdf>"""
-
-
-# A car has no poses, but headings.
-def cars():
-    with Rig() as rig:
-        path = f"{rig.work}/car.sdf"
-        with open(path, "w") as file:
-            file.write(car)
-        rig.sim("--rtf", "3", world=path)
-        rig.gateway(robots=1)
-        client = Client(rig.ports[0])
-        client.subscribe(POSITION2D)
-        client.refused(POSITION2D, 0, 4, struct.pack(">I", 1))
-        client.demand(POSITION2D, 0, 4, struct.pack(">I", 0))
-        client.command(POSITION2D, 0, 1, velocity(0.5, 0, 0))
-        moves(client, 0.4)
-        client.command(POSITION2D, 0, 2, pose_command(-3, 0, 0))
-        start = Position(client.read_until(POSITION2D)).pose[0]
-        client.read_until(POSITION2D, good=lambda p: Position(p).pose[0] > start + 1)  # as if nothing had been said
-        assert Position(client.read_until(POSITION2D)).velocity[0] > 0.4
-        client.command(POSITION2D, 0, 4, struct.pack(">dd", 0.5, 1.2))
-        client.read_until(POSITION2D, good=lambda p: abs(Position(p).pose[2] - 1.2) < 0.02 and abs(Position(p).velocity[2]) < 0.02)
-        client.close()
-        watcher = Client(rig.ports[0])
-        watcher.subscribe(POSITION2D)
-        stands(watcher)
 
 
 # Capabilities, properties of drivers and what tunes a drive: each request is answered, and says what is true.
@@ -639,65 +421,6 @@ def rangers():
         client.refused(RANGER, 1, 3, struct.pack(">I", 1))
 
 
-flying = f"""<sdf version="1.9"><world name="sensors">
-  <spherical_coordinates><surface_model>EARTH_WGS84</surface_model><latitude_deg>36.06</latitude_deg><longitude_deg>140.13</longitude_deg><elevation>25</elevation></spherical_coordinates>
-  <include><uri>{source}/worlds/models/sun</uri></include>
-  <include><uri>{source}/worlds/models/ground_plane</uri></include>
-  <model name="flyer"><pose>0 0 2 0 0 0.5</pose><link name="l"><inertial><mass>3</mass><inertia><ixx>.03</ixx><iyy>.03</iyy><izz>.03</izz></inertia></inertial><gravity>false</gravity>
-    <sensor name="eye" type="camera"><update_rate>10</update_rate><camera><image><width>64</width><height>48</height></image></camera></sensor>
-    <sensor name="grey" type="camera"><update_rate>10</update_rate><camera><image><width>64</width><height>48</height><format>L8</format></image></camera></sensor></link>
-    <plugin name="gz::sim::systems::VelocityControl" filename="gz-sim-velocity-control-system"/></model>
-  <model name="faller"><pose>0 3 1 0 0 0.7</pose><link name="l"><inertial><mass>3</mass><inertia><ixx>.03</ixx><iyy>.03</iyy><izz>.03</izz></inertia></inertial>
-    <collision name="c"><geometry><box><size>.3 .3 .3</size></box></geometry></collision>
-    <sensor name="imu" type="imu"><update_rate>50</update_rate></sensor>
-    <sensor name="gps" type="navsat"><update_rate>20</update_rate></sensor>
-    <sensor name="bumper" type="contact"><update_rate>50</update_rate><contact><collision>c</collision></contact></sensor></link></model>
-</world></sdf>"""
-
-
-# CMD_POS in 3D: a pose of the odometry, and what ends the way to it.
-def flight():
-    with Rig() as rig:
-        path = f"{rig.work}/flying.sdf"
-        with open(path, "w") as file:
-            file.write(flying)
-        rig.sim("--rtf", "3", world=path)
-        rig.gateway()
-        client, watcher = Client(rig.ports[0]), Client(rig.ports[0])
-        for one in (client, watcher):
-            one.subscribe(POSITION3D)
-        client.demand(POSITION3D, 0, 4, struct.pack(">I", 1))
-
-        def state(payload):
-            return struct.unpack(">12dI", payload)
-
-        def fly(x, y, z, yaw, enabled=1):
-            client.command(POSITION3D, 0, 2, struct.pack(">12dI", x, y, z, 0, 0, yaw, *(6 * [0]), enabled))
-
-        def is_still(payload):
-            return max(map(abs, state(payload)[6:12])) < 0.01
-
-        def flies(payload):
-            return max(map(abs, state(payload)[6:9])) > 0.3
-
-        fly(1, -0.5, 0.7, 1)
-        there = (1, -0.5, 0.7, 0, 0, 1)
-        client.read_until(POSITION3D, good=lambda p: is_still(p) and all(abs(a - b) < 0.03 for a, b in zip(state(p), there)))
-        fly(math.nan, 0, 0, 0)
-        for end in (
-            lambda: fly(0, 0, 0, 0, 0),
-            lambda: client.demand(POSITION3D, 0, 6, struct.pack(">6d", 100, 0, 0, 0, 0, 0)),
-            lambda: client.demand(POSITION3D, 0, 5),
-            lambda: client.command(POSITION3D, 0, 1, struct.pack(">6dI", *(6 * [0]), 1)),
-            client.close,
-        ):
-            at = state(watcher.read_until(POSITION3D))
-            fly(at[0] + 30, at[1], at[2], 0)
-            watcher.read_until(POSITION3D, good=flies)
-            end()
-            watcher.read_until(POSITION3D, good=is_still)
-
-
 def sensors():
     with Rig() as rig:
         path = f"{rig.work}/flying.sdf"
@@ -972,4 +695,4 @@ def exhausted():
         await_("a new client", connects)
 
 
-{function.__name__: function for function in (listing, drive, position, heading, cars, properties, flow, rate, two_clients, gateway_ends, restart, hung, late_and_changing, simulation, rangers, flight, sensors, config, bad_input, stuck, exhausted)}[case]()
+run(listing, drive, properties, flow, rate, two_clients, gateway_ends, restart, hung, late_and_changing, simulation, rangers, sensors, config, bad_input, stuck, exhausted)
