@@ -15,8 +15,7 @@
 namespace gateway {
 namespace {
 
-constexpr std::size_t max_futexes = 128;  // that the kernel lets one thread sleep on
-constexpr std::size_t max_watched = (max_futexes - 1) / 2;
+constexpr std::size_t max_futexes = 128;            // that the kernel lets one thread sleep on
 constexpr std::chrono::milliseconds look_again{2};  // where it cannot sleep on all of them
 
 std::uint32_t wake_word(const shm::Segment& segment) { return shm::load(segment.header().wake_word, std::memory_order_seq_cst); }
@@ -70,10 +69,10 @@ void Alarm::run() {
       }
     }
     for (Watched& one : watched) {
-      shm::announce(one.segment->header().waiting);
       const std::uint32_t word = wake_word(*one.segment);
       is_news = is_news || word != one.seen;
       one.seen = word;
+      shm::announce(one.segment->header().waiting, word);
     }
     const std::uint64_t one = 1;
     if (is_news && ::write(descriptor_, &one, sizeof one) < 0 && errno != EAGAIN) return;
@@ -81,10 +80,7 @@ void Alarm::run() {
   }
 }
 
-// Until a word is no longer what it was, or for a moment. A writer that comes late with what the loop has been told of already takes the
-// announcement back before this thread sleeps, and nobody would ring for what comes next: so it sleeps only if the announcement still
-// stands. That must be looked at after the word, since the writer takes it back first and wakes the word then; the kernel goes in this
-// order.
+// Until a word is no longer what it was, or for a moment.
 void Alarm::sleep(const std::vector<Watched>& watched, std::uint32_t control) const {
   futex_waitv words[max_futexes] = {};
   unsigned count = 0;
@@ -95,11 +91,8 @@ void Alarm::sleep(const std::vector<Watched>& watched, std::uint32_t control) co
     ++count;
   };
   add(control_, control);
-  if (watched.size() <= max_watched) {
-    for (const Watched& one : watched) {
-      add(one.segment->header().wake_word, one.seen);
-      add(one.segment->header().waiting, 1);
-    }
+  if (watched.size() < max_futexes) {
+    for (const Watched& one : watched) add(one.segment->header().wake_word, one.seen);
     if (::syscall(SYS_futex_waitv, words, count, 0, nullptr, 0) >= 0 || errno == EAGAIN || errno == EINTR) return;
   }
   // More than the kernel takes, or a kernel (or its guard) that does not know the call.

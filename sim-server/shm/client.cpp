@@ -329,7 +329,7 @@ Wait Iface::wait(std::uint64_t than, std::chrono::nanoseconds timeout) {
     if (state.status(true) != Status::live) return Wait::closed;
     const auto left = deadline - std::chrono::steady_clock::now();
     if (left.count() <= 0) return Wait::timed_out;
-    announce(header.waiting);
+    announce(header.waiting, seen);
     if (load(header.wake_word, std::memory_order_seq_cst) != seen) continue;  // pairs with the store in announce_latest
     futex_wait(header.wake_word, seen, std::min<std::chrono::nanoseconds>(left, slice));
   }

@@ -34,13 +34,23 @@ void futex_wake_bits(const std::uint32_t& word, std::uint32_t bits) {
   syscall(SYS_futex, &word, FUTEX_WAKE_BITSET, INT_MAX, nullptr, nullptr, bits);
 }
 
-void announce(std::uint32_t& waiting) { store(waiting, 1U, std::memory_order_seq_cst); }  // pairs with the load in ring
+namespace {
+
+// Never 0. That two values 2^31 news apart look the same costs a system call, no more.
+std::uint32_t announcement_of(std::uint32_t seen) { return seen << 1 | 1U; }
+
+}  // namespace
+
+void announce(std::uint32_t& waiting, std::uint32_t seen) {
+  store(waiting, announcement_of(seen), std::memory_order_seq_cst);  // pairs with the load in ring
+}
 
 void ring(std::uint32_t& word, std::uint32_t& waiting) {
-  if (load(waiting, std::memory_order_seq_cst) == 0) return;  // pairs with announce
-  // A sleeper that announces itself between these two lines finds the word changed already, or is woken. One that has seen the change and
-  // is about to wait for the next loses its announcement: sleepers wait for a limited time, or look at `waiting` again after the word.
-  store(waiting, 0U, std::memory_order_seq_cst);
+  std::uint32_t stands = load(waiting, std::memory_order_seq_cst);  // pairs with announce
+  if (stands == 0) return;
+  // Taken back only if its sleeper has not seen what the word is now: such a one is woken below, or finds the word changed. One who has
+  // seen it waits for the next news already, and whoever brings them must find the announcement.
+  if (stands != announcement_of(load(word, std::memory_order_seq_cst))) shm::word(waiting).compare_exchange_strong(stands, 0U);
   futex_wake(word, INT_MAX);
 }
 

@@ -15,10 +15,11 @@ void futex_wake(const std::uint32_t& word, int count);
 void futex_wait_bits(const std::uint32_t& word, std::uint32_t expected, std::uint32_t bits, std::chrono::steady_clock::time_point deadline);
 void futex_wake_bits(const std::uint32_t& word, std::uint32_t bits);
 
-// Sleep and wake without a system call when nobody sleeps. The sleeper:
-//   announce(waiting); if (the news are not there yet) futex_wait(word, value seen before, ...)
-// the waker, after it stored the news: ring(word, waiting). The flag mends itself when a sleeper dies: the next ring clears it.
-void announce(std::uint32_t& waiting);                   // seq_cst store, pairs with the seq_cst load in ring
-void ring(std::uint32_t& word, std::uint32_t& waiting);  // the word must have changed before, with a seq_cst store
+// Sleep and wake without a system call when nobody sleeps. The sleeper, who has seen a value of the word:
+//   announce(waiting, seen); if (the word is still the same) futex_wait(word, seen, ...)
+// the waker, after it stored the news: ring(word, waiting). The announcement mends itself when a sleeper dies: the next ring but one takes
+// it back. It says what its sleeper has seen, so that a waker who comes late leaves it to those who will bring the next news.
+void announce(std::uint32_t& waiting, std::uint32_t seen);  // seq_cst store, pairs with the seq_cst load in ring
+void ring(std::uint32_t& word, std::uint32_t& waiting);     // the word must have changed before, with a seq_cst store
 
 }  // namespace shm

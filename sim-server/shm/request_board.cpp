@@ -205,7 +205,7 @@ bool RequestBoard::is_awaited(const RequestTicket& ticket) const {
 void RequestBoard::wait(std::chrono::steady_clock::time_point deadline) {
   Control& control = state_->control();
   if (load(control.attention) != state_->seen_attention) return;
-  announce(control.attention_waiting);
+  announce(control.attention_waiting, state_->seen_attention);
   if (load(control.attention, std::memory_order_seq_cst) != state_->seen_attention) return;
   futex_wait(control.attention, state_->seen_attention, deadline - std::chrono::steady_clock::now());
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <thread>
 
+#include "shm/futex.h"
 #include "shm/shm_support.h"
 #include "shm/words.h"
 
@@ -227,6 +228,20 @@ TEST(Iface, a_wait_ends_with_the_sample_or_the_time_out) {
     EXPECT_EQ(reader.laser_scan().ranges[0], static_cast<float>(last));
   }
   publisher.join();
+}
+
+// Who comes late has nothing to tell; those who will bring the next news must find that somebody waits for them.
+TEST(Bell, one_that_comes_late_leaves_the_announcement_of_who_has_seen_its_news) {
+  std::uint32_t word = 7, waiting = 0;
+  announce(waiting, 7);
+  ring(word, waiting);
+  EXPECT_NE(waiting, 0u) << "7 is what the sleeper has seen";
+  word = 8;
+  ring(word, waiting);
+  EXPECT_EQ(waiting, 0u) << "woken";
+  waiting = 1;  // as readers of other makes may announce themselves
+  ring(word, waiting);
+  EXPECT_EQ(waiting, 0u);
 }
 
 TEST(Iface, the_end_of_the_writer_wakes_a_waiting_reader_at_once) {
