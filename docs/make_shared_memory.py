@@ -57,7 +57,8 @@ counter-clockwise positive; quaternions are (w, x, y, z). Fields marked [atomic]
 
 - **Reading a sample.** Sample *n* lies in cell *n* mod `count` of the area `cells`: a lock word, then the sample. Read `sequence`, the lock, the sample (by atomic words), the lock again;
   the copy is whole when both locks are 2 n + 2. The writer never waits for readers.
-- **Waiting.** Set `waiting` to 1, look at `sequence` again, then sleep on `wake_word` (futex, shared). With nobody waiting the writer makes no system call.
+- **Waiting.** Read `wake_word`, set `waiting` to 2 wake_word + 1, look at `wake_word` again and sleep on it (futex, shared) if it is the same. With `waiting` 0 the writer makes no system call. A
+  writer that comes late with what you have seen wakes you for nothing, but leaves `waiting` as it is.
 - **Subscribing.** Take a lease: change `owner` from 0 to (pid << 32) + a number that no other lease of your process has, then write `pid_namespace`, `start_time` and last `flags` with
   `RTMSIM_LEASE_SUBSCRIBER`. Add 1 to `lease_epoch` of the header: without that the server does not look. A sensor works as long as one lease has the flag; leases of dead processes are taken
   back. To give a lease back store 0 in `owner` and add 1 to `lease_epoch`. Then add 1 to `attention` of the simulation iface and wake it if `attention_waiting` is set: a sensor that is

@@ -94,9 +94,8 @@ typedef struct {
   uint64_t sequence;    /* [atomic] sequence number of the latest sample or frame, 0 = none yet; sample n is in cell n % count */
   uint64_t latest_slot; /* [atomic] frames: (sequence << 8) | slot of the latest frame */
   uint32_t wake_word;   /* [atomic] futex: low half of sequence, and changed when the iface closes */
-  uint32_t waiting; /* [atomic] a reader sets (wake_word << 1) + 1 before it sleeps on wake_word; the writer wakes all, and sets 0 if that
-                       is of older news */
-  uint64_t dropped; /* [atomic] frames that found no free slot */
+  uint32_t waiting;     /* [atomic] 2 wake_word + 1 from a reader that is about to sleep; the writer wakes all and sets 0 if that is old */
+  uint64_t dropped;     /* [atomic] frames that found no free slot */
   uint8_t reserved1[416];
 } rtmsim_header;
 
@@ -497,8 +496,7 @@ typedef struct {
 
 typedef struct {
   uint32_t attention;         /* [atomic] futex: clients add 1 when they ask for something or join */
-  uint32_t attention_waiting; /* [atomic] the server sets (attention << 1) + 1 before it sleeps on attention; a client that finds it wakes
-                                 the server, and sets 0 if that is of an older attention */
+  uint32_t attention_waiting; /* [atomic] 2 attention + 1 before the server sleeps; who finds it wakes it, and sets 0 if that is old */
   uint32_t participant_epoch; /* [atomic] changes when a participant joins or leaves */
   uint32_t reserved0[13];
   int32_t pending;         /* [atomic] participants that have not finished the tick */
