@@ -27,6 +27,35 @@ struct Type {
   std::vector<Type> members{};  // of structures; the element of sequences and arrays; what an alias means
 };
 
+bool is_text(std::uint32_t kind) { return kind == CORBA::tk_string || kind == CORBA::tk_wstring; }
+
+bool has_parameters(std::uint32_t kind) {
+  return kind == CORBA::tk_objref || kind == CORBA::tk_struct || kind == CORBA::tk_enum || kind == CORBA::tk_alias ||
+         kind == CORBA::tk_sequence || kind == CORBA::tk_array;
+}
+
+bool is_basic(std::uint32_t kind) {
+  switch (kind) {
+    case CORBA::tk_short:
+    case CORBA::tk_long:
+    case CORBA::tk_ushort:
+    case CORBA::tk_ulong:
+    case CORBA::tk_float:
+    case CORBA::tk_double:
+    case CORBA::tk_boolean:
+    case CORBA::tk_char:
+    case CORBA::tk_octet:
+    case CORBA::tk_any:
+    case CORBA::tk_TypeCode:
+    case CORBA::tk_longlong:
+    case CORBA::tk_ulonglong:
+    case CORBA::tk_wchar:
+      return true;
+    default:
+      return false;  // also an indirection, which only types that hold themselves need
+  }
+}
+
 [[noreturn]] void refuse(cdrStream& stream) {
   OMNIORB_THROW(MARSHAL, _OMNI_NS(MARSHAL_InvalidTypeCodeKind), static_cast<CORBA::CompletionStatus>(stream.completion()));
 }
@@ -55,22 +84,12 @@ class Encapsulation {
   Type type(int depth) {
     if (depth > deepest_type) refuse(whole_);
     Type type{number()};
-    switch (type.kind) {
-      case CORBA::tk_string:
-      case CORBA::tk_wstring:
-        type.count = number();
-        break;
-      case CORBA::tk_objref:
-      case CORBA::tk_struct:
-      case CORBA::tk_enum:
-      case CORBA::tk_alias:
-      case CORBA::tk_sequence:
-      case CORBA::tk_array:
-        parameters(type, whole_, take(number()), depth);
-        break;
-      default:
-        if (!is_basic(type.kind)) refuse(whole_);
-    }
+    if (is_text(type.kind))
+      type.count = number();
+    else if (has_parameters(type.kind))
+      parameters(type, whole_, take(number()), depth);
+    else if (!is_basic(type.kind))
+      refuse(whole_);
     return type;
   }
 
@@ -106,28 +125,6 @@ class Encapsulation {
         break;
       default:
         break;
-    }
-  }
-
-  static bool is_basic(std::uint32_t kind) {
-    switch (kind) {
-      case CORBA::tk_short:
-      case CORBA::tk_long:
-      case CORBA::tk_ushort:
-      case CORBA::tk_ulong:
-      case CORBA::tk_float:
-      case CORBA::tk_double:
-      case CORBA::tk_boolean:
-      case CORBA::tk_char:
-      case CORBA::tk_octet:
-      case CORBA::tk_any:
-      case CORBA::tk_TypeCode:
-      case CORBA::tk_longlong:
-      case CORBA::tk_ulonglong:
-      case CORBA::tk_wchar:
-        return true;
-      default:
-        return false;  // also an indirection, which only types that hold themselves need
     }
   }
 
@@ -167,30 +164,17 @@ class CheckedCopy {
 
   Type type_code() {
     Type type{number()};
-    switch (type.kind) {
-      case CORBA::tk_null:
-      case CORBA::tk_void:
-        break;
-      case CORBA::tk_string:
-      case CORBA::tk_wstring:
-        type.count = number();
-        break;
-      case CORBA::tk_objref:
-      case CORBA::tk_struct:
-      case CORBA::tk_enum:
-      case CORBA::tk_alias:
-      case CORBA::tk_sequence:
-      case CORBA::tk_array: {
-        const std::uint32_t size = number();
-        if (size > longest_type_code) refuse(from_);
-        std::vector<CORBA::Octet> octets(size);
-        from_.get_octet_array(octets.data(), static_cast<int>(size));
-        to_.put_octet_array(octets.data(), static_cast<int>(size));
-        Encapsulation::parameters(type, from_, octets, 1);
-        break;
-      }
-      default:
-        if (!Encapsulation::is_basic(type.kind)) refuse(from_);
+    if (is_text(type.kind)) {
+      type.count = number();
+    } else if (has_parameters(type.kind)) {
+      const std::uint32_t size = number();
+      if (size > longest_type_code) refuse(from_);
+      std::vector<CORBA::Octet> octets(size);
+      from_.get_octet_array(octets.data(), static_cast<int>(size));
+      to_.put_octet_array(octets.data(), static_cast<int>(size));
+      Encapsulation::parameters(type, from_, octets, 1);
+    } else if (type.kind != CORBA::tk_null && type.kind != CORBA::tk_void && !is_basic(type.kind)) {
+      refuse(from_);
     }
     return type;
   }

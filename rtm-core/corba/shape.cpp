@@ -76,7 +76,6 @@ class Shape::Walk {
     if (!read(length)) return false;
     if (node.count && length > node.count) return wrong();
     const Node& element = node.members.front();
-    if (element.kind == Kind::number) return skip(element.size, length);
     return element.size ? skip(element.size, length * element.count) : pass_times(element, length);
   }
 
