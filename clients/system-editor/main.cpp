@@ -7,8 +7,8 @@
 #include "names_offered.h"
 #include "orb.h"
 #include "output.h"
-#include "run_system.h"
-#include "skeleton.h"
+#include "run/run_system.h"
+#include "skeleton/skeleton.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "rts_profile.h"
+#include "profile/rts_profile.h"
 
 #include <gtest/gtest.h>
 

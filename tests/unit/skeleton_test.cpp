@@ -1,4 +1,4 @@
-#include "skeleton.h"
+#include "skeleton/skeleton.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

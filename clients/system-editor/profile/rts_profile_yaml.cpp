@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "base/text.h"
-#include "rts_profile.h"
+#include "profile/rts_profile.h"
 
 namespace editor {
 namespace {

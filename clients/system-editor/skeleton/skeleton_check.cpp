@@ -6,9 +6,9 @@
 #include <set>
 
 #include "base/text.h"
-#include "idl_operations.h"
 #include "parameter_check.h"
-#include "skeleton.h"
+#include "skeleton/idl_operations.h"
+#include "skeleton/skeleton.h"
 #include "value_codec.h"
 
 namespace editor {

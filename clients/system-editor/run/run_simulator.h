@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "child_process.h"
-#include "run_files.h"
-#include "run_system.h"
+#include "run/child_process.h"
+#include "run/run_files.h"
+#include "run/run_system.h"
 
 namespace editor {
 

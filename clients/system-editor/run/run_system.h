@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "editor.h"
-#include "expectations.h"
-#include "rts_profile.h"
+#include "profile/rts_profile.h"
+#include "run/expectations.h"
 
 namespace editor {
 

@@ -1,4 +1,4 @@
-#include "run_simulator.h"
+#include "run/run_simulator.h"
 
 #include <unistd.h>
 

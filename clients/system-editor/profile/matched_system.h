@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "editor.h"
-#include "rts_profile.h"
+#include "profile/rts_profile.h"
 
 namespace editor {
 

@@ -9,7 +9,7 @@
 
 #include "base/text.h"
 #include "editor.h"
-#include "matched_system.h"
+#include "profile/matched_system.h"
 
 namespace editor {
 namespace {

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
-#include "matched_system.h"
+#include "profile/matched_system.h"
 
 namespace editor {
 namespace {

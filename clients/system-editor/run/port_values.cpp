@@ -1,4 +1,4 @@
-#include "port_values.h"
+#include "run/port_values.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,4 @@
-#include "run_files.h"
+#include "run/run_files.h"
 
 #include <signal.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "run_system.h"
+#include "run/run_system.h"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -14,11 +14,11 @@
 #include <thread>
 
 #include "base/text.h"
-#include "child_process.h"
-#include "interrupt.h"
-#include "port_values.h"
-#include "run_files.h"
-#include "run_simulator.h"
+#include "run/child_process.h"
+#include "run/interrupt.h"
+#include "run/port_values.h"
+#include "run/run_files.h"
+#include "run/run_simulator.h"
 
 namespace editor {
 namespace {

@@ -4,8 +4,8 @@
 #include <pugixml.hpp>
 
 #include "base/text.h"
-#include "run_files.h"
-#include "run_system.h"
+#include "run/run_files.h"
+#include "run/run_system.h"
 
 namespace editor {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "editor.h"
-#include "expectations.h"
+#include "run/expectations.h"
 #include "tap.h"
 
 namespace editor {

@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
-#include "child_process.h"
-#include "interrupt.h"
-#include "run_system.h"
+#include "run/child_process.h"
+#include "run/interrupt.h"
+#include "run/run_system.h"
 
 namespace editor {
 namespace {

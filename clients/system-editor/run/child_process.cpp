@@ -1,4 +1,4 @@
-#include "child_process.h"
+#include "run/child_process.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -16,7 +16,7 @@
 #include <utility>
 
 #include "base/text.h"
-#include "interrupt.h"
+#include "run/interrupt.h"
 
 namespace editor {
 namespace {

@@ -1,4 +1,4 @@
-#include "skeleton.h"
+#include "skeleton/skeleton.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -8,7 +8,7 @@
 #include <set>
 
 #include "base/text.h"
-#include "idl_operations.h"
+#include "skeleton/idl_operations.h"
 
 namespace editor {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "base/command_line.h"
 #include "base/text.h"
-#include "skeleton.h"
+#include "skeleton/skeleton.h"
 
 namespace editor {
 namespace {

@@ -1,4 +1,4 @@
-#include "idl_operations.h"
+#include "skeleton/idl_operations.h"
 
 #include <spawn.h>
 #include <sys/wait.h>

@@ -1,4 +1,4 @@
-#include "matched_system.h"
+#include "profile/matched_system.h"
 
 #include "base/text.h"
 
