@@ -1,4 +1,4 @@
-#include "skeleton/skeleton.h"
+#include "skeleton/specification.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
+#include "command.h"
+#include "commands/commands.h"
 #include "profile/matched_system.h"
 
 namespace editor {
@@ -89,8 +91,7 @@ void check_component(const Matched& matched, const SavedComponent& saved, const 
   }
 }
 
-}  // namespace
-
+// State: that of every component; "any": not compared; "saved": as the file says.
 void check_system(Editor& editor, const std::string& file, const std::string& state) {
   const auto system = read_system(file);
   if (!system) return editor.fail(system.error());
@@ -101,6 +102,19 @@ void check_system(Editor& editor, const std::string& file, const std::string& st
   for (const auto& connector : system->connectors) check_connection(*matched, connector, differences);
   for (const auto& component : system->components) check_component(*matched, component, state, differences);
   differences.tell(editor);
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Chosen& chosen) {
+  auto* check = app.add_subcommand("check", "Compare the running system with a saved one; a line per difference");
+  auto file = std::make_shared<std::string>();
+  auto state = std::make_shared<std::string>("any");
+  check->add_option("FILE", *file, "RTSProfile, XML or YAML")->required();
+  check->add_option("-s,--state", *state, "State that every component should be in; saved: each in its own")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"created", "inactive", "active", "error", "any", "saved"}, CLI::ignore_case));
+  check->callback([&chosen, file, state] { chosen.work = [=](Editor& e) { check_system(e, *file, *state); }; });
 }
 
 }  // namespace editor

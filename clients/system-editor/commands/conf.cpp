@@ -3,11 +3,22 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
-#include "editor.h"
+#include "command.h"
+#include "commands/commands.h"
+#include "commands/conf.h"
 #include "parameter_check.h"
 
 namespace editor {
 namespace {
+
+struct ConfigurationOptions {
+  std::string path;
+  std::string action = "list";  // list, get, set, use
+  std::vector<std::string> arguments;
+  std::string set;     // empty: the active one
+  bool all = false;    // hidden sets too
+  bool force = false;  // also what the component's own types and constraints forbid
+};
 
 const ConfigurationSetView* find_set(const ComponentView& component, const std::string& id) {
   for (const auto& set : component.configuration_sets) {
@@ -103,6 +114,8 @@ Result<void> use_set(const ComponentView& component, const std::string& id) {
   return called;
 }
 
+namespace {
+
 void configure(Editor& editor, const ConfigurationOptions& options) {
   auto component = editor.component(options.path, {.configuration = true});
   if (!component) return editor.fail(component.error());
@@ -150,6 +163,31 @@ void configure(Editor& editor, const ConfigurationOptions& options) {
   const auto active = component->active_set.empty() && options.set.empty() ? id : component->active_set;
   if (active.empty()) return;
   if (const auto used = use_set(*component, active); !used) editor.fail(used.error());
+}
+
+}  // namespace
+
+void add_conf(CLI::App& app, Chosen& chosen) {
+  auto* conf = app.add_subcommand("conf", "Show and change configuration sets: conf PATH [list | get NAME | set NAME VALUE | use SET]");
+  auto options = std::make_shared<ConfigurationOptions>();
+  conf->add_option("PATH", options->path, "Component")->required();
+  conf->add_option("ACTION", options->action, "list, get, set or use")->check(CLI::IsMember({"list", "get", "set", "use", "act"}));
+  conf->add_option("ARGUMENT", options->arguments, "Parameter, value or set");
+  conf->add_option("-s,--set", options->set, "The set to read or change; default: the active one");
+  conf->add_flag("-a,--all", options->all, "Hidden sets too");
+  conf->add_flag("--force", options->force, "Set also what the component's own types and constraints forbid");
+  conf->callback([&chosen, options] {
+    for (auto& argument : options->arguments) {
+      if (argument.starts_with(" [")) argument.erase(0, 1);  // see words_of
+    }
+    const auto& action = options->action;
+    const auto count = options->arguments.size();
+    require(action != "list" || count == 0, "conf list", "expected nothing more");
+    require(action != "get" || count == 1, "conf get", "expected one parameter");
+    require(action != "set" || count == 2, "conf set", "expected a parameter and a value");
+    require((action != "use" && action != "act") || count == 1, "conf " + action, "expected one configuration set");
+    chosen.work = [options](Editor& e) { configure(e, *options); };
+  });
 }
 
 }  // namespace editor

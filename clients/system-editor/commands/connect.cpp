@@ -4,7 +4,9 @@
 #include <set>
 
 #include "base/text.h"
-#include "editor.h"
+#include "command.h"
+#include "commands/commands.h"
+#include "commands/connect.h"
 
 namespace editor {
 namespace {
@@ -153,6 +155,16 @@ Result<void> disconnect_connector(const PortView& port, const std::string& id) {
   return check(what, code);
 }
 
+namespace {
+
+struct ConnectOptions {
+  std::vector<std::string> ports;
+  std::string id;
+  std::string name;
+  std::vector<std::string> properties;  // key=value
+  bool no_duplicates = false;
+};
+
 void connect(Editor& editor, const ConnectOptions& options) {
   std::vector<Editor::Port> found;
   for (const auto& path : options.ports) {
@@ -167,8 +179,6 @@ void connect(Editor& editor, const ConnectOptions& options) {
   if (!properties) return editor.fail(properties.error());
   if (const auto done = connect_ports(ports, options.id, options.name, *properties); !done) editor.fail(done.error());
 }
-
-namespace {
 
 void disconnect_by_id(Editor& editor, const std::string& id) {
   const auto names = editor.tree();
@@ -223,13 +233,34 @@ void disconnect_all(Editor& editor, const std::string& path) {
   }
 }
 
-}  // namespace
-
 void disconnect(Editor& editor, const std::vector<std::string>& paths, const std::string& id) {
   if (!id.empty()) return disconnect_by_id(editor, id);
   if (paths.size() == 2) return disconnect_pair(editor, paths[0], paths[1]);
   if (paths.size() == 1) return disconnect_all(editor, paths[0]);
   editor.fail({"dis: expected one component or port, two ports, or -i ID"});
+}
+
+}  // namespace
+
+void add_connect(CLI::App& app, Chosen& chosen) {
+  auto* con = app.add_subcommand("con", "Connect ports");
+  auto options = std::make_shared<ConnectOptions>();
+  con->add_option("PORT", options->ports, "COMPONENT:PORT, two or more")->required()->expected(2, 64);
+  con->add_option("-i,--id", options->id, "Connector id; default: a new one");
+  con->add_option("-n,--name", options->name, "Name of the connection");
+  con->add_option("-p,--property", options->properties, "KEY=VALUE, e.g. subscription_type=new")->allow_extra_args(false);
+  con->add_flag("-d,--no-duplicates", options->no_duplicates, "Do nothing when they are connected already");
+  con->callback([&chosen, options] { chosen.work = [options](Editor& e) { connect(e, *options); }; });
+
+  auto* dis = app.add_subcommand("dis", "Disconnect: two ports, all of a port or component, or one by id");
+  auto paths = std::make_shared<std::vector<std::string>>();
+  auto id = std::make_shared<std::string>();
+  dis->add_option("PATH", *paths, "Ports or a component")->expected(0, 2);
+  dis->add_option("-i,--id", *id, "Connector id");
+  dis->callback([&chosen, paths, id] {
+    require(!paths->empty() || !id->empty(), "dis", "expected one component or port, two ports, or -i ID");
+    chosen.work = [=](Editor& e) { disconnect(e, *paths, *id); };
+  });
 }
 
 }  // namespace editor

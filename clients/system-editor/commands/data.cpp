@@ -9,8 +9,10 @@
 #include <thread>
 
 #include "base/clock.h"
+#include "base/command_line.h"
 #include "base/text.h"
-#include "editor.h"
+#include "command.h"
+#include "commands/commands.h"
 #include "output.h"
 #include "tap.h"
 #include "typed_value.h"
@@ -48,7 +50,12 @@ std::string as_text(const Json& value) {
   return std::string(stamp) + " " + (++value.begin()).value().dump();
 }
 
-}  // namespace
+struct PrintOptions {
+  std::vector<std::string> ports;
+  int count = 0;         // 0: until stopped
+  double timeout_s = 0;  // 0: none
+  double rate = 0;       // at most so many lines a second; 0: all
+};
 
 void print_ports(Editor& editor, const PrintOptions& options) {
   Queue queue;
@@ -120,6 +127,13 @@ void print_ports(Editor& editor, const PrintOptions& options) {
   }
 }
 
+struct InjectOptions {
+  std::string port;
+  std::vector<std::string> values;
+  double rate = 1;  // of repeated values [Hz]
+  int count = 1;    // how often the values are sent
+};
+
 void inject(Editor& editor, const InjectOptions& options) {
   auto port = editor.port(options.port);
   if (!port) return editor.fail(port.error());
@@ -153,6 +167,28 @@ void inject(Editor& editor, const InjectOptions& options) {
       if (!sent) return editor.fail({"port " + port->port.full_name + ": " + sent.error().message});
     }
   }
+}
+
+}  // namespace
+
+void add_data(CLI::App& app, Chosen& chosen) {
+  auto* print = app.add_subcommand("print", "Print what OutPorts send");
+  auto options = std::make_shared<PrintOptions>();
+  print->add_option("PORT", options->ports, "OutPorts")->required();
+  print->add_option("-n,--count", options->count, "End after so many samples")->check(base::number_between(0, 1e9));
+  print->add_option("-t,--timeout", options->timeout_s, "End after so many seconds")->check(base::number_between(0.0, 1e9));
+  print->add_option("-r,--rate", options->rate, "At most so many samples a second")->check(base::number_between(0.0, 1e6));
+  print->callback([&chosen, options] { chosen.work = [options](Editor& e) { editor::print_ports(e, *options); }; });
+
+  auto* inject = app.add_subcommand("inject", "Write values to an InPort");
+  auto values = std::make_shared<InjectOptions>();
+  inject->add_option("PORT", values->port, "InPort")->required();
+  inject->add_option("VALUE", values->values, "JSON, or RTC.TimedLong({time}, 42)")->required();
+  inject->add_option("-n,--count", values->count, "How often; 0: until stopped")
+      ->check(base::number_between(0, 1e9))
+      ->capture_default_str();
+  inject->add_option("-r,--rate", values->rate, "How often a second")->check(base::number_between(1e-3, 1e5))->capture_default_str();
+  inject->callback([&chosen, values] { chosen.work = [values](Editor& e) { editor::inject(e, *values); }; });
 }
 
 }  // namespace editor

@@ -5,10 +5,17 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
-#include "editor.h"
+#include "command.h"
+#include "commands/commands.h"
 
 namespace editor {
 namespace {
+
+struct ListOptions {
+  std::string path;
+  bool is_long = false;
+  bool recurse = false;
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -260,8 +267,6 @@ void cat_manager(Editor& editor, const Entry& entry) {
   for (const auto& [key, value] : properties) std::cout << "  " << key << " = " << value << '\n';
 }
 
-}  // namespace
-
 void list(Editor& editor, const ListOptions& options) {
   const auto address = parse_address(options.path, working_path());
   if (!address) return editor.fail(address.error());
@@ -318,6 +323,29 @@ void cat(Editor& editor, const std::string& path, bool is_long) {
   if (!port) return editor.fail({"component " + component.path + ": has no port " + base::in_quotes(address->port)});
   if (editor.json()) return editor.print(to_json(*port, all));
   print_port(*port, all, is_long);
+}
+
+}  // namespace
+
+void add_list(CLI::App& app, Chosen& chosen) {
+  auto* ls = app.add_subcommand("ls", "List components, managers and contexts");
+  auto list = std::make_shared<ListOptions>();
+  ls->add_option("PATH", list->path, "Where to look; default: the whole name server");
+  ls->add_flag("-l,--long", list->is_long, "With state, rate and ports (all/connected)");
+  ls->add_flag("-R,--recurse", list->recurse, "Contexts inside contexts too");
+  ls->callback([&chosen, list] { chosen.work = [list](Editor& e) { editor::list(e, *list); }; });
+
+  auto* tree = app.add_subcommand("tree", "Show the name server as a tree, with states and ports");
+  auto tree_path = std::make_shared<std::string>();
+  tree->add_option("PATH", *tree_path, "Where to start");
+  tree->callback([&chosen, tree_path] { chosen.work = [tree_path](Editor& e) { editor::tree(e, *tree_path); }; });
+
+  auto* cat = app.add_subcommand("cat", "Show all of a component, port or manager");
+  auto cat_path = std::make_shared<std::string>();
+  auto cat_long = std::make_shared<bool>(false);
+  cat->add_option("PATH", *cat_path, "COMPONENT, COMPONENT:PORT or MANAGER")->required();
+  cat->add_flag("-l,--long", *cat_long, "With all properties");
+  cat->callback([&chosen, cat_path, cat_long] { chosen.work = [cat_path, cat_long](Editor& e) { editor::cat(e, *cat_path, *cat_long); }; });
 }
 
 }  // namespace editor

@@ -5,10 +5,17 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
-#include "editor.h"
+#include "command.h"
+#include "commands/commands.h"
 
 namespace editor {
 namespace {
+
+struct ManagerOptions {
+  std::string manager;  // path or corbaloc:: address; empty: the only manager of the name server
+  std::string action;   // create, delete, load, unload, list
+  std::vector<std::string> arguments;
+};
 
 constexpr std::chrono::seconds create_limit{20};
 
@@ -103,8 +110,6 @@ void list_manager(Editor& editor, RTM::Manager_ptr manager) {
   for (const auto& factory : json["factories"]) std::cout << "factory   " << factory.value("implementation_id", "?") << '\n';
 }
 
-}  // namespace
-
 void manage(Editor& editor, const ManagerOptions& options) {
   const auto object = manager_object(editor, options.manager);
   if (!object) return editor.fail(object.error());
@@ -148,6 +153,30 @@ void manage(Editor& editor, const ManagerOptions& options) {
     const auto done = check(options.action + " " + argument, code, meaning);
     if (!done) editor.fail(done.error());
   }
+}
+
+}  // namespace
+
+void add_manager(CLI::App& app, Chosen& chosen) {
+  auto* mgr = app.add_subcommand(
+      "mgr", "Talk to a manager: mgr list | create TYPE[?key=value&...] | delete INSTANCE | load FILE [INIT] | unload FILE");
+  auto options = std::make_shared<ManagerOptions>();
+  mgr->add_option("ACTION", options->action, "list, create, delete, load, unload")
+      ->required()
+      ->check(CLI::IsMember({"list", "create", "delete", "load", "unload"}));
+  mgr->add_option("ARGUMENT", options->arguments, "Types, instances or files");
+  mgr->add_option("-m,--manager", options->manager, "Path or corbaloc::HOST[:PORT][/ID]; default: the only one of the name server");
+  mgr->callback([&chosen, options] {
+    require(options->action != "list" || options->arguments.empty(), "mgr list", "expected nothing more");
+    require(options->action == "list" || !options->arguments.empty(), "mgr " + options->action, "expected a name");
+    for (const auto& argument : options->action == "create" ? options->arguments : std::vector<std::string>()) {
+      const auto question = std::min(argument.find('?'), argument.size());
+      for (const auto& option : base::split_list(argument.substr(question == argument.size() ? question : question + 1), '&'))
+        require(option.empty() || option.find('=') != std::string::npos, "mgr create",
+                "expected KEY=VALUE after the '?', got \"" + option + "\"");
+    }
+    chosen.work = [options](Editor& e) { manage(e, *options); };
+  });
 }
 
 }  // namespace editor

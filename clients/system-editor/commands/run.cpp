@@ -8,7 +8,10 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
+#include "base/command_line.h"
 #include "base/text.h"
+#include "command.h"
+#include "commands/commands.h"
 #include "run/child_process.h"
 #include "run/interrupt.h"
 #include "run/run_system.h"
@@ -201,8 +204,7 @@ std::vector<RunResult> run_seeds(Editor& editor, const RunOptions& options, cons
   return results;
 }
 
-}  // namespace
-
+// "3", "1..20".
 Result<std::vector<std::uint64_t>> parse_seeds(const std::string& text) {
   const auto dots = text.find("..");
   const auto first = base::parse_integer(text.substr(0, dots));
@@ -214,18 +216,8 @@ Result<std::vector<std::uint64_t>> parse_seeds(const std::string& text) {
   return seeds;
 }
 
-Result<ComponentProperty> parse_property(const std::string& text) {
-  const auto colon = text.find(':');
-  const auto equals = text.find('=', colon == std::string::npos ? 0 : colon);
-  if (colon == 0 || colon == std::string::npos || equals == std::string::npos || equals == colon + 1 || text.find('&') != std::string::npos)
-    return Error{"property " + base::in_quotes(text) + ": expected INSTANCE:KEY=VALUE"};
-  const auto value = text.substr(equals + 1);
-  const auto phase = base::parse_integer(value);
-  if (text.substr(colon + 1, equals - colon - 1) == "exec_cxt.sim_time.phase" && (!phase || *phase < 0 || *phase > 15))
-    return Error{"property " + base::in_quotes(text) + ": a phase must be a number from 0 to 15"};
-  return ComponentProperty{text.substr(0, colon), text.substr(colon + 1, equals - colon - 1), text.substr(equals + 1)};
-}
-
+// Prints one line per run and one per unmet expectation. Without `seeds_text` one run with the seed of the options, else one for each,
+// `jobs` of them at a time.
 void run(Editor& editor, const RunOptions& options, const std::optional<std::string>& seeds_text, int jobs) {
   if (const auto good = check_files(options); !good) return editor.fail(good.error());
   catch_interrupts();
@@ -244,6 +236,45 @@ void run(Editor& editor, const RunOptions& options, const std::optional<std::str
     editor.fail({"standard output: cannot be written"});
   if (options.junit.empty()) return;
   if (const auto written = write_junit(options.junit, options, results); !written) editor.fail(written.error());
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Chosen& chosen) {
+  auto* run = app.add_subcommand("run", "Run a saved system against a simulated world in lock step, and judge it");
+  auto options = std::make_shared<RunOptions>();
+  auto seeds = std::make_shared<std::optional<std::string>>();
+  auto jobs = std::make_shared<int>(1);
+  run->add_option("SYSTEM", options->system, "RTSProfile, XML or YAML")->required()->check(CLI::ExistingFile);
+  run->add_option("-w,--world", options->world, "SDFormat world")->required()->check(CLI::ExistingFile);
+  run->add_option("-d,--duration", options->duration_s, "Simulated seconds")
+      ->check(base::number_between(0.001, 1e7))
+      ->capture_default_str();
+  run->add_option("-x,--expect", options->expectations, "Expectations, YAML")->check(CLI::ExistingFile);
+  auto* seed =
+      run->add_option("--seed", options->seed, "Seed of the world's noise")->capture_default_str()->check(base::number_between(0, 1e18));
+  run->add_option("--seeds", *seeds, "A run for each seed FIRST..LAST")->excludes(seed)->check([](const std::string& text) {
+    const auto parsed = parse_seeds(text);
+    return parsed ? std::string() : parsed.error().message;
+  });
+  run->add_option("-j,--jobs", *jobs, "So many seeds at a time")->check(CLI::Range(1, 64))->capture_default_str();
+  run->add_flag("--one-process-each", options->one_process_each, "A process for every component instead of one for all");
+  run->add_flag("--realtime", options->in_real_time, "No faster than real time");
+  run->add_option("--module-path", options->module_paths, "Folder with modules of components")->allow_extra_args(false);
+  run->add_option("--resource-path", options->resource_paths, "Folder with models")->allow_extra_args(false);
+  run->add_option("--property", options->properties, "INSTANCE:KEY=VALUE, a property that a component is created with")
+      ->allow_extra_args(false)
+      ->check([](const std::string& text) {
+        const auto parsed = parse_property(text);
+        return parsed ? std::string() : parsed.error().message;
+      });
+  run->add_option("--hang-timeout", options->hang_timeout_s, "Seconds of real time that one tick may take")
+      ->check(base::number_between(0.1, 1e6))
+      ->capture_default_str();
+  run->add_option("--junit", options->junit, "Write the verdicts as JUnit XML");
+  run->add_option("--picture", options->picture, "Write the world at the end as PNG");
+  run->add_option("--keep", options->keep, "Keep logs and the record in this folder");
+  run->callback([&chosen, options, seeds, jobs] { chosen.work = [=](Editor& e) { editor::run(e, *options, *seeds, *jobs); }; });
 }
 
 }  // namespace editor

@@ -4,8 +4,11 @@
 #include <iostream>
 #include <thread>
 
+#include "base/command_line.h"
 #include "base/text.h"
-#include "editor.h"
+#include "command.h"
+#include "commands/commands.h"
+#include "commands/state.h"
 
 namespace editor {
 namespace {
@@ -86,6 +89,8 @@ Result<void> change_state(const ComponentView& component, Transition transition,
   return check(what, code, "it is " + state_text(now) + " now, its log says why");
 }
 
+namespace {
+
 void change_state(Editor& editor, const std::vector<std::string>& paths, Transition transition, int context) {
   for (const auto& path : paths) {
     const auto component = editor.component(path, {.contexts = true});
@@ -112,8 +117,6 @@ void exit_components(Editor& editor, const std::vector<std::string>& paths) {
   }
 }
 
-namespace {
-
 // Something under it that answers, or hangs.
 bool holds_living(const Entry& entry) {
   if (entry.kind != EntryKind::context) return entry.health != Health::zombie;
@@ -127,8 +130,6 @@ void delete_binding(Editor& editor, const Entry& entry, bool force) {
   if (const auto gone = unbind(editor.orb(), entry); !gone) return editor.fail(gone.error());
   std::cout << "deleted " << entry.path() << (lives ? "  (it lives; its process may register it again)" : "") << '\n';
 }
-
-}  // namespace
 
 void delete_bindings(Editor& editor, const std::vector<std::string>& paths, bool zombies, bool force) {
   const auto names = editor.tree(paths.empty() ? "" : paths.front());
@@ -153,8 +154,6 @@ void delete_bindings(Editor& editor, const std::vector<std::string>& paths, bool
   }
 }
 
-namespace {
-
 // No name, or only such whose object is gone. A component that does not answer is not gone, and behind a name server that does not, nobody
 // knows.
 bool is_gone(const Editor& editor, const std::string& path) {
@@ -165,8 +164,6 @@ bool is_gone(const Editor& editor, const std::string& path) {
   const auto meant = names->candidates(*address);
   return meant && std::ranges::all_of(*meant, [](const Entry* entry) { return entry->health == Health::zombie; });
 }
-
-}  // namespace
 
 void wait_for_state(Editor& editor, const std::vector<std::string>& paths, const std::string& state, double timeout_s) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_s);
@@ -185,6 +182,53 @@ void wait_for_state(Editor& editor, const std::vector<std::string>& paths, const
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
   }
+}
+
+}  // namespace
+
+void add_state(CLI::App& app, Chosen& chosen) {
+  const auto add = [&](const char* name, const char* help, Transition transition) {
+    auto* command = app.add_subcommand(name, help);
+    auto paths = std::make_shared<std::vector<std::string>>();
+    auto context = std::make_shared<int>(-1);
+    command->add_option("PATH", *paths, "Components")->required();
+    command->add_option("-e,--context", *context, "Index of the execution context; default: the first")
+        ->check(base::number_between(0, 1000));
+    command->callback(
+        [&chosen, paths, context, transition] { chosen.work = [=](Editor& e) { change_state(e, *paths, transition, *context); }; });
+  };
+  add("act", "Activate components", Transition::activate);
+  add("deact", "Deactivate components", Transition::deactivate);
+  add("reset", "Reset components that are in the error state", Transition::reset);
+
+  auto* exit = app.add_subcommand("exit", "End components");
+  auto exit_paths = std::make_shared<std::vector<std::string>>();
+  exit->add_option("PATH", *exit_paths, "Components")->required();
+  exit->callback([&chosen, exit_paths] { chosen.work = [exit_paths](Editor& e) { exit_components(e, *exit_paths); }; });
+
+  auto* del = app.add_subcommand("del", "Delete names from the name server; what they name need not answer");
+  auto del_paths = std::make_shared<std::vector<std::string>>();
+  auto zombies = std::make_shared<bool>(false);
+  del->add_option("PATH", *del_paths, "Names");
+  del->add_flag("-z,--zombies", *zombies, "All names whose object is gone");
+  auto force = std::make_shared<bool>(false);
+  del->add_flag("--force", *force, "Contexts that hold living objects too");
+  del->callback([&chosen, del_paths, zombies, force] {
+    require(!del_paths->empty() || *zombies, "del", "expected names, or -z for all whose object is gone");
+    chosen.work = [=](Editor& e) { delete_bindings(e, *del_paths, *zombies, *force); };
+  });
+
+  auto* wait = app.add_subcommand("wait", "Wait until components are in a state");
+  auto wait_paths = std::make_shared<std::vector<std::string>>();
+  auto state = std::make_shared<std::string>("Active");
+  auto timeout = std::make_shared<double>(10);
+  wait->add_option("PATH", *wait_paths, "Components")->required();
+  wait->add_option("--state", *state, "Inactive, Active, Error, any (is there), gone")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"created", "inactive", "active", "error", "any", "gone"}, CLI::ignore_case));
+  wait->add_option("--timeout", *timeout, "Seconds")->capture_default_str()->check(base::number_between(0.0, 1e6));
+  wait->callback(
+      [&chosen, wait_paths, state, timeout] { chosen.work = [=](Editor& e) { wait_for_state(e, *wait_paths, *state, *timeout); }; });
 }
 
 }  // namespace editor

@@ -8,7 +8,12 @@
 #include <set>
 
 #include "base/text.h"
-#include "editor.h"
+#include "command.h"
+#include "commands/commands.h"
+#include "commands/conf.h"
+#include "commands/connect.h"
+#include "commands/state.h"
+#include "commands/system.h"
 #include "profile/matched_system.h"
 
 namespace editor {
@@ -302,7 +307,14 @@ void move_all(Editor& editor, const std::string& file, bool dry_run, Transition 
   }
 }
 
-}  // namespace
+struct SaveOptions {
+  std::string file = "-";
+  std::string name = "RTSystem";
+  std::string vendor = "Me";
+  std::string version = "0";
+  std::string abstract;
+  bool yaml = false;
+};
 
 void save(Editor& editor, const SaveOptions& options) {
   const auto names = editor.tree();
@@ -328,27 +340,6 @@ void save(Editor& editor, const SaveOptions& options) {
   if (const auto written = write_system(system, options.file); !written) editor.fail(written.error());
 }
 
-void load(Editor& editor, const LoadOptions& options) {
-  const auto system = read_system(options.file);
-  if (!system) return editor.fail(system.error());
-  const auto matched = Matched::read(editor, *system, {.contexts = options.with_states, .connectors = true, .configuration = true});
-  if (!matched) return editor.fail(matched.error());
-  for (const auto& missing : matched->missing()) editor.fail(missing);
-  if (!matched->missing().empty()) return;
-  for_all(editor, system->connectors, [&](const SavedConnector& saved) -> Result<void> {
-    const auto optional = [&](const SavedTarget& target) {
-      const auto* component = system->component(target.instance);
-      return component && !component->is_required && !matched->find(target.path_uri, target.instance);
-    };
-    if (optional(saved.source) || optional(saved.target)) return {};
-    return restore_connection(*matched, saved, options.dry_run);
-  });
-  for_all(editor, system->components, [&](const SavedComponent& saved) { return restore_configuration(*matched, saved, options); });
-  if (!options.with_states || editor.failed()) return;
-  for_all(editor, system->components, [&](const SavedComponent& saved) { return restore_states(*matched, saved, options.dry_run); });
-}
-
-void start(Editor& editor, const std::string& file, bool dry_run) { move_all(editor, file, dry_run, Transition::activate); }
 void stop(Editor& editor, const std::string& file, bool dry_run) { move_all(editor, file, dry_run, Transition::deactivate); }
 
 void teardown(Editor& editor, const std::string& file, bool dry_run) {
@@ -371,6 +362,61 @@ void teardown(Editor& editor, const std::string& file, bool dry_run) {
     std::cout << "disconnect " + saved.id + " of " + port->full_name + "\n";
     return {};
   });
+}
+
+}  // namespace
+
+void load(Editor& editor, const LoadOptions& options) {
+  const auto system = read_system(options.file);
+  if (!system) return editor.fail(system.error());
+  const auto matched = Matched::read(editor, *system, {.contexts = options.with_states, .connectors = true, .configuration = true});
+  if (!matched) return editor.fail(matched.error());
+  for (const auto& missing : matched->missing()) editor.fail(missing);
+  if (!matched->missing().empty()) return;
+  for_all(editor, system->connectors, [&](const SavedConnector& saved) -> Result<void> {
+    const auto optional = [&](const SavedTarget& target) {
+      const auto* component = system->component(target.instance);
+      return component && !component->is_required && !matched->find(target.path_uri, target.instance);
+    };
+    if (optional(saved.source) || optional(saved.target)) return {};
+    return restore_connection(*matched, saved, options.dry_run);
+  });
+  for_all(editor, system->components, [&](const SavedComponent& saved) { return restore_configuration(*matched, saved, options); });
+  if (!options.with_states || editor.failed()) return;
+  for_all(editor, system->components, [&](const SavedComponent& saved) { return restore_states(*matched, saved, options.dry_run); });
+}
+
+void start(Editor& editor, const std::string& file, bool dry_run) { move_all(editor, file, dry_run, Transition::activate); }
+
+void add_system(CLI::App& app, Chosen& chosen) {
+  auto* save = app.add_subcommand("save", "Save the running system as RTSProfile (XML; YAML by the file's ending)");
+  auto options = std::make_shared<SaveOptions>();
+  save->add_option("FILE", options->file, "Where to; default: standard output");
+  save->add_option("-n,--name", options->name, "System name")->capture_default_str();
+  save->add_option("-e,--vendor", options->vendor, "Vendor")->capture_default_str();
+  save->add_option("-v,--version", options->version, "Version of the system")->capture_default_str();
+  save->add_option("-a,--abstract", options->abstract, "What it is");
+  save->add_flag("-y,--yaml", options->yaml, "YAML on standard output");
+  save->callback([&chosen, options] { chosen.work = [options](Editor& e) { editor::save(e, *options); }; });
+
+  const auto add = [&](const char* name, const char* help, void (*function)(Editor&, const std::string&, bool)) {
+    auto* command = app.add_subcommand(name, help);
+    auto file = std::make_shared<std::string>();
+    auto dry_run = std::make_shared<bool>(false);
+    command->add_option("FILE", *file, "RTSProfile, XML or YAML; -: standard input")->required();
+    command->add_flag("--dry-run", *dry_run, "Say what would be done");
+    command->callback([&chosen, file, dry_run, function] { chosen.work = [=](Editor& e) { function(e, *file, *dry_run); }; });
+  };
+  auto* load = app.add_subcommand("load", "Restore connections and configuration of a saved system");
+  auto load_options = std::make_shared<LoadOptions>();
+  load->add_option("FILE", load_options->file, "RTSProfile, XML or YAML; -: standard input")->required();
+  load->add_flag("--dry-run", load_options->dry_run, "Say what would be done");
+  load->add_flag("--states", load_options->with_states, "The components' states too: activate, deactivate and reset as saved");
+  load->add_flag("--force", load_options->force, "Set also values that the components' own types and constraints forbid");
+  load->callback([&chosen, load_options] { chosen.work = [load_options](Editor& e) { editor::load(e, *load_options); }; });
+  add("start", "Activate the components of a saved system", start);
+  add("stop", "Deactivate the components of a saved system", stop);
+  add("teardown", "Remove the connections of a saved system", teardown);
 }
 
 }  // namespace editor

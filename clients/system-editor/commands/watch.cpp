@@ -9,7 +9,8 @@
 #include <utility>
 
 #include "base/text.h"
-#include "editor.h"
+#include "command.h"
+#include "commands/commands.h"
 
 namespace editor {
 namespace {
@@ -132,8 +133,6 @@ void draw_component(Page& page, const ComponentView& component, const std::vecto
   }
 }
 
-}  // namespace
-
 void watch(Editor& editor, const std::string& path) {
   if (!isatty(1)) return editor.fail({"watch: standard output is no terminal; use: rtse ls -l"});
   const Screen screen;
@@ -159,6 +158,15 @@ void watch(Editor& editor, const std::string& path) {
     if (key == KEY_DOWN || key == KEY_NPAGE) first = std::min(first, std::max(0, before + page.rest() - 1));  // the last line stays
     if (key == KEY_PPAGE) first = std::max(0, first - LINES + 2);
   }
+}
+
+}  // namespace
+
+void add_watch(CLI::App& app, Chosen& chosen) {
+  auto* watch = app.add_subcommand("watch", "Full-screen view of components, states, ports and connections");
+  auto watch_path = std::make_shared<std::string>();
+  watch->add_option("PATH", *watch_path, "A name server, as /HOST:PORT");
+  watch->callback([&chosen, watch_path] { chosen.work = [watch_path](Editor& e) { editor::watch(e, *watch_path); }; });
 }
 
 }  // namespace editor

@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "base/text.h"
+#include "commands/system.h"
 #include "run/child_process.h"
 #include "run/interrupt.h"
 #include "run/port_values.h"
@@ -427,6 +428,18 @@ RunResult run_system(CORBA::ORB_ptr orb, const RunOptions& options) {
     result.problem = "folder " + base::in_quotes(path.string()) + ": " + error.code().message();
     return result;
   }
+}
+
+Result<ComponentProperty> parse_property(const std::string& text) {
+  const auto colon = text.find(':');
+  const auto equals = text.find('=', colon == std::string::npos ? 0 : colon);
+  if (colon == 0 || colon == std::string::npos || equals == std::string::npos || equals == colon + 1 || text.find('&') != std::string::npos)
+    return Error{"property " + base::in_quotes(text) + ": expected INSTANCE:KEY=VALUE"};
+  const auto value = text.substr(equals + 1);
+  const auto phase = base::parse_integer(value);
+  if (text.substr(colon + 1, equals - colon - 1) == "exec_cxt.sim_time.phase" && (!phase || *phase < 0 || *phase > 15))
+    return Error{"property " + base::in_quotes(text) + ": a phase must be a number from 0 to 15"};
+  return ComponentProperty{text.substr(0, colon), text.substr(colon + 1, equals - colon - 1), text.substr(equals + 1)};
 }
 
 }  // namespace editor

@@ -52,11 +52,6 @@ struct ComponentProperty {
   std::string instance, key, value;
 };
 Result<ComponentProperty> parse_property(const std::string& text);
-// "3", "1..20".
-Result<std::vector<std::uint64_t>> parse_seeds(const std::string& text);
-// The command: prints one line per run and one per unmet expectation. Without `seeds` one run with the seed of the options, else one for
-// each, `jobs` of them at a time.
-void run(Editor& editor, const RunOptions& options, const std::optional<std::string>& seeds, int jobs);
 
 // The verdicts as JUnit XML: a test case for each run and for each of its expectations; a run with a problem is an error.
 Result<void> write_junit(const std::string& file, const RunOptions& options, const std::vector<RunResult>& results);

@@ -1,4 +1,4 @@
-// rtse new: the sources of a new component, complete and ready to build. Pure but for write_skeleton. Any thread.
+// The sources of a new component, complete and ready to build. Pure; any thread.
 #pragma once
 
 #include <map>
@@ -6,10 +6,6 @@
 #include <vector>
 
 #include "base/result.h"
-
-namespace CLI {
-class App;
-}
 
 namespace editor {
 
@@ -58,10 +54,5 @@ bool is_product_type(const std::string& type);
 const std::vector<std::string>& further_actions();
 // File name -> content.
 base::Result<std::map<std::string, std::string>> skeleton(const NewComponent& component);
-// RTC.xml (RtcProfile, what RTCBuilder saves) or a YAML specification.
-base::Result<NewComponent> read_specification(const std::string& file);
-
-// Adds the command "new" to the program; it runs while the command line is parsed and leaves its exit code in `code`.
-void add_new_command(CLI::App& app, int& code);
 
 }  // namespace editor

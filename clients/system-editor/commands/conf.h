@@ -1,0 +1,20 @@
+// The configuration sets of a component, for all commands that change some. One thread at a time.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "component_view.h"
+
+namespace editor {
+
+// "" or what the component has said that a value of this parameter must be.
+std::string value_problem(const ComponentView& component, const std::string& parameter, const std::string& value);
+
+// Merges the values into the set; it is applied when the set is activated.
+Result<void> set_values(const ComponentView& component, const std::string& id,
+                        const std::vector<std::pair<std::string, std::string>>& values);
+Result<void> use_set(const ComponentView& component, const std::string& id);
+
+}  // namespace editor

@@ -1,0 +1,13 @@
+// Transitions of a component in one of its contexts, for all commands that make some. One thread at a time.
+#pragma once
+
+#include "component_view.h"
+
+namespace editor {
+
+enum class Transition { activate, deactivate, reset };
+
+// Returns when the component has arrived, or fails. `context` is an index into the component's contexts; -1: the first.
+Result<void> change_state(const ComponentView& component, Transition transition, int context);
+
+}  // namespace editor
