@@ -1,0 +1,134 @@
+#include "mcap/compression.h"
+
+#include <libdeflate.h>
+#include <lz4frame.h>
+#include <zstd.h>
+
+#include <algorithm>
+
+#include "base/text.h"
+
+namespace mcap {
+
+namespace {
+
+constexpr int zstd_level = 1;  // recordings are written while a robot runs; higher levels cost ten times the time for a tenth of the size
+constexpr std::size_t first_room = 1 << 20;  // [octets]
+
+// Grows as octets really come, so that a length that lies costs nothing.
+void make_room(std::string& out, std::size_t used, std::uint64_t size) {
+  if (used < out.size()) return;
+  out.resize(static_cast<std::size_t>(std::min<std::uint64_t>(size, std::max(first_room, used * 2))));
+}
+
+base::Error wrong_size(std::uint64_t size) { return {"does not decompress to the " + std::to_string(size) + " octets that it announces"}; }
+
+base::Result<void> decompress_zstd(std::string_view octets, std::uint64_t size, std::string& out) {
+  const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), ZSTD_freeDCtx);
+  if (!context) return base::Error{"no memory to decompress with"};
+  ZSTD_inBuffer in{octets.data(), octets.size(), 0};
+  std::size_t used = 0;
+  char beyond = 0;
+  for (bool moves = true; moves;) {
+    make_room(out, used, size);
+    const bool is_full = used == size;
+    ZSTD_outBuffer piece = is_full ? ZSTD_outBuffer{&beyond, 1, 0} : ZSTD_outBuffer{out.data(), out.size(), used};
+    const std::size_t read = in.pos;
+    const std::size_t written = piece.pos;
+    const std::size_t answer = ZSTD_decompressStream(context.get(), &piece, &in);
+    if (ZSTD_isError(answer)) return base::Error{std::string("cannot be decompressed: ") + ZSTD_getErrorName(answer)};
+    if (is_full && piece.pos != 0) return wrong_size(size);
+    if (!is_full) used = piece.pos;
+    moves = in.pos != read || piece.pos != written;
+  }
+  if (used != size) return wrong_size(size);
+  out.resize(used);
+  return {};
+}
+
+base::Result<void> decompress_lz4(std::string_view octets, std::uint64_t size, std::string& out) {
+  LZ4F_dctx* raw = nullptr;
+  if (LZ4F_isError(LZ4F_createDecompressionContext(&raw, LZ4F_VERSION))) return base::Error{"no memory to decompress with"};
+  const std::unique_ptr<LZ4F_dctx, decltype(&LZ4F_freeDecompressionContext)> context(raw, LZ4F_freeDecompressionContext);
+  std::size_t used = 0;
+  char beyond = 0;
+  while (!octets.empty()) {
+    make_room(out, used, size);
+    const bool is_full = used == size;
+    std::size_t room = is_full ? 1 : out.size() - used;
+    std::size_t taken = octets.size();
+    const std::size_t answer = LZ4F_decompress(context.get(), is_full ? &beyond : out.data() + used, &room, octets.data(), &taken, nullptr);
+    if (LZ4F_isError(answer)) return base::Error{std::string("cannot be decompressed: ") + LZ4F_getErrorName(answer)};
+    if (is_full && room != 0) return wrong_size(size);
+    if (!is_full) used += room;
+    octets.remove_prefix(taken);
+    if (taken == 0 && room == 0) break;
+  }
+  if (used != size) return wrong_size(size);
+  out.resize(used);
+  return {};
+}
+
+}  // namespace
+
+std::string_view to_text(Compression compression) {
+  switch (compression) {
+    case Compression::none:
+      return "";
+    case Compression::lz4:
+      return "lz4";
+    case Compression::zstd:
+      return "zstd";
+  }
+  return "";
+}
+
+struct Compressor::Context {
+  std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> zstd{nullptr, ZSTD_freeCCtx};
+};
+
+Compressor::Compressor(Compression compression) : compression_(compression), context_(std::make_unique<Context>()) {
+  if (compression == Compression::zstd) context_->zstd.reset(ZSTD_createCCtx());
+}
+
+Compressor::~Compressor() = default;
+
+base::Result<void> Compressor::compress(std::string_view octets, std::string& out) {
+  switch (compression_) {
+    case Compression::none:
+      out.assign(octets);
+      return {};
+    case Compression::zstd: {
+      if (!context_->zstd) return base::Error{"no memory to compress with"};
+      out.resize(ZSTD_compressBound(octets.size()));
+      const std::size_t size = ZSTD_compressCCtx(context_->zstd.get(), out.data(), out.size(), octets.data(), octets.size(), zstd_level);
+      if (ZSTD_isError(size)) return base::Error{std::string("zstd: ") + ZSTD_getErrorName(size)};
+      out.resize(size);
+      return {};
+    }
+    case Compression::lz4: {
+      out.resize(LZ4F_compressFrameBound(octets.size(), nullptr));
+      const std::size_t size = LZ4F_compressFrame(out.data(), out.size(), octets.data(), octets.size(), nullptr);
+      if (LZ4F_isError(size)) return base::Error{std::string("lz4: ") + LZ4F_getErrorName(size)};
+      out.resize(size);
+      return {};
+    }
+  }
+  return {};
+}
+
+base::Result<void> decompress(std::string_view name, std::string_view octets, std::uint64_t size, std::string& out) {
+  out.clear();
+  if (name.empty()) {
+    if (octets.size() != size) return wrong_size(size);
+    out.assign(octets);
+    return {};
+  }
+  if (name == "zstd") return decompress_zstd(octets, size, out);
+  if (name == "lz4") return decompress_lz4(octets, size, out);
+  return base::Error{"has the compression " + base::in_quotes(name) + "; expected none, lz4 or zstd"};
+}
+
+std::uint32_t crc32(std::uint32_t before, std::string_view octets) { return libdeflate_crc32(before, octets.data(), octets.size()); }
+
+}  // namespace mcap

@@ -1,0 +1,36 @@
+// Octets of chunks, compressed and back, and their CRC-32 (IEEE 802.3). An object belongs to one thread at a time.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "mcap/mcap.h"
+
+namespace mcap {
+
+// As the format writes it: "", "lz4", "zstd".
+std::string_view to_text(Compression compression);
+
+class Compressor final {
+ public:
+  explicit Compressor(Compression compression);
+  Compressor(const Compressor&) = delete;
+  Compressor& operator=(const Compressor&) = delete;
+  ~Compressor();
+  // Into `out`, whose room is used again. An error of the library names it.
+  base::Result<void> compress(std::string_view octets, std::string& out);
+
+ private:
+  struct Context;
+  Compression compression_;
+  std::unique_ptr<Context> context_;
+};
+
+// Exactly `size` octets; an error says what came instead. No more memory than `size` is taken.
+base::Result<void> decompress(std::string_view name, std::string_view octets, std::uint64_t size, std::string& out);
+
+std::uint32_t crc32(std::uint32_t before, std::string_view octets);
+
+}  // namespace mcap

@@ -1,0 +1,41 @@
+// A file by its descriptor: written at its end, read anywhere. Errors name the path. One thread at a time.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "base/result.h"
+
+namespace mcap {
+
+class File final {
+ public:
+  static base::Result<File> create(const std::string& path);
+  static base::Result<File> open(const std::string& path);
+  File(File&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)), path_(std::move(other.path_)) {}
+  File& operator=(File&& other) noexcept {
+    std::swap(descriptor_, other.descriptor_);
+    std::swap(path_, other.path_);
+    return *this;
+  }
+  ~File();
+
+  const std::string& path() const { return path_; }
+  base::Result<std::uint64_t> size() const;
+  // All of them, one behind the other.
+  base::Result<void> append(std::string_view first, std::string_view second = {});
+  // Exactly `size` octets, which must be there.
+  base::Result<void> read(std::uint64_t offset, std::uint64_t size, std::string& out) const;
+  void cut(std::uint64_t size);
+
+ private:
+  File(int descriptor, std::string path) : descriptor_(descriptor), path_(std::move(path)) {}
+  base::Error failed(const char* what) const;
+
+  int descriptor_ = -1;
+  std::string path_;
+};
+
+}  // namespace mcap

@@ -1,0 +1,413 @@
+#include "mcap/scan.h"
+
+#include <algorithm>
+#include <set>
+
+#include "base/text.h"
+#include "mcap/compression.h"
+
+namespace mcap {
+
+namespace {
+
+base::Error at(const File& file, std::uint64_t offset, const std::string& what) {
+  return {base::in_quotes(file.path()) + ": octet " + std::to_string(offset) + ": " + what};
+}
+
+struct RecordHead {
+  Opcode opcode{};
+  std::uint64_t length = 0;  // [octets] of its content
+};
+
+// Nothing when the record does not lie whole before `end`.
+base::Result<std::optional<RecordHead>> read_head(const File& file, std::uint64_t offset, std::uint64_t end) {
+  if (offset > end || end - offset < record_head) return std::optional<RecordHead>();
+  std::string octets;
+  if (const auto done = file.read(offset, record_head, octets); !done) return done.error();
+  Octets in(octets);
+  RecordHead head;
+  head.opcode = static_cast<Opcode>(in.number<std::uint8_t>());
+  head.length = in.number<std::uint64_t>();
+  if (head.length > end - offset - record_head) return std::optional<RecordHead>();
+  return std::optional<RecordHead>(head);
+}
+
+// Schemas, channels and the rest of what an index keeps, as they are met.
+class Collector {
+ public:
+  Collector(const File& file, Index& index) : file_(file), index_(index) {}
+
+  base::Result<void> describe(Opcode opcode, std::string_view content, std::uint64_t offset) {
+    described_ += content.size();
+    if (described_ > most_descriptions) {
+      return at(file_, offset, "schemas and channels of more than " + std::to_string(most_descriptions) + " octets are not read");
+    }
+    if (opcode == Opcode::schema) {
+      auto schema = take_schema(content);
+      if (!schema) return at(file_, offset, "the schema is cut off");
+      const auto id = schema->id;
+      if (id != 0) index_.summary.schemas.emplace(id, std::move(*schema));
+    } else {
+      auto channel = take_channel(content);
+      if (!channel) return at(file_, offset, "the channel is cut off");
+      const auto id = channel->id;
+      index_.summary.channels.emplace(id, std::move(*channel));
+    }
+    return {};
+  }
+
+ private:
+  const File& file_;
+  Index& index_;
+  std::uint64_t described_ = 0;
+};
+
+void note(Index& index, const base::Error& error) {
+  if (!index.damage) index.damage = error.message;
+}
+
+// Of the record that every file begins with.
+base::Result<std::uint64_t> read_header(const File& file, std::uint64_t size, Index& index) {
+  std::string octets;
+  const std::uint64_t first = std::min<std::uint64_t>(size, magic.size());
+  if (const auto done = file.read(0, first, octets); !done) return done.error();
+  if (octets != magic) return base::Error{base::in_quotes(file.path()) + ": is no MCAP file: it does not begin with the magic octets"};
+  const auto head = read_head(file, magic.size(), size);
+  if (!head) return head.error();
+  if (!head->has_value() || (*head)->opcode != Opcode::header) return at(file, magic.size(), "expected the header of an MCAP file");
+  if ((*head)->length > most_descriptions) return at(file, magic.size(), "the header is longer than any header is");
+  if (const auto done = file.read(magic.size() + record_head, (*head)->length, octets); !done) return done.error();
+  Octets in(octets);
+  index.profile = in.text();
+  index.library = in.text();
+  if (!in.ok()) return at(file, magic.size(), "the header is cut off");
+  return magic.size() + record_head + (*head)->length;
+}
+
+// The content of the footer, when the file ends with one.
+struct Footer {
+  std::uint64_t offset = 0;
+  std::uint64_t summary_start = 0;
+  std::uint32_t crc = 0;
+};
+
+base::Result<std::optional<Footer>> read_footer(const File& file, std::uint64_t size) {
+  if (size < 2 * magic.size() + footer_record) return std::optional<Footer>();
+  const std::uint64_t offset = size - magic.size() - footer_record;
+  std::string octets;
+  if (const auto done = file.read(offset, footer_record + magic.size(), octets); !done) return done.error();
+  Octets in(octets);
+  if (static_cast<Opcode>(in.number<std::uint8_t>()) != Opcode::footer || in.number<std::uint64_t>() != footer_record - record_head ||
+      !octets.ends_with(magic)) {
+    return std::optional<Footer>();
+  }
+  Footer footer;
+  footer.offset = offset;
+  footer.summary_start = in.number<std::uint64_t>();
+  (void)in.number<std::uint64_t>();  // where the offsets of the groups begin; not needed to read all of them
+  footer.crc = in.number<std::uint32_t>();
+  return std::optional<Footer>(footer);
+}
+
+bool is_in_file(std::uint64_t start, std::uint64_t length, std::uint64_t end) { return start <= end && length <= end - start; }
+
+base::Result<void> take_summary_record(const File& file, Opcode opcode, std::string_view content, std::uint64_t offset,
+                                       std::uint64_t data_end, Collector& collector, Index& index, bool& has_statistics) {
+  const auto wrong = [&] { return at(file, offset, "a record of the summary is cut off or points outside of the data"); };
+  Summary& summary = index.summary;
+  switch (opcode) {
+    case Opcode::schema:
+    case Opcode::channel:
+      return collector.describe(opcode, content, offset);
+    case Opcode::chunk_index: {
+      auto entry = take_chunk_index(content);
+      if (!entry || !is_in_file(entry->start, entry->length, data_end)) return wrong();
+      summary.chunks.push_back(std::move(*entry));
+      return {};
+    }
+    case Opcode::attachment_index: {
+      auto place = take_attachment_index(content);
+      if (!place || !is_in_file(place->start, place->length, data_end)) return wrong();
+      summary.attachments.push_back(std::move(*place));
+      return {};
+    }
+    case Opcode::metadata_index: {
+      auto place = take_metadata_index(content);
+      if (!place || !is_in_file(place->start, place->length, data_end)) return wrong();
+      summary.metadata.push_back(std::move(*place));
+      return {};
+    }
+    case Opcode::statistics: {
+      auto statistics = take_statistics(content);
+      if (!statistics) return wrong();
+      summary.statistics = std::move(*statistics);
+      has_statistics = true;
+      return {};
+    }
+    default:
+      return {};  // of a later version of the format, or somebody's own
+  }
+}
+
+// Whether the summary says enough: writers may leave parts of it out.
+bool is_enough(const Index& index, bool has_statistics, std::uint64_t header_end, std::uint64_t data_end) {
+  const Summary& summary = index.summary;
+  if (!has_statistics || summary.statistics.chunks != summary.chunks.size()) return false;
+  if (summary.statistics.attachments != summary.attachments.size() || summary.statistics.metadata != summary.metadata.size()) return false;
+  std::uint64_t known = header_end;  // [octets] of the data that the summary accounts for
+  std::set<std::uint16_t> seen;
+  for (const ChunkEntry& entry : summary.chunks) {
+    known += entry.length + entry.index_length;
+    for (const auto& [channel, offset] : entry.index_offsets) seen.insert(channel);
+  }
+  for (const auto& [channel, count] : summary.statistics.messages_of) seen.insert(channel);
+  for (const AttachmentPlace& place : summary.attachments) known += place.length;
+  for (const MetadataPlace& place : summary.metadata) known += place.length;
+  if (known > data_end || data_end - known > record_head + 4) return false;  // messages outside of chunks
+  return std::all_of(seen.begin(), seen.end(), [&](std::uint16_t channel) { return summary.channels.contains(channel); });
+}
+
+// Nothing when there is no summary, or one that does not say enough; `damage` tells what is broken rather than left out.
+base::Result<std::optional<Index>> read_summary(const File& file, std::uint64_t size, std::optional<std::string>& damage) {
+  Index index;
+  const auto header_end = read_header(file, size, index);
+  if (!header_end) return header_end.error();
+  const auto footer = read_footer(file, size);
+  if (!footer) return footer.error();
+  const auto broken = [&](std::uint64_t offset, const char* what) {
+    damage = at(file, offset, what).message;
+    return std::optional<Index>();
+  };
+  if (!footer->has_value()) return broken(size, "the file has no end: its writer did not close it, or it is cut off; what it has is read");
+  if ((*footer)->summary_start == 0) return std::optional<Index>();
+  if ((*footer)->summary_start < *header_end || (*footer)->summary_start > (*footer)->offset) {
+    return broken((*footer)->offset, "the footer points outside of the file; the file is read without a summary");
+  }
+  const std::uint64_t start = (*footer)->summary_start;
+  std::string octets;
+  if (const auto done = file.read(start, size - magic.size() - start, octets); !done) return done.error();
+  const std::string_view all = octets;
+  if ((*footer)->crc != 0 && crc32(0, all.substr(0, all.size() - 4)) != (*footer)->crc) {
+    return broken(start, "the summary's octets do not match their CRC; the file is read without it");
+  }
+
+  Collector collector(file, index);
+  bool has_statistics = false;
+  base::Result<void> result;
+  const auto walked = for_each_record(all, [&](Opcode opcode, std::string_view content, std::uint64_t offset) {
+    if (result) result = take_summary_record(file, opcode, content, start + offset, start, collector, index, has_statistics);
+  });
+  if (!walked) return broken(start, "the summary is cut off; the file is read without it");
+  if (!result) return damage = result.error().message, std::optional<Index>();
+  if (!is_enough(index, has_statistics, *header_end, start)) return std::optional<Index>();
+  index.data_end = start;
+  return std::optional<Index>(std::move(index));
+}
+
+// Walks over the data of a file.
+class Scanner {
+ public:
+  Scanner(const File& file, Index& index) : file_(file), index_(index), collector_(file, index) {}
+
+  base::Result<void> walk(std::uint64_t start, std::uint64_t end) {
+    std::uint64_t offset = start;
+    while (offset < end) {
+      index_.data_end = offset;
+      if (end - offset == magic.size()) break;  // behind a footer
+      const auto head = read_head(file_, offset, end);
+      if (!head) return head.error();
+      if (!head->has_value()) {
+        note(index_, at(file_, offset, "the last record is cut off; what stands before it is read"));
+        return {};
+      }
+      if ((*head)->opcode == Opcode::data_end || (*head)->opcode == Opcode::footer) return {};
+      if (const auto done = take(**head, offset); !done) return done;
+      offset += record_head + (*head)->length;
+    }
+    index_.data_end = std::min(offset, end);
+    return {};
+  }
+
+ private:
+  base::Result<void> take(const RecordHead& head, std::uint64_t offset) {
+    const std::uint64_t content = offset + record_head;
+    switch (head.opcode) {
+      case Opcode::schema:
+      case Opcode::channel: {
+        if (head.length > most_descriptions) return at(file_, offset, "a schema or channel is longer than any is");
+        if (const auto done = file_.read(content, head.length, octets_); !done) return done;
+        return collector_.describe(head.opcode, octets_, offset);
+      }
+      case Opcode::message:
+        return take_loose(head, offset);
+      case Opcode::chunk:
+        return take_chunk_record(head, offset);
+      case Opcode::message_index:
+        return take_message_index(head, offset);
+      case Opcode::attachment:
+        return take_attachment(head, offset);
+      case Opcode::metadata: {
+        if (head.length > most_descriptions) return at(file_, offset, "metadata are longer than any are");
+        if (const auto done = file_.read(content, head.length, octets_); !done) return done;
+        Octets in(octets_);
+        index_.summary.metadata.push_back({offset, record_head + head.length, std::string(in.text())});
+        ++index_.summary.statistics.metadata;
+        return {};
+      }
+      default:
+        return {};
+    }
+  }
+
+  base::Result<void> take_loose(const RecordHead& head, std::uint64_t offset) {
+    if (const auto done = file_.read(offset + record_head, std::min<std::uint64_t>(head.length, message_head), octets_); !done) return done;
+    const auto message = take_message(octets_);
+    if (!message) return note(index_, at(file_, offset, "a message is shorter than any is; it is left out")), base::Result<void>();
+    index_.loose.push_back({message->log_time, offset, head.length});
+    count(index_.summary.statistics, *message);
+    return {};
+  }
+
+  base::Result<void> take_chunk_record(const RecordHead& head, std::uint64_t offset) {
+    if (const auto done = read_chunk(file_, offset, record_head + head.length, octets_); !done)
+      return note(index_, done.error()), base::Result<void>();
+    ChunkEntry entry;
+    entry.start = offset;
+    entry.length = record_head + head.length;
+    entry.uncompressed = octets_.size();
+    std::set<std::uint16_t> channels;
+    bool has_messages = false;
+    base::Result<void> result;
+    const auto walked = for_each_record(octets_, [&](Opcode opcode, std::string_view content, std::uint64_t) {
+      if (opcode == Opcode::schema || opcode == Opcode::channel) {
+        if (result) result = collector_.describe(opcode, content, offset);
+      }
+      if (opcode != Opcode::message) return;
+      const auto message = take_message(content);
+      if (!message) return;
+      entry.first = has_messages ? std::min(entry.first, message->log_time) : message->log_time;
+      entry.last = has_messages ? std::max(entry.last, message->log_time) : message->log_time;
+      has_messages = true;
+      channels.insert(message->channel);
+      count(index_.summary.statistics, *message);
+    });
+    if (!walked) note(index_, at(file_, offset, "in the chunk: " + walked.error().message));
+    if (!result) return result;
+    for (const std::uint16_t channel : channels) entry.index_offsets.emplace_back(channel, 0);
+    if (const auto fields = chunk_fields(offset, head.length)) {
+      entry.compression = fields->first;
+      entry.compressed = fields->second;
+    }
+    index_.summary.chunks.push_back(std::move(entry));
+    ++index_.summary.statistics.chunks;
+    return {};
+  }
+
+  // Name of the compression and compressed octets of a chunk that has been read.
+  std::optional<std::pair<std::string, std::uint64_t>> chunk_fields(std::uint64_t offset, std::uint64_t length) {
+    std::string head;
+    if (!file_.read(offset + record_head, std::min<std::uint64_t>(length, 64), head)) return std::nullopt;
+    Octets in(head);
+    (void)in.part(8 + 8 + 8 + 4);
+    const std::string name(in.text());
+    const auto compressed = in.number<std::uint64_t>();
+    if (!in.ok()) return std::nullopt;
+    return std::pair{name, compressed};
+  }
+
+  // Only where it stands, for the index of a repaired file.
+  base::Result<void> take_message_index(const RecordHead& head, std::uint64_t offset) {
+    if (index_.summary.chunks.empty() || head.length < 2) return {};
+    if (const auto done = file_.read(offset + record_head, 2, octets_); !done) return done;
+    ChunkEntry& chunk = index_.summary.chunks.back();
+    const auto channel = Octets(octets_).number<std::uint16_t>();
+    for (auto& [id, place] : chunk.index_offsets) {
+      if (id == channel) place = offset;
+    }
+    chunk.index_length += record_head + head.length;
+    return {};
+  }
+
+  base::Result<void> take_attachment(const RecordHead& head, std::uint64_t offset) {
+    if (const auto done = file_.read(offset + record_head, std::min<std::uint64_t>(head.length, 64 * 1024), octets_); !done) return done;
+    Octets in(octets_);
+    AttachmentPlace place;
+    place.start = offset;
+    place.length = record_head + head.length;
+    place.log_time = in.time();
+    place.create_time = in.time();
+    place.name = in.text();
+    place.media_type = in.text();
+    place.size = in.number<std::uint64_t>();
+    if (!in.ok()) return note(index_, at(file_, offset, "an attachment is cut off; it is left out")), base::Result<void>();
+    index_.summary.attachments.push_back(std::move(place));
+    ++index_.summary.statistics.attachments;
+    return {};
+  }
+
+  const File& file_;
+  Index& index_;
+  Collector collector_;
+  std::string octets_;
+};
+
+}  // namespace
+
+base::Result<void> for_each_record(std::string_view records, const std::function<void(Opcode, std::string_view, std::uint64_t)>& take) {
+  std::uint64_t offset = 0;
+  while (offset < records.size()) {
+    Octets in(records.substr(offset));
+    if (in.rest() == magic) return {};  // the end of the file behind its footer
+    const auto opcode = static_cast<Opcode>(in.number<std::uint8_t>());
+    const auto length = in.number<std::uint64_t>();
+    if (!in.ok() || length > in.rest().size()) return base::Error{"the record at octet " + std::to_string(offset) + " is cut off"};
+    take(opcode, in.rest().substr(0, length), offset + record_head);
+    offset += record_head + length;
+  }
+  return {};
+}
+
+base::Result<void> read_chunk(const File& file, std::uint64_t offset, std::uint64_t length, std::string& records) {
+  std::string octets;
+  if (length < record_head) return at(file, offset, "the chunk is shorter than any is");
+  if (const auto done = file.read(offset, length, octets); !done) return done;
+  Octets in(octets);
+  const auto opcode = static_cast<Opcode>(in.number<std::uint8_t>());
+  const auto size = in.number<std::uint64_t>();
+  const auto chunk = opcode == Opcode::chunk && size == in.rest().size() ? take_chunk(in.rest()) : std::nullopt;
+  if (!chunk) return at(file, offset, "expected a chunk of " + std::to_string(length) + " octets");
+  if (chunk->uncompressed > Reader::largest_chunk) {
+    return at(file, offset,
+              "the chunk announces " + std::to_string(chunk->uncompressed) + " octets; at most " + std::to_string(Reader::largest_chunk) +
+                  " are read");
+  }
+  if (const auto done = decompress(chunk->compression, chunk->records, chunk->uncompressed, records); !done) {
+    return at(file, offset, "the chunk " + done.error().message);
+  }
+  if (chunk->crc != 0 && crc32(0, records) != chunk->crc) return at(file, offset, "the chunk's octets do not match their CRC");
+  return {};
+}
+
+base::Result<Index> scan(const File& file) {
+  const auto size = file.size();
+  if (!size) return size.error();
+  Index index;
+  const auto start = read_header(file, *size, index);
+  if (!start) return start.error();
+  if (const auto done = Scanner(file, index).walk(*start, *size); !done) return done.error();
+  return index;
+}
+
+base::Result<Index> read_index(const File& file) {
+  const auto size = file.size();
+  if (!size) return size.error();
+  std::optional<std::string> damage;
+  auto index = read_summary(file, *size, damage);
+  if (!index) return index.error();
+  if (index->has_value()) return std::move(**index);
+  auto scanned = scan(file);
+  if (scanned && !scanned->damage) scanned->damage = damage;
+  return scanned;
+}
+
+}  // namespace mcap

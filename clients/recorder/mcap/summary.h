@@ -1,0 +1,27 @@
+// What stands at the end of a file: all that a reader must know before it reads messages. A value.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "mcap/bytes.h"
+
+namespace mcap {
+
+struct Summary {
+  std::map<std::uint16_t, Schema> schemas;
+  std::map<std::uint16_t, Channel> channels;
+  Statistics statistics;
+  std::vector<ChunkEntry> chunks;  // in the order of the file
+  std::vector<AttachmentPlace> attachments;
+  std::vector<MetadataPlace> metadata;
+};
+
+void count(Statistics& statistics, const Message& message);
+
+// All that follows the data: the end of the data, the summary with its offsets, the footer. `start`: octets before it; `crc`: of these.
+std::string end_of_file(const Summary& summary, std::uint64_t start, std::uint32_t crc);
+
+}  // namespace mcap

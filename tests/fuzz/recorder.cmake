@@ -1,0 +1,5 @@
+# MCAP files: the octets of a recording, mutated. A user's bound: 10^6 runs under the asan preset.
+add_executable(mcap_fuzz mcap_fuzz.cpp)
+target_link_libraries(mcap_fuzz PRIVATE mcap rtmsim_settings)
+add_test(NAME fuzz.mcap COMMAND mcap_fuzz --runs 20000)
+set_tests_properties(fuzz.mcap PROPERTIES LABELS fuzz TIMEOUT 300)

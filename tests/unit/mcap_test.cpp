@@ -1,0 +1,231 @@
+#include "mcap/mcap.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace mcap {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Recording : public testing::TestWithParam<Compression> {
+ protected:
+  Recording() : path_((fs::path(testing::TempDir()) / ("mcap_test_" + std::to_string(getpid()) + ".mcap")).string()) {}
+  ~Recording() override {
+    fs::remove(path_);
+    fs::remove(path_ + ".again");
+  }
+
+  std::string octets() const {
+    std::ifstream in(path_, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  void put(const std::string& octets) const { std::ofstream(path_, std::ios::binary) << octets; }
+
+  // Two channels; message n of channel 1 at n ms and of channel 2 at n + 0.5 ms.
+  void record(int messages, WriterOptions options = {}, bool is_closed = true) {
+    auto writer = Writer::create(path_, options);
+    ASSERT_TRUE(writer) << writer.error().message;
+    const auto schema = writer->add_schema("RTC::TimedLong", "omgidl", "struct TimedLong { long data; };");
+    const auto first = writer->add_channel(*schema, "/a/out", "cdr", {{"component", "a"}, {"port", "out"}});
+    const auto second = writer->add_channel(0, "/log", "json");
+    ASSERT_TRUE(first && second);
+    for (int n = 0; n < messages; ++n) {
+      const std::string data = "message " + std::to_string(n);
+      const auto sequence = static_cast<std::uint32_t>(n);
+      ASSERT_TRUE(writer->write({*first, sequence, Time(n * 1'000'000), Time(7), data}));
+      ASSERT_TRUE(writer->write({*second, sequence, Time(n * 1'000'000 + 500'000), Time(8), ""}));
+    }
+    ASSERT_TRUE(writer->attach({Time(1), Time(2), "system.xml", "application/xml", "<rts/>"}));
+    ASSERT_TRUE(writer->add_metadata({"run", {{"seed", "7"}}}));
+    if (!is_closed) {
+      ASSERT_TRUE(writer->write({*first, 77, Time(77), Time(7), "not flushed"}));
+      abandoned_ = octets();
+    }
+    ASSERT_TRUE(writer->close());
+  }
+
+  // "topic time data" of every message, and errors.
+  std::vector<std::string> read(const Query& query = {}) {
+    auto reader = Reader::open(path_);
+    if (!reader) return {reader.error().message};
+    reader->seek(query);
+    std::vector<std::string> lines;
+    while (lines.size() < 100'000) {
+      auto message = reader->next();
+      if (!message) {
+        lines.push_back(message.error().message);
+        continue;
+      }
+      if (!message->has_value()) break;
+      const Message& one = **message;
+      lines.push_back(reader->channels().at(one.channel).topic + " " + std::to_string(one.log_time.count()) + " " + std::string(one.data));
+    }
+    return lines;
+  }
+
+  const std::string path_;
+  std::string abandoned_;  // what a killed writer leaves
+};
+
+TEST_P(Recording, gives_back_what_was_written) {
+  record(3, {.profile = "rtm", .compression = GetParam(), .chunk_size = 64});
+  const std::vector<std::string> expected = {"/a/out 0 message 0",       "/log 500000 ", "/a/out 1000000 message 1", "/log 1500000 ",
+                                             "/a/out 2000000 message 2", "/log 2500000 "};
+  EXPECT_EQ(read(), expected);
+  auto reader = Reader::open(path_);
+  ASSERT_TRUE(reader) << reader.error().message;
+  EXPECT_FALSE(reader->damage().has_value());
+  EXPECT_EQ(reader->profile(), "rtm");
+  EXPECT_EQ(reader->schemas().at(1).data, "struct TimedLong { long data; };");
+  EXPECT_EQ(reader->channels().at(1).metadata, (Texts{{"component", "a"}, {"port", "out"}}));
+  EXPECT_EQ(reader->statistics().messages, 6U);
+  EXPECT_EQ(reader->statistics().last, Time(2'500'000));
+  const auto attachment = reader->attachment("system.xml");
+  ASSERT_TRUE(attachment) << attachment.error().message;
+  EXPECT_EQ(attachment->data, "<rts/>");
+  EXPECT_EQ(reader->attachment("none").error().message, "\"" + path_ + "\": has no attachment \"none\"");
+  const auto metadata = reader->metadata();
+  ASSERT_TRUE(metadata && metadata->size() == 1);
+  EXPECT_EQ(metadata->front().texts, (Texts{{"seed", "7"}}));
+}
+
+INSTANTIATE_TEST_SUITE_P(, Recording, testing::Values(Compression::none, Compression::lz4, Compression::zstd));
+
+class Single : public Recording {};
+INSTANTIATE_TEST_SUITE_P(, Single, testing::Values(Compression::zstd));
+
+TEST_P(Single, a_query_gives_the_times_and_channels_asked_for) {
+  record(100, {.chunk_size = 500});
+  EXPECT_EQ(read({{1}, Time(10'000'000), Time(11'000'000)}),
+            (std::vector<std::string>{"/a/out 10000000 message 10", "/a/out 11000000 message 11"}));
+  EXPECT_TRUE(read({{}, Time(100'000'000), Time(UINT64_MAX)}).empty());
+  EXPECT_TRUE(read({{9}, Time(0), Time(UINT64_MAX)}).empty());
+}
+
+TEST_P(Single, messages_come_in_the_order_of_time_whatever_their_order_in_the_file) {
+  auto writer = Writer::create(path_, {.chunk_size = 40});
+  const auto channel = writer->add_channel(0, "t", "json");
+  for (const int time : {5, 3, 9, 1, 7, 3}) ASSERT_TRUE(writer->write({*channel, 0, Time(time), Time(0), "x"}));
+  ASSERT_TRUE(writer->close());
+  EXPECT_EQ(read(), (std::vector<std::string>{"t 1 x", "t 3 x", "t 3 x", "t 5 x", "t 7 x", "t 9 x"}));
+}
+
+TEST_P(Single, what_a_killed_writer_had_flushed_is_read_and_repaired) {
+  record(10, {}, false);
+  put(abandoned_);
+  EXPECT_EQ(read().size(), 20U);
+  auto reader = Reader::open(path_);
+  ASSERT_TRUE(reader->damage().has_value());
+  EXPECT_NE(reader->damage()->find("its writer did not close it"), std::string::npos) << *reader->damage();
+
+  const auto repaired = repair(path_, path_);
+  ASSERT_TRUE(repaired) << repaired.error().message;
+  EXPECT_EQ(repaired->messages, 20U);
+  EXPECT_EQ(repaired->octets_lost, 0U);
+  auto again = Reader::open(path_);
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_FALSE(again->damage().has_value());
+  EXPECT_EQ(again->statistics().messages_of.at(1), 10U);
+  EXPECT_EQ(again->attachments().size(), 1U);
+  EXPECT_EQ(read().size(), 20U);
+}
+
+TEST_P(Single, a_file_that_is_cut_anywhere_is_read_up_to_there) {
+  record(4, {.chunk_size = 60});
+  const std::string whole = octets();
+  std::size_t before = 0;
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    put(whole.substr(0, length));
+    auto reader = Reader::open(path_);
+    if (!reader) {
+      EXPECT_LT(length, 40U) << reader.error().message;  // not even a header
+      continue;
+    }
+    const std::size_t messages = reader->statistics().messages;
+    EXPECT_GE(messages, before) << "cut at " << length;
+    EXPECT_TRUE(reader->damage().has_value()) << "cut at " << length;
+    before = messages;
+    const auto repaired = repair(path_, path_ + ".again");
+    ASSERT_TRUE(repaired) << repaired.error().message;
+    auto again = Reader::open(path_ + ".again");
+    ASSERT_TRUE(again) << again.error().message;
+    EXPECT_EQ(again->statistics().messages, messages) << "cut at " << length;
+    EXPECT_FALSE(again->damage().has_value()) << *again->damage();
+  }
+  EXPECT_EQ(before, 8U);
+}
+
+TEST_P(Single, a_flipped_octet_in_a_chunk_costs_that_chunk_alone_and_is_told) {
+  record(50, {.chunk_size = 200});
+  std::string broken = octets();
+  const auto place = broken.find("zstd") + 4 + 8 + 12;  // behind the length, within the compressed octets
+  broken[place] = static_cast<char>(broken[place] ^ 0x55);
+  put(broken);
+  const auto lines = read();
+  const auto errors =
+      std::count_if(lines.begin(), lines.end(), [](const std::string& line) { return line.find("the chunk") != std::string::npos; });
+  EXPECT_EQ(errors, 1);
+  EXPECT_GT(lines.size(), 90U);
+}
+
+TEST_P(Single, a_chunk_bomb_is_refused_without_memory) {
+  // Zeros compress a thousand times; the length that the chunk announces is a lie.
+  auto writer = Writer::create(path_, {.compression = Compression::zstd, .chunk_size = 64 << 20});
+  const auto channel = writer->add_channel(0, "zeros", "");
+  ASSERT_TRUE(writer->write({*channel, 0, Time(0), Time(0), std::string(32 << 20, '\0')}));
+  ASSERT_TRUE(writer->close());
+  std::string bomb = octets();
+  const std::uint64_t huge = 1ull << 62;
+  const auto chunk = bomb.find("\x04\x00\x00\x00zstd", 0, 8) - 4 - 8;
+  std::memcpy(bomb.data() + chunk, &huge, sizeof huge);
+  put(bomb);
+  const auto lines = read();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_NE(lines[0].find("announces 4611686018427387904 octets; at most 134217728 are read"), std::string::npos) << lines[0];
+  const std::uint64_t small = 1000;
+  std::memcpy(bomb.data() + chunk, &small, sizeof small);
+  put(bomb);
+  EXPECT_NE(read().at(0).find("does not decompress to the 1000 octets"), std::string::npos) << read().at(0);
+}
+
+TEST_P(Single, what_is_no_recording_is_refused_with_one_line) {
+  put("hello");
+  EXPECT_EQ(read(), (std::vector<std::string>{"\"" + path_ + "\": is no MCAP file: it does not begin with the magic octets"}));
+  EXPECT_NE(Reader::open("/dev/null").error().message.find("is not a regular file"), std::string::npos);
+  EXPECT_NE(Reader::open("/no/such/file").error().message.find("cannot be read: No such file"), std::string::npos);
+  EXPECT_NE(Writer::create("/no/such/file").error().message.find("cannot be written"), std::string::npos);
+  EXPECT_NE(Writer::create("/dev/null").error().message.find("is not a regular file"), std::string::npos);
+}
+
+TEST_P(Single, a_full_disk_ends_the_file_at_its_last_whole_record) {
+  auto writer = Writer::create(path_, {.compression = Compression::none, .chunk_size = 1000});
+  const auto channel = writer->add_channel(0, "t", "");
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{5'500, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  base::Result<void> done;
+  for (int n = 0; n < 100 && done; ++n) done = writer->write({*channel, 0, Time(n), Time(0), std::string(100, 'x')});
+  setrlimit(RLIMIT_FSIZE, &before);
+  ASSERT_FALSE(done);
+  EXPECT_NE(done.error().message.find("cannot be written: File too large"), std::string::npos) << done.error().message;
+  EXPECT_EQ(writer->close().error().message, done.error().message);
+  auto reader = Reader::open(path_);
+  ASSERT_TRUE(reader) << reader.error().message;
+  EXPECT_GE(reader->statistics().messages, 30U);
+  EXPECT_NE(reader->damage()->find("its writer did not close it"), std::string::npos) << *reader->damage();
+}
+
+}  // namespace
+}  // namespace mcap
