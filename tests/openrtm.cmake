@@ -1,6 +1,9 @@
 include(${PROJECT_SOURCE_DIR}/cmake/headers_alone.cmake)
 
-rtmsim_headers_alone(openrtm_headers_alone ROOT ${PROJECT_SOURCE_DIR}/rtm-core/openrtm FOLDER rtm LIBRARIES openrtm)
+rtmsim_headers_alone(openrtm_headers_alone ROOT ${PROJECT_SOURCE_DIR}/rtm-core/openrtm/include FOLDER rtm LIBRARIES openrtm)
+foreach(room component manager openrtm)
+  rtmsim_headers_alone(${room}_room_headers_alone ROOT ${PROJECT_SOURCE_DIR}/rtm-core FOLDER ${room} LIBRARIES openrtm)
+endforeach()
 
 # What authors use, name by name.
 rtmsim_test(classic_api_test classic-api/surface_test.cpp LIBRARIES openrtm)

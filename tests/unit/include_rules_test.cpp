@@ -15,48 +15,75 @@ namespace {
 namespace fs = std::filesystem;
 using Names = std::vector<std::string>;
 
-// One layer: a folder, and the parts of the project whose headers it may include. "stubs" are the headers made from idl/.
+// One layer: a folder, the parts of the project whose headers it may include ("stubs" are the headers made from idl/), and the libraries of
+// others. Standard headers and those of the operating system are everybody's.
 struct Layer {
   std::string folder;
   Names may_include;
+  Names libraries{};
 };
 
+// The first folder that a file lies in counts.
 const std::vector<Layer> layers = {
-    {"rtm-core/base", {"base"}},
+    {"rtm-core/base", {"base"}, {"spdlog", "CLI11", "uuid"}},
     {"rtm-core/core", {"core", "base"}},
-    {"rtm-core/corba", {"corba", "core", "base", "stubs", "omniORB"}},
+    {"rtm-core/corba", {"corba", "core", "base", "stubs"}, {"omniORB"}},
+    {"rtm-core/openrtm/include/coil", {"coil"}},
+    {"rtm-core/openrtm/include", {"rtm", "coil", "corba", "core", "base", "stubs"}, {"omniORB"}},
     {"rtm-core/openrtm/coil", {"coil"}},
-    {"rtm-core/openrtm", {"rtm", "coil", "corba", "core", "base", "stubs", "omniORB"}},
+    {"rtm-core/component", {"component", "rtm", "coil", "corba", "core", "base", "stubs"}, {"omniORB"}},
+    {"rtm-core/manager", {"manager", "rtm", "coil", "corba", "core", "base", "stubs"}, {"omniORB"}},
+    {"rtm-core/openrtm", {"openrtm", "manager", "component", "rtm", "coil", "corba", "core", "base", "stubs"}, {"omniORB"}},
     {"rtm-core/rtcd", {"rtm", "coil", "corba", "core", "base", "stubs"}},
     {"sim-server/shm", {"shm", "base"}},
-    {"sim-server/world", {"world", "base", "SDFormat"}},
-    {"sim-server/physics", {"physics", "world", "base", "ODE"}},
-    {"sim-server/rays", {"rays", "world", "base", "Embree"}},
-    {"sim-server/render", {"render", "world", "base", "OpenGL"}},
-    {"sim-server", {"devices", "server", "simctl", "shm", "world", "physics", "rays", "render", "base"}},
-    {"iface-components", {"rtm", "coil", "shm", "base", "stubs"}},
+    {"sim-server/world", {"world", "base"}, {"SDFormat", "pugixml", "Assimp", "PNG", "Eigen", "spdlog"}},
+    {"sim-server/physics", {"physics", "world", "base"}, {"ODE", "Eigen", "spdlog"}},
+    {"sim-server/rays", {"rays", "world", "base"}, {"Embree", "Eigen", "spdlog"}},
+    {"sim-server/render", {"render", "world", "base"}, {"OpenGL", "Assimp", "PNG", "JPEG", "Eigen", "spdlog"}},
+    {"sim-server",
+     {"devices", "server", "simctl", "shm", "world", "physics", "rays", "render", "base"},
+     {"Eigen", "JSON", "PNG", "spdlog", "CLI11"}},
+    {"iface-components", {"rtm", "coil", "shm", "base", "stubs"}, {"JPEG"}},
     {"clients/examples", {"rtm", "coil", "base", "stubs"}},
     {"clients/obstacle-avoidance", {"rtm", "coil", "base", "stubs"}},
-    {"clients/video-player", {"rtm", "coil", "base", "stubs"}},
-    {"clients/system-editor", {"corba", "base", "stubs", "omniORB"}},
+    {"clients/video-player", {"rtm", "coil", "base", "stubs"}, {"SDL2", "X11", "JPEG", "PNG"}},
+    {"clients/system-editor", {"corba", "base", "stubs"}, {"omniORB", "pugixml", "JSON", "YAML", "CLI11", "spdlog", "ncurses"}},
     {"clients/player-gateway/protocol", {"protocol", "base"}},
-    {"clients/player-gateway", {"protocol", "shm", "base"}},
-    {"clients/follow", {"protocol", "base"}},
+    {"clients/player-gateway", {"protocol", "shm", "base"}, {"JSON", "YAML", "CLI11", "spdlog"}},
+    {"clients/follow", {"protocol", "base"}, {"CLI11"}},
 };
 
-// Whose header this is: a part of the project, a library that belongs to one layer, or "" for everything that anybody may include.
+// Whose header this is: a part of the project, a library, or "" for one of neither.
 std::string owner(const std::string& header) {
   static const std::vector<std::pair<std::string, std::string>> prefixes = {
-      {"rtm/idl/", "stubs"},     {"rtm/ext/", "stubs"},     {"base/", "base"},       {"core/", "core"},     {"corba/", "corba"},
-      {"rtm/", "rtm"},           {"coil/", "coil"},         {"shm/", "shm"},         {"world/", "world"},   {"physics/", "physics"},
-      {"rays/", "rays"},         {"render/", "render"},     {"devices/", "devices"}, {"server/", "server"}, {"simctl/", "simctl"},
-      {"omniORB4/", "omniORB"},  {"omnithread", "omniORB"}, {"COS/", "omniORB"},     {"ode/", "ODE"},       {"embree", "Embree"},
-      {"protocol/", "protocol"}, {"sdf/", "SDFormat"},      {"GL/", "OpenGL"},       {"GLES", "OpenGL"},    {"KHR/", "OpenGL"},
+      {"rtm/idl/", "stubs"},     {"rtm/ext/", "stubs"}, {"base/", "base"},       {"core/", "core"},         {"corba/", "corba"},
+      {"rtm/", "rtm"},           {"coil/", "coil"},     {"openrtm/", "openrtm"}, {"manager/", "manager"},   {"component/", "component"},
+      {"rays/", "rays"},         {"render/", "render"}, {"devices/", "devices"}, {"server/", "server"},     {"simctl/", "simctl"},
+      {"shm/", "shm"},           {"world/", "world"},   {"physics/", "physics"}, {"protocol/", "protocol"}, {"omniORB4/", "omniORB"},
+      {"omnithread", "omniORB"}, {"COS/", "omniORB"},   {"ode/", "ODE"},         {"embree", "Embree"},      {"sdf/", "SDFormat"},
+      {"GL/", "OpenGL"},         {"GLES", "OpenGL"},    {"KHR/", "OpenGL"},      {"Eigen/", "Eigen"},       {"nlohmann/", "JSON"},
+      {"spdlog/", "spdlog"},     {"fmt/", "spdlog"},    {"pugixml", "pugixml"},  {"yaml-cpp/", "YAML"},     {"png.h", "PNG"},
+      {"jpeglib", "JPEG"},       {"turbojpeg", "JPEG"}, {"assimp/", "Assimp"},   {"CLI/", "CLI11"},         {"SDL", "SDL2"},
+      {"X11/", "X11"},           {"uuid/", "uuid"},     {"ncurses", "ncurses"},
   };
   for (const auto& [prefix, name] : prefixes) {
     if (header.starts_with(prefix)) return name;
   }
   return "";
+}
+
+// A standard header of C++ (its name has neither dot nor slash), or one of C, of the processor or of the operating system.
+bool is_everybodys(const std::string& header) {
+  if (header.find_first_of("./") == std::string::npos) return true;
+  static const Names folders = {"sys/", "linux/", "netinet/", "net/", "arpa/", "bits/"};
+  if (std::any_of(folders.begin(), folders.end(), [&](const std::string& folder) { return header.starts_with(folder); })) return true;
+  static const Names names = {
+      "cxxabi.h", "dirent.h",    "dlfcn.h",   "elf.h",       "errno.h",  "execinfo.h", "fcntl.h",     "fnmatch.h", "getopt.h",
+      "glob.h",   "grp.h",       "ifaddrs.h", "immintrin.h", "limits.h", "link.h",     "locale.h",    "malloc.h",  "math.h",
+      "netdb.h",  "pmmintrin.h", "poll.h",    "pthread.h",   "pwd.h",    "sched.h",    "semaphore.h", "signal.h",  "spawn.h",
+      "stddef.h", "stdint.h",    "stdio.h",   "stdlib.h",    "string.h", "termios.h",  "time.h",      "unistd.h",  "xmmintrin.h",
+  };
+  return std::find(names.begin(), names.end(), header) != names.end();
 }
 
 const Layer* layer_of(const std::string& file) {
@@ -83,7 +110,7 @@ std::string source_text(const fs::path& path) {
 
 // "file:line: layer folder may not include <header> of part", one per offence, sorted.
 Names offences(const fs::path& root) {
-  static const std::regex include_line(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"].*)");
+  static const std::regex include_line(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"].*)");
   Names found;
   for (const char* top : {"rtm-core", "sim-server", "iface-components", "clients"}) {
     if (!fs::exists(root / top)) continue;
@@ -101,10 +128,16 @@ Names offences(const fs::path& root) {
       for (int number = 1; std::getline(in, line); ++number) {
         std::smatch match;
         if (!std::regex_match(line, match, include_line)) continue;
-        const std::string part = owner(match[1]);
-        if (part.empty() || std::count(layer->may_include.begin(), layer->may_include.end(), part) != 0) continue;
-        found.push_back(file + ":" + std::to_string(number) + ": " + layer->folder + " may not include <" + match[1].str() + "> of " +
-                        part);
+        const std::string header = match[2];
+        const std::string part = owner(header);
+        const auto has = [&](const Names& names) { return std::count(names.begin(), names.end(), part) != 0; };
+        const std::string at = file + ":" + std::to_string(number) + ": ";
+        if (part.empty()) {
+          // With quotation marks it is a neighbour in the same folder.
+          if (match[1] == "<" && !is_everybodys(header)) found.push_back(at + "<" + header + "> is of no library in the table");
+        } else if (!has(layer->may_include) && !has(layer->libraries)) {
+          found.push_back(at + layer->folder + " may not include <" + header + "> of " + part);
+        }
       }
     }
   }
@@ -132,7 +165,10 @@ TEST_F(PlantedTree, every_kind_of_offence_is_found) {
   plant("sim-server/devices/b.cpp", "#include \"shm/segment.h\"\n  #  include <rtm/Manager.h>\n");
   plant("iface-components/c.cpp", "#include <rtm/Manager.h>\n#include \"core/registry.h\"\n");
   plant("clients/video-player/d.cpp", "#include \"shm/segment.h\"\n");
-  plant("rtm-core/openrtm/coil/e.h", "#include <rtm/idl/RTCSkel.h>\n");
+  plant("rtm-core/component/i.h", "#include \"core/lifecycle.h\"\n#include \"manager/manager_impl.h\"\n");
+  plant("rtm-core/core/j.cpp", "#include <sys/types.h>\n#include \"neighbour.h\"\n#include <boost/any.hpp>\n#include <Eigen/Core>\n");
+  plant("rtm-core/openrtm/include/coil/e.h", "#include <rtm/idl/RTCSkel.h>\n");
+  plant("rtm-core/openrtm/include/rtm/k.h", "#include \"component/component_impl.h\"\n#include <rtm/idl/RTCSkel.h>\n");
   plant("sim-server/render/f.cpp", "#include <GL/gl.h>\n#include <ode/ode.h>\n");
   plant("clients/unknown/g.cpp", "\n");
   plant("clients/player-gateway/protocol/h.cpp", "#include \"protocol/xdr.h\"\n#include \"shm/client.h\"\n");
@@ -142,9 +178,13 @@ TEST_F(PlantedTree, every_kind_of_offence_is_found) {
                 "clients/unknown/g.cpp: is in no layer of the table",
                 "clients/video-player/d.cpp:1: clients/video-player may not include <shm/segment.h> of shm",
                 "iface-components/c.cpp:2: iface-components may not include <core/registry.h> of core",
+                "rtm-core/component/i.h:2: rtm-core/component may not include <manager/manager_impl.h> of manager",
                 "rtm-core/core/a.h:2: rtm-core/core may not include <omniORB4/CORBA.h> of omniORB",
                 "rtm-core/core/a.h:3: rtm-core/core may not include <corba/orb.h> of corba",
-                "rtm-core/openrtm/coil/e.h:1: rtm-core/openrtm/coil may not include <rtm/idl/RTCSkel.h> of stubs",
+                "rtm-core/core/j.cpp:3: <boost/any.hpp> is of no library in the table",
+                "rtm-core/core/j.cpp:4: rtm-core/core may not include <Eigen/Core> of Eigen",
+                "rtm-core/openrtm/include/coil/e.h:1: rtm-core/openrtm/include/coil may not include <rtm/idl/RTCSkel.h> of stubs",
+                "rtm-core/openrtm/include/rtm/k.h:1: rtm-core/openrtm/include may not include <component/component_impl.h> of component",
                 "sim-server/devices/b.cpp:2: sim-server may not include <rtm/Manager.h> of rtm",
                 "sim-server/render/f.cpp:2: sim-server/render may not include <ode/ode.h> of ODE",
             }));

@@ -4,9 +4,9 @@
 #include "corba/in_engine.h"
 #include "corba/nv_list.h"
 #include "corba/out_engine.h"
-#include "rtm/InterfacePlugins.h"
+#include "openrtm/data_port_support.h"
+#include "openrtm/interface_plugins.h"
 #include "rtm/Serializers.h"
-#include "rtm/data_port_support.h"
 
 namespace RTC {
 

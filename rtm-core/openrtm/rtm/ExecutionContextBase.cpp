@@ -1,6 +1,6 @@
 #include <coil/stringutil.h>
-#include <rtm/ExecutionContextImpl.h>
 #include <rtm/NVUtil.h>
+#include "component/context_impl.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,5 +1,5 @@
-#include <rtm/ExecutionContextImpl.h>
 #include <rtm/ExecutionContextWorker.h>
+#include "component/context_impl.h"
 
 namespace RTC_impl {
 

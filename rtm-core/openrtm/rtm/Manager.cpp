@@ -8,9 +8,9 @@
 
 #include "base/log.h"
 #include "base/text.h"
+#include "manager/manager_impl.h"
 #include "rtm/ECFactory.h"
 #include "rtm/ManagerConfig.h"
-#include "rtm/ManagerImpl.h"
 #include "rtm/ManagerServant.h"
 #include "rtm/ModuleManager.h"
 #include "rtm/NamingManager.h"

@@ -1,7 +1,7 @@
 #include "rtm/OutPortBase.h"
 
 #include "corba/out_engine.h"
-#include "rtm/data_port_support.h"
+#include "openrtm/data_port_support.h"
 
 namespace RTC {
 

@@ -1,7 +1,7 @@
 #include <coil/stringutil.h>
-#include <rtm/ComponentObserverConsumer.h>
-#include <rtm/LoggerConsumer.h>
 #include <rtm/SdoServiceAdmin.h>
+#include "component/log_consumer.h"
+#include "component/observer.h"
 
 #include <algorithm>
 #include <optional>

@@ -4,7 +4,7 @@
 #include "base/text.h"
 #include "core/config_file.h"
 #include "core/name_format.h"
-#include "rtm/ManagerImpl.h"
+#include "manager/manager_impl.h"
 #include "rtm/ModuleManager.h"
 #include "rtm/NamingManager.h"
 #include "rtm/RTObject.h"

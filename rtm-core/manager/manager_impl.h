@@ -78,7 +78,7 @@ class ManagerImpl {
   explicit ManagerImpl(Manager& facade);
   ~ManagerImpl();
 
-  // --- life (ManagerLife.cpp)
+  // --- life (life.cpp)
   // Starts ORB, threads and naming. One line on failure.
   base::Result<void> start(const ManagerConfig& config, const ManagerOptions& options);
   bool activate();
@@ -98,8 +98,7 @@ class ManagerImpl {
   std::string where_if(const std::string& text, const std::string& key) const;  // empty unless the key has that value
   bool is_master() const { return flag("manager.is_master", false); }
 
-  // --- components (ManagerCreation.cpp, ManagerComponents.cpp, ManagerConnections.cpp,
-  // ManagerTopics.cpp)
+  // --- components (creation.cpp, components.cpp, connections.cpp, topics.cpp)
   bool register_factory(const coil::Properties& profile, RtcNewFunc create, RtcDeleteFunc destroy);
   std::optional<RegisteredFactory> find_factory(const rt::ComponentId& id) const;
   // How many components of the module exist; without any, its factories are removed.
@@ -157,7 +156,7 @@ class ManagerImpl {
   void start_naming();
   void start_timer_tasks();
   void live();
-  // The end (ManagerEnd.cpp)
+  // The end (end.cpp)
   class EndWatch;
   void end();
   void remove_files() const;

@@ -1,5 +1,5 @@
 // The callbacks of a component: called one and all through callUser, which knows who is in one.
-#include <rtm/RTObjectImpl.h>
+#include "component/component_impl.h"
 
 #include <algorithm>
 #include <cmath>

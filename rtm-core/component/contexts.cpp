@@ -1,9 +1,9 @@
 // The execution contexts of a component: its own, made from properties, and those it takes part in.
 #include <coil/stringutil.h>
 #include <rtm/ECFactory.h>
-#include <rtm/LocalComponent.h>
 #include <rtm/Manager.h>
-#include <rtm/RTObjectImpl.h>
+#include "component/component_impl.h"
+#include "component/local_component.h"
 
 #include <algorithm>
 

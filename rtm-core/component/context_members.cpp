@@ -1,7 +1,7 @@
 // The members of an execution context: how they come, change their state and leave.
-#include <rtm/ExecutionContextImpl.h>
-#include <rtm/LocalComponent.h>
 #include <rtm/RTObject.h>
+#include "component/context_impl.h"
+#include "component/local_component.h"
 
 #include <algorithm>
 

@@ -15,9 +15,9 @@
 
 #include "base/log.h"
 #include "base/text.h"
+#include "manager/manager_impl.h"
 #include "rtm/LocalServiceAdmin.h"
 #include "rtm/LogstreamBase.h"
-#include "rtm/ManagerImpl.h"
 #include "rtm/ManagerServant.h"
 #include "rtm/ModuleManager.h"
 #include "rtm/NamingManager.h"

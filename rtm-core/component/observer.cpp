@@ -1,4 +1,4 @@
-#include <rtm/ComponentObserverConsumer.h>
+#include "component/observer.h"
 #include <rtm/ConnectorListener.h>
 #include <rtm/InPortBase.h>
 #include <rtm/NVUtil.h>

@@ -3,7 +3,7 @@
 #include <rtm/NVUtil.h>
 #include <rtm/OutPortBase.h>
 #include <rtm/PortBase.h>
-#include <rtm/RTObjectImpl.h>
+#include "component/component_impl.h"
 
 #include <algorithm>
 

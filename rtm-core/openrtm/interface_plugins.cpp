@@ -1,4 +1,4 @@
-#include "rtm/InterfacePlugins.h"
+#include "openrtm/interface_plugins.h"
 
 #include <cstring>
 #include <mutex>

@@ -1,4 +1,4 @@
-#include <rtm/LoggerConsumer.h>
+#include "component/log_consumer.h"
 #include <rtm/NVUtil.h>
 #include <rtm/RTObject.h>
 #include <rtm/SystemLogger.h>

@@ -1,5 +1,5 @@
+#include "component/local_component.h"
 #include <rtm/ExecutionContextBase.h>
-#include <rtm/LocalComponent.h>
 #include <rtm/RTObject.h>
 
 #include "corba/orb.h"

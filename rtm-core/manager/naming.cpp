@@ -10,8 +10,8 @@
 #include "base/text.h"
 #include "corba/naming.h"
 #include "corba/orb.h"
+#include "manager/manager_impl.h"
 #include "rtm/CORBA_IORUtil.h"
-#include "rtm/ManagerImpl.h"
 #include "rtm/ManagerServant.h"
 #include "rtm/RTObject.h"
 

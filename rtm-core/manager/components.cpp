@@ -1,7 +1,7 @@
 // The components that exist: the list, and how they go.
 #include <algorithm>
 
-#include "rtm/ManagerImpl.h"
+#include "manager/manager_impl.h"
 #include "rtm/RTObject.h"
 
 namespace RTC {

@@ -1,12 +1,12 @@
-#include "rtm/data_port_support.h"
+#include "openrtm/data_port_support.h"
 
 #include <algorithm>
 
 #include "base/text.h"
 #include "corba/connector_keys.h"
 #include "corba/nv_list.h"
+#include "openrtm/interface_plugins.h"
 #include "rtm/CORBA_SeqUtil.h"
-#include "rtm/InterfacePlugins.h"
 #include "rtm/NVUtil.h"
 
 namespace RTC::detail {

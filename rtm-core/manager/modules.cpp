@@ -22,8 +22,8 @@
 #include "base/text.h"
 #include "core/config_file.h"
 #include "core/name_format.h"
+#include "manager/manager_impl.h"
 #include "rtm/ECFactory.h"
-#include "rtm/ManagerImpl.h"
 
 namespace RTC {
 namespace {

@@ -1,5 +1,5 @@
 // A component as an SDO: organizations, services, device profile, status.
-#include <rtm/RTObjectImpl.h>
+#include "component/component_impl.h"
 
 #include "base/text.h"
 #include "corba/orb.h"

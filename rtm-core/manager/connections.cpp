@@ -1,8 +1,8 @@
 // What the manager does with ports and states: preconnect, preactivation.
 #include "base/text.h"
 #include "core/preconnect.h"
+#include "manager/manager_impl.h"
 #include "rtm/CORBA_RTCUtil.h"
-#include "rtm/ManagerImpl.h"
 #include "rtm/NamingManager.h"
 #include "rtm/RTObject.h"
 

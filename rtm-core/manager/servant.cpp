@@ -6,9 +6,9 @@
 #include "base/text.h"
 #include "corba/orb.h"
 #include "core/config_keys.h"
+#include "manager/manager_impl.h"
 #include "rtm/LocalServiceAdmin.h"
 #include "rtm/Manager.h"
-#include "rtm/ManagerImpl.h"
 #include "rtm/NVUtil.h"
 #include "rtm/RTObject.h"
 

@@ -1,6 +1,6 @@
 // What becomes of a component when the process of a composite or a context that it takes part in has died: it gets its own life back.
 #include <rtm/Manager.h>
-#include <rtm/RTObjectImpl.h>
+#include "component/component_impl.h"
 
 #include "corba/orb.h"
 
