@@ -9,6 +9,7 @@
 #include "base/guarded.h"
 #include "base/log.h"
 #include "devices/render_world.h"
+#include "devices/sensor.h"
 #include "render/pixels.h"
 #include "world/iface_names.h"
 
@@ -184,7 +185,7 @@ class CameraDevice final : public Device, public CameraPlaceSource {
     job_ = Job{world_.pictures->snapshot(moment.time), mount_.in_world(world_.physics), moment.time, std::move(wanted)};
     return true;
   }
-  void measure(const Moment&) override { worker_.start(std::move(*job_)); }
+  void take_sample(const Moment&) override { worker_.start(std::move(*job_)); }
   void publish(const Moment& moment) override {
     schedule_.done(moment.time);
     last_picture_ = moment.time;
@@ -260,9 +261,9 @@ shm::CameraInfo info_of(const Camera& camera, const DeviceWorld& world, const Mo
     const double terms[5] = {d.k1, d.k2, d.p1, d.p2, d.k3};
     std::copy(std::begin(terms), std::end(terms), info.distortion);
   }
-  info.rate = sensor.update_rate > 0 ? sensor.update_rate : 1 / world.world.physics.step;
-  info.noise = def.noise.kind == NoiseDef::Kind::none ? 0 : def.noise.stddev;
-  info.pose = to_pose(model.links[mount.link.link].pose * mount.pose);
+  info.rate = stated_rate(world, sensor.update_rate);
+  info.noise = stated_deviation(def.noise);
+  info.pose = pose_on_model(model, mount);
   shm::set_text(info.model, scoped_model(model, sensor.scope));
   return info;
 }

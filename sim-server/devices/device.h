@@ -1,6 +1,7 @@
 // What every device of a robot is to the server's loop, and what a device may use of the world. The loop calls, in this order and for all
-// devices in the order of the world: before_step, (step), after_step, then for those that are due measure, and publish.
-// The stepping thread only, but measure() of different devices may run in several threads at the same time: it reads the world and
+// devices in the order of the world: before_step, (step), after_step, then for those that are due take_sample, and publish. Devices that
+// publish samples are Sensors (sensor.h), which leaves them little of this to write; cameras draw in their own time.
+// The stepping thread only, but take_sample() of different devices may run in several threads at the same time: it reads the world and
 // changes nothing but its own device.
 #pragma once
 
@@ -60,15 +61,12 @@ class Device {
   // True when somebody wants a sample and one is due.
   virtual bool wants_sample(const Moment&) { return false; }
   virtual bool uses_rays() const { return false; }
-  virtual void measure(const Moment&) {}
+  virtual void take_sample(const Moment&) {}
   virtual void publish(const Moment&) {}
   // While time stands still: true when the sensor was switched on and has not said anything since.
-  virtual bool owes_sample() { return iface().owes_sample(); }
+  virtual bool owes_sample() = 0;
   // Then: a sample of how it is now, which changes nothing in what comes later. Rays are up to date.
-  virtual void show(const Moment& moment) {
-    measure(moment);
-    iface().publish(moment.time);
-  }
+  virtual void show(const Moment&) {}
   // Back to the start, with the model (again) at its initial state.
   virtual void reset() {}
   virtual void add_to(StateHash&) const {}

@@ -1,8 +1,9 @@
+#include "devices/gps.h"
+
 #include <cmath>
 #include <numbers>
 
-#include "devices/simple_devices.h"
-#include "world/iface_names.h"
+#include "devices/sensor_makers.h"
 
 namespace sim {
 namespace {
@@ -36,69 +37,50 @@ Eigen::Vector3d geodetic_of(const SphericalDef& place, const Eigen::Vector3d& en
   return {latitude / degree, std::atan2(p.y(), p.x()) / degree, altitude};
 }
 
-base::Result<std::unique_ptr<Device>> Gps::make(DeviceWorld& world, Mount mount, const SensorDef& sensor) {
-  const ModelDef& model = world.physics.def(mount.link.model);
-  const auto& def = std::get<GpsDef>(sensor.data);
-  const auto deviation = [](const NoiseDef& noise) { return noise.kind == NoiseDef::Kind::none ? 0 : noise.stddev; };
-  shm::GpsInfo info{};
-  info.rate = sensor.update_rate > 0 ? sensor.update_rate : 1 / world.world.physics.step;
-  info.position_noise = deviation(def.horizontal_position);
-  info.altitude_noise = deviation(def.vertical_position);
-  info.velocity_noise = deviation(def.horizontal_velocity);
-  info.latitude = world.world.spherical.latitude;
-  info.longitude = world.world.spherical.longitude;
-  info.altitude = world.world.spherical.elevation;
-  info.heading = world.world.spherical.heading;
-  info.pose = to_pose(model.links[mount.link.link].pose * mount.pose);
-  shm::set_text(info.model, scoped_model(model, sensor.scope));
-  auto writer = world.shm.create(shm::gps_spec(iface_name(model, sensor), info));
-  if (!writer) return writer.error();
-  return std::unique_ptr<Device>(new Gps(world, mount, sensor, std::move(*writer)));
-}
+namespace {
 
-Gps::Gps(DeviceWorld& world, Mount mount, const SensorDef& sensor, std::unique_ptr<shm::IfaceWriter> writer)
-    : world_(world), mount_(mount), schedule_(sensor.update_rate), writer_(std::move(writer)) {
-  const auto& def = std::get<GpsDef>(sensor.data);
-  const NoiseDef* noises[4] = {&def.horizontal_position, &def.vertical_position, &def.horizontal_velocity, &def.vertical_velocity};
-  for (std::size_t i = 0; i < 4; ++i) noise_[i] = Noise(*noises[i], RandomStream(world.seed, writer_->name() + static_cast<char>('a' + i)));
-  fresh_noise_ = noise_;
-}
+class Gps final : public Sensor {
+ public:
+  Gps(Setup setup, const SensorSite& site) : Sensor(std::move(setup)), mount_(site.mount) {}
 
-void Gps::measure(const Moment&) {
-  const Eigen::Vector3d p = mount_.in_world(world_.physics).translation();
-  const Eigen::AngleAxisd to_east(world_.world.spherical.heading, Eigen::Vector3d::UnitZ());
-  Eigen::Vector3d enu = to_east * p, velocity = to_east * world_.physics.point_velocity(mount_.link, p);
-  const double dt = std::max(static_cast<double>(schedule_.period().count()) * 1e-9, world_.world.physics.step);
-  for (int i = 0; i < 3; ++i) {
-    enu[i] = noise_[i < 2 ? 0 : 1].apply(enu[i], dt);
-    velocity[i] = noise_[i < 2 ? 2 : 3].apply(velocity[i], dt);
+ private:
+  enum Channel { across, up, velocity_across, velocity_up };
+
+  void measure(const Moment&) const override {
+    const SphericalDef& earth = world().world.spherical;
+    const Eigen::Vector3d p = mount_.in_world(physics()).translation();
+    const Eigen::AngleAxisd to_east(earth.heading, Eigen::Vector3d::UnitZ());
+    Eigen::Vector3d enu = to_east * p, velocity = to_east * physics().point_velocity(mount_.link, p);
+    for (int i = 0; i < 3; ++i) {
+      enu[i] = noisy(i < 2 ? across : up, enu[i]);
+      velocity[i] = noisy(i < 2 ? velocity_across : velocity_up, velocity[i]);
+    }
+    const Eigen::Vector3d geodetic = geodetic_of(earth, enu);
+    auto& out = sample<shm::GpsSample>();
+    out.latitude = geodetic[0];
+    out.longitude = geodetic[1];
+    out.altitude = geodetic[2];
+    for (int i = 0; i < 3; ++i) out.velocity[i] = velocity[i];
   }
-  const Eigen::Vector3d geodetic = geodetic_of(world_.world.spherical, enu);
-  auto& sample = writer_->sample<shm::GpsSample>();
-  sample.latitude = geodetic[0];
-  sample.longitude = geodetic[1];
-  sample.altitude = geodetic[2];
-  for (int i = 0; i < 3; ++i) sample.velocity[i] = velocity[i];
-}
 
-void Gps::publish(const Moment& moment) {
-  schedule_.done(moment.time);
-  writer_->publish(moment.time);
-}
+  Mount mount_;
+};
 
-void Gps::show(const Moment& moment) {
-  const auto before = noise_;
-  Device::show(moment);
-  noise_ = before;
-}
+}  // namespace
 
-void Gps::reset() {
-  schedule_.restart();
-  noise_ = fresh_noise_;
-}
-
-void Gps::add_to(StateHash& hash) const {
-  for (const auto& noise : noise_) hash.add(noise.stream().position());
+MadeDevice make_gps(const SensorSite& site) {
+  const auto& def = std::get<GpsDef>(site.def.data);
+  const SphericalDef& earth = site.world.world.spherical;
+  auto info = info_of<shm::GpsInfo>(site);
+  info.position_noise = stated_deviation(def.horizontal_position);
+  info.altitude_noise = stated_deviation(def.vertical_position);
+  info.velocity_noise = stated_deviation(def.horizontal_velocity);
+  info.latitude = earth.latitude;
+  info.longitude = earth.longitude;
+  info.altitude = earth.elevation;
+  info.heading = earth.heading;
+  return make_sensor<Gps>(site, shm::gps_spec(site.iface(), info),
+                          {def.horizontal_position, def.vertical_position, def.horizontal_velocity, def.vertical_velocity});
 }
 
 }  // namespace sim

@@ -4,18 +4,16 @@
 #include "base/text.h"
 #include "devices/camera.h"
 #include "devices/device.h"
-#include "devices/laser.h"
-#include "devices/meter.h"
 #include "devices/position2d.h"
 #include "devices/position3d.h"
-#include "devices/simple_devices.h"
+#include "devices/sensor_makers.h"
+#include "devices/sonar.h"
+#include "devices/truth.h"
 #include "world/iface_names.h"
 #include "world/plugin_kind.h"
 
 namespace sim {
 namespace {
-
-using Made = base::Result<std::unique_ptr<Device>>;
 
 bool is_camera(SensorKind kind) {
   return kind == SensorKind::camera || kind == SensorKind::depth_camera || kind == SensorKind::rgbd_camera ||
@@ -35,7 +33,7 @@ struct Makers {
     if (!good) left_out.push_back(fmt::format("model {}: {}: {}", world.physics.def(model).name, what, good.error().message));
     return static_cast<bool>(good);
   }
-  void take(Made made) {
+  void take(MadeDevice made) {
     if (made) {
       devices.push_back(std::move(*made));
     } else if (!failure) {
@@ -44,35 +42,24 @@ struct Makers {
   }
 };
 
+const SensorMaker* maker_of(SensorKind kind) {
+  const auto row = std::find_if(sensor_makers.begin(), sensor_makers.end(), [&](const SensorMaker& maker) { return maker.kind == kind; });
+  return row == sensor_makers.end() ? nullptr : &*row;
+}
+
 void make_sensor(Makers& m, Mount mount, const SensorDef& sensor) {
-  if (!m.can_name(iface_name(m.world.physics.def(m.model), sensor), "sensor " + sensor.name)) return;
-  switch (sensor.kind) {
-    case SensorKind::ray:
-      return m.take(Laser::make(m.world, mount, sensor));
-    case SensorKind::imu:
-      return m.take(Imu::make(m.world, mount, sensor));
-    case SensorKind::gps:
-      return m.take(Gps::make(m.world, mount, sensor));
-    case SensorKind::contact:
-      return m.take(Bumper::make(m.world, mount, sensor));
-    case SensorKind::altimeter:
-    case SensorKind::magnetometer:
-    case SensorKind::air_pressure:
-      return m.take(Meter::make(m.world, mount, sensor, std::nullopt));
-    case SensorKind::force_torque:
-      m.left_out.push_back(
-          fmt::format("model {}: sensor {}: a force_torque sensor measures the joint that it stands in; this one stands in a link",
-                      m.world.physics.def(m.model).name, sensor.name));
-      return;
-    default:
-      break;
-  }
-  if (is_camera(sensor.kind)) {
-    auto made = make_cameras(m.world, mount, sensor);
-    if (!made && !m.failure) m.failure = made.error();
-    if (made) std::move(made->begin(), made->end(), std::back_inserter(m.devices));
+  const ModelDef& def = m.world.physics.def(m.model);
+  if (!m.can_name(iface_name(def, sensor), "sensor " + sensor.name)) return;
+  if (const SensorMaker* maker = maker_of(sensor.kind)) {
+    if (!maker->stands_in_joint) return m.take(maker->make({m.world, mount, sensor, std::nullopt}));
+    m.left_out.push_back(fmt::format("model {}: sensor {}: a {} sensor measures the joint that it stands in; this one stands in a link",
+                                     def.name, sensor.name, to_text(sensor.kind)));
     return;
   }
+  if (!is_camera(sensor.kind)) return;
+  auto made = make_cameras(m.world, mount, sensor);
+  if (!made && !m.failure) m.failure = made.error();
+  if (made) std::move(made->begin(), made->end(), std::back_inserter(m.devices));
 }
 
 void make_joint_sensors(Makers& m) {
@@ -80,14 +67,15 @@ void make_joint_sensors(Makers& m) {
   for (std::uint32_t j = 0; j < def.joints.size(); ++j) {
     for (const auto& sensor : def.joints[j].sensors) {
       const auto link = link_of(def, {}, def.joints[j].child.empty() ? def.joints[j].parent : def.joints[j].child);
-      if (sensor.kind != SensorKind::force_torque || !link) {
+      const SensorMaker* maker = maker_of(sensor.kind);
+      if (maker == nullptr || !maker->stands_in_joint || !link) {
         m.left_out.push_back(
             fmt::format("model {}: sensor {}: {} sensors stand in links, not in joints", def.name, sensor.name, to_text(sensor.kind)));
         continue;
       }
       if (!m.can_name(iface_name(def, sensor), "sensor " + sensor.name)) continue;
       const Eigen::Isometry3d place = def.links[*link].pose.inverse() * def.joints[j].pose_in_model * sensor.pose;
-      m.take(Meter::make(m.world, {{m.model, *link}, place}, sensor, JointId{m.model, j}));
+      m.take(maker->make({m.world, {{m.model, *link}, place}, sensor, JointId{m.model, j}}));
     }
   }
 }
@@ -96,13 +84,13 @@ void make_sonars(Makers& m) {
   const ModelDef& def = m.world.physics.def(m.model);
   struct Ring {
     std::string scope, iface;
-    std::vector<SonarRing::Transducer> transducers;
+    std::vector<Transducer> transducers;
   };
   std::vector<Ring> rings;  // one for each scope
   for (std::uint32_t l = 0; l < def.links.size(); ++l) {
     for (const auto& sensor : def.links[l].sensors) {
       if (!is_sonar(sensor)) continue;
-      const SonarRing::Transducer transducer{{{m.model, l}, sensor.pose}, &sensor};
+      const Transducer transducer{{{m.model, l}, sensor.pose}, &sensor};
       const std::string iface = iface_name(def, sensor);
       if (!m.can_name(iface, "sensor " + sensor.name)) continue;
       auto ring = std::find_if(rings.begin(), rings.end(), [&](const Ring& r) { return is_of_a_ring(sensor) && r.iface == iface; });
@@ -110,7 +98,7 @@ void make_sonars(Makers& m) {
       ring->transducers.push_back(transducer);
     }
   }
-  for (const auto& ring : rings) m.take(SonarRing::make(m.world, ring.iface, ring.scope, ring.transducers));
+  for (const auto& ring : rings) m.take(make_sonar_ring(m.world, ring.iface, ring.scope, ring.transducers));
 }
 
 // The way points that a drive of the same (nested) model follows while nobody commands it.
@@ -195,7 +183,7 @@ base::Result<std::vector<std::unique_ptr<Device>>> make_devices(DeviceWorld& wor
   }
   make_joint_sensors(m);
   make_sonars(m);
-  if (!world.physics.is_static(model) && m.can_name(def.name, "true pose")) m.take(Truth::make(world, model));
+  if (!world.physics.is_static(model) && m.can_name(def.name, "true pose")) m.take(make_truth(world, model));
   if (m.failure) return *m.failure;
   return std::move(m.devices);
 }

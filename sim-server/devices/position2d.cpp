@@ -30,8 +30,7 @@ Eigen::AlignedBox3d box_of(const ModelDef& model) {
 
 }  // namespace
 
-base::Result<std::unique_ptr<Device>> Position2d::make(DeviceWorld& world, ModelId model, const PluginDef& plugin,
-                                                       std::unique_ptr<DriveTrain> train) {
+MadeDevice Position2d::make(DeviceWorld& world, ModelId model, const PluginDef& plugin, std::unique_ptr<DriveTrain> train) {
   const ModelDef& def = world.physics.def(model);
   shm::Position2dInfo info{};
   const Eigen::AlignedBox3d box = box_of(def);
@@ -42,25 +41,19 @@ base::Result<std::unique_ptr<Device>> Position2d::make(DeviceWorld& world, Model
   info.pose.z = centre.z();
   for (int i = 0; i < 3; ++i) info.size[i] = size[i];
   train->describe(info);
-  info.rate = train->rate() > 0 ? train->rate() : 1 / world.world.physics.step;
+  info.rate = stated_rate(world, train->rate());
   shm::set_text(info.model, scoped_model(def, plugin.scope));
-  auto writer = world.shm.create(shm::position2d_spec(iface_name(def, plugin), info));
-  if (!writer) return writer.error();
-  return std::unique_ptr<Device>(new Position2d(world, model, info.wheel_separation, std::move(train), std::move(*writer)));
+  auto setup = set_up(world, model, train->rate(), shm::position2d_spec(iface_name(def, plugin), info), {});
+  if (!setup) return setup.error();
+  return MadeDevice(std::make_unique<Position2d>(std::move(*setup), info.wheel_separation, std::move(train)));
 }
 
-Position2d::Position2d(DeviceWorld& world, ModelId model, double separation, std::unique_ptr<DriveTrain> train,
-                       std::unique_ptr<shm::IfaceWriter> writer)
-    : world_(world),
-      model_(model),
-      separation_(separation),
-      train_(std::move(train)),
-      schedule_(train_->rate()),
-      writer_(std::move(writer)) {}
+Position2d::Position2d(Setup setup, double separation, std::unique_ptr<DriveTrain> train)
+    : Sensor(std::move(setup)), separation_(separation), train_(std::move(train)) {}
 
 void Position2d::before_step(const Moment& moment) {
   shm::Command command;
-  switch (writer_->poll_command(command)) {
+  switch (poll_command(command)) {
     case shm::CommandChange::fresh:
       is_commanded_ = true;
       command_ = {0, 0};
@@ -88,44 +81,36 @@ void Position2d::after_step(const Moment& moment) {
     stalled_for_ = 0;
     return;
   }
-  const Twist twist = world_.physics.link_twist(world_.physics.canonical_link(model_));
+  const Twist twist = physics().link_twist(physics().canonical_link(model()));
   const double moved = std::max(twist.linear.norm(), std::abs(twist.angular.z()) * separation_ / 2);
   stalled_for_ = moved < 0.2 * wanted ? stalled_for_ + moment.dt : 0;
 }
 
-bool Position2d::wants_sample(const Moment& moment) { return schedule_.is_due(moment.time) && writer_->is_subscribed(); }
-
-void Position2d::measure(const Moment&) {
-  auto& sample = writer_->sample<shm::Position2dSample>();
-  for (std::size_t i = 0; i < 3; ++i) sample.odometry[i] = odometry_[i];
-  sample.velocity[0] = velocity_[0];
-  sample.velocity[1] = 0;
-  sample.velocity[2] = velocity_[1];
-  const Eigen::Isometry3d pose = world_.physics.model_pose(model_);
-  sample.true_pose = to_pose(pose);
-  const LinkId link = world_.physics.canonical_link(model_);
-  const Twist twist = world_.physics.link_twist(link);
-  const Eigen::Vector3d v = pose.linear().transpose() * world_.physics.point_velocity(link, pose.translation());
+void Position2d::measure(const Moment&) const {
+  auto& out = sample<shm::Position2dSample>();
+  for (std::size_t i = 0; i < 3; ++i) out.odometry[i] = odometry_[i];
+  out.velocity[0] = velocity_[0];
+  out.velocity[1] = 0;
+  out.velocity[2] = velocity_[1];
+  const Eigen::Isometry3d pose = physics().model_pose(model());
+  out.true_pose = to_pose(pose);
+  const LinkId link = physics().canonical_link(model());
+  const Twist twist = physics().link_twist(link);
+  const Eigen::Vector3d v = pose.linear().transpose() * physics().point_velocity(link, pose.translation());
   const Eigen::Vector3d w = pose.linear().transpose() * twist.angular;
-  sample.true_velocity[0] = v.x();
-  sample.true_velocity[1] = v.y();
-  sample.true_velocity[2] = w.z();
+  out.true_velocity[0] = v.x();
+  out.true_velocity[1] = v.y();
+  out.true_velocity[2] = w.z();
   const auto followed = train_->followed();
-  sample.command[0] = followed[0];
-  sample.command[1] = 0;
-  sample.command[2] = followed[1];
-  sample.stalled = stalled_for_ > stall_after ? 1 : 0;
-  sample.motors_enabled = motors_enabled_ ? 1 : 0;
-  sample.commanded = is_commanded_ ? 1 : 0;
+  out.command[0] = followed[0];
+  out.command[1] = 0;
+  out.command[2] = followed[1];
+  out.stalled = stalled_for_ > stall_after ? 1 : 0;
+  out.motors_enabled = motors_enabled_ ? 1 : 0;
+  out.commanded = is_commanded_ ? 1 : 0;
 }
 
-void Position2d::publish(const Moment& moment) {
-  schedule_.done(moment.time);
-  writer_->publish(moment.time);
-}
-
-void Position2d::reset() {
-  schedule_.restart();
+void Position2d::restart() {
   odometry_ = {0, 0, 0};
   velocity_ = {0, 0};
   command_ = {0, 0};
@@ -134,8 +119,8 @@ void Position2d::reset() {
   train_->reset();
 }
 
-void Position2d::add_to(StateHash& hash) const {
-  hash.add(writer_->name());
+void Position2d::add_state_to(StateHash& hash) const {
+  hash.add(writer().name());
   for (const double value : {odometry_[0], odometry_[1], odometry_[2], command_[0], command_[1]}) hash.add(value);
   train_->add_to(hash);
   hash.add(std::uint64_t{motors_enabled_});

@@ -5,37 +5,27 @@
 #include <array>
 
 #include "devices/drive_train.h"
+#include "devices/sensor.h"
 
 namespace sim {
 
-class Position2d final : public Device {
+class Position2d final : public Sensor {
  public:
-  static base::Result<std::unique_ptr<Device>> make(DeviceWorld& world, ModelId model, const PluginDef& plugin,
-                                                    std::unique_ptr<DriveTrain> train);
+  static MadeDevice make(DeviceWorld& world, ModelId model, const PluginDef& plugin, std::unique_ptr<DriveTrain> train);
+  Position2d(Setup setup, double separation, std::unique_ptr<DriveTrain> train);
 
-  shm::IfaceWriter& iface() override { return *writer_; }
-  ModelId model() const override { return model_; }
   void before_step(const Moment& moment) override;
   void after_step(const Moment& moment) override;
-  bool wants_sample(const Moment& moment) override;
-  void measure(const Moment& moment) override;
-  void publish(const Moment& moment) override;
-  void reset() override;
-  void add_to(StateHash& hash) const override;
   bool set_odometry(const Eigen::Isometry3d& pose) override;
   bool set_motors(bool enabled) override;
 
  private:
-  Position2d(DeviceWorld& world, ModelId model, double separation, std::unique_ptr<DriveTrain> train,
-             std::unique_ptr<shm::IfaceWriter> writer);
+  void measure(const Moment& moment) const override;
+  void restart() override;
+  void add_state_to(StateHash& hash) const override;
 
-  DeviceWorld& world_;
-  ModelId model_;
   double separation_;  // of the wheels [m]
   std::unique_ptr<DriveTrain> train_;
-  Schedule schedule_;
-  std::unique_ptr<shm::IfaceWriter> writer_;
-
   std::array<double, 2> command_{0, 0};  // vx, va as asked for
   std::array<double, 3> odometry_{0, 0, 0};
   std::array<double, 2> velocity_{0, 0};

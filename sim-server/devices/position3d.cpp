@@ -23,24 +23,21 @@ Eigen::Vector3d three(const std::optional<std::string>& text) {
 
 }  // namespace
 
-base::Result<std::unique_ptr<Device>> Position3d::make(DeviceWorld& world, ModelId model, const PluginDef& plugin,
-                                                       std::optional<Path> path) {
+MadeDevice Position3d::make(DeviceWorld& world, ModelId model, const PluginDef& plugin, std::optional<Path> path) {
   const ModelDef& def = world.physics.def(model);
   shm::Position3dInfo info{};
   info.drive = RTMSIM_DRIVE_HOLONOMIC;
   info.pose = shm::identity_pose;
   info.max_speed = plugin.parameters.number_of({"max_speed", "max_linear_velocity"}).value_or(0);
   info.max_yaw_rate = plugin.parameters.number_of({"max_yaw_rate", "max_angular_velocity"}).value_or(0);
-  info.rate = 1 / world.world.physics.step;
+  info.rate = stated_rate(world, 0);
   shm::set_text(info.model, scoped_model(def, plugin.scope));
-  auto writer = world.shm.create(shm::position3d_spec(iface_name(def, plugin), info));
-  if (!writer) return writer.error();
-  return std::unique_ptr<Device>(new Position3d(world, model, plugin, std::move(path), std::move(*writer)));
+  auto setup = set_up(world, model, 0, shm::position3d_spec(iface_name(def, plugin), info), {});
+  if (!setup) return setup.error();
+  return MadeDevice(std::make_unique<Position3d>(std::move(*setup), plugin, std::move(path)));
 }
 
-Position3d::Position3d(DeviceWorld& world, ModelId model, const PluginDef& plugin, std::optional<Path> path,
-                       std::unique_ptr<shm::IfaceWriter> writer)
-    : world_(world), model_(model), path_(std::move(path)), writer_(std::move(writer)) {
+Position3d::Position3d(Setup setup, const PluginDef& plugin, std::optional<Path> path) : Sensor(std::move(setup)), path_(std::move(path)) {
   const ParameterNode& p = plugin.parameters;
   const auto limit = [](std::optional<double> value, double otherwise) { return value && *value > 0 ? *value : otherwise; };
   max_speed_ = limit(p.number_of({"max_speed", "max_linear_velocity"}), path_ ? 2 * path_->speed() : 100);
@@ -50,7 +47,7 @@ Position3d::Position3d(DeviceWorld& world, ModelId model, const PluginDef& plugi
   initial_command_.head<3>() = three(p.text_of({"initial_linear"}));
   initial_command_[3] = three(p.text_of({"initial_angular"})).z();
   is_kinematic_ = kind_of(plugin) == PluginKind::trajectory_follower;
-  reset();
+  restart();
 }
 
 // As fast as allows to stop there.
@@ -71,9 +68,9 @@ void Position3d::move(const Eigen::Isometry3d& pose, const Eigen::Vector3d& velo
   const Eigen::Vector3d up = pose.linear().col(2);
   Twist twist;
   twist.angular = 2 * up.cross(Eigen::Vector3d::UnitZ()) + Eigen::Vector3d(0, 0, yaw_rate);
-  const Eigen::Vector3d arm = world_.physics.link_pose(world_.physics.canonical_link(model_)).translation() - pose.translation();
+  const Eigen::Vector3d arm = physics().link_pose(physics().canonical_link(model())).translation() - pose.translation();
   twist.linear = velocity + twist.angular.cross(arm);
-  (void)world_.physics.set_model_twist(model_, twist);  // values are within the limits
+  (void)world().physics.set_model_twist(model(), twist);  // values are within the limits
 }
 
 // Moves to where the path is at the end of the step; false when that is further than the path goes in a step: it was pushed or led away.
@@ -93,7 +90,7 @@ bool Position3d::keep_to_path(const Moment& moment, const Eigen::Isometry3d& pos
 
 void Position3d::before_step(const Moment& moment) {
   shm::Command command;
-  switch (writer_->poll_command(command)) {
+  switch (poll_command(command)) {
     case shm::CommandChange::fresh:
       is_commanded_ = true;
       goal_.reset();
@@ -111,7 +108,7 @@ void Position3d::before_step(const Moment& moment) {
       break;
   }
   if (!motors_enabled_) return;
-  const Eigen::Isometry3d pose = world_.physics.model_pose(model_);
+  const Eigen::Isometry3d pose = physics().model_pose(model());
   const bool is_on_the_way = path_ && !is_commanded_;
   if (is_on_the_way && keep_to_path(moment, pose)) return;
   Eigen::Vector4d wanted = goal_ ? to_goal(pose) : command_;
@@ -128,51 +125,51 @@ void Position3d::before_step(const Moment& moment) {
   move(pose, Eigen::AngleAxisd(yaw_of(pose), Eigen::Vector3d::UnitZ()) * velocity_.head<3>(), velocity_[3]);
 }
 
-void Position3d::measure(const Moment&) {
-  auto& sample = writer_->sample<shm::Position3dSample>();
-  const Eigen::Isometry3d pose = world_.physics.model_pose(model_);
-  const LinkId link = world_.physics.canonical_link(model_);
-  const Eigen::Vector3d v = pose.linear().transpose() * world_.physics.point_velocity(link, pose.translation());
-  const Eigen::Vector3d w = pose.linear().transpose() * world_.physics.link_twist(link).angular;
-  sample.odometry = to_pose(odometry_origin_ * pose);
-  sample.true_pose = to_pose(pose);
+void Position3d::measure(const Moment&) const {
+  auto& out = sample<shm::Position3dSample>();
+  const Eigen::Isometry3d pose = physics().model_pose(model());
+  const LinkId link = physics().canonical_link(model());
+  const Eigen::Vector3d v = pose.linear().transpose() * physics().point_velocity(link, pose.translation());
+  const Eigen::Vector3d w = pose.linear().transpose() * physics().link_twist(link).angular;
+  out.odometry = to_pose(odometry_origin_ * pose);
+  out.true_pose = to_pose(pose);
   for (int i = 0; i < 3; ++i) {
-    sample.velocity[i] = sample.true_velocity[i] = v[i];
-    sample.velocity[i + 3] = sample.true_velocity[i + 3] = w[i];
-    sample.command[i] = velocity_[i];
-    sample.command[i + 3] = i == 2 ? velocity_[3] : 0;
+    out.velocity[i] = out.true_velocity[i] = v[i];
+    out.velocity[i + 3] = out.true_velocity[i + 3] = w[i];
+    out.command[i] = velocity_[i];
+    out.command[i + 3] = i == 2 ? velocity_[3] : 0;
   }
-  sample.stalled = velocity_.head<3>().norm() > 0.1 && v.norm() < 0.2 * velocity_.head<3>().norm() ? 1 : 0;
-  sample.motors_enabled = motors_enabled_ ? 1 : 0;
-  sample.commanded = is_commanded_ ? 1 : 0;
+  out.stalled = velocity_.head<3>().norm() > 0.1 && v.norm() < 0.2 * velocity_.head<3>().norm() ? 1 : 0;
+  out.motors_enabled = motors_enabled_ ? 1 : 0;
+  out.commanded = is_commanded_ ? 1 : 0;
 }
 
-void Position3d::reset() {
-  world_.physics.set_gravity(model_, false);
-  if (is_kinematic_) world_.physics.make_kinematic(model_);
+void Position3d::restart() {
+  world().physics.set_gravity(model(), false);
+  if (is_kinematic_) world().physics.make_kinematic(model());
   command_ = initial_command_;
   velocity_.setZero();
   goal_.reset();
   path_time_ = 0;
   motors_enabled_ = true;
-  odometry_origin_ = world_.physics.model_pose(model_).inverse();
+  odometry_origin_ = physics().model_pose(model()).inverse();
 }
 
-void Position3d::add_to(StateHash& hash) const {
-  hash.add(writer_->name());
+void Position3d::add_state_to(StateHash& hash) const {
+  hash.add(writer().name());
   for (int i = 0; i < 4; ++i) hash.add(velocity_[i]), hash.add(command_[i]);
   if (path_) hash.add(path_time_);
 }
 
 bool Position3d::set_odometry(const Eigen::Isometry3d& pose) {
-  odometry_origin_ = pose * world_.physics.model_pose(model_).inverse();
+  odometry_origin_ = pose * physics().model_pose(model()).inverse();
   return true;
 }
 
 // Without its motors it falls.
 bool Position3d::set_motors(bool enabled) {
   motors_enabled_ = enabled;
-  world_.physics.set_gravity(model_, !enabled);
+  world().physics.set_gravity(model(), !enabled);
   velocity_.setZero();
   return true;
 }

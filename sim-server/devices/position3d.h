@@ -3,36 +3,29 @@
 // them while nobody commands it; a model that has way points and no drive moves whatever it touches. See device.h for the thread rule.
 #pragma once
 
-#include "devices/device.h"
 #include "devices/path.h"
+#include "devices/sensor.h"
 
 namespace sim {
 
-class Position3d final : public Device {
+class Position3d final : public Sensor {
  public:
-  static base::Result<std::unique_ptr<Device>> make(DeviceWorld& world, ModelId model, const PluginDef& plugin, std::optional<Path> path);
+  static MadeDevice make(DeviceWorld& world, ModelId model, const PluginDef& plugin, std::optional<Path> path);
+  Position3d(Setup setup, const PluginDef& plugin, std::optional<Path> path);
 
-  shm::IfaceWriter& iface() override { return *writer_; }
-  ModelId model() const override { return model_; }
   void before_step(const Moment& moment) override;
-  bool wants_sample(const Moment&) override { return writer_->is_subscribed(); }
-  void measure(const Moment& moment) override;
-  void publish(const Moment& moment) override { writer_->publish(moment.time); }
-  void reset() override;
-  void add_to(StateHash& hash) const override;
   bool set_odometry(const Eigen::Isometry3d& pose) override;
   bool set_motors(bool enabled) override;
 
  private:
-  Position3d(DeviceWorld& world, ModelId model, const PluginDef& plugin, std::optional<Path> path,
-             std::unique_ptr<shm::IfaceWriter> writer);
+  void measure(const Moment& moment) const override;
+  void restart() override;
+  void add_state_to(StateHash& hash) const override;
   Eigen::Vector4d towards(const Eigen::Isometry3d& pose, const Eigen::Vector3d& place, double yaw) const;
   Eigen::Vector4d to_goal(const Eigen::Isometry3d& pose) const;
   bool keep_to_path(const Moment& moment, const Eigen::Isometry3d& pose);
   void move(const Eigen::Isometry3d& pose, const Eigen::Vector3d& velocity, double yaw_rate);
 
-  DeviceWorld& world_;
-  ModelId model_;
   double max_speed_, max_yaw_rate_, max_acceleration_, max_yaw_acceleration_;
   Eigen::Vector4d initial_command_{0, 0, 0, 0};
   Eigen::Vector4d command_{0, 0, 0, 0};                                // vx vy vz, yaw rate
@@ -42,7 +35,6 @@ class Position3d final : public Device {
   std::optional<Path> path_;
   double path_time_ = 0;  // how far along the path it is; stands still while it is off the path
   bool motors_enabled_ = true, is_commanded_ = false, is_kinematic_ = false;
-  std::unique_ptr<shm::IfaceWriter> writer_;
 };
 
 }  // namespace sim

@@ -1,23 +1,32 @@
-#include "devices/simple_devices.h"
+#include "devices/truth.h"
 
 namespace sim {
+namespace {
 
-base::Result<std::unique_ptr<Device>> Truth::make(DeviceWorld& world, ModelId model) {
+class Truth final : public Sensor {
+ public:
+  explicit Truth(Setup setup) : Sensor(std::move(setup)) {}
+
+ private:
+  void measure(const Moment&) const override {
+    auto& out = sample<shm::TruthSample>();
+    const Eigen::Isometry3d pose = physics().model_pose(model());
+    const LinkId link = physics().canonical_link(model());
+    const Eigen::Vector3d v = physics().point_velocity(link, pose.translation()), w = physics().link_twist(link).angular;
+    out.pose = to_pose(pose);
+    for (int i = 0; i < 3; ++i) out.velocity[i] = v[i], out.velocity[i + 3] = w[i];
+  }
+};
+
+}  // namespace
+
+MadeDevice make_truth(DeviceWorld& world, ModelId model) {
   const ModelDef& def = world.physics.def(model);
   shm::TruthInfo info{};
   shm::set_text(info.model, def.name);
-  auto writer = world.shm.create(shm::truth_spec(def.name, info));
-  if (!writer) return writer.error();
-  return std::unique_ptr<Device>(new Truth(world, model, std::move(*writer)));
-}
-
-void Truth::measure(const Moment&) {
-  auto& sample = writer_->sample<shm::TruthSample>();
-  const Eigen::Isometry3d pose = world_.physics.model_pose(model_);
-  const LinkId link = world_.physics.canonical_link(model_);
-  const Eigen::Vector3d v = world_.physics.point_velocity(link, pose.translation()), w = world_.physics.link_twist(link).angular;
-  sample.pose = to_pose(pose);
-  for (int i = 0; i < 3; ++i) sample.velocity[i] = v[i], sample.velocity[i + 3] = w[i];
+  auto setup = set_up(world, model, 0, shm::truth_spec(def.name, info), {});
+  if (!setup) return setup.error();
+  return MadeDevice(std::make_unique<Truth>(std::move(*setup)));
 }
 
 }  // namespace sim

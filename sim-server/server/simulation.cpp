@@ -83,9 +83,9 @@ void Simulation::sense(PartTimes& times) {
     rays_->update();
     times.mark(Part::rays);
     // Each in its own buffers; what is drawn at random comes from streams of their own.
-    pool_.run(due_.size(), [&](std::size_t i) { due_[i]->measure(moment); });
+    pool_.run(due_.size(), [&](std::size_t i) { due_[i]->take_sample(moment); });
   } else {
-    for (auto* device : due_) device->measure(moment);
+    for (auto* device : due_) device->take_sample(moment);
   }
   times.mark(Part::sensors);
   for (auto* device : due_) device->publish(moment);

@@ -274,6 +274,25 @@ def looked_at_while_paused():
         assert len(set(hashes)) <= 1, f"{options}: {hashes}"
 
 
+# A look at any device while time stands still: the run goes on as if nobody had looked.
+def looked_at_each_device():
+    world = f"{source}/tests/worlds/every_device.sdf"
+
+    def hash_after_a_look(iface=None):
+        process = started("-u", world=world)
+        names = [f"{one['type']}:{one['name']}" for one in read("list") if one["type"] != "simulation"]
+        if iface:
+            read("echo", iface, "-n", "1")
+        ok("step", "10")
+        hashed = state()
+        stop(process)
+        return hashed, names
+
+    undisturbed, names = hash_after_a_look()
+    changed = [name for name in names if hash_after_a_look(name)[0] != undisturbed]
+    assert len(names) >= 15 and not changed, f"looking changes the run: {changed} of {names}"
+
+
 # In a name space of its own with a /dev/shm and a disk of a few pages.
 def no_room():
     small = f"{work.name}/small"
@@ -536,7 +555,7 @@ def paused_is_idle():
 
 cases = {f.__name__: f for f in (ends_while_it_loads, cut_short, names, requests, motion, bad_requests, same_state, killed, living_server_is_refused, ends, check, paused_is_idle,
                                   no_room, scribbled_over,
-                                  looked_at_while_paused, rate)}
+                                  looked_at_while_paused, looked_at_each_device, rate)}
 try:
     cases[case]()
 finally:

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "devices/simple_devices.h"
+#include "devices/gps.h"
 #include "shm/requests.h"
 #include "support/simulation_fixture.h"
 

@@ -1,5 +1,5 @@
 // force_torque, altimeter, magnetometer and air_pressure sensors against the truth.
-#include "devices/meter.h"
+#include "devices/air_pressure.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,71 @@
+#include "devices/sensor.h"
+
+#include <algorithm>
+
+#include "world/iface_names.h"
+
+namespace sim {
+
+Sensor::Sensor(Setup setup)
+    : world_(setup.world),
+      model_(setup.model),
+      schedule_(setup.rate),
+      writer_(std::move(setup.writer)),
+      noise_(std::move(setup.noise)),
+      fresh_noise_(noise_) {}
+
+void Sensor::publish(const Moment& moment) {
+  schedule_.done(moment.time);
+  writer_->publish(moment.time);
+}
+
+void Sensor::show(const Moment& moment) {
+  const auto before = noise_;
+  measure(moment);
+  writer_->publish(moment.time);
+  noise_ = before;
+}
+
+void Sensor::reset() {
+  schedule_.restart();
+  noise_ = fresh_noise_;
+  restart();
+}
+
+void Sensor::add_to(StateHash& hash) const {
+  add_state_to(hash);
+  for (const auto& noise : noise_) hash.add(noise.stream().position());
+}
+
+double Sensor::noisy(std::size_t channel, double value) const {
+  const double dt = std::max(static_cast<double>(schedule_.period().count()) * 1e-9, world_.world.physics.step);
+  return noise_[channel].apply(value, dt);
+}
+
+double stated_rate(const DeviceWorld& world, double rate) { return rate > 0 ? rate : 1 / world.world.physics.step; }
+
+double stated_deviation(const NoiseDef& noise) { return noise.kind == NoiseDef::Kind::none ? 0 : noise.stddev; }
+
+shm::Pose pose_on_model(const ModelDef& model, const Mount& mount) { return to_pose(model.links[mount.link.link].pose * mount.pose); }
+
+std::string SensorSite::iface() const { return iface_name(model(), def); }
+
+NoiseChannels NoiseChannels::shared(const NoiseDef& noise) {
+  NoiseChannels one{noise};
+  one.is_shared = true;
+  return one;
+}
+
+base::Result<Sensor::Setup> set_up(DeviceWorld& world, ModelId model, double rate, const shm::IfaceSpec& spec, const NoiseChannels& noise) {
+  auto writer = world.shm.create(spec);
+  if (!writer) return writer.error();
+  Sensor::Setup setup{world, model, rate, std::move(*writer), {}};
+  char letter = 'a';
+  for (const NoiseDef& def : noise.noises) {
+    const std::string stream = noise.is_shared ? spec.name : spec.name + letter++;
+    setup.noise.emplace_back(def, RandomStream(world.seed, stream));
+  }
+  return setup;
+}
+
+}  // namespace sim

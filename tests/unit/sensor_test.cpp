@@ -1,0 +1,113 @@
+// What all devices owe to whoever looks at them, tried on a world that has one of every kind.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "support/simulation_fixture.h"
+#include "world/world_loader.h"
+
+namespace sim {
+namespace {
+
+using namespace test;
+
+WorldDef every_device() {
+  auto loaded = load_world(RTMSIM_SOURCE_DIR "/tests/worlds/every_device.sdf", ModelPath{});
+  if (!loaded) throw std::runtime_error(loaded.error().message);
+  return std::move(loaded->world);
+}
+
+struct Name {
+  shm::IfaceType type;
+  std::string iface;
+  std::string text() const { return std::string(to_text(type)) + " " + iface; }
+};
+
+std::vector<Name> names_of(const Simulation& simulation) {
+  std::vector<Name> names;
+  for (const auto& device : simulation.devices()) names.push_back({device->iface().type(), device->iface().name()});
+  return names;
+}
+
+// Without the stamp, which holds wall time.
+std::vector<std::byte> values_of(shm::Iface& iface) {
+  if (shm::has_frames(iface.type())) {
+    const auto frame = iface.hold();
+    if (!frame) return {};
+    return {frame->data().begin(), frame->data().end()};
+  }
+  if (!iface.read()) return {};
+  const auto bytes = iface.sample_data().subspan(sizeof(shm::Stamp));
+  return {bytes.begin(), bytes.end()};
+}
+
+struct Outcome {
+  std::uint64_t hash = 0;
+  std::map<std::string, std::vector<std::byte>> samples;  // the last of every iface
+};
+
+// Half a second with nobody there, a look at one iface while time stands still, and ten steps with everybody there.
+Outcome run_with_a_look_at(const std::string& looked_at) {
+  SimulationFixture f(every_device());
+  f.simulation->pictures().set_synchronous(true);
+  f.run(0.5);
+  const auto names = names_of(*f.simulation);
+  for (const auto& name : names) {
+    if (name.text() != looked_at) continue;
+    auto iface = f.open(name.type, name.iface);
+    f.simulation->answer_new_subscribers();
+    EXPECT_GT(iface.sequence(), 0U) << looked_at << " says nothing while time stands still";
+  }
+  f.simulation->answer_new_subscribers();
+  std::vector<shm::Iface> ifaces;
+  for (const auto& name : names) ifaces.push_back(f.open(name.type, name.iface));
+  for (int i = 0; i < 10; ++i) {
+    f.simulation->step(f.times);
+    f.simulation->sense(f.times);
+  }
+  Outcome run{f.simulation->hash(), {}};
+  for (std::size_t i = 0; i < names.size(); ++i) run.samples[names[i].text()] = values_of(ifaces[i]);
+  return run;
+}
+
+TEST(Device, every_type_of_iface_has_one_in_the_world_of_this_test) {
+  SimulationFixture f(every_device());
+  EXPECT_EQ(f.dropped, std::vector<std::string>());
+  const auto names = names_of(*f.simulation);
+  for (std::uint32_t type = 1; shm::is_type(type); ++type) {
+    if (type == RTMSIM_SIMULATION) continue;
+    EXPECT_TRUE(std::any_of(names.begin(), names.end(), [&](const Name& name) { return name.type == static_cast<shm::IfaceType>(type); }))
+        << shm::to_text(static_cast<shm::IfaceType>(type)) << ": tests/worlds/every_device.sdf needs one";
+  }
+}
+
+TEST(Device, a_look_at_it_while_time_stands_still_changes_nothing_that_comes_later) {
+  const Outcome undisturbed = run_with_a_look_at("");
+  for (const auto& [name, values] : undisturbed.samples) {
+    SCOPED_TRACE(name);
+    EXPECT_FALSE(values.empty());
+    const Outcome run = run_with_a_look_at(name);
+    EXPECT_EQ(run.hash, undisturbed.hash);
+    for (const auto& [other, later] : undisturbed.samples) EXPECT_EQ(run.samples.at(other), later) << other;
+  }
+}
+
+TEST(Device, after_a_reset_it_says_the_same_again) {
+  SimulationFixture f(every_device());
+  f.simulation->pictures().set_synchronous(true);
+  const auto names = names_of(*f.simulation);
+  std::vector<shm::Iface> ifaces;
+  for (const auto& name : names) ifaces.push_back(f.open(name.type, name.iface));
+  std::vector<std::vector<std::byte>> first;
+  f.run(0.2);
+  const auto hash = f.simulation->hash();
+  for (auto& iface : ifaces) first.push_back(values_of(iface));
+  std::vector<std::string> notes;
+  ASSERT_TRUE(f.simulation->reset(notes));
+  f.run(0.2);
+  EXPECT_EQ(f.simulation->hash(), hash);
+  for (std::size_t i = 0; i < names.size(); ++i) EXPECT_EQ(values_of(ifaces[i]), first[i]) << names[i].text();
+}
+
+}  // namespace
+}  // namespace sim
