@@ -274,12 +274,11 @@ void Position3d::obey(Client& client, std::uint8_t subtype, const std::string& p
     const auto v = player::decode_velocity3d(payload);
     if (v && command_velocity(client, std::array{v->x, v->y, v->z, v->roll, v->pitch, v->yaw})) pursuer_ = nullptr;
   } else if (subtype == commands::pose) {
+    // Client libraries never set the state of such a command: 0 is no "stop".
     const auto wanted = player::decode_pose_command3d(payload);
     if (!wanted) return;
     const auto& p = wanted->pose;
-    const bool is_done = wanted->is_enabled ? tell(client, shm::CommandKind::pose, std::array{p.x, p.y, p.z, p.roll, p.pitch, p.yaw})
-                                            : command_velocity(client, std::array<double, 6>{});
-    if (is_done) pursuer_ = wanted->is_enabled ? &client : nullptr;
+    if (tell(client, shm::CommandKind::pose, std::array{p.x, p.y, p.z, p.roll, p.pitch, p.yaw})) pursuer_ = &client;
   }
 }
 

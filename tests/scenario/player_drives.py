@@ -151,8 +151,9 @@ def flight():
         def state(payload):
             return struct.unpack(">12dI", payload)
 
-        def fly(x, y, z, yaw, enabled=1):
-            client.command(POSITION3D, 0, 2, struct.pack(">12dI", x, y, z, 0, 0, yaw, *(6 * [0]), enabled))
+        # The state of such commands is 0, as client libraries send it.
+        def fly(x, y, z, yaw):
+            client.command(POSITION3D, 0, 2, struct.pack(">12dI", x, y, z, 0, 0, yaw, *(6 * [0]), 0))
 
         def is_still(payload):
             return max(map(abs, state(payload)[6:12])) < 0.01
@@ -165,7 +166,6 @@ def flight():
         client.read_until(POSITION3D, good=lambda p: is_still(p) and all(abs(a - b) < 0.03 for a, b in zip(state(p), there)))
         fly(math.nan, 0, 0, 0)
         for end in (
-            lambda: fly(0, 0, 0, 0, 0),
             lambda: client.demand(POSITION3D, 0, 6, struct.pack(">6d", 100, 0, 0, 0, 0, 0)),
             lambda: client.demand(POSITION3D, 0, 5),
             lambda: client.command(POSITION3D, 0, 1, struct.pack(">6dI", *(6 * [0]), 1)),
