@@ -11,8 +11,10 @@
 #include <array>
 #include <cstring>
 #include <utility>
+#include <vector>
 
 #include "base/log.h"
+#include "base/text.h"
 
 namespace gateway {
 namespace {
@@ -130,6 +132,18 @@ void Session::name_driver(const player::Message& message) {
   answer(message.header, ack(player::encode(*info)));
 }
 
+base::Error Session::why_unknown(const player::Address& device) const {
+  std::vector<std::string> there;
+  for (const auto& one : robot_.devices()) there.push_back(player::to_text(one));
+  return {"there is no " + player::to_text(device) + (there.empty() ? "" : "; there are " + base::join(there, " "))};
+}
+
+void Session::complain(const player::Address& device, const std::string& why) {
+  constexpr std::size_t most = 20;  // of one client
+  if (complaints_.size() >= most || !complaints_.insert(device).second) return;
+  base::log(base::Level::warn, "player-gateway", "port {}: {}: subscription refused: {}", robot_.port(), peer_, why);
+}
+
 // Clients look into the answer without asking whether there is one, so also a refusal has it.
 void Session::open_or_close(const player::Message& message) {
   auto request = player::decode_device_request(message.payload);
@@ -137,10 +151,10 @@ void Session::open_or_close(const player::Message& message) {
   Device* device = robot_.find(request->address);
   bool is_done = false;
   const bool is_new = device != nullptr && !device->is_subscribed(*this);
-  if (device != nullptr && request->access == static_cast<std::uint32_t>(player::Access::open)) {
-    const auto opened = device->subscribe(*this);
+  if (request->access == static_cast<std::uint32_t>(player::Access::open)) {
+    const auto opened = device != nullptr ? device->subscribe(*this) : base::Result<void>(why_unknown(request->address));
     is_done = opened.ok();
-    if (!opened) base::log(base::Level::warn, "player-gateway", "port {}: {}", robot_.port(), opened.error().message);
+    if (!opened) complain(request->address, opened.error().message);
   } else if (device != nullptr && request->access == static_cast<std::uint32_t>(player::Access::close)) {
     is_done = device->unsubscribe(*this);
     if (!device->is_subscribed(*this)) outbox_.forget(request->address);

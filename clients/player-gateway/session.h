@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "outbox.h"
@@ -44,6 +45,9 @@ class Session final : public Client {
   void handle(const player::Message& message);
   void handle_player(const player::Message& message);
   void open_or_close(const player::Message& message);
+  base::Error why_unknown(const player::Address& device) const;
+  // Each device once.
+  void complain(const player::Address& device, const std::string& why);
   void name_driver(const player::Message& message);
   void answer(const player::Header& asked, const Answer& answer);
   void send();
@@ -54,6 +58,7 @@ class Session final : public Client {
   const Timeline& timeline_;
   player::MessageParser parser_{max_payload};
   Outbox outbox_;
+  std::set<player::Address> complaints_;
   bool is_waiting_ = false;  // for the simulator to answer: the next request is not looked at before
   bool is_blocked_ = false;  // the socket takes no more
   bool is_over_ = false;
