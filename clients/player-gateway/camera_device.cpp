@@ -1,6 +1,8 @@
 #include "camera_device.h"
 
 #include <array>
+#include <cmath>
+#include <cstring>
 #include <utility>
 
 #include "base/bayer.h"
@@ -45,6 +47,23 @@ std::optional<base::BayerOrder> mosaic_of(shm::Format format) {
   }
 }
 
+// Rows of floats [m] as bytes, the high one first.
+std::string millimetres(const char* pixels, std::size_t width, std::size_t height, std::size_t stride) {
+  std::string bytes;
+  bytes.reserve(2 * width * height);
+  for (std::size_t y = 0; y < height; ++y) {
+    for (std::size_t x = 0; x < width; ++x) {
+      float depth = 0;
+      std::memcpy(&depth, pixels + y * stride + x * sizeof depth, sizeof depth);
+      const float rounded = std::round(depth * 1000);
+      const unsigned value = rounded >= 0 && rounded <= 65535 ? static_cast<unsigned>(rounded) : 0;  // false for NaN and infinity
+      bytes += static_cast<char>(value >> 8);
+      bytes += static_cast<char>(value & 255);
+    }
+  }
+  return bytes;
+}
+
 }  // namespace
 
 std::optional<player::Image> to_image(const shm::FrameHead& head, std::span<const std::byte> data) {
@@ -71,6 +90,12 @@ std::optional<player::Image> to_image(const shm::FrameHead& head, std::span<cons
     if (format == shm::Format::mono16) {
       for (std::size_t i = 0; i + 1 < image.pixels.size(); i += 2) std::swap(image.pixels[i], image.pixels[i + 1]);
     }
+    return image;
+  }
+  if (format == shm::Format::depth_float) {
+    image.bits = 16;
+    image.format = player::ImageFormat::mono16;
+    image.pixels = millimetres(pixels, width, height, head.stride);
     return image;
   }
   if (const auto order = mosaic_of(format)) {

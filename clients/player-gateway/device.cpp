@@ -1,11 +1,11 @@
 #include "device.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
 #include "base/log.h"
-#include "served.h"
 
 namespace gateway {
 
@@ -14,13 +14,21 @@ Device::Device(const player::Address& address, std::uint32_t robot, Services ser
 
 Device::~Device() = default;
 
-std::string Device::driver() const { return "rtm-sim " + std::string(player::to_text(address_.interface)); }
+std::string Device::driver() const {
+  constexpr std::size_t room = 62;
+  constexpr std::string_view maker = "rtm-sim ", cut = "...";
+  std::string name = source_ ? source_->iface().name() : std::string(player::to_text(address_.interface));
+  if (maker.size() + name.size() > room) name.replace(0, maker.size() + cut.size() + name.size() - room, cut);
+  return std::string(maker) + name;
+}
 
-void Device::attach(std::shared_ptr<Source> source) {
-  if (source == source_) return;
+void Device::attach(std::shared_ptr<Source> source, std::shared_ptr<Source> companion) {
+  if (source == source_ && companion == companion_) return;
   stop_reading();
+  const bool is_new = source != source_;
   source_ = std::move(source);
-  on_attach();
+  companion_ = std::move(companion);
+  if (is_new) on_attach();
   if (!is_used()) return;
   if (auto good = start_reading(); !good) base::log(base::Level::warn, "player-gateway", "{}", good.error().message);
 }
@@ -28,17 +36,25 @@ void Device::attach(std::shared_ptr<Source> source) {
 void Device::detach() {
   stop_reading();
   source_.reset();
+  companion_.reset();
 }
 
 base::Result<void> Device::start_reading() {
   if (is_reading_ || !has_data()) return {};
   if (auto good = source_->add_reader(); !good) return good;
+  if (companion_) {
+    if (auto good = companion_->add_reader(); !good) {
+      source_->remove_reader();
+      return good;
+    }
+  }
   is_reading_ = true;
   return {};
 }
 
 void Device::stop_reading() {
   if (is_reading_) source_->remove_reader();
+  if (is_reading_ && companion_) companion_->remove_reader();
   is_reading_ = false;
 }
 
@@ -72,7 +88,9 @@ void Device::remove(std::vector<Subscriber>::iterator subscriber) {
   Client& client = *subscriber->client;
   subscribers_.erase(subscriber);
   forget(client);
-  if (!is_used()) stop_reading();
+  if (is_used()) return;
+  stop_reading();
+  on_unused();
 }
 
 bool Device::is_subscribed(const Client& client) const {
@@ -92,13 +110,19 @@ void Device::show_latest(Client& newcomer) {
 
 std::optional<Answer> Device::request(std::uint8_t subtype, const std::string& payload, const Later& later) {
   if (!source_) return nack();
-  return player::universal_request::is_one(subtype) ? answer_universal(subtype, payload) : answer(subtype, payload, later);
+  if (player::universal_request::is_one(subtype)) return answer_universal(subtype, payload);
+  if (!is_served(served(), static_cast<std::uint32_t>(player::Type::request), subtype)) return nack();
+  return answer(subtype, payload, later);
 }
 
 Answer Device::answer_universal(std::uint8_t subtype, const std::string& payload) {
   if (subtype == player::universal_request::capabilities) {
     const auto asked = player::decode_capability(payload);
-    return asked && is_served(address_.interface, asked->type, asked->subtype) ? ack() : nack();
+    if (!asked) return nack();
+    const bool is_request = asked->type == static_cast<std::uint32_t>(player::Type::request);
+    const bool is_universal =
+        is_request && asked->subtype <= 255 && player::universal_request::is_one(static_cast<std::uint8_t>(asked->subtype));
+    return is_universal || is_served(served(), asked->type, asked->subtype) ? ack() : nack();
   }
   auto request = player::decode_driver_property(subtype, payload);
   if (!request) return nack();
@@ -114,10 +138,12 @@ std::optional<player::PropertyValue> Device::property(const std::string& key) co
 }
 
 void Device::command(Client& client, std::uint8_t subtype, const std::string& payload) {
-  if (source_ && is_subscribed(client)) obey(client, subtype, payload);
+  if (!source_ || !is_subscribed(client) || !is_served(served(), static_cast<std::uint32_t>(player::Type::command), subtype)) return;
+  obey(client, subtype, payload);
 }
 
 void Device::publish(std::uint8_t subtype, const std::string& payload, const shm::Stamp& stamp) {
+  assert(is_served(served(), static_cast<std::uint32_t>(player::Type::data), subtype));
   const auto time = services_.timeline.at(source_->server(), stamp.resets, stamp.sim_time_ns);
   if (!time) return;
   // Clients take a sample for new only if its time is later than the one before, which starts at 0.

@@ -14,6 +14,7 @@
 #include "outbox.h"
 #include "protocol/message.h"
 #include "protocol/payloads.h"
+#include "served.h"
 #include "shm/layout.h"
 #include "source.h"
 #include "timeline.h"
@@ -49,13 +50,15 @@ class Device {
   Device& operator=(const Device&) = delete;
 
   const player::Address& address() const { return address_; }
-  // At most 62 characters.
+  // Names the iface, by its end where it is long: at most 62 characters.
   std::string driver() const;
 
-  // The simulator has (again) what this device shows. Clients that are subscribed stay it.
-  void attach(std::shared_ptr<Source> source);
+  // The simulator has (again) what this device shows; a companion is what it shows besides (the magnetometer of an imu). Clients that are
+  // subscribed stay it.
+  void attach(std::shared_ptr<Source> source, std::shared_ptr<Source> companion = nullptr);
   void detach();
   const std::shared_ptr<Source>& source() const { return source_; }
+  const std::shared_ptr<Source>& companion() const { return companion_; }
 
   // Counted per client. Refused while there is nothing to show.
   base::Result<void> subscribe(Client& client);
@@ -75,7 +78,8 @@ class Device {
   void command(Client& client, std::uint8_t subtype, const std::string& payload);
 
  protected:
-  // All only while there is a source.
+  virtual ServedTable served() const = 0;
+  // All only while there is a source, and for messages that are in the table.
   virtual void show_sample() {}
   virtual std::optional<Answer> answer(std::uint8_t subtype, const std::string& payload, const Later& later) = 0;
   virtual void obey(Client&, std::uint8_t /*subtype*/, const std::string& /*payload*/) {}
@@ -85,10 +89,14 @@ class Device {
   // A client that was subscribed no longer is.
   virtual void forget(Client&) {}
   virtual void on_attach() {}
+  // Nobody is subscribed any more.
+  virtual void on_unused() {}
   // False for devices that never have data.
   virtual bool has_data() const { return true; }
 
   shm::Iface& iface() const { return source_->iface(); }
+  // What is shown just now is shown to a newcomer alone, who should not wait.
+  bool is_for_newcomer() const { return newcomer_ != nullptr; }
   // To all subscribers, or the newcomer, with one encoding.
   void publish(std::uint8_t subtype, const std::string& payload, const shm::Stamp& stamp);
   // Lets the simulator do it; the answer is an empty ack when it did.
@@ -110,15 +118,12 @@ class Device {
 
   const player::Address address_;
   const std::uint32_t robot_;
-  std::shared_ptr<Source> source_;
+  std::shared_ptr<Source> source_, companion_;
   bool is_reading_ = false;
   std::vector<Subscriber> subscribers_;
   Client* newcomer_ = nullptr;  // the only one that a sample is shown to just now
   double last_time_ = 0;
 };
-
-// Nothing for interfaces that are not served. What is attached must be of a type that the interface can show (mapping.h).
-std::unique_ptr<Device> make_device(const player::Address& address, std::uint32_t robot, Services services);
 
 // ---- for the devices ----
 player::Pose3d to_pose3d(const shm::Pose& pose);

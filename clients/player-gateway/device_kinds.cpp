@@ -1,39 +1,89 @@
-// Which class shows what.
+#include "device_kinds.h"
+
+#include <algorithm>
+#include <array>
+
+#include "analog_device.h"
+#include "base/text.h"
 #include "camera_device.h"
 #include "drive_devices.h"
+#include "point_cloud_device.h"
 #include "range_devices.h"
 #include "sensor_devices.h"
 #include "simulation_device.h"
 
 namespace gateway {
+namespace {
+
+template <class Class>
+std::unique_ptr<Device> make(const player::Address& address, std::uint32_t robot, Services services) {
+  return std::make_unique<Class>(address, robot, services);
+}
+
+template <class Class>
+constexpr DeviceKind row(player::Interface interface) {
+  return {interface, Class::shows, Class::table, &make<Class>};
+}
+
+using enum player::Interface;
+constexpr std::array kinds{
+    row<Position2d>(position2d),
+    row<Position3d>(position3d),
+    row<Laser>(laser),
+    row<Sonar>(sonar),
+    row<Camera>(camera),
+    row<Gps>(gps),
+    row<Imu>(imu),
+    row<Bumper>(bumper),
+    row<Analog>(aio),
+    row<Ranger>(ranger),
+    row<PointCloud>(pointcloud3d),
+    row<Simulation>(simulation),
+};
+
+std::string names_of(std::span<const shm::IfaceType> types) {
+  std::vector<std::string> names;
+  for (const shm::IfaceType type : types) names.emplace_back(shm::to_text(type));
+  return base::join(names, ", ");
+}
+
+}  // namespace
+
+std::span<const DeviceKind> device_kinds() { return kinds; }
+
+const DeviceKind* find_kind(player::Interface interface) {
+  const auto found = std::ranges::find(kinds, interface, &DeviceKind::interface);
+  return found == kinds.end() ? nullptr : &*found;
+}
+
+bool can_show(player::Interface interface, shm::IfaceType type) {
+  const DeviceKind* kind = find_kind(interface);
+  return kind != nullptr && std::ranges::find(kind->shows, type) != kind->shows.end();
+}
+
+std::vector<player::Interface> interfaces_for(shm::IfaceType type) {
+  std::vector<player::Interface> all;
+  for (const DeviceKind& kind : kinds) {
+    if (can_show(kind.interface, type)) all.push_back(kind.interface);
+  }
+  return all;
+}
 
 std::unique_ptr<Device> make_device(const player::Address& address, std::uint32_t robot, Services services) {
-  using enum player::Interface;
-  switch (address.interface) {
-    case position2d:
-      return std::make_unique<Position2d>(address, robot, services);
-    case position3d:
-      return std::make_unique<Position3d>(address, robot, services);
-    case laser:
-      return std::make_unique<Laser>(address, robot, services);
-    case sonar:
-      return std::make_unique<Sonar>(address, robot, services);
-    case ranger:
-      return std::make_unique<Ranger>(address, robot, services);
-    case simulation:
-      return std::make_unique<Simulation>(address, robot, services);
-    case camera:
-      return std::make_unique<Camera>(address, robot, services);
-    case gps:
-      return std::make_unique<Gps>(address, robot, services);
-    case imu:
-      return std::make_unique<Imu>(address, robot, services);
-    case bumper:
-      return std::make_unique<Bumper>(address, robot, services);
-    case player:
-      break;
+  const DeviceKind* kind = find_kind(address.interface);
+  return kind != nullptr ? kind->make(address, robot, services) : nullptr;
+}
+
+std::string interface_table() {
+  std::string text = "| interface | code | ifaces | data | requests | commands |\n| --- | --- | --- | --- | --- | --- |\n";
+  const auto cell = [](const std::string& words) { return words.empty() ? std::string(" |") : " " + words + " |"; };
+  for (const DeviceKind& kind : kinds) {
+    text += "| `" + std::string(player::to_text(kind.interface)) + "` | " + std::to_string(static_cast<unsigned>(kind.interface)) + " |";
+    text += cell(names_of(kind.shows));
+    for (const auto type : {player::Type::data, player::Type::request, player::Type::command}) text += cell(describe(kind.served, type));
+    text += '\n';
   }
-  return nullptr;
+  return text;
 }
 
 }  // namespace gateway

@@ -1,6 +1,7 @@
 // position2d and position3d: odometry out, velocities in. One thread at a time.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <variant>
@@ -35,8 +36,25 @@ class Drive : public Device {
 class Position2d final : public Drive {
  public:
   using Drive::Drive;
+  static constexpr std::array shows{shm::IfaceType::position2d};
+  static constexpr std::array table = std::to_array<Served>({
+      {player::Type::data, 1, "odometry, velocity, stall"},
+      {player::Type::request, 1, "geometry"},
+      {player::Type::request, 2, "motors"},
+      {player::Type::request, 3, "velocity and position mode"},
+      {player::Type::request, 4, ""},
+      {player::Type::request, 5, "set and reset odometry"},
+      {player::Type::request, 6, ""},
+      {player::Type::request, 9, "speed profile"},
+      {player::Type::request, 7, "PID parameters without effect"},
+      {player::Type::request, 8, ""},
+      {player::Type::command, 1, "velocity"},
+      {player::Type::command, 2, "pose"},
+      {player::Type::command, 4, "velocity with heading"},
+  });
 
  private:
+  ServedTable served() const override { return table; }
   struct Heading {
     double speed = 0, angle = 0;  // [m/s], [rad]
   };
@@ -71,8 +89,22 @@ class Position2d final : public Drive {
 class Position3d final : public Drive {
  public:
   using Drive::Drive;
+  static constexpr std::array shows{shm::IfaceType::position3d};
+  // Resetting and setting the odometry are the other way round than in position2d.
+  static constexpr std::array table = std::to_array<Served>({
+      {player::Type::data, 1, "the same in 3D"},
+      {player::Type::request, 1, "geometry"},
+      {player::Type::request, 2, "motors"},
+      {player::Type::request, 3, "modes"},
+      {player::Type::request, 4, ""},
+      {player::Type::request, 5, "set and reset odometry"},
+      {player::Type::request, 6, ""},
+      {player::Type::command, 1, "velocity"},
+      {player::Type::command, 2, "pose"},
+  });
 
  private:
+  ServedTable served() const override { return table; }
   // Stops a robot that is on its way to a pose for a client: the pose would be elsewhere.
   void give_up();
 

@@ -129,7 +129,7 @@ void Gateway::serve_ports(std::vector<PortPlan> plans) {
     Port& port = ports_[i];
     port.robot->arrange(plans[i], find);
     std::string line = "port " + std::to_string(port.robot->port()) + ": " + plans[i].name + ":";
-    for (const auto& device : port.robot->devices()) line += " " + player::to_text(device);
+    for (const auto& word : port.robot->shown()) line += " " + word;
     if (line == port.said) continue;
     port.said = line;
     std::printf("%s\n", line.c_str());
@@ -155,8 +155,12 @@ void Gateway::lose() {
 }
 
 void Gateway::take_samples() {
-  for (const auto& source : simulator_.sources()) {
-    if (!source->is_read() || !source->take_news()) continue;
+  // Read all first: a device that shows two of them shows those of one moment.
+  std::vector<std::shared_ptr<Source>> fresh;
+  for (auto& source : simulator_.sources()) {
+    if (source->is_read() && source->take_news()) fresh.push_back(std::move(source));
+  }
+  for (const auto& source : fresh) {
     for (const Port& port : ports_) {
       for (const auto& device : port.robot->all()) {
         if (device->source() == source) device->take_sample();

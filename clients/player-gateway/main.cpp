@@ -5,6 +5,7 @@
 
 #include "base/command_line.h"
 #include "base/log.h"
+#include "device_kinds.h"
 #include "gateway.h"
 
 namespace {
@@ -44,7 +45,13 @@ int main(int argc, char** argv) {
   app.add_option("--address", options.address, "Address to listen on; 0.0.0.0: all")->capture_default_str();
   app.add_option("--config", config, "Mapping file: which port shows which devices (docs/player.md)")->excludes(port);
   app.add_flag("-q,--quiet", is_quiet)->description("Say nothing of clients that come with bytes of another protocol");
+  bool is_table_asked = false;
+  app.add_flag("--interfaces", is_table_asked)->description("Print what is served of which interface of Player (Markdown), and end");
   if (const auto end = base::parse_command_line(app, "player-gateway", argc, argv)) return *end;
+  if (is_table_asked) {
+    std::cout << gateway::interface_table();
+    return 0;
+  }
   if (is_quiet) base::set_log_level(base::Level::warn);
   if (!config.empty()) {
     auto ports = gateway::read_config(config);

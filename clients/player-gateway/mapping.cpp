@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
+#include <utility>
 
 #include "base/text.h"
+#include "device_kinds.h"
 
 namespace gateway {
 namespace {
@@ -22,7 +25,7 @@ class Numbering {
   void add(player::Interface interface, const ListedIface& iface) {
     player::Address address{interface, 0};
     while (!taken_.insert(address).second) ++address.index;
-    devices_.push_back({address, iface.type, iface.name});
+    devices_.push_back({address, iface.type, iface.name, {}});
   }
 
  private:
@@ -34,16 +37,35 @@ std::string robot_of(const ListedIface& iface) { return iface.model.substr(0, if
 
 bool is_device(const ListedIface& iface) { return iface.type != shm::IfaceType::simulation && !interfaces_for(iface.type).empty(); }
 
-// All devices of a model. Rangers come last, so that those of lasers have the lower numbers.
+// Several interfaces show what depth cameras see; their points are not shown twice.
+bool has_points(const ListedIface& depth, const std::vector<ListedIface>& ifaces) {
+  return std::any_of(ifaces.begin(), ifaces.end(),
+                     [&](const ListedIface& one) { return one.type == shm::IfaceType::points && one.name == depth.name; });
+}
+
+std::vector<ListedIface> ifaces_of(const std::string& robot, shm::IfaceType type, const std::vector<ListedIface>& ifaces) {
+  std::vector<ListedIface> found;
+  for (const ListedIface& iface : ifaces) {
+    if (iface.type == type && robot_of(iface) == robot) found.push_back(iface);
+  }
+  return found;
+}
+
+// All devices of a model, each interface numbered in world order. The first magnetometer is part of the first imu, and so on; those that
+// are left are devices of their own.
 void add_robot(const std::string& robot, const std::vector<ListedIface>& ifaces, std::vector<DevicePlan>& devices) {
+  const auto imus = ifaces_of(robot, shm::IfaceType::imu, ifaces), magnetometers = ifaces_of(robot, shm::IfaceType::magnetometer, ifaces);
   Numbering numbering(devices);
-  for (const bool is_second_round : {false, true}) {
-    for (const auto type : {shm::IfaceType::position2d, shm::IfaceType::position3d, shm::IfaceType::laser, shm::IfaceType::sonar,
-                            shm::IfaceType::camera, shm::IfaceType::gps, shm::IfaceType::imu, shm::IfaceType::bumper}) {
-      const auto interfaces = interfaces_for(type);
-      if (is_second_round && interfaces.size() < 2) continue;
-      for (const ListedIface& iface : ifaces) {
-        if (iface.type == type && robot_of(iface) == robot) numbering.add(interfaces[is_second_round ? 1 : 0], iface);
+  for (const DeviceKind& kind : device_kinds()) {
+    if (kind.interface == player::Interface::simulation) continue;
+    for (const shm::IfaceType type : kind.shows) {
+      std::size_t count = 0;
+      for (const ListedIface& iface : ifaces_of(robot, type, ifaces)) {
+        const std::size_t which = count++;
+        if (type == shm::IfaceType::magnetometer && which < imus.size()) continue;
+        if (kind.interface == player::Interface::pointcloud3d && type == shm::IfaceType::depth && has_points(iface, ifaces)) continue;
+        numbering.add(kind.interface, iface);
+        if (type == shm::IfaceType::imu && which < magnetometers.size()) devices.back().magnetometer = magnetometers[which].name;
       }
     }
   }
@@ -52,7 +74,7 @@ void add_robot(const std::string& robot, const std::vector<ListedIface>& ifaces,
 void add_simulation(std::vector<DevicePlan>& devices) {
   const player::Address address{player::Interface::simulation, 0};
   if (std::none_of(devices.begin(), devices.end(), [&](const DevicePlan& one) { return one.address == address; }))
-    devices.push_back({address, shm::IfaceType::simulation, std::string(simulation_iface)});
+    devices.push_back({address, shm::IfaceType::simulation, std::string(simulation_iface), {}});
 }
 
 // ---- the file ----
@@ -75,25 +97,50 @@ std::uint16_t port_of(const YAML::Node& node) {
   return static_cast<std::uint16_t>(*port);
 }
 
+// Distance of two words: letters to change, add or take away.
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < b.size(); ++j)
+      diagonal = std::exchange(row[j + 1], std::min({row[j] + 1, row[j + 1] + 1, diagonal + (a[i] == b[j] ? 0 : 1)}));
+  }
+  return row.back();
+}
+
+// An interface that Player has but not this gateway is no misspelling.
+std::string why_not_served(const std::string& name) {
+  std::vector<std::string> served;
+  for (const DeviceKind& kind : device_kinds()) served.emplace_back(player::to_text(kind.interface));
+  if (player::is_interface_name(name))
+    return base::in_quotes(name) + " is an interface of Player that is not served here; served are " + base::join(served, ", ");
+  const auto word = base::to_lower(std::string_view(name).substr(0, 40));
+  const auto nearest =
+      std::min_element(served.begin(), served.end(), [&](const auto& a, const auto& b) { return distance(word, a) < distance(word, b); });
+  const bool is_near = distance(word, *nearest) <= 1 + nearest->size() / 4;
+  return base::in_quotes(name) + " is no interface of Player; " +
+         (is_near ? "did you mean " + *nearest + "?" : "expected one of " + base::join(served, ", "));
+}
+
 player::Address address_of(const YAML::Node& node) {
   const auto text = text_of(node, "INTERFACE:INDEX");
   const auto colon = text.find(':');
-  const auto interface = player::parse_interface(text.substr(0, colon));
+  const auto name = text.substr(0, colon);
+  const auto interface = player::parse_interface(name);
+  if (!interface && !name.empty()) throw Wrong{node.Mark(), why_not_served(name)};
   const auto index = colon == std::string::npos ? std::optional<std::int64_t>(0) : base::parse_integer(text.substr(colon + 1));
   if (!interface || *interface == player::Interface::player || !index || *index < 0 || *index > 65535)
     throw Wrong{node.Mark(), "expected INTERFACE:INDEX as in laser:0, got " + base::in_quotes(text)};
   return {*interface, static_cast<std::uint16_t>(*index)};
 }
 
-bool can_show(player::Interface interface, shm::IfaceType type) {
-  const auto interfaces = interfaces_for(type);
-  return std::find(interfaces.begin(), interfaces.end(), interface) != interfaces.end();
-}
-
 ConfiguredDevice device_of(const YAML::Node& key, const YAML::Node& value) {
   ConfiguredDevice device;
   device.address = address_of(key);
-  device.iface = text_of(value, "the name of an iface");
+  const bool is_pair = device.address.interface == player::Interface::imu && value.IsSequence() && value.size() == 2;
+  device.iface = text_of(is_pair ? value[0] : value, "the name of an iface");
+  if (is_pair) device.magnetometer = text_of(value[1], "the name of a magnetometer");
   // "sonar:pioneer::sonar": one colon ends a type, two separate names.
   const auto colon = device.iface.find(':');
   if (colon != std::string::npos && device.iface.compare(colon, 2, "::") != 0) {
@@ -149,32 +196,6 @@ std::vector<ConfiguredPort> configured_ports(const YAML::Node& root) {
 }
 
 }  // namespace
-
-std::vector<player::Interface> interfaces_for(shm::IfaceType type) {
-  using enum player::Interface;
-  switch (type) {
-    case shm::IfaceType::simulation:
-      return {simulation};
-    case shm::IfaceType::laser:
-      return {laser, ranger};
-    case shm::IfaceType::sonar:
-      return {sonar, ranger};
-    case shm::IfaceType::position2d:
-      return {position2d};
-    case shm::IfaceType::position3d:
-      return {position3d};
-    case shm::IfaceType::camera:
-      return {camera};
-    case shm::IfaceType::imu:
-      return {imu};
-    case shm::IfaceType::gps:
-      return {gps};
-    case shm::IfaceType::bumper:
-      return {bumper};
-    default:
-      return {};
-  }
-}
 
 base::Result<std::vector<ListedIface>> parse_list(std::string_view json) {
   const auto list = nlohmann::json::parse(json, nullptr, false);
@@ -241,6 +262,13 @@ std::vector<PortPlan> keep_ports(std::vector<PortPlan> plans, const std::vector<
   return kept;
 }
 
+namespace {
+bool is_magnetometer(const std::string& name, const std::vector<ListedIface>& ifaces) {
+  return std::any_of(ifaces.begin(), ifaces.end(),
+                     [&](const ListedIface& one) { return one.type == shm::IfaceType::magnetometer && one.name == name; });
+}
+}  // namespace
+
 std::vector<PortPlan> plan_by_config(const std::vector<ConfiguredPort>& ports, const std::vector<ListedIface>& ifaces,
                                      std::vector<std::string>& missing) {
   std::vector<PortPlan> plans;
@@ -251,7 +279,10 @@ std::vector<PortPlan> plan_by_config(const std::vector<ConfiguredPort>& ports, c
         return one.name == device.iface && (device.type ? one.type == *device.type : can_show(device.address.interface, one.type));
       });
       if (found != ifaces.end()) {
-        plan.devices.push_back({device.address, found->type, found->name});
+        plan.devices.push_back({device.address, found->type, found->name, device.magnetometer});
+        if (!device.magnetometer.empty() && !is_magnetometer(device.magnetometer, ifaces))
+          missing.push_back(player::to_text(device.address) + " of port " + std::to_string(port.port) + ": no magnetometer " +
+                            base::in_quotes(device.magnetometer));
       } else if (device.address.interface != player::Interface::simulation) {
         missing.push_back(player::to_text(device.address) + " of port " + std::to_string(port.port) + ": no iface " +
                           base::in_quotes(device.iface));

@@ -17,6 +17,7 @@ struct DevicePlan {
   player::Address address;
   shm::IfaceType type = shm::IfaceType::laser;
   std::string iface;
+  std::string magnetometer;  // of an imu: the iface whose field it shows as well; empty: none
 };
 
 inline constexpr std::string_view no_robot = "no robot";
@@ -41,6 +42,7 @@ struct ConfiguredDevice {
   player::Address address;
   std::optional<shm::IfaceType> type;  // nothing: the first that the interface can show
   std::string iface;
+  std::string magnetometer;  // as in DevicePlan
 };
 struct ConfiguredPort {
   std::uint16_t port = 0;
@@ -59,8 +61,5 @@ std::vector<PortPlan> keep_ports(std::vector<PortPlan> plans, const std::vector<
 // What of the file is there. Devices that are not are left out and, with `missing`, named.
 std::vector<PortPlan> plan_by_config(const std::vector<ConfiguredPort>& ports, const std::vector<ListedIface>& ifaces,
                                      std::vector<std::string>& missing);
-
-// Interfaces that can show an iface of this type, the usual one first.
-std::vector<player::Interface> interfaces_for(shm::IfaceType type);
 
 }  // namespace gateway

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "device_kinds.h"
+
 namespace gateway {
 
 void Robot::arrange(const PortPlan& plan, const FindSource& find_source) {
@@ -13,7 +15,8 @@ void Robot::arrange(const PortPlan& plan, const FindSource& find_source) {
     auto device = known != before.end() ? std::move(*known) : make_device(wanted.address, port_, services_);
     if (!device) continue;
     if (auto source = find_source(wanted.type, wanted.iface)) {
-      device->attach(std::move(source));
+      auto magnetometer = wanted.magnetometer.empty() ? nullptr : find_source(shm::IfaceType::magnetometer, wanted.magnetometer);
+      device->attach(std::move(source), std::move(magnetometer));
     } else {
       device->detach();
     }
@@ -41,6 +44,16 @@ std::vector<player::Address> Robot::devices() const {
     if (device->source()) shown.push_back(device->address());
   }
   return shown;
+}
+
+std::vector<std::string> Robot::shown() const {
+  std::vector<std::string> words;
+  for (const auto& device : devices_) {
+    if (!device->source()) continue;
+    words.push_back(player::to_text(device->address()) + "=" + device->source()->iface().name());
+    if (device->companion()) words.back() += "+" + device->companion()->iface().name();
+  }
+  return words;
 }
 
 void Robot::leave(Client& client) {

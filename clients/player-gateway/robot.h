@@ -31,6 +31,8 @@ class Robot {
   Device* find(const player::Address& address) const;
   // What there is to show now.
   std::vector<player::Address> devices() const;
+  // "laser:0=robot::laser": the same with the ifaces, for people.
+  std::vector<std::string> shown() const;
   const std::vector<std::unique_ptr<Device>>& all() const { return devices_; }
   // The client has gone.
   void leave(Client& client);

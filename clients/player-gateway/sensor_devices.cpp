@@ -68,13 +68,25 @@ std::optional<Answer> Gps::answer(std::uint8_t, const std::string&, const Later&
 // ---- imu ----
 
 void Imu::show_sample() {
-  const auto& sample = iface().sample<shm::ImuSample>();
+  if (iface().type() == shm::IfaceType::imu) return show(iface().sample<shm::ImuSample>(), companion().get());
+  const auto& field = iface().sample<shm::MagnetometerSample>();
+  shm::ImuSample still{};
+  still.stamp = field.stamp;
+  still.orientation[0] = 1;
+  show(still, source().get());
+}
+
+void Imu::show(const shm::ImuSample& sample, Source* magnetometer) {
   const auto& q = sample.orientation;
   const auto angles = to_pose3d({0, 0, 0, q[0], q[1], q[2], q[3]});
   player::ImuCalibrated calibrated;
   for (int i = 0; i < 3; ++i) {
     calibrated.acceleration[i] = static_cast<float>(sample.acceleration[i]);
     calibrated.angular_velocity[i] = static_cast<float>(sample.angular_velocity[i]);
+  }
+  if (magnetometer != nullptr && magnetometer->has_sample()) {
+    const auto& field = magnetometer->iface().sample<shm::MagnetometerSample>().field;
+    for (int i = 0; i < 3; ++i) calibrated.magnetic_field[i] = static_cast<float>(field[i]);
   }
   player::XdrWriter out;
   if (kind_ == imu_data::state) {

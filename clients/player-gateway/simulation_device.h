@@ -1,6 +1,8 @@
 // simulation: poses of models by name, properties of time, pause and reset. Has no data. One thread at a time.
 #pragma once
 
+#include <array>
+
 #include "device.h"
 
 namespace gateway {
@@ -8,8 +10,19 @@ namespace gateway {
 class Simulation final : public Device {
  public:
   using Device::Device;
+  static constexpr std::array shows{shm::IfaceType::simulation};
+  static constexpr std::array table = std::to_array<Served>({
+      {player::Type::request, 1, "poses of models by name in 2D and 3D, get and set"},
+      {player::Type::request, 2, ""},
+      {player::Type::request, 3, ""},
+      {player::Type::request, 4, ""},
+      {player::Type::request, 5, "properties, see below"},
+      {player::Type::command, 1, "pause (turns round)"},
+      {player::Type::command, 2, "reset"},
+  });
 
  private:
+  ServedTable served() const override { return table; }
   std::optional<Answer> answer(std::uint8_t subtype, const std::string& payload, const Later& later) override;
   void obey(Client& client, std::uint8_t subtype, const std::string& payload) override;
   bool has_data() const override { return false; }

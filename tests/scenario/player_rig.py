@@ -38,7 +38,7 @@ class Rig(System):
         return self.ports
 
     def lines(self):
-        return re.findall(r"^port (\d+): (.*?):((?: \w+:\d+)*)$", self.log(self.process), re.M)
+        return re.findall(r"^port (\d+): (.*?):((?: \w+:\d+=\S+)*)$", self.log(self.process), re.M)
 
     def shown(self, robots):
         assert self.process.poll() is None, self.log(self.process)

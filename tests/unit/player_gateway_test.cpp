@@ -179,7 +179,7 @@ TEST(ToImage, grey_of_16_bits_has_the_high_byte_first) {
 }
 
 TEST(ToImage, frame_that_is_no_picture_or_too_short_is_none) {
-  EXPECT_FALSE(image_of(shm::Format::depth_float, 1, 1, 4, "abcd"));
+  EXPECT_FALSE(image_of(shm::Format::points_float, 1, 1, 12, "abcdefghijkl"));
   EXPECT_FALSE(image_of(shm::Format::rgb8, 2, 2, 6, "rgbRGB"));
   EXPECT_FALSE(image_of(shm::Format::rgb8, 2, 2, 3, "rgbRGB123456"));
   EXPECT_FALSE(image_of(shm::Format::rgb8, 0, 2, 0, ""));
@@ -218,6 +218,34 @@ TEST(Mapping, each_robot_has_a_port_in_world_order) {
             "6665 b: position2d:0=b::drive laser:0=b::front laser:1=b::rear sonar:0=b::sonar ranger:0=b::front ranger:1=b::rear "
             "ranger:2=b::sonar simulation:0=world");
   EXPECT_EQ(shown(plans[1]), "6666 a: position2d:0=a::drive camera:0=a::arm::camera simulation:0=world");
+}
+
+std::string with_fields(const PortPlan& plan) {
+  std::string text;
+  for (const auto& device : plan.devices)
+    text += player::to_text(device.address) + "=" + device.iface + (device.magnetometer.empty() ? " " : "+" + device.magnetometer + " ");
+  return text;
+}
+
+TEST(Mapping, magnetometers_are_part_of_imus_and_depth_cameras_are_shown_once) {
+  using enum shm::IfaceType;
+  std::vector<ListedIface> ifaces;
+  for (const auto& [type, name] : {std::pair(magnetometer, "m1"),
+                                   {magnetometer, "m2"},
+                                   {magnetometer, "m3"},
+                                   {imu, "i1"},
+                                   {imu, "i2"},
+                                   {depth, "rgbd"},
+                                   {points, "rgbd"},
+                                   {camera, "rgbd"},
+                                   {depth, "d"},
+                                   {air_pressure, "p"},
+                                   {altimeter, "a"},
+                                   {force_torque, "f"}})
+    ifaces.push_back({type, name, "r"});
+  EXPECT_EQ(with_fields(plan_by_world(ifaces, 0)[0]),
+            "camera:0=rgbd camera:1=rgbd camera:2=d imu:0=i1+m1 imu:1=i2+m2 imu:2=m3 aio:0=a aio:1=p aio:2=f pointcloud3d:0=rgbd "
+            "pointcloud3d:1=d simulation:0=world ");
 }
 
 TEST(Mapping, world_without_robots_has_one_port) {
@@ -267,6 +295,15 @@ TEST_F(MappingFile, names_robots_and_devices) {
   EXPECT_TRUE(missing.empty());
 }
 
+TEST_F(MappingFile, an_imu_may_have_a_magnetometer) {
+  const std::vector<ListedIface> ifaces{{shm::IfaceType::imu, "b::imu", "b"}, {shm::IfaceType::magnetometer, "b::field", "b"}};
+  const auto ports = read("ports:\n- port: 7000\n  devices:\n    imu:0: [b::imu, b::field]\n    imu:1: [b::imu, b::none]\n");
+  ASSERT_TRUE(ports) << ports.error().message;
+  std::vector<std::string> missing;
+  EXPECT_EQ(with_fields(plan_by_config(*ports, ifaces, missing)[0]), "imu:0=b::imu+b::field imu:1=b::imu+b::none simulation:0=world ");
+  EXPECT_EQ(missing, std::vector<std::string>{"imu:1 of port 7000: no magnetometer \"b::none\""});
+}
+
 TEST_F(MappingFile, what_is_not_in_the_world_is_named) {
   const auto ports = read("ports:\n- port: 7000\n  robots: [c]\n  devices: {laser:0: b::drive}\n");
   ASSERT_TRUE(ports) << ports.error().message;
@@ -283,7 +320,15 @@ TEST_F(MappingFile, errors_say_where) {
   EXPECT_EQ(error("ports:\n- port: 70000\n"), ":2: port must be a number from 0 to 65535, got \"70000\"");
   EXPECT_EQ(error("ports:\n- port: 1\n- port: 1\n"), ":3: port 1 is there twice");
   EXPECT_EQ(error("ports:\n- robots: [a]\n"), ":2: port is missing");
-  EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    lazer:0: x\n"), ":4: expected INTERFACE:INDEX as in laser:0, got \"lazer:0\"");
+  EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    lazer:0: x\n"), ":4: \"lazer\" is no interface of Player; did you mean laser?");
+  EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    Position2D:0: x\n"),
+            ":4: \"Position2D\" is no interface of Player; did you mean position2d?");
+  EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    blobfinder:0: x\n").substr(0, 82),
+            ":4: \"blobfinder\" is an interface of Player that is not served here; served are pos");
+  EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    colour:0: x\n").substr(0, 66),
+            ":4: \"colour\" is no interface of Player; expected one of position2d");
+  EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    laser:x: x\n"), ":4: expected INTERFACE:INDEX as in laser:0, got \"laser:x\"");
+  EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    laser:0: [a, b]\n"), ":4: expected the name of an iface");
   EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    laser:0: sonar:x\n"), ":4: laser:0 can't show an iface of type \"sonar\"");
   EXPECT_EQ(error("ports:\n- port: 1\n  colour: red\n"), ":3: expected port, robots or devices, got \"colour\"");
   EXPECT_EQ(error("port: 1\n"), ":1: expected a list called ports and nothing else");

@@ -7,7 +7,6 @@
 #include <random>
 
 #include "pose_control.h"
-#include "served.h"
 
 namespace gateway {
 namespace {
@@ -126,13 +125,6 @@ TEST(TurnTowards, takes_the_shorter_way_within_the_limit) {
   EXPECT_LT(turn_towards(-3, 3, {}), 0);
   EXPECT_EQ(turn_towards(0, 2, {.turn = 0.3}), 0.3);
   EXPECT_NEAR(turn_towards(1, 1, {}), 0, 1e-12);
-}
-
-TEST(Served, nothing_that_is_no_message) {
-  EXPECT_TRUE(is_served(player::Interface::position2d, 2, 2));
-  EXPECT_FALSE(is_served(player::Interface::position2d, 0x102, 2));
-  EXPECT_FALSE(is_served(player::Interface::position2d, 2, 0x102));
-  EXPECT_FALSE(is_served(player::Interface::player, 3, 255));
 }
 
 }  // namespace

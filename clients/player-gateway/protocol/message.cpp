@@ -1,5 +1,6 @@
 #include "protocol/message.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -8,17 +9,27 @@
 namespace player {
 namespace {
 
-constexpr std::array<std::pair<Interface, std::string_view>, 11> names{{{Interface::player, "player"},
-                                                                        {Interface::position2d, "position2d"},
-                                                                        {Interface::sonar, "sonar"},
-                                                                        {Interface::laser, "laser"},
-                                                                        {Interface::gps, "gps"},
-                                                                        {Interface::bumper, "bumper"},
-                                                                        {Interface::position3d, "position3d"},
-                                                                        {Interface::simulation, "simulation"},
-                                                                        {Interface::camera, "camera"},
-                                                                        {Interface::imu, "imu"},
-                                                                        {Interface::ranger, "ranger"}}};
+constexpr auto names = std::to_array<std::pair<Interface, std::string_view>>({
+    {Interface::player, "player"},
+    {Interface::position2d, "position2d"},
+    {Interface::sonar, "sonar"},
+    {Interface::laser, "laser"},
+    {Interface::gps, "gps"},
+    {Interface::bumper, "bumper"},
+    {Interface::aio, "aio"},
+    {Interface::position3d, "position3d"},
+    {Interface::simulation, "simulation"},
+    {Interface::camera, "camera"},
+    {Interface::imu, "imu"},
+    {Interface::pointcloud3d, "pointcloud3d"},
+    {Interface::ranger, "ranger"},
+});
+
+constexpr auto other_names = std::to_array<std::string_view>(
+    {"power",      "gripper",  "blobfinder",   "ptz",        "audio",   "fiducial", "speech",     "dio",    "ir",
+     "wifi",       "localize", "blinkenlight", "map",        "planner", "log",      "joystick",   "opaque", "speech_recognition",
+     "position1d", "actarray", "limb",         "graphics2d", "rfid",    "wsn",      "graphics3d", "health", "vectormap",
+     "blackboard", "stereo",   "coopobject"});
 
 }  // namespace
 
@@ -34,6 +45,10 @@ std::optional<Interface> parse_interface(std::string_view wanted) {
     if (name == wanted) return code;
   }
   return std::nullopt;
+}
+
+bool is_interface_name(std::string_view name) {
+  return parse_interface(name).has_value() || std::find(other_names.begin(), other_names.end(), name) != other_names.end();
 }
 
 std::string to_text(const Address& address) {

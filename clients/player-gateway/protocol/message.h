@@ -23,21 +23,25 @@ enum class Interface : std::uint16_t {
   laser = 6,
   gps = 13,
   bumper = 14,
+  aio = 21,
   position3d = 30,
   simulation = 31,
   camera = 40,
   imu = 60,
+  pointcloud3d = 61,
   ranger = 62,
 };
 // "laser"; empty for what is not served.
 std::string_view to_text(Interface interface);
 std::optional<Interface> parse_interface(std::string_view name);
+// Of all that Player has, served or not: "blobfinder".
+bool is_interface_name(std::string_view name);
 
 enum class Type : std::uint8_t { data = 1, command = 2, request = 3, ack = 4, synch = 5, nack = 6 };
 
 // Of requests to the player device; synch messages have subtypes of their own.
 namespace player_request {
-inline constexpr std::uint8_t devlist = 1, driverinfo = 2, dev = 3, data = 4, datamode = 5, add_replace_rule = 10;
+inline constexpr std::uint8_t devlist = 1, driverinfo = 2, dev = 3, data = 4, datamode = 5, auth = 7, add_replace_rule = 10;
 }
 // Of requests that each interface has. Properties of drivers are read and set by requests of their own for each type of value.
 namespace universal_request {

@@ -7,6 +7,7 @@ namespace player {
 namespace {
 
 constexpr std::size_t max_driver_name = 63;  // clients write a zero behind it into a field of 64
+constexpr std::size_t max_key = 32;          // with or without a zero behind it
 constexpr std::size_t max_name = 4096;
 constexpr std::size_t max_value = 65536;
 
@@ -101,6 +102,14 @@ std::optional<DriverInfo> decode_driver_info(std::string_view payload) {
     info.driver = in.counted_text(64);
     return info;
   });
+}
+
+std::optional<std::string> decode_key(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) { return std::string(in.counted_text(max_key + 1)); });
+}
+
+std::string encode_key(std::string_view key) {
+  return written([&](XdrWriter& out) { out.counted_bytes(key); });
 }
 
 std::string encode_device_list(const std::vector<Address>& devices) {
@@ -305,6 +314,17 @@ std::string encode(const LaserConfig& config) {
   });
 }
 
+std::optional<LaserConfig> decode_laser_config(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    LaserConfig config;
+    for (float* value : {&config.min_angle, &config.max_angle, &config.resolution, &config.max_range, &config.range_resolution})
+      *value = in.f32();
+    config.has_intensity = in.boolean();
+    config.rate = in.f32();
+    return config;
+  });
+}
+
 // ---- ranger ----
 
 std::string encode(const RangerGeometry& geometry) {
@@ -323,6 +343,16 @@ std::string encode(const RangerConfig& config) {
     for (const double value :
          {config.min_angle, config.max_angle, config.resolution, config.min_range, config.max_range, config.range_resolution, config.rate})
       out.f64(value);
+  });
+}
+
+std::optional<RangerConfig> decode_ranger_config(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    RangerConfig config;
+    for (double* value : {&config.min_angle, &config.max_angle, &config.resolution, &config.min_range, &config.max_range,
+                          &config.range_resolution, &config.rate})
+      *value = in.f64();
+    return config;
   });
 }
 
@@ -346,6 +376,27 @@ std::string encode_poses(const std::vector<Pose3d>& poses) {
   return written([&](XdrWriter& out) {
     out.count(poses.size());
     for (const Pose3d& pose : poses) put(out, pose);
+  });
+}
+
+// ---- aio, pointcloud3d ----
+
+std::string encode_voltages(const std::vector<double>& values) {
+  return written([&](XdrWriter& out) {
+    out.count(values.size());
+    for (const double value : values) out.f32(static_cast<float>(value));
+  });
+}
+
+std::string encode_points(const std::vector<Point3d>& points) {
+  return written([&](XdrWriter& out) {
+    constexpr std::size_t size_of_one = 40;
+    out.bytes().reserve(8 + size_of_one * points.size());
+    out.count(points.size());
+    for (const Point3d& point : points) {
+      for (const double value : {point.x, point.y, point.z}) out.f64(value);
+      for (int channel = 0; channel < 4; ++channel) out.u32(255);
+    }
   });
 }
 

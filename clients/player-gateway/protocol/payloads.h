@@ -49,6 +49,10 @@ struct DriverInfo {
 std::string encode(const DriverInfo& info);
 std::optional<DriverInfo> decode_driver_info(std::string_view payload);
 
+// Of an authentication: at most 32 characters.
+std::optional<std::string> decode_key(std::string_view payload);
+std::string encode_key(std::string_view key);
+
 std::string encode_device_list(const std::vector<Address>& devices);
 
 // -1: any.
@@ -139,6 +143,7 @@ struct LaserConfig {
   float rate = 0;  // [Hz]
 };
 std::string encode(const LaserConfig& config);
+std::optional<LaserConfig> decode_laser_config(std::string_view payload);
 
 // ---- ranger ----
 struct RangerGeometry {
@@ -152,11 +157,21 @@ struct RangerConfig {
   double min_angle = 0, max_angle = 0, resolution = 0, min_range = 0, max_range = 0, range_resolution = 0, rate = 0;
 };
 std::string encode(const RangerConfig& config);
+std::optional<RangerConfig> decode_ranger_config(std::string_view payload);
 std::string encode_ranger_values(const std::vector<double>& values);
 
 // ---- sonar ----
 std::string encode_sonar_ranges(const std::vector<float>& ranges);
 std::string encode_poses(const std::vector<Pose3d>& poses);
+
+// ---- aio ----
+std::string encode_voltages(const std::vector<double>& values);
+
+// ---- pointcloud3d ----
+struct Point3d {
+  double x = 0, y = 0, z = 0;
+};
+std::string encode_points(const std::vector<Point3d>& points);  // all white
 
 // ---- camera ----
 enum class ImageFormat : std::uint32_t { mono8 = 1, mono16 = 2, rgb888 = 5 };

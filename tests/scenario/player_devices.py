@@ -1,0 +1,162 @@
+# Which iface is which device of Player, what scanners can be told, and sensors beyond the usual: player_devices.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
+import math
+import struct
+
+from player_rig import *
+
+scanner = """<sensor name="{name}" type="gpu_lidar"><pose>{x} 0 0.3 0 0 0</pose><update_rate>20</update_rate><lidar><scan><horizontal><samples>181</samples><resolution>1</resolution>
+<min_angle>-1.5707963</min_angle><max_angle>1.5707963</max_angle></horizontal></scan><range><min>0.1</min><max>{reach}</max><resolution>0.01</resolution></range></lidar></sensor>"""
+
+post = f"""<sdf version="1.9"><world name="posts"><model name="post"><static>true</static><link name="l">
+{scanner.format(name="zeta", x=0.1, reach=8)}{scanner.format(name="alpha", x=-0.1, reach=4)}{scanner.format(name="m" * 70, x=0, reach=2)}</link></model>
+<model name="wall"><static>true</static><pose>2.1 0 0.3 0 0 0</pose><link name="l"><collision name="c"><geometry><box><size>0.2 12 0.6</size></box></geometry></collision>
+<visual name="v"><geometry><box><size>0.2 12 0.6</size></box></geometry></visual></link></model></world></sdf>"""
+
+meters = f"""<sdf version="1.9"><world name="meters"><magnetic_field>2e-5 1e-6 -4e-5</magnetic_field><include><uri>{source}/worlds/models/ground_plane</uri></include>
+<model name="mast"><pose>0 0 2 0 0 0</pose>
+<link name="base"><inertial><mass>5</mass></inertial>
+ <sensor name="pressure" type="air_pressure"><update_rate>20</update_rate></sensor>
+ <sensor name="height" type="altimeter"><update_rate>20</update_rate></sensor>
+ <sensor name="imu" type="imu"><update_rate>20</update_rate></sensor>
+ <sensor name="field" type="magnetometer"><update_rate>20</update_rate></sensor>
+ <sensor name="compass" type="magnetometer"><update_rate>20</update_rate></sensor>
+ <sensor name="depth" type="depth_camera"><pose>0 0 0 0 0.5236 0</pose><update_rate>10</update_rate><camera><horizontal_fov>1</horizontal_fov><image><width>32</width><height>24</height></image>
+  <clip><near>0.1</near><far>50</far></clip></camera></sensor></link>
+<link name="arm"><pose>0 0 0.5 0 0 0</pose><inertial><mass>2</mass></inertial></link>
+<joint name="fix" type="fixed"><parent>world</parent><child>base</child></joint>
+<joint name="wrist" type="fixed"><parent>base</parent><child>arm</child><sensor name="wrist" type="force_torque"><update_rate>20</update_rate></sensor></joint></model></world></sdf>"""
+
+
+def started_with(world, *options):
+    rig = Rig()
+    path = f"{rig.work}/devices.sdf"
+    with open(path, "w") as file:
+        file.write(world)
+    rig.sim(*options, world=path)
+    rig.gateway(robots=1)
+    return rig
+
+
+# Lasers have the order of the world file, and the line of the port, the driver's name and a property say which is which.
+def identity():
+    with started_with(post) as rig:
+        long_name = "m" * 70
+        words = rig.lines()[0][2].split()
+        assert words[:3] == ["laser:0=post::zeta", "laser:1=post::alpha", f"laser:2=post::{long_name}"], words
+        assert words[3:] == ["ranger:0=post::zeta", "ranger:1=post::alpha", f"ranger:2=post::{long_name}", "simulation:0=world"], words
+        client = Client(rig.ports[0])
+        assert [client.driver(LASER, index) for index in (0, 1)] == [b"rtm-sim post::zeta\0", b"rtm-sim post::alpha\0"]
+        assert client.driver(LASER, 2) == b"rtm-sim ..." + b"m" * 51 + b"\0"
+        assert client.driver(SIMULATION, 0) == b"rtm-sim world\0"
+        for index, reach in ((0, 8), (1, 4)):
+            client.subscribe(LASER, index)
+            assert Laser(client.read_until(LASER, index=index)).max_range == reach
+        # Refusals are told once each.
+        for _ in range(3):
+            for device in ((POSITION2D, 0), (LASER, 3), (77, 0)):
+                assert not client.access(*device, OPEN)
+        log = rig.log(rig.process)
+        assert log.count("subscription refused: there is no position2d:0; there are laser:0 laser:1") == 1, log
+        assert log.count("there is no laser:3;") == 1 and log.count("there is no 77:0;") == 1, log
+        for index in range(3, 100):
+            assert not client.access(LASER, index, OPEN)
+        assert rig.log(rig.process).count("subscription refused") == 20
+
+
+def laser_config(min_angle=0, max_angle=0, resolution=0, range_resolution=0, intensity=1, rate=0, max_range=math.nan):
+    return struct.pack(">5fIf", min_angle, max_angle, resolution, max_range, range_resolution, intensity, rate)
+
+
+# What Configure of LaserProxy and RangerProxy sends: done, or refused. max_range is what was in the client's memory.
+def configure():
+    degree = math.pi / 180
+    with started_with(post) as rig:
+        client, other = Client(rig.ports[0]), Client(rig.ports[0])
+        for one in (client, other):
+            one.subscribe(LASER)
+        whole = Laser(client.read_until(LASER))
+        assert len(whole.ranges) == 181 == len(whole.intensities)
+        said = struct.unpack(">5fIf", client.demand(LASER, 0, 2, laser_config(-45 * degree, 45 * degree, 2 * degree, 0, 0, 10)))
+        assert abs(said[0] + 45 * degree) < 1e-4 and abs(said[1] - 45 * degree) < 1e-4 and abs(said[2] - 2 * degree) < 1e-4 and said[3] == 8, said
+        assert said[5:] == (0, 10), said
+        assert client.demand(LASER, 0, 3) == struct.pack(">5fIf", *said)
+        for one in (client, other):
+            part = Laser(one.read_until(LASER, good=lambda p: len(Laser(p).ranges) == 46))
+            assert abs(part.min_angle + 45 * degree) < 1e-4 and abs(part.resolution - 2 * degree) < 1e-4 and part.intensities == b""
+            assert all(abs(a - b) < 0.03 for a, b in zip(part.ranges, whole.ranges[45:136:2])), part.ranges
+        before = client.stamps[(LASER, 0, 1)]
+        client.read_until(LASER)
+        assert client.stamps[(LASER, 0, 1)] - before > 0.09  # every second scan
+        for wrong in (laser_config(-2, 2), laser_config(resolution=0.5 * degree), laser_config(resolution=1.5 * degree), laser_config(rate=30), laser_config(rate=-1),
+                      laser_config(range_resolution=0.001), laser_config(1, -1), laser_config(math.nan, 1), laser_config(rate=math.inf), laser_config()[:-4], b"", bytes(60)):
+            client.refused(LASER, 0, 2, wrong)
+        assert client.demand(LASER, 0, 3) == struct.pack(">5fIf", *said)  # as it was
+        # What was read can be written again.
+        assert client.demand(LASER, 0, 2, struct.pack(">5fIf", *said)) == struct.pack(">5fIf", *said)
+
+        # The ranger of the same laser has settings of its own, and answers with them.
+        client.subscribe(RANGER)
+        assert len(Fields(client.read_until(RANGER)).many("d")) == 181
+        wanted = struct.pack(">7d", -30 * degree, 30 * degree, 1 * degree, 0.1, 1.5, 0.5, 20)
+        got = struct.unpack(">7d", client.demand(RANGER, 0, 4, wanted))
+        assert all(abs(a - b) < 1e-3 for a, b in zip(got, struct.unpack(">7d", wanted))), got
+        ranges = Fields(client.read_until(RANGER, good=lambda p: Fields(p).count() == 61)).many("d")
+        assert set(ranges) == {1.5}, ranges  # the wall is further away
+        client.refused(RANGER, 0, 4, struct.pack(">7d", 0, 0, 0, 0, 9, 0, 0))
+
+        # It ends with the last client.
+        client.close()
+        other.unsubscribe(LASER)
+        other.subscribe(LASER)
+        other.read_until(LASER, good=lambda p: len(Laser(p).ranges) == 181 == len(Laser(p).intensities))
+
+
+# Altimeter, air pressure, force and torque, magnetometers, and what a depth camera sees.
+def meters_and_depths():
+    with started_with(meters) as rig:
+        words = dict(word.split("=") for word in rig.lines()[0][2].split())
+        names = {name.split("::")[-1]: device for device, name in words.items() if device.startswith("aio")}
+        assert words["imu:0"].startswith("mast::imu+mast::field") and words["imu:1"] == "mast::compass" and len(names) == 3, words
+        client = Client(rig.ports[0])
+
+        def inputs(which):
+            index = int(names[which].split(":")[1])
+            client.subscribe(AIO, index)
+            values = Fields(client.read_until(AIO, index=index)).many("f")
+            client.unsubscribe(AIO, index)
+            return values
+
+        height = inputs("height")
+        assert len(height) == 2 and all(abs(value) < 0.01 for value in height), height
+        pressure = inputs("pressure")
+        assert len(pressure) == 1 and abs(pressure[0] - 101301) < 30, pressure
+        force = inputs("wrist")
+        assert len(force) == 6 and abs(abs(force[2]) - 2 * 9.8) < 0.1, force
+
+        for index in (0, 1):
+            client.subscribe(IMU, index)
+            values = struct.unpack(">9f3d", client.read_until(IMU, subtype=4, index=index, good=lambda p: struct.unpack(">9f3d", p)[8] != 0))
+            assert all(abs(a - b) < 1e-7 for a, b in zip(values[6:9], (2e-5, 1e-6, -4e-5))), values
+            assert abs(values[2] - (9.8 if index == 0 else 0)) < 0.1, values
+            client.unsubscribe(IMU, index)
+
+        # 30 degrees down from 2 m: the middle of the picture is 4 m away.
+        client.subscribe(CAMERA)
+        fields = Fields(client.read_until(CAMERA))
+        assert fields.take("6I") == (32, 24, 16, 2, 1, 0)
+        depths = struct.unpack(">768H", fields.raw())
+        fields.finish()
+        assert abs(depths[12 * 32 + 16] - 4000) < 150, depths[12 * 32 + 16]
+        assert depths[0] > depths[-1] > 2000, (depths[0], depths[-1])
+        client.subscribe(POINTCLOUD3D)
+        fields = Fields(client.read_until(POINTCLOUD3D))
+        points = [fields.take("3d4I") for _ in range(fields.count())]
+        fields.finish()
+        assert len(points) == 768 and all(point[3:] == (255, 255, 255, 255) for point in points)
+        # Each lies on the ground: 2 m below along an axis tilted by 30 degrees.
+        assert all(abs(x * 0.5 - z * math.cos(math.pi / 6) - 2) < 0.02 for x, _, z, *_ in points), points[:3]
+        assert min(y for _, y, *_ in points) < -1 and max(y for _, y, *_ in points) > 1
+        assert client.request(AIO, 0, 255, struct.pack(">II", DATA, 1))[0] == ACK and client.request(POINTCLOUD3D, 0, 1)[0] == NACK
+
+
+run(identity, configure, meters_and_depths)
