@@ -79,6 +79,7 @@ void Simulation::sense(PartTimes& times) {
   }
   if (due_.empty()) return times.mark(Part::sensors);
   active_sensors_ = std::max(active_sensors_, static_cast<std::uint32_t>(due_.size()));
+  times.begin_due(Part::sensors);
   if (needs_rays) {
     rays_->update();
     times.mark(Part::rays);
@@ -90,6 +91,7 @@ void Simulation::sense(PartTimes& times) {
   times.mark(Part::sensors);
   for (auto* device : due_) device->publish(moment);
   times.mark(Part::publish);
+  times.end_due();
 }
 
 void Simulation::answer_new_subscribers() {

@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "support/physics_fixture.h"
 #include "support/simulation_fixture.h"
 #include "world/world_loader.h"
 
@@ -107,6 +108,26 @@ TEST(Device, after_a_reset_it_says_the_same_again) {
   f.run(0.2);
   EXPECT_EQ(f.simulation->hash(), hash);
   for (std::size_t i = 0; i < names.size(); ++i) EXPECT_EQ(values_of(ifaces[i]), first[i]) << names[i].text();
+}
+
+TEST(PartTimes, know_every_scan_of_a_laser_that_is_never_due_in_the_steps_that_stand_for_others) {
+  SimulationFixture f(world_of_text(R"(<physics type="ode"><max_step_size>0.001</max_step_size></physics>
+    <model name="m"><static>true</static><link name="l"><sensor name="laser" type="ray"><update_rate>10</update_rate>
+      <ray><scan><horizontal><samples>500</samples><min_angle>-1</min_angle><max_angle>1</max_angle></horizontal></scan>
+      <range><min>0.05</min><max>8</max></range></ray></sensor></link></model>)"));
+  auto laser = f.open(shm::IfaceType::laser, "m::laser");
+  for (int i = 0; i < 1000; ++i) {
+    f.times.begin_step(f.simulation->steps());
+    f.simulation->step(f.times);
+    f.simulation->sense(f.times);
+  }
+  const auto& entries = f.times.entries();
+  const auto& rays = entries[static_cast<std::size_t>(Part::rays)];
+  EXPECT_EQ(rays.calls, laser.sequence());
+  EXPECT_EQ(entries[static_cast<std::size_t>(Part::physics)].calls, 1000U);
+  const auto& sensors = entries[static_cast<std::size_t>(Part::sensors)];
+  EXPECT_LE(sensors.calls, 1000 + laser.sequence());
+  EXPECT_GE(sensors.total, sensors.longest);
 }
 
 }  // namespace
