@@ -141,7 +141,6 @@ class Car final : public DriveTrain {
   }
 
   std::array<double, 2> followed() const override { return {speed_, speed_ * curvature_}; }
-  double fastest_rim() const override { return std::abs(speed_); }
   double rate() const override { return settings_.rate; }
   void reset() override {
     speed_ = curvature_ = 0;

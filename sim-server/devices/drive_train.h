@@ -24,9 +24,8 @@ class DriveTrain {
   virtual void drive(double vx, double va, bool motors_on, double dt) = 0;
   // After each step, once.
   virtual Travel travel() = 0;
-  // vx and va that the motors follow now, and the fastest of the wheels' rims [m/s].
+  // vx [m/s] and va [rad/s] that the motors follow now.
   virtual std::array<double, 2> followed() const = 0;
-  virtual double fastest_rim() const = 0;
   virtual double rate() const = 0;  // of samples [Hz]; 0: every step
   // The model is (again) at its initial state.
   virtual void reset() = 0;

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/log.h"
 #include "world/iface_names.h"
 
 namespace sim {
 namespace {
-
-constexpr double stall_after = 0.5;  // [s]
 
 // Of all its boxes, spheres and cylinders, along the axes of the model.
 Eigen::AlignedBox3d box_of(const ModelDef& model) {
@@ -45,11 +44,12 @@ MadeDevice Position2d::make(DeviceWorld& world, ModelId model, const PluginDef& 
   shm::set_text(info.model, scoped_model(def, plugin.scope));
   auto setup = set_up(world, model, train->rate(), shm::position2d_spec(iface_name(def, plugin), info), {});
   if (!setup) return setup.error();
-  return MadeDevice(std::make_unique<Position2d>(std::move(*setup), info.wheel_separation, std::move(train)));
+  const Traction traction(info.wheel_separation, info.drive == RTMSIM_DRIVE_SKID);
+  return MadeDevice(std::make_unique<Position2d>(std::move(*setup), traction, std::move(train)));
 }
 
-Position2d::Position2d(Setup setup, double separation, std::unique_ptr<DriveTrain> train)
-    : Sensor(std::move(setup)), separation_(separation), train_(std::move(train)) {}
+Position2d::Position2d(Setup setup, const Traction& traction, std::unique_ptr<DriveTrain> train)
+    : Sensor(std::move(setup)), train_(std::move(train)), traction_(traction) {}
 
 void Position2d::before_step(const Moment& moment) {
   shm::Command command;
@@ -75,15 +75,9 @@ void Position2d::after_step(const Moment& moment) {
   odometry_[1] += travel.forward * std::sin(odometry_[2] + travel.turn / 2);
   odometry_[2] = wrapped(odometry_[2] + travel.turn);
   velocity_ = {travel.speed, travel.yaw_rate};
-  // Stalled: the motors want to move, but the robot does not.
-  const double wanted = train_->fastest_rim();
-  if (wanted <= 0.02 || !motors_enabled_) {
-    stalled_for_ = 0;
-    return;
-  }
-  const Twist twist = physics().link_twist(physics().canonical_link(model()));
-  const double moved = std::max(twist.linear.norm(), std::abs(twist.angular.z()) * separation_ / 2);
-  stalled_for_ = moved < 0.2 * wanted ? stalled_for_ + moment.dt : 0;
+  if (!traction_.follow(motors_enabled_ ? train_->followed() : std::array{0.0, 0.0}, travel, moment.dt)) return;
+  const std::string line = traction_.look(physics().model_pose(model()));
+  if (!line.empty()) base::log(base::Level::warn, writer().name(), "{}", line);
 }
 
 void Position2d::measure(const Moment&) const {
@@ -105,7 +99,7 @@ void Position2d::measure(const Moment&) const {
   out.command[0] = followed[0];
   out.command[1] = 0;
   out.command[2] = followed[1];
-  out.stalled = stalled_for_ > stall_after ? 1 : 0;
+  out.stalled = traction_.is_stalled() ? 1 : 0;
   out.motors_enabled = motors_enabled_ ? 1 : 0;
   out.commanded = is_commanded_ ? 1 : 0;
 }
@@ -115,7 +109,7 @@ void Position2d::restart() {
   velocity_ = {0, 0};
   command_ = {0, 0};
   motors_enabled_ = true;
-  stalled_for_ = 0;
+  traction_.restart();
   train_->reset();
 }
 

@@ -6,13 +6,14 @@
 
 #include "devices/drive_train.h"
 #include "devices/sensor.h"
+#include "devices/traction.h"
 
 namespace sim {
 
 class Position2d final : public Sensor {
  public:
   static MadeDevice make(DeviceWorld& world, ModelId model, const PluginDef& plugin, std::unique_ptr<DriveTrain> train);
-  Position2d(Setup setup, double separation, std::unique_ptr<DriveTrain> train);
+  Position2d(Setup setup, const Traction& traction, std::unique_ptr<DriveTrain> train);
 
   void before_step(const Moment& moment) override;
   void after_step(const Moment& moment) override;
@@ -24,13 +25,12 @@ class Position2d final : public Sensor {
   void restart() override;
   void add_state_to(StateHash& hash) const override;
 
-  double separation_;  // of the wheels [m]
   std::unique_ptr<DriveTrain> train_;
   std::array<double, 2> command_{0, 0};  // vx, va as asked for
   std::array<double, 3> odometry_{0, 0, 0};
   std::array<double, 2> velocity_{0, 0};
   bool motors_enabled_ = true, is_commanded_ = false;
-  double stalled_for_ = 0;  // [s]
+  Traction traction_;
 };
 
 }  // namespace sim

@@ -142,7 +142,6 @@ class WheelPairs final : public DriveTrain {
   std::array<double, 2> followed() const override {
     return {(wheels_[0] + wheels_[1]) / 2, (wheels_[1] - wheels_[0]) / settings_.separation};
   }
-  double fastest_rim() const override { return std::max(std::abs(wheels_[0]), std::abs(wheels_[1])); }
   double rate() const override { return settings_.rate; }
   void reset() override {
     wheels_ = {0, 0};

@@ -65,7 +65,26 @@ bool friction_direction(const SurfaceDef& a, dGeomID geom_a, const SurfaceDef& b
   return true;
 }
 
-void soften(dContact& contact, double weight, double erp, double layer, double dt) {
+bool wheel_friction_direction(const SurfaceDef& wheel, dGeomID geom, const dSurfaceParameters& combined, const dReal* normal, dReal* out) {
+  const bool is_even = combined.mu == combined.mu2 && (combined.mode & (dContactSlip1 | dContactSlip2)) == 0;
+  const bool is_of_axle = !wheel.friction_direction || std::abs(wheel.friction_direction->z()) > 0.7;
+  if (is_even && (!wheel.friction_direction || !is_of_axle)) return false;
+  const dReal* r = dGeomGetRotation(geom);
+  const Eigen::Vector3d axle(r[2], r[6], r[10]), n(normal[0], normal[1], normal[2]);
+  const Eigen::Vector3d rolling = axle.cross(n);
+  if (!(rolling.norm() > 0.1)) return false;  // it lies on its side
+  const Eigen::Vector3d direction = (is_of_axle ? n.cross(rolling) : rolling).normalized();
+  out[0] = direction.x(), out[1] = direction.y(), out[2] = direction.z();
+  return true;
+}
+
+double allowed_depth(const SurfaceDef& a, const SurfaceDef& b, const dSurfaceParameters& combined) {
+  constexpr double hair = 1e-4;  // [m]
+  const double depth = std::min(a.min_depth, b.min_depth);
+  return (combined.mode & dContactBounce) != 0 ? std::max(depth, hair) : depth;
+}
+
+void soften(dContact& contact, double weight, double erp, double dt) {
   constexpr double sag = 1e-5;  // [m]
   dSurfaceParameters& surface = contact.surface;
   if (!(weight > 0) || !(erp > 0) || (surface.mode & dContactBounce) != 0) return;
@@ -74,7 +93,6 @@ void soften(dContact& contact, double weight, double erp, double layer, double d
   surface.mode |= dContactSoftERP | dContactSoftCFM;
   surface.soft_cfm = cfm;
   surface.soft_erp = erp;
-  contact.geom.depth += layer;
 }
 
 void resist_sliding(dContact& contact, dBodyID a, dBodyID b, double load) {
@@ -122,6 +140,31 @@ int reduce(dContactGeom* contacts, int count) {
   std::sort(chosen, chosen + 4);
   const int kept = static_cast<int>(std::unique(chosen, chosen + 4) - chosen);
   for (int i = 0; i < kept; ++i) contacts[i] = contacts[chosen[i]];  // ascending, so nothing is overwritten too early
+  return kept;
+}
+
+int merge_under_wheel(dGeomID wheel, dContactGeom* contacts, int count) {
+  constexpr double most_lean = 0.05;  // [rad] at which the tyre still touches with its whole width
+  const dReal* r = dGeomGetRotation(wheel);
+  const Eigen::Vector3d axle(r[2], r[6], r[10]), middle = ode::vector(dGeomGetPosition(wheel));
+  int kept = 0;
+  for (int i = 0; i < count; ++i) {
+    dContactGeom contact = contacts[i];
+    const Eigen::Vector3d normal = ode::vector(contact.normal);
+    if (!(std::abs(normal.dot(axle)) < most_lean)) {
+      contacts[kept++] = contact;
+      continue;
+    }
+    const Eigen::Vector3d place = ode::vector(contact.pos) - axle * axle.dot(ode::vector(contact.pos) - middle);
+    for (int k = 0; k < 3; ++k) contact.pos[k] = place[k];
+    int same = 0;
+    while (same < kept && normal.dot(ode::vector(contacts[same].normal)) < 0.98) ++same;
+    if (same == kept) {
+      contacts[kept++] = contact;
+    } else if (contact.depth > contacts[same].depth) {
+      contacts[same] = contact;
+    }
+  }
   return kept;
 }
 

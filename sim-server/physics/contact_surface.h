@@ -16,10 +16,18 @@ dSurfaceParameters combine(const SurfaceDef& a, const SurfaceDef& b, double dt);
 // Direction of the first friction axis in the contact's plane; false when neither surface asks for one.
 bool friction_direction(const SurfaceDef& a, dGeomID geom_a, const SurfaceDef& b, dGeomID geom_b, const dReal* normal, dReal* out);
 
+// The same for a wheel. A direction that turns with the wheel means the one in which it rolls, and nothing where the friction is the same
+// in all directions; without any, the first axis is the axle's, as Gazebo has it for a robot that looks along x.
+bool wheel_friction_direction(const SurfaceDef& wheel, dGeomID geom, const dSurfaceParameters& combined, const dReal* normal, dReal* out);
+
+// How deep two bodies may be in each other before their contact pushes back: the smaller of what their surfaces allow, as Gazebo has it,
+// whatever <contact_surface_layer> says. What bounces is let in by a hair more, or it would part from what it rests on in every other step.
+double allowed_depth(const SurfaceDef& a, const SurfaceDef& b, const dSurfaceParameters& combined);
+
 // Lets a contact that is harder give way by about 10 um under `weight` [N], so that bodies on more than three points load all of them:
-// where nothing gives way the forces of the points are not determined, and the exact solver puts them all on some. `erp` and `layer` [m]
-// are the world's; within that layer ODE would not push back, and the body would creep. What bounces stays hard.
-void soften(dContact& contact, double weight, double erp, double layer, double dt);
+// where nothing gives way the forces of the points are not determined, and the exact solver puts them all on some. `erp` is the world's.
+// What bounces stays hard.
+void soften(dContact& contact, double weight, double erp, double dt);
 
 // Friction that is the same in all directions acts against the sliding of `a` on `b` (null: what does not move): turns the first friction
 // axis that way and lets the second one follow the sliding as it turns. ODE's own friction, a square with sides along the world's axes, is
@@ -29,5 +37,13 @@ void resist_sliding(dContact& contact, dBodyID a, dBodyID b, double load);
 
 // Keeps the contacts that span the patch when all have about the same normal: at most four. Returns how many are left.
 int reduce(dContactGeom* contacts, int count);
+
+// A tyre touches with its whole width and is loaded most in the middle: contacts on the rolling face of the wheel become one, below the
+// middle of the wheel. Contacts at both edges would each have to slip for the wheel to turn, the harder the wider it is, and a wheel that
+// leans by a thousandth would stand on one edge. Returns how many are left.
+int merge_under_wheel(dGeomID wheel, dContactGeom* contacts, int count);
+
+// No tyre grips better. Worlds write 1e5 for "does not slip", with which a robot on four wheels could never turn.
+inline constexpr double best_grip = 2;
 
 }  // namespace sim

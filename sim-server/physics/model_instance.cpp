@@ -12,6 +12,21 @@ bool is_carried_by(const std::optional<FluidDef>& fluid, const std::string& mode
   return fluid && (fluid->models.empty() || std::find(fluid->models.begin(), fluid->models.end(), model) != fluid->models.end());
 }
 
+// Wider than high is no wheel but a drum, which stands on its whole width.
+bool is_wheel(const ModelDef& model, const LinkDef& link, const CollisionDef& collision) {
+  const auto* cylinder = std::get_if<CylinderShape>(&collision.geometry);
+  if (cylinder == nullptr || cylinder->length > 2 * cylinder->radius) return false;
+  const Eigen::Isometry3d pose = link.pose * collision.pose;
+  return std::any_of(model.joints.begin(), model.joints.end(), [&](const JointDef& joint) {
+    if (joint.kind != JointDef::Kind::revolute && joint.kind != JointDef::Kind::continuous && joint.kind != JointDef::Kind::revolute2)
+      return false;
+    if (joint.child != link.name && joint.parent != link.name) return false;
+    const Eigen::Vector3d axis = joint.pose_in_model.linear() * joint.axes.back().xyz;
+    const Eigen::Vector3d away = pose.translation() - joint.pose_in_model.translation();
+    return axis.cross(pose.linear().col(2)).norm() < 0.02 && axis.cross(away).norm() < 0.05 * cylinder->radius;
+  });
+}
+
 constexpr double fastest = 5000;  // [m/s], [rad/s]: nothing that is simulated sanely gets there
 
 }  // namespace
@@ -38,6 +53,7 @@ void ModelInstance::make_shapes(ShapeStore& store, std::vector<std::string>& los
       shape->link = {id_, l};
       shape->collision = c;
       shape->assembly = assembly;
+      shape->is_wheel = !is_anchored && is_wheel(model, model.links[l], collision);
       shape_in_body_.push_back(blueprint_->link_in_body[l] * collision.pose * geom_in_collision(collision.geometry));
       shapes_.push_back(std::move(*shape));
       const auto solid = solid_properties(collision.geometry);

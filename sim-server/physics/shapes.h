@@ -54,6 +54,7 @@ struct ShapeInstance {
   std::uint32_t assembly = 0;
   const SurfaceDef* surface = nullptr;
   bool needs_lock = false;  // ODE collides it through global buffers
+  bool is_wheel = false;    // a cylinder that turns about its own axis in a joint
   Aabb box;
   std::shared_ptr<void> data;
 };

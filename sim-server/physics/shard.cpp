@@ -60,7 +60,7 @@ Shard::Shard(const PhysicsDef& physics)
   dWorldSetCFM(w, std::max(physics.cfm.value_or(1e-9), 1e-10));
   dWorldSetQuickStepNumIterations(w, std::clamp(physics.iterations, 1, 10000));
   if (physics.sor > 0) dWorldSetQuickStepW(w, physics.sor);
-  dWorldSetContactSurfaceLayer(w, physics.contact_surface_layer);
+  dWorldSetContactSurfaceLayer(w, 0);  // allowed_depth() decides
   // Bodies that start inside each other are pushed apart slowly; SDF's default of 100 m/s would throw them out of the world.
   dWorldSetContactMaxCorrectingVel(w, std::min(physics.contact_max_correcting_vel, 1.0));
 }
@@ -172,8 +172,11 @@ void Shard::collide(ModelInstance& model_a, ShapeInstance& a, ModelInstance* mod
     count = dCollide(a.geom.id(), b.geom.id(), most, found, sizeof(dContactGeom));
   }
   if (count <= 0) return;
+  if (a.is_wheel) count = merge_under_wheel(a.geom.id(), found, count);
+  if (b.is_wheel) count = merge_under_wheel(b.geom.id(), found, count);
   count = reduce(found, count);
-  const dSurfaceParameters surface = combine(*a.surface, *b.surface, physics_.step);
+  dSurfaceParameters surface = combine(*a.surface, *b.surface, physics_.step);
+  if (a.is_wheel || b.is_wheel) surface.mu = std::min(surface.mu, best_grip), surface.mu2 = std::min(surface.mu2, best_grip);
   const bool has_force = !a.surface->collide_without_contact && !b.surface->collide_without_contact;
   for (int i = 0; i < count; ++i) {
     if (std::isfinite(found[i].depth) && std::isfinite(found[i].normal[0]) && std::isfinite(found[i].pos[0])) {
@@ -208,14 +211,15 @@ void Shard::add_contact(ModelInstance& model_a, ShapeInstance& a, ModelInstance*
   dContact joint_contact{};
   joint_contact.surface = surface;
   joint_contact.geom = geometry;
-  const double min_depth = std::max(a.surface->min_depth, b.surface->min_depth);
-  joint_contact.geom.depth = std::max(geometry.depth - min_depth, 0.0);
-  if (friction_direction(*a.surface, a.geom.id(), *b.surface, b.geom.id(), geometry.normal, joint_contact.fdir1)) {
+  joint_contact.geom.depth = std::max(geometry.depth - allowed_depth(*a.surface, *b.surface, surface), 0.0);
+  const ShapeInstance* wheel = a.is_wheel ? &a : b.is_wheel ? &b : nullptr;
+  if (wheel != nullptr ? wheel_friction_direction(*wheel->surface, wheel->geom.id(), surface, geometry.normal, joint_contact.fdir1)
+                       : friction_direction(*a.surface, a.geom.id(), *b.surface, b.geom.id(), geometry.normal, joint_contact.fdir1)) {
     joint_contact.surface.mode |= dContactFDir1;
   }
   const double weight_a = can_be_pushed(a.geom.id()) ? model_a.mass() * gravity_ : 0;
   const double weight_b = model_b != nullptr && can_be_pushed(b.geom.id()) ? model_b->mass() * gravity_ : 0;
-  soften(joint_contact, std::max(weight_a, weight_b), erp_, physics_.contact_surface_layer, physics_.step);
+  soften(joint_contact, std::max(weight_a, weight_b), erp_, physics_.step);
   const double lighter = weight_a > 0 && weight_b > 0 ? std::min(weight_a, weight_b) : std::max(weight_a, weight_b);
   const auto usual_contacts = static_cast<double>(std::max<std::size_t>(model_a.previous_contacts.size(), 1));
   resist_sliding(joint_contact, dGeomGetBody(a.geom.id()), dGeomGetBody(b.geom.id()), lighter / usual_contacts);
