@@ -1,5 +1,5 @@
 add_executable(ports_bench ports_bench.cpp)
 target_link_libraries(ports_bench PRIVATE openrtm rtmsim_settings)
 target_include_directories(ports_bench PRIVATE ${PROJECT_SOURCE_DIR}/tests)
-target_compile_definitions(ports_bench PRIVATE RTMSIM_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
+target_link_libraries(ports_bench PRIVATE test_paths)
 add_dependencies(ports_bench ports_peer)

@@ -10,6 +10,7 @@
 
 #include "support/component_fixture.h"
 #include "support/orb_environment.h"
+#include "support/paths.h"
 #include "support/process.h"
 
 namespace {
@@ -24,7 +25,7 @@ const std::string megabyte(1 << 20, 'x');
 // The program component_peer.
 class PeerProcess {
  public:
-  PeerProcess() : process_({std::string(RTMSIM_BIN_DIR) + "/component_peer"}) {
+  PeerProcess() : process_({std::string(paths::bin_dir) + "/component_peer"}) {
     if (!process_.wait_for_output("ready\n")) throw std::runtime_error("the peer does not start: " + process_.output());
     const std::string output = process_.output();
     const auto at = output.find("IOR:");

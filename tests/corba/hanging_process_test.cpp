@@ -4,6 +4,7 @@
 
 #include "support/naming_service.h"
 #include "support/orb_environment.h"
+#include "support/paths.h"
 #include "support/process.h"
 
 namespace {
@@ -16,7 +17,7 @@ class HangingProcessTest : public testing::Test {
  protected:
   void start(const std::string& components, const std::string& active, const std::vector<std::string>& further = {}) {
     port_ = support::free_port();
-    std::vector<std::string> words{std::string(RTMSIM_BIN_DIR) + "/hanging_program", "-i", "-f", "none.conf", "-p", std::to_string(port_)};
+    std::vector<std::string> words{std::string(paths::bin_dir) + "/hanging_program", "-i", "-f", "none.conf", "-p", std::to_string(port_)};
     std::vector<std::string> settings{"naming.enable:NO",
                                       "logger.file_name:stderr",
                                       "manager.components.precreate:" + components,

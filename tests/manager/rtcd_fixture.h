@@ -15,6 +15,7 @@
 #include "corba/naming.h"
 #include "corba/orb.h"
 #include "support/naming_service.h"
+#include "support/paths.h"
 
 namespace manager_test {
 
@@ -27,8 +28,8 @@ inline bool eventually(const std::function<bool()>& holds) {
   return true;
 }
 
-inline const std::string program = std::string(RTMSIM_BIN_DIR) + "/rtcd";
-inline const std::string modules = std::string(RTMSIM_BIN_DIR) + "/../lib";
+inline const std::string program = std::string(paths::bin_dir) + "/rtcd";
+inline const std::string modules = std::string(paths::bin_dir) + "/../lib";
 
 // A naming service, an ORB to look at it with, and what every rtcd here is started with.
 class Rtcd : public testing::Test {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ports/support.h"
+#include "support/paths.h"
 
 namespace {
 
@@ -24,7 +25,8 @@ Bytes bytes_of(const std::string& hex) {
 }
 
 const nlohmann::json& golden() {
-  static const nlohmann::json all = nlohmann::json::parse(std::ifstream(RTMSIM_SOURCE_DIR "/tests/golden/cdr_payloads.json"));
+  static const nlohmann::json all =
+      nlohmann::json::parse(std::ifstream(std::string(paths::source_dir) + "/tests/golden/cdr_payloads.json"));
   return all;
 }
 

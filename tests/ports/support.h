@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "corba/orb.h"
+#include "support/paths.h"
 #include "support/process.h"
 
 namespace ports {
@@ -99,7 +100,7 @@ class Peer {
 
  private:
   static std::vector<std::string> command(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), std::string(RTMSIM_BIN_DIR) + "/ports_peer");
+    arguments.insert(arguments.begin(), std::string(paths::bin_dir) + "/ports_peer");
     return arguments;
   }
   support::Process process_;

@@ -13,6 +13,7 @@
 #include "shm/process_watch.h"
 #include "shm/request_board.h"
 #include "shm/shm_support.h"
+#include "support/paths.h"
 
 namespace shm::test {
 namespace {
@@ -21,7 +22,7 @@ namespace {
 class Helper {
  public:
   Helper(const std::string& part, std::uint32_t id, std::vector<std::string> more = {}) {
-    std::vector<std::string> words{RTMSIM_BIN_DIR "/shm_helper", part, std::to_string(id)};
+    std::vector<std::string> words{std::string(paths::bin_dir) + "/shm_helper", part, std::to_string(id)};
     words.insert(words.end(), more.begin(), more.end());
     std::vector<char*> argv;
     for (auto& one : words) argv.push_back(one.data());

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "devices/actor_motion.h"
+#include "support/paths.h"
 #include "support/simulation_fixture.h"
 #include "support/studio.h"
 
@@ -14,7 +15,7 @@ namespace {
 
 using namespace test;
 
-const std::string cow = std::string(RTMSIM_SOURCE_DIR) + "/worlds/models/cow/meshes/walking_cow.dae";
+const std::string cow = std::string(paths::source_dir) + "/worlds/models/cow/meshes/walking_cow.dae";
 
 Eigen::Isometry3d put(double x, double y, double z, double yaw = 0) { return test::at(x, y, z, yaw, 0.0, 0.0); }
 

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "support/paths.h"
+
 namespace {
 
 using json = nlohmann::json;
@@ -320,7 +322,7 @@ class CdrPayload : public testing::Test {
 };
 
 TEST_F(CdrPayload, of_every_type_equals_the_recorded_one_in_both_orders) {
-  std::ifstream file(RTMSIM_SOURCE_DIR "/tests/golden/cdr_payloads.json");
+  std::ifstream file(std::string(paths::source_dir) + "/tests/golden/cdr_payloads.json");
   const json golden = json::parse(file);
   ASSERT_EQ(golden.size(), std::size(entries));
   for (std::size_t i = 0; i < golden.size(); ++i) {

@@ -1,4 +1,5 @@
 #include "profile/rts_profile.h"
+#include "support/paths.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +8,7 @@
 namespace editor {
 namespace {
 
-std::string golden(const std::string& name) { return std::string(RTMSIM_SOURCE_DIR) + "/tests/golden/" + name; }
+std::string golden(const std::string& name) { return std::string(paths::source_dir) + "/tests/golden/" + name; }
 
 void expect_same(const SavedSystem& a, const SavedSystem& b) {
   EXPECT_EQ(to_xml(a), to_xml(b));

@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "support/paths.h"
 #include "support/physics_fixture.h"
 #include "support/simulation_fixture.h"
 #include "world/world_loader.h"
@@ -13,7 +14,7 @@ namespace {
 using namespace test;
 
 WorldDef every_device() {
-  auto loaded = load_world(RTMSIM_SOURCE_DIR "/tests/worlds/every_device.sdf", ModelPath{});
+  auto loaded = load_world(std::string(paths::source_dir) + "/tests/worlds/every_device.sdf", ModelPath{});
   if (!loaded) throw std::runtime_error(loaded.error().message);
   return std::move(loaded->world);
 }

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "support/paths.h"
 #include "typed_value.h"
 
 namespace editor {
@@ -19,7 +20,7 @@ std::vector<unsigned char> bytes_of(const std::string& hex) {
 }
 
 Json golden() {
-  std::ifstream in(std::string(RTMSIM_SOURCE_DIR) + "/tests/golden/cdr_payloads.json");
+  std::ifstream in(std::string(paths::source_dir) + "/tests/golden/cdr_payloads.json");
   return Json::parse(in);
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/text.h"
 #include "shm/requests.h"
+#include "support/paths.h"
 #include "support/simulation_fixture.h"
 #include "world/world_loader.h"
 
@@ -20,10 +21,10 @@ using testing::HasSubstr;
 
 namespace fs = std::filesystem;
 
-const fs::path folder = fs::path(RTMSIM_SOURCE_DIR) / "tests/worlds";
+const fs::path folder = fs::path(paths::source_dir) / "tests/worlds";
 
 LoadResult load(const fs::path& file) {
-  auto loaded = load_world(file, ModelPath({folder, fs::path(RTMSIM_SOURCE_DIR) / "worlds"}));
+  auto loaded = load_world(file, ModelPath({folder, fs::path(paths::source_dir) / "worlds"}));
   if (loaded) return std::move(*loaded);
   ADD_FAILURE() << loaded.error().message;
   return {};

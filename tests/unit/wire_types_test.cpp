@@ -24,6 +24,8 @@
 #include <fstream>
 #include <string>
 
+#include "support/paths.h"
+
 namespace {
 
 // "IDL:omg.org/RTC/Time:1.0" -> "RTC::Time"
@@ -437,7 +439,7 @@ const Interface interfaces[] = {
 };
 
 TEST(WireTypes, every_type_has_the_id_members_and_order_of_the_contract) {
-  std::ifstream golden(RTMSIM_SOURCE_DIR "/tests/golden/wire_types.txt");
+  std::ifstream golden(std::string(paths::source_dir) + "/tests/golden/wire_types.txt");
   ASSERT_TRUE(golden);
   std::string expected;
   for (CORBA::TypeCode_ptr type : types) {

@@ -1,6 +1,7 @@
 // Worlds in the manner of those that people have: our own small imitations in tests/worlds, and the mistakes that are common in them.
 #include <gmock/gmock.h>
 
+#include "support/paths.h"
 #include "support/world_files.h"
 #include "world/iface_names.h"
 #include "world/materials.h"
@@ -12,7 +13,7 @@ namespace {
 using testing::HasSubstr;
 
 LoadResult load_shipped(const std::string& file) {
-  const std::filesystem::path root = RTMSIM_SOURCE_DIR;
+  const std::filesystem::path root = paths::source_dir;
   base::Result<LoadResult> result = load_world(root / file, ModelPath({root / "worlds"}));
   if (result) return std::move(*result);
   ADD_FAILURE() << result.error().message;
@@ -55,12 +56,12 @@ TEST(ShippedWorlds, have_the_robots_that_they_promise) {
 }
 
 TEST(WildWorlds, load_and_keep_everything) {
-  const std::filesystem::path folder = std::filesystem::path(RTMSIM_SOURCE_DIR) / "tests/worlds";
+  const std::filesystem::path folder = std::filesystem::path(paths::source_dir) / "tests/worlds";
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (!entry.is_regular_file()) continue;
     ++count;
-    base::Result<LoadResult> result = load_world(entry.path(), ModelPath({std::filesystem::path(RTMSIM_SOURCE_DIR) / "worlds"}));
+    base::Result<LoadResult> result = load_world(entry.path(), ModelPath({std::filesystem::path(paths::source_dir) / "worlds"}));
     ASSERT_TRUE(result.ok()) << result.error().message;
     EXPECT_FALSE(result->dropped) << entry.path() << "\n" << all_findings(*result);
     EXPECT_FALSE(result->world.models.empty()) << entry.path();
