@@ -60,6 +60,10 @@ bool has_wide_text(CORBA::TypeCode_ptr code) {
   return look(look, code, 0);
 }
 
+void stamp(const TypeOps& ops, void* value, std::chrono::nanoseconds time) {
+  ops.stamp(value, static_cast<CORBA::ULong>(time.count() / 1'000'000'000), static_cast<CORBA::ULong>(time.count() % 1'000'000'000));
+}
+
 std::shared_ptr<rt::Block> encode(const TypeOps& ops, const void* value, rt::ByteOrder order, rt::BlockPool& pool) {
   Payload payload(ops, value);
   return std::const_pointer_cast<rt::Block>(payload.encoded(order, pool).block);
@@ -103,12 +107,12 @@ _CORBA_Boolean CheckedStream::checkInputOverrun(_CORBA_ULong item_size, _CORBA_U
 bool decode_safely(const TypeOps& ops, void* value, std::span<const std::byte> octets, rt::ByteOrder order) {
   if (octets.size() > cheap_copy) {
     if (decode(ops, value, octets, order)) return true;
-    ops.assign(value, ops.make()->address());
+    ops.assign(value, ops.make().get());
     return false;
   }
   const auto scratch = ops.make();
-  if (!decode(ops, scratch->address(), octets, order)) return false;
-  ops.assign(value, scratch->address());
+  if (!decode(ops, scratch.get(), octets, order)) return false;
+  ops.assign(value, scratch.get());
   return true;
 }
 

@@ -12,29 +12,29 @@ EventData::EventData(const TypeOps& ops, const void* value, rt::ByteOrder order)
 EventData::EventData(const TypeOps& ops, rt::Sample sample) : ops_(&ops), order_(sample.order), sample_(std::move(sample)) {}
 
 void* EventData::value() {
-  if (value_) return value_->address();
+  if (value_) return value_.get();
   if (original_) {
     value_ = ops_->copy(original_);
   } else if (sample_.value) {
-    value_ = ops_->copy(sample_.value->address());
+    value_ = ops_->copy(sample_.value.get());
   } else {
     auto made = ops_->make();
-    if (!sample_.block || !decode(*ops_, made->address(), sample_.block->octets(), order_)) return nullptr;
+    if (!sample_.block || !decode(*ops_, made.get(), sample_.block->octets(), order_)) return nullptr;
     value_ = std::move(made);
   }
-  return value_->address();
+  return value_.get();
 }
 
 void EventData::value_changed() {
   is_changed_ = true;
   sample_.block = nullptr;
   sample_.value = nullptr;
-  original_ = value_ ? value_->address() : nullptr;
+  original_ = value_ ? value_.get() : nullptr;
 }
 
 std::span<const std::byte> EventData::octets() {
   if (!sample_.block) {
-    const void* source = original_ ? original_ : sample_.value ? sample_.value->address() : nullptr;
+    const void* source = original_ ? original_ : sample_.value ? sample_.value.get() : nullptr;
     if (!source) return {};
     try {
       sample_.block = encode(*ops_, source, order_);
@@ -58,7 +58,7 @@ void EventData::replace_octets(std::span<const std::byte> octets) {
 rt::Sample EventData::sample() {
   rt::Sample result = sample_;
   result.order = order_;
-  if (!result.block && !result.value && original_) result.value = value_ && original_ == value_->address() ? value_ : ops_->copy(original_);
+  if (!result.block && !result.value && original_) result.value = value_ && original_ == value_.get() ? value_ : ops_->copy(original_);
   return result;
 }
 

@@ -48,7 +48,7 @@ class EventData {
   const void* original_ = nullptr;
   rt::ByteOrder order_;
   rt::Sample sample_;
-  std::shared_ptr<rt::Value> value_;
+  std::shared_ptr<void> value_;
   bool is_changed_ = false;
 };
 

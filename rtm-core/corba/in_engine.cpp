@@ -142,6 +142,15 @@ InEngine::~InEngine() {
 
 std::shared_ptr<const InEngine::Connections> InEngine::connections() const { return lists_.lock()->open; }
 
+std::vector<DataPort::Connected> InEngine::connected() const {
+  std::vector<Connected> all;
+  const auto open = connections();
+  for (const auto& connection : *open) all.push_back({connection->shared_events(), connection});
+  return all;
+}
+
+std::unique_ptr<DataPort> make_in_port(const TypeOps& ops) { return std::make_unique<InEngine>(ops); }
+
 void InEngine::add(std::shared_ptr<InConnection> connection) {
   auto lists = lists_.lock();
   auto more = std::make_shared<Connections>(*lists->open);
@@ -340,7 +349,7 @@ rt::PortStatus InEngine::deliver(const rt::Sample& received, InConnection& conne
     }
   }
   if (sample->value) {
-    ops.assign(value, sample->value->address());
+    ops.assign(value, sample->value.get());
   } else if (!decode_safely(ops, value, sample->block->octets(), sample->order)) {
     base::log(base::Level::warn, "data port", "connection {}: {} octets that are no {} are dropped", base::in_quotes(connection.name()),
               sample->block->size(), ops.type_id);
@@ -348,9 +357,9 @@ rt::PortStatus InEngine::deliver(const rt::Sample& received, InConnection& conne
     return rt::PortStatus::error;
   }
   if (ops.stamp && connection.settings().stamp == rt::StampPolicy::on_received && sample->received.count()) {
-    ops.stamp(value, sample->received);
+    stamp(ops, value, sample->received);
   }
-  if (ops.stamp && connection.settings().stamp == rt::StampPolicy::on_read) ops.stamp(value, connection.plan_.caller_time());
+  if (ops.stamp && connection.settings().stamp == rt::StampPolicy::on_read) stamp(ops, value, connection.plan_.caller_time());
   return rt::PortStatus::ok;
 }
 

@@ -9,43 +9,13 @@
 #include <vector>
 
 #include "base/guarded.h"
-#include "corba/event_data.h"
-#include "corba/transport.h"
-#include "core/connector_settings.h"
+#include "corba/data_port.h"
 #include "core/mailbox.h"
 #include "rtm/idl/RTCStub.h"
 
-namespace base {
-class Clock;
-}
-
 namespace corba {
 
-// What a port knows about a connection before it exists.
-struct ConnectionPlan {
-  std::string id;
-  std::string name;
-  rt::ConnectorSettings settings;
-  std::shared_ptr<ConnectorEvents> events;
-  std::shared_ptr<Codec> codec;              // null: CDR
-  std::shared_ptr<Carrier> carrier;          // of foreign interfaces
-  bool peer_says_when_empty = false;         // the OutPort of a pull connection does not hand out old samples again
-  std::shared_ptr<const base::Clock> clock;  // of the port's component, for time stamps; null: the calling thread's
-
-  // The time by the component's clock; of a call that a component makes, by the clock of the context that runs it.
-  std::chrono::nanoseconds port_time() const;
-  std::chrono::nanoseconds caller_time() const;
-};
-
 TypeOps with_codec(const TypeOps& ops, const std::shared_ptr<Codec>& codec);
-
-// What waits in a connection to be read or sent. Any thread.
-class Waiting {
- public:
-  virtual ~Waiting() = default;
-  virtual std::size_t unread() const = 0;
-  virtual void drop_unread() = 0;
-};
 
 class InConnection final : public Receiver, public Waiting {
  public:
@@ -84,30 +54,28 @@ class InConnection final : public Receiver, public Waiting {
   base::Guarded<rt::Sample, base::Rank::connector> last_fetched_;
 };
 
-class InEngine {
+class InEngine final : public DataPort {
  public:
   using Connections = std::vector<std::shared_ptr<InConnection>>;
 
   explicit InEngine(const TypeOps& ops);
-  ~InEngine();
+  ~InEngine() override;
 
-  const TypeOps& ops() const { return ops_; }
-  // Push: makes the connection and adds the keys by which the OutPort finds it.
-  rt::Refusal provide(ConnectionPlan plan, RTC::ConnectorProfile& profile);
-  // Pull: makes the connection to the OutPort that the profile names.
-  rt::Refusal consume(ConnectionPlan plan, const RTC::ConnectorProfile& profile);
-  // Undoes either. False if there is no such connection. What has come and was not read yet is kept for the reader, though not more of it
-  // than 64 samples of all closed connections.
-  bool close(const std::string& id);
+  const TypeOps& ops() const override { return ops_; }
+  rt::Refusal provide(ConnectionPlan plan, RTC::ConnectorProfile& profile) override;
+  rt::Refusal consume(ConnectionPlan plan, const RTC::ConnectorProfile& profile) override;
+  // What has come and was not read yet is kept for the reader, though not more of it than 64 samples of all closed connections.
+  bool close(const std::string& id) override;
   std::shared_ptr<const Connections> connections() const;
+  std::vector<Connected> connected() const override;
+  std::size_t count() const override { return connections()->size(); }
+  std::vector<rt::PortStatus> statuses() const override;
 
-  // Something unread is there (on the connections of that name). Asks the peers of pull connections. `lost`: ids of connections whose peer
-  // is gone.
-  bool has_new(const std::string& name, std::vector<std::string>& lost);
-  // Decodes the next sample into `value`; ok, or why not. `value` changes only if ok.
-  rt::PortStatus read(const std::string& name, void* value, std::vector<std::string>& lost);
-  // Of the last read, in the order of connections().
-  std::vector<rt::PortStatus> statuses() const;
+  bool has_new(const std::string& name, std::vector<std::string>& lost) override;
+  rt::PortStatus read(const std::string& name, void* value, std::vector<std::string>& lost) override;
+
+  bool write(const void*) override { return false; }
+  void stop_telling() override {}
 
  private:
   struct Lists {

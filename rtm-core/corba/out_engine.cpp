@@ -47,7 +47,7 @@ class Changed {
     if (!ops.stamp || !value) return;
     rt::Sample sample;
     auto copy = ops.copy(value);
-    ops.stamp(copy->address(), time);
+    corba::stamp(ops, copy.get(), time);
     sample.value = std::move(copy);
     replace(std::move(sample));
   }
@@ -234,6 +234,17 @@ OutEngine::~OutEngine() {
 }
 
 std::shared_ptr<const OutEngine::Connections> OutEngine::connections() const { return connections_.snapshot(); }
+
+std::vector<DataPort::Connected> OutEngine::connected() const {
+  std::vector<Connected> all;
+  const auto open = connections();
+  for (const auto& connection : *open) all.push_back({connection->shared_events(), connection});
+  return all;
+}
+
+std::unique_ptr<DataPort> make_out_port(const TypeOps& ops, std::function<void(const std::string& id)> lost) {
+  return std::make_unique<OutEngine>(ops, std::move(lost));
+}
 
 void OutEngine::add(std::shared_ptr<OutConnection> connection) {
   auto connections = connections_.lock();

@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "base/guarded.h"
+#include "corba/data_port.h"
 #include "corba/in_engine.h"
 #include "corba/loss_handler.h"
-#include "corba/transport.h"
-#include "core/connector_settings.h"
 #include "core/mailbox.h"
 #include "core/publisher.h"
 
@@ -57,28 +56,28 @@ class OutConnection final : public Source, public Waiting {
   std::shared_ptr<void> served_;        // pull by a foreign interface
 };
 
-class OutEngine {
+class OutEngine final : public DataPort {
  public:
   using Connections = std::vector<std::shared_ptr<OutConnection>>;
 
   // `lost` may be called on any thread until the engine dies.
   OutEngine(const TypeOps& ops, std::function<void(const std::string& id)> lost);
-  ~OutEngine();
+  ~OutEngine() override;
 
-  const TypeOps& ops() const { return ops_; }
-  // Pull: makes the connection and adds the keys by which the InPort finds it.
-  rt::Refusal provide(ConnectionPlan plan, RTC::ConnectorProfile& profile);
-  // Push: makes the connection to the InPort that the profile names.
-  rt::Refusal consume(ConnectionPlan plan, const RTC::ConnectorProfile& profile);
-  bool close(const std::string& id);
+  const TypeOps& ops() const override { return ops_; }
+  rt::Refusal provide(ConnectionPlan plan, RTC::ConnectorProfile& profile) override;
+  rt::Refusal consume(ConnectionPlan plan, const RTC::ConnectorProfile& profile) override;
+  bool close(const std::string& id) override;
   std::shared_ptr<const Connections> connections() const;
-  // Nobody is told of a loss any more.
-  void stop_telling() { loss_->close(); }
+  std::vector<Connected> connected() const override;
+  std::size_t count() const override { return connections()->size(); }
+  std::vector<rt::PortStatus> statuses() const override;
 
-  // False if there is no connection or one has failed.
-  bool write(const void* value);
-  // Of the last write, in the order of connections().
-  std::vector<rt::PortStatus> statuses() const;
+  bool write(const void* value) override;
+  void stop_telling() override { loss_->close(); }
+
+  bool has_new(const std::string&, std::vector<std::string>&) override { return false; }
+  rt::PortStatus read(const std::string&, void*, std::vector<std::string>&) override { return rt::PortStatus::precondition_not_met; }
 
  private:
   void add(std::shared_ptr<OutConnection> connection);

@@ -46,7 +46,7 @@ Payload::Payload(const TypeOps& ops, const void* value) : ops_(ops), value_(valu
 Payload::Payload(const TypeOps& ops, rt::Sample sample) : ops_(ops) {
   if (sample.value) {
     copy_ = std::move(sample.value);
-    value_ = copy_->address();
+    value_ = copy_.get();
   } else {
     encoded_[static_cast<int>(sample.order)].block = std::move(sample.block);
   }
@@ -64,9 +64,9 @@ const void* Payload::value() {
     const auto& block = encoded_[static_cast<int>(order)].block;
     if (!block) continue;
     auto made = ops_.make();
-    if (!decode(ops_, made->address(), block->octets(), order)) return nullptr;
+    if (!decode(ops_, made.get(), block->octets(), order)) return nullptr;
     copy_ = std::move(made);
-    value_ = copy_->address();
+    value_ = copy_.get();
     return value_;
   }
   return nullptr;

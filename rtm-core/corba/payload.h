@@ -49,7 +49,7 @@ class Payload {
 
   const TypeOps& ops_;
   const void* value_ = nullptr;
-  std::shared_ptr<const rt::Value> copy_;
+  std::shared_ptr<const void> copy_;
   Encoded encoded_[2];  // by rt::ByteOrder
 };
 

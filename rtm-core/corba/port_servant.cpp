@@ -287,7 +287,8 @@ RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile) {
   const int self = position(profile.ports);
   if (self < 0) return RTC::BAD_PARAMETER;
   tell(Step::notify_connect, profile, RTC::RTC_OK);
-  RTC::ReturnCode_t code = reserve(profile, allows_duplicate(profile));
+  const auto terms = read_terms(profile);
+  RTC::ReturnCode_t code = reserve(profile, terms->allows_duplicate);
   if (code != RTC::RTC_OK) return code;
 
   const std::string id = profile.connector_id.in();
@@ -295,10 +296,10 @@ RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile) {
   bool is_next_told = false;
   bool is_published = false;
   try {
-    code = prepare(profile);
+    code = prepare(profile, *terms);
     if (code == RTC::RTC_OK) {
       is_published = true;
-      code = publish(profile);
+      code = publish(profile, *terms);
       tell(Step::published, profile, code);
     }
     if (code == RTC::RTC_OK) {
@@ -314,7 +315,7 @@ RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile) {
       tell(Step::next_connected, profile, code);
     }
     if (code == RTC::RTC_OK) {
-      code = subscribe(profile);
+      code = subscribe(profile, *terms);
       tell(Step::subscribed, profile, code);
     }
     // A peer of another make may have taken both of two chains that crossed.

@@ -17,6 +17,13 @@
 
 namespace corba {
 
+// What a port wants to know about a connection from its first step to its last, read once from the profile as it is when the port hears of
+// it. Derived classes add their own.
+struct ConnectionTerms {
+  virtual ~ConnectionTerms() = default;
+  bool allows_duplicate = false;  // beside another connection between the same ports
+};
+
 class PortServant : public virtual POA_RTC::PortService, public virtual PortableServer::RefCountServantBase {
  public:
   ~PortServant() override;
@@ -67,10 +74,12 @@ class PortServant : public virtual POA_RTC::PortService, public virtual Portable
   };
   // Fills in what the connecting client may leave out. Only the first port of a chain is asked.
   virtual void complete_profile(RTC::ConnectorProfile&) {}
-  // Comes first in notify_connect: refuses (any code but RTC_OK) or adds what the others should know.
-  virtual RTC::ReturnCode_t prepare(RTC::ConnectorProfile&) { return RTC::RTC_OK; }
-  virtual RTC::ReturnCode_t publish(RTC::ConnectorProfile& profile) = 0;
-  virtual RTC::ReturnCode_t subscribe(const RTC::ConnectorProfile& profile) = 0;
+  // Comes first in notify_connect; the result goes to the hooks that follow. Never null.
+  virtual std::shared_ptr<ConnectionTerms> read_terms(const RTC::ConnectorProfile&) { return std::make_shared<ConnectionTerms>(); }
+  // Refuses (any code but RTC_OK) or adds what the others should know.
+  virtual RTC::ReturnCode_t prepare(RTC::ConnectorProfile&, const ConnectionTerms&) { return RTC::RTC_OK; }
+  virtual RTC::ReturnCode_t publish(RTC::ConnectorProfile& profile, const ConnectionTerms& terms) = 0;
+  virtual RTC::ReturnCode_t subscribe(const RTC::ConnectorProfile& profile, const ConnectionTerms& terms) = 0;
   // Undoes publish and subscribe, also after only one of them. `is_lost`: the other end is gone.
   virtual void unsubscribe(const RTC::ConnectorProfile& profile, bool is_lost) = 0;
   virtual void on_step(Step, RTC::ConnectorProfile&, RTC::ReturnCode_t) {}
@@ -78,7 +87,6 @@ class PortServant : public virtual POA_RTC::PortService, public virtual Portable
   virtual void activated(RTC::PortService_ptr) {}
   // Adds to the PortProfile what may change while the port is there.
   virtual void complete(RTC::PortProfile&) const {}
-  virtual bool allows_duplicate(const RTC::ConnectorProfile&) { return false; }
 
   void set_port_name(const std::string& name);
   void set_owner(RTC::RTObject_ptr owner);

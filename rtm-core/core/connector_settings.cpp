@@ -162,7 +162,18 @@ void read_subscription(const Reader& reader, ConnectorSettings& settings) {
   settings.publisher.period = std::chrono::nanoseconds(std::llround(1e9 / *rate));
 }
 
+void read_empty_policy(const Reader& reader, EmptyPolicy& policy) {
+  reader.word<EmptyPolicy>("buffer.read.empty_policy", policy,
+                           {{"readback", EmptyPolicy::readback}, {"do_nothing", EmptyPolicy::do_nothing}, {"block", EmptyPolicy::block}});
+}
+
 }  // namespace
+
+EmptyPolicy read_empty_policy(const KeyValues& properties, Side side) {
+  ConnectorSettingsOutcome outcome;
+  read_empty_policy(Reader(properties, side, outcome), outcome.settings.buffer.empty);
+  return outcome.settings.buffer.empty;
+}
 
 ConnectorSettingsOutcome read_connector_settings(const KeyValues& properties, Side side, const std::vector<std::string>& foreign) {
   ConnectorSettingsOutcome outcome;
@@ -174,8 +185,7 @@ ConnectorSettingsOutcome read_connector_settings(const KeyValues& properties, Si
   reader.count("buffer.length", settings.buffer.length, 1, longest_buffer);
   reader.word<FullPolicy>("buffer.write.full_policy", settings.buffer.full,
                           {{"overwrite", FullPolicy::overwrite}, {"do_nothing", FullPolicy::do_nothing}, {"block", FullPolicy::block}});
-  reader.word<EmptyPolicy>("buffer.read.empty_policy", settings.buffer.empty,
-                           {{"readback", EmptyPolicy::readback}, {"do_nothing", EmptyPolicy::do_nothing}, {"block", EmptyPolicy::block}});
+  read_empty_policy(reader, settings.buffer.empty);
   reader.timeout("buffer.write.timeout", settings.buffer.write_timeout);
   reader.timeout("buffer.read.timeout", settings.buffer.read_timeout);
 

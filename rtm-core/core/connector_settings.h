@@ -71,6 +71,9 @@ struct ConnectorSettingsOutcome {
 // `foreign`: the names of transports of authors.
 ConnectorSettingsOutcome read_connector_settings(const KeyValues& properties, Side side, const std::vector<std::string>& foreign = {});
 
+// What that side's buffer does when it is empty, alone: dataport.buffer.read.empty_policy.
+EmptyPolicy read_empty_policy(const KeyValues& properties, Side side);
+
 // Octets of "8M", "64k", "1000"; nothing if it is no size.
 std::optional<std::size_t> parse_size(std::string_view text);
 

@@ -52,19 +52,11 @@ class BlockPool : public std::enable_shared_from_this<BlockPool> {
   base::Guarded<Kept, base::Rank::registry> kept_;
 };
 
-// A value of some type of the wire. The type is known to those who made it.
-class Value {
- public:
-  virtual ~Value() = default;
-  virtual void* address() = 0;
-  const void* address() const { return const_cast<Value*>(this)->address(); }
-};
-
 enum class ByteOrder { little, big };
 
 struct Sample {
   std::shared_ptr<const Block> block;  // either this, in `order`,
-  std::shared_ptr<const Value> value;  // or this
+  std::shared_ptr<const void> value;   // or this, a value of a type that is known to those who made it
   ByteOrder order = ByteOrder::little;
   std::uint64_t arrival = 0;            // counts up over all connections of a port
   std::chrono::nanoseconds received{};  // when the port got it, by the clock of the thread that brought it; 0 if nobody asked

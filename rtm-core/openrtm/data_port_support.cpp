@@ -86,7 +86,7 @@ void share_port_properties(ConnectorProfile& profile, const coil::Properties& po
 }
 
 bool says_when_empty(const ConnectorProfile& profile) {
-  return settings_of(profile, coil::Properties(), rt::Side::out).settings.buffer.empty != rt::EmptyPolicy::readback;
+  return rt::read_empty_policy(corba::to_key_values(profile.properties), rt::Side::out) != rt::EmptyPolicy::readback;
 }
 
 namespace {
@@ -103,8 +103,8 @@ bool converts(const ConnectorProfile& profile, const std::string& own) {
 
 }  // namespace
 
-ReturnCode_t check_connection(ConnectorProfile& profile, const coil::Properties& port, rt::Side side, const Carries& own, Logger& rtclog) {
-  const auto outcome = settings_of(profile, port, side);
+ReturnCode_t check_connection(ConnectorProfile& profile, const rt::ConnectorSettingsOutcome& outcome, rt::Side side, const Carries& own,
+                              Logger& rtclog) {
   for (const auto& warning : outcome.warnings) RTC_WARN_STR(warning);
   if (outcome.refusal.code != rt::ReturnCode::ok) {
     RTC_WARN_STR("connection refused: " + outcome.refusal.reason);
@@ -149,17 +149,6 @@ ConnectorInfo make_info(const ConnectorProfile& profile, const coil::Properties&
       info.properties.setProperty("io_mode", subscription == "flush" ? "block" : subscription == "new" ? "nonblock" : subscription);
   }
   return info;
-}
-
-corba::ConnectionPlan make_plan(const ConnectorProfile& profile, const rt::ConnectorSettings& settings,
-                                std::shared_ptr<ConnectorBase> connector) {
-  corba::ConnectionPlan plan;
-  plan.id = profile.connector_id.in();
-  plan.name = profile.name.in();
-  plan.settings = settings;
-  plan.events = std::move(connector);
-  plan.peer_says_when_empty = says_when_empty(profile);
-  return plan;
 }
 
 DataPortStatusList to_classic(const std::vector<rt::PortStatus>& statuses) {

@@ -5,7 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "corba/in_engine.h"
+#include "core/connector_settings.h"
+#include "core/port_status.h"
 #include "rtm/ConnectorBase.h"
 #include "rtm/PortBase.h"
 
@@ -35,18 +36,18 @@ bool says_when_empty(const ConnectorProfile& profile);
 // Shows the peer what this OutPort's own properties say about the connection, as dataport.outport.*, where the profile says nothing.
 void share_port_properties(ConnectorProfile& profile, const coil::Properties& port);
 
-// RTC_OK, or the code with which to refuse; says why in the log. Announces the type of this side in the profile.
+// RTC_OK, or the code with which to refuse; says why in the log, and what is odd about the settings. Announces the type of this side in the
+// profile.
 struct Carries {
   std::string type_id;
   std::vector<std::string> marshalings;
 };
-ReturnCode_t check_connection(ConnectorProfile& profile, const coil::Properties& port, rt::Side side, const Carries& own, Logger& rtclog);
+ReturnCode_t check_connection(ConnectorProfile& profile, const rt::ConnectorSettingsOutcome& outcome, rt::Side side, const Carries& own,
+                              Logger& rtclog);
 
 // What listeners learn: the type and kind of this side, the port's own properties and `dataport.*` of the connection; later ones count
 // more.
 ConnectorInfo make_info(const ConnectorProfile& profile, const coil::Properties& port, rt::Side side, const std::string& type_id);
-corba::ConnectionPlan make_plan(const ConnectorProfile& profile, const rt::ConnectorSettings& settings,
-                                std::shared_ptr<ConnectorBase> connector);
 
 inline DataPortStatus to_classic(rt::PortStatus status) { return static_cast<DataPortStatus::Enum>(status); }
 DataPortStatusList to_classic(const std::vector<rt::PortStatus>& statuses);

@@ -2,6 +2,7 @@
 // seed.
 //   ports_fuzz [--runs N] [--seed N]
 // Built with clang, -fsanitize=fuzzer and RTMSIM_LIBFUZZER it is a target of libFuzzer, whose first octet chooses type and byte order.
+#include <rtm/DataType.h>
 #include <rtm/idl/BasicDataTypeSkel.h>
 #include <rtm/idl/ExtendedDataTypesSkel.h>
 #include <rtm/idl/InterfaceDataTypesSkel.h>
@@ -23,8 +24,8 @@ using Octets = std::vector<std::byte>;
 
 template <class T>
 void add(std::vector<std::pair<const corba::TypeOps*, Octets>>& seeds, const T& value) {
-  const auto block = corba::encode(corba::type_ops<T>(), &value, rt::ByteOrder::little);
-  seeds.emplace_back(&corba::type_ops<T>(), Octets(block->octets().begin(), block->octets().end()));
+  const auto block = corba::encode(RTC::detail::data_type<T>().ops(), &value, rt::ByteOrder::little);
+  seeds.emplace_back(&RTC::detail::data_type<T>().ops(), Octets(block->octets().begin(), block->octets().end()));
 }
 
 std::vector<std::pair<const corba::TypeOps*, Octets>> make_seeds() {
@@ -90,14 +91,14 @@ enum class Verdict { refused, value, cannot_be_encoded, has_no_shape };
 Verdict judge(const corba::TypeOps& ops, const Octets& octets, rt::ByteOrder order) {
   const auto value = ops.make();
   const bool fits = ops.shape.fits(octets, order);
-  if (!corba::decode_safely(ops, value->address(), octets, order)) return Verdict::refused;
+  if (!corba::decode_safely(ops, value.get(), octets, order)) return Verdict::refused;
   if (!fits) return Verdict::has_no_shape;
-  corba::EventData data(ops, value->address(), order);
+  corba::EventData data(ops, value.get(), order);
   const auto again = data.octets();
   if (again.empty() && !octets.empty() && !ops.has_wide_text) return Verdict::cannot_be_encoded;
   // What we send ourselves we take.
   const auto copy = ops.make();
-  if (!again.empty() && !corba::decode_safely(ops, copy->address(), again, order)) return Verdict::cannot_be_encoded;
+  if (!again.empty() && !corba::decode_safely(ops, copy.get(), again, order)) return Verdict::cannot_be_encoded;
   return Verdict::value;
 }
 

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "corba/cdr.h"
 #include "ports/support.h"
 #include "support/paths.h"
 
@@ -149,7 +150,7 @@ TYPED_TEST(GoldenPayload, is_read_and_written_by_ports) {
     ASSERT_TRUE(from_little && from_big) << id;
     for (std::size_t size = 0; size < wanted.size(); ++size) {
       Bytes cut(wanted.begin(), wanted.begin() + static_cast<std::ptrdiff_t>(size));
-      EXPECT_FALSE(corba::type_ops<TypeParam>().shape.fits(std::as_bytes(std::span(cut)), rt::ByteOrder::little))
+      EXPECT_FALSE(RTC::detail::data_type<TypeParam>().ops().shape.fits(std::as_bytes(std::span(cut)), rt::ByteOrder::little))
           << id << " cut to " << size;
       EXPECT_FALSE(little.put(cut)) << id << " cut to " << size;
     }

@@ -31,7 +31,7 @@ const std::vector<Layer> layers = {
     {"rtm-core/core", {"core", "base"}},
     {"rtm-core/corba", {"corba", "core", "base", "stubs"}, {"omniORB"}},
     {"rtm-core/openrtm/include/coil", {"coil"}},
-    {"rtm-core/openrtm/include", {"rtm", "coil", "corba", "core", "base", "stubs"}, {"omniORB"}},
+    {"rtm-core/openrtm/include", {"rtm", "coil", "stubs"}, {"omniORB"}},
     {"rtm-core/openrtm/coil", {"coil"}},
     {"rtm-core/component", {"component", "rtm", "coil", "corba", "core", "base", "stubs"}, {"omniORB"}},
     {"rtm-core/manager", {"manager", "rtm", "coil", "corba", "core", "base", "stubs"}, {"omniORB"}},

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "corba/in_engine.h"
+#include "corba/data_port.h"
 
 namespace RTC {
 

@@ -3,6 +3,8 @@
 #include <exception>
 
 #include "base/log.h"
+#include "corba/cdr.h"
+#include "corba/event_data.h"
 
 namespace RTC {
 namespace {
@@ -68,6 +70,22 @@ ConnectorDataListener::ReturnCode ConnectorDataListener::notify(ConnectorInfo& i
   bytes.isLittleEndian(data.order() == rt::ByteOrder::little);
   const ReturnCode code = (*this)(info, bytes, data.ops().codec ? data.ops().codec->name() : "cdr");
   if (changes_data(code)) data.replace_octets(std::as_bytes(std::span(bytes.getBuffer(), bytes.getDataLength())));
+  return code;
+}
+
+detail::TypedDataListener::ReturnCode detail::TypedDataListener::notify(ConnectorInfo& info, corba::EventData& data) {
+  const corba::TypeOps& own = type().ops();
+  if (*data.ops().type == *own.type) {
+    void* value = data.value();
+    if (!value) return NO_CHANGE;
+    const ReturnCode code = hear(info, value);
+    if (changes_data(code)) data.value_changed();
+    return code;
+  }
+  const auto value = own.make();
+  if (!corba::decode(own, value.get(), data.octets(), data.order())) return NO_CHANGE;
+  const ReturnCode code = hear(info, value.get());
+  if (changes_data(code)) data.replace_octets(corba::encode(own, value.get(), data.order())->octets());
   return code;
 }
 

@@ -6,6 +6,7 @@
 #include "base/guarded.h"
 #include "base/text.h"
 #include "corba/nv_list.h"
+#include "corba/port_servant.h"
 #include "corba/transport.h"
 
 namespace RTC {
@@ -124,9 +125,11 @@ void CorbaPort::deactivateInterfaces() {
   }
 }
 
-bool CorbaPort::allows_duplicate(const ConnectorProfile& profile) {
+std::shared_ptr<corba::ConnectionTerms> CorbaPort::read_terms(const ConnectorProfile& profile) {
+  auto terms = std::make_shared<corba::ConnectionTerms>();
   const auto allowed = corba::find_text(profile.properties, "dataport.allow_dup_connection");
-  return base::parse_bool(allowed.value_or(m_properties.getProperty("allow_dup_connection"))).value_or(false);
+  terms->allows_duplicate = base::parse_bool(allowed.value_or(m_properties.getProperty("allow_dup_connection"))).value_or(false);
+  return terms;
 }
 
 void CorbaPort::complete_profile(ConnectorProfile& profile) {
@@ -145,7 +148,7 @@ void CorbaPort::complete_profile(ConnectorProfile& profile) {
 }
 
 ReturnCode_t CorbaPort::publishInterfaces(ConnectorProfile& profile) {
-  const std::string port = port_name();
+  const std::string port = getName();
   for (const auto& provider : state_->providers) {
     const CORBA::String_var text = corba::orb()->object_to_string(provider.reference);
     corba::set_text(profile.properties, long_key(port, "provided", provider.type, provider.instance), text.in());
@@ -163,7 +166,7 @@ ReturnCode_t CorbaPort::subscribeInterfaces(const ConnectorProfile& profile) {
     return it->second;
   };
   const bool is_strict = base::equal_ignoring_case(base::trim(value_of("port.connection.strictness").value_or("best_effort")), "strict");
-  const std::string port = port_name();
+  const std::string port = getName();
 
   for (auto& consumer : state_->consumers) {
     std::optional<std::string> reference;

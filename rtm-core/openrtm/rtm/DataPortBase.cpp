@@ -1,199 +1,180 @@
 #include "rtm/DataPortBase.h"
 
 #include "base/text.h"
-#include "corba/in_engine.h"
 #include "corba/nv_list.h"
-#include "corba/out_engine.h"
+#include "openrtm/data_port_core.h"
 #include "openrtm/data_port_support.h"
-#include "openrtm/interface_plugins.h"
-#include "rtm/Serializers.h"
 
 namespace RTC {
 
-template <class Engine, class Connector, rt::Side side>
-DataPortBase<Engine, Connector, side>::DataPortBase(const char* name, std::unique_ptr<Engine> engine,
-                                                    const detail::Serializers& serializers)
-    : PortBase(name),
-      engine_(std::move(engine)),
-      short_name_(detail::short_name(name)),
-      serializers_(serializers),
-      listeners_(std::make_shared<ConnectorListeners>()) {
-  for (const auto& [key, value] : detail::advertised_keys(side, engine_->ops().type_id)) addProperty(key, value);
+namespace {
+const detail::DataPortTerms& of_data_port(const corba::ConnectionTerms& terms) { return static_cast<const detail::DataPortTerms&>(terms); }
+}  // namespace
+
+template <class Connector>
+DataPortBase<Connector>::DataPortBase(const char* name, std::unique_ptr<detail::DataPortCore> core)
+    : PortBase(name), core_(std::move(core)), short_name_(detail::short_name(name)) {
+  for (const auto& [key, value] : detail::advertised_keys(core_->side(), core_->type_id())) addProperty(key, value);
 }
 
-template <class Engine, class Connector, rt::Side side>
-DataPortBase<Engine, Connector, side>::~DataPortBase() = default;
+template <class Connector>
+DataPortBase<Connector>::~DataPortBase() = default;
 
-template <class Engine, class Connector, rt::Side side>
-void DataPortBase<Engine, Connector, side>::setClock(std::shared_ptr<const base::Clock> clock) {
-  *clock_.lock() = std::move(clock);
+template <class Connector>
+void DataPortBase<Connector>::setClock(std::shared_ptr<const base::Clock> clock) {
+  core_->set_clock(std::move(clock));
 }
 
-template <class Engine, class Connector, rt::Side side>
-DataPortStatus DataPortBase<Engine, Connector, side>::getStatus(int index) const {
-  const auto statuses = engine_->statuses();
+template <class Connector>
+DataPortStatus DataPortBase<Connector>::getStatus(int index) const {
+  const auto statuses = core_->port().statuses();
   if (index < 0 || static_cast<std::size_t>(index) >= statuses.size()) return UNKNOWN_ERROR;
   return detail::to_classic(statuses[static_cast<std::size_t>(index)]);
 }
 
-template <class Engine, class Connector, rt::Side side>
-DataPortStatusList DataPortBase<Engine, Connector, side>::getStatusList() const {
-  return detail::to_classic(engine_->statuses());
+template <class Connector>
+DataPortStatusList DataPortBase<Connector>::getStatusList() const {
+  return detail::to_classic(core_->port().statuses());
 }
 
-template <class Engine, class Connector, rt::Side side>
-auto DataPortBase<Engine, Connector, side>::connectors() const -> ConnectorList {
+template <class Connector>
+auto DataPortBase<Connector>::connectors() const -> ConnectorList {
   ConnectorList list;
-  const auto all = engine_->connections();  // kept alive during the loop
-  for (const auto& connection : *all) list.push_back(static_cast<Connector*>(&connection->events()));
+  for (ConnectorBase* connector : core_->connectors()) list.push_back(static_cast<Connector*>(connector));
   return list;
 }
 
-template <class Engine, class Connector, rt::Side side>
-ConnectorInfoList DataPortBase<Engine, Connector, side>::getConnectorProfiles() const {
+template <class Connector>
+ConnectorInfoList DataPortBase<Connector>::getConnectorProfiles() const {
   ConnectorInfoList list;
   for (const auto* connector : connectors()) list.push_back(connector->profile());
   return list;
 }
 
-template <class Engine, class Connector, rt::Side side>
-coil::vstring DataPortBase<Engine, Connector, side>::getConnectorIds() const {
+template <class Connector>
+coil::vstring DataPortBase<Connector>::getConnectorIds() const {
   coil::vstring ids;
   for (const auto* connector : connectors()) ids.emplace_back(connector->id());
   return ids;
 }
 
-template <class Engine, class Connector, rt::Side side>
-coil::vstring DataPortBase<Engine, Connector, side>::getConnectorNames() const {
+template <class Connector>
+coil::vstring DataPortBase<Connector>::getConnectorNames() const {
   coil::vstring names;
   for (const auto* connector : connectors()) names.emplace_back(connector->name());
   return names;
 }
 
-template <class Engine, class Connector, rt::Side side>
+template <class Connector>
 template <class Match>
-Connector* DataPortBase<Engine, Connector, side>::find(Match match) const {
+Connector* DataPortBase<Connector>::find(Match match) const {
   for (auto* connector : connectors()) {
     if (match(*connector)) return connector;
   }
   return nullptr;
 }
 
-template <class Engine, class Connector, rt::Side side>
-Connector* DataPortBase<Engine, Connector, side>::getConnectorById(const char* id) const {
+template <class Connector>
+Connector* DataPortBase<Connector>::getConnectorById(const char* id) const {
   return find([&](const Connector& connector) { return std::string_view(connector.id()) == id; });
 }
 
-template <class Engine, class Connector, rt::Side side>
-Connector* DataPortBase<Engine, Connector, side>::getConnectorByName(const char* name) const {
+template <class Connector>
+Connector* DataPortBase<Connector>::getConnectorByName(const char* name) const {
   return find([&](const Connector& connector) { return std::string_view(connector.name()) == name; });
 }
 
-template <class Engine, class Connector, rt::Side side>
-bool DataPortBase<Engine, Connector, side>::getConnectorProfileById(const char* id, ConnectorInfo& info) const {
+template <class Connector>
+bool DataPortBase<Connector>::getConnectorProfileById(const char* id, ConnectorInfo& info) const {
   const auto* connector = getConnectorById(id);
   if (connector) info = connector->profile();
   return connector;
 }
 
-template <class Engine, class Connector, rt::Side side>
-bool DataPortBase<Engine, Connector, side>::getConnectorProfileByName(const char* name, ConnectorInfo& info) const {
+template <class Connector>
+bool DataPortBase<Connector>::getConnectorProfileByName(const char* name, ConnectorInfo& info) const {
   const auto* connector = getConnectorByName(name);
   if (connector) info = connector->profile();
   return connector;
 }
 
-template <class Engine, class Connector, rt::Side side>
-void DataPortBase<Engine, Connector, side>::addConnectorDataListener(ConnectorDataListenerType type, ConnectorDataListener* listener,
-                                                                     bool autoclean) {
-  if (type >= 0 && type < CONNECTOR_DATA_LISTENER_NUM) listeners_->connectorData_[type].addListener(listener, autoclean);
+template <class Connector>
+void DataPortBase<Connector>::addConnectorDataListener(ConnectorDataListenerType type, ConnectorDataListener* listener, bool autoclean) {
+  if (type >= 0 && type < CONNECTOR_DATA_LISTENER_NUM) core_->listeners()->connectorData_[type].addListener(listener, autoclean);
 }
 
-template <class Engine, class Connector, rt::Side side>
-void DataPortBase<Engine, Connector, side>::removeConnectorDataListener(ConnectorDataListenerType type, ConnectorDataListener* listener) {
-  if (type >= 0 && type < CONNECTOR_DATA_LISTENER_NUM) listeners_->connectorData_[type].removeListener(listener);
+template <class Connector>
+void DataPortBase<Connector>::removeConnectorDataListener(ConnectorDataListenerType type, ConnectorDataListener* listener) {
+  if (type >= 0 && type < CONNECTOR_DATA_LISTENER_NUM) core_->listeners()->connectorData_[type].removeListener(listener);
 }
 
-template <class Engine, class Connector, rt::Side side>
-void DataPortBase<Engine, Connector, side>::addConnectorListener(ConnectorListenerType type, ConnectorListener* listener, bool autoclean) {
-  if (type >= 0 && type < CONNECTOR_LISTENER_NUM) listeners_->connector_[type].addListener(listener, autoclean);
+template <class Connector>
+void DataPortBase<Connector>::addConnectorListener(ConnectorListenerType type, ConnectorListener* listener, bool autoclean) {
+  if (type >= 0 && type < CONNECTOR_LISTENER_NUM) core_->listeners()->connector_[type].addListener(listener, autoclean);
 }
 
-template <class Engine, class Connector, rt::Side side>
-void DataPortBase<Engine, Connector, side>::removeConnectorListener(ConnectorListenerType type, ConnectorListener* listener) {
-  if (type >= 0 && type < CONNECTOR_LISTENER_NUM) listeners_->connector_[type].removeListener(listener);
+template <class Connector>
+void DataPortBase<Connector>::removeConnectorListener(ConnectorListenerType type, ConnectorListener* listener) {
+  if (type >= 0 && type < CONNECTOR_LISTENER_NUM) core_->listeners()->connector_[type].removeListener(listener);
 }
 
-template <class Engine, class Connector, rt::Side side>
-void DataPortBase<Engine, Connector, side>::complete(PortProfile& profile) const {
-  corba::set_text(profile.properties, "dataport.marshaling_types", base::join(serializers_.names(), ","));
-  detail::show_interfaces_of_authors(profile, side);
+template <class Connector>
+ConnectorListeners& DataPortBase<Connector>::getListeners() {
+  return *core_->listeners();
 }
 
-template <class Engine, class Connector, rt::Side side>
-void DataPortBase<Engine, Connector, side>::complete_profile(ConnectorProfile& profile) {
+template <class Connector>
+void DataPortBase<Connector>::complete(PortProfile& profile) const {
+  corba::set_text(profile.properties, "dataport.marshaling_types", base::join(core_->serializers().names(), ","));
+  detail::show_interfaces_of_authors(profile, core_->side());
+}
+
+template <class Connector>
+void DataPortBase<Connector>::complete_profile(ConnectorProfile& profile) {
   detail::complete_data_profile(profile);
 }
 
-template <class Engine, class Connector, rt::Side side>
-ReturnCode_t DataPortBase<Engine, Connector, side>::prepare(ConnectorProfile& profile) {
-  return detail::check_connection(profile, m_properties, side, {engine_->ops().type_id, serializers_.names()}, rtclog);
+template <class Connector>
+std::shared_ptr<corba::ConnectionTerms> DataPortBase<Connector>::read_terms(const ConnectorProfile& profile) {
+  auto terms = std::make_shared<detail::DataPortTerms>();
+  terms->outcome = detail::settings_of(profile, m_properties, core_->side());
+  terms->allows_duplicate = terms->outcome.settings.allows_duplicate;
+  return terms;
 }
 
-template <class Engine, class Connector, rt::Side side>
-bool DataPortBase<Engine, Connector, side>::allows_duplicate(const ConnectorProfile& profile) {
-  return detail::settings_of(profile, m_properties, side).settings.allows_duplicate;
+template <class Connector>
+ReturnCode_t DataPortBase<Connector>::prepare(ConnectorProfile& profile, const corba::ConnectionTerms& terms) {
+  const auto& outcome = of_data_port(terms).outcome;
+  return detail::check_connection(profile, outcome, core_->side(), {core_->type_id(), core_->serializers().names()}, rtclog);
 }
 
-template <class Engine, class Connector, rt::Side side>
-ReturnCode_t DataPortBase<Engine, Connector, side>::publishInterfaces(ConnectorProfile& profile) {
-  return open(profile, true);
+template <class Connector>
+ReturnCode_t DataPortBase<Connector>::publish(ConnectorProfile& profile, const corba::ConnectionTerms& terms) {
+  return core_->template open<Connector>(*this, m_properties, profile, of_data_port(terms).outcome.settings, true, rtclog);
 }
 
-template <class Engine, class Connector, rt::Side side>
-ReturnCode_t DataPortBase<Engine, Connector, side>::subscribeInterfaces(const ConnectorProfile& profile) {
+template <class Connector>
+ReturnCode_t DataPortBase<Connector>::subscribe(const ConnectorProfile& profile, const corba::ConnectionTerms& terms) {
   ConnectorProfile copy = profile;
-  return open(copy, false);
+  return core_->template open<Connector>(*this, m_properties, copy, of_data_port(terms).outcome.settings, false, rtclog);
 }
 
-template <class Engine, class Connector, rt::Side side>
-ReturnCode_t DataPortBase<Engine, Connector, side>::open(ConnectorProfile& profile, bool provides) {
-  const auto settings = detail::settings_of(profile, m_properties, side).settings;
-  // Whoever receives the calls provides the object.
-  const bool is_provider = (settings.dataflow == rt::Dataflow::push) == (side == rt::Side::in);
-  if (is_provider != provides) return RTC_OK;
-  auto connector = std::make_shared<Connector>(*this, listeners_, detail::make_info(profile, m_properties, side, engine_->ops().type_id));
-  auto plan = detail::make_plan(profile, settings, connector);
-  // Inside a process the value itself is handed over.
-  if (settings.marshaling != "cdr" && settings.interface != rt::Interface::direct) {
-    plan.codec = serializers_.make(settings.marshaling, connector->profile().properties);
-    if (!plan.codec) {
-      RTC_WARN_STR("connection refused: no serializer can be made for dataport.marshaling_type " << base::in_quotes(settings.marshaling));
-      return RTC_ERROR;
-    }
-  }
-  plan.clock = *clock_.lock();
-  if (settings.interface == rt::Interface::foreign) plan.carrier = detail::make_author_carrier(settings, connector);
-  const rt::Refusal refusal = provides ? engine_->provide(std::move(plan), profile) : engine_->consume(std::move(plan), profile);
-  if (refusal.code != rt::ReturnCode::ok) {
-    RTC_WARN_STR("connection refused: " << refusal.reason);
-    return static_cast<ReturnCode_t>(refusal.code);
-  }
-  const auto all = engine_->connections();
-  for (const auto& connection : *all) {
-    if (connection->id() == connector->id()) connector->getBuffer()->show(connection, settings.buffer.length);
-  }
-  if (provides) connector->setInfo(detail::make_info(profile, m_properties, side, engine_->ops().type_id));
-  connector->on_event(corba::ConnectorEvent::connect);
-  return RTC_OK;
+template <class Connector>
+ReturnCode_t DataPortBase<Connector>::publishInterfaces(ConnectorProfile& profile) {
+  return publish(profile, *read_terms(profile));
 }
 
-template <class Engine, class Connector, rt::Side side>
-void DataPortBase<Engine, Connector, side>::unsubscribeInterfaces(const ConnectorProfile& profile) {
-  engine_->close(profile.connector_id.in());
+template <class Connector>
+ReturnCode_t DataPortBase<Connector>::subscribeInterfaces(const ConnectorProfile& profile) {
+  return subscribe(profile, *read_terms(profile));
 }
 
-template class DataPortBase<corba::InEngine, InPortConnector, rt::Side::in>;
-template class DataPortBase<corba::OutEngine, OutPortConnector, rt::Side::out>;
+template <class Connector>
+void DataPortBase<Connector>::unsubscribeInterfaces(const ConnectorProfile& profile) {
+  core_->port().close(profile.connector_id.in());
+}
+
+template class DataPortBase<InPortConnector>;
+template class DataPortBase<OutPortConnector>;
 
 }  // namespace RTC

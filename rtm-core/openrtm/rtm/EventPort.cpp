@@ -1,32 +1,20 @@
 #include "rtm/EventPort.h"
 
+#include "corba/cdr.h"
+#include "corba/event_data.h"
+
 namespace RTC::detail {
 namespace {
 
-struct Nothing {};
-
 class OnlyCdr final : public Serializers {
   std::vector<std::string> names() const override { return {"cdr"}; }
-  std::shared_ptr<corba::Codec> make(const std::string&, const coil::Properties&) const override { return nullptr; }
+  ByteDataStreamBase* create(const std::string&) const override { return nullptr; }
+  void destroy(ByteDataStreamBase*) const override {}
+  bool serialize(ByteDataStreamBase&, const void*) const override { return false; }
+  bool deserialize(ByteDataStreamBase&, void*) const override { return false; }
 };
 
 }  // namespace
-
-const corba::TypeOps& any_type_ops() {
-  static const corba::TypeOps ops{
-      .type_id = "Any",
-      .type = &typeid(Nothing),
-      .make = []() -> std::shared_ptr<rt::Value> { return std::make_shared<corba::ValueOf<Nothing>>(); },
-      .copy = [](const void*) -> std::shared_ptr<rt::Value> { return std::make_shared<corba::ValueOf<Nothing>>(); },
-      .assign = [](void*, const void*) {},
-      .encode = [](const void*, cdrStream&) {},
-      .decode = [](void*, cdrStream&) {},
-      .stamp = nullptr,
-      .is_stamp_first = false,
-      .has_wide_text = false,
-  };
-  return ops;
-}
 
 const Serializers& any_serializers() {
   static const OnlyCdr all;
@@ -36,6 +24,10 @@ const Serializers& any_serializers() {
 bool is_event(const ConnectorInfo& info, const std::string& event) {
   const std::string& named = info.properties.getProperty("fsm_event_name");
   return named.empty() ? info.name == event : named == event;
+}
+
+bool EventListenerBase::take(const ConnectorInfo& info, corba::EventData& data, const DataType& type, void* value) const {
+  return is_event(info, event_) && corba::decode(type.ops(), value, data.octets(), data.order());
 }
 
 }  // namespace RTC::detail

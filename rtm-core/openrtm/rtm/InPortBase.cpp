@@ -1,11 +1,12 @@
 #include "rtm/InPortBase.h"
 
-#include "corba/in_engine.h"
+#include "openrtm/data_port_core.h"
+#include "rtm/DataType.h"
 
 namespace RTC {
 
-InPortBase::InPortBase(const char* name, const corba::TypeOps& type, const detail::Serializers& serializers)
-    : DataPortBase(name, std::make_unique<corba::InEngine>(type), serializers) {}
+InPortBase::InPortBase(const char* name, const detail::DataType& type, const detail::Serializers& serializers)
+    : DataPortBase(name, std::make_unique<detail::DataPortCore>(rt::Side::in, corba::make_in_port(type.ops()), serializers)) {}
 
 InPortBase::~InPortBase() { retire(); }
 
@@ -15,7 +16,7 @@ bool InPortBase::isNew() { return isNew(std::string()); }
 
 bool InPortBase::isNew(const std::string& connector_name) {
   std::vector<std::string> lost;
-  const bool is_new = engine_->has_new(connector_name, lost);
+  const bool is_new = core_->port().has_new(connector_name, lost);
   for (const auto& id : lost) drop_connection(id.c_str());
   return is_new;
 }
@@ -30,7 +31,7 @@ bool InPortBase::isNew(coil::vstring& connector_names) {
 
 bool InPortBase::readValue(const std::string& connector_name, void* value) {
   std::vector<std::string> lost;
-  const rt::PortStatus status = engine_->read(connector_name, value, lost);
+  const rt::PortStatus status = core_->port().read(connector_name, value, lost);
   for (const auto& id : lost) drop_connection(id.c_str());
   return status == rt::PortStatus::ok;
 }

@@ -1,31 +1,34 @@
 #include "rtm/OutPortBase.h"
 
-#include "corba/out_engine.h"
+#include "openrtm/data_port_core.h"
 #include "openrtm/data_port_support.h"
+#include "rtm/DataType.h"
 
 namespace RTC {
 
-OutPortBase::OutPortBase(const char* name, const corba::TypeOps& type, const detail::Serializers& serializers)
-    : DataPortBase(name, std::make_unique<corba::OutEngine>(type, [this](const std::string& id) { drop_connection(id.c_str()); }),
-                   serializers) {}
+OutPortBase::OutPortBase(const char* name, const detail::DataType& type, const detail::Serializers& serializers)
+    : DataPortBase(name,
+                   std::make_unique<detail::DataPortCore>(
+                       rt::Side::out, corba::make_out_port(type.ops(), [this](const std::string& id) { drop_connection(id.c_str()); }),
+                       serializers)) {}
 
 OutPortBase::~OutPortBase() { retire(); }
 
 void OutPortBase::retire() {
-  engine_->stop_telling();
+  core_->port().stop_telling();
   shut();
 }
 
-bool OutPortBase::writeValue(const void* value) { return engine_->write(value); }
+bool OutPortBase::writeValue(const void* value) { return core_->port().write(value); }
 
-ReturnCode_t OutPortBase::prepare(ConnectorProfile& profile) {
+ReturnCode_t OutPortBase::prepare(ConnectorProfile& profile, const corba::ConnectionTerms& terms) {
   detail::share_port_properties(profile, m_properties);
-  const auto settings = detail::settings_of(profile, m_properties, rt::Side::out).settings;
-  if (engine_->connections()->size() >= settings.fan_out) {
-    RTC_WARN_STR("connection refused: the port has " << settings.fan_out << " connections already, as many as dataport.fan_out allows");
+  const std::size_t most = static_cast<const detail::DataPortTerms&>(terms).outcome.settings.fan_out;
+  if (core_->port().count() >= most) {
+    RTC_WARN_STR("connection refused: the port has " << most << " connections already, as many as dataport.fan_out allows");
     return RTC::RTC_ERROR;
   }
-  return DataPortBase::prepare(profile);
+  return DataPortBase::prepare(profile, terms);
 }
 
 }  // namespace RTC

@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "corba/orb.h"
 #include "corba/remote_participant.h"
+#include "core/workers.h"
 
 namespace SDOPackage {
 
@@ -84,7 +85,9 @@ class MemberSearch {
 }  // namespace
 
 PeriodicECOrganization::PeriodicECOrganization(RTC::RTObject_impl& composite)
-    : Organization_impl(RTC::RTObject_var(composite.getObjRef())), composite_(composite) {}
+    : Organization_impl(RTC::RTObject_var(composite.getObjRef())), composite_(composite), turns_(std::make_unique<rt::Turns>()) {}
+
+PeriodicECOrganization::~PeriodicECOrganization() = default;
 
 bool PeriodicECOrganization::join(const Member& member) {
   SDO_var sdo = member.sdo;
@@ -151,7 +154,7 @@ bool PeriodicECOrganization::take_in(const std::vector<Member>& joining, bool ot
     return std::any_of(list.begin(), list.end(), [&](const Member& other) { return other.id == member.id; });
   };
   bool all = true;
-  turns_.take([&] {
+  turns_->take([&] {
     if (closed_) return;
     const std::vector<Member> before = members();
     appendMembers(joining);
@@ -182,7 +185,7 @@ bool PeriodicECOrganization::take_in(const std::vector<Member>& joining, bool ot
 CORBA::Boolean PeriodicECOrganization::remove_member(const char* id) {
   if (id[0] == '\0') throw InvalidParameter("the id is empty");
   bool found = false;
-  turns_.take([&] {
+  turns_->take([&] {
     Member member;
     if (!takeMember(id, member)) return;
     found = true;
@@ -194,7 +197,7 @@ CORBA::Boolean PeriodicECOrganization::remove_member(const char* id) {
 }
 
 void PeriodicECOrganization::export_ports(const std::string& list) {
-  turns_.take([&] {
+  turns_->take([&] {
     wanted_ports_.clear();
     for (std::string& name : base::split_list(list)) wanted_ports_.insert(std::move(name));
     update_ports();
@@ -253,7 +256,7 @@ void PeriodicECOrganization::reset_members() {
 }
 
 void PeriodicECOrganization::close() {
-  turns_.take([&] {
+  turns_->take([&] {
     closed_ = true;
     wanted_ports_.clear();
     for (const auto& [name, port] : exported_) composite_.removePort(RTC::PortService_var(port));

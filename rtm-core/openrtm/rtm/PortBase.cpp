@@ -2,31 +2,97 @@
 
 #include "base/text.h"
 #include "corba/nv_list.h"
+#include "corba/port_servant.h"
 
 namespace RTC {
 
-PortBase::PortBase(const char* name) : PortServant(name), rtclog(name), name_(name) {}
+// The object that peers call. What it asks of its port is behind PortBase's virtual functions.
+class PortBase::Servant final : public corba::PortServant {
+ public:
+  Servant(PortBase& port, const char* name) : PortServant(name), port_(port) {}
+
+  using PortServant::add_interface;
+  using PortServant::profile;
+  using PortServant::profile_property;
+  using PortServant::remove_interface;
+  using PortServant::set_connection_limit;
+  using PortServant::set_owner;
+  using PortServant::set_port_name;
+  using PortServant::set_profile_property;
+  using PortServant::set_reference;
+
+ private:
+  using Terms = corba::ConnectionTerms;
+
+  void complete_profile(ConnectorProfile& profile) override { port_.complete_profile(profile); }
+  std::shared_ptr<Terms> read_terms(const ConnectorProfile& profile) override { return port_.read_terms(profile); }
+  ReturnCode_t prepare(ConnectorProfile& profile, const Terms& terms) override { return port_.prepare(profile, terms); }
+  ReturnCode_t publish(ConnectorProfile& profile, const Terms& terms) override { return port_.publish(profile, terms); }
+  ReturnCode_t subscribe(const ConnectorProfile& profile, const Terms& terms) override {
+    call(port_.m_onSubscribeInterfaces, profile);
+    return port_.subscribe(profile, terms);
+  }
+  void unsubscribe(const ConnectorProfile& profile, bool is_lost) override {
+    if (is_lost) call(port_.m_onConnectionLost, profile);
+    port_.unsubscribeInterfaces(profile);
+  }
+  void complete(PortProfile& profile) const override { port_.complete(profile); }
+  void activated(PortService_ptr port_ref) override { port_.m_objref = RTC::PortService::_duplicate(port_ref); }
+  void on_step(Step step, ConnectorProfile& profile, ReturnCode_t code) override;
+
+  static void call(ConnectionCallback* callback, const ConnectorProfile& profile) {
+    if (!callback) return;
+    ConnectorProfile copy = profile;
+    (*callback)(copy);
+  }
+
+  PortBase& port_;
+};
+
+PortBase::PortBase(const char* name) : rtclog(name), name_(name), servant_(std::make_unique<Servant>(*this, name)) {}
 
 PortBase::~PortBase() { shut(); }
+
+void PortBase::shut() { servant_->shut(); }
+void PortBase::deactivate() { servant_->deactivate(); }
+bool PortBase::drop_connection(const char* connector_id) { return servant_->drop_connection(connector_id); }
+
+PortProfile* PortBase::get_port_profile() { return servant_->get_port_profile(); }
+ConnectorProfileList* PortBase::get_connector_profiles() { return servant_->get_connector_profiles(); }
+ConnectorProfile* PortBase::get_connector_profile(const char* connector_id) { return servant_->get_connector_profile(connector_id); }
+ReturnCode_t PortBase::connect(ConnectorProfile& connector_profile) { return servant_->connect(connector_profile); }
+ReturnCode_t PortBase::disconnect(const char* connector_id) { return servant_->disconnect(connector_id); }
+ReturnCode_t PortBase::disconnect_all() { return servant_->disconnect_all(); }
+ReturnCode_t PortBase::notify_connect(ConnectorProfile& connector_profile) { return servant_->notify_connect(connector_profile); }
+ReturnCode_t PortBase::notify_disconnect(const char* connector_id) { return servant_->notify_disconnect(connector_id); }
+
+PortProfile PortBase::getPortProfile() const { return servant_->profile(); }
+PortService_ptr PortBase::getPortRef() { return servant_->reference(); }
+
+std::shared_ptr<corba::ConnectionTerms> PortBase::read_terms(const ConnectorProfile&) { return std::make_shared<corba::ConnectionTerms>(); }
 
 void PortBase::setName(const char* name) {
   name_ = name;
   rtclog.setName(name);
-  set_port_name(name_);
+  servant_->set_port_name(name_);
 }
 
 void PortBase::setPortRef(PortService_ptr port_ref) {
-  set_reference(port_ref);
+  servant_->set_reference(port_ref);
   m_objref = RTC::PortService::_duplicate(port_ref);
 }
 
-void PortBase::setOwner(RTObject_ptr owner) { set_owner(owner); }
+void PortBase::setOwner(RTObject_ptr owner) { servant_->set_owner(owner); }
+
+void PortBase::setConnectionLimit(int limit) { servant_->set_connection_limit(limit); }
+
+void PortBase::addProperty(const char* key, const char* value) { servant_->set_profile_property(key, value); }
 
 void PortBase::init(coil::Properties& properties) {
   m_properties << properties;
   for (const auto& name : m_properties.propertyNames()) {
     const std::string& value = m_properties.getProperty(name);
-    if (!value.empty()) set_profile_property(name, value);
+    if (!value.empty()) addProperty(name.c_str(), value);
   }
   for (const char* key : {"connection_limit", "dataport.connection_limit"}) {
     if (const auto limit = base::parse_integer(m_properties.getProperty(key))) setConnectionLimit(static_cast<int>(*limit));
@@ -34,57 +100,40 @@ void PortBase::init(coil::Properties& properties) {
 }
 
 bool PortBase::appendProperty(const char* key, const char* value) {
-  const std::string present = profile_property(key);
+  const std::string present = servant_->profile_property(key);
   const std::string added(base::trim(value));
   auto parts = base::split_list(present);
   for (const auto& part : parts) {
     if (part == added) return true;
   }
   parts.push_back(added);
-  set_profile_property(key, base::join(parts, ","));
+  servant_->set_profile_property(key, base::join(parts, ","));
   return true;
 }
 
 bool PortBase::appendInterface(const char* instance_name, const char* type_name, PortInterfacePolarity polarity) {
-  return add_interface(instance_name, type_name, polarity);
+  return servant_->add_interface(instance_name, type_name, polarity);
 }
 
-bool PortBase::deleteInterface(const char* name, PortInterfacePolarity polarity) { return remove_interface(name, polarity); }
+bool PortBase::deleteInterface(const char* name, PortInterfacePolarity polarity) { return servant_->remove_interface(name, polarity); }
 
-ReturnCode_t PortBase::publish(ConnectorProfile& profile) { return publishInterfaces(profile); }
-
-ReturnCode_t PortBase::subscribe(const ConnectorProfile& profile) {
-  if (m_onSubscribeInterfaces) {
-    ConnectorProfile copy = profile;
-    (*m_onSubscribeInterfaces)(copy);
-  }
-  return subscribeInterfaces(profile);
-}
-
-void PortBase::unsubscribe(const ConnectorProfile& profile, bool is_lost) {
-  if (is_lost && m_onConnectionLost) {
-    ConnectorProfile copy = profile;
-    (*m_onConnectionLost)(copy);
-  }
-  unsubscribeInterfaces(profile);
-}
-
-void PortBase::on_step(Step step, ConnectorProfile& profile, ReturnCode_t code) {
+void PortBase::Servant::on_step(Step step, ConnectorProfile& profile, ReturnCode_t code) {
   const auto call = [&](ConnectionCallback* callback) {
     if (callback) (*callback)(profile);
   };
+  PortConnectListeners* const listeners = port_.m_portconnListeners;
   const auto tell = [&](PortConnectListenerType type) {
-    if (m_portconnListeners) m_portconnListeners->portconnect_[type].notify(getName(), profile);
+    if (listeners) listeners->portconnect_[type].notify(port_.getName(), profile);
   };
   const auto tell_result = [&](PortConnectRetListenerType type) {
-    if (m_portconnListeners) m_portconnListeners->portconnret_[type].notify(getName(), profile, code);
+    if (listeners) listeners->portconnret_[type].notify(port_.getName(), profile, code);
   };
   switch (step) {
     case Step::notify_connect:
       tell(ON_NOTIFY_CONNECT);
       break;
     case Step::published:
-      call(m_onPublishInterfaces);
+      call(port_.m_onPublishInterfaces);
       tell_result(ON_PUBLISH_INTERFACES);
       break;
     case Step::next_connected:
@@ -94,7 +143,7 @@ void PortBase::on_step(Step step, ConnectorProfile& profile, ReturnCode_t code) 
       tell_result(ON_SUBSCRIBE_INTERFACES);
       break;
     case Step::connected:
-      call(m_onConnected);
+      call(port_.m_onConnected);
       tell_result(ON_CONNECTED);
       break;
     case Step::notify_disconnect:
@@ -104,11 +153,11 @@ void PortBase::on_step(Step step, ConnectorProfile& profile, ReturnCode_t code) 
       tell_result(ON_DISCONNECT_NEXT);
       break;
     case Step::unsubscribed:
-      call(m_onUnsubscribeInterfaces);
+      call(port_.m_onUnsubscribeInterfaces);
       tell(ON_UNSUBSCRIBE_INTERFACES);
       break;
     case Step::disconnected:
-      call(m_onDisconnected);
+      call(port_.m_onDisconnected);
       tell_result(ON_DISCONNECTED);
       break;
   }

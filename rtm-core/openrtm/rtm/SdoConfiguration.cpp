@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "base/text.h"
+#include "corba/gate.h"
 
 namespace SDOPackage {
 
@@ -51,33 +52,37 @@ ConfigurationSet to_set(const coil::Properties& node) {
 }  // namespace
 
 Configuration_impl::Configuration_impl(RTC::RTObject_impl& component, RTC::ConfigAdmin& configuration, RTC::SdoServiceAdmin& services)
-    : component_(component), configuration_(configuration), services_(services) {}
+    : gate_(std::make_unique<corba::Gate>()), component_(component), configuration_(configuration), services_(services) {}
+
+Configuration_impl::~Configuration_impl() = default;
+
+void Configuration_impl::close() { gate_->close(); }
 
 CORBA::Boolean Configuration_impl::set_device_profile(const DeviceProfile& profile) {
-  const Inside inside(gate_);
+  const Inside inside(*gate_);
   component_.setDeviceProfile(profile);
   return true;
 }
 
 CORBA::Boolean Configuration_impl::add_service_profile(const ServiceProfile& profile) {
-  const Inside inside(gate_);
+  const Inside inside(*gate_);
   return services_.addSdoServiceConsumer(profile);
 }
 
 CORBA::Boolean Configuration_impl::add_organization(Organization_ptr organization) {
-  const Inside inside(gate_);
+  const Inside inside(*gate_);
   if (CORBA::is_nil(organization)) throw InvalidParameter("the organization is nil");
   return component_.addOrganization(organization);
 }
 
 CORBA::Boolean Configuration_impl::remove_service_profile(const char* id) {
-  const Inside inside(gate_);
+  const Inside inside(*gate_);
   if (id[0] == '\0') throw InvalidParameter("the id is empty");
   return services_.removeSdoServiceConsumer(id);
 }
 
 CORBA::Boolean Configuration_impl::remove_organization(const char* organization_id) {
-  const Inside inside(gate_);
+  const Inside inside(*gate_);
   if (organization_id[0] == '\0') throw InvalidParameter("the id is empty");
   return component_.removeOrganization(organization_id);
 }
@@ -97,7 +102,7 @@ CORBA::Boolean Configuration_impl::set_configuration_parameter(const char* name,
 }
 
 ConfigurationSetList* Configuration_impl::get_configuration_sets() {
-  const Inside inside(gate_);
+  const Inside inside(*gate_);
   const std::vector<coil::Properties> nodes = configuration_.getConfigurationSets();
   ConfigurationSetList_var sets = new ConfigurationSetList();
   sets->length(static_cast<CORBA::ULong>(nodes.size()));
@@ -106,35 +111,35 @@ ConfigurationSetList* Configuration_impl::get_configuration_sets() {
 }
 
 ConfigurationSet* Configuration_impl::get_configuration_set(const char* id) {
-  const Inside inside(gate_);
+  const Inside inside(*gate_);
   if (!configuration_.haveConfig(id)) throw InternalError(("no configuration set " + base::in_quotes(id)).c_str());
   return new ConfigurationSet(to_set(configuration_.getConfigurationSet(id)));
 }
 
 CORBA::Boolean Configuration_impl::set_configuration_set_values(const ConfigurationSet& set) {
-  const Inside inside(gate_);
+  const Inside inside(*gate_);
   return configuration_.setConfigurationSetValues(to_properties(set));
 }
 
 ConfigurationSet* Configuration_impl::get_active_configuration_set() {
-  const Inside inside(gate_);
+  const Inside inside(*gate_);
   if (!configuration_.isActive()) throw NotAvailable("a set has changed and none has been activated since");
   return new ConfigurationSet(to_set(configuration_.getActiveConfigurationSet()));
 }
 
 CORBA::Boolean Configuration_impl::add_configuration_set(const ConfigurationSet& set) {
-  const Inside inside(gate_);
+  const Inside inside(*gate_);
   return configuration_.addConfigurationSet(to_properties(set));
 }
 
 CORBA::Boolean Configuration_impl::remove_configuration_set(const char* id) {
-  const Inside inside(gate_);
+  const Inside inside(*gate_);
   if (id[0] == '\0') throw InvalidParameter("the id is empty");
   return configuration_.removeConfigurationSet(id);
 }
 
 CORBA::Boolean Configuration_impl::activate_configuration_set(const char* id) {
-  const Inside inside(gate_);
+  const Inside inside(*gate_);
   if (id[0] == '\0') throw InvalidParameter("the id is empty");
   if (!configuration_.activateConfigurationSet(id))
     throw InvalidParameter(("no configuration set " + base::in_quotes(id) + " that can be active").c_str());

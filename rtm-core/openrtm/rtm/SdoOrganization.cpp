@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/guarded.h"
 #include "base/id.h"
 #include "base/text.h"
 #include "corba/orb.h"
@@ -11,20 +12,34 @@ namespace SDOPackage {
 
 using namespace std::chrono_literals;
 
-Organization_impl::Organization_impl(SDOSystemElement_ptr owner) : id_(base::make_uuid()) {
-  shared_.lock()->owner = SDOSystemElement::_duplicate(owner);
+struct Organization_impl::Shared {
+  struct Data {
+    std::vector<Member> members{};
+    SDOSystemElement_var owner{};
+    OrganizationProperty property{};
+    DependencyType dependency = OWN;
+  };
+  base::Guarded<Data, base::Rank::component> data;
+};
+
+Organization_impl::Organization_impl(SDOSystemElement_ptr owner) : id_(base::make_uuid()), shared_(std::make_unique<Shared>()) {
+  shared_->data.lock()->owner = SDOSystemElement::_duplicate(owner);
 }
+
+Organization_impl::~Organization_impl() = default;
+
+std::vector<Organization_impl::Member> Organization_impl::members() const { return shared_->data.lock()->members; }
 
 Organization_ptr Organization_impl::getObjRef() { return _this(); }
 
 char* Organization_impl::get_organization_id() { return CORBA::string_dup(id_.c_str()); }
 
-OrganizationProperty* Organization_impl::get_organization_property() { return new OrganizationProperty(shared_.lock()->property); }
+OrganizationProperty* Organization_impl::get_organization_property() { return new OrganizationProperty(shared_->data.lock()->property); }
 
 CORBA::Any* Organization_impl::get_organization_property_value(const char* name) {
   if (name[0] == '\0') throw InvalidParameter("the name is empty");
   {
-    auto data = shared_.lock();
+    auto data = shared_->data.lock();
     const CORBA::Long index = NVUtil::find_index(data->property.properties, name);
     if (index >= 0) return new CORBA::Any(data->property.properties[static_cast<CORBA::ULong>(index)].value);
   }
@@ -32,19 +47,19 @@ CORBA::Any* Organization_impl::get_organization_property_value(const char* name)
 }
 
 CORBA::Boolean Organization_impl::add_organization_property(const OrganizationProperty& property) {
-  shared_.lock()->property = property;
+  shared_->data.lock()->property = property;
   return true;
 }
 
 CORBA::Boolean Organization_impl::set_organization_property_value(const char* name, const CORBA::Any& value) {
   if (name[0] == '\0') throw InvalidParameter("the name is empty");
-  NVUtil::setValue(shared_.lock()->property.properties, name, value);
+  NVUtil::setValue(shared_->data.lock()->property.properties, name, value);
   return true;
 }
 
 CORBA::Boolean Organization_impl::remove_organization_property(const char* name) {
   if (name[0] == '\0') throw InvalidParameter("the name is empty");
-  auto data = shared_.lock();
+  auto data = shared_->data.lock();
   NVList& list = data->property.properties;
   const CORBA::Long index = NVUtil::find_index(list, name);
   if (index < 0) throw InvalidParameter("no such organization property");
@@ -53,11 +68,11 @@ CORBA::Boolean Organization_impl::remove_organization_property(const char* name)
   return true;
 }
 
-SDOSystemElement_ptr Organization_impl::get_owner() { return SDOSystemElement::_duplicate(shared_.lock()->owner); }
+SDOSystemElement_ptr Organization_impl::get_owner() { return SDOSystemElement::_duplicate(shared_->data.lock()->owner); }
 
 CORBA::Boolean Organization_impl::set_owner(SDOSystemElement_ptr sdo) {
   if (CORBA::is_nil(sdo)) throw InvalidParameter("the owner is nil");
-  shared_.lock()->owner = SDOSystemElement::_duplicate(sdo);
+  shared_->data.lock()->owner = SDOSystemElement::_duplicate(sdo);
   return true;
 }
 
@@ -84,11 +99,11 @@ std::vector<Organization_impl::Member> Organization_impl::ask(const SDOList& sdo
 }
 
 std::vector<Organization_impl::Member> Organization_impl::replaceMembers(std::vector<Member> members) {
-  return std::exchange(shared_.lock()->members, std::move(members));
+  return std::exchange(shared_->data.lock()->members, std::move(members));
 }
 
 void Organization_impl::appendMembers(const std::vector<Member>& members) {
-  auto data = shared_.lock();
+  auto data = shared_->data.lock();
   for (const Member& member : members) {
     std::erase_if(data->members, [&](const Member& known) { return known.id == member.id; });
     data->members.push_back(member);
@@ -96,7 +111,7 @@ void Organization_impl::appendMembers(const std::vector<Member>& members) {
 }
 
 bool Organization_impl::takeMember(const std::string& id, Member& member) {
-  auto data = shared_.lock();
+  auto data = shared_->data.lock();
   const auto it = std::find_if(data->members.begin(), data->members.end(), [&](const Member& known) { return known.id == id; });
   if (it == data->members.end()) return false;
   member = *it;
@@ -121,10 +136,10 @@ CORBA::Boolean Organization_impl::remove_member(const char* id) {
   return true;
 }
 
-DependencyType Organization_impl::get_dependency() { return shared_.lock()->dependency; }
+DependencyType Organization_impl::get_dependency() { return shared_->data.lock()->dependency; }
 
 CORBA::Boolean Organization_impl::set_dependency(DependencyType dependency) {
-  shared_.lock()->dependency = dependency;
+  shared_->data.lock()->dependency = dependency;
   return true;
 }
 

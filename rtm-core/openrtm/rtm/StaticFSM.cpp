@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "component/fsm_service.h"
+
 namespace RTC::fsm {
 
 namespace {

@@ -1,7 +1,11 @@
 // CDR as a serializer, and what own serializers are made from. One thread at a time.
 #pragma once
 
-#include "corba/cdr.h"
+#include <omniORB4/CORBA.h>
+
+#include <exception>
+#include <memory>
+
 #include "rtm/ByteData.h"
 #include "rtm/ByteDataStreamBase.h"
 
@@ -10,8 +14,9 @@ namespace RTC {
 // CDR octets of values of any type of the IDL. Copies are independent.
 class CORBA_CdrMemoryStream {
  public:
-  CORBA_CdrMemoryStream() { cdr_.setByteSwapFlag(true); }
-  CORBA_CdrMemoryStream(const CORBA_CdrMemoryStream& other) { *this = other; }
+  CORBA_CdrMemoryStream();
+  CORBA_CdrMemoryStream(const CORBA_CdrMemoryStream& other);
+  ~CORBA_CdrMemoryStream();
   CORBA_CdrMemoryStream& operator=(const CORBA_CdrMemoryStream& other);
 
   // Replaces the contents. False if the value cannot be encoded.
@@ -19,7 +24,7 @@ class CORBA_CdrMemoryStream {
   bool serializeCDR(const Value& value) {
     try {
       start();
-      value >>= cdr_;
+      value >>= *cdr_;
       return true;
     } catch (const CORBA::Exception&) {
       return false;
@@ -29,7 +34,7 @@ class CORBA_CdrMemoryStream {
   template <class Value>
   bool deserializeCDR(Value& value) {
     try {
-      value <<= cdr_;
+      value <<= *cdr_;
       return true;
     } catch (const CORBA::Exception&) {
       return false;
@@ -39,9 +44,9 @@ class CORBA_CdrMemoryStream {
   }
   // Of the next serializeCDR or writeCdrData.
   void setEndian(bool little_endian) { is_little_ = little_endian; }
-  const unsigned char* getBuffer() { return static_cast<const unsigned char*>(cdr_.bufPtr()); }
-  unsigned long getCdrDataLength() const { return cdr_.bufSize(); }
-  cdrMemoryStream& getCdr() { return cdr_; }
+  const unsigned char* getBuffer() { return static_cast<const unsigned char*>(cdr_->bufPtr()); }
+  unsigned long getCdrDataLength() const { return cdr_->bufSize(); }
+  cdrMemoryStream& getCdr() { return *cdr_; }
   // Replaces the contents.
   void writeCdrData(const unsigned char* buffer, unsigned long length);
   // Copies at most `length` octets out.
@@ -50,7 +55,7 @@ class CORBA_CdrMemoryStream {
  private:
   void start();
 
-  corba::CheckedStream cdr_;
+  std::unique_ptr<cdrMemoryStream> cdr_;
   bool is_little_ = true;
 };
 

@@ -5,11 +5,9 @@
 #include <coil/stringutil.h>
 
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
-#include "corba/event_data.h"
 #include "rtm/BufferStatus.h"
 #include "rtm/CdrBufferBase.h"
 #include "rtm/DataPortStatus.h"
@@ -40,13 +38,14 @@ class ConnectorInfo {
 };
 using ConnectorInfoList = std::vector<ConnectorInfo>;
 
-class ConnectorBase : public DataPortStatus, public corba::ConnectorEvents {
+class ConnectorBase : public DataPortStatus {
  public:
   ConnectorBase(PortBase& port, std::shared_ptr<ConnectorListeners> listeners, ConnectorInfo info);
+  virtual ~ConnectorBase();
   ConnectorBase(const ConnectorBase&) = delete;
   ConnectorBase& operator=(const ConnectorBase&) = delete;
 
-  ConnectorInfo profile() const { return *info(); }
+  ConnectorInfo profile() const;
   const char* id() const { return id_.c_str(); }
   const char* name() const { return name_.c_str(); }
   // What waits in this side of the connection.
@@ -54,24 +53,19 @@ class ConnectorBase : public DataPortStatus, public corba::ConnectorEvents {
   // Takes the whole connection apart; the object is gone afterwards.
   DataPortStatus disconnect();
 
-  ConnectorListeners& listeners() { return *listeners_; }
+  // For ports.
+  ConnectorListeners& listeners();
   // What listeners get from now on.
   void setInfo(ConnectorInfo info);
-  bool is_observed(corba::DataEvent event) const override;
-  void on_data(corba::DataEvent event, corba::EventData& data) override;
-  void on_event(corba::ConnectorEvent event) override;
-
- private:
   std::shared_ptr<ConnectorInfo> info() const;
 
-  PortBase& port_;
-  // Shared, because a sample may still be on its way when the port dies.
-  const std::shared_ptr<ConnectorListeners> listeners_;
+ private:
+  struct Impl;
+
   const std::string name_;
   const std::string id_;
   CdrBufferBase buffer_;
-  mutable std::mutex mutex_;
-  std::shared_ptr<ConnectorInfo> info_;
+  std::unique_ptr<Impl> impl_;
 };
 
 class InPortConnector : public ConnectorBase {

@@ -6,11 +6,14 @@
 #include <string>
 #include <utility>
 
-#include "corba/cdr.h"
-#include "corba/event_data.h"
 #include "rtm/ByteData.h"
 #include "rtm/ConnectorBase.h"
+#include "rtm/DataType.h"
 #include "rtm/PortConnectListener.h"
+
+namespace corba {
+class EventData;
+}
 
 namespace RTC {
 
@@ -71,8 +74,21 @@ class ConnectorDataListener : public ConnectorListenerStatus {
   static const char* toString(ConnectorDataListenerType type);
 };
 
+namespace detail {
+// A listener that sees values of one type; on a port of another type, if its octets fit.
+class TypedDataListener : public ConnectorDataListener {
+ public:
+  USE_CONNLISTENER_STATUS;
+  ReturnCode notify(ConnectorInfo& info, corba::EventData& data) override;
+
+ private:
+  virtual const DataType& type() const = 0;
+  virtual ReturnCode hear(ConnectorInfo& info, void* value) = 0;
+};
+}  // namespace detail
+
 template <class DataType>
-class ConnectorDataListenerT : public ConnectorDataListener {
+class ConnectorDataListenerT : public detail::TypedDataListener {
  public:
   USE_CONNLISTENER_STATUS;
   using ConnectorDataListener::operator();
@@ -83,23 +99,9 @@ class ConnectorDataListenerT : public ConnectorDataListener {
   }
   virtual void operator()(const ConnectorInfo&, const DataType&) {}
 
-  ReturnCode notify(ConnectorInfo& info, corba::EventData& data) override {
-    if (*data.ops().type == typeid(DataType)) {
-      auto* value = static_cast<DataType*>(data.value());
-      if (!value) return NO_CHANGE;
-      const ReturnCode code = (*this)(info, *value);
-      if (code == DATA_CHANGED || code == BOTH_CHANGED) data.value_changed();
-      return code;
-    }
-    // A listener of another type than its port's sees the octets as its own type, if they fit.
-    DataType value{};
-    if (!corba::decode(corba::type_ops<DataType>(), &value, data.octets(), data.order())) return NO_CHANGE;
-    const ReturnCode code = (*this)(info, value);
-    if (code == DATA_CHANGED || code == BOTH_CHANGED) {
-      data.replace_octets(corba::encode(corba::type_ops<DataType>(), &value, data.order())->octets());
-    }
-    return code;
-  }
+ private:
+  const detail::DataType& type() const override { return detail::data_type<DataType>(); }
+  ReturnCode hear(ConnectorInfo& info, void* value) override { return (*this)(info, *static_cast<DataType*>(value)); }
 };
 
 class ConnectorListener : public ConnectorListenerStatus {

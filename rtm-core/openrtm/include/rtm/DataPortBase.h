@@ -8,9 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "base/guarded.h"
-#include "corba/type_ops.h"
-#include "core/connector_settings.h"
 #include "rtm/ConnectorBase.h"
 #include "rtm/ConnectorListener.h"
 #include "rtm/DataPortStatus.h"
@@ -19,14 +16,12 @@
 namespace base {
 class Clock;
 }
-namespace corba {
-class InEngine;
-class OutEngine;
-}  // namespace corba
 
 namespace RTC {
 
 namespace detail {
+class DataPortCore;
+class DataType;
 class Serializers;
 
 // connectors() as ports of authors know them: a member that changes with the connections. begin() and size() look again; what they found is
@@ -50,7 +45,8 @@ class ConnectorsView {
 };
 }  // namespace detail
 
-template <class Engine, class Connector, rt::Side side>
+// Connector: InPortConnector or OutPortConnector.
+template <class Connector>
 class DataPortBase : public PortBase, public DataPortStatus {
  public:
   using ConnectorList = std::vector<Connector*>;
@@ -85,40 +81,36 @@ class DataPortBase : public PortBase, public DataPortStatus {
   void removeConnectorDataListener(ConnectorDataListenerType type, ConnectorDataListener* listener);
   void addConnectorListener(ConnectorListenerType type, ConnectorListener* listener, bool autoclean = true);
   void removeConnectorListener(ConnectorListenerType type, ConnectorListener* listener);
-  ConnectorListeners& getListeners() { return *listeners_; }
+  ConnectorListeners& getListeners();
 
  protected:
-  // The serializers live as long as the port.
-  DataPortBase(const char* name, std::unique_ptr<Engine> engine, const detail::Serializers& serializers);
+  DataPortBase(const char* name, std::unique_ptr<detail::DataPortCore> core);
 
   // Shows the serializers that are registered by now.
   void complete(PortProfile& profile) const override;
   void complete_profile(ConnectorProfile& profile) override;
-  ReturnCode_t prepare(ConnectorProfile& profile) override;
-  bool allows_duplicate(const ConnectorProfile& profile) override;
+  std::shared_ptr<corba::ConnectionTerms> read_terms(const ConnectorProfile& profile) override;
+  ReturnCode_t prepare(ConnectorProfile& profile, const corba::ConnectionTerms& terms) override;
+  ReturnCode_t publish(ConnectorProfile& profile, const corba::ConnectionTerms& terms) override;
+  ReturnCode_t subscribe(const ConnectorProfile& profile, const corba::ConnectionTerms& terms) override;
   ReturnCode_t publishInterfaces(ConnectorProfile& profile) override;
   ReturnCode_t subscribeInterfaces(const ConnectorProfile& profile) override;
   void unsubscribeInterfaces(const ConnectorProfile& profile) override;
 
-  const std::unique_ptr<Engine> engine_;
+  const std::unique_ptr<detail::DataPortCore> core_;
   // The names of 1.x and 2.x.
   using Guard = coil::Guard<coil::Mutex>;
   detail::ConnectorsView<DataPortBase> m_connectors{*this};
   mutable coil::Mutex m_connectorsMutex;
 
  private:
-  // Makes the connection in publishInterfaces if this side provides the object, else in subscribeInterfaces.
-  ReturnCode_t open(ConnectorProfile& profile, bool provides);
   template <class Match>
   Connector* find(Match match) const;
 
   const std::string short_name_;
-  const detail::Serializers& serializers_;
-  const std::shared_ptr<ConnectorListeners> listeners_;
-  base::Guarded<std::shared_ptr<const base::Clock>, base::Rank::buffer> clock_;
 };
 
-extern template class DataPortBase<corba::InEngine, InPortConnector, rt::Side::in>;
-extern template class DataPortBase<corba::OutEngine, OutPortConnector, rt::Side::out>;
+extern template class DataPortBase<InPortConnector>;
+extern template class DataPortBase<OutPortConnector>;
 
 }  // namespace RTC

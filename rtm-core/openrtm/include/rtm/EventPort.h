@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <string>
+#include <type_traits>
 
 #include "rtm/ConnectorListener.h"
 #include "rtm/InPortBase.h"
@@ -14,8 +15,6 @@ namespace RTC {
 
 namespace detail {
 
-// A port that takes every type and keeps nothing.
-const corba::TypeOps& any_type_ops();
 // None but CDR: an event may be of any type.
 const Serializers& any_serializers();
 
@@ -23,26 +22,27 @@ const Serializers& any_serializers();
 bool is_event(const ConnectorInfo& info, const std::string& event);
 
 class EventListenerBase : public ConnectorDataListener {
- public:
-  explicit EventListenerBase(std::string event) : event_(std::move(event)) {}
-
  protected:
+  explicit EventListenerBase(std::string event) : event_(std::move(event)) {}
+  // False unless the sample is one of that event and fits the type.
+  bool take(const ConnectorInfo& info, corba::EventData& data, const DataType& type, void* value) const;
+
   std::string event_;
 };
 
-template <class DataType>
+template <class Value>
 class EventListener final : public EventListenerBase {
  public:
-  EventListener(std::string event, std::function<void(const DataType&)> queue)
+  EventListener(std::string event, std::function<void(const Value&)> queue)
       : EventListenerBase(std::move(event)), queue_(std::move(queue)) {}
   ReturnCode notify(ConnectorInfo& info, corba::EventData& data) override {
-    DataType value{};
-    if (is_event(info, event_) && corba::decode(corba::type_ops<DataType>(), &value, data.octets(), data.order())) queue_(value);
+    Value value{};
+    if (take(info, data, data_type<Value>(), &value)) queue_(value);
     return NO_CHANGE;
   }
 
  private:
-  std::function<void(const DataType&)> queue_;
+  std::function<void(const Value&)> queue_;
 };
 
 class EventListener0 final : public EventListenerBase {
@@ -64,7 +64,7 @@ template <class FsmType>
 class EventInPort : public InPortBase {
  public:
   EventInPort(const char* name, FsmType& machine, int = 64, bool = false, bool = false, int = 0, int = 0)
-      : InPortBase(name, detail::any_type_ops(), detail::any_serializers()), machine_(machine) {}
+      : InPortBase(name, detail::DataType::any(), detail::any_serializers()), machine_(machine) {}
   ~EventInPort() override { retire(); }
 
   // Nothing: events go to the machine as they arrive.
@@ -72,10 +72,10 @@ class EventInPort : public InPortBase {
 
   template <class Top, class Result, class Data>
   void bindEvent(const std::string& event, Result (Top::*handler)(Data)) {
-    using Value = std::remove_cvref_t<Data>;
+    using Value = std::remove_cv_t<std::remove_reference_t<Data>>;
     addConnectorDataListener(
         ON_RECEIVED, new detail::EventListener<Value>(event, [this, handler](const Value& value) { machine_.push(handler, value); }));
-    machine_.add_event_profile(event, corba::type_ops<Value>().type_id);
+    machine_.add_event_profile(event, detail::data_type<Value>().id());
   }
   template <class Top, class Result>
   void bindEvent(const std::string& event, Result (Top::*handler)()) {

@@ -21,7 +21,7 @@ class InPort : public InPortBase {
 
   // The variable must outlive the port. The other arguments of old are taken and mean nothing: connections bring their own buffers.
   InPort(const char* name, DataType& value, int = 64, bool = false, bool = false, int = 0, int = 0)
-      : InPortBase(name, corba::type_ops<DataType>(), detail::serializers_of<DataType>()), value_(value) {}
+      : InPortBase(name, detail::data_type<DataType>(), detail::serializers_of<DataType>()), value_(value) {}
   ~InPort() override { retire(); }
 
   bool read(std::string name = "") override {

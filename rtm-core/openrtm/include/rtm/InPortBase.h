@@ -7,9 +7,9 @@
 
 namespace RTC {
 
-class InPortBase : public DataPortBase<corba::InEngine, InPortConnector, rt::Side::in> {
+class InPortBase : public DataPortBase<InPortConnector> {
  public:
-  InPortBase(const char* name, const corba::TypeOps& type, const detail::Serializers& serializers);
+  InPortBase(const char* name, const detail::DataType& type, const detail::Serializers& serializers);
   ~InPortBase() override;
 
   // False if there was nothing to read; the statuses tell why.
@@ -22,9 +22,6 @@ class InPortBase : public DataPortBase<corba::InEngine, InPortConnector, rt::Sid
   bool isNew(coil::vstring& connector_names);
   bool isEmpty() { return !isNew(); }
   bool isEmpty(const std::string& connector_name) { return !isNew(connector_name); }
-
-  // The connections' side of the port, for ports of the same process.
-  corba::InEngine& engine() { return *engine_; }
 
  protected:
   // Returns when no other thread is in the port any more. The destructor of the last class in line calls it first.

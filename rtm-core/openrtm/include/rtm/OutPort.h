@@ -19,7 +19,7 @@ class OutPort : public OutPortBase {
 
   // The variable must outlive the port. The other arguments of old are taken and mean nothing: connections bring their own buffers.
   OutPort(const char* name, DataType& value, int = 8, bool = false, bool = false, int = 0, int = 0)
-      : OutPortBase(name, corba::type_ops<DataType>(), detail::serializers_of<DataType>()), value_(value) {}
+      : OutPortBase(name, detail::data_type<DataType>(), detail::serializers_of<DataType>()), value_(value) {}
   ~OutPort() override { retire(); }
 
   bool write() override { return write(value_); }

@@ -5,9 +5,9 @@
 
 namespace RTC {
 
-class OutPortBase : public DataPortBase<corba::OutEngine, OutPortConnector, rt::Side::out> {
+class OutPortBase : public DataPortBase<OutPortConnector> {
  public:
-  OutPortBase(const char* name, const corba::TypeOps& type, const detail::Serializers& serializers);
+  OutPortBase(const char* name, const detail::DataType& type, const detail::Serializers& serializers);
   ~OutPortBase() override;
 
   // Writes the bound variable; false if there is no connection or one failed; the statuses tell which.
@@ -18,7 +18,7 @@ class OutPortBase : public DataPortBase<corba::OutEngine, OutPortConnector, rt::
   void retire();
   bool writeValue(const void* value);
 
-  ReturnCode_t prepare(ConnectorProfile& profile) override;
+  ReturnCode_t prepare(ConnectorProfile& profile, const corba::ConnectionTerms& terms) override;
 };
 
 }  // namespace RTC

@@ -5,13 +5,16 @@
 #include <rtm/SdoOrganization.h>
 
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "core/workers.h"
 #include "rtm/idl/RTCStub.h"
 
+namespace rt {
+class Turns;
+}
 namespace RTC {
 class RTObject_impl;
 }
@@ -22,6 +25,7 @@ class PeriodicECOrganization : public Organization_impl {
  public:
   // The composite must live until close().
   explicit PeriodicECOrganization(RTC::RTObject_impl& composite);
+  ~PeriodicECOrganization() override;
 
   // InvalidParameter, and nothing changes, when the composite would be a member of itself, also by way of other composites, as far as these
   // answer; it takes 5 s at most to find out, twice.
@@ -48,7 +52,7 @@ class PeriodicECOrganization : public Organization_impl {
   void for_each_member(Function function);
 
   RTC::RTObject_impl& composite_;
-  rt::Turns turns_;
+  const std::unique_ptr<rt::Turns> turns_;
   bool closed_ = false;  // inside a turn only, as everything below
   std::set<std::string> wanted_ports_;
   std::map<std::string, RTC::PortService_var> exported_;  // by full name

@@ -4,33 +4,51 @@
 
 #include <coil/Properties.h>
 
-#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "corba/port_servant.h"
 #include "rtm/PortCallback.h"
 #include "rtm/PortConnectListener.h"
 #include "rtm/SystemLogger.h"
 #include "rtm/idl/RTCSkel.h"
 
+namespace corba {
+struct ConnectionTerms;
+}
+
 namespace RTC {
 
 class ConnectionCallback;
 
-class PortBase : public corba::PortServant {
+class PortBase {
  public:
   explicit PortBase(const char* name = "");
-  ~PortBase() override;
+  virtual ~PortBase();
+  PortBase(const PortBase&) = delete;
+  PortBase& operator=(const PortBase&) = delete;
+
+  // The operations of the PortService object.
+  virtual PortProfile* get_port_profile();
+  virtual ConnectorProfileList* get_connector_profiles();
+  // An empty profile if there is no such connection.
+  virtual ConnectorProfile* get_connector_profile(const char* connector_id);
+  virtual ReturnCode_t connect(ConnectorProfile& connector_profile);
+  virtual ReturnCode_t disconnect(const char* connector_id);
+  virtual ReturnCode_t disconnect_all();
+  virtual ReturnCode_t notify_connect(ConnectorProfile& connector_profile);
+  virtual ReturnCode_t notify_disconnect(const char* connector_id);
 
   void setName(const char* name);
   const char* getName() const { return name_.c_str(); }
   // A copy, without asking anyone.
-  RTC::PortProfile getPortProfile() const { return profile(); }
-  RTC::PortProfile getProfile() const { return profile(); }
+  PortProfile getPortProfile() const;
+  PortProfile getProfile() const { return getPortProfile(); }
   void setPortRef(PortService_ptr port_ref);
   // Borrowed; activates the port at the first call.
-  PortService_ptr getPortRef() { return reference(); }
+  PortService_ptr getPortRef();
+  // The same, for the caller to release.
+  PortService_ptr _this() { return PortService::_duplicate(getPortRef()); }
   void setOwner(RTObject_ptr owner);
 
   // Takes over the properties of the port (the merged port.* nodes) and shows them in the profile.
@@ -38,10 +56,8 @@ class PortBase : public corba::PortServant {
   coil::Properties& properties() { return m_properties; }
   // Adds a value to the comma list of that key in the profile.
   bool appendProperty(const char* key, const char* value);
-  template <class Value>
-  void addProperty(const char* key, Value value) {
-    set_profile_property(key, std::string(value));
-  }
+  void addProperty(const char* key, const char* value);
+  void addProperty(const char* key, const std::string& value) { addProperty(key, value.c_str()); }
 
   // Called when the component becomes active and when it is not any more.
   virtual void activateInterfaces() = 0;
@@ -57,14 +73,32 @@ class PortBase : public corba::PortServant {
   // Not owned; must outlive the port or be replaced by nullptr.
   void setPortConnectListenerHolder(PortConnectListeners* listeners) { m_portconnListeners = listeners; }
 
+  // No call from outside is accepted after this; connections stay.
+  void deactivate();
+
  protected:
   virtual ReturnCode_t publishInterfaces(ConnectorProfile& profile) = 0;
   virtual ReturnCode_t subscribeInterfaces(const ConnectorProfile& profile) = 0;
   virtual void unsubscribeInterfaces(const ConnectorProfile& profile) = 0;
 
-  void setConnectionLimit(int limit) { set_connection_limit(limit); }
+  void setConnectionLimit(int limit);
   bool appendInterface(const char* instance_name, const char* type_name, PortInterfacePolarity polarity);
   bool deleteInterface(const char* name, PortInterfacePolarity polarity);
+
+  // For the ports of this library, in the order in which a connection calls them (corba/port_servant.h). The terms are what read_terms has
+  // found in the profile when the port heard of the connection.
+  virtual void complete_profile(ConnectorProfile&) {}
+  virtual std::shared_ptr<corba::ConnectionTerms> read_terms(const ConnectorProfile& profile);
+  virtual ReturnCode_t prepare(ConnectorProfile&, const corba::ConnectionTerms&) { return RTC_OK; }
+  virtual ReturnCode_t publish(ConnectorProfile& profile, const corba::ConnectionTerms&) { return publishInterfaces(profile); }
+  virtual ReturnCode_t subscribe(const ConnectorProfile& profile, const corba::ConnectionTerms&) { return subscribeInterfaces(profile); }
+  // Adds to the PortProfile what may change while the port is there.
+  virtual void complete(PortProfile&) const {}
+  // No call from outside is running or accepted when it returns; connections stay. Classes that end the line of derivation call it first in
+  // their destructors.
+  void shut();
+  // Removes the connection on this side without calling anyone, because the other end is gone. False if it is not there (any more).
+  bool drop_connection(const char* connector_id);
 
   Logger rtclog;
   coil::Properties m_properties;
@@ -78,13 +112,10 @@ class PortBase : public corba::PortServant {
   PortConnectListeners* m_portconnListeners = nullptr;
 
  private:
-  ReturnCode_t publish(ConnectorProfile& profile) final;
-  ReturnCode_t subscribe(const ConnectorProfile& profile) final;
-  void unsubscribe(const ConnectorProfile& profile, bool is_lost) final;
-  void activated(PortService_ptr port_ref) final { m_objref = RTC::PortService::_duplicate(port_ref); }
-  void on_step(Step step, ConnectorProfile& profile, ReturnCode_t code) final;
+  class Servant;
 
   std::string name_;
+  std::unique_ptr<Servant> servant_;
 };
 
 }  // namespace RTC

@@ -3,7 +3,11 @@
 
 #include <rtm/idl/SDOPackageSkel.h>
 
-#include "corba/gate.h"
+#include <memory>
+
+namespace corba {
+class Gate;
+}
 
 namespace RTC {
 class ConfigAdmin;
@@ -17,9 +21,10 @@ class Configuration_impl : public virtual POA_SDOPackage::Configuration, public 
  public:
   // The three must live until close().
   Configuration_impl(RTC::RTObject_impl& component, RTC::ConfigAdmin& configuration, RTC::SdoServiceAdmin& services);
+  ~Configuration_impl() override;
 
   // After return nobody uses the component through this object; callers get OBJECT_NOT_EXIST.
-  void close() { gate_.close(); }
+  void close();
 
   CORBA::Boolean set_device_profile(const DeviceProfile& profile) override;
   CORBA::Boolean add_service_profile(const ServiceProfile& profile) override;
@@ -40,7 +45,7 @@ class Configuration_impl : public virtual POA_SDOPackage::Configuration, public 
   CORBA::Boolean activate_configuration_set(const char* id) override;
 
  private:
-  corba::Gate gate_;
+  const std::unique_ptr<corba::Gate> gate_;
   RTC::RTObject_impl& component_;
   RTC::ConfigAdmin& configuration_;
   RTC::SdoServiceAdmin& services_;

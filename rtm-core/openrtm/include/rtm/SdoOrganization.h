@@ -4,16 +4,16 @@
 
 #include <rtm/idl/SDOPackageSkel.h>
 
+#include <memory>
 #include <string>
 #include <vector>
-
-#include "base/guarded.h"
 
 namespace SDOPackage {
 
 class Organization_impl : public virtual POA_SDOPackage::Organization, public virtual PortableServer::RefCountServantBase {
  public:
   explicit Organization_impl(SDOSystemElement_ptr owner);
+  ~Organization_impl() override;
 
   char* get_organization_id() override;
   OrganizationProperty* get_organization_property() override;
@@ -41,7 +41,7 @@ class Organization_impl : public virtual POA_SDOPackage::Organization, public vi
   };
   // The ids of the members, asked of each with a time-out. Throws InvalidParameter for a nil or dead one.
   static std::vector<Member> ask(const SDOList& sdos);
-  std::vector<Member> members() const { return shared_.lock()->members; }
+  std::vector<Member> members() const;
   // The old ones.
   std::vector<Member> replaceMembers(std::vector<Member> members);
   void appendMembers(const std::vector<Member>& members);
@@ -49,14 +49,10 @@ class Organization_impl : public virtual POA_SDOPackage::Organization, public vi
   bool takeMember(const std::string& id, Member& member);
 
  private:
-  struct Data {
-    std::vector<Member> members{};
-    SDOSystemElement_var owner{};
-    OrganizationProperty property{};
-    DependencyType dependency = OWN;
-  };
+  struct Shared;
+
   const std::string id_;
-  base::Guarded<Data, base::Rank::component> shared_;
+  const std::unique_ptr<Shared> shared_;
 };
 
 }  // namespace SDOPackage

@@ -7,8 +7,8 @@
 //   RTC::Machine<Top> machine(component);  machine->open();
 #pragma once
 
-#include <rtm/ExtendedFsmServiceProvider.h>
 #include <rtm/RTObject.h>
+#include <rtm/idl/ExtendedFsmServiceStub.h>
 
 #include <deque>
 #include <exception>
@@ -22,6 +22,8 @@
 #include <vector>
 
 namespace RTC {
+
+class ExtendedFsmServiceProvider;
 
 namespace fsm {
 

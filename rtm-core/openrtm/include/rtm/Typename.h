@@ -1,15 +1,28 @@
 // The repository id of a data type or of an interface. Any thread.
 #pragma once
 
-#include "corba/type_ops.h"
+#include <type_traits>
+
+#include "rtm/DataType.h"
+
+namespace RTC {
+namespace detail {
+
+template <class T, class = void>
+struct IsInterface : std::false_type {};
+template <class T>
+struct IsInterface<T, std::void_t<decltype(T::_PD_repoId)>> : std::true_type {};
+
+}  // namespace detail
+}  // namespace RTC
 
 // "IDL:RTC/TimedLong:1.0", "IDL:OpenRTM/Logger:1.0".
 template <class DataType>
 const char* toTypename() {
-  if constexpr (requires { DataType::_PD_repoId; })
+  if constexpr (RTC::detail::IsInterface<DataType>::value)
     return DataType::_PD_repoId;
   else
-    return corba::type_ops<DataType>().type_id.c_str();
+    return RTC::detail::data_type<DataType>().id();
 }
 
 template <class DataType>

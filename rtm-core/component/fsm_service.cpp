@@ -1,4 +1,5 @@
-#include <rtm/ExtendedFsmServiceProvider.h>
+#include "component/fsm_service.h"
+
 #include <rtm/RTObject.h>
 
 namespace RTC {
