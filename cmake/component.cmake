@@ -11,7 +11,7 @@ function(rtmsim_component name)
   if(arg_IDL)
     rtmsim_idl(${name}_objects ${arg_IDL})
   endif()
-  if(TARGET rtmsim_settings)
+  if(TARGET rtmsim_settings)  # not in the projects of authors
     target_link_libraries(${name}_objects PRIVATE rtmsim_settings)
   endif()
 

@@ -83,26 +83,22 @@ set(package_share ${PROJECT_BINARY_DIR}/share)
 set(package_pages)
 get_property(package_component_programs GLOBAL PROPERTY RTMSIM_COMPONENT_PROGRAMS)
 foreach(program rtcd rtse sim-server simctl player-gateway follow ${package_component_programs})
-  if(TARGET ${program})
-    if(NOT program IN_LIST package_component_programs)
-      install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-    endif()
-    set(page ${package_share}/man/man1/${program}.1)
-    set(bash ${package_share}/bash-completion/completions/${program})
-    set(zsh ${package_share}/zsh/site-functions/_${program})
-    add_custom_command(OUTPUT ${page} ${bash} ${zsh}
-      COMMAND ${CMAKE_COMMAND} -E make_directory ${package_share}/man/man1 ${package_share}/bash-completion/completions ${package_share}/zsh/site-functions
-      COMMAND $<TARGET_FILE:${program}> --man > ${page}
-      COMMAND $<TARGET_FILE:${program}> --completion bash > ${bash}
-      COMMAND $<TARGET_FILE:${program}> --completion zsh > ${zsh}
-      DEPENDS ${program} VERBATIM)
-    list(APPEND package_pages ${page})
-    install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
-    install(FILES ${bash} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
-    install(FILES ${zsh} DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+  if(NOT program IN_LIST package_component_programs)
+    install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   endif()
+  set(page ${package_share}/man/man1/${program}.1)
+  set(bash ${package_share}/bash-completion/completions/${program})
+  set(zsh ${package_share}/zsh/site-functions/_${program})
+  add_custom_command(OUTPUT ${page} ${bash} ${zsh}
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${package_share}/man/man1 ${package_share}/bash-completion/completions ${package_share}/zsh/site-functions
+    COMMAND $<TARGET_FILE:${program}> --man > ${page}
+    COMMAND $<TARGET_FILE:${program}> --completion bash > ${bash}
+    COMMAND $<TARGET_FILE:${program}> --completion zsh > ${zsh}
+    DEPENDS ${program} VERBATIM)
+  list(APPEND package_pages ${page})
+  install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(FILES ${bash} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  install(FILES ${zsh} DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
 endforeach()
 add_custom_target(manuals ALL DEPENDS ${package_pages})
-if(EXISTS ${PROJECT_SOURCE_DIR}/worlds)
-  install(DIRECTORY worlds/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rtm-sim/worlds)
-endif()
+install(DIRECTORY worlds/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rtm-sim/worlds)
