@@ -1,6 +1,9 @@
 // Reads every `any` that the code generated from our IDL reads. omniORB trusts the lengths and depths that come with one (4.2.5): a length
 // near 2^32, a value type, or an any in an any in an any end the process that receives it. So what comes is checked while it is copied, and
 // only a copy that checks out is given to omniORB. The linker puts this in the place of CORBA::Any::operator<<= (see CMakeLists.txt).
+//
+// Refused (MARSHAL) are value types, unions, fixed-point numbers, types that hold themselves, and more than eight anys in each other. Anys
+// in interfaces of components' own are read by omniORB alone.
 #include <omniORB4/CORBA.h>
 #include <omniORB4/minorCode.h>
 

@@ -1,4 +1,6 @@
 // What becomes of a component when the process of a composite or a context that it takes part in has died: it gets its own life back.
+//
+// Within two seconds; the manager looks at that interval (leaveTheDead).
 #include <rtm/Manager.h>
 #include "component/component_impl.h"
 

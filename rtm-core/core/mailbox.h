@@ -1,5 +1,8 @@
 // What a port has received and not read yet: a ring for each connection, each with its own policies, read in order of arrival over all of
 // them. Any thread.
+//
+// What has come is read also after its connection has ended (of closed connections at most 64 samples), so that a tool may connect, put a
+// value and disconnect.
 #pragma once
 
 #include <condition_variable>

@@ -1,3 +1,8 @@
+// The manager as tools see it.
+//
+// A manager makes components itself; a master also shows those of its slaves and asks them for what it cannot make. It never starts a
+// process. Slaves in a circle, which would ask each other without end, are refused (add_slave_manager), as is what does not answer as a
+// manager. fork and restart answer RTC_OK and do nothing, as everywhere.
 #include "rtm/ManagerServant.h"
 
 #include <algorithm>

@@ -1,5 +1,11 @@
 // How two surfaces meet: friction, slip, bounce and softness of their contacts; and how many contacts are worth solving. Private to
 // physics/. Pure functions; any thread.
+//
+// Friction that is the same in all directions follows Coulomb: it acts against the sliding, whatever the direction, where ODE's own is a
+// square along the world's axes. Hard contacts give way by some 10 um under the model's weight, so that all wheels of a robot carry it;
+// without that the exact solver puts the load on any three points or two, and a robot on four wheels turns by fits and starts.
+// Wheels touch below their middle and grip with a friction of 2 at most, whatever the world says: with an edge on each side and the
+// friction of 1e5 that models have, the exact solver finds, rightly, that they cannot turn.
 #pragma once
 
 #include <ode/ode.h>

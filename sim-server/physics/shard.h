@@ -1,5 +1,8 @@
 // One ODE world with the models that live in it: finds their contacts and steps them. Private to physics/. Different shards may be
 // stepped by different threads at the same time; they share static shapes, which nobody changes meanwhile.
+//
+// Moving models are found near each other by boxes of their own instead of ODE's quad-tree space, and models that can meet share a shard.
+// When many moving bodies touch, a shard takes ODE's quick step for the step.
 #pragma once
 
 #include <deque>

@@ -1,4 +1,7 @@
 // Limbs that move: a mesh that hangs on a skeleton, and animations of the skeleton. Values; any thread.
+//
+// Bones of an actor are links of the scene after the actor's own, so that their poses come with every snapshot; vertices are bent once for
+// each context and picture.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -23,6 +23,8 @@
 //   server dies                        wait() says closed within a tenth of a second; join again when it is back
 //   joins while a tick runs            takes part from the next tick on; leaves: at once
 //   joins without end                  refused when all slots are taken, with a message
+//
+// Participants sleep on a few shared futex words told apart by bits, so that one system call wakes a whole phase.
 #pragma once
 
 #include <chrono>

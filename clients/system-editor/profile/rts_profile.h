@@ -1,5 +1,7 @@
 // A saved system: RTSProfile version 0.2, the format of RTSystemEditor and rtshell, as values; read and written as XML and YAML. Any
 // thread. Attributes that we do not use survive only where a field below holds them.
+//
+// The format has no place for states: each is kept as a property `state` of its execution context.
 #pragma once
 
 #include <string>

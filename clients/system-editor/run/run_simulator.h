@@ -1,4 +1,6 @@
 // The simulator of a run: a sim-server of its own under an id that no other has, told what to do through simctl. One thread at a time.
+//
+// Verdicts on poses and contacts are read from the file that sim-server --record writes, so the system editor needs no shared memory.
 #pragma once
 
 #include <chrono>
