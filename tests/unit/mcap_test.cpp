@@ -99,6 +99,27 @@ TEST_P(Recording, gives_back_what_was_written) {
   EXPECT_EQ(metadata->front().texts, (Texts{{"seed", "7"}}));
 }
 
+// Bit by bit, from the definition of CRC-32.
+std::uint32_t slow_crc(std::string_view octets) {
+  std::uint32_t crc = 0xffffffff;
+  for (const char c : octets) {
+    crc ^= static_cast<unsigned char>(c);
+    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ (crc & 1 ? 0xedb88320 : 0);
+  }
+  return ~crc;
+}
+
+TEST_P(Recording, the_end_of_the_data_has_the_crc_of_all_before_it) {
+  record(5, {.compression = GetParam(), .chunk_size = 64});
+  const std::string whole = octets();
+  std::size_t offset = 8;
+  std::uint64_t length = 0;
+  for (; whole[offset] != 15; offset += 9 + length) std::memcpy(&length, whole.data() + offset + 1, sizeof length);
+  std::uint32_t crc = 0;
+  std::memcpy(&crc, whole.data() + offset + 9, sizeof crc);
+  EXPECT_EQ(crc, slow_crc(std::string_view(whole).substr(0, offset)));
+}
+
 INSTANTIATE_TEST_SUITE_P(, Recording, testing::Values(Compression::none, Compression::lz4, Compression::zstd));
 
 class Single : public Recording {};

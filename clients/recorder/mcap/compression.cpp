@@ -129,6 +129,9 @@ base::Result<void> decompress(std::string_view name, std::string_view octets, st
   return base::Error{"has the compression " + base::in_quotes(name) + "; expected none, lz4 or zstd"};
 }
 
-std::uint32_t crc32(std::uint32_t before, std::string_view octets) { return libdeflate_crc32(before, octets.data(), octets.size()); }
+// libdeflate takes a null pointer for the wish to begin anew.
+std::uint32_t crc32(std::uint32_t before, std::string_view octets) {
+  return octets.empty() ? before : libdeflate_crc32(before, octets.data(), octets.size());
+}
 
 }  // namespace mcap

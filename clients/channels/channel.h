@@ -1,0 +1,44 @@
+// What a running system says, as named channels: a source opens a channel with its schema and puts samples into it, sinks take them.
+// Nothing here knows files or sockets. Values.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace channels {
+
+// Since time 0 of the simulation; without a simulator since 1970 (UTC).
+using Time = std::chrono::nanoseconds;
+
+struct Schema {
+  std::string name;      // "RTC::TimedLong", "sensor_msgs/msg/LaserScan"
+  std::string encoding;  // "omgidl", "ros2msg", "jsonschema"; empty: none
+  std::string text;      // complete: it needs no other
+  bool operator==(const Schema&) const = default;
+};
+
+struct Channel {
+  std::string topic;     // "/MyComponent0/out"
+  std::string encoding;  // of the samples: "cdr" (four octets say the byte order, then plain CDR), "json"
+  Schema schema;
+  std::map<std::string, std::string> metadata;
+};
+
+using ChannelId = std::uint16_t;
+
+struct Sample {
+  ChannelId channel = 0;
+  std::uint32_t sequence = 0;  // of the channel, from 0; a gap is what was dropped
+  Time log_time{0};            // when it was said, by the clock of the simulation
+  Time publish_time{0};        // the same by the wall clock
+  std::vector<char> octets;
+};
+
+// The four octets before the plain CDR of a sample.
+std::string_view cdr_head(bool is_little_endian);
+
+}  // namespace channels

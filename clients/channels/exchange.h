@@ -1,0 +1,64 @@
+// Where sources and sinks of channels meet. Each sink has a thread and a queue of its own, so that a slow one costs neither the sources nor
+// the other sinks anything beyond its queue.
+//
+// Any thread may put, open and attach. A sink is called on its thread alone: open() before the first sample of a channel, take() in the
+// order in which samples were put, rest() when there is nothing to take and at least once in rest_period. When a sink fails it is called
+// no more, and failure() says why. When a queue is full, put() waits up to `patience` of that sink; then the sample is dropped for it and
+// counted. With a patience of zero a source never waits.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "channel.h"
+
+namespace channels {
+
+inline constexpr std::chrono::milliseconds rest_period{500};
+
+class Sink {
+ public:
+  virtual ~Sink() = default;
+  virtual base::Result<void> open(ChannelId id, const Channel& channel) = 0;
+  virtual base::Result<void> take(const Sample& sample) = 0;
+  virtual base::Result<void> rest() { return {}; }
+};
+
+struct QueueOptions {
+  std::size_t most_octets = 64 << 20;
+  std::chrono::milliseconds patience{0};
+};
+
+class Exchange final {
+ public:
+  Exchange();
+  ~Exchange();  // gives every sink what waits for it, for at most five seconds
+  Exchange(const Exchange&) = delete;
+  Exchange& operator=(const Exchange&) = delete;
+
+  // A sink hears of all channels, also of those that were opened before it came.
+  void attach(std::shared_ptr<Sink> sink, const QueueOptions& options = {});
+  // At most 65535.
+  base::Result<ChannelId> open(Channel channel);
+  void put(ChannelId channel, Time log_time, std::span<const char> head, std::span<const char> octets = {});
+  // Gives the sinks what waits for them and lets them rest; false when they have not done so in time.
+  bool drain(std::chrono::milliseconds limit);
+
+  // By topic, of all sinks; nothing for topics without.
+  std::map<std::string, std::uint64_t> dropped() const;
+  // What the first sink that failed said.
+  std::optional<base::Error> failure() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace channels

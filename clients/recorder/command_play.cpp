@@ -1,0 +1,166 @@
+// play.
+#include <poll.h>
+
+#include <chrono>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "base/command_line.h"
+#include "base/text.h"
+#include "command.h"
+#include "mcap/mcap.h"
+#include "recorder_commands.h"
+#include "run/interrupt.h"
+#include "sample_text.h"
+#include "tap.h"
+
+namespace recorder {
+
+namespace {
+
+using editor::Editor;
+using WallClock = std::chrono::steady_clock;
+
+struct PlayOptions {
+  std::string file;
+  std::vector<std::string> links;  // "COMPONENT:PORT=INPORT"; none: the InPorts that the recorded connections had
+  double rate = 1;
+  bool loop = false;
+  double from_s = 0;
+  double to_s = 0;
+};
+
+// A channel of the recording, and the InPorts that get it.
+struct Route {
+  std::vector<std::unique_ptr<editor::Tap>> targets;
+  std::uint64_t sent = 0;
+};
+using Routes = std::map<std::uint16_t, Route>;
+
+std::optional<std::uint16_t> channel_of(const mcap::Reader& reader, const std::string& name) {
+  const std::string topic = name.starts_with("/") ? name : "/" + name.substr(0, name.find(':')) + "/" + name.substr(name.find(':') + 1);
+  for (const auto& [id, channel] : reader.channels()) {
+    if (channel.topic == topic) return id;
+  }
+  return std::nullopt;
+}
+
+base::Result<void> add_route(Editor& editor, const mcap::Reader& reader, const std::string& link, Routes& routes) {
+  const auto equals = link.find('=');
+  if (equals == std::string::npos) return base::Error{"link " + base::in_quotes(link) + ": expected COMPONENT:PORT=INPORT"};
+  const std::string source = link.substr(0, equals);
+  const auto channel = channel_of(reader, source);
+  if (!channel) {
+    std::vector<std::string> topics;
+    for (const auto& [id, one] : reader.channels()) topics.push_back(one.topic);
+    return base::Error{"recording: has no channel " + base::in_quotes(source) + "; channels: " + base::join(topics, ", ")};
+  }
+  const auto port = editor.port(link.substr(equals + 1));
+  if (!port) return port.error();
+  if (port->port.port_type() != "DataInPort") {
+    return base::Error{"port " + port->port.full_name + ": is a " + port->port.port_type() + ", play writes to InPorts"};
+  }
+  const mcap::Channel& recorded = reader.channels().at(*channel);
+  const auto type = recorded.metadata.find("data_type");
+  if (type != recorded.metadata.end() && type->second != port->port.data_type()) {
+    return base::Error{"port " + port->port.full_name + ": takes " + port->port.data_type() + ", " + recorded.topic + " was " +
+                       type->second};
+  }
+  auto tap = editor::Tap::connect(editor.orb(), port->port, {{"rtmsim.play.topic", recorded.topic}}, {});
+  if (!tap) return tap.error();
+  routes[*channel].targets.push_back(std::move(*tap));
+  return {};
+}
+
+// True when the time has come, false after an interrupt.
+bool wait_until(WallClock::time_point due) {
+  while (!editor::is_interrupted()) {
+    const auto left = due - WallClock::now();
+    if (left <= WallClock::duration::zero()) return true;
+    pollfd handle{editor::interrupt_handle(), POLLIN, 0};
+    const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(left).count();
+    const timespec limit{ns / 1'000'000'000, ns % 1'000'000'000};
+    (void)::ppoll(&handle, 1, &limit, nullptr);
+  }
+  return false;
+}
+
+// Plain CDR in the order that the connections of taps announce.
+std::optional<std::span<const unsigned char>> payload_of(const mcap::Message& message) {
+  if (message.data.size() < 4 || message.data[1] != 1) return std::nullopt;
+  return std::span(reinterpret_cast<const unsigned char*>(message.data.data()) + 4, message.data.size() - 4);
+}
+
+// False when it was interrupted, or failed.
+bool play_once(Editor& editor, mcap::Reader& reader, const PlayOptions& options, Routes& routes) {
+  mcap::Query query;
+  for (const auto& [channel, route] : routes) query.channels.push_back(channel);
+  query.from = mcap::Time(static_cast<std::uint64_t>(options.from_s * 1e9));
+  if (options.to_s > 0) query.to = mcap::Time(static_cast<std::uint64_t>(options.to_s * 1e9));
+  reader.seek(std::move(query));
+  const auto start = WallClock::now();
+  std::optional<mcap::Time> first;
+  for (;;) {
+    const auto message = reader.next();
+    if (!message) {
+      editor.fail(message.error());
+      continue;
+    }
+    if (!message->has_value()) return true;
+    if (!first) first = (*message)->log_time;
+    const std::chrono::duration<double> offset(static_cast<double>(((*message)->log_time - *first).count()) * 1e-9 / options.rate);
+    if (!wait_until(start + std::chrono::duration_cast<WallClock::duration>(offset))) return false;
+    const auto payload = payload_of(**message);
+    Route& route = routes.at((*message)->channel);
+    const std::string& topic = reader.channels().at((*message)->channel).topic;
+    if (!payload) {
+      editor.fail({"channel " + topic + ": its samples are not in little-endian CDR"});
+      return false;
+    }
+    for (const auto& target : route.targets) {
+      if (const auto sent = target->put(*payload); !sent) {
+        editor.fail({"channel " + topic + ": " + sent.error().message});
+        return false;
+      }
+      ++route.sent;
+    }
+  }
+}
+
+void play(Editor& editor, const PlayOptions& options) {
+  auto reader = mcap::Reader::open(options.file);
+  if (!reader) return editor.fail(reader.error());
+  if (reader->damage()) std::cerr << "rtse: " << *reader->damage() << '\n';
+  Routes routes;
+  for (const auto& link : options.links) {
+    if (const auto added = add_route(editor, *reader, link, routes); !added) return editor.fail(added.error());
+  }
+  editor::catch_interrupts();
+  const editor::CallLimit limited(editor.limit());
+  while (play_once(editor, *reader, options, routes) && options.loop) {
+  }
+  std::uint64_t sent = 0;
+  for (const auto& [channel, route] : routes) sent += route.sent;
+  if (editor.json())
+    editor.print(Json{{"sent", sent}});
+  else
+    std::cout << "sent " << sent << " samples\n";
+}
+
+}  // namespace
+
+void add_play(CLI::App& app, editor::Chosen& chosen) {
+  auto* command = app.add_subcommand("play", "Send a recording into InPorts of a running system, as fast as it was recorded");
+  auto options = std::make_shared<PlayOptions>();
+  command->add_option("FILE", options->file, "The recording")->required();
+  command->add_option("LINK", options->links, "What goes where: COMPONENT:PORT=INPORT, e.g. RTCLaser0:range=MyFilter0:in")->required();
+  command->add_option("-r,--rate", options->rate, "So many times as fast")->check(base::number_between(1e-3, 1e6))->capture_default_str();
+  command->add_flag("--loop", options->loop, "Start over at the end, until stopped");
+  command->add_option("--from", options->from_s, "From this time on [s]")->check(base::number_between(0.0, 1e10));
+  command->add_option("--to", options->to_s, "Up to this time [s]")->check(base::number_between(0.0, 1e10));
+  command->callback([&chosen, options] { chosen.work = [options](Editor& editor) { play(editor, *options); }; });
+}
+
+}  // namespace recorder

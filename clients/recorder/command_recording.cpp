@@ -1,0 +1,509 @@
+// recording info, ls, cat, export, compare, repair.
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+
+#include "base/command_line.h"
+#include "base/text.h"
+#include "command.h"
+#include "mcap/mcap.h"
+#include "output.h"
+#include "recorder_commands.h"
+#include "sample_text.h"
+
+namespace recorder {
+
+namespace {
+
+using editor::Editor;
+
+struct Selection {
+  std::string file;
+  std::vector<std::string> topics;  // patterns; none: all
+  double from_s = 0;
+  double to_s = 0;  // 0: the end
+  int count = 0;    // 0: all
+};
+
+mcap::Time to_time(double seconds) { return mcap::Time(static_cast<std::uint64_t>(std::llround(seconds * 1e9))); }
+
+base::Result<mcap::Query> query_of(const mcap::Reader& reader, const Selection& selection) {
+  mcap::Query query;
+  query.from = to_time(selection.from_s);
+  if (selection.to_s > 0) query.to = to_time(selection.to_s);
+  for (const std::string& pattern : selection.topics) {
+    const auto before = query.channels.size();
+    for (const auto& [id, channel] : reader.channels()) {
+      const bool fits = ::fnmatch(pattern.c_str(), channel.topic.c_str(), 0) == 0 ||
+                        channel.topic == "/" + pattern.substr(0, pattern.find(':')) + "/" + pattern.substr(pattern.find(':') + 1);
+      if (fits) query.channels.push_back(id);
+    }
+    if (query.channels.size() != before) continue;
+    std::vector<std::string> topics;
+    for (const auto& [id, channel] : reader.channels()) topics.push_back(channel.topic);
+    return base::Error{base::in_quotes(selection.file) + ": has no channel " + base::in_quotes(pattern) +
+                       "; channels: " + base::join(topics, ", ")};
+  }
+  return query;
+}
+
+std::optional<mcap::Reader> open(Editor& editor, const std::string& file) {
+  auto reader = mcap::Reader::open(file);
+  if (!reader) {
+    editor.fail(reader.error());
+    return std::nullopt;
+  }
+  if (reader->damage()) std::cerr << "rtse: " << *reader->damage() << '\n';
+  return std::move(*reader);
+}
+
+// Calls `take` with each message of the selection until it says false; broken chunks are told and passed over.
+void for_each(Editor& editor, mcap::Reader& reader, const Selection& selection, const std::function<bool(const mcap::Message&)>& take) {
+  auto query = query_of(reader, selection);
+  if (!query) return editor.fail(query.error());
+  reader.seek(std::move(*query));
+  for (int n = 0; selection.count <= 0 || n < selection.count;) {
+    const auto message = reader.next();
+    if (!message) {
+      editor.fail(message.error());
+      continue;
+    }
+    if (!message->has_value() || editor::output_is_closed()) return;
+    if (!take(**message)) return;
+    ++n;
+  }
+}
+
+// ---- info, ls ----
+
+// What a channel has, and its longest silence.
+struct ChannelFacts {
+  std::uint64_t samples = 0;
+  std::uint64_t octets = 0;
+  std::uint64_t missing = 0;  // by their numbers
+  mcap::Time first{0};
+  mcap::Time last{0};
+  mcap::Time longest_gap{0};
+  mcap::Time longest_gap_at{0};
+  std::uint32_t next_sequence = 0;
+};
+
+void take_in(ChannelFacts& facts, const mcap::Message& message) {
+  if (facts.samples == 0) {
+    facts.first = message.log_time;
+  } else {
+    const mcap::Time gap = message.log_time - facts.last;
+    if (gap > facts.longest_gap) {
+      facts.longest_gap = gap;
+      facts.longest_gap_at = facts.last;
+    }
+    if (message.sequence > facts.next_sequence) facts.missing += message.sequence - facts.next_sequence;
+  }
+  facts.next_sequence = message.sequence + 1;
+  facts.last = message.log_time;
+  facts.octets += message.data.size();
+  ++facts.samples;
+}
+
+double seconds(mcap::Time time) { return static_cast<double>(time.count()) * 1e-9; }
+
+double rate_of(const ChannelFacts& facts) {
+  const double duration = seconds(facts.last - facts.first);
+  return duration > 0 ? static_cast<double>(facts.samples - 1) / duration : 0;
+}
+
+std::map<std::uint16_t, ChannelFacts> facts_of(Editor& editor, mcap::Reader& reader, const std::string& file) {
+  std::map<std::uint16_t, ChannelFacts> facts;
+  for (const auto& [id, channel] : reader.channels()) facts[id];
+  for_each(editor, reader, {.file = file, .topics = {}}, [&](const mcap::Message& message) {
+    take_in(facts[message.channel], message);
+    return true;
+  });
+  return facts;
+}
+
+Json channel_json(const mcap::Reader& reader, const mcap::Channel& channel, const ChannelFacts& facts) {
+  const auto schema = reader.schemas().find(channel.schema);
+  return {{"topic", channel.topic},
+          {"type", schema == reader.schemas().end() ? "" : schema->second.name},
+          {"encoding", channel.encoding},
+          {"samples", facts.samples},
+          {"octets", facts.octets},
+          {"rate", rate_of(facts)},
+          {"first", seconds(facts.first)},
+          {"last", seconds(facts.last)},
+          {"missing", facts.missing},
+          {"longest_gap", seconds(facts.longest_gap)},
+          {"longest_gap_at", seconds(facts.longest_gap_at)}};
+}
+
+void print_channel(const Json& channel) {
+  char line[512];
+  std::snprintf(line, sizeof line, "%-40s %-28s %8llu samples  %8.2f Hz  %10llu octets", channel["topic"].get<std::string>().c_str(),
+                channel["type"].get<std::string>().c_str(), channel["samples"].get<unsigned long long>(), channel["rate"].get<double>(),
+                channel["octets"].get<unsigned long long>());
+  std::cout << line;
+  if (channel["missing"] != 0) std::cout << "  " << channel["missing"] << " missing";
+  std::cout << '\n';
+}
+
+void list(Editor& editor, const std::string& file, bool with_run) {
+  auto reader = open(editor, file);
+  if (!reader) return;
+  const auto facts = facts_of(editor, *reader, file);
+  Json all = {{"file", file},
+              {"library", reader->library()},
+              {"samples", reader->statistics().messages},
+              {"first", seconds(reader->statistics().first)},
+              {"last", seconds(reader->statistics().last)}};
+  all["run"] = Json::object();
+  if (const auto metadata = reader->metadata()) {
+    for (const auto& one : *metadata) {
+      if (one.name != "run") continue;
+      for (const auto& [key, value] : one.texts) all["run"][key] = value;
+    }
+  } else {
+    editor.fail(metadata.error());
+  }
+  all["attachments"] = Json::array();
+  for (const auto& one : reader->attachments()) all["attachments"].push_back({{"name", one.name}, {"octets", one.size}});
+  all["channels"] = Json::array();
+  for (const auto& [id, channel] : reader->channels()) {
+    const auto found = facts.find(id);
+    all["channels"].push_back(channel_json(*reader, channel, found == facts.end() ? ChannelFacts{} : found->second));
+  }
+  if (editor.json()) return editor.print(with_run ? all : all["channels"]);
+  if (with_run) {
+    std::cout << "file        " << file << "\nwritten by  " << reader->library() << "\ntime        "
+              << seconds_text(reader->statistics().first) << " to " << seconds_text(reader->statistics().last) << " s\nsamples     "
+              << reader->statistics().messages << '\n';
+    for (const auto& [key, value] : all["run"].items()) std::cout << "run         " << key << " = " << value.get<std::string>() << '\n';
+    for (const auto& one : all["attachments"])
+      std::cout << "attachment  " << one["name"].get<std::string>() << ", " << one["octets"] << " octets\n";
+  }
+  for (const auto& channel : all["channels"]) {
+    if (with_run) std::cout << "channel     ";
+    print_channel(channel);
+    if (with_run && channel["longest_gap"] > 0) {
+      std::cout << "              longest gap " << base::format_number(channel["longest_gap"]) << " s at "
+                << base::format_number(channel["longest_gap_at"]) << " s\n";
+    }
+  }
+}
+
+// ---- cat, export ----
+
+void cat(Editor& editor, const Selection& selection) {
+  auto reader = open(editor, selection.file);
+  if (!reader) return;
+  std::set<std::uint16_t> unreadable;  // told once
+  for_each(editor, *reader, selection, [&](const mcap::Message& message) {
+    const auto value = value_of(*reader, message);
+    if (!value) {
+      if (unreadable.insert(message.channel).second) editor.fail(value.error());
+      return true;
+    }
+    const std::string& topic = reader->channels().at(message.channel).topic;
+    std::cout << Json{{"time", seconds(message.log_time)}, {"topic", topic}, {"sequence", message.sequence}, {"value", *value}}.dump()
+              << '\n';
+    return true;
+  });
+}
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + '"';
+}
+
+struct ExportOptions {
+  Selection selection;
+  std::string folder;
+};
+
+std::string file_name_of(const std::string& topic) {
+  std::string name = topic.substr(topic.starts_with("/") ? 1 : 0);
+  for (char& c : name) {
+    if (c == '/' || c == '\0') c = '.';
+  }
+  return name.empty() || name.starts_with(".") ? "_" + name : name;
+}
+
+// A table: time and the members of the first sample are its columns.
+class Table {
+ public:
+  Table(const std::filesystem::path& file, const Json& first) : file_(file), out_(file) {
+    out_ << "time";
+    for (const auto& [name, value] : members_of(first)) {
+      columns_.push_back(name);
+      out_ << ',' << quoted(name);
+    }
+    out_ << '\n';
+  }
+  void add(mcap::Time time, const Json& value) {
+    std::map<std::string, Json> members;
+    for (auto& [name, member] : members_of(value)) members[name] = std::move(member);
+    out_ << seconds_text(time);
+    for (const std::string& column : columns_) {
+      const auto member = members.find(column);
+      out_ << ',';
+      if (member != members.end()) out_ << (member->second.is_string() ? quoted(member->second.get<std::string>()) : member->second.dump());
+    }
+    out_ << '\n';
+  }
+  base::Result<void> close() {
+    out_.close();
+    if (out_.fail()) return base::Error{base::in_quotes(file_.string()) + ": cannot be written"};
+    return {};
+  }
+
+ private:
+  std::filesystem::path file_;
+  std::ofstream out_;
+  std::vector<std::string> columns_;
+};
+
+void export_tables(Editor& editor, const ExportOptions& options) {
+  auto reader = open(editor, options.selection.file);
+  if (!reader) return;
+  std::error_code error;
+  std::filesystem::create_directories(options.folder, error);
+  if (error) return editor.fail({base::in_quotes(options.folder) + ": cannot be made: " + error.message()});
+  std::map<std::uint16_t, std::unique_ptr<Table>> tables;
+  std::set<std::uint16_t> unreadable;
+  for_each(editor, *reader, options.selection, [&](const mcap::Message& message) {
+    const auto value = value_of(*reader, message);
+    if (!value) {
+      if (unreadable.insert(message.channel).second) editor.fail(value.error());
+      return true;
+    }
+    auto& table = tables[message.channel];
+    const std::string& topic = reader->channels().at(message.channel).topic;
+    if (!table) table = std::make_unique<Table>(std::filesystem::path(options.folder) / (file_name_of(topic) + ".csv"), *value);
+    table->add(message.log_time, *value);
+    return true;
+  });
+  for (auto& [id, table] : tables) {
+    if (const auto done = table->close(); !done) return editor.fail(done.error());
+  }
+  if (!editor.json()) std::cout << tables.size() << " tables in " << options.folder << '\n';
+}
+
+// ---- compare ----
+
+struct CompareOptions {
+  std::string first, second;
+  std::vector<std::string> topics;
+  std::vector<std::string> ignored;  // members
+};
+
+// The messages of one recording, channel by channel of its topic.
+class Side {
+ public:
+  Side(mcap::Reader reader, const Selection& selection) : reader_(std::move(reader)), selection_(selection) {}
+  base::Result<void> begin() {
+    auto query = query_of(reader_, selection_);
+    if (!query) return query.error();
+    reader_.seek(std::move(*query));
+    return {};
+  }
+  base::Result<std::optional<mcap::Message>> next() { return reader_.next(); }
+  const mcap::Reader& reader() const { return reader_; }
+  const std::string& topic(const mcap::Message& message) const { return reader_.channels().at(message.channel).topic; }
+
+ private:
+  mcap::Reader reader_;
+  Selection selection_;
+};
+
+struct Entry {
+  mcap::Time time{0};
+  std::string topic;
+  std::string octets;
+};
+
+// All messages of one moment, in the order of topics: within a moment the order of arrival says nothing.
+class Moments {
+ public:
+  explicit Moments(Side& side) : side_(side) {}
+  base::Result<std::vector<Entry>> next() {
+    std::vector<Entry> moment;
+    if (ahead_) moment.push_back(std::move(*std::exchange(ahead_, std::nullopt)));
+    for (;;) {
+      const auto message = side_.next();
+      if (!message) return message.error();
+      if (!message->has_value()) break;
+      Entry entry{(*message)->log_time, side_.topic(**message), std::string((*message)->data)};
+      if (!moment.empty() && entry.time != moment.front().time) {
+        ahead_ = std::move(entry);
+        break;
+      }
+      moment.push_back(std::move(entry));
+    }
+    std::stable_sort(moment.begin(), moment.end(), [](const Entry& a, const Entry& b) { return a.topic < b.topic; });
+    return moment;
+  }
+
+ private:
+  Side& side_;
+  std::optional<Entry> ahead_;
+};
+
+base::Result<Json> value_of(const Side& side, const Entry& entry) {
+  for (const auto& [id, channel] : side.reader().channels()) {
+    if (channel.topic == entry.topic) return recorder::value_of(side.reader(), {id, 0, entry.time, entry.time, entry.octets});
+  }
+  return base::Error{"channel " + entry.topic + " is not there"};
+}
+
+bool is_ignored(const CompareOptions& options, const std::string& member) {
+  return std::any_of(options.ignored.begin(), options.ignored.end(), [&](const std::string& one) {
+    return member == one || (member.starts_with(one) && (member[one.size()] == '.' || member[one.size()] == '['));
+  });
+}
+
+// The first member that differs, as "data.vx: 0.5 and 0.4"; nothing when none counts.
+std::optional<std::string> difference(const CompareOptions& options, const Json& first, const Json& second) {
+  const auto a = members_of(first);
+  const auto b = members_of(second);
+  for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
+    if (i >= a.size() || i >= b.size() || a[i].first != b[i].first) {
+      const std::string& member = i < a.size() ? a[i].first : b[i].first;
+      return member + ": is there in one of them only";
+    }
+    if (is_ignored(options, a[i].first) || a[i].second == b[i].second) continue;
+    if (a[i].second.dump() == b[i].second.dump()) continue;  // not a number in both
+    return a[i].first + ": " + a[i].second.dump() + " and " + b[i].second.dump();
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> difference(const CompareOptions& options, const Side& first, const Side& second, const Entry& a,
+                                      const Entry& b) {
+  if (a.octets == b.octets) return std::nullopt;
+  const auto left = value_of(first, a);
+  const auto right = value_of(second, b);
+  if (left && right) return difference(options, *left, *right);
+  return "octets differ";
+}
+
+void compare(Editor& editor, const CompareOptions& options) {
+  std::vector<std::unique_ptr<Side>> sides;
+  for (const std::string& file : {options.first, options.second}) {
+    auto reader = open(editor, file);
+    if (!reader) return;
+    sides.push_back(std::make_unique<Side>(std::move(*reader), Selection{.file = file, .topics = options.topics}));
+    if (const auto begun = sides.back()->begin(); !begun) return editor.fail(begun.error());
+  }
+  Moments first(*sides[0]);
+  Moments second(*sides[1]);
+  std::uint64_t samples = 0;
+  const auto differ = [&](mcap::Time time, const std::string& what) {
+    const std::string place = "time " + seconds_text(time) + " s: " + what;
+    if (editor.json())
+      editor.print(Json{{"equal", false}, {"time", seconds(time)}, {"difference", what}});
+    else
+      std::cout << "first difference at " << place << '\n';
+    editor.set_failed();
+  };
+  for (;;) {
+    const auto a = first.next();
+    const auto b = second.next();
+    if (!a) return editor.fail(a.error());
+    if (!b) return editor.fail(b.error());
+    if (a->empty() && b->empty()) break;
+    for (std::size_t i = 0; i < std::max(a->size(), b->size()); ++i) {
+      const bool in_first =
+          i < a->size() && (i >= b->size() || std::pair((*a)[i].time, (*a)[i].topic) <= std::pair((*b)[i].time, (*b)[i].topic));
+      const bool in_second =
+          i < b->size() && (i >= a->size() || std::pair((*b)[i].time, (*b)[i].topic) <= std::pair((*a)[i].time, (*a)[i].topic));
+      if (!in_first || !in_second) {
+        const Entry& entry = in_first ? (*a)[i] : (*b)[i];
+        return differ(entry.time, entry.topic + " has a sample in " + (in_first ? options.first : options.second) + " only");
+      }
+      ++samples;
+      if (const auto what = difference(options, *sides[0], *sides[1], (*a)[i], (*b)[i]))
+        return differ((*a)[i].time, (*a)[i].topic + " " + *what);
+    }
+  }
+  if (editor.json())
+    editor.print(Json{{"equal", true}, {"samples", samples}});
+  else
+    std::cout << "equal: " << samples << " samples\n";
+}
+
+// ---- repair ----
+
+void repair(Editor& editor, const std::string& file, const std::string& output) {
+  const auto done = mcap::repair(file, output.empty() ? file : output);
+  if (!done) return editor.fail(done.error());
+  if (editor.json())
+    return editor.print(Json{{"samples", done->messages}, {"octets_lost", done->octets_lost}, {"damage", done->damage.value_or("")}});
+  std::cout << done->messages << " samples kept, " << done->octets_lost << " octets lost\n";
+  if (done->damage) std::cout << *done->damage << '\n';
+}
+
+void add_selection(CLI::App& command, Selection& selection) {
+  command.add_option("FILE", selection.file, "The recording")->required();
+  command.add_option("CHANNEL", selection.topics, "Topics or COMPONENT:PORT, patterns too; default: all");
+  command.add_option("--from", selection.from_s, "From this time on [s]")->check(base::number_between(0.0, 1e10));
+  command.add_option("--to", selection.to_s, "Up to this time [s]")->check(base::number_between(0.0, 1e10));
+}
+
+}  // namespace
+
+void add_recording(CLI::App& app, editor::Chosen& chosen) {
+  auto* recording = app.add_subcommand("recording", "Look into recordings");
+  recording->require_subcommand(1);
+  const auto choose = [&chosen](CLI::App* command, std::function<void(Editor&)> work) {
+    command->callback([&chosen, work = std::move(work)] {
+      chosen.needs_orb = false;
+      chosen.work = work;
+    });
+  };
+  for (const bool with_run : {true, false}) {
+    auto* command = with_run ? recording->add_subcommand("info", "What a recording is of: time, run, attachments, channels, gaps")
+                             : recording->add_subcommand("ls", "Its channels, a line each");
+    auto file = std::make_shared<std::string>();
+    command->add_option("FILE", *file, "The recording")->required();
+    choose(command, [file, with_run](Editor& editor) { list(editor, *file, with_run); });
+  }
+  auto* cat_command = recording->add_subcommand("cat", "Print samples as JSON, a line each");
+  auto selection = std::make_shared<Selection>();
+  add_selection(*cat_command, *selection);
+  cat_command->add_option("-n,--count", selection->count, "End after so many samples")->check(base::number_between(0, 1e9));
+  choose(cat_command, [selection](Editor& editor) { cat(editor, *selection); });
+
+  auto* export_command = recording->add_subcommand("export", "Write a CSV table for each channel");
+  auto exported = std::make_shared<ExportOptions>();
+  add_selection(*export_command, exported->selection);
+  export_command->add_option("-o,--output", exported->folder, "The folder for the tables")->required();
+  choose(export_command, [exported](Editor& editor) { export_tables(editor, *exported); });
+
+  auto* compare_command = recording->add_subcommand("compare", "Name the first difference of two recordings");
+  auto compared = std::make_shared<CompareOptions>();
+  compare_command->add_option("A", compared->first, "A recording")->required();
+  compare_command->add_option("B", compared->second, "Another one")->required();
+  compare_command->add_option("--channel", compared->topics, "Only these topics or COMPONENT:PORT, patterns too");
+  compare_command->add_option("--ignore", compared->ignored, "Members that do not count, e.g. tm");
+  choose(compare_command, [compared](Editor& editor) { compare(editor, *compared); });
+
+  auto* repair_command = recording->add_subcommand("repair", "Give a file that was cut off its summary again");
+  auto file = std::make_shared<std::string>();
+  auto output = std::make_shared<std::string>();
+  repair_command->add_option("FILE", *file, "The recording")->required();
+  repair_command->add_option("-o,--output", *output, "Write to this file instead");
+  choose(repair_command, [file, output](Editor& editor) { repair(editor, *file, *output); });
+}
+
+}  // namespace recorder

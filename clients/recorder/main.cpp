@@ -1,0 +1,7 @@
+// rtse-recorder: the verbs of rtse that are about recordings. rtse becomes this program when it meets one of them.
+#include "program.h"
+#include "recorder_commands.h"
+
+int main(int argc, char** argv) {
+  return editor::run_program({recorder::add_record, recorder::add_play, recorder::add_recording}, argc, argv);
+}

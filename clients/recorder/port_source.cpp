@@ -1,0 +1,50 @@
+#include "port_source.h"
+
+#include <utility>
+
+#include "idl_text.h"
+#include "value_codec.h"
+
+namespace recorder {
+
+channels::Channel channel_of(const editor::ComponentView& component, const editor::PortView& port) {
+  channels::Channel channel;
+  channel.topic = "/" + component.instance + "/" + port.name;
+  channel.encoding = "cdr";
+  const std::string type = port.data_type();
+  channel.schema.name = channels::scoped_name(type);
+  // Types that we do not know are kept as octets, under their names.
+  if (const auto code = editor::type_code_of(type); !CORBA::is_nil(code)) {
+    channel.schema.encoding = "omgidl";
+    channel.schema.text = channels::idl_text(code);
+  }
+  channel.metadata = {{"component", component.instance},
+                      {"component_type", component.type},
+                      {"port", port.name},
+                      {"port_type", port.port_type()},
+                      {"data_type", type}};
+  for (std::size_t i = 0; i < port.connectors.size(); ++i) {
+    const auto& connector = port.connectors[i];
+    const std::string prefix = "connector" + std::to_string(i) + ".";
+    channel.metadata[prefix + "id"] = connector.id;
+    channel.metadata[prefix + "name"] = connector.name;
+    for (const auto& [key, value] : connector.properties) {
+      if (!key.ends_with("_ior") && !key.ends_with("_ref")) channel.metadata[prefix + key] = value;
+    }
+  }
+  return channel;
+}
+
+base::Result<void> PortSource::add(const editor::ComponentView& component, const editor::PortView& port) {
+  const auto id = exchange_.open(channel_of(component, port));
+  if (!id) return id.error();
+  auto tap = editor::Tap::connect(orb_, port, {}, [this, channel = *id](std::span<const unsigned char> payload, bool is_little_endian) {
+    exchange_.put(channel, clock_.now(), channels::cdr_head(is_little_endian),
+                  {reinterpret_cast<const char*>(payload.data()), payload.size()});
+  });
+  if (!tap) return tap.error();
+  taps_.push_back(std::move(*tap));
+  return {};
+}
+
+}  // namespace recorder

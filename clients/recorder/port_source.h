@@ -1,0 +1,35 @@
+// OutPorts of a running system as channels: a tap on each puts what it sends into the exchange. Construct, use and destroy on one thread;
+// samples come on the ORB's threads.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "base/clock.h"
+#include "base/result.h"
+#include "component_view.h"
+#include "exchange.h"
+#include "tap.h"
+
+namespace recorder {
+
+// The channel of a port: topic "/COMPONENT/PORT", the exact octets of the wire behind the four that say their order.
+channels::Channel channel_of(const editor::ComponentView& component, const editor::PortView& port);
+
+class PortSource final {
+ public:
+  // The exchange and the clock must live longer.
+  PortSource(CORBA::ORB_ptr orb, channels::Exchange& exchange, const base::Clock& clock)
+      : orb_(CORBA::ORB::_duplicate(orb)), exchange_(exchange), clock_(clock) {}
+
+  base::Result<void> add(const editor::ComponentView& component, const editor::PortView& port);
+  std::size_t size() const { return taps_.size(); }
+
+ private:
+  CORBA::ORB_var orb_;
+  channels::Exchange& exchange_;
+  const base::Clock& clock_;
+  std::vector<std::unique_ptr<editor::Tap>> taps_;
+};
+
+}  // namespace recorder

@@ -1,0 +1,73 @@
+#include "sample_text.h"
+
+#include <cstdio>
+
+#include "base/text.h"
+#include "value_codec.h"
+
+namespace recorder {
+
+namespace {
+
+// "RTC::TimedLong" -> "IDL:RTC/TimedLong:1.0".
+std::string repository_id(const std::string& scoped) {
+  std::string id = "IDL:";
+  for (std::size_t i = 0; i < scoped.size(); ++i) {
+    if (scoped.compare(i, 2, "::") == 0) {
+      id += '/';
+      ++i;
+    } else {
+      id += scoped[i];
+    }
+  }
+  return id + ":1.0";
+}
+
+void collect(const Json& value, const std::string& place, std::vector<std::pair<std::string, Json>>& members) {
+  if (value.is_object()) {
+    for (const auto& [key, member] : value.items()) collect(member, place.empty() ? key : place + "." + key, members);
+  } else if (value.is_array()) {
+    for (std::size_t i = 0; i < value.size(); ++i) collect(value[i], place + "[" + std::to_string(i) + "]", members);
+  } else {
+    members.emplace_back(place, value);
+  }
+}
+
+}  // namespace
+
+base::Result<Json> value_of(const mcap::Reader& reader, const mcap::Message& message) {
+  const mcap::Channel& channel = reader.channels().at(message.channel);
+  const auto wrong = [&](const std::string& what) { return base::Error{"channel " + base::in_quotes(channel.topic) + ": " + what}; };
+  if (channel.encoding == "json") {
+    Json value = Json::parse(message.data, nullptr, false);
+    if (value.is_discarded()) return wrong("a sample is no JSON");
+    return value;
+  }
+  const auto schema = reader.schemas().find(channel.schema);
+  const std::string name = schema == reader.schemas().end() ? "" : schema->second.name;
+  if (channel.encoding != "cdr" || schema == reader.schemas().end() || schema->second.encoding != "omgidl") {
+    return wrong("samples of encoding " + base::in_quotes(channel.encoding) + " and schema " + base::in_quotes(name) + " cannot be shown");
+  }
+  const auto type = editor::type_code_of(repository_id(name));
+  if (CORBA::is_nil(type)) return wrong("the data type " + base::in_quotes(name) + " is not known");
+  if (message.data.size() < 4) return wrong("a sample has no octets that say their order");
+  const auto* octets = reinterpret_cast<const unsigned char*>(message.data.data());
+  auto value = editor::decode(type, {octets + 4, message.data.size() - 4}, octets[1] == 1);
+  if (!value) return wrong(value.error().message);
+  return std::move(*value);
+}
+
+std::vector<std::pair<std::string, Json>> members_of(const Json& value) {
+  std::vector<std::pair<std::string, Json>> members;
+  collect(value, "", members);
+  return members;
+}
+
+std::string seconds_text(mcap::Time time) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%llu.%09llu", static_cast<unsigned long long>(time.count() / 1'000'000'000),
+                static_cast<unsigned long long>(time.count() % 1'000'000'000));
+  return text;
+}
+
+}  // namespace recorder

@@ -1,0 +1,67 @@
+#include "program.h"
+
+#include <iostream>
+#include <memory>
+
+#include "base/command_line.h"
+#include "command.h"
+#include "names_offered.h"
+#include "orb.h"
+#include "output.h"
+
+namespace editor {
+
+namespace {
+
+struct Settings {
+  std::string server = default_server();
+  bool json = false;
+  double limit_s = 1;
+};
+
+// CLI11 takes a word in brackets apart at its commas; with a blank before it stays one value, which JSON does not mind.
+std::vector<std::string> words_of(int argc, char** argv) {
+  std::vector<std::string> words(argv, argv + argc);
+  for (auto& word : words) {
+    if (word.starts_with('[') && word.ends_with(']')) word.insert(0, " ");
+  }
+  return words;
+}
+
+}  // namespace
+
+int run_program(const std::vector<AddCommand>& commands, int argc, char** argv) {
+  CLI::App app{
+      "rtse: list, wire, configure, start and save systems of RT components\n"
+      "Paths: /HOST[:PORT]/CONTEXT.KIND/NAME.rtc:PORT, relative to $RTCSH_CWD, or any tail that names one thing (NAME:PORT)."};
+  base::add_standard_options(app, "rtse", RTMSIM_VERSION);
+  app.require_subcommand(1);
+  app.fallthrough();
+  Settings settings;
+  app.add_option("--ns", settings.server, "Name server HOST[:PORT]; default: the first of $RTCTREE_NAMESERVERS, else localhost:2809");
+  app.add_flag("--json", settings.json, "Print JSON");
+  app.add_option("--call-timeout", settings.limit_s, "Seconds that one call to another process may take")
+      ->check(base::number_between(0.01, 600.0))
+      ->capture_default_str();
+  Chosen chosen;
+  for (const AddCommand add : commands) add(app, chosen);
+  const auto words = words_of(argc, argv);
+  std::vector<const char*> arguments;
+  for (const auto& word : words) arguments.push_back(word.c_str());
+  if (const auto end = base::parse_command_line(app, "rtse", argc, arguments.data(), names_offered)) return *end;
+  try {
+    const auto orb = chosen.needs_orb ? std::make_unique<Orb>() : nullptr;
+    Editor editor(orb ? orb->get() : CORBA::ORB::_nil(), settings.server, settings.json,
+                  std::chrono::milliseconds(static_cast<int>(settings.limit_s * 1000)));
+    chosen.work(editor);
+    if (!flush_output()) editor.fail({"standard output: cannot be written"});
+    return editor.failed() ? 1 : 0;
+  } catch (const CORBA::Exception& e) {
+    std::cerr << "rtse: " << describe(e) << '\n';
+  } catch (const std::exception& e) {
+    std::cerr << "rtse: " << e.what() << '\n';
+  }
+  return 1;
+}
+
+}  // namespace editor

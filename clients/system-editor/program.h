@@ -1,0 +1,20 @@
+// The frame of rtse, and of the programs beside it that carry some of its verbs: options that all commands share, the ORB, errors, the exit
+// code. Called once, from main.
+#pragma once
+
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace editor {
+
+struct Chosen;
+
+using AddCommand = void (*)(CLI::App& app, Chosen& chosen);
+
+// The exit code: 0 done, 1 failed, 2 wrong command line.
+int run_program(const std::vector<AddCommand>& commands, int argc, char** argv);
+
+}  // namespace editor

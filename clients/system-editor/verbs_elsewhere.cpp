@@ -1,0 +1,71 @@
+#include "verbs_elsewhere.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "command.h"
+
+namespace editor {
+
+namespace {
+
+struct Verb {
+  std::string_view name;
+  std::string_view program;
+  std::string_view description;
+};
+
+constexpr std::array verbs = {
+    Verb{"record", "rtse-recorder", "Record what ports send into an MCAP file"},
+    Verb{"play", "rtse-recorder", "Send a recording into the ports of a running system"},
+    Verb{"recording", "rtse-recorder", "Look into recordings: info, ls, cat, export, compare, repair"},
+};
+
+constexpr std::array<std::string_view, 2> options_with_value = {"--ns", "--call-timeout"};
+
+// The verb that stands where a command is expected; with --complete only when the cursor is behind it.
+const Verb* verb_of(int argc, char** argv) {
+  const bool completes = argc > 1 && std::string_view(argv[1]) == "--complete";
+  for (int i = completes ? 2 : 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (std::find(options_with_value.begin(), options_with_value.end(), word) != options_with_value.end()) {
+      ++i;
+      continue;
+    }
+    if (word.starts_with("-")) continue;
+    if (completes && i + 1 == argc) return nullptr;
+    const auto verb = std::find_if(verbs.begin(), verbs.end(), [&](const Verb& one) { return one.name == word; });
+    return verb == verbs.end() ? nullptr : &*verb;
+  }
+  return nullptr;
+}
+
+std::string path_of(const Verb& verb) {
+  std::error_code error;
+  return (std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / verb.program).string();
+}
+
+}  // namespace
+
+void become_program_of_verb(int argc, char** argv) {
+  if (const Verb* verb = verb_of(argc, argv)) ::execv(path_of(*verb).c_str(), argv);
+}
+
+void add_verbs_elsewhere(CLI::App& app, Chosen& chosen) {
+  for (const Verb& verb : verbs) {
+    auto* command = app.add_subcommand(std::string(verb.name), std::string(verb.description));
+    command->prefix_command();
+    command->callback([&chosen, &verb] {
+      chosen.needs_orb = false;
+      chosen.work = [&verb](Editor& editor) { editor.fail({"program " + path_of(verb) + ": cannot be started; expected it beside rtse"}); };
+    });
+  }
+}
+
+}  // namespace editor
