@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/shared-memory.md: the tables come from sim-server/shm/rtmsim_layout.h, offsets and sizes from the C compiler.
+"""Writes docs/shared-memory.md: the tables come from sim-server/shm/rtmsim_layout.h and iface_types.h, offsets and sizes from the compiler.
     docs/make_shared_memory.py            writes the page
     docs/make_shared_memory.py --check    exit code 1 when the page is not what it would write"""
 import pathlib
@@ -28,17 +28,49 @@ for match in re.finditer(r"((?:/\*(?:(?!\*/).)*\*/\n)?)typedef struct \{\n(.*?)\
             fields.append((kind, one[0], one[1], clean(comment or "")))
     structs.append((name, clean(re.sub(r"^/\*|\*/\s*$", "", intro.strip()).strip()) if intro.strip() else "", fields))
 
+def printed_by(compiler, suffix, program):
+    with tempfile.TemporaryDirectory() as folder:
+        source = pathlib.Path(folder) / ("program" + suffix)
+        source.write_text(program)
+        subprocess.run([*compiler, "-o", folder + "/program", str(source)], check=True)
+        return subprocess.run([folder + "/program"], check=True, capture_output=True, text=True).stdout.splitlines()
+
+
 program = '#include <stddef.h>\n#include <stdio.h>\n#include "%s"\nint main(void) {\n' % header
 for name, _, fields in structs:
     program += f'  printf("{name} %zu\\n", sizeof({name}));\n'
     for kind, field, _, _ in fields:
         program += f'  printf("{name}.{field} %zu %zu\\n", offsetof({name}, {field}), sizeof((({name}*)0)->{field}));\n'
 program += "  return 0;\n}\n"
-with tempfile.TemporaryDirectory() as folder:
-    source = pathlib.Path(folder) / "layout.c"
-    source.write_text(program)
-    subprocess.run(["cc", "-o", folder + "/layout", str(source)], check=True)
-    numbers = dict(line.split(" ", 1) for line in subprocess.run([folder + "/layout"], check=True, capture_output=True, text=True).stdout.splitlines())
+numbers = dict(line.split(" ", 1) for line in printed_by(["cc"], ".c", program))
+
+# The table of iface types, a line for each type and each field.
+table_program = r"""
+#include <cstdio>
+#include "shm/iface_types.h"
+int main() {
+  const auto print = [](const char* what, std::span<const shm::Field> fields) {
+    for (const auto& field : fields) {
+      std::printf("%s\t%s\t%zu\t%s\n", what, field.name.data(), field.kind == shm::Field::Kind::text || field.kind == shm::Field::Kind::followers ? 1 : field.count,
+                  field.unit.data());
+    }
+  };
+  for (const auto& row : shm::iface_types) {
+    std::printf("type\t%u\t%s\t%s\t%d\t%llu\n", static_cast<unsigned>(row.type), row.name.data(), row.meaning.data(), row.sample_size == 0 ? 1 : 0,
+                static_cast<unsigned long long>(row.most));
+    print("info", row.info);
+    print("sample", row.sample);
+    if (row.sample_tail.fields.size() > 1) print("element", row.sample_tail.fields);
+  }
+}
+"""
+types = []
+for line in printed_by(["c++", "-std=c++20", f"-I{here.parent / 'sim-server'}"], ".cpp", table_program):
+    what, *words = line.split("\t")
+    if what == "type":
+        types.append({"number": words[0], "name": words[1], "meaning": words[2], "frames": words[3] == "1", "most": int(words[4]), "info": [], "sample": [], "element": []})
+    else:
+        types[-1][what].append((words[0], int(words[1]), words[2]))
 
 out = """# Shared memory, byte for byte
 
@@ -73,11 +105,23 @@ counter-clockwise positive; quaternions are (w, x, y, z). Fields marked [atomic]
   it mapped goes on with zeros of its own (`shm/cut_guard.h`), the server says so, and the iface is there again after its next start.
 
 """
-for title, pattern in (("Iface types", r"/\* Iface types;.*?\*/\s*enum \{\n(.*?)\};"), ("Areas", r"/\* Areas of a segment.*?\*/\s*enum \{\n(.*?)\};")):
-    out += f"## {title}\n\n| value | name | meaning |\n| --- | --- | --- |\n"
-    for name, value, comment in re.findall(r"(\w+) = (\d+),?\s*(?:/\*(.*?)\*/)?", re.search(pattern, text, re.S).group(1), re.S):
-        out += f"| {value} | `{name}` | {clean(comment)} |\n"
-    out += "\n"
+c_names = dict(re.findall(r"(RTMSIM_\w+) = (\d+)", re.search(r"/\* Iface types;.*?\*/\s*enum \{\n(.*?)\};", text, re.S).group(1)))
+assert sorted(c_names.values(), key=int) == [one["number"] for one in types], "rtmsim_layout.h and iface_types.h have the same types"
+c_names = {number: name for name, number in c_names.items()}
+out += "## Iface types\n\n| value | name | in segment names | what it says | largest count |\n| --- | --- | --- | --- | ---: |\n"
+for one in types:
+    unit = " pixels" if one["frames"] else ""
+    out += f"| {one['number']} | `{c_names[one['number']]}` | `{one['name']}` | {one['meaning']} | {str(one['most']) + unit if one['most'] else ''} |\n"
+out += """
+The largest count is that of beams, transducers, contacts or pixels; an iface with more, or with none, is not made and not opened. The table of types is
+`sim-server/shm/iface_types.h`: number, name, constants, samples and fields of a type stand there once, and programs, checks and this page follow.
+
+"""
+
+out += "## Areas\n\n| value | name | meaning |\n| --- | --- | --- |\n"
+for name, value, comment in re.findall(r"(\w+) = (\d+),?\s*(?:/\*(.*?)\*/)?", re.search(r"/\* Areas of a segment.*?\*/\s*enum \{\n(.*?)\};", text, re.S).group(1), re.S):
+    out += f"| {value} | `{name}` | {clean(comment)} |\n"
+out += "\n"
 
 
 def table(title, pattern):
@@ -124,7 +168,25 @@ out += """
 - `dropped` counts frames that found every slot of the ring held by readers; a reader that is merely late misses the sequence numbers in between.
 
 """
-out += "## Structures\n\n"
+out += """## What `simctl` shows
+
+Names and units of `simctl info` and `simctl echo`, as text and as JSON. Every sample also has a `stamp`: `sequence`, `sim_time` [s], `wall_time` [s], `valid`. Poses are `position` [m] and
+`orientation` (w x y z). Of ranges null is "nothing hit" and -1 "too near".
+
+| type | info | sample |
+| --- | --- | --- |
+"""
+
+
+def described(fields):
+    words = [f"`{name}`" + (f" ({count})" if count > 1 else "") + (f" [{unit}]" if unit else "") for name, count, unit in fields if name != "stamp"]
+    return ", ".join(words)
+
+
+for one in types:
+    elements = f"; of each: {described(one['element'])}" if one["element"] else ""
+    out += f"| `{one['name']}` | {described(one['info'])} | {described(one['sample'])}{elements} |\n"
+out += "\n## Structures\n\n"
 for name, intro, fields in structs:
     out += f"### `{name}`, {numbers[name]} bytes\n\n" + (intro + "\n\n" if intro else "") + "| offset | size | field | type | meaning |\n| ---: | ---: | --- | --- | --- |\n"
     for kind, field, array, comment in fields:

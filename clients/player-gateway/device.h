@@ -15,7 +15,7 @@
 #include "protocol/message.h"
 #include "protocol/payloads.h"
 #include "served.h"
-#include "shm/layout.h"
+#include "shm/iface_types.h"
 #include "source.h"
 #include "timeline.h"
 

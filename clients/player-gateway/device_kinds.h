@@ -11,7 +11,7 @@
 #include "device.h"
 #include "protocol/message.h"
 #include "served.h"
-#include "shm/layout.h"
+#include "shm/iface_types.h"
 
 namespace gateway {
 

@@ -9,7 +9,7 @@
 
 #include "base/result.h"
 #include "protocol/message.h"
-#include "shm/layout.h"
+#include "shm/iface_types.h"
 
 namespace gateway {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "shm/layout.h"
+#include "shm/iface_types.h"
 
 namespace gateway {
 

@@ -38,7 +38,7 @@ MadeDevice make_air_pressure(const SensorSite& site) {
   auto info = info_of<shm::MeterInfo>(site);
   info.noise[0] = stated_deviation(def.pressure);
   info.reference = def.reference_altitude != 0 ? def.reference_altitude : site.world.world.spherical.elevation;
-  return make_sensor<AirPressure>(site, shm::meter_spec(shm::IfaceType::air_pressure, site.iface(), info), {def.pressure}, info.reference);
+  return make_sensor<AirPressure>(site, shm::iface_spec(shm::IfaceType::air_pressure, site.iface(), info), {def.pressure}, info.reference);
 }
 
 }  // namespace sim

@@ -28,7 +28,7 @@ MadeDevice make_altimeter(const SensorSite& site) {
   info.noise[0] = stated_deviation(def.vertical_position);
   info.noise[1] = stated_deviation(def.vertical_velocity);
   info.reference = site.mount.in_world(site.world.physics).translation().z();
-  return make_sensor<Altimeter>(site, shm::meter_spec(shm::IfaceType::altimeter, site.iface(), info),
+  return make_sensor<Altimeter>(site, shm::iface_spec(shm::IfaceType::altimeter, site.iface(), info),
                                 {def.vertical_position, def.vertical_velocity}, info.reference);
 }
 

@@ -55,7 +55,7 @@ class Bumper final : public Sensor {
 MadeDevice make_bumper(const SensorSite& site) {
   auto info = info_of<shm::BumperInfo>(site);
   info.capacity = capacity;
-  return make_sensor<Bumper>(site, shm::bumper_spec(site.iface(), info), {});
+  return make_sensor<Bumper>(site, shm::iface_spec(shm::IfaceType::bumper, site.iface(), info), {});
 }
 
 }  // namespace sim

@@ -11,6 +11,7 @@
 #include "devices/render_world.h"
 #include "devices/sensor.h"
 #include "render/pixels.h"
+#include "shm/server.h"
 #include "world/iface_names.h"
 
 namespace sim {

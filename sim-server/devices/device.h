@@ -16,6 +16,10 @@
 #include "physics/physics.h"
 #include "shm/writer.h"
 
+namespace shm {
+class Server;
+}
+
 namespace sim {
 
 class RayWorld;

@@ -49,7 +49,7 @@ MadeDevice make_force_torque(const SensorSite& site) {
   shm::set_text(info.joint, site.model().joints[site.joint->joint].name);
   std::vector<NoiseDef> noises(def.force.begin(), def.force.end());
   noises.insert(noises.end(), def.torque.begin(), def.torque.end());
-  return make_sensor<ForceTorque>(site, shm::meter_spec(shm::IfaceType::force_torque, site.iface(), info), noises);
+  return make_sensor<ForceTorque>(site, shm::iface_spec(shm::IfaceType::force_torque, site.iface(), info), noises);
 }
 
 }  // namespace sim

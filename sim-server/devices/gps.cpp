@@ -79,7 +79,7 @@ MadeDevice make_gps(const SensorSite& site) {
   info.longitude = earth.longitude;
   info.altitude = earth.elevation;
   info.heading = earth.heading;
-  return make_sensor<Gps>(site, shm::gps_spec(site.iface(), info),
+  return make_sensor<Gps>(site, shm::iface_spec(shm::IfaceType::gps, site.iface(), info),
                           {def.horizontal_position, def.vertical_position, def.horizontal_velocity, def.vertical_velocity});
 }
 

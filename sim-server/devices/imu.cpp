@@ -68,7 +68,7 @@ MadeDevice make_imu(const SensorSite& site) {
   info.acceleration_noise = stated_deviation(def.linear_acceleration[0]);
   std::vector<NoiseDef> noises(def.angular_velocity.begin(), def.angular_velocity.end());
   noises.insert(noises.end(), def.linear_acceleration.begin(), def.linear_acceleration.end());
-  return make_sensor<Imu>(site, shm::imu_spec(site.iface(), info), noises);
+  return make_sensor<Imu>(site, shm::iface_spec(shm::IfaceType::imu, site.iface(), info), noises);
 }
 
 }  // namespace sim

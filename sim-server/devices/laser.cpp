@@ -58,7 +58,7 @@ MadeDevice make_laser(const SensorSite& site) {
   info.max_range = ray.range_max;
   info.range_step = ray.range_resolution;
   info.noise = stated_deviation(ray.noise);
-  return make_sensor<Laser>(site, shm::laser_spec(site.iface(), info), NoiseChannels::shared(ray.noise));
+  return make_sensor<Laser>(site, shm::iface_spec(shm::IfaceType::laser, site.iface(), info), NoiseChannels::shared(ray.noise));
 }
 
 }  // namespace sim

@@ -24,7 +24,7 @@ MadeDevice make_magnetometer(const SensorSite& site) {
   const auto& noises = std::get<MagnetometerDef>(site.def.data).field;
   auto info = info_of<shm::MeterInfo>(site);
   info.noise[0] = stated_deviation(noises[0]);
-  return make_sensor<Magnetometer>(site, shm::meter_spec(shm::IfaceType::magnetometer, site.iface(), info),
+  return make_sensor<Magnetometer>(site, shm::iface_spec(shm::IfaceType::magnetometer, site.iface(), info),
                                    std::vector<NoiseDef>(noises.begin(), noises.end()));
 }
 

@@ -42,7 +42,7 @@ MadeDevice Position2d::make(DeviceWorld& world, ModelId model, const PluginDef& 
   train->describe(info);
   info.rate = stated_rate(world, train->rate());
   shm::set_text(info.model, scoped_model(def, plugin.scope));
-  auto setup = set_up(world, model, train->rate(), shm::position2d_spec(iface_name(def, plugin), info), {});
+  auto setup = set_up(world, model, train->rate(), shm::iface_spec(shm::IfaceType::position2d, iface_name(def, plugin), info), {});
   if (!setup) return setup.error();
   const Traction traction(info.wheel_separation, info.drive == RTMSIM_DRIVE_SKID);
   return MadeDevice(std::make_unique<Position2d>(std::move(*setup), traction, std::move(train)));

@@ -32,7 +32,7 @@ MadeDevice Position3d::make(DeviceWorld& world, ModelId model, const PluginDef& 
   info.max_yaw_rate = plugin.parameters.number_of({"max_yaw_rate", "max_angular_velocity"}).value_or(0);
   info.rate = stated_rate(world, 0);
   shm::set_text(info.model, scoped_model(def, plugin.scope));
-  auto setup = set_up(world, model, 0, shm::position3d_spec(iface_name(def, plugin), info), {});
+  auto setup = set_up(world, model, 0, shm::iface_spec(shm::IfaceType::position3d, iface_name(def, plugin), info), {});
   if (!setup) return setup.error();
   return MadeDevice(std::make_unique<Position3d>(std::move(*setup), plugin, std::move(path)));
 }

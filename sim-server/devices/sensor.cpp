@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "shm/server.h"
 #include "world/iface_names.h"
 
 namespace sim {

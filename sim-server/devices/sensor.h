@@ -10,6 +10,7 @@
 
 #include "devices/device.h"
 #include "rays/noise.h"
+#include "shm/specs.h"
 
 namespace sim {
 

@@ -24,7 +24,7 @@ MadeDevice make_truth(DeviceWorld& world, ModelId model) {
   const ModelDef& def = world.physics.def(model);
   shm::TruthInfo info{};
   shm::set_text(info.model, def.name);
-  auto setup = set_up(world, model, 0, shm::truth_spec(def.name, info), {});
+  auto setup = set_up(world, model, 0, shm::iface_spec(shm::IfaceType::truth, def.name, info), {});
   if (!setup) return setup.error();
   return MadeDevice(std::make_unique<Truth>(std::move(*setup)));
 }

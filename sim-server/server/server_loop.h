@@ -16,7 +16,7 @@
 #include "server/simulation.h"
 #include "shm/lockstep.h"
 #include "shm/request_board.h"
-#include "shm/writer.h"
+#include "shm/server.h"
 #include "world/model_path.h"
 
 namespace sim {

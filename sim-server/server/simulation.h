@@ -14,7 +14,7 @@
 #include "devices/render_world.h"
 #include "physics/physics.h"
 #include "server/statistics.h"
-#include "shm/writer.h"
+#include "shm/server.h"
 
 namespace sim {
 

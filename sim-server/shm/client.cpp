@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cassert>
 #include <cmath>
@@ -47,28 +46,6 @@ std::string explain_absence(std::uint32_t server_id, IfaceType type, std::string
   return start + ": no server is running";
 }
 
-// What the fixed part of an info and a sample of this type need.
-struct Sizes {
-  std::size_t info, sample;
-};
-constexpr std::array<Sizes, type_names.size()> sizes = {{{0, 0},
-                                                         {sizeof(SimulationInfo), sizeof(SimulationSample)},
-                                                         {sizeof(LaserInfo), sizeof(LaserSample)},
-                                                         {sizeof(SonarInfo), sizeof(SonarSample)},
-                                                         {sizeof(Position2dInfo), sizeof(Position2dSample)},
-                                                         {sizeof(Position3dInfo), sizeof(Position3dSample)},
-                                                         {sizeof(CameraInfo), 0},
-                                                         {sizeof(CameraInfo), 0},
-                                                         {sizeof(CameraInfo), 0},
-                                                         {sizeof(ImuInfo), sizeof(ImuSample)},
-                                                         {sizeof(GpsInfo), sizeof(GpsSample)},
-                                                         {sizeof(BumperInfo), sizeof(BumperSample)},
-                                                         {sizeof(TruthInfo), sizeof(TruthSample)},
-                                                         {sizeof(MeterInfo), sizeof(ForceTorqueSample)},
-                                                         {sizeof(MeterInfo), sizeof(AltimeterSample)},
-                                                         {sizeof(MeterInfo), sizeof(MagnetometerSample)},
-                                                         {sizeof(MeterInfo), sizeof(AirPressureSample)}}};
-
 }  // namespace
 
 struct Iface::State {
@@ -98,28 +75,20 @@ struct Iface::State {
 
 // Copies the constants and checks that samples of their size fit into the cells.
 base::Result<void> Iface::State::prepare() {
-  const std::size_t type = static_cast<std::size_t>(segment.name().type);
+  const IfaceRow& row = row_of(segment.name().type);
   const auto fail = [&](const char* what) { return base::Error{"shared memory " + segment.name().text() + " " + what}; };
   const std::span<const std::byte> constants = segment.info();
-  if (constants.size() < sizes[type].info) return fail("has an info that is too small");
+  if (constants.size() < row.info_size) return fail("has an info that is too small");
   info.resize(round_up(constants.size(), 8) / 8);
   std::memcpy(info.data(), constants.data(), constants.size());
+  const auto plausible = plausible_count(row, info.data());
+  if (!plausible) return fail("has a count that can't be");
+  if (constants.size() < info_size(row, *plausible)) return fail("has an info that is too small for its count");
+  if (row.sample_tail.arrays > 0) count = *plausible;
   const Area& cells = segment.area(AreaIndex::cells);
   const std::size_t room = cells.count > 0 ? cells.stride - 8 : 0;
-  std::uint64_t needed = sizes[type].sample;
-  if (segment.name().type == IfaceType::laser) {
-    const auto& laser = *reinterpret_cast<const LaserInfo*>(info.data());
-    count = static_cast<std::size_t>(laser.beams) * laser.layers;
-    needed += static_cast<std::uint64_t>(count) * 2 * sizeof(float);
-  } else if (segment.name().type == IfaceType::sonar) {
-    count = reinterpret_cast<const SonarInfo*>(info.data())->count;
-    needed += count * sizeof(float);
-    if (constants.size() < sizeof(SonarInfo) + count * sizeof(Pose)) return fail("has fewer poses than transducers");
-  } else if (segment.name().type == IfaceType::bumper) {
-    count = reinterpret_cast<const BumperInfo*>(info.data())->capacity;
-    needed += count * sizeof(Contact);
-  }
-  if (count > (std::size_t{1} << 25) || room < needed) return fail("has cells that are too small");
+  const std::size_t needed = sample_size(row, count);
+  if (room < needed) return fail("has cells that are too small");
   if (has_frames(segment.name().type)) {
     const Area& frames = segment.area(AreaIndex::frames);
     const auto& camera = *reinterpret_cast<const CameraInfo*>(info.data());
@@ -127,7 +96,7 @@ base::Result<void> Iface::State::prepare() {
       return fail("has slots that are too small");
     }
   }
-  buffer.resize(round_up(static_cast<std::size_t>(needed), 8) / 8);
+  buffer.resize(needed / 8);
   return {};
 }
 
@@ -249,9 +218,29 @@ const void* Iface::sample_bytes([[maybe_unused]] std::size_t size) const {
 
 std::span<const std::byte> Iface::sample_data() const { return std::as_bytes(std::span(state_->buffer)); }
 
+std::span<const std::byte> Iface::info_data() const { return std::as_bytes(std::span(state_->info)); }
+
+const std::byte* Iface::info_followers(std::size_t array) const {
+  const IfaceRow& row = row_of(type());
+  return info_data().data() + row.info_size + array * state_->count * row.info_tail.size;
+}
+
+const std::byte* Iface::sample_followers(std::size_t array) const {
+  const IfaceRow& row = row_of(type());
+  return sample_data().data() + row.sample_size + array * state_->count * row.sample_tail.size;
+}
+
+std::size_t Iface::count() const { return state_->count; }
+
+std::size_t Iface::filled() const {
+  const IfaceRow& row = row_of(type());
+  if (row.filled == nullptr) return 0;
+  return std::min<std::size_t>(*static_cast<const std::uint32_t*>(row.filled(sample_data().data())), state_->count);
+}
+
 std::span<const Pose> Iface::sonar_poses() const {
   if (type() != IfaceType::sonar) return {};
-  return {reinterpret_cast<const Pose*>(reinterpret_cast<const std::byte*>(state_->info.data()) + sizeof(SonarInfo)), state_->count};
+  return {reinterpret_cast<const Pose*>(info_followers(0)), state_->count};
 }
 
 base::Result<void> Iface::subscribe() {
@@ -315,7 +304,7 @@ SonarView Iface::sonar_scan() const {
 
 BumperView Iface::bumper() const {
   const auto& head = sample<BumperSample>();
-  return {&head, {reinterpret_cast<const Contact*>(&head + 1), std::min<std::size_t>(head.count, state_->count)}};
+  return {&head, {reinterpret_cast<const Contact*>(&head + 1), filled()}};
 }
 
 Wait Iface::wait(std::uint64_t than, std::chrono::nanoseconds timeout) {

@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "shm/layout.h"
+#include "shm/iface_types.h"
 #include "shm/segment.h"
 
 namespace shm {
@@ -103,6 +103,13 @@ class Iface {
   SonarView sonar_scan() const;
   BumperView bumper() const;
   std::span<const std::byte> sample_data() const;
+
+  // ---- whatever the type: what the table (iface_types.h) says follows its info and its sample ----
+  std::size_t count() const;   // elements in each array
+  std::size_t filled() const;  // of a sample's, those that are true; at most count()
+  std::span<const std::byte> info_data() const;
+  const std::byte* info_followers(std::size_t array) const;
+  const std::byte* sample_followers(std::size_t array) const;
 
   // Number of the latest sample or frame there is; 0 = none.
   std::uint64_t sequence() const;

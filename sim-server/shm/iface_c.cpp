@@ -7,7 +7,6 @@
 #include "shm/client.h"
 #include "shm/request_board.h"
 #include "shm/rtmsim_iface.h"
-#include "shm/writer.h"
 
 struct rtmsim_iface {
   shm::Iface iface;
@@ -63,11 +62,18 @@ int rtmsim_list(int64_t server, int (*each)(void*, uint32_t, const char*, const 
   });
 }
 
+const char* rtmsim_type_name(uint32_t type) { return shm::is_type(type) ? shm::iface_types[type - 1].name.data() : nullptr; }
+
+uint32_t rtmsim_type(const char* name) {
+  const auto type = name != nullptr ? shm::parse_type(name) : std::nullopt;
+  return type ? static_cast<uint32_t>(*type) : 0;
+}
+
 rtmsim_iface* rtmsim_open(uint32_t server, uint32_t type, const char* name) {
   return guarded(static_cast<rtmsim_iface*>(nullptr), [&]() -> rtmsim_iface* {
     if (!shm::is_type(type) || name == nullptr) {
-      last_error() =
-          "iface type must be one of RTMSIM_SIMULATION to RTMSIM_AIR_PRESSURE and the name not null, got type " + std::to_string(type);
+      last_error() = "iface type must be from 1 to " + std::to_string(shm::iface_types.size()) + " and the name not null, got type " +
+                     std::to_string(type);
       return nullptr;
     }
     auto opened = shm::Iface::open(server, static_cast<shm::IfaceType>(type), name);

@@ -1,10 +1,9 @@
-// C++ names and enums of what lies in shared memory (rtmsim_layout.h), with the offsets pinned. Plain data; no thread rule.
+// C++ names and enums of what lies in shared memory (rtmsim_layout.h), with the offsets pinned; the types of ifaces are in iface_types.h.
+// Plain data; no thread rule.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string_view>
 
 #include "shm/rtmsim_layout.h"
@@ -19,32 +18,7 @@ using Command = ::rtmsim_command;
 using Stamp = ::rtmsim_stamp;
 using Pose = ::rtmsim_pose;
 using Part = ::rtmsim_part;
-using SimulationInfo = ::rtmsim_simulation_info;
-using SimulationSample = ::rtmsim_simulation_sample;
-using LaserInfo = ::rtmsim_laser_info;
-using LaserSample = ::rtmsim_laser_sample;
-using SonarInfo = ::rtmsim_sonar_info;
-using SonarSample = ::rtmsim_sonar_sample;
-using Position2dInfo = ::rtmsim_position2d_info;
-using Position2dSample = ::rtmsim_position2d_sample;
-using Position3dInfo = ::rtmsim_position3d_info;
-using Position3dSample = ::rtmsim_position3d_sample;
-using CameraInfo = ::rtmsim_camera_info;
 using FrameHead = ::rtmsim_frame;
-using ImuInfo = ::rtmsim_imu_info;
-using ImuSample = ::rtmsim_imu_sample;
-using GpsInfo = ::rtmsim_gps_info;
-using GpsSample = ::rtmsim_gps_sample;
-using BumperInfo = ::rtmsim_bumper_info;
-using Contact = ::rtmsim_contact;
-using BumperSample = ::rtmsim_bumper_sample;
-using MeterInfo = ::rtmsim_meter_info;
-using ForceTorqueSample = ::rtmsim_force_torque_sample;
-using AltimeterSample = ::rtmsim_altimeter_sample;
-using MagnetometerSample = ::rtmsim_magnetometer_sample;
-using AirPressureSample = ::rtmsim_air_pressure_sample;
-using TruthInfo = ::rtmsim_truth_info;
-using TruthSample = ::rtmsim_truth_sample;
 using RequestBody = ::rtmsim_request_body;
 using ReplyBody = ::rtmsim_reply_body;
 using RequestSlot = ::rtmsim_request_slot;
@@ -57,42 +31,6 @@ inline constexpr std::size_t text_piece = RTMSIM_TEXT_PIECE;
 inline constexpr unsigned max_holds = RTMSIM_HOLDS;
 inline constexpr Pose identity_pose{0, 0, 0, 1, 0, 0, 0};
 
-enum class IfaceType : std::uint32_t {
-  simulation = RTMSIM_SIMULATION,
-  laser = RTMSIM_LASER,
-  sonar = RTMSIM_SONAR,
-  position2d = RTMSIM_POSITION2D,
-  position3d = RTMSIM_POSITION3D,
-  camera = RTMSIM_CAMERA,
-  depth = RTMSIM_DEPTH,
-  points = RTMSIM_POINTS,
-  imu = RTMSIM_IMU,
-  gps = RTMSIM_GPS,
-  bumper = RTMSIM_BUMPER,
-  truth = RTMSIM_TRUTH,
-  force_torque = RTMSIM_FORCE_TORQUE,
-  altimeter = RTMSIM_ALTIMETER,
-  magnetometer = RTMSIM_MAGNETOMETER,
-  air_pressure = RTMSIM_AIR_PRESSURE,
-};
-
-inline constexpr std::array<std::string_view, 17> type_names = {
-    "",    "simulation", "laser",  "sonar", "position2d",   "position3d", "camera",       "depth",       "points",
-    "imu", "gps",        "bumper", "truth", "force_torque", "altimeter",  "magnetometer", "air_pressure"};
-
-constexpr bool is_type(std::uint32_t type) { return type >= 1 && type < type_names.size(); }
-constexpr std::string_view to_text(IfaceType type) {
-  return is_type(static_cast<std::uint32_t>(type)) ? type_names[static_cast<std::size_t>(type)] : "?";
-}
-constexpr std::optional<IfaceType> parse_type(std::string_view name) {
-  for (std::size_t i = 1; i < type_names.size(); ++i) {
-    if (type_names[i] == name) return static_cast<IfaceType>(i);
-  }
-  return std::nullopt;
-}
-// Camera, depth and points publish frames; all others publish samples.
-constexpr bool has_frames(IfaceType type) { return type == IfaceType::camera || type == IfaceType::depth || type == IfaceType::points; }
-
 enum class AreaIndex : std::size_t {
   info = RTMSIM_AREA_INFO,
   cells = RTMSIM_AREA_CELLS,
@@ -102,6 +40,13 @@ enum class AreaIndex : std::size_t {
   requests = RTMSIM_AREA_REQUESTS,
   participants = RTMSIM_AREA_PARTICIPANTS,
 };
+
+// Copies text into a fixed field, cut at its end and always terminated.
+template <std::size_t size>
+void set_text(char (&field)[size], std::string_view text) {
+  const std::size_t length = text.size() < size ? text.size() : size - 1;
+  for (std::size_t i = 0; i < size; ++i) field[i] = i < length ? text[i] : '\0';
+}
 
 enum class CommandKind : std::uint32_t { stop = RTMSIM_COMMAND_STOP, velocity = RTMSIM_COMMAND_VELOCITY, pose = RTMSIM_COMMAND_POSE };
 
@@ -150,16 +95,7 @@ static_assert(sizeof(Header) == 1024 && offsetof(Header, server) == 32 && offset
               offsetof(Header, state) == 512 && offsetof(Header, sequence) == 576 && offsetof(Header, wake_word) == 592);
 static_assert(sizeof(Lease) == 256 && offsetof(Lease, holds) == 64 && offsetof(Lease, command_lock) == 128 && sizeof(Command) == 120);
 static_assert(sizeof(Stamp) == 32 && sizeof(Pose) == 56 && sizeof(Part) == 40);
-static_assert(sizeof(SimulationInfo) == 696 && sizeof(SimulationSample) == 600);
-static_assert(sizeof(LaserInfo) == 272 && sizeof(LaserSample) == 96 && sizeof(SonarInfo) == 232 && sizeof(SonarSample) == 40);
-static_assert(sizeof(Position2dInfo) == 272 && sizeof(Position2dSample) == 200);
-static_assert(sizeof(Position3dInfo) == 240 && sizeof(Position3dSample) == 304);
-static_assert(sizeof(CameraInfo) == 320 && sizeof(FrameHead) == 128);
-static_assert(sizeof(ImuInfo) == 208 && sizeof(ImuSample) == 112 && sizeof(GpsInfo) == 248 && sizeof(GpsSample) == 80);
-static_assert(sizeof(BumperInfo) == 200 && sizeof(Contact) == 192 && sizeof(BumperSample) == 40);
-static_assert(sizeof(MeterInfo) == 344 && sizeof(ForceTorqueSample) == 80 && sizeof(AltimeterSample) == 48);
-static_assert(sizeof(MagnetometerSample) == 56 && sizeof(AirPressureSample) == 40);
-static_assert(sizeof(TruthInfo) == 128 && sizeof(TruthSample) == 136);
+static_assert(sizeof(FrameHead) == 128);  // those of infos and samples: iface_types.h
 static_assert(sizeof(RequestBody) == 408 && sizeof(ReplyBody) == 416 && sizeof(RequestSlot) == 1024 && offsetof(RequestSlot, body) == 64);
 static_assert(sizeof(Control) == 192 && offsetof(Control, pending) == 64 && offsetof(Control, tick_words) == 128);
 static_assert(sizeof(ParticipantSlot) == 256 && offsetof(ParticipantSlot, go) == 128 && offsetof(ParticipantSlot, done) == 192);

@@ -37,7 +37,7 @@
 
 #include "base/result.h"
 #include "shm/client.h"
-#include "shm/writer.h"
+#include "shm/server.h"
 
 namespace shm {
 

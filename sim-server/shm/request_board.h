@@ -10,7 +10,7 @@
 #include "base/result.h"
 #include "shm/client.h"
 #include "shm/requests.h"
-#include "shm/writer.h"
+#include "shm/server.h"
 
 namespace shm {
 

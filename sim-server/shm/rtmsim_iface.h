@@ -23,6 +23,11 @@ const char* rtmsim_last_error(void);
  * called. The texts are valid during the call only. */
 int rtmsim_list(int64_t server, int (*each)(void* context, uint32_t server, const char* type, const char* name), void* context);
 
+/* "laser" of RTMSIM_LASER and so on; null for a number that is no type. Never goes away. */
+const char* rtmsim_type_name(uint32_t type);
+/* RTMSIM_LASER of "laser" and so on; 0 for a name that is no type's. */
+uint32_t rtmsim_type(const char* name);
+
 /* Null when there is no such iface; the error names what there is. type: RTMSIM_LASER, ... */
 rtmsim_iface* rtmsim_open(uint32_t server, uint32_t type, const char* name);
 /* Unsubscribes; a robot that this handle commanded stops. Null is fine. */

@@ -23,24 +23,24 @@ extern "C" {
 #define RTMSIM_TICK_WORDS 4
 #define RTMSIM_TEXT_PIECE 16384 /* longer texts of requests and replies travel in pieces */
 
-/* Iface types; the name in brackets is the one in the segment's name. */
+/* Iface types; what they are called in names of segments and what they say is in iface_types.h. */
 enum {
-  RTMSIM_SIMULATION = 1,    /* [simulation] clock, statistics, requests, participants */
-  RTMSIM_LASER = 2,         /* [laser] */
-  RTMSIM_SONAR = 3,         /* [sonar] */
-  RTMSIM_POSITION2D = 4,    /* [position2d] */
-  RTMSIM_POSITION3D = 5,    /* [position3d] */
-  RTMSIM_CAMERA = 6,        /* [camera] ring of images */
-  RTMSIM_DEPTH = 7,         /* [depth] ring of float images [m] */
-  RTMSIM_POINTS = 8,        /* [points] ring of float x y z (and intensity) */
-  RTMSIM_IMU = 9,           /* [imu] */
-  RTMSIM_GPS = 10,          /* [gps] */
-  RTMSIM_BUMPER = 11,       /* [bumper] contacts */
-  RTMSIM_TRUTH = 12,        /* [truth] true pose and velocity of a model */
-  RTMSIM_FORCE_TORQUE = 13, /* [force_torque] load of a joint */
-  RTMSIM_ALTIMETER = 14,    /* [altimeter] */
-  RTMSIM_MAGNETOMETER = 15, /* [magnetometer] */
-  RTMSIM_AIR_PRESSURE = 16  /* [air_pressure] */
+  RTMSIM_SIMULATION = 1,
+  RTMSIM_LASER = 2,
+  RTMSIM_SONAR = 3,
+  RTMSIM_POSITION2D = 4,
+  RTMSIM_POSITION3D = 5,
+  RTMSIM_CAMERA = 6,
+  RTMSIM_DEPTH = 7,
+  RTMSIM_POINTS = 8,
+  RTMSIM_IMU = 9,
+  RTMSIM_GPS = 10,
+  RTMSIM_BUMPER = 11,
+  RTMSIM_TRUTH = 12,
+  RTMSIM_FORCE_TORQUE = 13,
+  RTMSIM_ALTIMETER = 14,
+  RTMSIM_MAGNETOMETER = 15,
+  RTMSIM_AIR_PRESSURE = 16
 };
 
 /* Areas of a segment, by index into rtmsim_header.areas; those an iface does not have are all zero. */

@@ -13,7 +13,8 @@
 #include <vector>
 
 #include "base/result.h"
-#include "shm/layout.h"
+#include "shm/access.h"
+#include "shm/iface_types.h"
 
 namespace shm {
 
@@ -32,11 +33,6 @@ struct SegmentName {
 
 // Fails, with the reason, for names that are empty, longer than max_name_length or hold '/' or control characters.
 base::Result<void> check_name(std::string_view iface);
-
-struct Access {
-  mode_t mode = 0600;
-  std::optional<gid_t> group;
-};
 
 // What an iface needs; areas of size 0 are left out.
 struct Geometry {

@@ -3,13 +3,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
+#include "iface_json.h"
 #include "shm/lockstep.h"
 #include "simctl.h"
 
@@ -18,244 +18,6 @@ namespace simctl {
 using Json = nlohmann::ordered_json;
 
 namespace {
-
-Json to_json(const shm::Pose& p) { return Json{{"position", {p.x, p.y, p.z}}, {"orientation", {p.qw, p.qx, p.qy, p.qz}}}; }
-template <std::size_t n>
-Json to_json(const double (&values)[n]) {
-  Json array = Json::array();
-  for (const double value : values) array.push_back(value);
-  return array;
-}
-// The shortest decimal that is this float, not the double next to it: 1.56 instead of 1.5600000619888306.
-double shortest(float value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value);
-  double result = value;
-  std::from_chars(text, end.ptr, result);
-  return result;
-}
-// JSON has no infinity: null stands for "nothing hit", -1 for "too near".
-Json to_json(std::span<const float> ranges) {
-  Json array = Json::array();
-  for (const float range : ranges) array.push_back(std::isfinite(range) ? Json(shortest(range)) : range < 0 ? Json(-1) : Json());
-  return array;
-}
-std::string text_of(const char* text, std::size_t size) { return {text, strnlen(text, size)}; }
-
-Json stamp_json(const shm::Stamp& stamp) {
-  return {{"sequence", stamp.sequence},
-          {"sim_time", static_cast<double>(stamp.sim_time_ns) / 1e9},
-          {"wall_time", static_cast<double>(stamp.wall_time_ns) / 1e9},
-          {"valid", stamp.valid != 0}};
-}
-
-Json info_json(const shm::Iface& iface) {
-  using shm::IfaceType;
-  switch (iface.type()) {
-    case IfaceType::simulation: {
-      const auto& i = iface.info<shm::SimulationInfo>();
-      return {{"world", text_of(i.world, sizeof i.world)},
-              {"file", text_of(i.file, sizeof i.file)},
-              {"step", static_cast<double>(i.step_ns) / 1e9},
-              {"seed", i.seed},
-              {"lockstep", i.lockstep != 0},
-              {"version", text_of(i.version, sizeof i.version)}};
-    }
-    case IfaceType::laser: {
-      const auto& i = iface.info<shm::LaserInfo>();
-      return {{"model", i.model},
-              {"beams", i.beams},
-              {"layers", i.layers},
-              {"min_angle", i.min_angle},
-              {"max_angle", i.max_angle},
-              {"angle_step", i.angle_step},
-              {"min_vertical", i.min_vertical},
-              {"max_vertical", i.max_vertical},
-              {"min_range", i.min_range},
-              {"max_range", i.max_range},
-              {"resolution", i.range_step},
-              {"rate", i.rate},
-              {"noise", i.noise},
-              {"pose", to_json(i.pose)}};
-    }
-    case IfaceType::sonar: {
-      const auto& i = iface.info<shm::SonarInfo>();
-      Json poses = Json::array();
-      for (const auto& pose : iface.sonar_poses()) poses.push_back(to_json(pose));
-      return {{"model", i.model}, {"count", i.count}, {"min_range", i.min_range}, {"max_range", i.max_range},
-              {"cone", i.cone},   {"rate", i.rate},   {"noise", i.noise},         {"poses", poses}};
-    }
-    case IfaceType::position2d: {
-      const auto& i = iface.info<shm::Position2dInfo>();
-      return {{"model", i.model},
-              {"drive", i.drive},
-              {"size", to_json(i.size)},
-              {"max_speed", i.max_speed},
-              {"max_yaw_rate", i.max_yaw_rate},
-              {"max_acceleration", i.max_acceleration},
-              {"max_yaw_acceleration", i.max_yaw_acceleration},
-              {"wheel_separation", i.wheel_separation},
-              {"wheel_radius", i.wheel_radius},
-              {"rate", i.rate},
-              {"pose", to_json(i.pose)}};
-    }
-    case IfaceType::position3d: {
-      const auto& i = iface.info<shm::Position3dInfo>();
-      return {{"model", i.model},
-              {"drive", i.drive},
-              {"size", to_json(i.size)},
-              {"max_speed", i.max_speed},
-              {"max_yaw_rate", i.max_yaw_rate},
-              {"rate", i.rate},
-              {"pose", to_json(i.pose)}};
-    }
-    case IfaceType::camera:
-    case IfaceType::depth:
-    case IfaceType::points: {
-      const auto& i = iface.info<shm::CameraInfo>();
-      return {{"model", i.model},
-              {"width", i.width},
-              {"height", i.height},
-              {"format", i.format},
-              {"stride", i.stride},
-              {"hfov", i.hfov},
-              {"near", i.near_clip},
-              {"far", i.far_clip},
-              {"fx", i.fx},
-              {"fy", i.fy},
-              {"cx", i.cx},
-              {"cy", i.cy},
-              {"distortion", to_json(i.distortion)},
-              {"rate", i.rate},
-              {"noise", i.noise},
-              {"pose", to_json(i.pose)}};
-    }
-    case IfaceType::imu: {
-      const auto& i = iface.info<shm::ImuInfo>();
-      return {{"model", i.model},
-              {"rate", i.rate},
-              {"angular_velocity_noise", i.angular_velocity_noise},
-              {"acceleration_noise", i.acceleration_noise},
-              {"pose", to_json(i.pose)}};
-    }
-    case IfaceType::gps: {
-      const auto& i = iface.info<shm::GpsInfo>();
-      return {{"model", i.model},
-              {"rate", i.rate},
-              {"latitude", i.latitude},
-              {"longitude", i.longitude},
-              {"altitude", i.altitude},
-              {"heading", i.heading},
-              {"position_noise", i.position_noise},
-              {"altitude_noise", i.altitude_noise},
-              {"pose", to_json(i.pose)}};
-    }
-    case IfaceType::bumper: {
-      const auto& i = iface.info<shm::BumperInfo>();
-      return {{"model", i.model}, {"rate", i.rate}, {"capacity", i.capacity}, {"pose", to_json(i.pose)}};
-    }
-    case IfaceType::force_torque:
-    case IfaceType::altimeter:
-    case IfaceType::magnetometer:
-    case IfaceType::air_pressure: {
-      const auto& i = iface.info<shm::MeterInfo>();
-      Json json{{"model", i.model}, {"rate", i.rate}, {"noise", to_json(i.noise)}, {"reference", i.reference}, {"pose", to_json(i.pose)}};
-      if (iface.type() == IfaceType::force_torque) json["joint"] = text_of(i.joint, sizeof i.joint);
-      return json;
-    }
-    case IfaceType::truth:
-      return {{"model", iface.info<shm::TruthInfo>().model}};
-  }
-  return {};
-}
-
-// Only after the iface has been read.
-Json sample_json(const shm::Iface& iface) {
-  using shm::IfaceType;
-  switch (iface.type()) {
-    case IfaceType::simulation: {
-      const auto& s = iface.sample<shm::SimulationSample>();
-      return {{"stamp", stamp_json(s.stamp)}, {"steps", s.steps}, {"paused", s.paused != 0}, {"waiting_for", s.waiting_for},
-              {"rtf", s.rtf_reached},         {"load", s.load},   {"contacts", s.contacts},  {"participants", s.participants}};
-    }
-    case IfaceType::laser: {
-      const auto scan = iface.laser_scan();
-      return {{"stamp", stamp_json(scan.sample->stamp)},
-              {"ranges", to_json(scan.ranges)},
-              {"intensities", to_json(scan.intensities)},
-              {"pose", to_json(scan.sample->pose)}};
-    }
-    case IfaceType::sonar: {
-      const auto scan = iface.sonar_scan();
-      return {{"stamp", stamp_json(scan.sample->stamp)}, {"ranges", to_json(scan.ranges)}};
-    }
-    case IfaceType::position2d: {
-      const auto& s = iface.sample<shm::Position2dSample>();
-      return {{"stamp", stamp_json(s.stamp)},      {"odometry", to_json(s.odometry)},           {"velocity", to_json(s.velocity)},
-              {"true_pose", to_json(s.true_pose)}, {"true_velocity", to_json(s.true_velocity)}, {"command", to_json(s.command)},
-              {"stalled", s.stalled != 0},         {"motors_enabled", s.motors_enabled != 0},   {"commanded", s.commanded != 0}};
-    }
-    case IfaceType::position3d: {
-      const auto& s = iface.sample<shm::Position3dSample>();
-      return {{"stamp", stamp_json(s.stamp)},      {"odometry", to_json(s.odometry)}, {"velocity", to_json(s.velocity)},
-              {"true_pose", to_json(s.true_pose)}, {"command", to_json(s.command)},   {"commanded", s.commanded != 0}};
-    }
-    case IfaceType::imu: {
-      const auto& s = iface.sample<shm::ImuSample>();
-      return {{"stamp", stamp_json(s.stamp)},
-              {"orientation", to_json(s.orientation)},
-              {"angular_velocity", to_json(s.angular_velocity)},
-              {"acceleration", to_json(s.acceleration)}};
-    }
-    case IfaceType::gps: {
-      const auto& s = iface.sample<shm::GpsSample>();
-      return {{"stamp", stamp_json(s.stamp)},
-              {"latitude", s.latitude},
-              {"longitude", s.longitude},
-              {"altitude", s.altitude},
-              {"velocity", to_json(s.velocity)}};
-    }
-    case IfaceType::bumper: {
-      const auto view = iface.bumper();
-      Json contacts = Json::array();
-      for (const auto& c : view.contacts)
-        contacts.push_back({{"other", text_of(c.other, sizeof c.other)},
-                            {"position", to_json(c.position)},
-                            {"normal", to_json(c.normal)},
-                            {"force", to_json(c.force)},
-                            {"depth", c.depth}});
-      return {{"stamp", stamp_json(view.sample->stamp)}, {"total", view.sample->total}, {"contacts", contacts}};
-    }
-    case IfaceType::force_torque: {
-      const auto& s = iface.sample<shm::ForceTorqueSample>();
-      return {{"stamp", stamp_json(s.stamp)}, {"force", to_json(s.force)}, {"torque", to_json(s.torque)}};
-    }
-    case IfaceType::altimeter: {
-      const auto& s = iface.sample<shm::AltimeterSample>();
-      return {{"stamp", stamp_json(s.stamp)}, {"height", s.height}, {"climb", s.climb}};
-    }
-    case IfaceType::magnetometer: {
-      const auto& s = iface.sample<shm::MagnetometerSample>();
-      return {{"stamp", stamp_json(s.stamp)}, {"field", to_json(s.field)}};
-    }
-    case IfaceType::air_pressure: {
-      const auto& s = iface.sample<shm::AirPressureSample>();
-      return {{"stamp", stamp_json(s.stamp)}, {"pressure", s.pressure}};
-    }
-    case IfaceType::truth: {
-      const auto& s = iface.sample<shm::TruthSample>();
-      return {{"stamp", stamp_json(s.stamp)}, {"pose", to_json(s.pose)}, {"velocity", to_json(s.velocity)}};
-    }
-    default:
-      return {};
-  }
-}
-
-Json frame_json(const shm::HeldFrame& frame) {
-  const auto& h = frame.head();
-  return {{"stamp", stamp_json(h.stamp)}, {"width", h.width}, {"height", h.height},
-          {"format", h.format},           {"size", h.size},   {"pose", to_json(h.pose)}};
-}
 
 void print_scan(const shm::Iface& iface, const Json& sample) {
   if (iface.type() != shm::IfaceType::laser || !isatty(1)) {
@@ -462,7 +224,7 @@ void dump(Control& control, const std::string& name) {
   if (!iface) return;
   const auto& facts = iface->segment().facts();
   Json json{{"segment", iface->segment().name().text()},
-            {"magic", text_of(facts.magic, sizeof facts.magic)},
+            {"magic", std::string(facts.magic, strnlen(facts.magic, sizeof facts.magic))},
             {"layout_version", facts.layout_version},
             {"type", facts.type},
             {"total_size", facts.total_size},

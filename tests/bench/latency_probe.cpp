@@ -17,7 +17,7 @@
 
 #include "ports/support.h"
 #include "shm/client.h"
-#include "shm/writer.h"
+#include "shm/server.h"
 
 namespace {
 
@@ -101,8 +101,8 @@ class Probe {
     info.max_angle = 1.57;
     info.max_range = 8;
     info.rate = 100;
-    laser_ = server_->create(shm::laser_spec(laser_name, info)).value();
-    drive_ = server_->create(shm::position2d_spec(drive_name, shm::Position2dInfo{})).value();
+    laser_ = server_->create(shm::iface_spec(shm::IfaceType::laser, laser_name, info)).value();
+    drive_ = server_->create(shm::iface_spec(shm::IfaceType::position2d, drive_name, shm::Position2dInfo{})).value();
   }
 
   // Times from publication to command [us] of `count` scans.

@@ -17,7 +17,7 @@
 #include "render/camera.h"
 #include "server/simulation.h"
 #include "shm/client.h"
-#include "shm/writer.h"
+#include "shm/server.h"
 #include "support/scene_maker.h"
 #include "world/world_loader.h"
 

@@ -18,7 +18,7 @@
 
 #include "shm/client.h"
 #include "shm/lockstep.h"
-#include "shm/writer.h"
+#include "shm/server.h"
 
 namespace {
 
@@ -68,7 +68,7 @@ shm::LaserInfo scan_of_3_kib() {
 }
 
 void bench_samples(shm::Server& server) {
-  auto writer = server.create(shm::laser_spec("laser", scan_of_3_kib())).value();
+  auto writer = server.create(shm::iface_spec(shm::IfaceType::laser, "laser", scan_of_3_kib())).value();
   auto reader = shm::Iface::open(server.id(), shm::IfaceType::laser, "laser").value();
   std::vector<double> publish, both, copy;
   std::vector<char> from(3072, 1), to(3072);
@@ -117,7 +117,7 @@ void bench_frames(shm::Server& server) {
 
 // From publish in this process to the return of wait() in another, measured by the reader and put into a second iface's samples.
 void bench_wake_up(shm::Server& server) {
-  auto ping = server.create(shm::truth_spec("ping", {})).value();
+  auto ping = server.create(shm::iface_spec(shm::IfaceType::truth, "ping", shm::TruthInfo{})).value();
   auto* delays = static_cast<std::atomic<double>*>(mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
   Children children;
   children.add([&, id = server.id()] {

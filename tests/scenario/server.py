@@ -3,6 +3,7 @@ import json
 import mmap
 import os
 import random
+import re
 import signal
 import subprocess
 import sys
@@ -293,6 +294,27 @@ def looked_at_each_device():
     assert len(names) >= 15 and not changed, f"looking changes the run: {changed} of {names}"
 
 
+# Names of infos and samples are those of the page on shared memory, for every type.
+def shows_every_type():
+    with open(f"{source}/docs/shared-memory.md") as file:
+        rows = re.findall(r"^\| `(\w+)` \| (.*) \| (.*) \|$", file.read().split("## What `simctl` shows")[1].split("\n## ")[0], re.M)
+
+    def names(cell):
+        return re.findall(r"`(\w+)`", cell.split("; of each")[0])
+
+    process = started(world=f"{source}/tests/worlds/every_device.sdf")
+    ifaces = {one["type"]: one["name"] for one in read("list")}
+    assert ifaces.keys() == {row[0] for row in rows}, (ifaces, rows)
+    for kind, info, sample in rows:
+        iface = f"{kind}:{ifaces[kind]}"
+        assert list(read("info", iface)) == ["type", "name", "server", *names(info)], (iface, read("info", iface))
+        shown = read("echo", iface, "-n", "1")
+        assert list(shown) == ["stamp", *names(sample)], (iface, shown)
+        if kind in ("laser", "sonar"):
+            assert len(shown["ranges"]) == (20 if kind == "laser" else 2), shown
+    stop(process)
+
+
 # In a name space of its own with a /dev/shm and a disk of a few pages.
 def no_room():
     small = f"{work.name}/small"
@@ -555,7 +577,7 @@ def paused_is_idle():
 
 cases = {f.__name__: f for f in (ends_while_it_loads, cut_short, names, requests, motion, bad_requests, same_state, killed, living_server_is_refused, ends, check, paused_is_idle,
                                   no_room, scribbled_over,
-                                  looked_at_while_paused, looked_at_each_device, rate)}
+                                  looked_at_while_paused, looked_at_each_device, shows_every_type, rate)}
 try:
     cases[case]()
 finally:

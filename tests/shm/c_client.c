@@ -22,6 +22,8 @@ int run_c_client(uint32_t server) {
   CHECK(rtmsim_open(server, RTMSIM_LASER, "nothing") == NULL);
   CHECK(strstr(rtmsim_last_error(), "there is robot::laser") != NULL);
   CHECK(rtmsim_open(server, 99, "nothing") == NULL);
+  CHECK(strcmp(rtmsim_type_name(RTMSIM_AIR_PRESSURE), "air_pressure") == 0 && rtmsim_type_name(99) == NULL && rtmsim_type_name(0) == NULL);
+  CHECK(rtmsim_type("imu") == RTMSIM_IMU && rtmsim_type("nothing") == 0 && rtmsim_type(NULL) == 0);
 
   rtmsim_iface* laser = rtmsim_open(server, RTMSIM_LASER, "robot::laser");
   CHECK(laser != NULL);

@@ -13,9 +13,9 @@ namespace {
 TEST(CHeader, a_client_in_c_lists_reads_waits_holds_commands_and_asks) {
   Fixture f;
   auto simulation = f.make(simulation_spec(simulation_info()));
-  auto laser = f.make(laser_spec("robot::laser", laser_info()));
+  auto laser = f.make(iface_spec(IfaceType::laser, "robot::laser", laser_info()));
   auto camera = f.make(camera_spec(IfaceType::camera, "eye", camera_info()));
-  auto base = f.make(position2d_spec("base", Position2dInfo{}));
+  auto base = f.make(iface_spec(IfaceType::position2d, "base", Position2dInfo{}));
   laser->ranges()[7] = 3.5F;
   laser->publish(1s);
   const auto data = *camera->begin_frame();

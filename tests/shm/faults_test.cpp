@@ -94,9 +94,9 @@ TEST(ProcessWatch, the_death_of_a_process_is_told_at_once) {
 TEST(Faults, clients_killed_at_random_points_leave_nothing_behind) {
   Fixture f;
   auto simulation = f.make(simulation_spec(simulation_info()));
-  auto laser = f.make(laser_spec("laser", laser_info()));
+  auto laser = f.make(iface_spec(IfaceType::laser, "laser", laser_info()));
   auto camera = f.make(camera_spec(IfaceType::camera, "eye", camera_info()));
-  auto base = f.make(position2d_spec("base", Position2dInfo{}));
+  auto base = f.make(iface_spec(IfaceType::position2d, "base", Position2dInfo{}));
   RequestBoard board(*simulation, *f.server);
   std::atomic<bool> is_over{false};
   std::atomic<int> commands{0}, lost{0}, requests{0};
@@ -241,7 +241,7 @@ TEST(Faults, a_living_server_is_refused_and_a_dead_one_replaced) {
   auto server = Server::start({.server_id = id, .access = {}});
   ASSERT_TRUE(server) << server.error().message;
   EXPECT_EQ(laser->status(), Status::closed) << "the old segment says so to its readers";
-  EXPECT_TRUE((*server)->create(laser_spec("laser", laser_info())));
+  EXPECT_TRUE((*server)->create(iface_spec(IfaceType::laser, "laser", laser_info())));
 }
 
 TEST(Faults, of_several_servers_that_start_at_once_exactly_one_gets_a_stale_name) {
@@ -275,13 +275,13 @@ TEST(Faults, a_file_that_is_no_iface_under_the_name_of_one_is_replaced_and_never
     const auto opened = Iface::open(id, IfaceType::laser, "laser");
     EXPECT_FALSE(opened);
     auto server = Server::start({.server_id = id, .access = {}}).value();
-    EXPECT_TRUE(server->create(laser_spec("laser", laser_info())));
+    EXPECT_TRUE(server->create(iface_spec(IfaceType::laser, "laser", laser_info())));
   }
 }
 
 TEST(Faults, a_truncated_or_twisted_segment_is_refused_by_readers) {
   Fixture f;
-  auto writer = f.make(laser_spec("laser", laser_info()));
+  auto writer = f.make(iface_spec(IfaceType::laser, "laser", laser_info()));
   Header& header = writer->segment().header();
   const Header good = header;
   const auto is_refused = [&] {
@@ -313,9 +313,9 @@ TEST(Faults, a_truncated_or_twisted_segment_is_refused_by_readers) {
 TEST(Faults, a_scribbling_client_stops_neither_server_nor_its_loop) {
   Fixture f;
   auto simulation = f.make(simulation_spec(simulation_info()));
-  auto laser = f.make(laser_spec("laser", laser_info()));
+  auto laser = f.make(iface_spec(IfaceType::laser, "laser", laser_info()));
   auto camera = f.make(camera_spec(IfaceType::camera, "eye", camera_info()));
-  auto base = f.make(position2d_spec("base", Position2dInfo{}));
+  auto base = f.make(iface_spec(IfaceType::position2d, "base", Position2dInfo{}));
   BarrierOptions options;
   options.participant_timeout = 50ms;  // the scribbler can take the ticks of honest participants away
   RequestBoard board(*simulation, *f.server);
@@ -351,9 +351,9 @@ TEST(Faults, a_file_that_is_cut_short_ends_neither_server_nor_readers) {
   for (const std::size_t size : {0, 1024, 4096}) {
     Fixture f;
     auto simulation = f.make(simulation_spec(simulation_info()));
-    auto laser = f.make(laser_spec("laser", laser_info(4000)));
+    auto laser = f.make(iface_spec(IfaceType::laser, "laser", laser_info(4000)));
     auto camera = f.make(camera_spec(IfaceType::camera, "eye", camera_info(640, 480)));
-    auto base = f.make(position2d_spec("base", Position2dInfo{}));
+    auto base = f.make(iface_spec(IfaceType::position2d, "base", Position2dInfo{}));
     RequestBoard board(*simulation, *f.server);
     Barrier barrier(*simulation, *f.server, {});
     Iface reader = f.open(IfaceType::laser, "laser"), eye = f.open(IfaceType::camera, "eye"),

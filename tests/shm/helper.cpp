@@ -12,8 +12,8 @@
 #include "shm/client.h"
 #include "shm/lockstep.h"
 #include "shm/request_board.h"
+#include "shm/server.h"
 #include "shm/shm_support.h"
-#include "shm/writer.h"
 
 namespace shm::test {
 namespace {
@@ -26,7 +26,7 @@ int serve(std::uint32_t id) {
   if (!server) return std::fprintf(stderr, "%s\n", server.error().message.c_str()), 1;
   auto simulation = (*server)->create(simulation_spec(simulation_info()));
   if (!simulation) return std::fprintf(stderr, "%s\n", simulation.error().message.c_str()), 1;
-  auto laser = (*server)->create(laser_spec("laser", laser_info()));
+  auto laser = (*server)->create(iface_spec(IfaceType::laser, "laser", laser_info()));
   auto camera = (*server)->create(camera_spec(IfaceType::camera, "eye", camera_info()));
   if (!laser || !camera) return std::fprintf(stderr, "no ifaces\n"), 1;
   RequestBoard board(**simulation, **server);

@@ -35,7 +35,7 @@ TEST(SegmentName, names_that_no_file_can_have_are_refused_with_the_reason) {
 
 TEST(Iface, a_published_scan_is_read_as_it_was_written) {
   Fixture f;
-  auto writer = f.make(laser_spec("robot::laser", laser_info()));
+  auto writer = f.make(iface_spec(IfaceType::laser, "robot::laser", laser_info()));
   auto reader = f.open(IfaceType::laser, "robot::laser");
   EXPECT_FALSE(reader.read());
   for (std::size_t i = 0; i < 181; ++i) {
@@ -67,7 +67,7 @@ TEST(Iface, sonar_poses_and_bumper_contacts_have_the_sizes_chosen_at_creation) {
   auto sonar = f.make(sonar_spec("ring", SonarInfo{}, poses));
   BumperInfo bumper_info{};
   bumper_info.capacity = 5;
-  auto bumper = f.make(bumper_spec("bumper", bumper_info));
+  auto bumper = f.make(iface_spec(IfaceType::bumper, "bumper", bumper_info));
   auto sonar_reader = f.open(IfaceType::sonar, "ring");
   ASSERT_EQ(sonar_reader.sonar_poses().size(), 3U);
   EXPECT_EQ(sonar_reader.sonar_poses()[2].x, 3);
@@ -89,7 +89,7 @@ TEST(Iface, sonar_poses_and_bumper_contacts_have_the_sizes_chosen_at_creation) {
 
 TEST(Iface, an_iface_that_is_not_there_is_named_with_what_there_is_instead) {
   Fixture f;
-  auto writer = f.make(laser_spec("a", laser_info()));
+  auto writer = f.make(iface_spec(IfaceType::laser, "a", laser_info()));
   const std::string id = std::to_string(f.id);
   EXPECT_EQ(Iface::open(f.id, IfaceType::laser, "b").error().message, "no laser \"b\" on server " + id + "; there is a");
   EXPECT_EQ(Iface::open(f.id, IfaceType::camera, "b").error().message, "no camera \"b\" on server " + id + "; it has only laser");
@@ -99,20 +99,20 @@ TEST(Iface, an_iface_that_is_not_there_is_named_with_what_there_is_instead) {
 
 TEST(Iface, counts_that_make_no_sense_are_refused) {
   Fixture f;
-  EXPECT_FALSE(f.server->create(laser_spec("a", laser_info(0))));
+  EXPECT_FALSE(f.server->create(iface_spec(IfaceType::laser, "a", laser_info(0))));
   LaserInfo huge = laser_info();
   huge.beams = huge.layers = 0xffffffff;
-  EXPECT_FALSE(f.server->create(laser_spec("a", huge)));
+  EXPECT_FALSE(f.server->create(iface_spec(IfaceType::laser, "a", huge)));
   EXPECT_FALSE(f.server->create(camera_spec(IfaceType::camera, "c", camera_info(0, 10))));
   EXPECT_FALSE(f.server->create(camera_spec(IfaceType::camera, "c", camera_info(0xffffffff, 0xffffffff))));
-  EXPECT_FALSE(f.server->create(laser_spec("a/b", laser_info())));
+  EXPECT_FALSE(f.server->create(iface_spec(IfaceType::laser, "a/b", laser_info())));
   EXPECT_TRUE(find_segments(f.id).empty());
 }
 
 TEST(Iface, a_name_of_this_server_can_not_be_made_twice) {
   Fixture f;
-  auto writer = f.make(laser_spec("a", laser_info()));
-  auto second = f.server->create(laser_spec("a", laser_info()));
+  auto writer = f.make(iface_spec(IfaceType::laser, "a", laser_info()));
+  auto second = f.server->create(iface_spec(IfaceType::laser, "a", laser_info()));
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().message, "laser \"a\" exists already in server " + std::to_string(f.id) + " of this process");
 }
@@ -120,10 +120,10 @@ TEST(Iface, a_name_of_this_server_can_not_be_made_twice) {
 TEST(Iface, the_segment_has_the_mode_asked_for_whatever_the_umask) {
   const mode_t before = umask(077);
   Fixture f;
-  auto strict = f.make(laser_spec("strict", laser_info()));
+  auto strict = f.make(iface_spec(IfaceType::laser, "strict", laser_info()));
   const auto id = f.id;
   auto server = Server::start({.server_id = fresh_server_id(), .access = {.mode = 0660, .group = getgid()}});
-  auto open = (*server)->create(laser_spec("open", laser_info()));
+  auto open = (*server)->create(iface_spec(IfaceType::laser, "open", laser_info()));
   umask(before);
   struct stat status {};
   ASSERT_EQ(stat(("/dev/shm/" + SegmentName{geteuid(), id, IfaceType::laser, "strict"}.text()).c_str(), &status), 0);
@@ -142,7 +142,7 @@ TEST(Access, modes_and_groups_are_read_strictly) {
 
 TEST(Iface, subscriptions_switch_the_sensor_on_and_off) {
   Fixture f;
-  auto writer = f.make(laser_spec("a", laser_info()));
+  auto writer = f.make(iface_spec(IfaceType::laser, "a", laser_info()));
   EXPECT_FALSE(writer->is_subscribed());
   auto first = f.open(IfaceType::laser, "a");
   EXPECT_FALSE(writer->is_subscribed());
@@ -160,7 +160,7 @@ TEST(Iface, subscriptions_switch_the_sensor_on_and_off) {
 
 TEST(Iface, more_clients_than_leases_are_refused_until_one_goes) {
   Fixture f;
-  IfaceSpec spec = laser_spec("a", laser_info());
+  IfaceSpec spec = iface_spec(IfaceType::laser, "a", laser_info());
   spec.geometry.leases = 2;
   auto writer = f.make(spec);
   auto a = f.open(IfaceType::laser, "a"), b = f.open(IfaceType::laser, "a"), c = f.open(IfaceType::laser, "a");
@@ -175,7 +175,7 @@ TEST(Iface, more_clients_than_leases_are_refused_until_one_goes) {
 
 TEST(Iface, the_latest_command_counts_and_its_end_is_told_once) {
   Fixture f;
-  auto writer = f.make(position2d_spec("base", Position2dInfo{}));
+  auto writer = f.make(iface_spec(IfaceType::position2d, "base", Position2dInfo{}));
   Command command{};
   EXPECT_EQ(writer->poll_command(command), CommandChange::none);
   auto a = f.open(IfaceType::position2d, "base"), b = f.open(IfaceType::position2d, "base");
@@ -200,7 +200,7 @@ TEST(Iface, the_latest_command_counts_and_its_end_is_told_once) {
 
 TEST(Iface, a_command_that_is_not_finite_is_refused) {
   Fixture f;
-  auto writer = f.make(position2d_spec("base", Position2dInfo{}));
+  auto writer = f.make(iface_spec(IfaceType::position2d, "base", Position2dInfo{}));
   auto a = f.open(IfaceType::position2d, "base");
   EXPECT_FALSE(a.command_velocity(NAN, 0, 0));
   EXPECT_FALSE(a.command_velocity(0, INFINITY, 0));
@@ -210,7 +210,7 @@ TEST(Iface, a_command_that_is_not_finite_is_refused) {
 
 TEST(Iface, a_wait_ends_with_the_sample_or_the_time_out) {
   Fixture f;
-  auto writer = f.make(laser_spec("a", laser_info()));
+  auto writer = f.make(iface_spec(IfaceType::laser, "a", laser_info()));
   auto reader = f.open(IfaceType::laser, "a");
   EXPECT_EQ(reader.wait(0, 1ms), Wait::timed_out);
   std::thread publisher([&] {
@@ -246,7 +246,7 @@ TEST(Bell, one_that_comes_late_leaves_the_announcement_of_who_has_seen_its_news)
 
 TEST(Iface, the_end_of_the_writer_wakes_a_waiting_reader_at_once) {
   Fixture f;
-  auto writer = f.make(laser_spec("a", laser_info()));
+  auto writer = f.make(iface_spec(IfaceType::laser, "a", laser_info()));
   auto reader = f.open(IfaceType::laser, "a");
   std::thread closer([&] {
     while (load(writer->segment().header().waiting) == 0) std::this_thread::yield();
@@ -256,7 +256,7 @@ TEST(Iface, the_end_of_the_writer_wakes_a_waiting_reader_at_once) {
   closer.join();
   EXPECT_EQ(reader.status(), Status::closed);
   EXPECT_FALSE(reader.reopen());
-  auto again = f.make(laser_spec("a", laser_info()));
+  auto again = f.make(iface_spec(IfaceType::laser, "a", laser_info()));
   ASSERT_TRUE(reader.reopen());
   EXPECT_EQ(reader.status(), Status::live);
 }
@@ -264,7 +264,7 @@ TEST(Iface, the_end_of_the_writer_wakes_a_waiting_reader_at_once) {
 // The place of a client that went, perhaps in the middle of a command, is soon another's, who has said nothing yet.
 TEST(Iface, commands_of_a_client_that_went_are_not_taken_for_those_of_the_next) {
   Fixture f;
-  auto writer = f.make(position2d_spec("base", {}));
+  auto writer = f.make(iface_spec(IfaceType::position2d, "base", Position2dInfo{}));
   Lease& lease = writer->segment().as<Lease>(AreaIndex::leases, 0);
   for (const bool dies_while_writing : {false, true}) {
     std::optional<Iface> first(f.open(IfaceType::position2d, "base"));
@@ -289,7 +289,7 @@ TEST(Iface, commands_of_a_client_that_went_are_not_taken_for_those_of_the_next) 
 
 TEST(Iface, a_reader_never_sees_a_torn_sample) {
   Fixture f;
-  auto writer = f.make(laser_spec("a", laser_info(361)));
+  auto writer = f.make(iface_spec(IfaceType::laser, "a", laser_info(361)));
   std::atomic<bool> is_over{false};
   std::atomic<int> reads{0};
   const auto read_all = [&] {

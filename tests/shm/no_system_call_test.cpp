@@ -56,9 +56,9 @@ TEST(NoSystemCall, publishing_reading_and_polling_while_nobody_waits) {
   if (!runs_without_system_calls([] { (void)wall_ns(); })) GTEST_SKIP() << "the clock of this machine needs a system call";
   Fixture f;
   auto simulation = f.make(simulation_spec(simulation_info()));
-  auto laser = f.make(laser_spec("laser", laser_info()));
+  auto laser = f.make(iface_spec(IfaceType::laser, "laser", laser_info()));
   auto camera = f.make(camera_spec(IfaceType::camera, "eye", camera_info()));
-  auto base = f.make(position2d_spec("base", Position2dInfo{}));
+  auto base = f.make(iface_spec(IfaceType::position2d, "base", Position2dInfo{}));
   RequestBoard board(*simulation, *f.server);
   (void)board.poll();
   auto reader = f.open(IfaceType::laser, "laser");

@@ -14,8 +14,8 @@
 
 #include "shm/client.h"
 #include "shm/requests.h"
+#include "shm/server.h"
 #include "shm/words.h"
-#include "shm/writer.h"
 
 namespace shm::test {
 

@@ -6,7 +6,7 @@
 
 #include "server/simulation.h"
 #include "shm/client.h"
-#include "shm/writer.h"
+#include "shm/server.h"
 #include "support/worlds.h"
 
 namespace sim::test {

@@ -32,7 +32,7 @@ bool tells_at_once(const Alarm& alarm) {
 // A writer that is held up between the news and the bell: the alarm has told of the news already and waits for the next.
 TEST(Alarm, hears_what_comes_after_a_bell_that_came_late) {
   shm::test::Fixture f;
-  const auto writer = f.make(shm::laser_spec("robot::laser", shm::test::laser_info()));
+  const auto writer = f.make(shm::iface_spec(shm::IfaceType::laser, "robot::laser", shm::test::laser_info()));
   const auto segment = opened(*writer);
   auto& header = segment->header();
   Alarm alarm;
@@ -54,7 +54,7 @@ TEST(Alarm, watches_more_than_it_can_sleep_on) {
   std::vector<std::unique_ptr<shm::IfaceWriter>> writers;
   std::vector<SharedSegment> segments;
   for (int i = 0; i < 140; ++i) {
-    writers.push_back(f.make(shm::laser_spec("robot::laser" + std::to_string(i), shm::test::laser_info())));
+    writers.push_back(f.make(shm::iface_spec(shm::IfaceType::laser, "robot::laser" + std::to_string(i), shm::test::laser_info())));
     segments.push_back(opened(*writers.back()));
   }
   Alarm alarm;

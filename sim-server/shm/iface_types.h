@@ -1,0 +1,410 @@
+// The one table of iface types: number, name, constants, samples, what follows them, and every field that people see, with its unit. What
+// is listed, printed, completed, checked and documented of an iface follows from it; the structures themselves are in rtmsim_layout.h, for
+// C. A new type is an enumerator here, its fields and its row. Constants; no thread rule.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "shm/iface_fields.h"
+
+namespace shm {
+
+// Of infos and samples; FrameHead is that of the frames of camera, depth and points.
+using SimulationInfo = ::rtmsim_simulation_info;
+using SimulationSample = ::rtmsim_simulation_sample;
+using LaserInfo = ::rtmsim_laser_info;
+using LaserSample = ::rtmsim_laser_sample;
+using SonarInfo = ::rtmsim_sonar_info;
+using SonarSample = ::rtmsim_sonar_sample;
+using Position2dInfo = ::rtmsim_position2d_info;
+using Position2dSample = ::rtmsim_position2d_sample;
+using Position3dInfo = ::rtmsim_position3d_info;
+using Position3dSample = ::rtmsim_position3d_sample;
+using CameraInfo = ::rtmsim_camera_info;
+using ImuInfo = ::rtmsim_imu_info;
+using ImuSample = ::rtmsim_imu_sample;
+using GpsInfo = ::rtmsim_gps_info;
+using GpsSample = ::rtmsim_gps_sample;
+using BumperInfo = ::rtmsim_bumper_info;
+using Contact = ::rtmsim_contact;
+using BumperSample = ::rtmsim_bumper_sample;
+using MeterInfo = ::rtmsim_meter_info;
+using ForceTorqueSample = ::rtmsim_force_torque_sample;
+using AltimeterSample = ::rtmsim_altimeter_sample;
+using MagnetometerSample = ::rtmsim_magnetometer_sample;
+using AirPressureSample = ::rtmsim_air_pressure_sample;
+using TruthInfo = ::rtmsim_truth_info;
+using TruthSample = ::rtmsim_truth_sample;
+
+enum class IfaceType : std::uint32_t {
+  simulation = RTMSIM_SIMULATION,
+  laser = RTMSIM_LASER,
+  sonar = RTMSIM_SONAR,
+  position2d = RTMSIM_POSITION2D,
+  position3d = RTMSIM_POSITION3D,
+  camera = RTMSIM_CAMERA,
+  depth = RTMSIM_DEPTH,
+  points = RTMSIM_POINTS,
+  imu = RTMSIM_IMU,
+  gps = RTMSIM_GPS,
+  bumper = RTMSIM_BUMPER,
+  truth = RTMSIM_TRUTH,
+  force_torque = RTMSIM_FORCE_TORQUE,
+  altimeter = RTMSIM_ALTIMETER,
+  magnetometer = RTMSIM_MAGNETOMETER,
+  air_pressure = RTMSIM_AIR_PRESSURE,
+};
+
+struct IfaceRow {
+  IfaceType type;
+  std::string_view name, meaning;
+  std::size_t info_size, sample_size;  // fixed parts; a type without samples publishes frames
+  std::span<const Field> info, sample;
+  bool takes_commands = false;
+  std::uint64_t (*count)(const void* info) = nullptr;  // elements of an array of its tails, or pixels of a frame
+  std::uint64_t most = 0;                              // of those; at least one
+  Tail info_tail{}, sample_tail{};
+  const void* (*filled)(const void* sample) = nullptr;  // u32: elements of the sample's arrays that are true, at most count
+  bool is_always_full = false;                          // that is always count
+};
+
+namespace detail {
+
+// --- infos and samples: the order is that in which they are printed
+
+inline constexpr std::array simulation_info{field<&SimulationInfo::world>("world"),       field<&SimulationInfo::file>("file"),
+                                            field<&SimulationInfo::step_ns>("step", "s"), field<&SimulationInfo::seed>("seed"),
+                                            flag<&SimulationInfo::lockstep>("lockstep"),  field<&SimulationInfo::version>("version")};
+inline constexpr std::array simulation_sample{
+    field<&SimulationSample::stamp>("stamp"),       field<&SimulationSample::steps>("steps"),
+    flag<&SimulationSample::paused>("paused"),      field<&SimulationSample::waiting_for>("waiting_for"),
+    field<&SimulationSample::rtf_reached>("rtf"),   field<&SimulationSample::load>("load"),
+    field<&SimulationSample::contacts>("contacts"), field<&SimulationSample::participants>("participants")};
+
+inline constexpr std::array laser_info{field<&LaserInfo::model>("model"),
+                                       field<&LaserInfo::beams>("beams"),
+                                       field<&LaserInfo::layers>("layers"),
+                                       field<&LaserInfo::min_angle>("min_angle", "rad"),
+                                       field<&LaserInfo::max_angle>("max_angle", "rad"),
+                                       field<&LaserInfo::angle_step>("angle_step", "rad"),
+                                       field<&LaserInfo::min_vertical>("min_vertical", "rad"),
+                                       field<&LaserInfo::max_vertical>("max_vertical", "rad"),
+                                       field<&LaserInfo::min_range>("min_range", "m"),
+                                       field<&LaserInfo::max_range>("max_range", "m"),
+                                       field<&LaserInfo::range_step>("resolution", "m"),
+                                       field<&LaserInfo::rate>("rate", "Hz"),
+                                       field<&LaserInfo::noise>("noise", "m"),
+                                       field<&LaserInfo::pose>("pose")};
+inline constexpr std::array laser_sample{field<&LaserSample::stamp>("stamp"), followers("ranges", 0, "m"), followers("intensities", 1),
+                                         field<&LaserSample::pose>("pose")};
+
+inline constexpr std::array sonar_info{field<&SonarInfo::model>("model"),
+                                       field<&SonarInfo::count>("count"),
+                                       field<&SonarInfo::min_range>("min_range", "m"),
+                                       field<&SonarInfo::max_range>("max_range", "m"),
+                                       field<&SonarInfo::cone>("cone", "rad"),
+                                       field<&SonarInfo::rate>("rate", "Hz"),
+                                       field<&SonarInfo::noise>("noise", "m"),
+                                       followers("poses", 0)};
+inline constexpr std::array sonar_sample{field<&SonarSample::stamp>("stamp"), followers("ranges", 0, "m")};
+
+inline constexpr std::array position2d_info{field<&Position2dInfo::model>("model"),
+                                            field<&Position2dInfo::drive>("drive"),
+                                            field<&Position2dInfo::size>("size", "m"),
+                                            field<&Position2dInfo::max_speed>("max_speed", "m/s"),
+                                            field<&Position2dInfo::max_yaw_rate>("max_yaw_rate", "rad/s"),
+                                            field<&Position2dInfo::max_acceleration>("max_acceleration", "m/s^2"),
+                                            field<&Position2dInfo::max_yaw_acceleration>("max_yaw_acceleration", "rad/s^2"),
+                                            field<&Position2dInfo::wheel_separation>("wheel_separation", "m"),
+                                            field<&Position2dInfo::wheel_radius>("wheel_radius", "m"),
+                                            field<&Position2dInfo::rate>("rate", "Hz"),
+                                            field<&Position2dInfo::pose>("pose")};
+inline constexpr std::array position2d_sample{field<&Position2dSample::stamp>("stamp"),
+                                              field<&Position2dSample::odometry>("odometry", "m m rad"),
+                                              field<&Position2dSample::velocity>("velocity", "m/s m/s rad/s"),
+                                              field<&Position2dSample::true_pose>("true_pose"),
+                                              field<&Position2dSample::true_velocity>("true_velocity", "m/s m/s rad/s"),
+                                              field<&Position2dSample::command>("command", "m/s m/s rad/s"),
+                                              flag<&Position2dSample::stalled>("stalled"),
+                                              flag<&Position2dSample::motors_enabled>("motors_enabled"),
+                                              flag<&Position2dSample::commanded>("commanded")};
+
+inline constexpr std::array position3d_info{field<&Position3dInfo::model>("model"),
+                                            field<&Position3dInfo::drive>("drive"),
+                                            field<&Position3dInfo::size>("size", "m"),
+                                            field<&Position3dInfo::max_speed>("max_speed", "m/s"),
+                                            field<&Position3dInfo::max_yaw_rate>("max_yaw_rate", "rad/s"),
+                                            field<&Position3dInfo::rate>("rate", "Hz"),
+                                            field<&Position3dInfo::pose>("pose")};
+inline constexpr std::array position3d_sample{field<&Position3dSample::stamp>("stamp"),
+                                              field<&Position3dSample::odometry>("odometry"),
+                                              field<&Position3dSample::velocity>("velocity", "m/s, rad/s"),
+                                              field<&Position3dSample::true_pose>("true_pose"),
+                                              field<&Position3dSample::command>("command", "m/s, rad/s"),
+                                              flag<&Position3dSample::commanded>("commanded")};
+
+// Of camera, depth and points; their samples are the heads of frames.
+inline constexpr std::array camera_info{field<&CameraInfo::model>("model"),
+                                        field<&CameraInfo::width>("width", "pixel"),
+                                        field<&CameraInfo::height>("height", "pixel"),
+                                        field<&CameraInfo::format>("format"),
+                                        field<&CameraInfo::stride>("stride", "byte"),
+                                        field<&CameraInfo::hfov>("hfov", "rad"),
+                                        field<&CameraInfo::near_clip>("near", "m"),
+                                        field<&CameraInfo::far_clip>("far", "m"),
+                                        field<&CameraInfo::fx>("fx", "pixel"),
+                                        field<&CameraInfo::fy>("fy", "pixel"),
+                                        field<&CameraInfo::cx>("cx", "pixel"),
+                                        field<&CameraInfo::cy>("cy", "pixel"),
+                                        field<&CameraInfo::distortion>("distortion"),
+                                        field<&CameraInfo::rate>("rate", "Hz"),
+                                        field<&CameraInfo::noise>("noise"),
+                                        field<&CameraInfo::pose>("pose")};
+inline constexpr std::array frame_head{
+    field<&FrameHead::stamp>("stamp"),   field<&FrameHead::width>("width", "pixel"), field<&FrameHead::height>("height", "pixel"),
+    field<&FrameHead::format>("format"), field<&FrameHead::size>("size", "byte"),    field<&FrameHead::pose>("pose")};
+
+inline constexpr std::array imu_info{field<&ImuInfo::model>("model"), field<&ImuInfo::rate>("rate", "Hz"),
+                                     field<&ImuInfo::angular_velocity_noise>("angular_velocity_noise", "rad/s"),
+                                     field<&ImuInfo::acceleration_noise>("acceleration_noise", "m/s^2"), field<&ImuInfo::pose>("pose")};
+inline constexpr std::array imu_sample{field<&ImuSample::stamp>("stamp"), field<&ImuSample::orientation>("orientation"),
+                                       field<&ImuSample::angular_velocity>("angular_velocity", "rad/s"),
+                                       field<&ImuSample::acceleration>("acceleration", "m/s^2")};
+
+inline constexpr std::array gps_info{field<&GpsInfo::model>("model"),
+                                     field<&GpsInfo::rate>("rate", "Hz"),
+                                     field<&GpsInfo::latitude>("latitude", "degree"),
+                                     field<&GpsInfo::longitude>("longitude", "degree"),
+                                     field<&GpsInfo::altitude>("altitude", "m"),
+                                     field<&GpsInfo::heading>("heading", "rad"),
+                                     field<&GpsInfo::position_noise>("position_noise", "m"),
+                                     field<&GpsInfo::altitude_noise>("altitude_noise", "m"),
+                                     field<&GpsInfo::pose>("pose")};
+inline constexpr std::array gps_sample{field<&GpsSample::stamp>("stamp"), field<&GpsSample::latitude>("latitude", "degree"),
+                                       field<&GpsSample::longitude>("longitude", "degree"), field<&GpsSample::altitude>("altitude", "m"),
+                                       field<&GpsSample::velocity>("velocity", "m/s")};
+
+inline constexpr std::array bumper_info{field<&BumperInfo::model>("model"), field<&BumperInfo::rate>("rate", "Hz"),
+                                        field<&BumperInfo::capacity>("capacity"), field<&BumperInfo::pose>("pose")};
+inline constexpr std::array bumper_sample{field<&BumperSample::stamp>("stamp"), field<&BumperSample::total>("total"),
+                                          followers("contacts", 0)};
+inline constexpr std::array contact_fields{field<&Contact::other>("other"), field<&Contact::position>("position", "m"),
+                                           field<&Contact::normal>("normal"), field<&Contact::force>("force", "N"),
+                                           field<&Contact::depth>("depth", "m")};
+
+inline constexpr std::array meter_info{field<&MeterInfo::model>("model"), field<&MeterInfo::rate>("rate", "Hz"),
+                                       field<&MeterInfo::noise>("noise"), field<&MeterInfo::reference>("reference", "m"),
+                                       field<&MeterInfo::pose>("pose"),   field<&MeterInfo::joint>("joint")};
+inline constexpr std::span meter_info_without_joint = std::span(meter_info).first<meter_info.size() - 1>();
+inline constexpr std::array force_torque_sample{field<&ForceTorqueSample::stamp>("stamp"), field<&ForceTorqueSample::force>("force", "N"),
+                                                field<&ForceTorqueSample::torque>("torque", "N m")};
+inline constexpr std::array altimeter_sample{field<&AltimeterSample::stamp>("stamp"), field<&AltimeterSample::height>("height", "m"),
+                                             field<&AltimeterSample::climb>("climb", "m/s")};
+inline constexpr std::array magnetometer_sample{field<&MagnetometerSample::stamp>("stamp"),
+                                                field<&MagnetometerSample::field>("field", "T")};
+inline constexpr std::array air_pressure_sample{field<&AirPressureSample::stamp>("stamp"),
+                                                field<&AirPressureSample::pressure>("pressure", "Pa")};
+
+inline constexpr std::array truth_info{field<&TruthInfo::model>("model")};
+inline constexpr std::array truth_sample{field<&TruthSample::stamp>("stamp"), field<&TruthSample::pose>("pose"),
+                                         field<&TruthSample::velocity>("velocity", "m/s, rad/s")};
+
+// --- counts
+
+inline constexpr std::uint64_t most_values = std::uint64_t{1} << 24;
+inline constexpr std::uint64_t most_pixels = std::uint64_t{1} << 26;
+inline constexpr std::uint64_t most_contacts = 65536;
+
+constexpr auto beams = [](const void* info) {
+  const auto& laser = *static_cast<const LaserInfo*>(info);
+  return std::uint64_t{laser.beams} * laser.layers;
+};
+constexpr auto transducers = [](const void* info) { return std::uint64_t{static_cast<const SonarInfo*>(info)->count}; };
+constexpr auto capacity = [](const void* info) { return std::uint64_t{static_cast<const BumperInfo*>(info)->capacity}; };
+constexpr auto pixels = [](const void* info) {
+  const auto& camera = *static_cast<const CameraInfo*>(info);
+  return std::uint64_t{camera.width} * camera.height;
+};
+
+// The sizes stand in each row as numbers, too: a structure that changes its size does not compile.
+template <class Struct, std::size_t bytes>
+constexpr std::size_t size() {
+  static_assert(sizeof(Struct) == bytes);
+  return bytes;
+}
+
+constexpr IfaceRow frames(IfaceType type, std::string_view name, std::string_view meaning) {
+  return {.type = type,
+          .name = name,
+          .meaning = meaning,
+          .info_size = size<CameraInfo, 320>(),
+          .sample_size = 0,
+          .info = camera_info,
+          .sample = frame_head,
+          .count = pixels,
+          .most = most_pixels};
+}
+
+}  // namespace detail
+
+// By number, from 1 on.
+inline constexpr std::array iface_types{
+    IfaceRow{.type = IfaceType::simulation,
+             .name = "simulation",
+             .meaning = "clock, statistics, requests, participants",
+             .info_size = detail::size<SimulationInfo, 696>(),
+             .sample_size = detail::size<SimulationSample, 600>(),
+             .info = detail::simulation_info,
+             .sample = detail::simulation_sample},
+    IfaceRow{.type = IfaceType::laser,
+             .name = "laser",
+             .meaning = "ranges of a scanner in one or more layers",
+             .info_size = detail::size<LaserInfo, 272>(),
+             .sample_size = detail::size<LaserSample, 96>(),
+             .info = detail::laser_info,
+             .sample = detail::laser_sample,
+             .count = detail::beams,
+             .most = detail::most_values,
+             .sample_tail = {2, sizeof(float), detail::value_fields},
+             .filled = detail::part<&LaserSample::count>(),
+             .is_always_full = true},
+    IfaceRow{.type = IfaceType::sonar,
+             .name = "sonar",
+             .meaning = "ranges of a ring of transducers",
+             .info_size = detail::size<SonarInfo, 232>(),
+             .sample_size = detail::size<SonarSample, 40>(),
+             .info = detail::sonar_info,
+             .sample = detail::sonar_sample,
+             .count = detail::transducers,
+             .most = detail::most_values,
+             .info_tail = {1, sizeof(Pose), detail::pose_fields},
+             .sample_tail = {1, sizeof(float), detail::value_fields},
+             .filled = detail::part<&SonarSample::count>(),
+             .is_always_full = true},
+    IfaceRow{.type = IfaceType::position2d,
+             .name = "position2d",
+             .meaning = "drive of a robot on wheels",
+             .info_size = detail::size<Position2dInfo, 272>(),
+             .sample_size = detail::size<Position2dSample, 200>(),
+             .info = detail::position2d_info,
+             .sample = detail::position2d_sample,
+             .takes_commands = true},
+    IfaceRow{.type = IfaceType::position3d,
+             .name = "position3d",
+             .meaning = "drive of a robot that flies",
+             .info_size = detail::size<Position3dInfo, 240>(),
+             .sample_size = detail::size<Position3dSample, 304>(),
+             .info = detail::position3d_info,
+             .sample = detail::position3d_sample,
+             .takes_commands = true},
+    detail::frames(IfaceType::camera, "camera", "ring of images"),
+    detail::frames(IfaceType::depth, "depth", "ring of float images [m]"),
+    detail::frames(IfaceType::points, "points", "ring of float x y z (and intensity)"),
+    IfaceRow{.type = IfaceType::imu,
+             .name = "imu",
+             .meaning = "orientation, angular velocity, acceleration",
+             .info_size = detail::size<ImuInfo, 208>(),
+             .sample_size = detail::size<ImuSample, 112>(),
+             .info = detail::imu_info,
+             .sample = detail::imu_sample},
+    IfaceRow{.type = IfaceType::gps,
+             .name = "gps",
+             .meaning = "place on earth",
+             .info_size = detail::size<GpsInfo, 248>(),
+             .sample_size = detail::size<GpsSample, 80>(),
+             .info = detail::gps_info,
+             .sample = detail::gps_sample},
+    IfaceRow{.type = IfaceType::bumper,
+             .name = "bumper",
+             .meaning = "contacts",
+             .info_size = detail::size<BumperInfo, 200>(),
+             .sample_size = detail::size<BumperSample, 40>(),
+             .info = detail::bumper_info,
+             .sample = detail::bumper_sample,
+             .count = detail::capacity,
+             .most = detail::most_contacts,
+             .sample_tail = {1, detail::size<Contact, 192>(), detail::contact_fields},
+             .filled = detail::part<&BumperSample::count>()},
+    IfaceRow{.type = IfaceType::truth,
+             .name = "truth",
+             .meaning = "true pose and velocity of a model",
+             .info_size = detail::size<TruthInfo, 128>(),
+             .sample_size = detail::size<TruthSample, 136>(),
+             .info = detail::truth_info,
+             .sample = detail::truth_sample},
+    IfaceRow{.type = IfaceType::force_torque,
+             .name = "force_torque",
+             .meaning = "load of a joint",
+             .info_size = detail::size<MeterInfo, 344>(),
+             .sample_size = detail::size<ForceTorqueSample, 80>(),
+             .info = detail::meter_info,
+             .sample = detail::force_torque_sample},
+    IfaceRow{.type = IfaceType::altimeter,
+             .name = "altimeter",
+             .meaning = "height and climb",
+             .info_size = detail::size<MeterInfo, 344>(),
+             .sample_size = detail::size<AltimeterSample, 48>(),
+             .info = detail::meter_info_without_joint,
+             .sample = detail::altimeter_sample},
+    IfaceRow{.type = IfaceType::magnetometer,
+             .name = "magnetometer",
+             .meaning = "the earth's magnetic field",
+             .info_size = detail::size<MeterInfo, 344>(),
+             .sample_size = detail::size<MagnetometerSample, 56>(),
+             .info = detail::meter_info_without_joint,
+             .sample = detail::magnetometer_sample},
+    IfaceRow{.type = IfaceType::air_pressure,
+             .name = "air_pressure",
+             .meaning = "pressure of the air",
+             .info_size = detail::size<MeterInfo, 344>(),
+             .sample_size = detail::size<AirPressureSample, 40>(),
+             .info = detail::meter_info_without_joint,
+             .sample = detail::air_pressure_sample},
+};
+
+// --- what follows from it
+
+constexpr bool is_type(std::uint32_t type) { return type >= 1 && type <= iface_types.size(); }
+// Only of a type that there is.
+constexpr const IfaceRow& row_of(IfaceType type) { return iface_types[static_cast<std::size_t>(type) - 1]; }
+constexpr std::string_view to_text(IfaceType type) { return is_type(static_cast<std::uint32_t>(type)) ? row_of(type).name : "?"; }
+constexpr std::optional<IfaceType> parse_type(std::string_view name) {
+  for (const IfaceRow& row : iface_types) {
+    if (row.name == name) return row.type;
+  }
+  return std::nullopt;
+}
+// Camera, depth and points publish frames; all others publish samples.
+constexpr bool has_frames(IfaceType type) { return row_of(type).sample_size == 0; }
+
+// Elements in each array of the tails of an iface with this info, or pixels of its frames; empty when that is 0 or more than can be.
+constexpr std::optional<std::uint64_t> plausible_count(const IfaceRow& row, const void* info) {
+  if (row.count == nullptr) return 0;
+  const std::uint64_t count = row.count(info);
+  if (count < 1 || count > row.most) return std::nullopt;
+  return count;
+}
+constexpr std::size_t info_size(const IfaceRow& row, std::uint64_t count) {
+  return row.info_size + row.info_tail.arrays * row.info_tail.size * count;
+}
+// A multiple of 8. 0 for those with frames.
+constexpr std::size_t sample_size(const IfaceRow& row, std::uint64_t count) {
+  return (row.sample_size + row.sample_tail.arrays * row.sample_tail.size * count + 7) / 8 * 8;
+}
+
+namespace detail {
+constexpr bool stand_by_number() {
+  for (std::size_t i = 0; i < iface_types.size(); ++i) {
+    if (static_cast<std::size_t>(iface_types[i].type) != i + 1) return false;
+  }
+  return true;
+}
+static_assert(stand_by_number(), "the row of type n is the n-th");
+}  // namespace detail
+
+}  // namespace shm

@@ -1,0 +1,53 @@
+// What an IfaceWriter holds, for it and the Server that tends it. See writer.h for the thread rule.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "shm/frame_ring.h"
+#include "shm/futex.h"
+#include "shm/lease_table.h"
+#include "shm/process.h"
+#include "shm/words.h"
+#include "shm/writer.h"
+
+namespace shm {
+
+struct IfaceWriter::Impl {
+  Impl(Segment made, std::size_t sample, std::size_t elements)
+      : segment(std::move(made)), sample_size(sample), count(elements), staging((sample + 7) / 8), leases(segment), ring(segment) {}
+
+  Segment segment;
+  std::size_t sample_size;
+  std::size_t count;  // elements in each array that follows a sample
+  std::vector<std::uint64_t> staging;
+  LeaseTable leases;
+  FrameRing ring;
+  std::uint64_t sequence = 0;
+  std::uint32_t resets = 0;
+  std::atomic<std::uint32_t> served{0};  // LeaseTable::times_switched_on at the last publication
+
+  std::uint64_t seen_command = 0;
+  std::uint64_t commander = 0;  // owner word of the lease whose command is in force
+  std::size_t commander_lease = 0;
+  bool is_cut_told = false;  // under the lock of the server's ifaces
+
+  Stamp next_stamp(std::chrono::nanoseconds sim_time, bool is_valid) const {
+    return {sequence + 1, sim_time.count(), wall_ns(), is_valid ? 1U : 0U, resets};
+  }
+  void announce_latest() {
+    Header& header = segment.header();
+    served.store(leases.times_switched_on(), std::memory_order_relaxed);
+    store(header.sequence, sequence);  // pairs with the acquire in Iface::sequence
+    store(header.wake_word, static_cast<std::uint32_t>(sequence), std::memory_order_seq_cst);
+    ring_readers();
+  }
+  void ring_readers() { shm::ring(segment.header().wake_word, segment.header().waiting); }
+  bool read_command(std::size_t index, Command& command) const;
+  CommandChange lose();
+};
+
+}  // namespace shm

@@ -1,0 +1,15 @@
+// Infos, samples and heads of frames of all types of ifaces as JSON, by the table of types. One thread per Iface.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "shm/client.h"
+
+namespace simctl {
+
+nlohmann::ordered_json info_json(const shm::Iface& iface);
+// Only after the iface has been read.
+nlohmann::ordered_json sample_json(const shm::Iface& iface);
+nlohmann::ordered_json frame_json(const shm::HeldFrame& frame);
+
+}  // namespace simctl
