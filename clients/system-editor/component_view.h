@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "naming_tree.h"
+#include "parameter_check.h"
 
 namespace editor {
 
@@ -50,6 +51,8 @@ struct ContextView {
 struct ConfigurationSetView {
   std::string id;
   std::vector<std::pair<std::string, std::string>> values;  // in the component's order
+
+  bool is_hidden() const { return is_hidden_set(id); }
 };
 
 // What to ask for besides the profile; each costs calls.

@@ -86,7 +86,7 @@ std::vector<base::Offer> configuration(const Editor& editor, const std::vector<s
   if (!component) return {};
   std::vector<base::Offer> offers;
   for (const auto& set : component->configuration_sets) {
-    if (set.id.starts_with("_")) continue;
+    if (set.is_hidden()) continue;
     if (sets) offers.push_back({set.id, set.id == component->active_set ? "active" : ""});
     if (sets || (set.id != component->active_set && !component->active_set.empty())) continue;
     for (const auto& [key, value] : set.values) offers.push_back({key, value});

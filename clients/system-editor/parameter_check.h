@@ -6,6 +6,10 @@
 
 namespace editor {
 
+// Sets like __type__, __widget__ and __constraints__ hold what editors know of parameters, not values: they are shown and kept, and never
+// set, compared or changed.
+inline bool is_hidden_set(const std::string& id) { return id.starts_with("_"); }
+
 // "" or what was expected. Types: the integers of C++ and C99, float, double, bool, string, std::vector<...> and sequences with commas; one
 // that is not known allows everything.
 std::string type_problem(const std::string& type, const std::string& value);

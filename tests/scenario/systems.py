@@ -284,8 +284,33 @@ def save_and_load():
     differences(wanted)
 
 
+# A profile as rtcryo writes it, with what editors know of parameters in sets of their own: types, widgets and constraints are no values.
+def hidden_sets():
+    rig.server()
+    rig.naming()
+    rig.host("RTCLaser", "LaserObstacleAvoid", "RTCPosition2d")
+    rig.there(*avoidance)
+    values = {name: json.loads(rig.rtse("--json", "cat", name))["configuration"] for name in avoidance}
+    for ending in ("xml", "yaml"):
+        profile = f"{rig.source}/tests/golden/rtsprofile_hidden_sets.{ending}"
+        rig.rtse("load", profile)
+        assert rig.rtse("conf", "RTCPosition2d0", "get", "command_timeout").strip() == "0.7"
+        for name in avoidance:
+            now = json.loads(rig.rtse("--json", "cat", name))["configuration"]
+            assert {key: now[key] for key in now if key.startswith("_")} == {key: values[name][key] for key in values[name] if key.startswith("_")}
+        rig.rtse("check", profile, "--state", "inactive")
+        rig.rtse("conf", "RTCPosition2d0", "set", "command_timeout", "0.6")
+        wrong = rig.try_rtse("check", profile, "--state", "inactive")
+        assert wrong.returncode == 1 and wrong.stderr.count("\n") == 1 and "command_timeout" in wrong.stderr, wrong.stderr
+        rig.rtse("load", profile, "--force")
+        rig.rtse("check", profile, "--state", "inactive")
+        rig.rtse("teardown", profile)
+        ran = rig.try_rtse("run", profile, "--world", f"{rig.source}/worlds/obstacle_course.sdf", "--duration", "1", "--module-path", rig.lib_dir)
+        assert ran.returncode == 0 and not ran.stderr, ran
+
+
 cases = {f.__name__: f for f in (kill_simulator, kill_host, kill_avoider, kill_sensor, kill_naming, one_process, four_processes, late_naming, late_simulator,
-                                 two_robots, save_and_load)}
+                                 two_robots, save_and_load, hidden_sets)}
 with rig:
     cases[case]()
 print("ok")

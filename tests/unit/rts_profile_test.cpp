@@ -34,7 +34,7 @@ TEST(RtsProfile, a_system_saved_by_rtcryo_is_read) {
 }
 
 TEST(RtsProfile, xml_and_yaml_keep_everything) {
-  for (const auto name : {"rtsprofile_cpp.xml", "rtsprofile_python.xml"}) {
+  for (const auto name : {"rtsprofile_cpp.xml", "rtsprofile_python.xml", "rtsprofile_hidden_sets.xml", "rtsprofile_hidden_sets.yaml"}) {
     auto system = read_system(golden(name));
     ASSERT_TRUE(system.ok()) << system.error().message;
     system->start_up = {{"SeqOut0", "127.0.0.1:2898/SeqOut0.rtc", "RTC:AIST:example:SeqOut:2.0.0", "0", 2}};

@@ -60,6 +60,7 @@ void check_component(const Matched& matched, const SavedComponent& saved, const 
                      ", expected " + base::in_quotes(saved.active_set)});
   }
   for (const auto& set : saved.configuration_sets) {
+    if (set.is_hidden()) continue;
     for (const auto& [key, value] : set.values) {
       std::string is;
       bool found = false;

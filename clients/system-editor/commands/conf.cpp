@@ -30,7 +30,7 @@ const ConfigurationSetView* find_set(const ComponentView& component, const std::
 Error no_such_set(const ComponentView& component, const std::string& id) {
   std::vector<std::string> names;
   for (const auto& set : component.configuration_sets) {
-    if (!set.id.starts_with("_")) names.push_back(set.id);
+    if (!set.is_hidden()) names.push_back(set.id);
   }
   return {"component " + component.path + ": has no configuration set " + base::in_quotes(id) + "; it has " + base::join(names, ", ")};
 }
@@ -53,7 +53,7 @@ void print_sets(Editor& editor, const ComponentView& component, bool all) {
     return editor.print(json);
   }
   for (const auto& set : component.configuration_sets) {
-    if (set.id.starts_with("_") && !all) continue;
+    if (set.is_hidden() && !all) continue;
     std::cout << (set.id == component.active_set ? "* " : "  ") << set.id << '\n';
     for (const auto& [key, value] : set.values) std::cout << "      " << key << "  " << value << '\n';
   }
@@ -136,7 +136,7 @@ void configure(Editor& editor, const ConfigurationOptions& options) {
   if (id.empty()) id = "default";
   const auto* set = find_set(*component, id);
   if (!set) return editor.fail(no_such_set(*component, id));
-  if (id.starts_with("_") && options.action == "set")
+  if (set->is_hidden() && options.action == "set")
     return editor.fail({"conf set: set " + id + " holds what editors know of parameters, not values"});
   if (options.action == "get") {
     for (const auto& [key, value] : set->values) {

@@ -235,7 +235,7 @@ void print_component(const ComponentView& component, const std::vector<Component
     for (const auto& [key, value] : context.properties) std::cout << "     " << key << " = " << value << '\n';
   }
   for (const auto& set : component.configuration_sets) {
-    if (set.id.starts_with("_") && !is_long) continue;
+    if (set.is_hidden() && !is_long) continue;
     std::cout << "  configuration " << set.id << (set.id == component.active_set ? " (active)" : "") << '\n';
     for (const auto& [key, value] : set.values) std::cout << "     " << key << " = " << value << '\n';
   }

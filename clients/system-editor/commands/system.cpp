@@ -49,7 +49,7 @@ SavedComponent to_saved(CORBA::ORB_ptr orb, const ComponentView& component) {
   if (component.category.starts_with("composite.")) saved.composite_type = component.category.substr(std::string("composite.").size());
   for (const auto& port : component.ports) (port.is_data_port() ? saved.data_ports : saved.service_ports).push_back({port.name});
   for (const auto& set : component.configuration_sets) {
-    if (!set.id.starts_with("_")) saved.configuration_sets.push_back({set.id, set.values});
+    if (!set.is_hidden()) saved.configuration_sets.push_back({set.id, set.values});
   }
   for (const auto& context : component.contexts) {
     if (!context.is_owned) continue;
@@ -190,7 +190,7 @@ void tell_unknown_keys(const ComponentView& component, const SavedComponent& sav
   std::map<std::string, std::vector<std::string>> unknown;  // key -> sets of the profile
   for (const auto& set : saved.configuration_sets) {
     for (const auto& [key, value] : set.values) {
-      if (!set.id.starts_with("_") && !known.contains(key)) unknown[key].push_back(set.id);
+      if (!set.is_hidden() && !known.contains(key)) unknown[key].push_back(set.id);
     }
   }
   const auto names = known.empty() ? "none" : base::join(std::vector<std::string>(known.begin(), known.end()), ", ");
@@ -207,6 +207,7 @@ Result<void> restore_configuration(const Matched& matched, const SavedComponent&
   tell_unknown_keys(*component, saved);
   std::vector<std::string> problems;
   for (const auto& set : saved.configuration_sets) {
+    if (set.is_hidden()) continue;
     const auto values = options.force ? set.values : good_values(*component, set, problems);
     if (values.empty()) continue;
     if (options.dry_run) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "parameter_check.h"
 
 namespace editor {
 
@@ -24,6 +25,8 @@ struct SavedPort {
 struct SavedConfigurationSet {
   std::string id;
   NamedValues values;
+
+  bool is_hidden() const { return is_hidden_set(id); }
 };
 
 struct SavedContext {

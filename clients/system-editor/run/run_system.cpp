@@ -264,6 +264,7 @@ class Run {
   Result<void> wire() {
     for (auto& component : system_.components) {
       for (auto& set : component.configuration_sets) {
+        if (set.is_hidden()) continue;
         for (auto& [key, value] : set.values) {
           if (key == "server_id") value = simulator_.id();
         }
