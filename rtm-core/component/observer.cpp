@@ -92,21 +92,20 @@ static_assert(static_cast<int>(Kind::user_defined) == RTC::USER_DEFINED && stati
 class Link {
  public:
   using Send = std::function<void(Kind, const std::string& hint)>;
-  Link(Send send, std::set<Kind> observed, std::chrono::nanoseconds port_interval)
-      : courier_("component observer"), send_(std::move(send)), observed_(std::move(observed)), port_interval_(port_interval) {}
+  Link(Send send, std::set<Kind> observed) : courier_("component observer"), send_(std::move(send)), observed_(std::move(observed)) {}
 
   void tell(Kind kind, const std::string& hint) {
     if (observed_.count(kind) != 0) courier_.send([this, kind, hint] { send_(kind, hint); });
   }
 
   // At most one such message per interval.
-  void tell_of_sample(const std::string& hint) {
+  void tell_of_sample(const std::string& hint, std::chrono::nanoseconds interval) {
     if (observed_.count(Kind::port_profile) == 0) return;
     const auto now = std::chrono::steady_clock::now();
     {
       auto last = last_told_.lock();
       const auto [it, is_new] = last->try_emplace(hint, now);
-      if (!is_new && now - it->second < port_interval_) return;
+      if (!is_new && now - it->second < interval) return;
       it->second = now;
     }
     tell(Kind::port_profile, hint);
@@ -124,7 +123,6 @@ class Link {
   corba::Courier courier_;
   const Send send_;
   const std::set<Kind> observed_;
-  const std::chrono::nanoseconds port_interval_;
   base::Guarded<std::map<std::string, std::chrono::steady_clock::time_point>, base::Rank::buffer> last_told_;
 };
 
@@ -140,33 +138,38 @@ class Calls final : public Base {
 
 class SampleListener final : public ConnectorDataListener {
  public:
-  SampleListener(std::shared_ptr<Link> link, std::string hint) : link_(std::move(link)), hint_(std::move(hint)) {}
+  SampleListener(std::shared_ptr<Link> link, std::string hint, std::chrono::nanoseconds interval)
+      : link_(std::move(link)), hint_(std::move(hint)), interval_(interval) {}
   ReturnCode notify(ConnectorInfo&, corba::EventData&) override {
-    link_->tell_of_sample(hint_);
+    link_->tell_of_sample(hint_, interval_);
     return NO_CHANGE;
   }
 
  private:
   std::shared_ptr<Link> link_;
   std::string hint_;
+  std::chrono::nanoseconds interval_;
 };
 
-std::string short_name(const std::string& port_name) {
-  const auto dot = port_name.rfind('.');
-  return dot == std::string::npos ? port_name : port_name.substr(dot + 1);
-}
+// The least time between two messages about samples of one port.
+struct SampleIntervals {
+  std::chrono::nanoseconds send = 1s;
+  std::chrono::nanoseconds receive = 1s;
+};
 
 // The sample listeners of one observer at the ports of one component. Ports come and go while it observes; one that has left may be
 // destroyed, and takes its listener with it.
 class SampleListeners {
  public:
+  explicit SampleListeners(const SampleIntervals& intervals) : intervals_(intervals) {}
+
   void follow(RTObject_impl& component, const std::shared_ptr<Link>& link) {
     const std::vector<InPortBase*> in = component.getInPorts();
     const std::vector<OutPortBase*> out = component.getOutPorts();
     auto data = shared_.lock();
     if (data->has_left) return;
-    update(data->in, in, ON_RECEIVED, "RECEIVE:InPort:", link);
-    update(data->out, out, ON_SEND, "SEND:OutPort:", link);
+    update(data->in, in, ON_RECEIVED, "RECEIVE:InPort:", intervals_.receive, link);
+    update(data->out, out, ON_SEND, "SEND:OutPort:", intervals_.send, link);
   }
 
   void leave(RTObject_impl& component) {
@@ -188,12 +191,12 @@ class SampleListeners {
 
   template <class Port>
   static void update(Listened<Port>& listened, const std::vector<Port*>& ports, ConnectorDataListenerType type, const char* event,
-                     const std::shared_ptr<Link>& link) {
+                     std::chrono::nanoseconds interval, const std::shared_ptr<Link>& link) {
     std::erase_if(listened, [&](const auto& entry) { return std::find(ports.begin(), ports.end(), entry.first) == ports.end(); });
     for (Port* port : ports) {
       const auto [it, is_new] = listened.try_emplace(port, nullptr);
       if (!is_new) continue;
-      it->second = new SampleListener(link, event + short_name(port->getName()));
+      it->second = new SampleListener(link, event + std::string(port->getName()), interval);
       port->addConnectorDataListener(type, it->second);
     }
   }
@@ -203,13 +206,15 @@ class SampleListeners {
     Listened<OutPortBase> out{};
     bool has_left = false;
   };
+  const SampleIntervals intervals_;
   base::Guarded<Data, base::Rank::registry> shared_;
 };
 
 // The listeners of one observer at one component.
 class Listeners {
  public:
-  Listeners(RTObject_impl& component, std::shared_ptr<Link> link) : component_(component), link_(std::move(link)) {
+  Listeners(RTObject_impl& component, std::shared_ptr<Link> link, const SampleIntervals& intervals)
+      : component_(component), link_(std::move(link)), samples_(std::make_shared<SampleListeners>(intervals)) {
     listen_to_life_cycle();
     listen_to_contexts();
     listen_to_ports();
@@ -224,9 +229,10 @@ class Listeners {
   Listeners& operator=(const Listeners&) = delete;
 
  private:
+  // What a callback that refused did not do is not told; the error state comes whatever onAborting answers.
   void post(PostComponentActionListenerType type, Kind kind, const char* event) {
-    auto function = [link = link_, kind, event](UniqueId id, ReturnCode_t code) {
-      if (code == RTC_OK) link->tell(kind, event + std::to_string(id));
+    auto function = [link = link_, kind, event, always = type == POST_ON_ABORTING](UniqueId id, ReturnCode_t code) {
+      if (always || code == RTC_OK) link->tell(kind, event + std::to_string(id));
     };
     auto* listener = new Calls<PostComponentActionListener, decltype(function), UniqueId, ReturnCode_t>(std::move(function));
     component_.addPostComponentActionListener(type, listener);
@@ -234,10 +240,10 @@ class Listeners {
   }
 
   void listen_to_life_cycle() {
-    post(POST_ON_ACTIVATED, Kind::rtc_status, "ACTIVATED:");
-    post(POST_ON_DEACTIVATED, Kind::rtc_status, "DEACTIVATED:");
-    post(POST_ON_RESET, Kind::rtc_status, "RESET:");
-    post(POST_ON_ABORTING, Kind::rtc_status, "ABORTING:");
+    post(POST_ON_ACTIVATED, Kind::rtc_status, "ACTIVE:");
+    post(POST_ON_DEACTIVATED, Kind::rtc_status, "INACTIVE:");
+    post(POST_ON_RESET, Kind::rtc_status, "INACTIVE:");
+    post(POST_ON_ABORTING, Kind::rtc_status, "ERROR:");
     post(POST_ON_FINALIZE, Kind::rtc_status, "FINALIZE:");
   }
 
@@ -342,7 +348,7 @@ class Listeners {
 
   RTObject_impl& component_;
   std::shared_ptr<Link> link_;
-  const std::shared_ptr<SampleListeners> samples_ = std::make_shared<SampleListeners>();
+  const std::shared_ptr<SampleListeners> samples_;
   std::vector<std::function<void()>> undo_;
 };
 
@@ -396,13 +402,16 @@ class ObserverConsumer final : public SdoServiceConsumerBase {
           typename Interface::_var_type target = observer;
           if (Observer::to_wire(kind, wire)) target->update_status(wire, hint.c_str());
         },
-        observed(property("observed_status")), seconds_or(property("port_profile.send_event.min_interval"), 100ms));
+        observed(property("observed_status")));
     std::map<Kind, std::chrono::nanoseconds> hearts;
     for (const auto& [name, kind] : Observer::heartbeats)
       if (base::parse_bool(property(std::string(name) + ".enable")).value_or(false))
         hearts[kind] = std::max<std::chrono::nanoseconds>(seconds_or(property(std::string(name) + ".interval"), 1s), 10ms);
     link_->beat({hearts.begin(), hearts.end()});
-    listeners_ = std::make_unique<Listeners>(*component_, link_);
+    SampleIntervals intervals;
+    intervals.send = seconds_or(property("port_profile.send_event.min_interval"), intervals.send);
+    intervals.receive = seconds_or(property("port_profile.receive_event.min_interval"), intervals.receive);
+    listeners_ = std::make_unique<Listeners>(*component_, link_, intervals);
     return true;
   }
 

@@ -92,14 +92,24 @@ bool RTObject_impl::addOutPort(const char* name, OutPortBase& outport) {
   return addPort(std::move(entry));
 }
 
+namespace {
+
+// Returns what the port was. Nobody can reach it any more.
+PortProfile withdrawPort(PortBase& port) {
+  port.disconnect_all();
+  const PortProfile profile = port.getPortProfile();
+  port.deactivateInterfaces();
+  port.setPortConnectListenerHolder(nullptr);
+  port.deactivate();
+  return profile;
+}
+
+}  // namespace
+
 bool RTObject_impl::removePort(const Port& port) {
   PortProfile profile;
   if (port.local) {
-    port.local->disconnect_all();
-    profile = port.local->getPortProfile();
-    port.local->deactivateInterfaces();
-    port.local->setPortConnectListenerHolder(nullptr);
-    port.local->deactivate();
+    profile = withdrawPort(*port.local);
   } else {
     profile.name = port.name.c_str();
     profile.port_ref = PortService::_duplicate(port.reference);
@@ -151,11 +161,12 @@ void RTObject_impl::deletePortByName(const char* port_name) {
   removePort(taken);
 }
 
-// May be called again.
+// May be called again. Listeners hear of ports that are removed from a component that lives, not of those that end with it.
 void RTObject_impl::finalizePorts() {
   std::vector<Port> ports;
   ports.swap(impl_->shared.lock()->ports);
-  for (const Port& port : ports) removePort(port);
+  for (const Port& port : ports)
+    if (port.local) withdrawPort(*port.local);
 }
 
 void RTObject_impl::activatePorts(UniqueId exec_handle) {

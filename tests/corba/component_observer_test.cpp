@@ -26,6 +26,7 @@ using support::Owned;
 using support::Served;
 using support::service_profile;
 using testing::Contains;
+using testing::Not;
 using testing::SizeIs;
 
 using ComponentObserverTest = ComponentTest;
@@ -38,9 +39,9 @@ class Observer : public Skeleton {
     heard.emplace_back(kind, hint);
     condition.notify_all();
   }
-  bool wait_for(Kind kind, const std::string& hint) {
+  bool wait_for(Kind kind, const std::string& hint, std::ptrdiff_t times = 1) {
     std::unique_lock lock(mutex);
-    return condition.wait_for(lock, 60s, [&] { return std::find(heard.begin(), heard.end(), std::pair(kind, hint)) != heard.end(); });
+    return condition.wait_for(lock, 60s, [&] { return std::count(heard.begin(), heard.end(), std::pair(kind, hint)) >= times; });
   }
   std::mutex mutex;
   std::condition_variable condition;
@@ -48,6 +49,16 @@ class Observer : public Skeleton {
 };
 using OldObserver = Observer<POA_OpenRTM::ComponentObserver, OpenRTM::StatusKind>;
 using NewObserver = Observer<POA_RTC::ComponentObserver, RTC::StatusKind>;
+
+RTC::ReturnCode_t connect(RTC::OutPortBase& out, RTC::InPortBase& in) {
+  RTC::ConnectorProfile profile;
+  profile.ports.length(2);
+  profile.ports[0] = RTC::PortService::_duplicate(out.getPortRef());
+  profile.ports[1] = RTC::PortService::_duplicate(in.getPortRef());
+  NVUtil::setStringValue(profile.properties, "dataport.interface_type", "corba_cdr");
+  NVUtil::setStringValue(profile.properties, "dataport.dataflow_type", "push");
+  return out.connect(profile);
+}
 
 FSM_TOPSTATE(Lamp) {
   FSM_STATE(Lamp);
@@ -74,18 +85,18 @@ TEST_F(ComponentObserverTest, tells_an_observer_of_the_first_version_everything)
                       {{"observed_status", "ALL"}, {"heartbeat.enable", "YES"}, {"heartbeat.interval", "0.02"}})));
   EXPECT_TRUE(observer->wait_for(OpenRTM::HEARTBEAT, ""));
   probe->activate(0);
-  EXPECT_TRUE(observer->wait_for(OpenRTM::RTC_STATUS, "ACTIVATED:0"));
+  EXPECT_TRUE(observer->wait_for(OpenRTM::RTC_STATUS, "ACTIVE:0"));
   probe->deactivate(0);
-  EXPECT_TRUE(observer->wait_for(OpenRTM::RTC_STATUS, "DEACTIVATED:0"));
+  EXPECT_TRUE(observer->wait_for(OpenRTM::RTC_STATUS, "INACTIVE:0"));
   set("fail", "onActivated");
   EXPECT_TRUE(observer->wait_for(OpenRTM::CONFIGURATION, "SET_CONFIG_SET: default"));
   EXPECT_TRUE(observer->wait_for(OpenRTM::CONFIGURATION, "ACTIVATE_CONFIG_SET: default"));
   probe->activate(0);
   EXPECT_TRUE(observer->wait_for(OpenRTM::CONFIGURATION, "UPDATE_CONFIG_PARAM: default.fail"));
   EXPECT_TRUE(observer->wait_for(OpenRTM::CONFIGURATION, "UPDATE_CONFIG_SET: default"));
-  EXPECT_TRUE(observer->wait_for(OpenRTM::RTC_STATUS, "ABORTING:0"));
+  EXPECT_TRUE(observer->wait_for(OpenRTM::RTC_STATUS, "ERROR:0"));
   probe->reset(0);
-  EXPECT_TRUE(observer->wait_for(OpenRTM::RTC_STATUS, "RESET:0"));
+  EXPECT_TRUE(observer->wait_for(OpenRTM::RTC_STATUS, "INACTIVE:0", 3)) << "deactivated, left by the error, reset";
   probe->setExecutionRate(0, 100);
   EXPECT_TRUE(observer->wait_for(OpenRTM::EC_STATUS, "RATE_CHANGED:0"));
   RTC::ExecutionContext_var context = first_context(*probe);
@@ -157,7 +168,7 @@ TEST_F(ComponentObserverTest, tells_an_observer_of_the_second_version_only_what_
   EXPECT_TRUE(observer->wait_for(RTC::EC_HEARTBEAT, ""));
   set("fail", "");
   probe->activate(0);
-  EXPECT_TRUE(observer->wait_for(RTC::RTC_STATUS, "ACTIVATED:0"));
+  EXPECT_TRUE(observer->wait_for(RTC::RTC_STATUS, "ACTIVE:0"));
   std::lock_guard lock(observer->mutex);
   for (const auto& [kind, hint] : observer->heard) EXPECT_NE(kind, RTC::CONFIGURATION) << hint;
 }
@@ -177,15 +188,9 @@ TEST_F(ComponentObserverTest, tells_observers_what_changes_in_ports_profile_and_
                                                                  {{"rtc_heartbeat.enable", "YES"}, {"rtc_heartbeat.interval", "0.02"}})));
   EXPECT_TRUE(observer->wait_for(RTC::RTC_HEARTBEAT, ""));
 
-  RTC::ConnectorProfile profile;
-  profile.ports.length(2);
-  profile.ports[0] = RTC::PortService::_duplicate(out.getPortRef());
-  profile.ports[1] = RTC::PortService::_duplicate(in.getPortRef());
-  NVUtil::setStringValue(profile.properties, "dataport.interface_type", "corba_cdr");
-  NVUtil::setStringValue(profile.properties, "dataport.dataflow_type", "push");
-  ASSERT_EQ(out.connect(profile), RTC::RTC_OK);
+  ASSERT_EQ(connect(out, in), RTC::RTC_OK);
   out.write();
-  for (const char* hint : {"CONNECT:Probe0.in", "CONNECT:Probe0.out", "SEND:OutPort:out", "RECEIVE:InPort:in"}) {
+  for (const char* hint : {"CONNECT:Probe0.in", "CONNECT:Probe0.out", "SEND:OutPort:Probe0.out", "RECEIVE:InPort:Probe0.in"}) {
     EXPECT_TRUE(old_observer->wait_for(OpenRTM::PORT_PROFILE, hint)) << hint;
     EXPECT_TRUE(observer->wait_for(RTC::PORT_PROFILE, hint)) << hint;
   }
@@ -195,11 +200,9 @@ TEST_F(ComponentObserverTest, tells_observers_what_changes_in_ports_profile_and_
   RTC::InPort<RTC::TimedLong> late("late", value);
   probe->addInPort("late", late);
   EXPECT_TRUE(observer->wait_for(RTC::PORT_PROFILE, "ADD:Probe0.late"));
-  profile.connector_id = "";
-  profile.ports[1] = RTC::PortService::_duplicate(late.getPortRef());
-  ASSERT_EQ(out.connect(profile), RTC::RTC_OK);
+  ASSERT_EQ(connect(out, late), RTC::RTC_OK);
   out.write();
-  EXPECT_TRUE(observer->wait_for(RTC::PORT_PROFILE, "RECEIVE:InPort:late"));
+  EXPECT_TRUE(observer->wait_for(RTC::PORT_PROFILE, "RECEIVE:InPort:Probe0.late"));
   probe->removeInPort(late);
   EXPECT_TRUE(observer->wait_for(RTC::PORT_PROFILE, "REMOVE:Probe0.late"));
 
@@ -225,6 +228,44 @@ TEST_F(ComponentObserverTest, tells_observers_what_changes_in_ports_profile_and_
   probe->removeOutPort(out);
 }
 
+// Tools show a light at each port; they need no message for each of a thousand samples.
+TEST_F(ComponentObserverTest, samples_are_told_once_a_second_unless_asked_for_more) {
+  RTC::TimedLong value{};
+  RTC::InPort<RTC::TimedLong> in("in", value);
+  RTC::OutPort<RTC::TimedLong> out("out", value);
+  probe->addInPort("in", in);
+  probe->addOutPort("out", out);
+  probe->initialize();
+  SDOPackage::Configuration_var configuration = probe->get_configuration();
+  Served<NewObserver> usual, eager;
+  ASSERT_TRUE(configuration->add_service_profile(service_profile("usual", "IDL:omg.org/RTC/ComponentObserver:1.0", usual.reference())));
+  ASSERT_TRUE(configuration->add_service_profile(service_profile("eager", "IDL:omg.org/RTC/ComponentObserver:1.0", eager.reference(),
+                                                                 {{"port_profile.receive_event.min_interval", "0.001"}})));
+  ASSERT_EQ(connect(out, in), RTC::RTC_OK);
+  const auto start = std::chrono::steady_clock::now();
+  const auto count = [&](const char* hint) {
+    std::lock_guard lock(usual->mutex);
+    return std::count(usual->heard.begin(), usual->heard.end(), std::pair(RTC::PORT_PROFILE, std::string(hint)));
+  };
+  for (int i = 0; i < 20; ++i) {
+    out.write();
+    ASSERT_TRUE(eager->wait_for(RTC::PORT_PROFILE, "RECEIVE:InPort:Probe0.in", i + 1));
+    std::this_thread::sleep_for(1ms);  // the interval asked for
+  }
+  EXPECT_TRUE(usual->wait_for(RTC::PORT_PROFILE, "SEND:OutPort:Probe0.out"));
+  EXPECT_TRUE(usual->wait_for(RTC::PORT_PROFILE, "RECEIVE:InPort:Probe0.in"));
+  EXPECT_LE(count("SEND:OutPort:Probe0.out"), 1 + (std::chrono::steady_clock::now() - start) / 1s);
+  EXPECT_LE(count("RECEIVE:InPort:Probe0.in"), 1 + (std::chrono::steady_clock::now() - start) / 1s);
+  {
+    std::lock_guard lock(eager->mutex);
+    EXPECT_LE(std::count(eager->heard.begin(), eager->heard.end(), std::pair(RTC::PORT_PROFILE, std::string("SEND:OutPort:Probe0.out"))),
+              1 + (std::chrono::steady_clock::now() - start) / 1s)
+        << "each kind has an interval of its own";
+  }
+  probe->removeInPort(in);
+  probe->removeOutPort(out);
+}
+
 // A peer on a slow line.
 class SlowObserver : public NewObserver {
  public:
@@ -235,6 +276,9 @@ class SlowObserver : public NewObserver {
 };
 
 TEST_F(ComponentObserverTest, tells_the_end_of_a_component_before_it_has_ended) {
+  RTC::TimedLong value{};
+  RTC::InPort<RTC::TimedLong> in("in", value);
+  probe->addInPort("in", in);
   probe->initialize();
   Served<SlowObserver> observer;
   SDOPackage::Configuration_var configuration = probe->get_configuration();
@@ -244,6 +288,7 @@ TEST_F(ComponentObserverTest, tells_the_end_of_a_component_before_it_has_ended) 
   probe->exit();
   std::lock_guard lock(observer->mutex);
   EXPECT_THAT(observer->heard, Contains(std::pair(RTC::RTC_STATUS, std::string("FINALIZE:0"))));
+  EXPECT_THAT(observer->heard, Not(Contains(std::pair(RTC::PORT_PROFILE, std::string("REMOVE:Probe0.in"))))) << "it ends with its ports";
 }
 
 class LogReader : public POA_OpenRTM::Logger {

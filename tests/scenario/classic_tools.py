@@ -387,11 +387,11 @@ class AsPython(Tool):
         self.assertFalse(add("no", "IDL:omg.org/RTC/PortService:1.0", observe))
         self.assertEqual(self.context(component).activate_component(component), "RTC_OK")
         self.configure(component, "fast")
-        wanted = [("HEARTBEAT", ""), ("RTC_STATUS", "ACTIVATED:0"), ("CONFIGURATION", "SET_CONFIG_SET: fast"), ("CONFIGURATION", "ACTIVATE_CONFIG_SET: fast")]
+        wanted = [("HEARTBEAT", ""), ("RTC_STATUS", "ACTIVE:0"), ("CONFIGURATION", "SET_CONFIG_SET: fast"), ("CONFIGURATION", "ACTIVATE_CONFIG_SET: fast")]
         for one in wanted:
             await_(f"{one} among {heard}", lambda: one in heard)
         self.assertEqual(self.context(component).deactivate_component(component), "RTC_OK")
-        await_("the end", lambda: ("RTC_STATUS", "DEACTIVATED:0") in heard)
+        await_("the end", lambda: ("RTC_STATUS", "INACTIVE:0") in heard)
         self.assertTrue(all(record.loggername and record.time.sec > 0 for record in published))
         self.assertTrue(configuration.remove_service_profile("editor"))
         self.assertFalse(configuration.remove_service_profile("editor"))
