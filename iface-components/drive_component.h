@@ -64,11 +64,8 @@ class DriveComponent : public Drive {
     if (!follow_configuration()) return RTC::RTC_ERROR;
     const bool simulated = in_simulated_time();
     commander().set_simulated_time(simulated);
-    if (velocity_in_.isNew()) {
-      velocity_in_.read();
-      // In real time the listener has driven the robot already.
-      if (simulated) commander().drive(values_of(velocity_));
-    }
+    // In real time the listener has driven the robot already.
+    if (read_newest_velocity() && simulated) commander().drive(values_of(velocity_));
     switch_motors();
     watch_and_publish();
     return RTC::RTC_OK;
@@ -94,6 +91,13 @@ class DriveComponent : public Drive {
    private:
     Commander& commander_;
   };
+
+  // What is older than the newest velocity would be driven too late, now and in every tick after this one.
+  bool read_newest_velocity() {
+    bool is_new = false;
+    while (velocity_in_.isNew()) is_new = velocity_in_.read() || is_new;
+    return is_new;
+  }
 
   Velocity velocity_;
   RTC::InPort<Velocity> velocity_in_;

@@ -27,13 +27,19 @@ const Clock& current_clock_or(const Clock& otherwise) {
   return clock ? *clock : otherwise;
 }
 
+std::shared_ptr<const Clock> FollowingClock::followed() const {
+  const std::lock_guard lock(mutex_);
+  return clock_;
+}
+
 std::chrono::nanoseconds FollowingClock::now() const {
-  std::shared_ptr<const Clock> clock;
-  {
-    const std::lock_guard lock(mutex_);
-    clock = clock_;
-  }
+  const auto clock = followed();
   return (clock ? *clock : current_clock()).now();
+}
+
+std::uint64_t FollowingClock::era() const {
+  const auto clock = followed();
+  return clock ? clock->era() : 0;
 }
 
 void FollowingClock::follow(std::shared_ptr<const Clock> clock) {

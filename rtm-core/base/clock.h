@@ -15,6 +15,8 @@ class Clock {
   virtual ~Clock() = default;
   // Time since the clock's epoch: Unix time for SystemClock, start of the simulation for simulated clocks.
   virtual std::chrono::nanoseconds now() const = 0;
+  // Differs after time has begun anew: a reset of the simulation. What is from another era is from another run.
+  virtual std::uint64_t era() const { return 0; }
 };
 
 class SystemClock final : public Clock {
@@ -28,9 +30,15 @@ class ManualClock final : public Clock {
   std::chrono::nanoseconds now() const override { return std::chrono::nanoseconds(now_.load(std::memory_order_acquire)); }
   void set(std::chrono::nanoseconds now) { now_.store(now.count(), std::memory_order_release); }  // pairs with the acquire in now
   void advance(std::chrono::nanoseconds by) { now_.fetch_add(by.count(), std::memory_order_acq_rel); }
+  std::uint64_t era() const override { return era_.load(std::memory_order_acquire); }
+  void reset() {  // now and era are two values for those who read while it is called
+    set(std::chrono::nanoseconds(0));
+    era_.fetch_add(1, std::memory_order_acq_rel);
+  }
 
  private:
   std::atomic<std::int64_t> now_{0};
+  std::atomic<std::uint64_t> era_{0};
 };
 
 // The clock of what runs on this thread: the execution context's while it calls a component, else the system clock.
@@ -42,9 +50,12 @@ const Clock& current_clock_or(const Clock& otherwise);
 class FollowingClock final : public Clock {
  public:
   std::chrono::nanoseconds now() const override;
+  std::uint64_t era() const override;
   void follow(std::shared_ptr<const Clock> clock);
 
  private:
+  std::shared_ptr<const Clock> followed() const;
+
   mutable std::mutex mutex_;
   std::shared_ptr<const Clock> clock_;
 };

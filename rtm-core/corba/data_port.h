@@ -1,6 +1,7 @@
 // The connections of a data port, of either side: what the facade knows about engines. Any thread; one reader at a time.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -32,6 +33,8 @@ struct ConnectionPlan {
   // The time by the component's clock; of a call that a component makes, by the clock of the context that runs it.
   std::chrono::nanoseconds port_time() const;
   std::chrono::nanoseconds caller_time() const;
+  // Of the component's clock.
+  std::uint64_t era() const;
 };
 
 // What waits in a connection to be read or sent. Any thread.

@@ -42,6 +42,8 @@ std::chrono::nanoseconds ConnectionPlan::caller_time() const {
   return (clock ? base::current_clock_or(*clock) : base::current_clock()).now();
 }
 
+std::uint64_t ConnectionPlan::era() const { return clock ? clock->era() : 0; }
+
 TypeOps with_codec(const TypeOps& ops, const std::shared_ptr<Codec>& codec) {
   TypeOps own = ops;
   own.codec = codec;
@@ -67,6 +69,7 @@ rt::PortStatus InConnection::receive(rt::Sample sample) {
     return rt::PortStatus::error;
   }
   if (plan_.settings.stamp == rt::StampPolicy::on_received) sample.received = plan_.port_time();
+  const std::uint64_t era = plan_.era();
   ConnectorEvents& events = *plan_.events;
   if (events.is_observed(DataEvent::received)) {
     EventData data(ops_, sample);
@@ -89,6 +92,7 @@ rt::PortStatus InConnection::receive(rt::Sample sample) {
                                                            DataEvent::receiver_timeout, DataEvent::receiver_error},
                           [&](DataEvent event) { return events.is_observed(event); });
   const rt::Sample about = is_observed ? sample : rt::Sample{};
+  sample.era = era;
   const rt::WriteResult result = mailbox_->write(channel_, std::move(sample));
   if (!is_observed) return result.status == rt::PortStatus::precondition_not_met ? rt::PortStatus::error : result.status;
   switch (result.status) {
@@ -254,8 +258,15 @@ bool InEngine::close(const std::string& id) {
   return true;
 }
 
+void InEngine::drop_past(const Lists& lists) {
+  const auto& known = lists.open->empty() ? *lists.closed : *lists.open;
+  const std::uint64_t era = known.empty() ? 0 : known.front()->era();
+  if (era > 0) mailbox_->drop_other_eras(era);
+}
+
 bool InEngine::has_new(const std::string& name, std::vector<std::string>& lost) {
   const Lists lists = lists_.snapshot();
+  drop_past(lists);
   bool is_new = std::ranges::any_of(
       *lists.closed, [&](const auto& connection) { return (name.empty() || connection->name() == name) && connection->unread() > 0; });
   for (const auto& connection : *lists.open) {
@@ -283,6 +294,7 @@ std::vector<rt::PortStatus> InEngine::statuses() const { return statuses_.snapsh
 
 rt::PortStatus InEngine::read(const std::string& name, void* value, std::vector<std::string>& lost) {
   Lists lists = lists_.snapshot();
+  drop_past(lists);
   const auto is_meant = [&](const auto& connection) { return name.empty() || connection->name() == name; };
   rt::Channel channel = rt::Channel::any;
   std::size_t selected = 0;

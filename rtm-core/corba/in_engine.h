@@ -29,6 +29,7 @@ class InConnection final : public Receiver, public Waiting {
   ConnectorEvents& events() const { return *plan_.events; }
   const std::shared_ptr<ConnectorEvents>& shared_events() const { return plan_.events; }
   const rt::ConnectorSettings& settings() const { return plan_.settings; }
+  std::uint64_t era() const { return plan_.era(); }
 
   rt::PortStatus receive(rt::Sample sample) override;
   rt::BlockPool& pool() override { return *pool_; }
@@ -54,6 +55,7 @@ class InConnection final : public Receiver, public Waiting {
   base::Guarded<rt::Sample, base::Rank::connector> last_fetched_;
 };
 
+// What has come before the component's time began anew (a reset of the simulation) is thrown away before anything is read.
 class InEngine final : public DataPort {
  public:
   using Connections = std::vector<std::shared_ptr<InConnection>>;
@@ -85,6 +87,7 @@ class InEngine final : public DataPort {
   void add(std::shared_ptr<InConnection> connection);
   // Whose samples these are.
   std::shared_ptr<InConnection> find(const Lists& lists, rt::Channel channel) const;
+  void drop_past(const Lists& lists);
   // Lets go of closed connections that have been read, and of the oldest if too much is unread.
   void tidy();
   rt::PortStatus deliver(const rt::Sample& sample, InConnection& connection, void* value);

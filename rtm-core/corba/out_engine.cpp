@@ -86,7 +86,11 @@ struct OutConnection::Line {
 
   void tell(DataEvent event, Changed& payload) { corba::tell(*plan.events, event, payload, order(), is_direct(), *pool); }
 
-  rt::Sample keep(Payload& payload) { return is_direct() ? payload.copied() : payload.encoded(order(), *pool); }
+  rt::Sample keep(Payload& payload) {
+    rt::Sample sample = is_direct() ? payload.copied() : payload.encoded(order(), *pool);
+    sample.era = plan.era();
+    return sample;
+  }
 
   rt::PortStatus send(Payload& payload, bool is_flush) {
     Changed changed(payload);
@@ -120,6 +124,7 @@ OutConnection::OutConnection(const TypeOps& ops, const ConnectionPlan& plan, std
   if (settings.subscription == rt::Subscription::flush) return;
   rt::Publisher::Hooks hooks;
   hooks.send = [line = line_](const rt::Sample& sample) {
+    if (sample.era != line->plan.era()) return rt::PortStatus::ok;  // from before a reset; nobody is to hear of it any more
     Payload payload(line->ops, sample);
     Changed changed(payload);
     line->tell(DataEvent::buffer_read, changed);
@@ -189,6 +194,7 @@ rt::PortStatus OutConnection::write_buffered(Payload& payload) {
 
 rt::PortStatus OutConnection::take(rt::Sample& sample) {
   ConnectorEvents& events = *line_->plan.events;
+  if (const std::uint64_t era = line_->plan.era(); era > 0) mailbox_.drop_other_eras(era);
   rt::ReadResult result = mailbox_.read(channel_);
   switch (result.status) {
     case rt::PortStatus::ok:

@@ -179,6 +179,19 @@ void Mailbox::drop_unread(Channel channel) {
   freed_.notify_all();
 }
 
+void Mailbox::drop_other_eras(std::uint64_t era) {
+  std::vector<Sample> dropped;  // destroyed without the lock, as in close
+  {
+    auto state = state_.lock();
+    for (auto& entry : state->entries) {
+      while (!entry.ring.is_empty() && entry.ring.front().era != era) dropped.push_back(entry.ring.pop());
+      if (entry.last && entry.last.era != era) dropped.push_back(std::exchange(entry.last, {}));
+    }
+    std::erase_if(state->entries, [](const Entry& entry) { return entry.is_finished && entry.ring.is_empty(); });
+  }
+  if (!dropped.empty()) freed_.notify_all();
+}
+
 void Mailbox::forget_last(Channel channel) {
   auto state = state_.lock();
   if (Entry* entry = state->find(channel)) entry->last = {};

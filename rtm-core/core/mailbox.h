@@ -47,6 +47,8 @@ class Mailbox {
   std::size_t unread(Channel channel = Channel::any) const;
   // Throws away what is unread in that channel, and the last sample with it.
   void drop_unread(Channel channel);
+  // The same for what is of another era than this one, in all channels.
+  void drop_other_eras(std::uint64_t era);
   // The last sample of that channel is not read again.
   void forget_last(Channel channel);
   // Writers wait for readers and readers for writers while this is set (dataport.sync_readwrite).

@@ -265,13 +265,45 @@ with System(bin_dir, lib_dir) as s:
             s.rtse("conf", name, "set", "server_id", s.server_id)
         s.rtse("act", *names)
         join(s, 3)
+        slow = '{"data": {"vx": 0.05, "vy": 0, "va": 0}}'
         hashes = []
-        for _ in range(3):
-            s.simctl("step", "20000")
+        # What somebody else sends to the drive is one more command, not one by which all that follow are late, and no run hears of the one before.
+        for sent in ("nothing", "in the run", "before the reset", "after it", "nothing"):
+            s.simctl("step", "10000")
+            if sent == "in the run":
+                s.rtse("inject", "RTCPosition2d0:velocity", slow, slow, slow)
+            s.simctl("step", "10000")
             hashes.append(s.stats()["hash"])
+            if sent == "before the reset":
+                s.rtse("inject", "RTCPosition2d0:velocity", slow)
             s.simctl("reset")
             assert s.seconds() == 0
+            if sent == "after it":
+                s.rtse("inject", "RTCPosition2d0:velocity", slow)
         assert len(set(hashes)) == 1, f"the runs differ: {hashes}"
+
+    elif case == "waiting_samples":
+        # A reset throws away what waits in an InPort; what comes after it waits for the first tick.
+        s.naming()
+        s.server(empty, "--lockstep", "--paused", "--rtf", "0")
+        s.host(relay("Reads", **{"conf.default.journal": f"{s.work}/journal.txt"}), relay("Writes"))
+        s.rtse("wait", "Reads", "Writes", "--state", "any", "--timeout", "60")
+        s.rtse("con", "Writes:out", "Reads:in", "-p", "dataflow_type=pull")
+        s.rtse("act", "Reads", "Writes")
+        join(s, 2)
+
+        def inject(*values):
+            s.rtse("inject", "Reads:in", *(f'{{"data": {value}}}' for value in values))
+
+        inject(1, 2, 3)
+        s.rtse("inject", "Writes:in", '{"data": 4}')
+        s.simctl("step", "1")
+        inject(5)
+        s.simctl("reset")
+        inject(6, 7)
+        s.simctl("step", "1000")
+        read = [value for _, value in journal(f"{s.work}/journal.txt")]
+        assert read == [1, 6, 7], read
 
     elif case == "active_over_restarts":
         # Components that stay active find each new simulator in its first tick: every run of it is the same, and the robot drives.
