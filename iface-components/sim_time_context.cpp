@@ -13,6 +13,8 @@ constexpr std::chrono::milliseconds longest_wait{100};
 constexpr std::chrono::milliseconds retry_period{100};
 constexpr int highest_server = 9999;
 constexpr std::int64_t highest_phase = 15;
+constexpr std::chrono::seconds lockstep_patience{30};  // the default of rtse run --hang-timeout
+constexpr std::chrono::seconds usual_patience{1};
 
 int default_server() {
   const char* text = std::getenv("RTMSIM_SERVER_ID");
@@ -39,6 +41,7 @@ void SimTimeContext::init(coil::Properties& properties) {
     return otherwise;
   };
   server_id_ = static_cast<int>(number("sim_time.server_id", highest_server, server_id_));
+  waits_for_members_ = properties.getProperty("member_timeout").empty();
   phase_ = static_cast<std::uint32_t>(number("sim_time.phase", highest_phase, phase_));
 }
 
@@ -74,7 +77,9 @@ std::shared_ptr<shm::Participant> SimTimeContext::join() {
   auto simulation = shm::Iface::open(static_cast<std::uint32_t>(server_id_), shm::IfaceType::simulation, "world");
   if (!simulation) return nullptr;
   is_waiting_ = false;
-  const auto step = std::chrono::nanoseconds(simulation->info<shm::SimulationInfo>().step_ns);
+  const auto& world = simulation->info<shm::SimulationInfo>();
+  const auto step = std::chrono::nanoseconds(world.step_ns);
+  if (waits_for_members_) setMemberTimeout(world.lockstep != 0 ? lockstep_patience : usual_patience);
   simulator_time_->follow(std::move(*simulation));
   say_once("ticking at " + base::format_number(getRate()) + " Hz of simulated time, phase " + std::to_string(phase_) + " of simulator " +
            std::to_string(server_id_) +

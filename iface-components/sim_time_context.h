@@ -4,6 +4,9 @@
 // A component asks for it with `exec_cxt.periodic.type: SimTimeContext` (and `manager.modules.preload: SimTimeContext.so`). Options:
 //   exec_cxt.sim_time.server_id   which simulator; default: $RTMSIM_SERVER_ID, else 0
 //   exec_cxt.sim_time.phase       0 sensors, 1 clients (default), 2 actuators: phases run in order inside a tick
+//   exec_cxt.member_timeout       how long a member of another process may take for a callback [s of real time]; default: 1, in lock step
+//   30,
+//                                 since its error would be part of the run
 //
 // Transitions happen in a tick, so that they are repeatable; while time stands still (paused, or waiting for participants) at once.
 // Threads: the context's own thread ticks; everything else may be called from any thread.
@@ -46,9 +49,10 @@ class SimTimeContext : public RTC::PeriodicExecutionContext {
   const std::shared_ptr<iface::SimulatorTime> simulator_time_ = std::make_shared<iface::SimulatorTime>();
   int server_id_ = 0;
   std::uint32_t phase_ = 1;
-  std::string said_;         // the last line, not to be said again
-  bool is_waiting_ = false;  // and has said so
-  std::mutex mutex_;         // of participant_
+  bool waits_for_members_ = true;  // in lock step, as long as `rtse run` waits for a tick; false: the option member_timeout says how long
+  std::string said_;               // the last line, not to be said again
+  bool is_waiting_ = false;        // and has said so
+  std::mutex mutex_;               // of participant_
   std::shared_ptr<shm::Participant> participant_;
 };
 

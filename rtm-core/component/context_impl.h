@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "base/guarded.h"
+#include "corba/remote_participant.h"
 #include "core/execution_context.h"
 
 namespace RTC {
@@ -48,6 +49,7 @@ struct ExecutionContextBase::Impl {
   // Tells the component that it has left.
   static void detach(const Member& member, Logger& rtclog);
 
+  const std::shared_ptr<corba::MemberPatience> patience = std::make_shared<corba::MemberPatience>();
   rt::ExecutionContext context;
   base::Guarded<Data, base::Rank::component> shared;
   RTC::RTCList component_list{};  // what getComponentList() has answered

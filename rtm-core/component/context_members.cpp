@@ -172,7 +172,7 @@ RTC::ReturnCode_t ExecutionContextBase::addComponent(RTC::LightweightRTObject_pt
     } else {
       member.reference = corba::RemoteParticipant::impatient(comp);
       member.handle = member.reference->attach_context(self);
-      if (member.handle >= 0) participant = std::make_shared<corba::RemoteParticipant>(member.reference, member.handle);
+      if (member.handle >= 0) participant = std::make_shared<corba::RemoteParticipant>(member.reference, member.handle, impl_->patience);
     }
   } catch (const CORBA::Exception& exception) {
     RTC_ERROR(("a component that is to join does not answer attach_context: %s", corba::to_text(exception).c_str()));

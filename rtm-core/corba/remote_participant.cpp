@@ -1,5 +1,8 @@
 #include "corba/remote_participant.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "base/log.h"
 #include "corba/action_call.h"
 #include "corba/orb.h"
@@ -41,24 +44,44 @@ RTC::LightweightRTObject_ptr RemoteParticipant::impatient(RTC::LightweightRTObje
   return RTC::LightweightRTObject::_unchecked_narrow(own);
 }
 
-RemoteParticipant::RemoteParticipant(RTC::LightweightRTObject_ptr component, RTC::ExecutionContextHandle_t handle)
-    : component_(RTC::LightweightRTObject::_duplicate(component)), handle_(handle), name_(name_of(component)) {
+void MemberPatience::set(std::chrono::nanoseconds limit) {
+  const auto count = std::chrono::duration_cast<std::chrono::milliseconds>(limit).count();
+  limit_ms_.store(std::clamp<std::int64_t>(count, 1, 3'600'000), std::memory_order_relaxed);
+}
+
+RemoteParticipant::RemoteParticipant(RTC::LightweightRTObject_ptr component, RTC::ExecutionContextHandle_t handle,
+                                     std::shared_ptr<const MemberPatience> patience)
+    : component_(impatient(component)), handle_(handle), name_(name_of(component_)), patience_(std::move(patience)) {
   try {
-    data_flow_ = RTC::DataFlowComponentAction::_narrow(component);
-    if (!CORBA::is_nil(data_flow_)) set_call_timeout(data_flow_, call_timeout);
+    data_flow_ = RTC::DataFlowComponentAction::_narrow(component_);
   } catch (const CORBA::Exception&) {
-    *lost_.lock() = true;
+    state_.lock()->is_lost = true;
   }
 }
 
+bool RemoteParticipant::prepare(rt::Action action) {
+  const auto limit = patience_->limit();
+  bool is_new = false;
+  {
+    auto state = state_.lock();
+    if (state->is_lost && action != rt::Action::reset && action != rt::Action::startup) return false;
+    is_new = std::exchange(state->limit, limit) != limit;
+  }
+  if (is_new) {
+    set_call_timeout(component_, limit);
+    if (!CORBA::is_nil(data_flow_)) set_call_timeout(data_flow_, limit);
+  }
+  return true;
+}
+
 rt::ReturnCode RemoteParticipant::call(rt::Action action) {
-  if (*lost_.lock() && action != rt::Action::reset && action != rt::Action::startup) return rt::ReturnCode::error;
+  if (!prepare(action)) return rt::ReturnCode::error;
   try {
     const auto code = from_wire(call_action(action, *component_, CORBA::is_nil(data_flow_) ? nullptr : data_flow_.in(), handle_));
-    *lost_.lock() = false;
+    state_.lock()->is_lost = false;
     return code;
   } catch (const CORBA::Exception& exception) {
-    *lost_.lock() = true;
+    state_.lock()->is_lost = true;
     base::log(base::Level::error, name_, "component of another process does not answer {}: {}", to_text(action), to_text(exception));
   }
   return rt::ReturnCode::error;

@@ -115,6 +115,7 @@ constexpr ConfigKey keys[] = {
     {"exec_cxt.deactivation_timeout", "", number},
     {"exec_cxt.reset_timeout", "", number},
     {"exec_cxt.callback_timeout", "5", number},
+    {"exec_cxt.member_timeout", "", number},
     {"exec_cxt.cpu_affinity", "", processors},
     {"exec_cxt.*", ""},
     {"ec.*", ""},

@@ -446,6 +446,27 @@ TEST_F(ComponentTest, a_member_of_another_process_that_hangs_costs_the_others_on
   peer.process().signal(SIGCONT);
 }
 
+// On a busy machine, in lock step: the run waits, and goes on as if nothing had been.
+TEST_F(ComponentTest, a_member_of_another_process_is_waited_for_as_long_as_the_context_says) {
+  probe->getProperties()["exec_cxt.member_timeout"] = "60";
+  probe->initialize();
+  PeerProcess peer;
+  const RTC::ExecutionContext_var context = first_context(*probe);
+  const RTC::ExecutionContextService_var service = RTC::ExecutionContextService::_narrow(context);
+  ASSERT_EQ(service->add_component(peer.component), RTC::RTC_OK);
+  ASSERT_EQ(service->activate_component(peer.component), RTC::RTC_OK);
+  ASSERT_EQ(probe->activate(0), RTC::RTC_OK);
+  ASSERT_TRUE(probe->wait_for("onExecute", 3));
+  freeze(peer.process());
+  std::this_thread::sleep_for(1500ms);  // longer than it has by default
+  const int before = probe->count("onExecute");
+  peer.process().signal(SIGCONT);
+  EXPECT_TRUE(probe->wait_for("onExecute", before + 10));
+  EXPECT_EQ(service->get_component_state(peer.component), RTC::ACTIVE_STATE);
+  EXPECT_EQ(probe->deactivate(0), RTC::RTC_OK);
+  EXPECT_EQ(service->remove_component(peer.component), RTC::RTC_OK);
+}
+
 TEST_F(ComponentTest, a_context_of_another_process_that_hangs_does_not_keep_a_component_from_leaving) {
   probe->getProperties()["exec_cxt.callback_timeout"] = "0.2";
   probe->initialize();

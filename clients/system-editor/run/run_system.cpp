@@ -220,6 +220,10 @@ class Run {
       call.words.insert(call.words.end(), {"-o", option});
     }
     std::vector<std::string> names;
+    // However busy the machine is, a member of another process is waited for as long as the tick is: else its error would be part of the
+    // run.
+    if (!options_.in_real_time)
+      call.words.insert(call.words.end(), {"-o", set("exec_cxt.member_timeout", base::format_number(options_.hang_timeout_s))});
     for (const auto* component : components) {
       call.words.push_back(creation(*component));
       names.push_back(component->instance);

@@ -64,6 +64,7 @@ void ExecutionContextBase::init(coil::Properties& props) {
   const Patience deactivation = read("sync_deactivation", "deactivation_timeout", any);
   const Patience reset = read("sync_reset", "reset_timeout", any);
   const auto callback_timeout = read_seconds("callback_timeout", default_callback_timeout);
+  impl_->patience->set(read_seconds("member_timeout", corba::MemberPatience::usual));
   m_syncActivation = activation.wait;
   m_syncDeactivation = deactivation.wait;
   m_syncReset = reset.wait;
@@ -125,6 +126,8 @@ RTC::ReturnCode_t ExecutionContextBase::stopBy(std::chrono::steady_clock::time_p
   impl_->shared.lock()->stop_by.reset();
   return code;
 }
+
+void ExecutionContextBase::setMemberTimeout(std::chrono::nanoseconds timeout) { impl_->patience->set(timeout); }
 
 std::chrono::nanoseconds ExecutionContextBase::callbackTimeout() const { return impl_->shared.lock()->callback_timeout; }
 

@@ -55,6 +55,8 @@ class ExecutionContextBase {
   // How long whoever ends something waits for callbacks of components: option callback_timeout [s].
   static constexpr std::chrono::seconds default_callback_timeout{5};
   std::chrono::nanoseconds callbackTimeout() const;
+  // How long a member of another process may take for a callback before it counts as lost: option member_timeout [s], default 1.
+  void setMemberTimeout(std::chrono::nanoseconds timeout);
   // [Hz]
   CORBA::Double getRate() const;
   std::chrono::nanoseconds getPeriod() const;
