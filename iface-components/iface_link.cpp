@@ -1,5 +1,7 @@
 #include "iface_link.h"
 
+#include <base/waiting.h>
+
 #include "sim_clock.h"
 
 namespace iface {
@@ -62,7 +64,10 @@ shm::Iface* IfaceLink::live() {
 }
 
 bool IfaceLink::wait_for_newer(shm::Iface& iface, std::chrono::nanoseconds limit) {
-  const auto what = iface.wait(last_, limit);
+  const auto what = [&] {
+    const base::ScopedWait waiting;
+    return iface.wait(last_, limit);
+  }();
   if (what == shm::Wait::closed) lose("the simulator is gone");
   return what == shm::Wait::fresh;
 }

@@ -18,7 +18,7 @@ set_tests_properties(integration.unmet_expectations_fail_the_run PROPERTIES PASS
 set_tests_properties(integration.obstacle_avoidance_explores_without_touching integration.the_same_run_in_one_process_and_in_three
                      integration.free_run_in_real_time integration.the_farm_is_seen_from_the_helicopter integration.unmet_expectations_fail_the_run PROPERTIES LABELS integration TIMEOUT 300)
 
-foreach(case kill_simulator kill_host kill_avoider kill_sensor kill_naming one_process four_processes late_naming late_simulator two_robots save_and_load hidden_sets)
+foreach(case kill_simulator kill_host kill_avoider kill_sensor kill_naming one_process four_processes late_naming late_simulator two_robots save_and_load waiting_is_no_fault hidden_sets)
   add_test(NAME integration.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/systems.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(integration.${case} PROPERTIES LABELS integration TIMEOUT 300)

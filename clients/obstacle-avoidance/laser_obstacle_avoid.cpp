@@ -1,6 +1,7 @@
 #include "laser_obstacle_avoid.h"
 
 #include <base/clock.h>
+#include <base/waiting.h>
 
 #include <vector>
 
@@ -108,6 +109,7 @@ void LaserObstacleAvoid::scan_arrived() {
 }
 
 void LaserObstacleAvoid::wait_for_scan() {
+  const base::ScopedWait waiting;
   std::unique_lock lock(mutex_);
   arrived_.wait_for(lock, longest_wait, [this] { return has_arrived_; });
   has_arrived_ = false;

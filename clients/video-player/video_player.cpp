@@ -2,6 +2,7 @@
 
 #include <base/clock.h>
 #include <base/text.h>
+#include <base/waiting.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -149,6 +150,7 @@ void VideoPlayer::frame_arrived() {
 }
 
 void VideoPlayer::wait_for_frame() {
+  const base::ScopedWait waiting;
   std::unique_lock lock(mutex_);
   arrived_.wait_for(lock, longest_wait, [this] { return has_arrived_; });
   has_arrived_ = false;

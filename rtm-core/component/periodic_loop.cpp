@@ -1,5 +1,9 @@
 #include "rtm/PeriodicLoop.h"
 
+#include <algorithm>
+
+#include "base/waiting.h"
+
 namespace RTC::detail {
 
 void LoopState::worker() const {
@@ -10,9 +14,15 @@ void LoopState::worker() const {
 }
 
 void LoopMember::run() const {
-  if (is_first) list->cycle_start_ = std::chrono::steady_clock::now();
+  if (is_first) {
+    list->cycle_start_ = std::chrono::steady_clock::now();
+    list->waited_before_ = base::time_waited();
+  }
   _sm.worker();
-  if (is_last) list->worker_.countCycle(std::chrono::steady_clock::now() - list->cycle_start_.load());
+  if (!is_last) return;
+  const std::chrono::nanoseconds took = std::chrono::steady_clock::now() - list->cycle_start_.load();
+  const auto waited = std::clamp(base::time_waited() - list->waited_before_.load(), std::chrono::nanoseconds(0), took);
+  list->worker_.countCycle(took - waited, waited);
 }
 
 LoopMembers::Snapshot LoopMembers::refresh() {

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "base/log.h"
+#include "base/waiting.h"
 
 namespace rt {
 
@@ -255,6 +256,7 @@ ExecutionContext::Members ExecutionContext::begin_cycle(std::size_t number) {
   auto data = shared_.lock();
   Lane& lane = data->lanes[number];
   lane.cycle_start = std::chrono::steady_clock::now();
+  lane.waited_before = base::time_waited();
   if (lane.version == data->version) return lane.members;
   auto members = std::make_shared<std::vector<std::shared_ptr<Member>>>();
   std::ranges::copy_if(data->members, std::back_inserter(*members), [&](const auto& member) { return member->lane == number; });
@@ -344,16 +346,24 @@ void ExecutionContext::update(std::size_t lane) {
   for (const auto& member : *members) run_phase(*member, select_update);
   if (lane != 0) return;
   const auto now = std::chrono::steady_clock::now();
-  const auto start = shared_.lock()->lanes[lane].cycle_start;
-  count_cycle(now - start);
+  std::chrono::nanoseconds took{0};
+  std::chrono::nanoseconds waited{0};
+  {
+    auto data = shared_.lock();
+    took = now - data->lanes[lane].cycle_start;
+    // Somebody else's thread may have begun the cycle.
+    waited = std::clamp(base::time_waited() - data->lanes[lane].waited_before, 0ns, took);
+  }
+  count_cycle(took - waited, waited);
 }
 
-void ExecutionContext::count_cycle(std::chrono::nanoseconds took) {
+void ExecutionContext::count_cycle(std::chrono::nanoseconds took, std::chrono::nanoseconds waited) {
   auto data = shared_.lock();
   if (!data->running) return;
   ContextStatistics& statistics = data->statistics;
   ++statistics.cycles;
   statistics.total_execution += took;
+  statistics.total_waiting += waited;
   statistics.max_execution = std::max(statistics.max_execution, took);
 }
 

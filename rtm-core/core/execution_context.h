@@ -38,8 +38,12 @@ struct ContextStatistics {
   std::uint64_t missed_cycles = 0;
   std::chrono::nanoseconds total_execution{0};
   std::chrono::nanoseconds max_execution{0};
+  std::chrono::nanoseconds total_waiting{0};  // of callbacks for others (base/waiting.h), beside the time of execution
   std::chrono::nanoseconds mean_execution() const {
     return cycles == 0 ? std::chrono::nanoseconds(0) : total_execution / static_cast<std::int64_t>(cycles);
+  }
+  std::chrono::nanoseconds mean_waiting() const {
+    return cycles == 0 ? std::chrono::nanoseconds(0) : total_waiting / static_cast<std::int64_t>(cycles);
   }
 };
 
@@ -126,7 +130,7 @@ class ExecutionContext {
   ContextStatistics statistics() const;
   void count_missed(std::uint64_t cycles);
   // For cycles of transit_one and its relatives.
-  void count_cycle(std::chrono::nanoseconds took);
+  void count_cycle(std::chrono::nanoseconds took, std::chrono::nanoseconds waited = std::chrono::nanoseconds(0));
 
  private:
   ReturnCode wait_until_settled(MemberId id, Event event, std::chrono::nanoseconds timeout, bool gives_up_when_stopped);
@@ -144,6 +148,7 @@ class ExecutionContext {
     Members members = std::make_shared<const std::vector<std::shared_ptr<Member>>>();
     std::uint64_t version = 0;
     std::chrono::steady_clock::time_point cycle_start{};
+    std::chrono::nanoseconds waited_before{0};  // by its thread
   };
   // Of a stepping thread to a member.
   struct Call {

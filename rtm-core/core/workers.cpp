@@ -7,6 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "base/waiting.h"
+
 namespace rt {
 
 namespace {
@@ -29,6 +31,7 @@ bool Alarm::wait_until(std::chrono::steady_clock::time_point deadline) {
 void PeriodicWorker::run() {
   make_this_thread_punctual();
   cycle_ = std::chrono::steady_clock::now();
+  waited_ = base::time_waited();
   while (true) {
     shared_.lock()->woken = false;  // before the context is looked at, so that no later request is missed
     steps_.transit();
@@ -54,6 +57,8 @@ bool PeriodicWorker::sleep_while_idle() {
 }
 
 bool PeriodicWorker::wait_for_deadline() {
+  // Who waits for others is not late: the period begins when the wait ends.
+  cycle_ += base::time_waited() - std::exchange(waited_, base::time_waited());
   while (true) {
     const auto period = context_.period();
     const auto deadline = cycle_ + period;

@@ -46,7 +46,8 @@ class Alarm {
 };
 
 // Absolute deadlines: a late cycle is followed at once by the next until the delay is made good; more than 10 whole periods are given up
-// and counted as missed. Sleeps while the context is idle. A request wakes it: transitions do not wait for the period.
+// and counted as missed. Time in which a callback waits (base/waiting.h) makes no cycle late. Sleeps while the context is idle. A request
+// wakes it: transitions do not wait for the period.
 class PeriodicWorker {
  public:
   static constexpr std::int64_t most_late_periods = 10;
@@ -78,6 +79,7 @@ class PeriodicWorker {
   base::Guarded<Data, base::Rank::buffer> shared_;
   Alarm alarm_;
   std::chrono::steady_clock::time_point cycle_{};  // when the present cycle should have begun; run() only
+  std::chrono::nanoseconds waited_{0};             // by this thread, before it; run() only
 };
 
 // As many cycles as ticks, in their order. A request is answered without a tick.

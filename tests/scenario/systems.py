@@ -1,10 +1,19 @@
 # Whole systems in real time, one case per run: systems.py CASE BIN_DIR LIB_DIR SOURCE_DIR. Processes are killed in the middle, hosted together and apart, saved and
 # restored; the rest lives on, and the robot never drives without its commander.
+import fcntl
 import json
+import os
+import pty
 import re
+import select
+import struct
+import subprocess
 import sys
+import termios
+import time
 
 from rig import Rig, await_
+from system import watchdog
 
 case, *folders = sys.argv[1:]
 rig = Rig(*folders)
@@ -284,6 +293,48 @@ def save_and_load():
     differences(wanted)
 
 
+# What `rtse watch` has written to a terminal after some refreshes.
+def watched(seconds):
+    screen, terminal = pty.openpty()
+    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 60, 160, 0, 0))
+    process = subprocess.Popen([f"{rig.bin_dir}/rtse", "--ns", rig.names, "watch"], stdin=terminal, stdout=terminal, env={**os.environ, "TERM": "xterm"})
+    os.close(terminal)
+    written, end, quits = b"", time.monotonic() + seconds, False
+    while True:
+        if not quits and time.monotonic() > end:
+            os.write(screen, b"q")
+            quits = True
+        if select.select([screen], [], [], 0.1)[0]:
+            try:
+                written += os.read(screen, 65536)
+            except OSError:  # nobody has the terminal open any more
+                break
+        assert time.monotonic() < end + watchdog, "watch does not end"
+    assert process.wait(watchdog) == 0
+    return re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", " ", written.decode(errors="replace"))
+
+
+# Components that wait in onExecute, for the simulator or for data, are not late.
+def waiting_is_no_fault():
+    rig.server()
+    rig.naming()
+    rig.rtcd("-o", "naming.update.interval:1", device("RTCLaser"), "LaserObstacleAvoid", device("RTCPosition2d"), cwd=rig.work)
+    wire()
+
+    def statistics(component):
+        context = json.loads(rig.rtse("--json", "cat", component))["contexts"][0]
+        return {key.split(".")[1]: float(value) for key, value in context["properties"].items() if key.startswith("statistics.")}
+
+    for name in avoidance:
+        await_(f"cycles of {name}", lambda: statistics(name)["cycles"] > 100)
+        found = statistics(name)
+        assert found["mean_execution_time"] < found["mean_waiting_time"] and found["mean_waiting_time"] > 0.001, (name, found)
+        assert found["missed_cycles"] * 100 < found["cycles"], (name, found)
+    screen = watched(3)
+    assert "waits for data" in screen and "LaserObstacleAvoid0" in screen, screen
+    assert "longer than its period" not in screen, screen
+
+
 # A profile as rtcryo writes it, with what editors know of parameters in sets of their own: types, widgets and constraints are no values.
 def hidden_sets():
     rig.server()
@@ -310,7 +361,7 @@ def hidden_sets():
 
 
 cases = {f.__name__: f for f in (kill_simulator, kill_host, kill_avoider, kill_sensor, kill_naming, one_process, four_processes, late_naming, late_simulator,
-                                 two_robots, save_and_load, hidden_sets)}
+                                 two_robots, save_and_load, waiting_is_no_fault, hidden_sets)}
 with rig:
     cases[case]()
 print("ok")

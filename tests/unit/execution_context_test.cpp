@@ -6,8 +6,10 @@
 #include <cmath>
 #include <future>
 #include <limits>
+#include <thread>
 
 #include "base/log.h"
+#include "base/waiting.h"
 #include "core/workers.h"
 #include "support/recording_participant.h"
 
@@ -374,6 +376,27 @@ struct Running {
   Worker worker;
   std::thread thread;
 };
+
+// A component that waits for data in onExecute.
+TEST_F(ExecutionContextTest, time_in_which_a_member_waits_is_no_work_and_makes_no_cycle_late) {
+  activate();
+  std::promise<void> enough;
+  participant->during = [&, count = 0](Action action) mutable {
+    if (action != Action::execute || count > 5) return;
+    if (++count == 5) enough.set_value();
+    const base::ScopedWait waiting;
+    std::this_thread::sleep_for(30ms);
+  };
+  ASSERT_EQ(context.set_rate(1000), ReturnCode::ok);
+  {
+    Running<PeriodicWorker> running(context);
+    enough.get_future().wait();
+  }
+  const ContextStatistics statistics = context.statistics();
+  EXPECT_EQ(statistics.missed_cycles, 0u);
+  EXPECT_GE(statistics.total_waiting, 4 * 30ms);
+  EXPECT_LT(statistics.total_execution, statistics.total_waiting);
+}
 
 TEST_F(ExecutionContextTest, a_periodic_worker_answers_requests_at_once_at_any_rate) {
   context.set_rate(0.001);

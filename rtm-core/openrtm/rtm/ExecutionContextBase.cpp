@@ -236,6 +236,7 @@ RTC::ExecutionContextProfile* ExecutionContextBase::getProfile() {
   properties["statistics.missed_cycles"] = std::to_string(statistics.missed_cycles);
   properties["statistics.mean_execution_time"] = seconds(statistics.mean_execution());
   properties["statistics.max_execution_time"] = seconds(statistics.max_execution);
+  properties["statistics.mean_waiting_time"] = seconds(statistics.mean_waiting());
   NVUtil::copyFromProperties(profile->properties, properties);
   RTC::ExecutionContextProfile* answer = profile._retn();
   return onGetProfile(answer);

@@ -9,7 +9,9 @@ std::vector<std::shared_ptr<RTObjectStateMachine>> ExecutionContextWorker::membe
   return machines;
 }
 
-void ExecutionContextWorker::countCycle(std::chrono::nanoseconds took) { context_.context().count_cycle(took); }
+void ExecutionContextWorker::countCycle(std::chrono::nanoseconds took, std::chrono::nanoseconds waited) {
+  context_.context().count_cycle(took, waited);
+}
 
 RTObjectStateMachine* ExecutionContextWorker::findComponent(RTC::LightweightRTObject_ptr component) {
   const auto member = context_.impl_->find(component);

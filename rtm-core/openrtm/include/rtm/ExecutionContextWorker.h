@@ -34,7 +34,7 @@ class ExecutionContextWorker {
   void invokeWorkerDo();
   void invokeWorkerPostDo();
   // For cycles whose members are stepped one by one.
-  void countCycle(std::chrono::nanoseconds took);
+  void countCycle(std::chrono::nanoseconds took, std::chrono::nanoseconds waited);
   // Every phase sees who has come and gone by itself.
   void updateComponentList() {}
 

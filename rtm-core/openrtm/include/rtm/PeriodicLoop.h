@@ -146,6 +146,7 @@ class LoopMembers {
   mutable std::mutex mutex_;
   Snapshot members_ = std::make_shared<const std::vector<LoopMember>>();
   std::atomic<std::chrono::steady_clock::time_point> cycle_start_{};
+  std::atomic<std::chrono::nanoseconds> waited_before_{};
 };
 
 }  // namespace detail
