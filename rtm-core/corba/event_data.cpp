@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "corba/cdr.h"
+#include "corba/payload.h"
 
 namespace corba {
 
@@ -11,8 +12,25 @@ EventData::EventData(const TypeOps& ops, const void* value, rt::ByteOrder order)
 
 EventData::EventData(const TypeOps& ops, rt::Sample sample) : ops_(&ops), order_(sample.order), sample_(std::move(sample)) {}
 
+EventData::EventData(Payload& payload, rt::ByteOrder order, rt::BlockPool& pool)
+    : ops_(&payload.ops()), payload_(&payload), pool_(&pool), order_(order) {}
+
+const Pieces* EventData::pieces() {
+  try {
+    return &payload_->pieces(order_);
+  } catch (const CORBA::SystemException&) {
+    return nullptr;  // the sender says so
+  }
+}
+
 void* EventData::value() {
   if (value_) return value_.get();
+  if (payload_) {
+    const void* value = payload_->value();
+    if (!value) return nullptr;
+    value_ = ops_->copy(value);
+    return value_.get();
+  }
   if (original_) {
     value_ = ops_->copy(original_);
   } else if (sample_.value) {
@@ -27,13 +45,19 @@ void* EventData::value() {
 
 void EventData::value_changed() {
   is_changed_ = true;
+  payload_ = nullptr;
   sample_.block = nullptr;
   sample_.value = nullptr;
   original_ = value_ ? value_.get() : nullptr;
 }
 
 std::span<const std::byte> EventData::octets() {
-  if (!sample_.block) {
+  if (!sample_.block && payload_) {
+    const Pieces* all = pieces();
+    if (!all) return {};
+    if (all->parts.size() == 1) return all->parts.front();
+    sample_ = payload_->encoded(order_, *pool_);
+  } else if (!sample_.block) {
     const void* source = original_ ? original_ : sample_.value ? sample_.value.get() : nullptr;
     if (!source) return {};
     try {
@@ -45,12 +69,27 @@ std::span<const std::byte> EventData::octets() {
   return sample_.block->octets();
 }
 
+std::size_t EventData::size() {
+  if (!payload_) return octets().size();
+  const Pieces* all = pieces();
+  return all ? all->size : 0;
+}
+
+void EventData::copy_octets(std::byte* to) {
+  if (!payload_) {
+    std::ranges::copy(octets(), to);
+  } else if (const Pieces* all = pieces()) {
+    for (const auto& part : all->parts) to = std::ranges::copy(part, to).out;
+  }
+}
+
 void EventData::replace_octets(std::span<const std::byte> octets) {
   auto block = rt::BlockPool::make()->take(octets.size());
   std::ranges::copy(octets, block->data());
   is_changed_ = true;
   sample_.block = std::move(block);
   sample_.value = nullptr;
+  payload_ = nullptr;
   original_ = nullptr;
   value_ = nullptr;
 }

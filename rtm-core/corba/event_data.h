@@ -1,4 +1,4 @@
-// One sample as listeners see it: decoded or encoded only when somebody asks, and changeable. One thread at a time.
+// One sample as listeners see it: decoded, encoded and copied only when somebody asks, and changeable. One thread at a time.
 #pragma once
 
 #include <memory>
@@ -8,6 +8,9 @@
 #include "core/sample.h"
 
 namespace corba {
+
+class Payload;
+struct Pieces;
 
 // In the order of RTC::ConnectorDataListenerType and RTC::ConnectorListenerType.
 enum class DataEvent {
@@ -29,14 +32,20 @@ class EventData {
   // The value must live as long as this; it is never changed itself.
   EventData(const TypeOps& ops, const void* value, rt::ByteOrder order);
   EventData(const TypeOps& ops, rt::Sample sample);
+  // What is on its way out. Both must live as long as this; blocks for octets are taken from the pool.
+  EventData(Payload& payload, rt::ByteOrder order, rt::BlockPool& pool);
 
   const TypeOps& ops() const { return *ops_; }
   rt::ByteOrder order() const { return order_; }
   // A copy that the caller may change (then call value_changed); nullptr if the octets are no value of the type.
   void* value();
   void value_changed();
-  // Encoded in order().
+  // Encoded in order(); none if the value cannot be. What is already in one piece is not copied. Good as long as this is not changed.
   std::span<const std::byte> octets();
+  // How many there are, without a copy.
+  std::size_t size();
+  // Copies them there: room for size().
+  void copy_octets(std::byte* to);
   void replace_octets(std::span<const std::byte> octets);
 
   bool is_changed() const { return is_changed_; }
@@ -44,8 +53,13 @@ class EventData {
   rt::Sample sample();
 
  private:
+  // In one or more pieces; none if the value cannot be encoded.
+  const Pieces* pieces();
+
   const TypeOps* ops_;
   const void* original_ = nullptr;
+  Payload* payload_ = nullptr;
+  rt::BlockPool* pool_ = nullptr;  // when there is a payload
   rt::ByteOrder order_;
   rt::Sample sample_;
   std::shared_ptr<void> value_;

@@ -57,13 +57,11 @@ class Changed {
   std::optional<Payload> replacement_;
 };
 
-// Lets listeners see, and change, what goes out.
-void tell(ConnectorEvents& events, DataEvent event, Changed& payload, rt::ByteOrder order, bool is_direct, rt::BlockPool& pool) {
+// Lets listeners see, and change, what goes out. Nothing is copied for those that only want to know that it does.
+void tell(ConnectorEvents& events, DataEvent event, Changed& payload, rt::ByteOrder order, rt::BlockPool& pool) {
   if (!events.is_observed(event)) return;
   try {
-    rt::Sample sample = is_direct || payload.now().value() ? payload.now().copied() : payload.now().encoded(order, pool);
-    sample.order = order;
-    EventData data(payload.now().ops(), std::move(sample));
+    EventData data(payload.now(), order, pool);
     events.on_data(event, data);
     if (data.is_changed()) payload.replace(data.sample());
   } catch (const CORBA::Exception&) {
@@ -84,7 +82,7 @@ struct OutConnection::Line {
   bool is_direct() const { return plan.settings.interface == rt::Interface::direct; }
   rt::ByteOrder order() const { return plan.settings.order; }
 
-  void tell(DataEvent event, Changed& payload) { corba::tell(*plan.events, event, payload, order(), is_direct(), *pool); }
+  void tell(DataEvent event, Changed& payload) { corba::tell(*plan.events, event, payload, order(), *pool); }
 
   rt::Sample keep(Payload& payload) {
     rt::Sample sample = is_direct() ? payload.copied() : payload.encoded(order(), *pool);

@@ -52,7 +52,7 @@ const char* ConnectorListener::toString(ConnectorListenerType type) {
 ConnectorDataListener::ReturnCode ConnectorDataListener::operator()(ConnectorInfo& info, ByteData& data, const std::string&) {
   cdrMemoryStream stream;
   stream.setByteSwapFlag(data.isLittleEndian());
-  if (data.getDataLength()) stream.put_octet_array(data.getBuffer(), static_cast<int>(data.getDataLength()));
+  if (data.getDataLength()) stream.put_octet_array(std::as_const(data).getBuffer(), static_cast<int>(data.getDataLength()));
   stream.rewindInputPtr();
   const ReturnCode code = (*this)(info, stream);
   if (changes_data(code)) data.writeData(static_cast<unsigned char*>(stream.bufPtr()), stream.bufSize());
@@ -65,11 +65,9 @@ ConnectorDataListener::ReturnCode ConnectorDataListener::operator()(ConnectorInf
 }
 
 ConnectorDataListener::ReturnCode ConnectorDataListener::notify(ConnectorInfo& info, corba::EventData& data) {
-  const auto octets = data.octets();
-  ByteData bytes(reinterpret_cast<const unsigned char*>(octets.data()), octets.size());
-  bytes.isLittleEndian(data.order() == rt::ByteOrder::little);
+  ByteData bytes(data);
   const ReturnCode code = (*this)(info, bytes, data.ops().codec ? data.ops().codec->name() : "cdr");
-  if (changes_data(code)) data.replace_octets(std::as_bytes(std::span(bytes.getBuffer(), bytes.getDataLength())));
+  if (changes_data(code)) data.replace_octets(std::as_bytes(std::span(std::as_const(bytes).getBuffer(), bytes.getDataLength())));
   return code;
 }
 

@@ -1,7 +1,12 @@
-// Octets of one sample as listeners see them. A value; one thread at a time.
+// Octets of one sample as listeners see them. A value; one thread at a time. What a listener gets shows the octets where they are: they are
+// copied when somebody may change them, by getBuffer() of one that is not const or by setDataLength, and when the object itself is copied.
 #pragma once
 
 #include <vector>
+
+namespace corba {
+class EventData;
+}
 
 namespace RTC {
 
@@ -14,16 +19,18 @@ class ByteData {
   // What a serializer holds.
   ByteData(const ByteDataStreamBase& stream) { *this = stream; }
   ByteData& operator=(const ByteDataStreamBase& stream);
-  virtual ~ByteData() = default;
-  ByteData(const ByteData&) = default;
-  ByteData& operator=(const ByteData&) = default;
+  // Ports make these for listeners; the event must outlive it.
+  explicit ByteData(corba::EventData& event);
+  virtual ~ByteData();
+  ByteData(const ByteData& other);
+  ByteData& operator=(const ByteData& other);
 
-  unsigned char* getBuffer() { return octets_.data(); }
-  const unsigned char* getBuffer() const { return octets_.data(); }
-  unsigned long getDataLength() const { return octets_.size(); }
-  virtual void setDataLength(unsigned long length) { octets_.resize(length); }
+  unsigned char* getBuffer();
+  const unsigned char* getBuffer() const;
+  unsigned long getDataLength() const;
+  virtual void setDataLength(unsigned long length);
   // Replaces the contents.
-  virtual void writeData(const unsigned char* data, unsigned long length) { octets_.assign(data, data + length); }
+  virtual void writeData(const unsigned char* data, unsigned long length);
   // Copies at most `length` octets out.
   virtual void readData(unsigned char* data, unsigned long length) const;
   // The byte order of the contents.
@@ -33,6 +40,9 @@ class ByteData {
   bool getEndian() const { return is_little_; }
 
  private:
+  void own();
+
+  corba::EventData* event_ = nullptr;  // shown as long as there is one
   std::vector<unsigned char> octets_;
   bool is_little_ = true;
 };
