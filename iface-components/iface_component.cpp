@@ -1,5 +1,7 @@
 #include "iface_component.h"
 
+#include "specification.h"
+
 namespace iface {
 
 IfaceComponent::IfaceComponent(RTC::Manager* manager, shm::IfaceType type, bool subscribe)
@@ -16,7 +18,7 @@ Say IfaceComponent::say() {
 }
 
 void IfaceComponent::bindDevice(const char* default_device) {
-  bindParameter("server_id", server_id_, "0");
+  bindParameter("server_id", server_id_, std::to_string(default_server()).c_str());
   bindParameter("device_id", device_id_, default_device);
 }
 

@@ -1,6 +1,7 @@
 #include "rtc_bumper.h"
 
 #include "conversions.h"
+#include "specification.h"
 
 // clang-format off
 static const char* const rtcbumper_spec[] = {
@@ -57,7 +58,7 @@ RTC::ReturnCode_t RTCBumper::onExecute(RTC::UniqueId) {
 
 extern "C" {
 void RTCBumperInit(RTC::Manager* manager) {
-  coil::Properties profile(rtcbumper_spec);
+  coil::Properties profile = iface::specification(rtcbumper_spec);
   manager->registerFactory(profile, RTC::Create<RTCBumper>, RTC::Delete<RTCBumper>);
 }
 }

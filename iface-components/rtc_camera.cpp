@@ -1,6 +1,7 @@
 #include "rtc_camera.h"
 
 #include "conversions.h"
+#include "specification.h"
 
 // clang-format off
 static const char* const rtccamera_spec[] = {
@@ -148,7 +149,7 @@ void RTCCamera::send_timed_image(const shm::CameraInfo& info, const shm::FrameHe
 
 extern "C" {
 void RTCCameraInit(RTC::Manager* manager) {
-  coil::Properties profile(rtccamera_spec);
+  coil::Properties profile = iface::specification(rtccamera_spec);
   manager->registerFactory(profile, RTC::Create<RTCCamera>, RTC::Delete<RTCCamera>);
 }
 }

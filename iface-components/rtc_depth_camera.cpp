@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "conversions.h"
+#include "specification.h"
 
 // clang-format off
 static const char* const rtcdepthcamera_spec[] = {
@@ -109,7 +110,7 @@ void RTCDepthCamera::send_points(const shm::CameraInfo& info, const shm::HeldFra
 
 extern "C" {
 void RTCDepthCameraInit(RTC::Manager* manager) {
-  coil::Properties profile(rtcdepthcamera_spec);
+  coil::Properties profile = iface::specification(rtcdepthcamera_spec);
   manager->registerFactory(profile, RTC::Create<RTCDepthCamera>, RTC::Delete<RTCDepthCamera>);
 }
 }

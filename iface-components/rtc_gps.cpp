@@ -1,6 +1,7 @@
 #include "rtc_gps.h"
 
 #include "conversions.h"
+#include "specification.h"
 
 // clang-format off
 static const char* const rtcgps_spec[] = {
@@ -47,7 +48,7 @@ RTC::ReturnCode_t RTCGps::onExecute(RTC::UniqueId) {
 
 extern "C" {
 void RTCGpsInit(RTC::Manager* manager) {
-  coil::Properties profile(rtcgps_spec);
+  coil::Properties profile = iface::specification(rtcgps_spec);
   manager->registerFactory(profile, RTC::Create<RTCGps>, RTC::Delete<RTCGps>);
 }
 }

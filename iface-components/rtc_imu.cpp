@@ -1,6 +1,7 @@
 #include "rtc_imu.h"
 
 #include "conversions.h"
+#include "specification.h"
 
 // clang-format off
 static const char* const rtcimu_spec[] = {
@@ -60,7 +61,7 @@ RTC::ReturnCode_t RTCImu::onExecute(RTC::UniqueId) {
 
 extern "C" {
 void RTCImuInit(RTC::Manager* manager) {
-  coil::Properties profile(rtcimu_spec);
+  coil::Properties profile = iface::specification(rtcimu_spec);
   manager->registerFactory(profile, RTC::Create<RTCImu>, RTC::Delete<RTCImu>);
 }
 }

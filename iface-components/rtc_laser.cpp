@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "conversions.h"
+#include "specification.h"
 
 // clang-format off
 static const char* const rtclaser_spec[] = {
@@ -56,7 +57,7 @@ RTC::ReturnCode_t RTCLaser::onExecute(RTC::UniqueId) {
 
 extern "C" {
 void RTCLaserInit(RTC::Manager* manager) {
-  coil::Properties profile(rtclaser_spec);
+  coil::Properties profile = iface::specification(rtclaser_spec);
   manager->registerFactory(profile, RTC::Create<RTCLaser>, RTC::Delete<RTCLaser>);
 }
 }

@@ -1,6 +1,7 @@
 #include "rtc_position2d.h"
 
 #include "conversions.h"
+#include "specification.h"
 
 // clang-format off
 static const char* const rtcposition2d_spec[] = {
@@ -64,7 +65,7 @@ void RTCPosition2d::publish(const shm::Iface& robot) {
 
 extern "C" {
 void RTCPosition2dInit(RTC::Manager* manager) {
-  coil::Properties profile(rtcposition2d_spec);
+  coil::Properties profile = iface::specification(rtcposition2d_spec);
   manager->registerFactory(profile, RTC::Create<RTCPosition2d>, RTC::Delete<RTCPosition2d>);
 }
 }

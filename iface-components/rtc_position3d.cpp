@@ -1,6 +1,7 @@
 #include "rtc_position3d.h"
 
 #include "conversions.h"
+#include "specification.h"
 
 // clang-format off
 static const char* const rtcposition3d_spec[] = {
@@ -61,7 +62,7 @@ void RTCPosition3d::publish(const shm::Iface& robot) {
 
 extern "C" {
 void RTCPosition3dInit(RTC::Manager* manager) {
-  coil::Properties profile(rtcposition3d_spec);
+  coil::Properties profile = iface::specification(rtcposition3d_spec);
   manager->registerFactory(profile, RTC::Create<RTCPosition3d>, RTC::Delete<RTCPosition3d>);
 }
 }

@@ -4,6 +4,7 @@
 
 #include "conversions.h"
 #include "sim_clock.h"
+#include "specification.h"
 
 // clang-format off
 static const char* const rtcsimulation_spec[] = {
@@ -100,7 +101,7 @@ RTC::ReturnCode_t RTCSimulation::onInitialize() {
   addOutPort("time", time_out_);
   simulation_port_.registerProvider("simulation", "rtmsim::SimulationService", service_);
   addPort(simulation_port_);
-  bindParameter("server_id", server_id_, "0");
+  bindParameter("server_id", server_id_, std::to_string(iface::default_server()).c_str());
   service_.set_server(server_id_);
   return RTC::RTC_OK;
 }
@@ -156,7 +157,7 @@ RTC::ReturnCode_t RTCSimulation::onExecute(RTC::UniqueId) {
 
 extern "C" {
 void RTCSimulationInit(RTC::Manager* manager) {
-  coil::Properties profile(rtcsimulation_spec);
+  coil::Properties profile = iface::specification(rtcsimulation_spec);
   manager->registerFactory(profile, RTC::Create<RTCSimulation>, RTC::Delete<RTCSimulation>);
 }
 }

@@ -1,6 +1,7 @@
 #include "rtc_sonar.h"
 
 #include "conversions.h"
+#include "specification.h"
 
 // clang-format off
 static const char* const rtcsonar_spec[] = {
@@ -48,7 +49,7 @@ RTC::ReturnCode_t RTCSonar::onExecute(RTC::UniqueId) {
 
 extern "C" {
 void RTCSonarInit(RTC::Manager* manager) {
-  coil::Properties profile(rtcsonar_spec);
+  coil::Properties profile = iface::specification(rtcsonar_spec);
   manager->registerFactory(profile, RTC::Create<RTCSonar>, RTC::Delete<RTCSonar>);
 }
 }

@@ -3,27 +3,22 @@
 #include <base/text.h>
 #include <rtm/ECFactory.h>
 
-#include <cstdlib>
 #include <thread>
 #include <utility>
+
+#include "specification.h"
 
 namespace {
 
 constexpr std::chrono::milliseconds longest_wait{100};
 constexpr std::chrono::milliseconds retry_period{100};
-constexpr int highest_server = 9999;
 constexpr std::int64_t highest_phase = 15;
 constexpr std::chrono::seconds lockstep_patience{30};  // the default of rtse run --hang-timeout
 constexpr std::chrono::seconds usual_patience{1};
 
-int default_server() {
-  const char* text = std::getenv("RTMSIM_SERVER_ID");
-  return static_cast<int>(base::parse_integer(text ? text : "0").value_or(0));
-}
-
 }  // namespace
 
-SimTimeContext::SimTimeContext(const std::string& name) : RTC::PeriodicExecutionContext(name), server_id_(default_server()) {}
+SimTimeContext::SimTimeContext(const std::string& name) : RTC::PeriodicExecutionContext(name), server_id_(iface::default_server()) {}
 
 SimTimeContext::~SimTimeContext() {
   stop();
@@ -40,7 +35,7 @@ void SimTimeContext::init(coil::Properties& properties) {
     RTC_WARN(("exec_cxt.%s must be a number from 0 to %d, got %s", key, static_cast<int>(highest), base::in_quotes(text).c_str()));
     return otherwise;
   };
-  server_id_ = static_cast<int>(number("sim_time.server_id", highest_server, server_id_));
+  server_id_ = static_cast<int>(number("sim_time.server_id", iface::highest_server, server_id_));
   waits_for_members_ = properties.getProperty("member_timeout").empty();
   phase_ = static_cast<std::uint32_t>(number("sim_time.phase", highest_phase, phase_));
 }

@@ -335,6 +335,17 @@ def waiting_is_no_fault():
     assert "longer than its period" not in screen, screen
 
 
+# RTMSIM_SERVER_ID says to components which simulator is meant, as to all tools.
+def server_of_the_environment():
+    rig.server()
+    rig.naming()
+    rig.host("RTCLaser", "RTCPosition2d?conf.default.server_id=4999", "RTCSimulation")
+    rig.there("RTCLaser0", "RTCPosition2d0", "RTCSimulation0")
+    servers = {name: rig.rtse("conf", name, "get", "server_id").strip() for name in ("RTCLaser0", "RTCPosition2d0", "RTCSimulation0")}
+    assert servers == {"RTCLaser0": rig.server_id, "RTCPosition2d0": "4999", "RTCSimulation0": rig.server_id}, servers
+    rig.rtse("act", "RTCLaser0", "RTCSimulation0")
+
+
 # A profile as rtcryo writes it, with what editors know of parameters in sets of their own: types, widgets and constraints are no values.
 def hidden_sets():
     rig.server()
@@ -361,7 +372,7 @@ def hidden_sets():
 
 
 cases = {f.__name__: f for f in (kill_simulator, kill_host, kill_avoider, kill_sensor, kill_naming, one_process, four_processes, late_naming, late_simulator,
-                                 two_robots, save_and_load, waiting_is_no_fault, hidden_sets)}
+                                 two_robots, save_and_load, waiting_is_no_fault, server_of_the_environment, hidden_sets)}
 with rig:
     cases[case]()
 print("ok")
