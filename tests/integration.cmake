@@ -18,7 +18,7 @@ set_tests_properties(integration.unmet_expectations_fail_the_run PROPERTIES PASS
 set_tests_properties(integration.obstacle_avoidance_explores_without_touching integration.the_same_run_in_one_process_and_in_three
                      integration.free_run_in_real_time integration.the_farm_is_seen_from_the_helicopter integration.unmet_expectations_fail_the_run PROPERTIES LABELS integration TIMEOUT 300)
 
-foreach(case kill_simulator kill_host kill_avoider kill_sensor kill_naming one_process four_processes late_naming late_simulator two_robots save_and_load waiting_is_no_fault hidden_sets)
+foreach(case kill_simulator kill_host kill_avoider kill_sensor kill_naming one_process four_processes late_naming late_simulator two_robots save_and_load waiting_is_no_fault server_of_the_environment hidden_sets)
   add_test(NAME integration.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/systems.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(integration.${case} PROPERTIES LABELS integration TIMEOUT 300)
@@ -30,7 +30,7 @@ foreach(case kinds not_a_number crash hang missing_module incomplete interrupted
   set_tests_properties(run.${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
 
-foreach(case wrong_usage closed_pipe hung_is_not_gone bad_values_in_files name_servers delete_names disconnect_own_ports why_not simulation_that_is_gone converted_types)
+foreach(case wrong_usage closed_pipe hung_is_not_gone disconnect_from_one_that_hangs bad_values_in_files name_servers delete_names disconnect_own_ports why_not simulation_that_is_gone converted_types)
   add_test(NAME editor.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/editor.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(editor.${case} PROPERTIES LABELS integration TIMEOUT 300)

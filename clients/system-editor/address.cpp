@@ -1,5 +1,7 @@
 #include "address.h"
 
+#include <cstdlib>
+
 #include "base/text.h"
 
 namespace editor {
@@ -112,6 +114,11 @@ bool matches(const std::string& segment, const std::string& id, const std::strin
   if (find_unescaped(segment, '.') == std::string::npos) return wanted_id == id;
   // A name with a dot of its own, written without an escape, is understood too.
   return (wanted_id == id && wanted_kind == kind) || unescape(segment) == id || unescape(segment) == id + "." + kind;
+}
+
+std::string working_path() {
+  const char* path = std::getenv("RTCSH_CWD");
+  return path ? path : "";
 }
 
 }  // namespace editor

@@ -30,4 +30,7 @@ std::string escape_name(const std::string& text);
 // "id.kind" split at the first unescaped dot, both unescaped.
 std::pair<std::string, std::string> split_kind(const std::string& segment);
 
+// Where paths without a leading '/' begin: RTCSH_CWD, which the tools of the field set.
+std::string working_path();
+
 }  // namespace editor

@@ -110,10 +110,15 @@ void read_profile(ComponentView& component) {
 }  // namespace
 
 // A member of a composite has its own context stopped and runs in another.
-RTC::LifeCycleState ComponentView::state() const {
-  if (contexts.empty()) return RTC::CREATED_STATE;
+const ContextView* ComponentView::shown_context() const {
+  if (contexts.empty()) return nullptr;
   const auto running = std::find_if(contexts.begin(), contexts.end(), [](const ContextView& context) { return context.is_running; });
-  return running == contexts.end() ? contexts.front().state : running->state;
+  return running == contexts.end() ? &contexts.front() : &*running;
+}
+
+RTC::LifeCycleState ComponentView::state() const {
+  const auto* context = shown_context();
+  return context ? context->state : RTC::CREATED_STATE;
 }
 
 const PortView* ComponentView::port(const std::string& name) const {

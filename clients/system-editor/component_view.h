@@ -82,7 +82,9 @@ struct ComponentView {
   std::string problem;  // it could not be read, and why
 
   std::string profile_id() const { return "RTC:" + vendor + ":" + category + ":" + type + ":" + version; }
-  // The state in the first context that knows the component.
+  // What is meant when nobody names a context: the first that runs, else the first; nullptr when there is none.
+  const ContextView* shown_context() const;
+  // In that context.
   RTC::LifeCycleState state() const;
   const PortView* port(const std::string& name) const;
 };

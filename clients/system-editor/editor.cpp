@@ -8,14 +8,7 @@
 #include "base/text.h"
 
 namespace editor {
-namespace {
-
-std::string working_path() {
-  const char* path = std::getenv("RTCSH_CWD");
-  return path ? path : "";
-}
-
-}  // namespace
+namespace {}  // namespace
 
 Editor::Editor(CORBA::ORB_ptr orb, std::string server, bool json, std::chrono::milliseconds limit)
     : orb_(CORBA::ORB::_duplicate(orb)), server_(std::move(server)), json_(json), limit_(limit) {

@@ -227,6 +227,24 @@ class AsPython(Tool):
         self.assertTrue(configuration.set_configuration_set_values(changed))
         self.assertTrue(configuration.activate_configuration_set(set_id))
 
+    # A member of another context while its own stands: what ls shows is what act and reset mean.
+    def test_our_editor_means_the_context_that_it_shows(self):
+        self.host("FailOnRequest?exec_cxt.periodic.rate=1000", "SourceAll?exec_cxt.periodic.rate=10")
+        member, context = self.find("FailOnRequest0"), self.context(self.find("SourceAll0"))
+        self.assertEqual(self.context(member).stop(), "RTC_OK")
+        self.assertEqual(context.add_component(member), "RTC_OK")
+
+        def shown():
+            return next(line.split() for line in self.system.rtse("ls", "-l", "-R").splitlines() if "FailOnRequest0" in line)
+
+        self.assertEqual(shown()[:3], ["Inactive", "10", "Hz"])
+        self.system.rtse("act", "FailOnRequest0")
+        self.system.rtse("conf", "FailOnRequest0", "set", "fail_in", "onExecute")
+        await_("the error", lambda: shown()[0] == "Error")
+        self.system.rtse("reset", "FailOnRequest0")
+        self.assertEqual(shown()[0], "Inactive")
+        self.assertEqual(context.get_component_state(member), "INACTIVE_STATE")
+
     def test_rtconf_lists_sets_and_activates(self):
         self.host("ConfigDemo")
         component = self.find("ConfigDemo0")

@@ -85,6 +85,24 @@ def hung_is_not_gone():
     rig.rtse("wait", "SinkAll0", "--state", "gone", "--timeout", "60")
 
 
+# Two ports of which one hangs with its process are disconnected at the other, whichever is named first.
+def disconnect_from_one_that_hangs():
+    up("SourceAll")
+    host = rig.host("SinkAll")
+    rig.there("SinkAll0")
+    for ports in (("SourceAll0:long", "SinkAll0:long"), ("SinkAll0:long", "SourceAll0:long")):
+        rig.rtse("con", "SourceAll0:long", "SinkAll0:long", "-i", "wire")
+        rig.rtse("con", "SourceAll0:short", "SinkAll0:short", "-i", "other")
+        host.send_signal(signal.SIGSTOP)
+        rig.rtse("dis", *ports)
+        assert "wire" not in rig.rtse("cat", "-l", "SourceAll0:long")
+        refused("dis", *ports, says="does not answer")
+        assert "other" in rig.rtse("cat", "-l", "SourceAll0:short")
+        host.send_signal(signal.SIGCONT)
+        rig.rtse("dis", "SourceAll0:short", "SinkAll0:short")
+        await_("the news at the one that hung", lambda: "wire" not in rig.rtse("cat", "-l", "SinkAll0:long"))
+
+
 # Values that a component has said that it does not want are refused, from a file too; the others are taken.
 def bad_values_in_files():
     up("ConfigDemo")

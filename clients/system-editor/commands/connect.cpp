@@ -7,6 +7,7 @@
 #include "command.h"
 #include "commands/commands.h"
 #include "commands/connect.h"
+#include "corba/peer_watch.h"
 
 namespace editor {
 namespace {
@@ -196,11 +197,46 @@ void disconnect_by_id(Editor& editor, const std::string& id) {
   editor.fail({"connector " + base::in_quotes(id) + ": no port has it"});
 }
 
+// Where the process of a component listens, that does not answer itself; empty: nobody knows.
+std::string address_of(const Editor& editor, const std::string& path) {
+  const auto address = parse_address(path, working_path());
+  if (!address) return "";
+  const auto names = editor.tree(path);
+  if (!names) return "";
+  const auto entry = names->find(*address);
+  std::string found;
+  if (entry && !CORBA::is_nil((*entry)->object)) {
+    const auto read = remote(path, [&] { found = corba::process_address((*entry)->object); });
+    if (!read) return "";
+  }
+  return found;
+}
+
+// One end hangs with its process: the other knows the connection too. Which of its connections is meant is told by the process.
+void disconnect_at_one_end(Editor& editor, const PortView& port, const std::string& silent_path, const Error& silence) {
+  const auto address = address_of(editor, silent_path);
+  std::vector<std::string> ids;
+  for (const auto& connector : port.connectors) {
+    for (CORBA::ULong i = 0; i < connector.ports.length() && !address.empty(); ++i) {
+      if (connector.ports[i]->_is_equivalent(port.object) || corba::process_address(connector.ports[i]) != address) continue;
+      ids.push_back(connector.id);
+      break;
+    }
+  }
+  if (ids.empty()) return editor.fail(silence);
+  if (ids.size() > 1) {
+    return editor.fail({silence.message + "; " + std::to_string(ids.size()) + " connections of " + port.full_name +
+                        " lead to its process, name one: rtse dis -i " + base::join(ids, ", ")});
+  }
+  if (const auto done = disconnect_connector(port, ids.front()); !done) editor.fail(done.error());
+}
+
 void disconnect_pair(Editor& editor, const std::string& from, const std::string& to) {
   const auto a = editor.port(from, true);
-  if (!a) return editor.fail(a.error());
-  const auto b = editor.port(to);
-  if (!b) return editor.fail(b.error());
+  const auto b = editor.port(to, true);
+  if (!a && !b) return editor.fail(a.error());
+  if (!a) return disconnect_at_one_end(editor, b->port, from, a.error());
+  if (!b) return disconnect_at_one_end(editor, a->port, to, b.error());
   bool any = false;
   for (const auto& connector : a->port.connectors) {
     for (CORBA::ULong i = 0; i < connector.ports.length(); ++i) {

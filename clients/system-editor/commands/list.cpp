@@ -19,11 +19,6 @@ struct ListOptions {
 
 using Json = nlohmann::ordered_json;
 
-std::string working_path() {
-  const char* path = std::getenv("RTCSH_CWD");
-  return path ? path : "";
-}
-
 std::string kind_of(const Entry& entry) {
   switch (entry.kind) {
     case EntryKind::context:
@@ -73,7 +68,7 @@ Json summary(const Entry& entry, const ComponentView* component) {
     value["state"] = state_text(component->state());
     value["type"] = component->type;
     value["ports"] = component->ports.size();
-    if (!component->contexts.empty()) value["rate"] = component->contexts.front().rate;
+    if (const auto* context = component->shown_context()) value["rate"] = context->rate;
   } else if (component && entry.problem.empty()) {
     value["problem"] = component->problem;
   }
@@ -95,7 +90,7 @@ void print_long(const Entry& entry, const ComponentView* component) {
     state = entry.health == Health::hung ? "Hung" : entry.health == Health::zombie ? "Zombie" : "Unreadable";
   if (component && component->problem.empty()) {
     state = state_text(component->state());
-    if (!component->contexts.empty()) rate = base::format_number(component->contexts.front().rate) + " Hz";
+    if (const auto* context = component->shown_context()) rate = base::format_number(context->rate) + " Hz";
     counts = port_counts(*component);
   }
   std::printf("%-10s %-10s %-14s %s\n", state.c_str(), rate.c_str(), counts.c_str(), display(entry).c_str());

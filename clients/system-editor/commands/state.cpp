@@ -50,7 +50,7 @@ RTC::ReturnCode_t call(RTC::ExecutionContext_ptr context, RTC::RTObject_ptr comp
 
 Result<const ContextView*> pick_context(const ComponentView& component, int index) {
   if (component.contexts.empty()) return Error{"component " + component.path + ": takes part in no execution context"};
-  if (index < 0) return &component.contexts.front();
+  if (index < 0) return component.shown_context();
   if (static_cast<std::size_t>(index) >= component.contexts.size()) {
     return Error{"component " + component.path + ": has no execution context number " + std::to_string(index) + ", it has " +
                  std::to_string(component.contexts.size())};
@@ -157,8 +157,7 @@ void delete_bindings(Editor& editor, const std::vector<std::string>& paths, bool
 // No name, or only such whose object is gone. A component that does not answer is not gone, and behind a name server that does not, nobody
 // knows.
 bool is_gone(const Editor& editor, const std::string& path) {
-  const char* working = std::getenv("RTCSH_CWD");
-  const auto address = parse_address(path, working ? working : "");
+  const auto address = parse_address(path, working_path());
   const auto names = editor.tree(path, true);
   if (!address || !names) return false;
   const auto meant = names->candidates(*address);
@@ -192,7 +191,7 @@ void add_state(CLI::App& app, Chosen& chosen) {
     auto paths = std::make_shared<std::vector<std::string>>();
     auto context = std::make_shared<int>(-1);
     command->add_option("PATH", *paths, "Components")->required();
-    command->add_option("-e,--context", *context, "Index of the execution context; default: the first")
+    command->add_option("-e,--context", *context, "Index of the execution context; default: the first that runs, which ls shows")
         ->check(base::number_between(0, 1000));
     command->callback(
         [&chosen, paths, context, transition] { chosen.work = [=](Editor& e) { change_state(e, *paths, transition, *context); }; });

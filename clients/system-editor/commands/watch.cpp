@@ -91,8 +91,9 @@ class Rates {
   // onExecute, for data or for the simulator, runs as often as something comes: "at most 1000 Hz, 19.6 done, 0.05 ms each, 1.2 at most,
   // waits for data, 0 missed".
   std::string text(const ComponentView& component) {
-    if (component.contexts.empty()) return "";
-    const auto& context = component.contexts.front();
+    const auto* shown = component.shown_context();
+    if (!shown) return "";
+    const auto& context = *shown;
     const auto rate = base::format_number(context.rate) + " Hz";
     if (!context.properties.contains("statistics.cycles")) return rate;
     // Waiting that takes less than the period changes nothing.
