@@ -8,11 +8,14 @@
 #include <condition_variable>
 #include <deque>
 #include <map>
+#include <memory>
 #include <string>
 #include <thread>
 #include <utility>
 
 #include "base/guarded.h"
+#include "base/log.h"
+#include "base/text.h"
 #include "corba/call_timeout.h"
 #include "corba/peer_watch.h"
 
@@ -28,12 +31,16 @@ constexpr auto attempt = std::chrono::milliseconds(300);
 // Between two of them, the longer the process has hung.
 constexpr auto longest_pause = std::chrono::milliseconds(1000);
 constexpr auto longest_hang = std::chrono::minutes(10);
+constexpr auto longest_absence = std::chrono::hours(24);
 
 struct Message {
   RTC::PortService_var port;
   std::string connector_id;
   Clock::time_point deadline;
+  std::shared_ptr<const RTC::ConnectorProfile> connects{};  // when it is told; null: nothing
 };
+
+enum class Answer { reached, silent, gone };
 
 struct Process {
   std::deque<Message> untold;
@@ -61,7 +68,7 @@ bool leave_message(const std::string& address, RTC::PortService_ptr port, const 
   auto state = Table::instance().state.lock();
   const auto found = state->processes.find(address);
   if (found == state->processes.end() || !found->second.hangs) return false;
-  found->second.untold.push_back({RTC::PortService::_duplicate(port), connector_id, Clock::now() + port_call_timeout()});
+  found->second.untold.push_back({RTC::PortService::_duplicate(port), connector_id, Clock::now() + port_call_timeout(), nullptr});
   return true;
 }
 
@@ -70,19 +77,42 @@ bool is_time_out(const CORBA::SystemException& problem) {
          (dynamic_cast<const CORBA::TRANSIENT*>(&problem) && problem.minor() == omni::TRANSIENT_CallTimedout);
 }
 
-// Whether the process was reached. It is asked something harmless until it answers: what waits in its sockets when it wakes must not end a
-// connection that was made anew under the same id.
-bool deliver(const Message& message, bool is_awake) {
+// It is asked something harmless until it answers: what waits in its sockets when it wakes must not end a connection that was made anew
+// under the same id.
+Answer deliver(const Message& message, bool is_awake) {
   try {
     limit_calls(message.port, std::min(port_call_timeout(), attempt));
-    if (!is_awake) message.port->_non_existent();
+    if (!is_awake && message.port->_non_existent()) return Answer::gone;
     message.port->notify_disconnect(message.connector_id.c_str());
+  } catch (const CORBA::OBJECT_NOT_EXIST&) {
+    return Answer::gone;
   } catch (const CORBA::SystemException& e) {
-    return !is_time_out(e);  // any other problem is an answer, too
+    if (is_time_out(e)) return Answer::silent;
+    // On another host the way there may be what is broken.
+    const bool may_return = message.connects && !is_on_loopback(process_address(message.port));
+    return may_return ? Answer::silent : Answer::gone;
   } catch (const CORBA::Exception&) {
     // Of another make, and odd: it has got the message.
   }
-  return true;
+  return Answer::reached;
+}
+
+// False: it did not work, and may work later.
+bool connect_again(const RTC::ConnectorProfile& profile) {
+  const std::string name = profile.name.in();
+  RTC::ConnectorProfile again = profile;
+  try {
+    limit_calls(again.ports[0], port_call_timeout() * static_cast<int>(again.ports.length()));
+    const RTC::ReturnCode_t code = again.ports[0]->connect(again);
+    if (code == RTC::RTC_OK) base::log(base::Level::info, "port", "connection {} is back", base::in_quotes(name));
+    // PRECONDITION_NOT_MET: somebody was faster.
+    return code == RTC::RTC_OK || code == RTC::PRECONDITION_NOT_MET;
+  } catch (const CORBA::OBJECT_NOT_EXIST&) {
+    base::log(base::Level::info, "port", "connection {} does not come back: a port is gone", base::in_quotes(name));
+    return true;
+  } catch (const CORBA::Exception&) {
+    return false;
+  }
 }
 
 // Until each message is delivered or past its deadline.
@@ -104,25 +134,32 @@ void tell_late(const std::string& address) {
       }
       message = messages.front();
     }
-    is_awake = deliver(message, is_awake);
+    const Answer answer = deliver(message, is_awake);
+    is_awake = answer != Answer::silent;
+    const bool is_done = is_awake && (answer == Answer::gone || !message.connects || connect_again(*message.connects));
     auto state = table.state.lock();
     Process& process = state->processes[address];
     process.hangs = !is_awake;
-    if (is_awake || Clock::now() >= message.deadline)
-      process.untold.pop_front();
+    process.untold.pop_front();
+    if (is_done || Clock::now() >= message.deadline) continue;
+    // One that could not be connected lets the others through.
+    if (is_awake)
+      process.untold.push_back(std::move(message));
     else
-      state.wait_for(table.changed, std::min<Clock::duration>((Clock::now() - start) / 4, longest_pause), [&] { return state->is_ending; });
+      process.untold.push_front(std::move(message));
+    state.wait_for(table.changed, std::min<Clock::duration>((Clock::now() - start) / 4, longest_pause), [&] { return state->is_ending; });
   }
 }
 
-void tell_later(const std::string& address, RTC::PortService_ptr port, const char* connector_id, bool hangs, Clock::duration lasts) {
+void tell_later(const std::string& address, RTC::PortService_ptr port, const char* connector_id, bool hangs, Clock::duration lasts,
+                std::shared_ptr<const RTC::ConnectorProfile> connects = nullptr) {
   {
     auto state = Table::instance().state.lock();
     if (state->is_ending) return;
     const bool has_thread = state->processes.contains(address);
     Process& process = state->processes[address];
     process.hangs = process.hangs || hangs;
-    process.untold.push_back({RTC::PortService::_duplicate(port), connector_id, Clock::now() + lasts});
+    process.untold.push_back({RTC::PortService::_duplicate(port), connector_id, Clock::now() + lasts, std::move(connects)});
     if (has_thread) return;
     ++state->threads;
   }
@@ -158,6 +195,15 @@ std::optional<RTC::ReturnCode_t> take_leave(RTC::PortService_ptr port, const cha
     // Of another make, and odd.
   }
   return std::nullopt;
+}
+
+void reconnect_when_awake(RTC::PortService_ptr port, const RTC::ConnectorProfile& profile) {
+  try {
+    tell_later(process_address(port), port, profile.connector_id, false, longest_absence,
+               std::make_shared<const RTC::ConnectorProfile>(profile));
+  } catch (const CORBA::SystemException&) {
+    // Nothing to reach it by.
+  }
 }
 
 void take_leave_when_awake(RTC::PortService_ptr port, const char* connector_id) {

@@ -19,6 +19,9 @@ std::optional<RTC::ReturnCode_t> take_leave(RTC::PortService_ptr port, const cha
 // For a connection that was dropped because the port's process did not answer: says notify_disconnect to the port when the process has
 // woken, within ten minutes; nothing if it is dead. Returns at once.
 void take_leave_when_awake(RTC::PortService_ptr port, const char* connector_id);
+// The same for a connection that is to come back: then connects anew, as the profile says. Goes on for a day, also while the other host
+// cannot be reached.
+void reconnect_when_awake(RTC::PortService_ptr port, const RTC::ConnectorProfile& profile);
 
 // Only between these two are those that did not answer told later: while there is an ORB. The end waits for the calls in progress, a
 // moment.

@@ -51,8 +51,6 @@ struct Table {
   }
 };
 
-bool is_on_loopback(std::string_view address) { return address.starts_with("127.") || address.starts_with("::1"); }
-
 enum class Sign { life, object_is_gone, process_is_gone, silence };
 
 Sign ask(CORBA::Object_ptr port) {
@@ -160,6 +158,8 @@ class Rounds {
 };
 
 }  // namespace
+
+bool is_on_loopback(std::string_view address) { return address.starts_with("127.") || address.starts_with("::1"); }
 
 std::string process_address(CORBA::Object_ptr object) {
   omniIOR_var ior = object->_PR_getobj()->_getIOR();

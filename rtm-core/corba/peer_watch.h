@@ -10,6 +10,7 @@
 #include <chrono>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <thread>
 
 #include "corba/loss_handler.h"
@@ -40,5 +41,7 @@ void forget_peers(const std::string& connector_id, const LossHandler& loss);
 // Where the process of an object listens, "127.0.0.1:43210"; the whole reference if it names no such place. Throws CORBA::SystemException
 // for a reference that is none.
 std::string process_address(CORBA::Object_ptr object);
+// Of this host, by such an address.
+bool is_on_loopback(std::string_view address);
 
 }  // namespace corba

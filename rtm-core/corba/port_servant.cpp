@@ -447,8 +447,14 @@ RTC::ReturnCode_t PortServant::leave(std::string_view connector_id, bool tells_n
 
 // A process that only hung still thinks that it is connected, and would refuse to be connected again.
 void PortServant::tell_lost(const RTC::ConnectorProfile& profile) {
-  for (CORBA::ULong i = 0; i < profile.ports.length(); ++i)
-    if (!is_same(profile.ports[i], reference())) take_leave_when_awake(profile.ports[i], profile.connector_id);
+  const bool comes_back = base::parse_bool(find_text(profile.properties, "dataport.reconnect").value_or("")).value_or(false);
+  for (CORBA::ULong i = 0; i < profile.ports.length(); ++i) {
+    if (is_same(profile.ports[i], reference())) continue;
+    if (comes_back)
+      reconnect_when_awake(profile.ports[i], profile);
+    else
+      take_leave_when_awake(profile.ports[i], profile.connector_id);
+  }
 }
 
 RTC::ReturnCode_t PortServant::leave_next(const RTC::ConnectorProfile& profile) {

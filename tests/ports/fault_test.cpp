@@ -225,6 +225,30 @@ TEST_F(Faults, a_peer_that_hangs_bounds_writes_of_every_subscription) {
   }
 }
 
+// A robot whose sensor was away for a while drives on without anybody's help, whichever end was first in the connection.
+TEST_F(Faults, a_connection_that_is_to_come_back_does_so_when_the_peer_that_hung_wakes) {
+  for (const bool ours_first : {true, false}) {
+    ports::Peer peer;
+    RTC::TimedOctetSeq value{};
+    RTC::OutPort<RTC::TimedOctetSeq> octets("A0.octets", value);
+    const RTC::PortService_var far = peer.port("in");
+    std::vector<RTC::PortService_ptr> ends{octets.getPortRef(), far};
+    if (!ours_first) std::swap(ends[0], ends[1]);
+    auto plan = profile({ends[0], ends[1]}, {{"subscription_type", "new"}, {"call_timeout", "0.3"}, {"reconnect", "YES"}}, "here again");
+    ASSERT_EQ(octets.connect(plan), RTC::RTC_OK);
+    stop_process(peer);
+    EXPECT_TRUE(ports::eventually([&] {
+      octets.write();
+      return octets.connectors().empty();
+    }));
+    peer.process().signal(SIGCONT);
+    EXPECT_TRUE(ports::eventually([&] { return octets.connectors().size() == 1; }));
+    EXPECT_STREQ(octets.connectors().at(0)->id(), "here again");
+    EXPECT_TRUE(octets.write());
+    EXPECT_EQ(octets.disconnect("here again"), RTC::RTC_OK);
+  }
+}
+
 TEST_F(Faults, a_peer_that_hangs_keeps_its_connection_while_nobody_writes) {
   corba::OrbSettings settings;
   orb.reset();
