@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "skeleton/idl_operations.h"
+
 namespace editor {
 namespace {
 
@@ -82,6 +84,55 @@ class Folder {
 std::string refusal(const NewComponent& component) {
   const auto checked = check(component);
   return checked ? "" : checked.error().message;
+}
+
+TEST(Skeleton, interfaces_are_found_with_their_modules) {
+  const auto found = interfaces_in(R"(
+#include "module.idl"
+// interface Comment {
+module A { /* interface Other { }; */
+  interface Forward;
+  struct Point { long x; };
+  interface First { enum Colour { red }; void get(in string text); };
+  module B { local interface Second : First { const string name = "interface Text {"; }; };
+  valuetype V { };
+};
+interface Global { };
+)");
+  EXPECT_EQ(found, (std::vector<std::string>{"A::First", "A::B::Second", "Global"}));
+}
+
+// As RTCBuilder wrote them on another system: a device template.
+TEST(Skeleton, a_template_of_rtc_builder_may_leave_out_modules_and_instances) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / "skeleton_test_template";
+  std::filesystem::create_directories(folder / "idl");
+  const auto file = folder / "RTC.xml";
+  std::ofstream(folder / "idl" / "Ranger.idl") << "module Dev { interface Ranger { void start(); }; };\n";
+  std::ofstream(folder / "idl" / "Two.idl") << "module A { interface Two { }; };\nmodule B { interface Two { }; };\n";
+  const auto specification = [&](const std::string& type, const std::string& idl) {
+    std::ofstream(file) << R"(<rtc:RtcProfile rtc:version="0.2" xmlns:rtc="http://www.openrtp.org/namespaces/rtc">
+  <rtc:BasicInfo rtc:name="Ranging" rtc:executionRate="1.0"/>
+  <rtc:ServicePorts rtc:name="ranger">
+    <rtc:ServiceInterface rtc:name="Ranger" rtc:type=")"
+                        << type << R"(" rtc:instanceName="" rtc:direction="Provided" rtc:idlFile=")" << idl << R"("/>
+    <rtc:ServiceInterface rtc:name="other" rtc:type=")"
+                        << type << R"(" rtc:instanceName="" rtc:direction="Required" rtc:idlFile=")" << idl << R"("/>
+  </rtc:ServicePorts></rtc:RtcProfile>)";
+    const auto component = read_specification(file.string());
+    EXPECT_TRUE(component.ok()) << component.error().message;
+    return component.ok() ? skeleton(*component) : component.error();
+  };
+  for (const std::string idl : {"idl\\Ranger.idl", "C:\\work\\device\\Ranger.idl", "idl/Ranger.idl"}) {
+    const auto files = specification("Ranger", idl);
+    ASSERT_TRUE(files.ok()) << files.error().message;
+    EXPECT_NE(files->at("src/Ranging.cpp").find(R"(m_rangerPort.registerProvider("ranger", "Dev::Ranger", m_ranger))"), std::string::npos);
+    EXPECT_NE(files->at("src/Ranging.cpp").find(R"(registerConsumer("Ranger", "Dev::Ranger", m_Ranger))"), std::string::npos);
+    EXPECT_NE(files->at("include/RangerSVC_impl.h").find("POA_Dev::Ranger"), std::string::npos);
+  }
+  const auto ambiguous = specification("Two", "idl/Two.idl");
+  ASSERT_FALSE(ambiguous.ok());
+  EXPECT_NE(ambiguous.error().message.find("A::Two, B::Two"), std::string::npos) << ambiguous.error().message;
+  std::filesystem::remove_all(folder);
 }
 
 TEST(Skeleton, names_that_meet_in_the_code_or_are_taken_are_refused) {

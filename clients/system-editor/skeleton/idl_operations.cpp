@@ -118,6 +118,33 @@ Result<void> collect(const std::filesystem::path& file, std::map<std::string, st
   return {};
 }
 
+// Names, keywords and the signs { } ; of an IDL text, without comments, texts and lines of the preprocessor.
+std::vector<std::string> idl_words(const std::string& idl) {
+  std::vector<std::string> words;
+  const auto is_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+  const auto after = [&](const std::string& end, std::size_t from) {
+    const auto found = idl.find(end, from);
+    return found == std::string::npos ? idl.size() : found + end.size();
+  };
+  for (std::size_t i = 0; i < idl.size();) {
+    if (idl.compare(i, 2, "//") == 0 || idl[i] == '#') {
+      i = after("\n", i);
+    } else if (idl.compare(i, 2, "/*") == 0) {
+      i = after("*/", i + 2);
+    } else if (idl[i] == '"') {
+      i = after("\"", i + 1);
+    } else if (is_name(idl[i])) {
+      const auto begin = i;
+      while (i < idl.size() && is_name(idl[i])) ++i;
+      words.push_back(idl.substr(begin, i - begin));
+    } else {
+      if (idl[i] == '{' || idl[i] == '}' || idl[i] == ';') words.emplace_back(1, idl[i]);
+      ++i;
+    }
+  }
+  return words;
+}
+
 }  // namespace
 
 Result<std::vector<Operation>> operations_of(const NewService& service) {
@@ -139,6 +166,52 @@ Result<std::vector<Operation>> operations_of(const NewService& service) {
   }
   if (!exists) return Error{"IDL file " + base::in_quotes(service.idl_file) + ": has no interface " + base::in_quotes(service.interface)};
   return operations;
+}
+
+std::vector<std::string> interfaces_in(const std::string& idl) {
+  std::vector<std::string> interfaces, scopes;
+  std::string kind, name;  // of what a brace would open
+  for (const auto& word : idl_words(idl)) {
+    if (word == "{") {
+      scopes.push_back(name);
+      if (kind == "interface") interfaces.push_back(base::join(scopes, "::"));
+    } else if (word == "}" && !scopes.empty()) {
+      scopes.pop_back();
+    }
+    if (word == "{" || word == "}" || word == ";") {
+      kind.clear();
+      name.clear();
+    } else if (kind.empty()) {
+      if (word == "module" || word == "interface") kind = word;
+    } else if (name.empty()) {
+      name = word;
+    }
+  }
+  return interfaces;
+}
+
+Result<NewService> in_full(const NewService& service) {
+  if (service.interface.find("::") != std::string::npos) return service;
+  const auto files = with_included({service.idl_file});
+  if (!files) return files.error();
+  const auto own = std::filesystem::path(service.idl_file).filename().string();
+  const auto matches = [&](const std::string& text) {
+    auto found = interfaces_in(text);
+    std::erase_if(found, [&](const auto& name) { return name != service.interface && !name.ends_with("::" + service.interface); });
+    return found;
+  };
+  auto found = matches(files->at(own));
+  for (const auto& [name, text] : *files) {
+    if (name == own || !found.empty()) continue;
+    for (auto& further : matches(text)) found.push_back(std::move(further));
+  }
+  if (found.empty() || std::ranges::find(found, service.interface) != found.end()) return service;
+  if (found.size() > 1)
+    return Error{"service port " + base::in_quotes(service.port) + ": interface " + base::in_quotes(service.interface) + " may be any of " +
+                 base::join(found, ", ") + "; name it in full"};
+  auto full = service;
+  full.interface = found.front();
+  return full;
 }
 
 Result<std::map<std::string, std::string>> with_included(const std::vector<std::string>& files) {

@@ -18,6 +18,13 @@ struct Operation {
 // Those of the interface and of the interfaces that it inherits. Fails when omniidl is missing or refuses the file.
 base::Result<std::vector<Operation>> operations_of(const NewService& service);
 
+// Interfaces that are declared in an IDL text, with their modules ("Mod::If"), in its order.
+std::vector<std::string> interfaces_in(const std::string& idl);
+
+// The service with its interface in full: RTC.xml may leave out the module, as in "Ranger" for RTC::Ranger; the file of the service must
+// have one interface of that name, or those that it includes.
+base::Result<NewService> in_full(const NewService& service);
+
 // File name -> text: the files, and those of their own folders that they include. What is included from elsewhere must be in a folder that
 // every project gets (the data types of the product). Fails for files that cannot lie in one folder.
 base::Result<std::map<std::string, std::string>> with_included(const std::vector<std::string>& files);

@@ -384,8 +384,14 @@ std::string readme_file(const NewComponent& component) {
 
 }  // namespace
 
-Result<std::map<std::string, std::string>> skeleton(const NewComponent& component) {
-  if (const auto ok = check(component); !ok) return ok.error();
+Result<std::map<std::string, std::string>> skeleton(const NewComponent& given) {
+  if (const auto ok = check(given); !ok) return ok.error();
+  auto component = given;
+  for (auto& service : component.services) {
+    auto full = in_full(service);
+    if (!full) return full.error();
+    service = std::move(*full);
+  }
   auto idl_paths = component.idl_files;
   for (const auto& service : component.services) idl_paths.push_back(service.idl_file);
   const auto idl = with_included(idl_paths);

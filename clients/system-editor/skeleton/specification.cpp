@@ -34,14 +34,38 @@ std::string beside(const std::string& specification, const std::string& file) {
   return (std::filesystem::path(specification).parent_path() / file).string();
 }
 
+// The same for RTC.xml, which may come from another system and another machine: back-slashes part folders, and a file that is not where it
+// is said to be may lie beside the specification or in its folder idl.
+std::string idl_beside(const std::string& specification, std::string file) {
+  std::ranges::replace(file, '\\', '/');
+  const auto as_said = beside(specification, file);
+  const auto name = std::filesystem::path(file).filename();
+  const auto folder = std::filesystem::path(specification).parent_path();
+  for (const auto& candidate : {std::filesystem::path(as_said), folder / name, folder / "idl" / name}) {
+    std::error_code error;
+    if (std::filesystem::is_regular_file(candidate, error)) return candidate.string();
+  }
+  return as_said;
+}
+
 NewService service_of(const std::string& port, const pugi::xml_node& interface, const std::string& specification) {
   NewService service;
   service.port = port;
   service.interface = attribute(interface, "type");
   service.instance = attribute(interface, "instanceName", attribute(interface, "name"));
   service.is_provided = attribute(interface, "direction") == "Provided";
-  service.idl_file = beside(specification, attribute(interface, "idlFile"));
+  service.idl_file = idl_beside(specification, attribute(interface, "idlFile"));
   return service;
+}
+
+// An interface without instance name has that of its port, as in RTCBuilder; a second one in the port that of its type.
+void add_service(NewComponent& component, const std::string& port, const pugi::xml_node& interface, const std::string& specification) {
+  auto service = service_of(port, interface, specification);
+  const auto is_taken = [&](const std::string& name) {
+    return std::ranges::any_of(component.services, [&](const NewService& other) { return other.instance == name; });
+  };
+  if (service.instance.empty()) service.instance = is_taken(port) ? service.interface.substr(service.interface.rfind(':') + 1) : port;
+  component.services.push_back(std::move(service));
 }
 
 NewParameter parameter_of(const pugi::xml_node& node) {
@@ -69,7 +93,7 @@ void add_data_port(NewComponent& component, const pugi::xml_node& node, const st
   ports.push_back({attribute(node, "name"), full_type(attribute(node, "type"))});
   // The files of the product's own types are named by paths of the machine where RTCBuilder ran.
   const auto idl = attribute(node, "idlFile");
-  if (!idl.empty() && !is_product_type(ports.back().type)) add_once(component.idl_files, beside(specification, idl));
+  if (!idl.empty() && !is_product_type(ports.back().type)) add_once(component.idl_files, idl_beside(specification, idl));
 }
 
 Result<NewComponent> read_rtc_xml(const std::string& file) {
@@ -94,8 +118,7 @@ Result<NewComponent> read_rtc_xml(const std::string& file) {
       add_data_port(component, node, file);
     } else if (kind == "ServicePorts") {
       for (const auto& interface : node.children()) {
-        if (local(interface.name()) == "ServiceInterface")
-          component.services.push_back(service_of(attribute(node, "name"), interface, file));
+        if (local(interface.name()) == "ServiceInterface") add_service(component, attribute(node, "name"), interface, file);
       }
     } else if (kind == "ConfigurationSet") {
       for (const auto& parameter : node.children()) {
