@@ -23,6 +23,7 @@ struct Entry {
   bool settled = false;  // nothing to do until the next look
   bool bound = false;    // it has been ours before
   bool warned = false;   // somebody else has the name, and that has been said
+  bool yields = false;   // that is theirs, and nothing to be said
 };
 
 bool is_alive(CORBA::Object_ptr object, std::chrono::milliseconds timeout) {
@@ -57,9 +58,10 @@ class Bindings::Server {
 
   const std::string& address() const { return address_; }
 
-  void bind(const std::string& key, const CosNaming::Name& name, CORBA::Object_ptr object) {
+  void bind(const std::string& key, const CosNaming::Name& name, CORBA::Object_ptr object, bool yields) {
     auto state = state_.lock();
-    state->entries[key] = Entry{name, CORBA::Object::_duplicate(object)};
+    Entry& entry = state->entries[key] = Entry{name, CORBA::Object::_duplicate(object)};
+    entry.yields = yields;
     changed_.notify_all();
   }
 
@@ -231,6 +233,7 @@ class Bindings::Server {
       return;
     }
     if (!CORBA::is_nil(there) && !there->_is_equivalent(ours) && is_alive(there, settings_.call_timeout)) {
+      if (entry.yields) return;
       if (!entry.warned) {
         base::log(base::Level::warn, log_name, "{}: {} belongs to another living object; {}", address_, base::in_quotes(key),
                   is_first ? "it is ours now" : "it is left alone");
@@ -280,7 +283,12 @@ struct Bindings::Impl {
   CORBA::ORB_var orb;
   BindingsSettings settings;
   base::Guarded<std::vector<std::shared_ptr<Server>>, base::Rank::manager> servers;
-  base::Guarded<std::map<std::string, std::pair<CosNaming::Name, CORBA::Object_var>>, base::Rank::component> entries;
+  struct Bound {
+    CosNaming::Name name;
+    CORBA::Object_var object;
+    bool yields = false;
+  };
+  base::Guarded<std::map<std::string, Bound>, base::Rank::component> entries;
 
   void wait_until_settled() const {
     const auto deadline = steady_clock::now() + 2 * settings.call_timeout;
@@ -297,7 +305,7 @@ Bindings::~Bindings() = default;
 
 void Bindings::add_server(const std::string& address) {
   auto server = std::make_shared<Server>(impl_->orb, address, impl_->settings);
-  for (const auto& [key, entry] : impl_->entries.snapshot()) server->bind(key, entry.first, entry.second);
+  for (const auto& [key, entry] : impl_->entries.snapshot()) server->bind(key, entry.name, entry.object, entry.yields);
   impl_->servers.lock()->push_back(std::move(server));
 }
 
@@ -307,14 +315,14 @@ std::vector<std::string> Bindings::servers() const {
   return result;
 }
 
-void Bindings::bind(const std::string& name, CORBA::Object_ptr object) {
+void Bindings::bind(const std::string& name, CORBA::Object_ptr object, bool yields) {
   const auto parsed = parse_name(name);
   if (!parsed) {
     base::log_text(base::Level::error, log_name, parsed.error().message);
     return;
   }
-  (*impl_->entries.lock())[name] = {*parsed, CORBA::Object::_duplicate(object)};
-  for (const auto& server : impl_->servers.snapshot()) server->bind(name, *parsed, object);
+  (*impl_->entries.lock())[name] = {*parsed, CORBA::Object::_duplicate(object), yields};
+  for (const auto& server : impl_->servers.snapshot()) server->bind(name, *parsed, object, yields);
   impl_->wait_until_settled();
 }
 

@@ -55,7 +55,8 @@ class Bindings {
   std::vector<std::string> servers() const;
 
   // Returns when every service that answers has the entry, at the latest after twice the call time-out. A name that is no name is logged.
-  void bind(const std::string& name, CORBA::Object_ptr object);
+  // `yields`: a name that belongs to somebody else who lives is left to them, quietly, until it is free.
+  void bind(const std::string& name, CORBA::Object_ptr object, bool yields = false);
   // Takes the entry out where it still is ours; returns as bind does.
   void unbind(const std::string& name);
   // As unbind for every name; also removes the contexts made for them when they are empty.

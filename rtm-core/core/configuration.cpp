@@ -152,7 +152,11 @@ void Configuration::load(const Set& set) {
 bool Configuration::set_values(const Set& set) {
   auto data = shared_.lock();
   Set* known = find(*data, set.id);
-  if (!known) return false;
+  if (!known) {
+    if (set.id.empty()) return false;
+    known = &data->sets.emplace_back(Set{set.id, {}});
+    data->added.push_back(set.id);
+  }
   merge(*known, set);
   data->changed = true;
   data->is_active = false;

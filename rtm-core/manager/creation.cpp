@@ -113,6 +113,19 @@ std::vector<std::string> Manager::getModulesFactories() {
 
 // ---------------------------------------------------------------------------------------------- creation
 
+// Start scripts that run twice work: what is asked for under a name that a component of the type has is that component.
+RTObject_impl* ManagerImpl::existing_component(const rt::ComponentArgument& argument, const coil::Properties& profile) const {
+  const auto name = std::ranges::find(argument.properties, "instance_name", [](const auto& property) { return property.first; });
+  if (name == argument.properties.end()) return nullptr;
+  const auto locked = state.lock();
+  for (const auto& [id, record] : locked->records) {
+    if (record.listed && !record.finalized && record.component && record.factory && record.instance_name == name->second &&
+        id_of(record.factory->profile()) == id_of(profile))
+      return record.component;
+  }
+  return nullptr;
+}
+
 base::Result<RTObject_impl*> ManagerImpl::create(std::string argument) {
   {
     auto locked = state.lock();
@@ -131,6 +144,10 @@ base::Result<RTObject_impl*> ManagerImpl::create(std::string argument) {
   if (!source) {
     return base::Error{"component " + base::in_quotes(argument) +
                        ": no factory of that type is registered and no module of that name is in " + value("manager.modules.load_path")};
+  }
+  if (auto* existing = existing_component(*parsed, source->factory->profile())) {
+    RTC_INFO(("component %s exists already", base::in_quotes(existing->getInstanceName()).c_str()));
+    return existing;
   }
   auto* component = source->factory->create(&facade);
   if (component == nullptr) return base::Error{"component " + base::in_quotes(argument) + ": its factory made none"};
@@ -211,10 +228,13 @@ base::Result<std::string> ManagerImpl::name_component(RTObject_impl* component, 
       std::any_of(argument.properties.begin(), argument.properties.end(), [](const auto& p) { return p.first == "instance_name"; });
   if (is_given) {
     if (auto checked = rt::check_instance_name(name); !checked) return checked.error();
-  } else {
+  }
+  {
+    // Those with a name of their own count too: T0, mine, T2.
     const std::scoped_lock lock(numbering_mutex);
-    name = component->getTypeName() + numbering->onCreate(component);
+    const std::string number = numbering->onCreate(component);
     numbered = true;
+    if (!is_given) name = component->getTypeName() + number;
   }
   auto locked = state.lock();
   if (!locked->reserved_names.insert(name).second) return base::Error{"instance name " + base::in_quotes(name) + " exists already"};
@@ -264,12 +284,12 @@ base::Result<RTObject_impl*> ManagerImpl::finish_creation(std::uint64_t id, cons
   component->setProperties(properties);
   bool numbered = false;
   const auto name = name_component(component, argument, numbered);
-  if (!name) return name.error();
   {
     auto locked = state.lock();
-    locked->records[id].instance_name = *name;
+    if (name) locked->records[id].instance_name = *name;
     locked->records[id].numbered = numbered;
   }
+  if (!name) return name.error();
   component->setInstanceName(name->c_str());
   const std::string category = component->getCategory();
   const auto inherited = inherited_properties();

@@ -1,11 +1,11 @@
 // The end of the manager: who asks for it, what it does, and how long it may last. The life thread does the work; a watch looks at its
 // clock.
 //
-// With T = exec_cxt.callback_timeout: callbacks that run in execution contexts are waited for until T after the end has begun, all together
-// (and one second more where it takes that to find all that hang). A callback that the end itself calls (onFinalize, onShutdown) may last
-// T. So a process with components that hang is gone after 2 T + 2 s at most, however many there are; it says which they are, takes its
-// names out of the naming service, answers the calls it is in (1 s) and ends with _Exit. Any other step that gets nowhere for 30 s ends it,
-// too.
+// With T = exec_cxt.callback_timeout, at most 2 s after a signal (containers are killed 10 s after it): callbacks that run in execution
+// contexts are waited for until T after the end has begun, all together (and one second more where it takes that to find all that hang). A
+// callback that the end itself calls (onFinalize, onShutdown) may last T. So a process with components that hang is gone after 2 T + 2 s at
+// most, however many there are; it says which they are, takes its names out of the naming service, answers the calls it is in (1 s) and
+// ends with _Exit. Any other step that gets nowhere for 30 s ends it, too.
 #include <pthread.h>
 
 #include <algorithm>
@@ -31,6 +31,7 @@ using std::chrono::steady_clock;
 
 constexpr auto longest_step = 30s;
 constexpr auto grace = 1s;
+constexpr auto longest_in_a_hurry = 2s;
 constexpr const char* after_naming = "what the manager owns";
 constexpr const char* in_orb = "calls from other processes";
 
@@ -88,7 +89,8 @@ class ManagerImpl::EndWatch {
 
 std::chrono::nanoseconds ManagerImpl::callback_timeout() const {
   const double seconds = std::clamp(number("exec_cxt.callback_timeout", 5.0), 0.0, 1e6);
-  return std::chrono::nanoseconds(static_cast<std::int64_t>(seconds * 1e9));
+  const std::chrono::nanoseconds timeout(static_cast<std::int64_t>(seconds * 1e9));
+  return state.lock()->is_hurried ? std::min<std::chrono::nanoseconds>(timeout, longest_in_a_hurry) : timeout;
 }
 
 void ManagerImpl::begin_step(std::string step) {

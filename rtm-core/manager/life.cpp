@@ -73,6 +73,7 @@ base::Result<void> ManagerImpl::start(const ManagerConfig& configuration, const 
   // From now on a signal finds somebody who ends everything properly, also while the rest starts. One that nohup or a script
   // has us ignore stays ignored.
   signals = std::make_unique<rt::SignalWatcher>(std::vector<int>{SIGINT, SIGTERM, SIGHUP}, [this](int number) {
+    state.lock()->is_hurried = true;
     request_end();
     auto locked = state.lock();
     while (!locked.wait_for(changed, std::chrono::hours(1), [&] { return locked->life_is_over; })) {
@@ -240,7 +241,11 @@ bool ManagerImpl::activate_all() {
         if (c == 'p') return std::to_string(getpid());
         return std::nullopt;
       });
-      naming->bindObject(name.c_str(), servant);
+      // One host of several on a machine is enough to be asked by this name; which one it is, is nobody's fault.
+      if (is_master())
+        naming->bindObject(name.c_str(), servant);
+      else
+        naming->bindUnlessTaken(name.c_str(), servant);
     }
   }
 

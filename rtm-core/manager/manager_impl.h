@@ -59,6 +59,7 @@ class ManagerImpl {
   struct State {
     Phase phase = Phase::created;
     bool end_requested = false;
+    bool is_hurried = false;        // by a signal: whoever sent it kills the process soon
     bool life_is_over = false;      // the life thread has done its work
     bool life_is_taken_in = false;  // and is joined
     int runners = 0;                // threads in runManager
@@ -174,6 +175,8 @@ class ManagerImpl {
   coil::Properties inherited_properties() const;
   coil::Properties configured_properties(const std::string& category, const std::string& name);
   coil::Properties properties_of_file(const std::string& named_by, const std::string& file);
+  // nullptr when the argument names no component of that type.
+  RTObject_impl* existing_component(const rt::ComponentArgument& argument, const coil::Properties& profile) const;
   base::Result<std::string> name_component(RTObject_impl* component, const rt::ComponentArgument& argument, bool& numbered);
   std::vector<std::string> naming_names(RTObject_impl* component, const coil::Properties& properties) const;
   base::Result<RTObject_impl*> finish_creation(std::uint64_t id, const RegisteredFactory& source, const rt::ComponentArgument& argument);

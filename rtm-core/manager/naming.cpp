@@ -225,6 +225,9 @@ void NamingManager::bindObject(const char* name, const RTObject_impl* rtobj) {
 void NamingManager::bindObject(const char* name, const RTM::ManagerServant* servant) {
   bindObject(std::string(name), servant->getObjRef());
 }
+void NamingManager::bindUnlessTaken(const char* name, const RTM::ManagerServant* servant) {
+  impl_->bindings.bind(name, servant->getObjRef(), true);
+}
 void NamingManager::bindObject(const std::string& name, CORBA::Object_ptr object) { impl_->bindings.bind(name, object); }
 void NamingManager::bindPortObject(const char* name, PortService_ptr port) { impl_->bindings.bind(name, port); }
 void NamingManager::unbindObject(const char* name) { impl_->bindings.unbind(name); }

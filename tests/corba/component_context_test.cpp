@@ -7,6 +7,8 @@
 #include <rtm/idl/OpenRTMSkel.h>
 
 #include <atomic>
+#include <mutex>
+#include <set>
 #include <thread>
 
 #include "base/clock.h"
@@ -238,6 +240,39 @@ TEST_F(ComponentContextTest, attaches_only_what_is_a_context) {
   EXPECT_EQ(probe->attach_context(RTC::ExecutionContext::_nil()), -1);
   RTC::ExecutionContextList_var contexts = probe->get_participating_contexts();
   EXPECT_EQ(contexts->length(), 0u);
+}
+
+TEST_F(ComponentContextTest, a_rate_of_zero_is_as_fast_as_possible) {
+  probe->getProperties()["exec_cxt.periodic.rate"] = "0";
+  ASSERT_EQ(probe->initialize(), RTC::RTC_OK);
+  const RTC::ExecutionContext_var context = first_context(*probe);
+  EXPECT_EQ(context->get_rate(), 1e6);
+  EXPECT_EQ(context->set_rate(0), RTC::BAD_PARAMETER) << "over the wire it is none";
+  ASSERT_EQ(probe->activate(0), RTC::RTC_OK);
+  EXPECT_TRUE(probe->wait_for("onExecute", 10));
+  ASSERT_EQ(probe->deactivate(0), RTC::RTC_OK);
+}
+
+// What a component keeps in thread_local variables, a device handle for instance, must not be gone.
+TEST_F(ComponentContextTest, goes_on_with_the_same_thread_after_stop_and_start) {
+  ASSERT_EQ(probe->initialize(), RTC::RTC_OK);
+  ASSERT_EQ(probe->activate(0), RTC::RTC_OK);
+  std::mutex mutex;
+  std::set<std::thread::id> threads;
+  probe->during = [&](const std::string& callback) {
+    const std::lock_guard lock(mutex);
+    if (callback == "onExecute") threads.insert(std::this_thread::get_id());
+  };
+  const RTC::ExecutionContext_var context = first_context(*probe);
+  for (int round = 0; round < 3; ++round) {
+    EXPECT_TRUE(probe->wait_for("onExecute", probe->count("onExecute") + 3));
+    ASSERT_EQ(context->stop(), RTC::RTC_OK);
+    ASSERT_EQ(context->start(), RTC::RTC_OK);
+  }
+  EXPECT_TRUE(probe->wait_for("onExecute", probe->count("onExecute") + 3));
+  ASSERT_EQ(probe->deactivate(0), RTC::RTC_OK);
+  const std::lock_guard lock(mutex);
+  EXPECT_EQ(threads.size(), 1u);
 }
 
 TEST_F(ComponentContextTest, gives_its_thread_the_stack_that_was_asked_for) {

@@ -82,6 +82,17 @@ TEST_F(HangingProcessTest, ends_in_time_however_many_hang_and_names_them_all) {
   EXPECT_EQ(process_->output().find("Hanging40:"), std::string::npos) << "one that does not hang";
 }
 
+// Containers are killed 10 s after the signal.
+TEST_F(HangingProcessTest, a_signal_ends_it_within_seconds_however_patient_it_is_otherwise) {
+  start(several(1, "onExecute"), names(1), {"exec_cxt.callback_timeout:60"});
+  ASSERT_TRUE(process_->wait_for_output("Hanging0 stands in onExecute"));
+  ASSERT_TRUE(process_->wait_for_output("ready\n"));
+  const auto began = std::chrono::steady_clock::now();
+  EXPECT_EQ(process_->stop(), EXIT_FAILURE) << process_->output();
+  EXPECT_LT(std::chrono::steady_clock::now() - began, 10s) << process_->output();
+  expect_line("Hanging0: onExecute has not returned");
+}
+
 TEST_F(HangingProcessTest, ends_in_time_when_all_hang_in_deactivation) {
   constexpr int count = 40;
   start(several(count, "onDeactivated"), names(count));

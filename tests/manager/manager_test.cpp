@@ -102,6 +102,31 @@ TEST(Manager, makes_numbers_and_deletes_components) {
   EXPECT_EQ(manager.createComponent("Plain"), nullptr);
 }
 
+// A start script that runs twice works.
+TEST(Manager, a_component_that_is_there_already_is_given_when_it_is_asked_for_again) {
+  auto& manager = started();
+  auto* mine = manager.createComponent("Plain?instance_name=mine&conf.default.gain=3");
+  ASSERT_NE(mine, nullptr);
+  EXPECT_EQ(manager.createComponent("Plain?instance_name=mine&conf.default.gain=4"), mine);
+  EXPECT_EQ(dynamic_cast<Plain*>(mine)->gain_, 3) << "it stays as it is";
+  EXPECT_EQ(manager.createComponent("PeriodicECSharedComposite?instance_name=mine"), nullptr) << "another type";
+  EXPECT_EQ(manager.getComponents().size(), 1u);
+  manager.shutdown();
+}
+
+TEST(Manager, named_components_of_a_type_count_in_automatic_numbers) {
+  auto& manager = started();
+  const auto name = [&](const char* argument) { return std::string(manager.createComponent(argument)->getInstanceName()); };
+  EXPECT_EQ(name("Plain"), "Plain0");
+  EXPECT_EQ(name("Plain?instance_name=mine"), "mine");
+  EXPECT_EQ(name("Plain?instance_name=full"), "full");
+  EXPECT_EQ(name("Plain"), "Plain3");
+  EXPECT_EQ(manager.deleteComponent("mine"), RTC::RTC_OK);
+  manager.cleanupComponents();
+  EXPECT_EQ(name("Plain"), "Plain1");
+  manager.shutdown();
+}
+
 TEST(Manager, can_be_started_again_after_its_end) {
   for (int i = 0; i < 3; ++i) {
     auto& manager = started();

@@ -103,6 +103,19 @@ def disconnect_from_one_that_hangs():
         await_("the news at the one that hung", lambda: "wire" not in rig.rtse("cat", "-l", "SinkAll0:long"))
 
 
+# Several hosts on one machine: one has the name of the manager, nobody complains, and another takes it when that one has gone.
+def managers_of_one_machine():
+    first = up("SourceAll")
+    second = rig.host("SinkAll")
+    rig.there("SinkAll0")
+    listed = rig.rtse("mgr", "list")
+    assert "SourceAll0" in listed and "SinkAll0" not in listed, listed
+    rig.kill(first)
+    await_("the other's components", lambda: "SinkAll0" in rig.rtse("mgr", "list"))
+    for host in (first, second):
+        assert "belongs to another" not in rig.log(host), rig.log(host)
+
+
 # Values that a component has said that it does not want are refused, from a file too; the others are taken.
 def bad_values_in_files():
     up("ConfigDemo")
@@ -162,7 +175,8 @@ def why_not():
     refused("con", "SourceAll0:long", "SinkAll0:long", says="are connected already")
     refused("con", "SourceAll0:long", "SinkAll0:long", "-i", "one", says='id "one" is in use')
     refused("con", "EchoProvider0:Echo", "EchoProvider0:Echo", says="to itself")
-    refused("mgr", "create", "SinkAll?instance_name=SinkAll0", says="there is a component SinkAll0 already")
+    refused("mgr", "create", "SourceAll?instance_name=SinkAll0", says="there is a component SinkAll0 already")
+    rig.rtse("mgr", "create", "SinkAll?instance_name=SinkAll0")  # it is there
     refused("mgr", "create", "NoSuchType", says='no type "NoSuchType"')
     refused("mgr", "unload", "SinkAll.so", says="components of it are there")
     refused("inject", "SinkAll0:float", "1e39", says="at most 3.4e38")

@@ -83,7 +83,15 @@ TEST_F(ConfigurationTest, descriptions_and_unknown_sets_cannot_be_active) {
 TEST_F(ConfigurationTest, values_are_merged_and_keep_their_order) {
   configuration.set_values({"fast", {{"z", "1"}, {"gain", "8"}, {"a", "2"}}});
   EXPECT_THAT(configuration.set("fast")->values, ElementsAre(std::pair("gain", "8"), std::pair("z", "1"), std::pair("a", "2")));
-  EXPECT_FALSE(configuration.set_values({"slow", {}}));
+  EXPECT_FALSE(configuration.set_values({"", {}}));
+}
+
+TEST_F(ConfigurationTest, values_of_an_unknown_set_make_it) {
+  EXPECT_TRUE(configuration.set_values({"slow", {{"gain", "0.25"}}}));
+  EXPECT_TRUE(configuration.activate("slow"));
+  EXPECT_EQ(configuration.active_id(), "slow");
+  EXPECT_TRUE(configuration.activate("default"));
+  EXPECT_TRUE(configuration.remove("slow"));
 }
 
 TEST_F(ConfigurationTest, only_added_sets_that_are_not_active_can_be_removed) {

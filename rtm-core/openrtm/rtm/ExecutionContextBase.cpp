@@ -38,8 +38,9 @@ const rt::ExecutionContext& ExecutionContextBase::context() const { return impl_
 void ExecutionContextBase::init(coil::Properties& props) {
   if (const std::string rate = props.getProperty("rate"); !rate.empty()) {
     const auto number = base::parse_number(rate);
-    if (!number || setRate(*number) != RTC::RTC_OK)
-      RTC_WARN(("rate must be a positive number of Hz, got %s", base::in_quotes(rate).c_str()));
+    // 0: as fast as possible.
+    if (!number || setRate(*number == 0 ? rt::ExecutionContext::max_rate : *number) != RTC::RTC_OK)
+      RTC_WARN(("rate must be a positive number of Hz, or 0 for as fast as possible, got %s", base::in_quotes(rate).c_str()));
   }
   const auto read_seconds = [&](const char* key, std::chrono::nanoseconds otherwise) {
     const std::string text = props.getProperty(key);

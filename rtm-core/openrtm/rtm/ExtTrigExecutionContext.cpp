@@ -22,6 +22,7 @@ ExtTrigExecutionContext::ExtTrigExecutionContext()
     : ExecutionContextServant("exttrig_async_ec"),
       steps_(std::make_unique<Steps>(*this)),
       worker_(std::make_unique<rt::TriggeredWorker>(context(), *steps_)) {
+  keepThread();  // what components keep for their thread outlasts stop() and start()
   setObjRef(RTC::ExecutionContextService_var(_this()));
   setKind(RTC::PERIODIC);
 }

@@ -25,6 +25,7 @@ LogicalTimeTriggeredEC::LogicalTimeTriggeredEC()
       clock_(std::make_shared<base::ManualClock>()),
       steps_(std::make_unique<Steps>(*this)),
       worker_(std::make_unique<rt::TriggeredWorker>(context(), *steps_)) {
+  keepThread();  // what components keep for their thread outlasts stop() and start()
   setObjRef(RTC::ExecutionContextService_var(_this()));
   setKind(RTC::PERIODIC);
 }

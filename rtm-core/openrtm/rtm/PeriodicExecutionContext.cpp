@@ -25,6 +25,7 @@ PeriodicExecutionContext::PeriodicExecutionContext(const std::string& name)
     : ExecutionContextServant(name),
       steps_(std::make_unique<Steps>(*this)),
       worker_(std::make_unique<rt::PeriodicWorker>(context(), *steps_)) {
+  keepThread();  // what components keep for their thread outlasts stop() and start()
   setObjRef(RTC::ExecutionContextService_var(_this()));
   setKind(RTC::PERIODIC);
   m_period = getPeriod();

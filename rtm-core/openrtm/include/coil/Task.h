@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <memory>
 #include <optional>
 
 #include "coil/NonCopyable.h"
@@ -34,13 +35,21 @@ class Task : private NonCopyable {
  protected:
   // For the next activate(); 0: what the system gives. False when that is less than the system needs at least.
   bool setStackSize(std::size_t octets);
+  // The thread waits for the next activate() when svc() has returned, so that what svc() keeps for its thread (thread_local) is still
+  // there. It ends with the task. Before the first activate().
+  void keepThread();
 
  private:
+  struct Kept;
   static void* run(void* task) noexcept;
+  // For one that is kept.
+  static void* run_again_and_again(void* kept) noexcept;
+  void start(void* (*body)(void*), void* argument);
 
   std::atomic<bool> is_running_{false};
   std::optional<pthread_t> thread_;
   std::size_t stack_size_ = 0;
+  std::shared_ptr<Kept> kept_;  // null: each activation has a thread of its own
 };
 
 }  // namespace coil

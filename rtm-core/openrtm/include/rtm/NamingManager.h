@@ -33,6 +33,8 @@ class NamingManager {
   // Binds under `name` on every naming service, now or when it comes (back).
   void bindObject(const char* name, const RTObject_impl* rtobj);
   void bindObject(const char* name, const RTM::ManagerServant* servant);
+  // The same, but a name that another living manager has is left to it until it is free.
+  void bindUnlessTaken(const char* name, const RTM::ManagerServant* servant);
   void bindObject(const std::string& name, CORBA::Object_ptr object);
   void bindPortObject(const char* name, PortService_ptr port);
   void unbindObject(const char* name);
