@@ -5,8 +5,9 @@
 // Threads: in real time a velocity goes to the robot on the thread that brings it; in simulated time in onExecute, in the context's phase.
 #pragma once
 
-#include <rtm/DataInPort.h>
 #include <rtm/idl/ExtendedDataTypesSkel.h>
+
+#include <rtm/DataInPort.h>
 
 #include <array>
 

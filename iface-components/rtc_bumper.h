@@ -2,8 +2,9 @@
 // z [N] of each contact, world frame). The standard types have geometries of bumpers, but no data. Configuration: server_id, device_id.
 #pragma once
 
-#include <rtm/DataOutPort.h>
 #include <rtm/idl/BasicDataTypeSkel.h>
+
+#include <rtm/DataOutPort.h>
 
 #include "iface_component.h"
 

@@ -3,9 +3,10 @@
 // has the table of names and octets. Configuration: server_id, device_id; encoding raw or jpeg, quality 1..100 of the latter.
 #pragma once
 
-#include <rtm/DataOutPort.h>
 #include <rtm/ext/CameraCommonInterfaceSkel.h>
 #include <rtm/idl/InterfaceDataTypesSkel.h>
+
+#include <rtm/DataOutPort.h>
 
 #include <cstddef>
 #include <cstdint>

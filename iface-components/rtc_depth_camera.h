@@ -3,8 +3,9 @@
 // Each is computed only when it is connected. Configuration: server_id, device_id; points_step: every n-th pixel of every n-th row.
 #pragma once
 
-#include <rtm/DataOutPort.h>
 #include <rtm/idl/InterfaceDataTypesSkel.h>
+
+#include <rtm/DataOutPort.h>
 
 #include <vector>
 

@@ -2,8 +2,9 @@
 // Configuration: server_id, device_id.
 #pragma once
 
-#include <rtm/DataOutPort.h>
 #include <rtm/idl/InterfaceDataTypesSkel.h>
+
+#include <rtm/DataOutPort.h>
 
 #include "iface_component.h"
 

@@ -3,8 +3,9 @@
 // Configuration: server_id, device_id.
 #pragma once
 
-#include <rtm/DataOutPort.h>
 #include <rtm/idl/ExtendedDataTypesSkel.h>
+
+#include <rtm/DataOutPort.h>
 
 #include "iface_component.h"
 

@@ -2,8 +2,9 @@
 // Configuration: server_id, device_id; layer of a scanner with several (-1: the one nearest to the horizon).
 #pragma once
 
-#include <rtm/DataOutPort.h>
 #include <rtm/idl/InterfaceDataTypesSkel.h>
+
+#include <rtm/DataOutPort.h>
 
 #include "iface_component.h"
 

@@ -3,12 +3,13 @@
 // Configuration: server_id. It belongs into an ordinary context: one of simulated time stands still while the simulation is paused.
 #pragma once
 
+#include <rtm/idl/BasicDataTypeSkel.h>
+#include <rtm/idl/SimulationServiceSkel.h>
+
 #include <rtm/CorbaPort.h>
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/DataOutPort.h>
 #include <rtm/Manager.h>
-#include <rtm/idl/BasicDataTypeSkel.h>
-#include <rtm/idl/SimulationServiceSkel.h>
 
 #include <atomic>
 

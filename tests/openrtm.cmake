@@ -5,6 +5,13 @@ foreach(room component manager openrtm)
   rtmsim_headers_alone(${room}_room_headers_alone ROOT ${PROJECT_SOURCE_DIR}/rtm-core FOLDER ${room} LIBRARIES openrtm)
 endforeach()
 
+# Users copy the examples: they keep to what OpenRTM-aist has as well. Compiled, never linked.
+set(examples ${PROJECT_SOURCE_DIR}/clients/examples)
+add_library(samples_like_openrtm OBJECT ${examples}/config_demo.cpp ${examples}/echo_consumer.cpp ${examples}/echo_provider.cpp
+  ${examples}/fail_on_request.cpp ${examples}/sink_all.cpp ${examples}/source_all.cpp)
+target_include_directories(samples_like_openrtm BEFORE PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/classic-api/like_openrtm)
+target_link_libraries(samples_like_openrtm PRIVATE rtm_idl ${PROJECT_NAME}_idl_Echo rtmsim_settings)
+
 # What authors use, name by name.
 rtmsim_test(classic_api_test classic-api/surface_test.cpp LIBRARIES openrtm)
 rtmsim_test(classic_tools_test classic-api/tools_test.cpp LIBRARIES openrtm)

@@ -12,7 +12,8 @@ namespace example {
 
 template <template <class> class Port, class Type>
 struct BoundPort {
-  BoundPort(const char* name) : port(name, value) {}
+  BoundPort(const char* port_name) : name(port_name), port(port_name, value) {}
+  const char* name;
   Type value{};
   Port<Type> port;
 };

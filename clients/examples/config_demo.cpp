@@ -1,4 +1,5 @@
 // ConfigDemo: parameters of several types in three sets, with hints for editors; prints them whenever a set becomes active.
+#include <coil/stringutil.h>
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/Manager.h>
 
@@ -6,6 +7,18 @@
 #include <sstream>
 #include <string>
 #include <vector>
+
+// "1,2,3" -> the numbers. OpenRTM-aist converts parameters of a list only with a function like this one.
+bool to_numbers(std::vector<double>& numbers, const char* text) {
+  std::vector<double> found;
+  for (const auto& part : coil::split(text, ",")) {
+    double number = 0;
+    if (!coil::stringTo(number, part.c_str())) return false;
+    found.push_back(number);
+  }
+  numbers = found;
+  return true;
+}
 
 class ConfigDemo : public RTC::DataFlowComponentBase {
  public:
@@ -16,7 +29,7 @@ class ConfigDemo : public RTC::DataFlowComponentBase {
     bindParameter("gain", gain_, "0.5");
     bindParameter("mode", mode_, "follow");
     bindParameter("enabled", enabled_, "1");
-    bindParameter("weights", weights_, "1,2,3");
+    bindParameter("weights", weights_, "1,2,3", to_numbers);
     addConfigurationSetNameListener(RTC::ConfigurationSetNameListenerType::ON_ACTIVATE_CONFIG_SET, *this, &ConfigDemo::note_set);
     return RTC::RTC_OK;
   }

@@ -1,8 +1,10 @@
 // EchoConsumer: calls the service Example::EchoService once per cycle and prints the answer.
-#include <rtm/CorbaConsumer.h>
-#include <rtm/CorbaPort.h>
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/Manager.h>
+
+// The ports come after the component's base, as OpenRTM-aist wants them.
+#include <rtm/CorbaConsumer.h>
+#include <rtm/CorbaPort.h>
 
 #include <iostream>
 #include <string>

@@ -1,7 +1,8 @@
 // EchoProvider: offers the service Example::EchoService.
-#include <rtm/CorbaPort.h>
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/Manager.h>
+
+#include <rtm/CorbaPort.h>
 
 #include <deque>
 #include <mutex>

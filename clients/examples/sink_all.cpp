@@ -1,4 +1,7 @@
 // SinkAll: prints what arrives at one InPort of every basic type and sequence type.
+// The data types come before the ports, as OpenRTM-aist wants them.
+#include <rtm/idl/BasicDataTypeSkel.h>
+
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/DataInPort.h>
 #include <rtm/Manager.h>
@@ -13,7 +16,7 @@ class SinkAll : public RTC::DataFlowComponentBase {
 
   RTC::ReturnCode_t onInitialize() override {
     bindParameter("print", print_, "1");
-    ports_.for_each([this](auto& bound) { addInPort(bound.port.name(), bound.port); });
+    ports_.for_each([this](auto& bound) { addInPort(bound.name, bound.port); });
     return RTC::RTC_OK;
   }
 
@@ -21,7 +24,7 @@ class SinkAll : public RTC::DataFlowComponentBase {
     ports_.for_each([this](auto& bound) {
       while (bound.port.isNew()) {
         if (!bound.port.read()) return;
-        if (print_) std::cout << bound.port.name() << ": " << example::to_text(bound.value.data) << std::endl;
+        if (print_) std::cout << bound.name << ": " << example::to_text(bound.value.data) << std::endl;
       }
     });
     return RTC::RTC_OK;

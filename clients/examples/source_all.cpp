@@ -1,4 +1,7 @@
 // SourceAll: counts, and writes the count to one OutPort of every basic type and sequence type.
+// The data types come before the ports, as OpenRTM-aist wants them.
+#include <rtm/idl/BasicDataTypeSkel.h>
+
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/DataOutPort.h>
 #include <rtm/Manager.h>
@@ -14,7 +17,7 @@ class SourceAll : public RTC::DataFlowComponentBase {
   RTC::ReturnCode_t onInitialize() override {
     bindParameter("start", start_, "1");
     bindParameter("length", length_, "3");
-    ports_.for_each([this](auto& bound) { addOutPort(bound.port.name(), bound.port); });
+    ports_.for_each([this](auto& bound) { addOutPort(bound.name, bound.port); });
     return RTC::RTC_OK;
   }
 

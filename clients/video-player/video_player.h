@@ -6,10 +6,11 @@
 // already stays, and the numbers go on. window: 0 or 1.
 #pragma once
 
+#include <rtm/idl/InterfaceDataTypesSkel.h>
+
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/DataInPort.h>
 #include <rtm/Manager.h>
-#include <rtm/idl/InterfaceDataTypesSkel.h>
 
 #include <atomic>
 #include <chrono>
