@@ -65,6 +65,33 @@ Comparison measure(ports::Peer& peer, RTC::OutPort<RTC::TimedOctetSeq>& out, COR
   return result;
 }
 
+// A tool that counts what goes by. `looks`: it looks at the octets, too.
+class Counter : public RTC::ConnectorDataListener {
+ public:
+  explicit Counter(bool looks) : looks_(looks) {}
+  ReturnCode operator()(RTC::ConnectorInfo&, RTC::ByteData& data, const std::string&) override {
+    octets_ += data.getDataLength();
+    if (looks_) octets_ += static_cast<const RTC::ByteData&>(data).getBuffer()[0];
+    return ConnectorListenerStatus::NO_CHANGE;
+  }
+
+ private:
+  const bool looks_;
+  std::size_t octets_ = 0;
+};
+
+void compare_with_listeners(ports::Peer& peer, RTC::OutPort<RTC::TimedOctetSeq>& out, CORBA::ULong size) {
+  char text[80];
+  for (const bool looks : {false, true}) {
+    auto* counter = new Counter(looks);
+    out.addConnectorDataListener(RTC::ON_SEND, counter);
+    const auto [nothing_kept, kept, ours] = measure(peer, out, size);
+    out.removeConnectorDataListener(RTC::ON_SEND, counter);
+    std::snprintf(text, sizeof text, "%u B, listener that %s / bare", size, looks ? "looks" : "counts");
+    row(text, kept.mean / ours.mean, "", ">= 0.90", kept.mean / ours.mean >= 0.9);
+  }
+}
+
 // Nobody reads in the peer: its buffers are full and each sample replaces the oldest. `length`: of the buffer; empty: the default.
 void compare(ports::Peer& peer, const char* transport, const char* length) {
   RTC::TimedOctetSeq value{};
@@ -86,6 +113,7 @@ void compare(ports::Peer& peer, const char* transport, const char* length) {
     plain_row(named(size, "flush latency / nothing kept"), ours.median / nothing_kept.median, "");
     row(named(size, "flush throughput / bare"), kept.mean / ours.mean, "", ">= 0.90", kept.mean / ours.mean >= 0.9);
     row(named(size, "flush latency / bare"), ours.median / kept.median, "", "<= 1.15", ours.median / kept.median <= 1.15);
+    if (size != 4096u) compare_with_listeners(peer, out, size);
   }
   out.disconnect_all();
 
