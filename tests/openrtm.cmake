@@ -13,7 +13,7 @@ target_include_directories(samples_like_openrtm BEFORE PRIVATE ${CMAKE_CURRENT_S
 target_link_libraries(samples_like_openrtm PRIVATE rtm_idl ${PROJECT_NAME}_idl_Echo rtmsim_settings)
 
 # What authors use, name by name.
-rtmsim_test(classic_api_test classic-api/surface_test.cpp LIBRARIES openrtm)
+rtmsim_test(classic_api_test classic-api/surface_test.cpp classic-api/macho_test.cpp LIBRARIES openrtm)
 rtmsim_test(classic_tools_test classic-api/tools_test.cpp LIBRARIES openrtm)
 rtmsim_test(classic_context_test classic-api/context_test.cpp LIBRARIES openrtm)
 
@@ -21,6 +21,7 @@ rtmsim_test(classic_context_test classic-api/context_test.cpp LIBRARIES openrtm)
 add_subdirectory(classic-api)
 
 rtmsim_test(include_rules_test unit/include_rules_test.cpp)
+rtmsim_test(include_closure_test unit/include_closure_test.cpp)
 
 # A program and a module of another project, against the build tree and against an installation.
 foreach(mode build install)
@@ -37,3 +38,5 @@ add_test(NAME package.throw_specifications COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/p
 set_tests_properties(package.throw_specifications PROPERTIES LABELS package TIMEOUT 120)
 add_test(NAME package.peers COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/peers build ${PROJECT_BINARY_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/classic-api/peers)
 set_tests_properties(package.peers PROPERTIES LABELS package TIMEOUT 900 ENVIRONMENT "SANITIZE=${RTMSIM_SANITIZE}")
+add_test(NAME package.headers COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/headers ${PROJECT_BINARY_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/classic-api ${CMAKE_CXX_COMPILER})
+set_tests_properties(package.headers PROPERTIES LABELS package TIMEOUT 900)

@@ -2,6 +2,7 @@
 // call time-out when the peer hangs. CORBA exceptions become BAD_PARAMETER (nil or dead reference) or RTC_ERROR.
 #pragma once
 
+#include <rtm/NVUtil.h>
 #include <rtm/RTC.h>
 
 #include <coil/Properties.h>

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <omniORB4/CORBA.h>
+#include <rtm/Manager.h>
 
+#include <chrono>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 

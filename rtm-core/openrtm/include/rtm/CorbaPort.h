@@ -2,12 +2,13 @@
 // the rest: any thread.
 #pragma once
 
-#include <map>
+#include <list>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "rtm/CorbaConsumer.h"
+#include "rtm/NVUtil.h"
 #include "rtm/PortBase.h"
 
 namespace RTC {

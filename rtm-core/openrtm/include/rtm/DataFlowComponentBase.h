@@ -1,7 +1,11 @@
 // The base class of components.
 #pragma once
 
+#include <rtm/Manager.h>
+#include <rtm/PeriodicExecutionContext.h>
+#include <rtm/PortBase.h>
 #include <rtm/RTObject.h>
+#include <rtm/idl/RTCSkel.h>
 
 namespace RTC {
 

@@ -11,6 +11,8 @@
 #include <rtm/DataPortStatus.h>
 #include <rtm/InPortConnector.h>
 #include <rtm/InterfaceProvider.h>
+#include <rtm/NVUtil.h>
+#include <rtm/SystemLogger.h>
 
 namespace RTC {
 

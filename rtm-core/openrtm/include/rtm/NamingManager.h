@@ -1,8 +1,15 @@
 // The manager's names in naming services. Any thread; nothing here waits for a naming service longer than a short time-out.
 #pragma once
 
+#include <rtm/CorbaNaming.h>
+#include <rtm/ManagerServant.h>
 #include <rtm/RTC.h>
+#include <rtm/RTObject.h>
+#include <rtm/SystemLogger.h>
 
+#include <coil/Guard.h>
+#include <coil/Mutex.h>
+#include <coil/Task.h>
 #include <coil/stringutil.h>
 
 #include <chrono>

@@ -10,7 +10,9 @@
 #include <rtm/ConnectorListener.h>
 #include <rtm/DataPortStatus.h>
 #include <rtm/InterfaceProvider.h>
+#include <rtm/NVUtil.h>
 #include <rtm/OutPortConnector.h>
+#include <rtm/SystemLogger.h>
 
 namespace RTC {
 

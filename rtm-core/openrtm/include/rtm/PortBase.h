@@ -2,14 +2,19 @@
 // properties and callbacks are set before the port is used.
 #pragma once
 
+#include <coil/Guard.h>
+#include <coil/Mutex.h>
 #include <coil/Properties.h>
 
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "rtm/CORBA_SeqUtil.h"
+#include "rtm/NVUtil.h"
 #include "rtm/PortCallback.h"
 #include "rtm/PortConnectListener.h"
+#include "rtm/RTC.h"
 #include "rtm/SystemLogger.h"
 #include "rtm/idl/RTCSkel.h"
 

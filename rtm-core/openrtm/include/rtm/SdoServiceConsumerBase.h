@@ -3,6 +3,9 @@
 #pragma once
 
 #include <coil/Factory.h>
+#include <coil/Timer.h>
+#include <rtm/NVUtil.h>
+#include <rtm/RTObject.h>
 #include <rtm/idl/SDOPackageSkel.h>
 
 namespace RTC {
