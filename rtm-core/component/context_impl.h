@@ -14,6 +14,7 @@
 namespace RTC {
 
 struct ExecutionContextBase::Impl {
+  // What is known about somebody who takes part. A copy: it keeps nobody from leaving.
   struct Member {
     RTC::LightweightRTObject_var reference{};
     RTObject_impl* local = nullptr;  // for comparing only
@@ -22,12 +23,28 @@ struct ExecutionContextBase::Impl {
     bool owner = false;
     std::shared_ptr<RTC_impl::RTObjectStateMachine> machine{};
   };
+  // The one list of members is that of `context`; each of its participants is one of these.
+  class Entry final : public rt::Participant {
+   public:
+    // `callee`: the component, here or in another process.
+    Entry(ExecutionContextBase& context, Member member, std::shared_ptr<rt::Participant> callee)
+        : context_(context), member_(std::move(member)), callee_(std::move(callee)) {}
+    const Member& member() const { return member_; }
+
+    void joined(rt::MemberId id) override;
+    std::string name() const override { return callee_->name(); }
+    rt::ReturnCode call(rt::Action action) override { return callee_->call(action); }
+
+   private:
+    ExecutionContextBase& context_;
+    Member member_;
+    const std::shared_ptr<rt::Participant> callee_;
+  };
   // Contexts of authors may still be working with the machine of somebody who has just left: so many are kept.
   static constexpr std::size_t max_retired = 64;
   using Retired = std::deque<std::shared_ptr<RTC_impl::RTObjectStateMachine>>;
   static constexpr std::chrono::milliseconds default_timeout{500};
   struct Data {
-    std::vector<Member> members{};
     std::vector<RTC::LightweightRTObject_var> joining{};  // asked to attach, no members yet
     RTC::ExecutionContextService_var reference{};
     RTC::RTObject_var owner{};
@@ -44,8 +61,9 @@ struct ExecutionContextBase::Impl {
   explicit Impl(const std::string& name) : context(name) {}
 
   std::optional<Member> find(RTC::LightweightRTObject_ptr component) const;
-  std::vector<Member> snapshot() const { return shared.lock()->members; }
-  static void retire(Data& data, const Member& member);
+  std::vector<Member> members() const;
+  // False when somebody else has been faster. `is_left_alone`: no callback of it runs any more.
+  bool remove(const Member& member, std::chrono::nanoseconds patience, bool* is_left_alone = nullptr);
   // Tells the component that it has left.
   static void detach(const Member& member, Logger& rtclog);
 

@@ -33,28 +33,50 @@ class LocalParticipant final : public rt::Participant {
 
 }  // namespace
 
+void ExecutionContextBase::Impl::Entry::joined(rt::MemberId id) {
+  member_.id = id;
+  member_.machine = std::make_shared<RTC_impl::RTObjectStateMachine>(member_.reference, member_.handle, context_, id);
+}
+
+std::vector<ExecutionContextBase::Impl::Member> ExecutionContextBase::Impl::members() const {
+  std::vector<Member> all;
+  for (const auto& participant : context.participants()) all.push_back(static_cast<const Entry&>(*participant).member());
+  return all;
+}
+
+bool ExecutionContextBase::Impl::remove(const Member& member, std::chrono::nanoseconds patience, bool* is_left_alone) {
+  {
+    auto data = shared.lock();
+    data->retired.push_back(member.machine);
+    if (data->retired.size() > max_retired) data->retired.pop_front();
+  }
+  const auto removal = context.remove(member.id, patience);
+  if (is_left_alone) *is_left_alone = removal == rt::ExecutionContext::Removal::left_alone;
+  return removal != rt::ExecutionContext::Removal::no_member;
+}
+
 std::optional<ExecutionContextBase::Impl::Member> ExecutionContextBase::Impl::find(RTC::LightweightRTObject_ptr component) const {
   if (CORBA::is_nil(component)) return std::nullopt;
-  const std::vector<Member> members = snapshot();
-  for (const Member& member : members)
+  const std::vector<Member> all = members();
+  for (const Member& member : all)
     if (member.reference->_is_equivalent(component)) return member;
   // The same component under another key (corbaloc).
   if (const auto local = findLocalComponent(component))
-    for (const Member& member : members)
+    for (const Member& member : all)
       if (member.local == local.get()) return member;
   return std::nullopt;
 }
 
 std::vector<RTC::LightweightRTObject_var> ExecutionContextBase::getComponents() const {
   std::vector<RTC::LightweightRTObject_var> components;
-  for (const Impl::Member& member : impl_->snapshot()) components.push_back(member.reference);
+  for (const Impl::Member& member : impl_->members()) components.push_back(member.reference);
   return components;
 }
 
 const RTC::RTCList& ExecutionContextBase::getComponentList() const {
   RTC::RTCList& list = impl_->component_list;
   list.length(0);
-  for (const Impl::Member& member : impl_->snapshot()) {
+  for (const Impl::Member& member : impl_->members()) {
     const CORBA::ULong n = list.length();
     list.length(n + 1);
     list[n] = RTC::RTObject::_unchecked_narrow(member.reference);
@@ -70,53 +92,36 @@ RTC::ReturnCode_t ExecutionContextBase::bindComponent(RTC::RTObject_impl* rtc) {
   if (handle < 0) return RTC::RTC_ERROR;
   rtc->_add_ref();
   const std::shared_ptr<RTObject_impl> counted(rtc, [](RTObject_impl* component) { component->_remove_ref(); });
-  const rt::MemberId id = impl_->context.add(std::make_shared<LocalParticipant>(counted, handle));
+  Impl::Member member;
+  member.reference = RTC::LightweightRTObject::_duplicate(owner);
+  member.local = rtc;
+  member.handle = handle;
+  member.owner = true;
+  impl_->context.add(std::make_shared<Impl::Entry>(*this, std::move(member), std::make_shared<LocalParticipant>(counted, handle)));
   auto data = impl_->shared.lock();
-  data->members.push_back({.reference = RTC::LightweightRTObject::_duplicate(owner),
-                           .local = rtc,
-                           .id = id,
-                           .handle = handle,
-                           .owner = true,
-                           .machine = std::make_shared<RTC_impl::RTObjectStateMachine>(owner, handle, *this, id)});
   if (CORBA::is_nil(data->owner)) data->owner = owner;
   return RTC::RTC_OK;
 }
 
 std::size_t ExecutionContextBase::unbindComponent(RTC::RTObject_impl* rtc, std::chrono::nanoseconds patience) {
-  rt::MemberId id = 0;
+  std::optional<Impl::Member> leaving;
   std::size_t owners = 0;
-  {
-    auto data = impl_->shared.lock();
-    std::erase_if(data->members, [&](const Impl::Member& member) {
-      if (member.local != rtc || !member.owner) return false;
-      id = member.id;
-      Impl::retire(*data, member);
-      return true;
-    });
-    data->owner = RTC::RTObject::_nil();
-    for (const Impl::Member& member : data->members)
-      if (member.owner && owners++ == 0) data->owner = RTC::RTObject::_unchecked_narrow(member.reference);
+  RTC::RTObject_var first;
+  for (const Impl::Member& member : impl_->members()) {
+    if (!member.owner) continue;
+    if (member.local == rtc)
+      leaving = member;
+    else if (owners++ == 0)
+      first = RTC::RTObject::_unchecked_narrow(member.reference);
   }
-  if (id != 0) impl_->context.remove(id, patience);
+  impl_->shared.lock()->owner = first;
+  if (leaving) impl_->remove(*leaving, patience);
   return owners;
 }
 
 void ExecutionContextBase::dismissMembers() {
-  std::vector<Impl::Member> members;
-  {
-    auto data = impl_->shared.lock();
-    members.swap(data->members);
-    for (const Impl::Member& member : members) Impl::retire(*data, member);
-  }
-  for (const Impl::Member& member : members) {
-    impl_->context.remove(member.id, 0ns);
-    if (!member.owner) Impl::detach(member, rtclog);
-  }
-}
-
-void ExecutionContextBase::Impl::retire(Data& data, const Member& member) {
-  data.retired.push_back(member.machine);
-  if (data.retired.size() > max_retired) data.retired.pop_front();
+  for (const Impl::Member& member : impl_->members())
+    if (impl_->remove(member, 0ns) && !member.owner) Impl::detach(member, rtclog);
 }
 
 void ExecutionContextBase::Impl::detach(const Member& member, Logger& rtclog) {
@@ -180,9 +185,7 @@ RTC::ReturnCode_t ExecutionContextBase::addComponent(RTC::LightweightRTObject_pt
   }
   if (member.handle < 0) return RTC::RTC_ERROR;
   const std::size_t lane = laneOf(participant->name());
-  member.id = impl_->context.add(std::move(participant), lane);
-  member.machine = std::make_shared<RTC_impl::RTObjectStateMachine>(member.reference, member.handle, *this, member.id);
-  impl_->shared.lock()->members.push_back(member);
+  impl_->context.add(std::make_shared<Impl::Entry>(*this, std::move(member), std::move(participant)), lane);
   return onAddedComponent(comp);
 }
 
@@ -194,13 +197,10 @@ RTC::ReturnCode_t ExecutionContextBase::removeComponent(RTC::LightweightRTObject
   const auto member = impl_->find(comp);
   if (!member || member->owner) return RTC::BAD_PARAMETER;
   if (const auto code = onRemovingComponent(comp); code != RTC::RTC_OK) return code;
-  {
-    auto data = impl_->shared.lock();
-    if (std::erase_if(data->members, [&](const Impl::Member& other) { return other.id == member->id; }) == 0) return RTC::BAD_PARAMETER;
-    Impl::retire(*data, *member);
-  }
   const auto patience = std::max<std::chrono::nanoseconds>(deadline - std::chrono::steady_clock::now(), 0ns);
-  if (!impl_->context.remove(member->id, patience)) complainAboutCallback("it leaves the context all the same");
+  bool is_left_alone = true;
+  if (!impl_->remove(*member, patience, &is_left_alone)) return RTC::BAD_PARAMETER;
+  if (!is_left_alone) complainAboutCallback("it leaves the context all the same");
   Impl::detach(*member, rtclog);
   return onRemovedComponent(comp);
 }

@@ -114,20 +114,21 @@ ReturnCode ExecutionContext::set_rate(double rate) {
 void ExecutionContext::set_lanes(std::size_t count) { shared_.lock()->lanes.resize(std::max<std::size_t>(count, 1)); }
 
 MemberId ExecutionContext::add(std::shared_ptr<Participant> participant, std::size_t lane) {
+  const MemberId id = ++shared_.lock()->last_id;
+  participant->joined(id);
   auto data = shared_.lock();
-  const MemberId id = ++data->last_id;
   data->members.push_back(
       std::make_shared<Member>(Member{.id = id, .participant = std::move(participant), .lane = lane < data->lanes.size() ? lane : 0}));
   ++data->version;
   return id;
 }
 
-bool ExecutionContext::remove(MemberId id, std::chrono::nanoseconds timeout) {
+ExecutionContext::Removal ExecutionContext::remove(MemberId id, std::chrono::nanoseconds timeout) {
   std::shared_ptr<Member> removed;  // a participant is destroyed without the lock
   std::shared_ptr<Participant> participant;
   auto data = shared_.lock();
   const auto it = std::find_if(data->members.begin(), data->members.end(), [&](const auto& member) { return member->id == id; });
-  if (it == data->members.end()) return false;
+  if (it == data->members.end()) return Removal::no_member;
   removed = *it;
   removed->removed = true;
   removed->pending.reset();
@@ -142,7 +143,7 @@ bool ExecutionContext::remove(MemberId id, std::chrono::nanoseconds timeout) {
   const bool is_quiet = is_left_alone(false);
   // The stepping thread, which may be stuck in a call to somebody else, still has this entry.
   if (std::ranges::none_of(data->calls, [&](const Call& call) { return call.member == id; })) participant = std::move(removed->participant);
-  return is_quiet;
+  return is_quiet ? Removal::left_alone : Removal::still_called;
 }
 
 ExecutionContext::Member* ExecutionContext::find(Data& data, MemberId id) {
@@ -158,6 +159,13 @@ const ExecutionContext::Member* ExecutionContext::find(const Data& data, MemberI
 State ExecutionContext::next(const Member& member) {
   const Transition* transition = member.pending ? find_transition(member.state, *member.pending) : nullptr;
   return transition ? transition->to : member.state;
+}
+
+std::vector<std::shared_ptr<Participant>> ExecutionContext::participants() const {
+  std::vector<std::shared_ptr<Participant>> all;
+  const auto data = shared_.lock();
+  for (const auto& member : data->members) all.push_back(member->participant);
+  return all;
 }
 
 std::vector<ExecutionContext::MemberState> ExecutionContext::members() const {

@@ -23,10 +23,12 @@ namespace rt {
 // Never used again after a member has left; 0 is nobody.
 using MemberId = std::uint64_t;
 
-// What a context calls.
+// What a context calls, and the one place where it is kept who is a member.
 class Participant {
  public:
   virtual ~Participant() = default;
+  // Comes once, before anybody sees it among the members.
+  virtual void joined(MemberId) {}
   // For messages.
   virtual std::string name() const = 0;
   // Whatever it throws counts as an error and is logged.
@@ -81,10 +83,13 @@ class ExecutionContext {
   void set_lanes(std::size_t count);
   // A new member is inactive and takes part from the next cycle on. A lane that does not exist is the first.
   MemberId add(std::shared_ptr<Participant> participant, std::size_t lane = 0);
-  // Waits until the member is not being called on another thread. False when there is no such member or the time is over; even then it is
-  // not called again. Without a call in progress the participant is given back at once.
-  bool remove(MemberId id, std::chrono::nanoseconds timeout = std::chrono::seconds(60));
+  // Waits until the member is not being called on another thread; it is not called again even when the time is over before. Without a call
+  // in progress the participant is given back at once.
+  enum class Removal { no_member, left_alone, still_called };
+  Removal remove(MemberId id, std::chrono::nanoseconds timeout = std::chrono::seconds(60));
   std::vector<MemberState> members() const;
+  // In the order in which they joined.
+  std::vector<std::shared_ptr<Participant>> participants() const;
   // State::created for somebody who is no member.
   State state(MemberId id) const;
   State next_state(MemberId id) const;

@@ -264,14 +264,15 @@ TEST_F(ExecutionContextTest, knows_nothing_of_those_who_are_no_members) {
   EXPECT_EQ(context.state(99), State::created);
   EXPECT_EQ(context.request(99, Event::activate), ReturnCode::bad_parameter);
   EXPECT_EQ(context.wait(99, Event::activate, 0s), ReturnCode::bad_parameter);
-  EXPECT_FALSE(context.remove(99));
+  EXPECT_EQ(context.remove(99), ExecutionContext::Removal::no_member);
+  EXPECT_THAT(context.participants(), ElementsAre(participant));
 }
 
 TEST_F(ExecutionContextTest, a_member_may_leave_inside_its_own_callback) {
   activate();
   participant->during = [&](Action action) {
     if (action == Action::execute) {
-      EXPECT_TRUE(context.remove(id));
+      EXPECT_EQ(context.remove(id), ExecutionContext::Removal::left_alone);
     }
   };
   context.step();
@@ -431,7 +432,7 @@ TEST_F(ExecutionContextTest, removing_a_member_waits_for_the_call_in_progress) {
     leaving = true;
   }
   condition.notify_all();
-  EXPECT_TRUE(context.remove(id));
+  EXPECT_EQ(context.remove(id), ExecutionContext::Removal::left_alone);
   std::lock_guard lock(mutex);
   EXPECT_TRUE(left);
 }

@@ -224,12 +224,12 @@ RTC::ExecutionContextProfile* ExecutionContextBase::getProfile() {
     auto data = impl_->shared.lock();
     properties = data->properties;
     profile->owner = RTC::RTObject::_duplicate(data->owner);
-    for (const Impl::Member& member : data->members) {
-      if (member.owner) continue;
-      const CORBA::ULong n = profile->participants.length();
-      profile->participants.length(n + 1);
-      profile->participants[n] = RTC::RTObject::_unchecked_narrow(member.reference);
-    }
+  }
+  for (const Impl::Member& member : impl_->members()) {
+    if (member.owner) continue;
+    const CORBA::ULong n = profile->participants.length();
+    profile->participants.length(n + 1);
+    profile->participants[n] = RTC::RTObject::_unchecked_narrow(member.reference);
   }
   const rt::ContextStatistics statistics = impl_->context.statistics();
   properties["rate"] = base::format_number(profile->rate);

@@ -5,7 +5,7 @@ namespace RTC_impl {
 
 std::vector<std::shared_ptr<RTObjectStateMachine>> ExecutionContextWorker::members() const {
   std::vector<std::shared_ptr<RTObjectStateMachine>> machines;
-  for (auto& member : context_.impl_->snapshot()) machines.push_back(std::move(member.machine));
+  for (auto& member : context_.impl_->members()) machines.push_back(std::move(member.machine));
   return machines;
 }
 
