@@ -1,7 +1,6 @@
 // The execution contexts of a component: its own, made from properties, and those it takes part in.
 #include <coil/stringutil.h>
 #include <rtm/ECFactory.h>
-#include <rtm/Manager.h>
 #include "component/component_impl.h"
 #include "component/local_component.h"
 

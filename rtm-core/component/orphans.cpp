@@ -1,7 +1,6 @@
 // What becomes of a component when the process of a composite or a context that it takes part in has died: it gets its own life back.
 //
 // Within two seconds; the manager looks at that interval (leaveTheDead).
-#include <rtm/Manager.h>
 #include "component/component_impl.h"
 
 #include "corba/orb.h"
@@ -42,7 +41,7 @@ void RTObject_impl::leaveTheDead() {
     organizations = data->organizations;
     own = data->own;
   }
-  CORBA::ORB_ptr orb = m_pManager != nullptr ? m_pManager->getORB() : CORBA::ORB::_nil();
+  CORBA::ORB_ptr orb = m_pManager != nullptr ? m_pORB.in() : CORBA::ORB::_nil();
   if (CORBA::is_nil(orb)) return;
   for (std::size_t i = 0; i < contexts.size(); ++i) {
     if (CORBA::is_nil(contexts[i]) || !is_dead(orb, contexts[i])) continue;

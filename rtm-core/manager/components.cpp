@@ -2,7 +2,6 @@
 #include <algorithm>
 
 #include "manager/manager_impl.h"
-#include "rtm/RTObject.h"
 
 namespace RTC {
 
@@ -27,38 +26,37 @@ std::vector<ManagerImpl::Held> ManagerImpl::held_components() const {
   std::vector<Held> components;
   const auto locked = state.lock();
   for (const auto& [id, record] : locked->records) {
-    if (!record.listed || record.finalized) continue;
-    record.component->_add_ref();  // the Held takes it over
-    components.emplace_back(record.component);
+    if (record.listed && !record.finalized) components.push_back(manage(record.component));
   }
   return components;
 }
 
 ManagerImpl::Held ManagerImpl::held_component(const std::string& instance_name) const {
   for (const auto& component : held_components()) {
-    if (instance_name == component->getInstanceName()) return component;
+    if (instance_name == component->instance_name()) return component;
   }
   return {};
 }
 
 ManagerImpl::Held ManagerImpl::held_component(const RTObject_impl* wanted) const {
   for (const auto& component : held_components()) {
-    if (component.in() == wanted) return component;
+    if (component->object() == wanted) return component;
   }
   return {};
 }
 
 bool Manager::registerComponent(RTObject_impl* comp) {
   if (comp == nullptr || impl_->record_of(comp)) return false;
+  const auto component = manage(comp);
   ManagerImpl::Record record;
   {
     auto locked = impl_->state.lock();
-    if (!locked->reserved_names.insert(comp->getInstanceName()).second) return false;
+    if (!locked->reserved_names.insert(component->instance_name()).second) return false;
     record.id = ++locked->last_id;
     record.component = comp;
-    record.instance_name = comp->getInstanceName();
-    record.names = comp->getNamingNames();
-    record.object_key = std::string(comp->getCategory()) + "." + record.instance_name;
+    record.instance_name = component->instance_name();
+    record.names = component->naming_names();
+    record.object_key = component->category() + "." + record.instance_name;
     record.listed = true;
     locked->records[record.id] = record;
     locked->had_components = true;
@@ -78,8 +76,8 @@ bool Manager::unregisterComponent(RTObject_impl* comp) {
 }
 
 bool Manager::bindExecutionContext(RTObject_impl* comp) {
-  if (comp == nullptr) return false;
-  return !comp->getOwnContexts().empty() || comp->createContexts() == RTC_OK;
+  const auto component = manage(comp);
+  return component && component->bind_contexts();
 }
 
 RTObject_impl* Manager::getComponent(const char* instance_name) {
@@ -152,12 +150,13 @@ void ManagerImpl::destroy(std::uint64_t id) {
 
 // Those in whose callbacks no thread is any more.
 void ManagerImpl::delete_abandoned() {
-  RTObject_impl::destroyLeftContexts();
+  destroy_left_contexts();
   std::vector<Record> free;
   {
     auto locked = state.lock();
     auto& all = locked->abandoned;
-    const auto rest = std::stable_partition(all.begin(), all.end(), [](const Record& one) { return one.component->isHeldByCallback(); });
+    const auto rest =
+        std::stable_partition(all.begin(), all.end(), [](const Record& one) { return manage(one.component)->is_held_by_callback(); });
     free.assign(rest, all.end());
     all.erase(rest, all.end());
   }
@@ -167,15 +166,15 @@ void ManagerImpl::delete_abandoned() {
 
 void Manager::deleteComponent(RTObject_impl* comp) {
   const auto component = impl_->held_component(comp);
-  if (component.in() == nullptr) return;
+  if (!component) return;
   const auto code = component->exit();
   auto& rtclog = impl_->rtclog;
-  if (code != RTC_OK) RTC_WARN(("%s: exit answered %d", component->getInstanceName(), static_cast<int>(code)));
+  if (code != RTC_OK) RTC_WARN(("%s: exit answered %d", component->instance_name().c_str(), static_cast<int>(code)));
 }
 
 ReturnCode_t Manager::deleteComponent(const char* instance_name) {
   const auto component = impl_->held_component(std::string(instance_name != nullptr ? instance_name : ""));
-  return component.in() != nullptr ? component->exit() : BAD_PARAMETER;
+  return component ? component->exit() : BAD_PARAMETER;
 }
 
 void Manager::notifyFinalized(RTObject_impl* comp) { impl_->finalized(comp); }

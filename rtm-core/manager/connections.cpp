@@ -4,14 +4,13 @@
 #include "manager/manager_impl.h"
 #include "rtm/CORBA_RTCUtil.h"
 #include "rtm/NamingManager.h"
-#include "rtm/RTObject.h"
 
 namespace RTC {
 
 RTObject_var ManagerImpl::find_component(const std::string& name) {
   RTObject_var result;
-  if (const auto local = held_component(name); local.in() != nullptr) {
-    result = local->getObjRef();
+  if (const auto local = held_component(name); local) {
+    result = local->reference();
   } else if (naming) {
     const auto found = naming->string_to_component(name);
     if (found.length() > 0) result = RTObject::_duplicate(found[0]);

@@ -7,7 +7,6 @@
 #include "manager/manager_impl.h"
 #include "rtm/ModuleManager.h"
 #include "rtm/NamingManager.h"
-#include "rtm/RTObject.h"
 
 namespace RTC {
 namespace {
@@ -146,7 +145,7 @@ base::Result<RTObject_impl*> ManagerImpl::create(std::string argument) {
                        ": no factory of that type is registered and no module of that name is in " + value("manager.modules.load_path")};
   }
   if (auto* existing = existing_component(*parsed, source->factory->profile())) {
-    RTC_INFO(("component %s exists already", base::in_quotes(existing->getInstanceName()).c_str()));
+    RTC_INFO(("component %s exists already", base::in_quotes(manage(existing)->instance_name()).c_str()));
     return existing;
   }
   auto* component = source->factory->create(&facade);
@@ -219,7 +218,7 @@ coil::Properties ManagerImpl::configured_properties(const std::string& category,
   return properties;
 }
 
-base::Result<std::string> ManagerImpl::name_component(RTObject_impl* component, const rt::ComponentArgument& argument, bool& numbered) {
+base::Result<std::string> ManagerImpl::name_component(const Managed& component, const rt::ComponentArgument& argument, bool& numbered) {
   std::string name;
   for (const auto& [key, text] : argument.properties) {
     if (key == "instance_name") name = text;
@@ -232,35 +231,35 @@ base::Result<std::string> ManagerImpl::name_component(RTObject_impl* component, 
   {
     // Those with a name of their own count too: T0, mine, T2.
     const std::scoped_lock lock(numbering_mutex);
-    const std::string number = numbering->onCreate(component);
+    const std::string number = numbering->onCreate(component.object());
     numbered = true;
-    if (!is_given) name = component->getTypeName() + number;
+    if (!is_given) name = component.type_name() + number;
   }
   auto locked = state.lock();
   if (!locked->reserved_names.insert(name).second) return base::Error{"instance name " + base::in_quotes(name) + " exists already"};
   return name;
 }
 
-std::vector<std::string> ManagerImpl::naming_names(RTObject_impl* component, const coil::Properties& properties) const {
+std::vector<std::string> ManagerImpl::naming_names(const Managed& component, const coil::Properties& properties) const {
   std::vector<std::string> names;
   if (!base::parse_bool(properties.getProperty("naming.enable")).value_or(true)) return names;
   const auto text_of = [&](char c) -> std::optional<std::string> {
     switch (c) {
       case 'n':
-        return rt::escape_name(component->getInstanceName());
+        return rt::escape_name(component.instance_name());
       case 't':
       case 'm':
-        return rt::escape_name(component->getTypeName());
+        return rt::escape_name(component.type_name());
       case 'v':
-        return rt::escape_name(component->getVersion());
+        return rt::escape_name(component.version());
       case 'V':
-        return rt::escape_name(component->getVendor());
+        return rt::escape_name(component.vendor());
       case 'c':
-        return rt::escape_name(component->getCategory());
+        return rt::escape_name(component.category());
       case 'i':
         return rt::escape_name(properties.getProperty("implementation_id"));
       case 'N':
-        return std::string(rt::number_suffix(component->getInstanceName()));
+        return std::string(rt::number_suffix(component.instance_name()));
       case 'h':
         return rt::escape_name(value("os.hostname"));
       case 'M':
@@ -277,28 +276,28 @@ std::vector<std::string> ManagerImpl::naming_names(RTObject_impl* component, con
 
 base::Result<RTObject_impl*> ManagerImpl::finish_creation(std::uint64_t id, const RegisteredFactory& source,
                                                           const rt::ComponentArgument& argument) {
-  auto* component = state.lock()->records[id].component;
+  const Held component = manage(state.lock()->records[id].component);
   // What counts more comes later: the manager's defaults, the type's specification, what rtc.conf and options set for all, rtc.conf on the
   // type, on the instance, the file that the argument names, the argument.
   coil::Properties properties = source.factory->profile();
-  component->setProperties(properties);
+  component->set_properties(properties);
   bool numbered = false;
-  const auto name = name_component(component, argument, numbered);
+  const auto name = name_component(*component, argument, numbered);
   {
     auto locked = state.lock();
     if (name) locked->records[id].instance_name = *name;
     locked->records[id].numbered = numbered;
   }
   if (!name) return name.error();
-  component->setInstanceName(name->c_str());
-  const std::string category = component->getCategory();
+  component->set_instance_name(*name);
+  const std::string category = component->category();
   const auto inherited = inherited_properties();
   for (const auto& key : inherited.propertyNames()) {
     const auto* own = properties.findNode(key);
     if (!where(key).empty() || own == nullptr || properties.getProperty(key).empty())
       properties.setProperty(key, inherited.getProperty(key));
   }
-  properties << configured_properties(category, component->getTypeName());
+  properties << configured_properties(category, component->type_name());
   properties << configured_properties(category, *name);
   for (const auto& [key, text] : argument.properties) {
     if (key == "config_file") properties << properties_of_file("component " + base::in_quotes(*name) + ": config_file", text);
@@ -310,9 +309,9 @@ base::Result<RTObject_impl*> ManagerImpl::finish_creation(std::uint64_t id, cons
   }
   properties.setProperty("instance_name", *name);
   listeners.rtclifecycle_.call(&RTM::RtcLifecycleActionListener::preConfigure, properties);
-  const auto names = naming_names(component, properties);
+  const auto names = naming_names(*component, properties);
   properties.setProperty("naming.names", base::join(names, ","));
-  component->setProperties(properties);
+  component->set_properties(properties);
   listeners.rtclifecycle_.call(&RTM::RtcLifecycleActionListener::postConfigure, properties);
 
   listeners.rtclifecycle_.call(&RTM::RtcLifecycleActionListener::preInitialize);
@@ -333,16 +332,16 @@ base::Result<RTObject_impl*> ManagerImpl::finish_creation(std::uint64_t id, cons
     record = entry;
   }
   publish(record);
-  publish_ports(component);
-  subscribe_ports(component);
-  return component;
+  publish_ports(*component);
+  subscribe_ports(*component);
+  return component->object();
 }
 
 void ManagerImpl::publish(const Record& record) {
   coil::vstring names = record.names;
   listeners.naming_.call(&RTM::NamingActionListener::preBind, record.component, names);
   for (const auto& name : names) naming->bindObject(name.c_str(), record.component);
-  RTObject_var reference = record.component->getObjRef();
+  RTObject_var reference = manage(record.component)->reference();
   if (orb && !CORBA::is_nil(reference)) orb->publish(record.object_key, reference);
   listeners.naming_.call(&RTM::NamingActionListener::postBind, record.component, names);
 }

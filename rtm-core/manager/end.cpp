@@ -21,7 +21,6 @@
 #include "rtm/ManagerServant.h"
 #include "rtm/ModuleManager.h"
 #include "rtm/NamingManager.h"
-#include "rtm/RTObject.h"
 
 namespace RTC {
 namespace {
@@ -56,7 +55,7 @@ class ManagerImpl::EndWatch {
   // A callback that the end itself calls has lasted too long.
   bool is_caught(std::chrono::nanoseconds patience) const {
     for (const auto& component : manager_.all_components())
-      for (const auto& one : component->runningCallbacks())
+      for (const auto& one : component->callbacks())
         if (one.thread == ender_ && steady_clock::now() - one.since >= patience) return true;
     return false;
   }
@@ -102,12 +101,10 @@ void ManagerImpl::begin_step(std::string step) {
   changed.notify_all();
 }
 
-std::vector<std::shared_ptr<RTObject_impl>> ManagerImpl::all_components() const {
-  std::vector<std::shared_ptr<RTObject_impl>> components;
+std::vector<ManagerImpl::Held> ManagerImpl::all_components() const {
+  std::vector<Held> components;
   const auto keep = [&](RTObject_impl* component) {
-    if (component == nullptr) return;
-    component->_add_ref();
-    components.emplace_back(component, [](RTObject_impl* counted) { counted->_remove_ref(); });
+    if (auto held = manage(component)) components.push_back(std::move(held));
   };
   const auto locked = state.lock();
   for (const auto& [id, record] : locked->records) keep(record.component);
@@ -117,15 +114,15 @@ std::vector<std::shared_ptr<RTObject_impl>> ManagerImpl::all_components() const 
 
 bool ManagerImpl::is_callback_running(std::chrono::nanoseconds at_least) const {
   for (const auto& component : all_components())
-    for (const auto& one : component->runningCallbacks())
+    for (const auto& one : component->callbacks())
       if (steady_clock::now() - one.since >= at_least) return true;
   return false;
 }
 
 void ManagerImpl::complain_about_callbacks() const {
   for (const auto& component : all_components())
-    for (const auto& one : component->runningCallbacks())
-      RTC_ERROR(("%s: %s has not returned for %s", component->getInstanceName(), one.callback,
+    for (const auto& one : component->callbacks())
+      RTC_ERROR(("%s: %s has not returned for %s", component->instance_name().c_str(), one.name,
                  in_seconds(steady_clock::now() - one.since).c_str()));
 }
 
@@ -194,25 +191,25 @@ void ManagerImpl::exit_all_components() {
   const auto deadline = steady_clock::now() + callback_timeout();
   auto all = records();
   std::erase_if(all, [](const Record& record) { return !record.listed || record.finalized; });
-  std::vector<std::shared_ptr<RTObject_impl>> components;
+  std::vector<Held> components;
   for (const auto& component : all_components())
-    if (std::any_of(all.begin(), all.end(), [&](const Record& record) { return record.component == component.get(); }))
+    if (std::any_of(all.begin(), all.end(), [&](const Record& record) { return record.component == component->object(); }))
       components.push_back(component);
   std::reverse(components.begin(), components.end());
   bool is_late = false;
   for (std::size_t i = 0; i < components.size(); ++i) {
-    begin_step(components[i]->getInstanceNameString());
+    begin_step(components[i]->instance_name());
     if (!is_late && steady_clock::now() >= deadline) {
       // Somebody hangs. The others get one moment together, after which it is known who else does and need not be waited for.
       is_late = true;
       const auto until = steady_clock::now() + grace;
-      for (std::size_t k = i; k < components.size(); ++k) components[k]->askToRest();
-      for (std::size_t k = i; k < components.size(); ++k) components[k]->comeToRest(until);
+      for (std::size_t k = i; k < components.size(); ++k) components[k]->ask_to_rest();
+      for (std::size_t k = i; k < components.size(); ++k) components[k]->come_to_rest(until);
     }
     try {
-      components[i]->exitBy(is_late ? steady_clock::now() + grace : deadline);
+      components[i]->exit_by(is_late ? steady_clock::now() + grace : deadline);
     } catch (...) {
-      RTC_ERROR(("%s: exit failed with an exception", components[i]->getInstanceName()));
+      RTC_ERROR(("%s: exit failed with an exception", components[i]->instance_name().c_str()));
     }
   }
   components.clear();
@@ -233,9 +230,9 @@ void ManagerImpl::end() {
   exit_all_components();
   begin_step("naming");
   naming->unbindAll();
-  for (const auto& component : all_components()) component->comeToRest(steady_clock::now() + grace);  // also those that are being made
+  for (const auto& component : all_components()) component->come_to_rest(steady_clock::now() + grace);  // also those that are being made
   delete_abandoned();
-  if (is_callback_running(0s) || !RTObject_impl::destroyLeftContexts()) give_up("naming");
+  if (is_callback_running(0s) || !destroy_left_contexts()) give_up("naming");
   begin_step(after_naming);
   RTM::LocalServiceAdmin::instance().finalize();
   if (servant != nullptr) servant->deactivate();

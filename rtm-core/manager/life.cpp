@@ -18,7 +18,6 @@
 #include "rtm/ManagerServant.h"
 #include "rtm/ModuleManager.h"
 #include "rtm/NamingManager.h"
-#include "rtm/RTObject.h"
 
 namespace RTC {
 namespace {
@@ -198,7 +197,7 @@ void ManagerImpl::start_timer_tasks() {
   peers = std::make_unique<rt::TaskRunner>("rtm-peers");
   constexpr std::chrono::seconds look{2};
   const auto look_after_components = [this] {
-    for (const auto& component : held_components()) component->leaveTheDead();
+    for (const auto& component : held_components()) component->leave_the_dead();
   };
   peers->add(look_after_components, look, look);
   // Both spellings are in the documentation.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/guarded.h"
+#include "component/managed.h"
 #include "corba/orb.h"
 #include "core/component_argument.h"
 #include "core/signal_watcher.h"
@@ -20,7 +21,6 @@
 #include "rtm/Manager.h"
 #include "rtm/ManagerActionListener.h"
 #include "rtm/NumberingPolicyBase.h"
-#include "rtm/RTObject.h"
 
 namespace RTM {
 class ManagerServant;
@@ -113,8 +113,8 @@ class ManagerImpl {
   void withdraw(const Record& record);
   std::vector<Record> records() const;
   std::optional<Record> record_of(const RTObject_impl* component) const;
-  // Components in the list, each with a reference, so that none is deleted while it is used. By name: nil if there is none.
-  using Held = PortableServer::Servant_var<RTObject_impl>;
+  // Components in the list, held, so that none is deleted while it is used. One: null if there is none.
+  using Held = std::shared_ptr<Managed>;
   std::vector<Held> held_components() const;
   Held held_component(const std::string& instance_name) const;
   Held held_component(const RTObject_impl* component) const;
@@ -123,8 +123,8 @@ class ManagerImpl {
   // By instance name here, else by URL; nil if there is none.
   RTObject_var find_component(const std::string& name);
   // Binds the component's ports that have a topic and connects them with the others that have it.
-  void publish_ports(RTObject_impl* component);
-  void subscribe_ports(RTObject_impl* component);
+  void publish_ports(const Managed& component);
+  void subscribe_ports(const Managed& component);
   bool load_and_create(const std::string& module);
 
   Manager& facade;
@@ -164,8 +164,8 @@ class ManagerImpl {
   void begin_step(std::string step);
   void exit_all_components();
   std::chrono::nanoseconds callback_timeout() const;
-  // Every component that is in memory, with a reference.
-  std::vector<std::shared_ptr<RTObject_impl>> all_components() const;
+  // Every component that is in memory, held.
+  std::vector<Held> all_components() const;
   bool is_callback_running(std::chrono::nanoseconds at_least) const;
   void complain_about_callbacks() const;
   void answer_last_calls();
@@ -177,8 +177,8 @@ class ManagerImpl {
   coil::Properties properties_of_file(const std::string& named_by, const std::string& file);
   // nullptr when the argument names no component of that type.
   RTObject_impl* existing_component(const rt::ComponentArgument& argument, const coil::Properties& profile) const;
-  base::Result<std::string> name_component(RTObject_impl* component, const rt::ComponentArgument& argument, bool& numbered);
-  std::vector<std::string> naming_names(RTObject_impl* component, const coil::Properties& properties) const;
+  base::Result<std::string> name_component(const Managed& component, const rt::ComponentArgument& argument, bool& numbered);
+  std::vector<std::string> naming_names(const Managed& component, const coil::Properties& properties) const;
   base::Result<RTObject_impl*> finish_creation(std::uint64_t id, const RegisteredFactory& source, const rt::ComponentArgument& argument);
   std::mutex numbering_mutex;  // policies are called one at a time, user-written or not
   RTM::NumberingPolicyBase* numbering = nullptr;

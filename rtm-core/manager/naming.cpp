@@ -13,7 +13,6 @@
 #include "manager/manager_impl.h"
 #include "rtm/CORBA_IORUtil.h"
 #include "rtm/ManagerServant.h"
-#include "rtm/RTObject.h"
 
 #include <rtm/idl/ManagerStub.h>
 
@@ -218,7 +217,7 @@ void NamingManager::registerNameServer(const char* method, const char* name_serv
 }
 
 void NamingManager::bindObject(const char* name, const RTObject_impl* rtobj) {
-  RTObject_var reference = rtobj->getObjRef();
+  RTObject_var reference = manage(rtobj)->reference();
   bindObject(std::string(name), reference);
 }
 
@@ -239,9 +238,9 @@ RTCList NamingManager::string_to_component(const std::string& name) {
   if (take_scheme(text, "rtcname")) return impl_->by_name(text);
   if (take_scheme(text, "rtcloc")) return impl_->by_location(text);
   RTCList found;
-  if (const auto component = impl_->manager->impl_->held_component(std::string(text)); component.in() != nullptr) {
+  if (const auto component = impl_->manager->impl_->held_component(std::string(text)); component) {
     found.length(1);
-    found[0] = component->getObjRef();
+    found[0] = component->reference();
     return found;
   }
   return impl_->at_managers(std::string(text));

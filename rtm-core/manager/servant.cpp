@@ -15,7 +15,6 @@
 #include "rtm/LocalServiceAdmin.h"
 #include "rtm/Manager.h"
 #include "rtm/NVUtil.h"
-#include "rtm/RTObject.h"
 
 namespace RTM {
 namespace {
@@ -33,8 +32,8 @@ void append(Sequence& sequence, const Element& element) {
 }
 
 // The reference is nil when the component has just been finalized.
-void append_component(RTC::RTCList& list, const RTC::RTObject_impl& component) {
-  RTC::RTObject_var reference = component.getObjRef();
+void append_component(RTC::RTCList& list, const RTC::Managed& component) {
+  RTC::RTObject_var reference = component.reference();
   if (!CORBA::is_nil(reference)) append(list, reference);
 }
 
@@ -140,8 +139,8 @@ RTM::ManagerList* to_list(const std::vector<RTM::Manager_var>& managers) {
   return list.release();
 }
 
-bool is_listed(const RTC::RTObject_impl& component, const std::string& category, const std::string& instance) {
-  return instance == component.getInstanceName() && (category.empty() || category == "*" || category == component.getCategory());
+bool is_listed(const RTC::Managed& component, const std::string& category, const std::string& instance) {
+  return instance == component.instance_name() && (category.empty() || category == "*" || category == component.category());
 }
 
 }  // namespace
@@ -232,7 +231,7 @@ RTC::RTObject_ptr ManagerServant::create_component(const char* module_name) {
   }
   if (auto* made = manager_.createComponent(argument)) {
     const auto component = manager_.impl_->held_component(made);
-    return component.in() != nullptr ? component->getObjRef() : RTC::RTObject::_nil();
+    return component ? component->reference() : RTC::RTObject::_nil();
   }
   const auto parsed = rt::parse_component_argument(argument);
   if (!parsed || manager_.impl_->find_factory(parsed->id)) return RTC::RTObject::_nil();  // it can be made here, but fails
@@ -258,7 +257,7 @@ RTC::ReturnCode_t ManagerServant::delete_component(const char* instance_name) {
 
 RTC::RTCList* ManagerServant::get_components() {
   RTC::RTCList_var list = new RTC::RTCList;
-  for (const auto& component : manager_.impl_->held_components()) append_component(list.inout(), *component.in());
+  for (const auto& component : manager_.impl_->held_components()) append_component(list.inout(), *component);
   append_from_slaves(list.inout(), [](RTM::Manager_ptr slave) { return RTC::RTCList_var(slave->get_components()); });
   return list._retn();
 }
@@ -266,7 +265,7 @@ RTC::RTCList* ManagerServant::get_components() {
 RTC::ComponentProfileList* ManagerServant::get_component_profiles() {
   RTC::ComponentProfileList_var list = new RTC::ComponentProfileList;
   for (const auto& component : manager_.impl_->held_components()) {
-    RTC::ComponentProfile_var profile = component->get_component_profile();
+    RTC::ComponentProfile_var profile = component->profile();
     append(list.inout(), profile.in());
   }
   append_from_slaves(list.inout(), [](RTM::Manager_ptr slave) { return RTC::ComponentProfileList_var(slave->get_component_profiles()); });
@@ -282,7 +281,7 @@ RTC::RTCList* ManagerServant::get_components_by_name(const char* name) {
   const auto category = slash == std::string::npos ? std::string() : text.substr(0, slash);
   const auto instance = slash == std::string::npos ? text : text.substr(slash + 1);
   for (const auto& component : manager_.impl_->held_components()) {
-    if (is_listed(*component.in(), category, instance)) append_component(list.inout(), *component.in());
+    if (is_listed(*component, category, instance)) append_component(list.inout(), *component);
   }
   return list._retn();
 }

@@ -109,9 +109,9 @@ void for_each_topic(RTObject_ptr component, Function function) {
 
 }  // namespace
 
-void ManagerImpl::publish_ports(RTObject_impl* component) {
+void ManagerImpl::publish_ports(const Managed& component) {
   std::vector<std::string> names;
-  for (auto* port : component->getLocalPorts()) {
+  for (auto* port : component.ports()) {
     const PortProfile profile = port->getPortProfile();
     for (const auto& topic : topics_of(profile)) {
       names.push_back(topic.context + "/" + rt::escape_name(profile.name.in()) + "." + topic.kind);
@@ -120,12 +120,12 @@ void ManagerImpl::publish_ports(RTObject_impl* component) {
   }
   auto locked = state.lock();
   for (auto& [id, record] : locked->records) {
-    if (record.component == component) record.port_names = names;
+    if (record.component == component.object()) record.port_names = names;
   }
 }
 
-void ManagerImpl::subscribe_ports(RTObject_impl* component) {
-  for (auto* port : component->getLocalPorts()) {
+void ManagerImpl::subscribe_ports(const Managed& component) {
+  for (auto* port : component.ports()) {
     const PortProfile profile = port->getPortProfile();
     for (const auto& topic : topics_of(profile)) {
       const auto connect_ports_of = [&](RTObject_ptr other) {
@@ -134,7 +134,7 @@ void ManagerImpl::subscribe_ports(RTObject_impl* component) {
         });
       };
       for (const auto& local : held_components()) {
-        RTObject_var reference = local->getObjRef();
+        RTObject_var reference = local->reference();
         if (!CORBA::is_nil(reference)) connect_ports_of(reference);
       }
       for (const auto& candidate : naming->list(topic.context, topic.wanted)) connect_by_topic(port->getPortRef(), profile, candidate);
@@ -145,11 +145,11 @@ void ManagerImpl::subscribe_ports(RTObject_impl* component) {
 }
 
 void Manager::publishPorts(RTObject_impl* comp) {
-  if (const auto component = impl_->held_component(comp); component.in() != nullptr && impl_->naming) impl_->publish_ports(component);
+  if (const auto component = impl_->held_component(comp); component && impl_->naming) impl_->publish_ports(*component);
 }
 
 void Manager::subscribePorts(RTObject_impl* comp) {
-  if (const auto component = impl_->held_component(comp); component.in() != nullptr && impl_->naming) impl_->subscribe_ports(component);
+  if (const auto component = impl_->held_component(comp); component && impl_->naming) impl_->subscribe_ports(*component);
 }
 
 }  // namespace RTC

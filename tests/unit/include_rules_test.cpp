@@ -23,6 +23,7 @@ struct Layer {
   std::string folder;
   Names may_include;
   Names libraries{};
+  Names never{};  // headers that it may not include though others of their part it may
 };
 
 // The first folder that a file lies in counts.
@@ -33,8 +34,8 @@ const std::vector<Layer> layers = {
     {"rtm-core/openrtm/include/coil", {"coil"}},
     {"rtm-core/openrtm/include", {"rtm", "coil", "stubs"}, {"omniORB"}},
     {"rtm-core/openrtm/coil", {"coil"}},
-    {"rtm-core/component", {"component", "rtm", "coil", "corba", "core", "base", "stubs"}, {"omniORB"}},
-    {"rtm-core/manager", {"manager", "rtm", "coil", "corba", "core", "base", "stubs"}, {"omniORB"}},
+    {"rtm-core/component", {"component", "managed", "rtm", "coil", "corba", "core", "base", "stubs"}, {"omniORB"}, {"rtm/Manager.h"}},
+    {"rtm-core/manager", {"manager", "managed", "rtm", "coil", "corba", "core", "base", "stubs"}, {"omniORB"}, {"rtm/RTObject.h"}},
     {"rtm-core/openrtm", {"openrtm", "manager", "component", "rtm", "coil", "corba", "core", "base", "stubs"}, {"omniORB"}},
     {"rtm-core/rtcd", {"rtm", "coil", "corba", "core", "base", "stubs"}},
     {"sim-server/shm", {"shm", "base"}},
@@ -61,29 +62,53 @@ const std::vector<Layer> layers = {
 // Whose header this is: a part of the project, a library, or "" for one of neither.
 std::string owner(const std::string& header) {
   static const std::vector<std::pair<std::string, std::string>> prefixes = {
-      {"rtm/idl/", "stubs"},     {"rtm/ext/", "stubs"},
-      {"base/", "base"},         {"core/", "core"},
-      {"corba/", "corba"},       {"rtm/", "rtm"},
-      {"coil/", "coil"},         {"openrtm/", "openrtm"},
-      {"manager/", "manager"},   {"component/", "component"},
-      {"rays/", "rays"},         {"render/", "render"},
-      {"devices/", "devices"},   {"server/", "server"},
-      {"simctl/", "simctl"},     {"shm/", "shm"},
-      {"world/", "world"},       {"physics/", "physics"},
-      {"protocol/", "protocol"}, {"omniORB4/", "omniORB"},
-      {"omnithread", "omniORB"}, {"COS/", "omniORB"},
-      {"ode/", "ODE"},           {"embree", "Embree"},
-      {"sdf/", "SDFormat"},      {"GL/", "OpenGL"},
-      {"GLES", "OpenGL"},        {"KHR/", "OpenGL"},
-      {"Eigen/", "Eigen"},       {"nlohmann/", "JSON"},
-      {"spdlog/", "spdlog"},     {"fmt/", "spdlog"},
-      {"pugixml", "pugixml"},    {"yaml-cpp/", "YAML"},
-      {"png.h", "PNG"},          {"jpeglib", "JPEG"},
-      {"turbojpeg", "JPEG"},     {"assimp/", "Assimp"},
-      {"CLI/", "CLI11"},         {"SDL", "SDL2"},
-      {"X11/", "X11"},           {"uuid/", "uuid"},
-      {"ncurses", "ncurses"},    {"mcap/", "mcap"},
-      {"zstd", "zstd"},          {"lz4", "lz4"},
+      {"component/managed.h", "managed"},  // what the manager knows of components
+      {"rtm/idl/", "stubs"},
+      {"rtm/ext/", "stubs"},
+      {"base/", "base"},
+      {"core/", "core"},
+      {"corba/", "corba"},
+      {"rtm/", "rtm"},
+      {"coil/", "coil"},
+      {"openrtm/", "openrtm"},
+      {"manager/", "manager"},
+      {"component/", "component"},
+      {"rays/", "rays"},
+      {"render/", "render"},
+      {"devices/", "devices"},
+      {"server/", "server"},
+      {"simctl/", "simctl"},
+      {"shm/", "shm"},
+      {"world/", "world"},
+      {"physics/", "physics"},
+      {"protocol/", "protocol"},
+      {"omniORB4/", "omniORB"},
+      {"omnithread", "omniORB"},
+      {"COS/", "omniORB"},
+      {"ode/", "ODE"},
+      {"embree", "Embree"},
+      {"sdf/", "SDFormat"},
+      {"GL/", "OpenGL"},
+      {"GLES", "OpenGL"},
+      {"KHR/", "OpenGL"},
+      {"Eigen/", "Eigen"},
+      {"nlohmann/", "JSON"},
+      {"spdlog/", "spdlog"},
+      {"fmt/", "spdlog"},
+      {"pugixml", "pugixml"},
+      {"yaml-cpp/", "YAML"},
+      {"png.h", "PNG"},
+      {"jpeglib", "JPEG"},
+      {"turbojpeg", "JPEG"},
+      {"assimp/", "Assimp"},
+      {"CLI/", "CLI11"},
+      {"SDL", "SDL2"},
+      {"X11/", "X11"},
+      {"uuid/", "uuid"},
+      {"ncurses", "ncurses"},
+      {"mcap/", "mcap"},
+      {"zstd", "zstd"},
+      {"lz4", "lz4"},
       {"libdeflate", "deflate"},
   };
   for (const auto& [prefix, name] : prefixes) {
@@ -155,7 +180,8 @@ Names offences(const fs::path& root) {
         if (part.empty()) {
           // With quotation marks it is a neighbour in the same folder.
           if (match[1] == "<" && !is_everybodys(header)) found.push_back(at + "<" + header + "> is of no library in the table");
-        } else if (!has(layer->may_include) && !has(layer->libraries)) {
+        } else if ((!has(layer->may_include) && !has(layer->libraries)) ||
+                   std::count(layer->never.begin(), layer->never.end(), header) != 0) {
           found.push_back(at + layer->folder + " may not include <" + header + "> of " + part);
         }
       }
@@ -186,6 +212,7 @@ TEST_F(PlantedTree, every_kind_of_offence_is_found) {
   plant("iface-components/c.cpp", "#include <rtm/Manager.h>\n#include \"core/registry.h\"\n");
   plant("clients/video-player/d.cpp", "#include \"shm/segment.h\"\n");
   plant("rtm-core/component/i.h", "#include \"core/lifecycle.h\"\n#include \"manager/manager_impl.h\"\n");
+  plant("rtm-core/manager/l.cpp", "#include <rtm/RTObject.h>\n#include \"component/managed.h\"\n#include \"component/component_impl.h\"\n");
   plant("rtm-core/core/j.cpp", "#include <sys/types.h>\n#include \"neighbour.h\"\n#include <boost/any.hpp>\n#include <Eigen/Core>\n");
   plant("rtm-core/openrtm/include/coil/e.h", "#include <rtm/idl/RTCSkel.h>\n");
   plant("rtm-core/openrtm/include/rtm/k.h", "#include \"component/component_impl.h\"\n#include <rtm/idl/RTCSkel.h>\n");
@@ -203,6 +230,8 @@ TEST_F(PlantedTree, every_kind_of_offence_is_found) {
                 "rtm-core/core/a.h:3: rtm-core/core may not include <corba/orb.h> of corba",
                 "rtm-core/core/j.cpp:3: <boost/any.hpp> is of no library in the table",
                 "rtm-core/core/j.cpp:4: rtm-core/core may not include <Eigen/Core> of Eigen",
+                "rtm-core/manager/l.cpp:1: rtm-core/manager may not include <rtm/RTObject.h> of rtm",
+                "rtm-core/manager/l.cpp:3: rtm-core/manager may not include <component/component_impl.h> of component",
                 "rtm-core/openrtm/include/coil/e.h:1: rtm-core/openrtm/include/coil may not include <rtm/idl/RTCSkel.h> of stubs",
                 "rtm-core/openrtm/include/rtm/k.h:1: rtm-core/openrtm/include may not include <component/component_impl.h> of component",
                 "sim-server/devices/b.cpp:2: sim-server may not include <rtm/Manager.h> of rtm",

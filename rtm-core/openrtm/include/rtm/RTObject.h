@@ -382,6 +382,7 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   struct Impl;
   struct Port;
   friend class Manager;
+  friend class ManagedComponent;
 
   void prepareBinding();
   void takeNames();
