@@ -14,20 +14,20 @@ static_assert(static_cast<int>(corba::ConnectorEvent::disconnect) == ON_DISCONNE
 // Tells the listeners of a connection what happens to it; keeps its connector.
 class ListenerEvents final : public corba::ConnectorEvents {
  public:
-  explicit ListenerEvents(std::shared_ptr<ConnectorBase> connector) : connector_(std::move(connector)) {}
+  // The listeners live as long as the connector.
+  explicit ListenerEvents(std::shared_ptr<ConnectorBase> connector)
+      : connector_(std::move(connector)), listeners_(connector_->listeners()) {}
 
   ConnectorBase& connector() const { return *connector_; }
 
-  bool is_observed(corba::DataEvent event) const override {
-    return !connector_->listeners().connectorData_[static_cast<int>(event)].isEmpty();
-  }
+  bool is_observed(corba::DataEvent event) const override { return !listeners_.connectorData_[static_cast<int>(event)].isEmpty(); }
   void on_data(corba::DataEvent event, corba::EventData& data) override {
     const auto current = connector_->info();
     bool info_changed = false;  // in place: it is the connection's own
-    connector_->listeners().connectorData_[static_cast<int>(event)].notify(*current, data, info_changed);
+    listeners_.connectorData_[static_cast<int>(event)].notify(*current, data, info_changed);
   }
   void on_event(corba::ConnectorEvent event) override {
-    auto& holder = connector_->listeners().connector_[static_cast<int>(event)];
+    auto& holder = listeners_.connector_[static_cast<int>(event)];
     if (holder.isEmpty()) return;
     const auto current = connector_->info();
     bool info_changed = false;
@@ -36,6 +36,7 @@ class ListenerEvents final : public corba::ConnectorEvents {
 
  private:
   const std::shared_ptr<ConnectorBase> connector_;
+  ConnectorListeners& listeners_;
 };
 
 }  // namespace
