@@ -1,31 +1,59 @@
-// A lock that owns its data: the data can be reached only while the lock is held. Any thread.
-// Locks have ranks; a thread may take a lock only if its rank is higher than that of every lock it holds (asserted in builds without
-// NDEBUG). Never call user code, the network or the log while one is held: take a snapshot, release, then act.
+// The locks of the project. Any thread.
+//   Guarded   owns its data: the data can be reached only while the lock is held.
+//   Turn      guards no data; whoever has it may do what one thread at a time may do, such as calling a library with global buffers.
+//   UsersTurn a turn in which code of users is called, whatever that asks for.
+// Guarded and Turn have ranks; a thread may take one only if its rank is higher than that of every other it has (asserted in builds without
+// NDEBUG). Code of users, the network, the log and the file system are never called while data is held: take a snapshot, release, then
+// act. Where such calls leave us, expect_no_data_held() asserts it.
 #pragma once
 
 #include <cassert>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <optional>
+#include <stop_token>
 #include <utility>
 
 namespace base {
 
 // Outermost first.
-enum class Rank : int { manager = 10, component = 20, context = 30, port = 40, connector = 50, buffer = 60, registry = 70, log = 90 };
+enum class Rank : int {
+  turn = 5,  // outside of all data
+  manager = 10,
+  component = 20,
+  context = 30,
+  port = 40,
+  connector = 50,
+  buffer = 60,
+  registry = 70,
+  log = 90
+};
 
 namespace detail {
+
+// What the calling thread holds; kept in builds without NDEBUG only.
+struct Held {
+  int rank = 0;  // the highest
+  int data = 0;  // how many Guarded
+};
+inline Held& held() {
+  thread_local Held mine;
+  return mine;
+}
+
 class HeldRank {
  public:
-  explicit HeldRank([[maybe_unused]] Rank rank) {
+  enum class Kind { data, turn };
+  HeldRank([[maybe_unused]] Rank rank, [[maybe_unused]] Kind kind) {
 #ifndef NDEBUG
-    assert(static_cast<int>(rank) > current() && "locks must be taken in ascending rank");
-    previous_ = std::exchange(current(), static_cast<int>(rank));
+    assert(static_cast<int>(rank) > held().rank && "locks must be taken in ascending rank");
+    previous_ = std::exchange(held(), {static_cast<int>(rank), held().data + (kind == Kind::data ? 1 : 0)});
 #endif
   }
   ~HeldRank() {
 #ifndef NDEBUG
-    current() = previous_;
+    held() = previous_;
 #endif
   }
   HeldRank(const HeldRank&) = delete;
@@ -33,14 +61,14 @@ class HeldRank {
 
  private:
 #ifndef NDEBUG
-  static int& current() {
-    thread_local int rank = 0;
-    return rank;
-  }
-  int previous_ = 0;
+  Held previous_;
 #endif
 };
+
 }  // namespace detail
+
+// Before a call that may take long, or may come back: the calling thread must hold no data (asserted in builds without NDEBUG).
+inline void expect_no_data_held() { assert(detail::held().data == 0 && "called while data is held"); }
 
 template <class T, Rank rank>
 class Guarded {
@@ -59,10 +87,20 @@ class Guarded {
     bool wait_until(std::condition_variable& condition, std::chrono::steady_clock::time_point deadline, Predicate predicate) {
       return condition.wait_until(lock_, deadline, std::move(predicate));
     }
+    // For threads that sleep between their tasks: somebody is sure to notify.
+    template <class Predicate>
+    void wait(std::condition_variable& condition, Predicate predicate) {
+      condition.wait(lock_, std::move(predicate));
+    }
+    // False when the thread is asked to stop and predicate() does not hold.
+    template <class Predicate>
+    bool wait(std::condition_variable_any& condition, const std::stop_token& stop, Predicate predicate) {
+      return condition.wait(lock_, stop, std::move(predicate));
+    }
 
    private:
     friend class Guarded;
-    explicit Lock(Guarded& owner) : owner_(owner), held_(rank), lock_(owner.mutex_) {}
+    explicit Lock(Guarded& owner) : owner_(owner), held_(rank, detail::HeldRank::Kind::data), lock_(owner.mutex_) {}
     Guarded& owner_;
     detail::HeldRank held_;
     std::unique_lock<std::mutex> lock_;
@@ -75,7 +113,7 @@ class Guarded {
 
    private:
     friend class Guarded;
-    explicit ConstLock(const Guarded& owner) : owner_(owner), held_(rank), lock_(owner.mutex_) {}
+    explicit ConstLock(const Guarded& owner) : owner_(owner), held_(rank, detail::HeldRank::Kind::data), lock_(owner.mutex_) {}
     const Guarded& owner_;
     detail::HeldRank held_;
     std::unique_lock<std::mutex> lock_;
@@ -92,6 +130,44 @@ class Guarded {
  private:
   mutable std::mutex mutex_;
   T data_{};
+};
+
+// What is done in a turn may take long and may call a library, the log or the file system, where that is what the turn is for. It must not
+// come back for the same turn, so code of users is not called in one.
+template <Rank rank = Rank::turn>
+class Turn {
+ public:
+  class Mine {
+   private:
+    friend class Turn;
+    explicit Mine(Turn& owner) : held_(rank, detail::HeldRank::Kind::turn), lock_(owner.mutex_) {}
+    detail::HeldRank held_;
+    std::unique_lock<std::mutex> lock_;
+  };
+
+  // Waits for it; it ends with the result.
+  [[nodiscard]] Mine take() { return Mine(*this); }
+
+ private:
+  std::mutex mutex_;
+};
+
+// Nobody knows what code of users asks for, or waits for, so such a turn has no rank. Instead the thread that has it may take it again, and
+// whoever waits for it gives up after a time: what would be a dead lock is an error.
+class UsersTurn {
+ public:
+  using Mine = std::unique_lock<std::recursive_timed_mutex>;
+
+  // None when it did not come in time. No data may be held.
+  [[nodiscard]] std::optional<Mine> take(std::chrono::nanoseconds patience) {
+    expect_no_data_held();
+    Mine mine(mutex_, patience);
+    if (!mine) return std::nullopt;
+    return mine;
+  }
+
+ private:
+  std::recursive_timed_mutex mutex_;
 };
 
 }  // namespace base
