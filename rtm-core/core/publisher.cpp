@@ -12,13 +12,14 @@
 namespace rt {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Point = SteadyTime::Point;
+using Duration = Point::duration;
 
 // Between two attempts to hand a sample to a receiver whose buffer is full.
 constexpr auto first_retry = std::chrono::milliseconds(1);
 constexpr auto longest_retry = std::chrono::milliseconds(128);
 // Not time_point::max(), which overflows inside some condition variables.
-constexpr Clock::duration far = std::chrono::hours(24 * 365);
+constexpr Duration far = std::chrono::hours(24 * 365);
 
 }  // namespace
 
@@ -31,8 +32,15 @@ struct Publisher::Work {
   };
   enum class Next { go_on, retry, end };
 
-  Work(Subscription s, const PublisherSettings& p, const BufferSettings& b, Hooks h)
-      : subscription(s), period(p.period), buffer(b), hooks(std::move(h)), state(State{SendQueue(b.length, p)}) {}
+  Work(Subscription s, const PublisherSettings& p, const BufferSettings& b, Hooks h, const SteadyTime& t)
+      : subscription(s), period(p.period), buffer(b), hooks(std::move(h)), time(t), state(State{SendQueue(b.length, p)}) {}
+
+  // Time has jumped.
+  void look_again() {
+    { const auto seen = state.lock(); }  // see SteadyTime::on_jump
+    changed.notify_all();
+    room.notify_all();
+  }
 
   void run() {
     try {
@@ -49,14 +57,17 @@ struct Publisher::Work {
   }
 
   void run_on_writes() {
-    Clock::duration retry{};  // 0: the last sample got through
+    Duration retry{};  // 0: the last sample got through
     for (;;) {
       std::vector<Sample> batch;
       {
         auto locked = state.lock();
         // While the receiver is full, only the time-out or the end wakes us.
-        const auto deadline = Clock::now() + (retry.count() ? retry : far);
-        locked.wait_until(changed, deadline, [&] { return locked->is_stopped || (!retry.count() && !locked->queue.is_empty()); });
+        const auto deadline = time.now() + (retry.count() ? retry : far);
+        while (!locked->is_stopped && (retry.count() || locked->queue.is_empty()) && time.now() < deadline) {
+          locked.wait_until(changed, time.look_again(deadline),
+                            [&] { return locked->is_stopped || (!retry.count() && !locked->queue.is_empty()) || time.now() >= deadline; });
+        }
         if (locked->is_stopped) return;
         batch = locked->queue.next_batch();
       }
@@ -66,7 +77,7 @@ struct Publisher::Work {
           retry = {};
           break;
         case Next::retry:
-          retry = retry.count() ? std::min<Clock::duration>(retry * 2, longest_retry) : first_retry;
+          retry = retry.count() ? std::min<Duration>(retry * 2, longest_retry) : first_retry;
           break;
         case Next::end:
           return;
@@ -75,12 +86,13 @@ struct Publisher::Work {
   }
 
   void run_periodically() {
-    auto deadline = Clock::now() + period;
+    auto deadline = made + period;
     for (;;) {
       std::vector<Sample> batch;
       {
         auto locked = state.lock();
-        locked.wait_until(changed, deadline, [&] { return locked->is_stopped; });
+        while (!locked->is_stopped && time.now() < deadline)
+          locked.wait_until(changed, time.look_again(deadline), [&] { return locked->is_stopped || time.now() >= deadline; });
         if (locked->is_stopped) return;
         batch = locked->queue.next_batch();
       }
@@ -91,7 +103,7 @@ struct Publisher::Work {
         state.lock()->is_in_hooks = false;
       }
       if (send(std::move(batch)) == Next::end) return;
-      deadline = std::max<Clock::time_point>(deadline + period, Clock::now());
+      deadline = std::max<Point>(deadline + period, time.now());
     }
   }
 
@@ -136,13 +148,17 @@ struct Publisher::Work {
   const std::chrono::nanoseconds period;
   const BufferSettings buffer;
   const Hooks hooks;
+  const SteadyTime& time;
+  const Point made = time.now();
   base::Guarded<State, base::Rank::buffer> state;
   std::condition_variable changed;
   std::condition_variable room;
 };
 
-Publisher::Publisher(Subscription subscription, const PublisherSettings& publisher, const BufferSettings& buffer, Hooks hooks)
-    : work_(std::make_shared<Work>(subscription, publisher, buffer, std::move(hooks))) {
+Publisher::Publisher(Subscription subscription, const PublisherSettings& publisher, const BufferSettings& buffer, Hooks hooks,
+                     const SteadyTime& time)
+    : work_(std::make_shared<Work>(subscription, publisher, buffer, std::move(hooks), time)),
+      jump_(time.on_jump([work = work_] { work->look_again(); })) {
   thread_ = std::thread([work = work_] { work->run(); });
 }
 
@@ -165,8 +181,12 @@ WriteResult Publisher::write(Sample sample) {
     if (has_ended()) return ended();
     if (state->queue.is_full() && work_->buffer.full == FullPolicy::do_nothing) return {PortStatus::buffer_full};
     if (state->queue.is_full() && work_->buffer.full == FullPolicy::block) {
-      const bool is_over =
-          !state.wait_for(work_->room, work_->buffer.write_timeout, [&] { return has_ended() || !state->queue.is_full(); });
+      const auto& time = work_->time;
+      const auto deadline = time.now() + work_->buffer.write_timeout;
+      while (!has_ended() && state->queue.is_full() && time.now() < deadline)
+        state.wait_until(work_->room, time.look_again(deadline),
+                         [&] { return has_ended() || !state->queue.is_full() || time.now() >= deadline; });
+      const bool is_over = state->queue.is_full();
       if (has_ended()) return ended();
       if (is_over) return {PortStatus::buffer_timeout};
     }

@@ -9,6 +9,7 @@
 #include "core/connector_settings.h"
 #include "core/mailbox.h"
 #include "core/port_status.h"
+#include "core/steady_time.h"
 
 namespace rt {
 
@@ -26,7 +27,8 @@ class Publisher {
 
   // `subscription` is not flush. The thread ends with the publisher, or, when that
   // happens during a hook, soon afterwards; the hooks live as long as the thread.
-  Publisher(Subscription subscription, const PublisherSettings& publisher, const BufferSettings& buffer, Hooks hooks);
+  Publisher(Subscription subscription, const PublisherSettings& publisher, const BufferSettings& buffer, Hooks hooks,
+            const SteadyTime& time = machine_time());
   ~Publisher();
   Publisher(const Publisher&) = delete;
   Publisher& operator=(const Publisher&) = delete;
@@ -44,6 +46,7 @@ class Publisher {
   // True if the thread is in a hook.
   bool request_stop();
   std::shared_ptr<Work> work_;
+  std::shared_ptr<void> jump_;  // wakes the work
   std::thread thread_;
 };
 

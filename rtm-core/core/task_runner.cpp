@@ -6,16 +6,17 @@
 #include <exception>
 #include <future>
 #include <map>
-#include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 
+#include "base/guarded.h"
 #include "base/log.h"
 
 namespace rt {
 namespace {
 
-using Time = std::chrono::steady_clock::time_point;
+using Time = SteadyTime::Point;
 
 struct Task {
   std::shared_ptr<const std::function<void()>> call;
@@ -25,62 +26,84 @@ struct Task {
 }  // namespace
 
 struct TaskRunner::Impl {
+  struct State {
+    std::map<std::pair<Time, TaskId>, Task> tasks;  // the earliest first
+    TaskId last_id = 0;
+    TaskId running = 0;
+    bool running_removed = false;
+    bool stopping = false;
+  };
+  struct Due {
+    Time when;
+    TaskId id;
+    Task task;
+  };
   std::string name;
-  std::mutex mutex;
+  const SteadyTime& time;
+  base::Guarded<State, base::Rank::registry> shared;
   std::condition_variable changed;
-  std::map<std::pair<Time, TaskId>, Task> tasks;  // the earliest first
-  TaskId last_id = 0;
-  TaskId running = 0;
-  bool running_removed = false;
-  bool stopping = false;
+  std::shared_ptr<void> jump;
   std::thread thread;
+
+  Impl(const std::string& n, const SteadyTime& t) : name(n), time(t) {
+    jump = time.on_jump([this] {
+      { const auto seen = shared.lock(); }  // see SteadyTime::on_jump
+      changed.notify_all();
+    });
+  }
 
   void run() {
     pthread_setname_np(pthread_self(), name.substr(0, 15).c_str());
-    std::unique_lock lock(mutex);
-    while (!stopping) {
-      if (tasks.empty()) {
-        changed.wait(lock);
-        continue;
-      }
-      const auto when = tasks.begin()->first.first;
-      if (when > std::chrono::steady_clock::now()) {
-        changed.wait_until(lock, when);
-        continue;
-      }
-      run_first(lock);
-    }
+    while (auto due = next()) run(std::move(*due));
   }
 
-  void run_first(std::unique_lock<std::mutex>& lock) {
-    const auto [when, id] = tasks.begin()->first;
-    Task task = tasks.begin()->second;
-    tasks.erase(tasks.begin());
-    running = id;
-    running_removed = false;
-    lock.unlock();
+  // Waits for the time of the earliest task; none when the runner stops.
+  std::optional<Due> next() {
+    auto state = shared.lock();
+    while (!state->stopping) {
+      const auto when = state->tasks.empty() ? Time::max() : state->tasks.begin()->first.first;
+      if (when <= time.now()) {
+        auto first = state->tasks.extract(state->tasks.begin());
+        state->running = first.key().second;
+        state->running_removed = false;
+        return Due{when, state->running, std::move(first.mapped())};
+      }
+      const auto is_changed = [&] {
+        return state->stopping || (state->tasks.empty() ? Time::max() : state->tasks.begin()->first.first) != when;
+      };
+      if (when == Time::max()) {
+        state.wait(changed, is_changed);
+      } else {
+        state.wait_until(changed, time.look_again(when), [&] { return is_changed() || time.now() >= when; });
+      }
+    }
+    return std::nullopt;
+  }
+
+  void run(Due due) {
     try {
-      (*task.call)();
+      (*due.task.call)();
     } catch (const std::exception& e) {
       base::log(base::Level::error, name, "a task failed: {}", e.what());
     } catch (...) {
       base::log(base::Level::error, name, "a task failed with an unknown exception");
     }
-    if (task.period.count() == 0) task.call.reset();  // what it captured dies without the lock
-    lock.lock();
-    running = 0;
-    if (task.call && !running_removed) {
-      const auto now = std::chrono::steady_clock::now();
-      auto next = when + task.period;
-      if (next < now) next += (now - next) / task.period * task.period + task.period;
-      tasks.emplace(std::pair(next, id), std::move(task));
+    if (due.task.period.count() == 0) due.task.call.reset();  // what it captured dies without the lock
+    {
+      auto state = shared.lock();
+      state->running = 0;
+      if (due.task.call && !state->running_removed && !state->stopping) {
+        const auto now = time.now();
+        auto next = due.when + due.task.period;
+        if (next < now) next += (now - next) / due.task.period * due.task.period + due.task.period;
+        state->tasks.emplace(std::pair(next, due.id), std::move(due.task));
+      }
     }
     changed.notify_all();
   }
 };
 
-TaskRunner::TaskRunner(const std::string& name) : impl_(std::make_unique<Impl>()) {
-  impl_->name = name;
+TaskRunner::TaskRunner(const std::string& name, const SteadyTime& time) : impl_(std::make_unique<Impl>(name, time)) {
   impl_->thread = std::thread([impl = impl_.get()] { impl->run(); });
 }
 
@@ -88,25 +111,28 @@ TaskRunner::~TaskRunner() { stop(); }
 
 TaskRunner::TaskId TaskRunner::add(std::function<void()> task, std::chrono::nanoseconds period, std::chrono::nanoseconds delay) {
   auto call = std::make_shared<const std::function<void()>>(std::move(task));
-  const std::scoped_lock lock(impl_->mutex);
-  const auto id = ++impl_->last_id;
-  if (!impl_->stopping) impl_->tasks.emplace(std::pair(std::chrono::steady_clock::now() + delay, id), Task{std::move(call), period});
+  TaskId id = 0;
+  {
+    auto state = impl_->shared.lock();
+    id = ++state->last_id;
+    if (!state->stopping) state->tasks.emplace(std::pair(impl_->time.now() + delay, id), Task{std::move(call), period});
+  }
   impl_->changed.notify_all();
-  return id;
+  return id;  // a task that came too late dies without the lock
 }
 
 bool TaskRunner::remove(TaskId id) {
-  Task doomed;
-  std::unique_lock lock(impl_->mutex);
-  for (auto at = impl_->tasks.begin(); at != impl_->tasks.end(); ++at) {
+  Task doomed;  // dies without the lock
+  auto state = impl_->shared.lock();
+  for (auto at = state->tasks.begin(); at != state->tasks.end(); ++at) {
     if (at->first.second != id) continue;
     doomed = std::move(at->second);
-    impl_->tasks.erase(at);
+    state->tasks.erase(at);
     return true;
   }
-  if (impl_->running != id) return false;
-  impl_->running_removed = true;
-  if (!is_own_thread()) impl_->changed.wait(lock, [&] { return impl_->running != id; });
+  if (state->running != id) return false;
+  state->running_removed = true;
+  if (!is_own_thread()) state.wait(impl_->changed, [&] { return state->running != id; });
   return true;
 }
 
@@ -114,10 +140,7 @@ void TaskRunner::drain() {
   if (is_own_thread()) return;
   auto done = std::make_shared<std::promise<void>>();
   auto is_done = done->get_future();
-  {
-    const std::scoped_lock lock(impl_->mutex);
-    if (impl_->stopping) return;
-  }
+  if (impl_->shared.lock()->stopping) return;
   add([done] { done->set_value(); }, {}, {});
   done.reset();
   is_done.wait();  // also when the task is dropped: the promise breaks
@@ -128,9 +151,9 @@ bool TaskRunner::is_own_thread() const { return impl_->thread.get_id() == std::t
 void TaskRunner::stop() {
   std::map<std::pair<Time, TaskId>, Task> dropped;
   {
-    const std::scoped_lock lock(impl_->mutex);
-    impl_->stopping = true;
-    dropped.swap(impl_->tasks);
+    auto state = impl_->shared.lock();
+    state->stopping = true;
+    dropped.swap(state->tasks);
   }
   impl_->changed.notify_all();
   dropped.clear();

@@ -8,6 +8,8 @@
 #include <memory>
 #include <string>
 
+#include "core/steady_time.h"
+
 namespace rt {
 
 class TaskRunner {
@@ -15,7 +17,7 @@ class TaskRunner {
   using TaskId = std::uint64_t;
 
   // `name` is that of the thread in process listings, at most 15 characters.
-  explicit TaskRunner(const std::string& name);
+  explicit TaskRunner(const std::string& name, const SteadyTime& time = machine_time());
   // As stop().
   ~TaskRunner();
   TaskRunner(const TaskRunner&) = delete;

@@ -28,16 +28,19 @@ bool Alarm::wait_until(std::chrono::steady_clock::time_point deadline) {
   return true;
 }
 
+PeriodicWorker::PeriodicWorker(ExecutionContext& context, Steps& steps, const SteadyTime& time)
+    : context_(context), steps_(steps), time_(time), jump_(time.on_jump([this] { alarm_.ring(); })) {}
+
 void PeriodicWorker::run() {
   make_this_thread_punctual();
-  cycle_ = std::chrono::steady_clock::now();
+  cycle_ = time_.now();
   waited_ = base::time_waited();
   while (true) {
     shared_.lock()->woken = false;  // before the context is looked at, so that no later request is missed
     steps_.transit();
     if (context_.is_idle()) {
       if (!sleep_while_idle()) return;
-      cycle_ = std::chrono::steady_clock::now();
+      cycle_ = time_.now();
       continue;
     }
     steps_.execute_and_update();
@@ -63,7 +66,7 @@ bool PeriodicWorker::wait_for_deadline() {
     const auto period = context_.period();
     const auto deadline = cycle_ + period;
     // Without a sleep there is no time for extra transitions either: the next cycle makes them.
-    const bool is_over = std::chrono::steady_clock::now() >= deadline || !alarm_.wait_until(deadline);
+    const bool is_over = time_.now() >= deadline || (!alarm_.wait_until(time_.look_again(deadline)) && time_.now() >= deadline);
     {
       auto data = shared_.lock();
       if (data->stopping) return !(data->has_left = true);
@@ -77,7 +80,7 @@ bool PeriodicWorker::wait_for_deadline() {
     if (context_.is_idle()) return true;
   }
   const auto period = context_.period();
-  const auto late = (std::chrono::steady_clock::now() - cycle_) / period;
+  const auto late = (time_.now() - cycle_) / period;
   if (late > most_late_periods) {
     cycle_ += late * period;
     context_.count_missed(static_cast<std::uint64_t>(late));

@@ -9,11 +9,13 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <thread>
 #include <vector>
 
 #include "base/guarded.h"
 #include "core/execution_context.h"
+#include "core/steady_time.h"
 
 namespace rt {
 
@@ -52,7 +54,7 @@ class PeriodicWorker {
  public:
   static constexpr std::int64_t most_late_periods = 10;
 
-  PeriodicWorker(ExecutionContext& context, Steps& steps) : context_(context), steps_(steps) {}
+  PeriodicWorker(ExecutionContext& context, Steps& steps, const SteadyTime& time = machine_time());
 
   // Until stop().
   void run();
@@ -76,10 +78,12 @@ class PeriodicWorker {
 
   ExecutionContext& context_;
   Steps& steps_;
+  const SteadyTime& time_;
   base::Guarded<Data, base::Rank::buffer> shared_;
   Alarm alarm_;
-  std::chrono::steady_clock::time_point cycle_{};  // when the present cycle should have begun; run() only
-  std::chrono::nanoseconds waited_{0};             // by this thread, before it; run() only
+  SteadyTime::Point cycle_{};           // when the present cycle should have begun; run() only
+  std::chrono::nanoseconds waited_{0};  // by this thread, before it; run() only
+  const std::shared_ptr<void> jump_;    // rings the alarm; last: it ends first
 };
 
 // As many cycles as ticks, in their order. A request is answered without a tick.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <csignal>
 #include <future>
 
@@ -36,6 +37,45 @@ TEST(TaskRunner, a_periodic_task_runs_until_it_is_removed) {
   runner.drain();
   EXPECT_EQ(runs, after);
   EXPECT_FALSE(runner.remove(id));
+}
+
+TEST(TaskRunner, a_task_runs_when_its_delay_has_passed_and_then_at_its_period) {
+  ManualTime time;
+  TaskRunner runner("test", time);
+  std::promise<void> first, second;
+  int runs = 0;
+  runner.add([&] { ++runs == 1 ? first.set_value() : second.set_value(); }, 10s, 100s);
+  time.advance(99s);
+  runner.post([] {});
+  runner.drain();
+  EXPECT_EQ(runs, 0);
+  time.advance(1s);
+  ASSERT_EQ(first.get_future().wait_for(support::watchdog), std::future_status::ready);
+  time.advance(10s);
+  ASSERT_EQ(second.get_future().wait_for(support::watchdog), std::future_status::ready);
+  runner.stop();
+  EXPECT_EQ(runs, 2);
+}
+
+TEST(TaskRunner, runs_that_were_missed_are_skipped) {
+  ManualTime time;
+  TaskRunner runner("test", time);
+  std::atomic<int> runs = 0;
+  std::promise<void> first, next;
+  runner.add(
+      [&] {
+        const int now = ++runs;
+        if (now == 1) first.set_value();
+        if (now == 2) next.set_value();
+      },
+      10s, 10s);
+  time.advance(95s);  // nine are due at once
+  ASSERT_EQ(first.get_future().wait_for(support::watchdog), std::future_status::ready);
+  runner.post([] {});
+  runner.drain();
+  EXPECT_EQ(runs, 1);
+  time.advance(5s);
+  ASSERT_EQ(next.get_future().wait_for(support::watchdog), std::future_status::ready);
 }
 
 TEST(TaskRunner, a_task_may_remove_itself_and_throw) {

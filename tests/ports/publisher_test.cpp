@@ -43,6 +43,46 @@ class Arrivals {
   std::vector<int> values_;
 };
 
+TEST(Publisher, a_periodic_one_sends_when_its_period_has_passed_and_not_before) {
+  ManualTime time;
+  Arrivals arrivals;
+  Publisher publisher(Subscription::periodic, {PushPolicy::newest, 0, std::chrono::seconds(10)}, {},
+                      {[&](const Sample& s) { return arrivals.add(number(s)), PortStatus::ok; }, {}, {}}, time);
+  publisher.write(sample(1));
+  time.advance(std::chrono::milliseconds(9999));
+  publisher.write(sample(2));
+  EXPECT_TRUE(arrivals.values().empty());
+  time.advance(std::chrono::milliseconds(1));
+  EXPECT_TRUE(arrivals.wait_for_last(2)) << "the newest";
+  EXPECT_EQ(arrivals.values(), std::vector<int>{2});
+}
+
+TEST(Publisher, a_sample_that_the_receiver_had_no_room_for_is_sent_again_later_and_later) {
+  ManualTime time;
+  Arrivals arrivals;
+  int attempts = 0;
+  Publisher publisher(Subscription::newest, {PushPolicy::all, 0, {}}, {},
+                      {[&](const Sample&) {
+                         arrivals.add(++attempts);
+                         return attempts < 4 ? PortStatus::send_full : PortStatus::ok;
+                       },
+                       {},
+                       {}},
+                      time);
+  publisher.write(sample(1));
+  ASSERT_TRUE(arrivals.wait_for_last(1));
+  for (const int wait_ms : {1, 2, 4}) {
+    const int before = arrivals.values().back();
+    // The deadline counts from when the sender is back at it, which nobody tells: time goes on until it has seen it.
+    for (int i = 0; i < 60000 && arrivals.values().back() == before; ++i) {
+      time.advance(std::chrono::milliseconds(wait_ms));
+      std::this_thread::yield();
+    }
+    ASSERT_EQ(arrivals.values().back(), before + 1);
+  }
+  EXPECT_EQ(arrivals.values(), (std::vector<int>{1, 2, 3, 4}));
+}
+
 TEST(Publisher, the_last_of_1500_pairs_of_close_writes_always_arrives) {
   for (const auto policy : {PushPolicy::newest, PushPolicy::all, PushPolicy::fifo}) {
     Arrivals arrivals;

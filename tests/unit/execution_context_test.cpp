@@ -365,7 +365,8 @@ struct PlainSteps final : Steps {
 
 template <class Worker>
 struct Running {
-  explicit Running(ExecutionContext& context) : steps(context), worker(context, steps) {
+  template <class... Time>
+  explicit Running(ExecutionContext& context, const Time&... time) : steps(context), worker(context, steps, time...) {
     context.on_wake([this] { worker.wake(); });
     thread = std::thread([this] { worker.run(); });
   }
@@ -406,6 +407,40 @@ TEST_F(ExecutionContextTest, a_periodic_worker_answers_requests_at_once_at_any_r
   EXPECT_EQ(context.wait(id, Event::activate, 60s), ReturnCode::ok);
   ASSERT_EQ(context.request(id, Event::deactivate), ReturnCode::ok);
   EXPECT_EQ(context.wait(id, Event::deactivate, 60s), ReturnCode::ok);
+}
+
+TEST_F(ExecutionContextTest, a_periodic_worker_makes_a_cycle_for_each_period_that_passes) {
+  ManualTime time;
+  context.set_rate(0.1);
+  Running<PeriodicWorker> running(context, time);
+  context.request(id, Event::activate);
+  ASSERT_EQ(context.wait(id, Event::activate, 60s), ReturnCode::ok);
+  const auto cycles_are = [&](std::uint64_t count) {
+    const auto end = std::chrono::steady_clock::now() + 60s;
+    while (context.statistics().cycles < count && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+    return context.statistics().cycles == count;
+  };
+  EXPECT_TRUE(cycles_are(1)) << "the first with the activation";
+  for (std::uint64_t cycle = 2; cycle <= 5; ++cycle) {
+    time.advance(10s);
+    EXPECT_TRUE(cycles_are(cycle)) << cycle;
+  }
+  EXPECT_EQ(context.statistics().missed_cycles, 0u);
+}
+
+TEST_F(ExecutionContextTest, a_periodic_worker_gives_up_what_is_more_than_ten_periods_late) {
+  ManualTime time;
+  context.set_rate(0.1);
+  Running<PeriodicWorker> running(context, time);
+  context.request(id, Event::activate);
+  ASSERT_EQ(context.wait(id, Event::activate, 60s), ReturnCode::ok);
+  const auto missed_are = [&](std::uint64_t count) {
+    const auto end = std::chrono::steady_clock::now() + 60s;
+    while (context.statistics().missed_cycles < count && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+    return context.statistics().missed_cycles == count;
+  };
+  time.advance(210s);  // 21 periods, of which one is the next
+  EXPECT_TRUE(missed_are(20)) << context.statistics().missed_cycles;
 }
 
 TEST_F(ExecutionContextTest, removing_a_member_waits_for_the_call_in_progress) {
