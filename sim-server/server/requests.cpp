@@ -53,12 +53,12 @@ struct ServerLoop::Handler {
 
   shm::Reply operator()(const shm::PauseRequest&) {
     loop.end_steps("another client has paused the simulation");
-    loop.is_paused_ = true;
+    loop.mode_.pause();
     loop.publish_clock();
     return {};
   }
   shm::Reply operator()(const shm::RunRequest&) {
-    loop.is_paused_ = false;
+    loop.mode_.run();
     loop.start_pace();
     loop.publish_clock();
     return {};
@@ -66,9 +66,7 @@ struct ServerLoop::Handler {
   // Answered when the steps are done.
   shm::Reply operator()(const shm::StepRequest& request) {
     if (loop.step_ticket_) return refused(shm::RequestStatus::failed, "steps of another client are under way");
-    loop.is_paused_ = true;
-    loop.steps_to_do_ = static_cast<std::uint64_t>(request.steps);
-    loop.are_steps_paced_ = request.is_paced;
+    loop.mode_.make_steps(static_cast<std::uint64_t>(request.steps), request.is_paced);
     loop.start_pace();
     loop.step_ticket_ = ticket;
     return {};
@@ -178,7 +176,7 @@ struct ServerLoop::Handler {
   shm::Reply operator()(const shm::StatsRequest&) {
     shm::Reply reply;
     reply.text = stats_text(simulation, loop.state());
-    reply.values[0] = loop.rtf_reached_;
+    reply.values[0] = loop.pace_.reached();
     reply.hash = loop.last_hash_ = simulation.hash();
     loop.last_hash_steps_ = simulation.steps();
     return reply;
@@ -197,7 +195,7 @@ struct ServerLoop::Handler {
     return {};
   }
   shm::Reply operator()(const shm::SetRtfRequest& request) {
-    loop.options_.rtf = request.rtf;
+    loop.pace_.want(request.rtf);
     loop.start_pace();
     loop.publish_clock();
     return {};

@@ -3,7 +3,6 @@
 #include <sys/prctl.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 
 #include "base/log.h"
@@ -17,7 +16,6 @@ using Clock = std::chrono::steady_clock;
 constexpr auto tend_period = 100ms;    // of heartbeats and of leases that are given up, while time passes
 constexpr auto pause_period = 1000ms;  // the same while it stands still: clients who come, ask or die wake the loop
 constexpr auto unwatched_lead = 5ms;   // of wall time that steps may come early when nobody is there to see it: one sleep for several steps
-constexpr auto most_behind = 500ms;    // of wall time that is caught up; the rest is given up
 
 double seconds(std::chrono::nanoseconds t) { return static_cast<double>(t.count()) * 1e-9; }
 
@@ -32,7 +30,8 @@ ServerLoop::ServerLoop(Simulation& simulation, shm::Server& server, shm::IfaceWr
       options_(options),
       recorder_(std::move(recorder)),
       board_(iface, server),
-      is_paused_(options.is_paused) {
+      mode_(options.is_paused),
+      pace_(options.rtf) {
   shm::BarrierOptions barrier;
   barrier.is_lockstep = options.is_lockstep;
   barrier.participant_timeout = options.participant_timeout;
@@ -80,28 +79,29 @@ bool ServerLoop::run() {
   start_pace();
   while (!is_stopping_.load(std::memory_order_acquire)) {  // pairs with the release in stop
     times_.begin_step(simulation_.steps());
-    const bool stood_still = is_paused_ && steps_to_do_ == 0;
+    const bool stood_still = mode_.stands_still();
     handle_requests(When::between_steps);
     tend();
     // Also when time is to go on now: who came before that has a sample, however fast the two followed each other.
     if (stood_still) simulation_.answer_new_subscribers();
     // Not while time stands still: who subscribes or joins before it moves has its sample and its tick at time 0, as after a reset.
-    if (is_fresh_moment_ && (!is_paused_ || steps_to_do_ > 0)) {
+    if (is_fresh_moment_ && !mode_.stands_still()) {
       is_fresh_moment_ = false;
       if (!finish_moment()) break;
     }
     if (options_.duration && simulation_.time() >= *options_.duration) break;
-    if (is_paused_ && steps_to_do_ == 0) {
-      if (barrier_->refresh() > 0 || is_paused_) board_.wait(Clock::now() + pause_period);
+    if (mode_.stands_still()) {
+      barrier_->refresh();
+      board_.wait(Clock::now() + pause_period);
       start_pace();
       watch_rate();
       continue;
     }
     step();
     if (!finish_moment()) break;
-    if (steps_to_do_ > 0 && --steps_to_do_ == 0) finish_step_request();
+    if (mode_.count_step()) finish_step_request();
     if (step_ticket_ && !board_.is_awaited(*step_ticket_)) end_steps("the client has gone");
-    pace();
+    keep_pace();
     watch_rate();
   }
   if (options_.has_status_line) std::fprintf(stderr, "\n");
@@ -139,7 +139,7 @@ void ServerLoop::step() {
 
 bool ServerLoop::finish_moment() {
   // Nobody waits for the wall clock: pictures must not be late in simulated time.
-  simulation_.pictures().set_synchronous(options_.is_lockstep || options_.rtf <= 0 || (steps_to_do_ > 0 && !are_steps_paced_));
+  simulation_.pictures().set_synchronous(options_.is_lockstep || pace_.is_free() || mode_.hurries());
   simulation_.sense(times_);
   if (recorder_) recorder_->record(simulation_.time(), simulation_.physics());
   publish_clock();
@@ -154,11 +154,11 @@ void ServerLoop::publish_clock() {
   sample.steps = simulation_.steps();
   sample.state_hash = last_hash_;
   sample.hash_steps = last_hash_steps_;
-  sample.paused = is_paused_ && steps_to_do_ == 0 ? 1 : 0;
+  sample.paused = mode_.stands_still() ? 1 : 0;
   sample.waiting_for = missing_;
-  sample.rtf_wanted = options_.rtf;
-  sample.rtf_reached = rtf_reached_;
-  sample.load = load_;
+  sample.rtf_wanted = pace_.wanted();
+  sample.rtf_reached = pace_.reached();
+  sample.load = pace_.load();
   iface_.publish(simulation_.time());
 }
 
@@ -185,68 +185,39 @@ void ServerLoop::count() {
 }
 
 void ServerLoop::watch_rate() {
-  if (simulation_.steps() % 16 != 0 && !is_paused_) return;
+  if (simulation_.steps() % 16 != 0 && !mode_.is_paused()) return;
   const auto now = Clock::now();
-  const auto wall = now - rate_wall_;
-  if (wall < 1s) return;
-  rtf_reached_ = seconds(simulation_.time() - rate_sim_) / seconds(wall);
-  load_ = std::clamp(1 - seconds(slept_) / seconds(wall), 0.0, 1.0);
-  rate_wall_ = now;
-  rate_sim_ = simulation_.time();
-  slept_ = 0ns;
+  if (!pace_.measure(now, simulation_.time())) return;
   count();
   const auto& sample = iface_.sample<shm::SimulationSample>();
-  if (is_paused_) publish_clock();
+  if (mode_.is_paused()) publish_clock();
   if (options_.has_status_line) {
     std::fprintf(stderr, "\r%10.3f s  %7.2f x real time  load %3.0f %%  contacts %u  sensors %u%s   ", seconds(simulation_.time()),
-                 rtf_reached_, 100 * load_, sample.contacts, sample.active_sensors, is_paused_ ? "  paused" : "");
+                 pace_.reached(), 100 * pace_.load(), sample.contacts, sample.active_sensors, mode_.is_paused() ? "  paused" : "");
     std::fflush(stderr);
   }
-  const auto watched = now - warning_wall_;
-  if (is_paused_ || options_.rtf <= 0 || watched < 10s) return;
-  const double reached = seconds(simulation_.time() - warning_sim_) / seconds(watched);
-  if (reached < 0.99 * options_.rtf) {
-    base::log(base::Level::warn, "sim-server", "runs at {:.2f} times real time, {} was asked for", reached, options_.rtf);
-  }
-  warning_wall_ = now;
-  warning_sim_ = simulation_.time();
+  if (mode_.is_paused()) return;
+  if (const auto reached = pace_.shortfall(now, simulation_.time()))
+    base::log(base::Level::warn, "sim-server", "runs at {:.2f} times real time, {} was asked for", *reached, pace_.wanted());
 }
 
-void ServerLoop::start_pace() {
-  const auto now = Clock::now();
-  pace_wall_ = now;
-  pace_sim_ = simulation_.time();
-  warning_wall_ = now;
-  warning_sim_ = simulation_.time();
-  if (rate_wall_ == Clock::time_point()) {
-    rate_wall_ = now;
-    rate_sim_ = simulation_.time();
-  }
-}
+void ServerLoop::start_pace() { pace_.start(Clock::now(), simulation_.time()); }
 
-void ServerLoop::pace() {
-  if (options_.rtf <= 0 || (steps_to_do_ > 0 && !are_steps_paced_)) return;
-  const auto due =
-      pace_wall_ + std::chrono::nanoseconds(std::llround(static_cast<double>((simulation_.time() - pace_sim_).count()) / options_.rtf));
+void ServerLoop::keep_pace() {
+  if (mode_.hurries()) return;
   auto now = Clock::now();
-  if (now > due + most_behind) {
-    // Too slow: what is lost is lost, or a fast stretch would follow each slow one. The watch goes on.
-    pace_wall_ = now;
-    pace_sim_ = simulation_.time();
-    return;
-  }
-  if (due - now < unwatched_lead && !is_watched()) return;
-  while (now < due && !is_stopping_.load(std::memory_order_acquire)) {  // pairs with the release in stop
+  const auto due = pace_.due(now, simulation_.time());
+  if (!due || (*due - now < unwatched_lead && !is_watched())) return;
+  while (now < *due && !is_stopping_.load(std::memory_order_acquire)) {  // pairs with the release in stop
     const auto before = now;
-    board_.wait(std::min(due, now + tend_period));
+    board_.wait(std::min(*due, now + tend_period));
     now = Clock::now();
-    slept_ += now - before;
-    if (now < due) {
+    pace_.add_sleep(now - before);
+    if (now < *due) {
       tend();
       const auto was_at = simulation_.time();
       handle_requests(When::between_steps);
-      if ((is_paused_ && steps_to_do_ == 0) || (steps_to_do_ > 0 && !are_steps_paced_) || simulation_.time() != was_at || is_fresh_moment_)
-        return;
+      if (mode_.stands_still() || mode_.hurries() || simulation_.time() != was_at || is_fresh_moment_) return;
     }
   }
   times_.mark(Part::pace);
@@ -275,8 +246,7 @@ void ServerLoop::end_steps(const std::string& why) {
   if (!step_ticket_) return;
   shm::Reply reply;
   reply.status = shm::RequestStatus::failed;
-  reply.message = why + ", " + std::to_string(steps_to_do_) + " steps before the last";
-  steps_to_do_ = 0;
+  reply.message = why + ", " + std::to_string(mode_.end_steps()) + " steps before the last";
   board_.reply(*step_ticket_, reply);
   step_ticket_.reset();
   publish_clock();
@@ -293,9 +263,7 @@ void ServerLoop::reset(bool poses_only) {
     barrier_->rewind(simulation_.time(), simulation_.resets());
     contacts_told_.clear();
     is_fresh_moment_ = true;
-    rate_sim_ = simulation_.time();
-    rate_wall_ = Clock::now();
-    slept_ = 0ns;
+    pace_.restart_measurement(Clock::now(), simulation_.time());
     if (recorder_) recorder_->restart();
   }
   start_pace();
@@ -303,7 +271,7 @@ void ServerLoop::reset(bool poses_only) {
 }
 
 LoopState ServerLoop::state() const {
-  return {is_paused_ && steps_to_do_ == 0, missing_, options_.rtf, rtf_reached_, load_, barrier_->records(), &times_};
+  return {mode_.stands_still(), missing_, pace_.wanted(), pace_.reached(), pace_.load(), barrier_->records(), &times_};
 }
 
 }  // namespace sim

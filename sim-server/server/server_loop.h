@@ -11,6 +11,8 @@
 
 #include "base/result.h"
 #include "server/describe.h"
+#include "server/mode.h"
+#include "server/pace.h"
 #include "server/picture_desk.h"
 #include "server/recorder.h"
 #include "server/simulation.h"
@@ -62,7 +64,7 @@ class ServerLoop {
   // Ends the steps that a client has asked for before they are all done, and tells it why.
   void end_steps(const std::string& why);
   // Sleeps until simulated time may go on; requests are served meanwhile.
-  void pace();
+  void keep_pace();
   void start_pace();
   // Somebody takes part, listens or commands.
   bool is_watched() const;
@@ -82,11 +84,10 @@ class ServerLoop {
   PartTimes times_;
 
   std::atomic<bool> is_stopping_{false};
-  bool is_paused_ = false;
-  bool is_fresh_moment_ = true;  // the moment at time 0 has not been published yet
-  std::uint64_t steps_to_do_ = 0;
-  bool are_steps_paced_ = false;
-  std::optional<shm::RequestTicket> step_ticket_;
+  Mode mode_;
+  Pace pace_;
+  bool is_fresh_moment_ = true;                    // the moment at time 0 has not been published yet
+  std::optional<shm::RequestTicket> step_ticket_;  // of the steps that a client has asked for
   struct Postponed {
     shm::RequestBoard::Asked asked;
     std::chrono::steady_clock::time_point since;
@@ -96,10 +97,6 @@ class ServerLoop {
   std::map<ModelId, std::uint64_t> contacts_told_;
   std::uint64_t last_hash_ = 0, last_hash_steps_ = 0;
   std::uint32_t missing_ = 0;  // participants
-
-  std::chrono::steady_clock::time_point pace_wall_, rate_wall_, status_wall_, warning_wall_;
-  std::chrono::nanoseconds pace_sim_{0}, rate_sim_{0}, slept_{0}, warning_sim_{0};
-  double rtf_reached_ = 0, load_ = 0;
 };
 
 }  // namespace sim
