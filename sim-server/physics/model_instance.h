@@ -38,7 +38,6 @@ class ModelInstance {
 
   ModelId id() const { return id_; }
   const Blueprint& blueprint() const { return *blueprint_; }
-  const std::shared_ptr<const Blueprint>& shared_blueprint() const { return blueprint_; }
   const Eigen::Isometry3d& base() const { return base_; }
   double mass() const { return mass_; }  // of all that can move
   bool is_awake() const;

@@ -39,7 +39,6 @@ class Noise {
   void apply(std::span<float> ranges, float step);
   bool is_none() const { return def_.kind == NoiseDef::Kind::none; }
   const RandomStream& stream() const { return stream_; }
-  double bias() const { return bias_; }
 
  private:
   NoiseDef def_;

@@ -79,23 +79,6 @@ base::Result<Image> decode_jpeg(std::span<const std::uint8_t> bytes, const std::
   return image;
 }
 
-// Grey PNG with more than 8 bits: the simplified interface hands out linear 16-bit values, so it is told that the file is linear already.
-base::Result<GreyImage> decode_grey_png16(std::span<const std::uint8_t> bytes, const std::string& name) {
-  PngReader reader;
-  if (png_image_begin_read_from_memory(&reader.image, bytes.data(), bytes.size()) == 0) return bad(name, reader.image.message);
-  if (reader.image.width > max_side || reader.image.height > max_side) return bad(name, "larger than 16384 pixels a side");
-  reader.image.format = PNG_FORMAT_LINEAR_Y;
-  GreyImage grey{static_cast<int>(reader.image.width), static_cast<int>(reader.image.height), {}};
-  std::vector<std::uint16_t> samples(static_cast<std::size_t>(grey.width) * static_cast<std::size_t>(grey.height));
-  if (png_image_finish_read(&reader.image, nullptr, samples.data(), 0, nullptr) == 0) return bad(name, reader.image.message);
-  grey.values.resize(samples.size());
-  std::transform(samples.begin(), samples.end(), grey.values.begin(), [](std::uint16_t v) { return static_cast<float>(v) / 65535.0F; });
-  return grey;
-}
-
-// Bits per sample, from the header's fixed place.
-int png_depth(std::span<const std::uint8_t> bytes) { return bytes.size() > 24 ? bytes[24] : 8; }
-
 struct LinearTable {
   std::array<float, 256> value;
   LinearTable() {
@@ -129,19 +112,6 @@ base::Result<Image> read_image(const std::filesystem::path& file) {
   auto bytes = read_bytes(file);
   if (!bytes) return bytes.error();
   return decode_image(*bytes, file.string());
-}
-
-base::Result<GreyImage> read_grey_image(const std::filesystem::path& file) {
-  auto bytes = read_bytes(file);
-  if (!bytes) return bytes.error();
-  if (is_png(*bytes) && png_depth(*bytes) == 16) return decode_grey_png16(*bytes, file.string());
-  auto image = decode_image(*bytes, file.string());
-  if (!image) return image.error();
-  GreyImage grey{image->width, image->height, {}};
-  grey.values.reserve(image->rgba.size() / 4);
-  for (std::size_t i = 0; i < image->rgba.size(); i += 4)
-    grey.values.push_back(static_cast<float>(image->rgba[i] + image->rgba[i + 1] + image->rgba[i + 2]) / 765.0F);
-  return grey;
 }
 
 namespace {

@@ -19,18 +19,9 @@ struct Image {
   std::size_t size_bytes() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4; }
 };
 
-// Heights as a grey picture holds them, 0..1, rows from the top down.
-struct GreyImage {
-  int width = 0;
-  int height = 0;
-  std::vector<float> values;
-};
-
 // The kind is told from the first bytes. At most 16384 pixels a side.
 base::Result<Image> read_image(const std::filesystem::path& file);
 base::Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& name);
-// Keeps the 16 bits of a 16-bit PNG.
-base::Result<GreyImage> read_grey_image(const std::filesystem::path& file);
 
 // Writes RGB when every pixel is opaque, otherwise RGBA; the file appears complete or not at all.
 base::Result<void> write_png(const Image& image, const std::filesystem::path& file);

@@ -333,8 +333,6 @@ void Barrier::rewind(nanoseconds now, std::uint32_t resets) {
   state_->schedule_all();
 }
 
-void Barrier::set_lockstep(bool is_lockstep) { state_->options.is_lockstep = is_lockstep; }
-
 bool Barrier::drop(const std::string& name) {
   State& state = *state_;
   bool is_found = false;

@@ -86,7 +86,6 @@ class Barrier {
   std::optional<std::chrono::nanoseconds> next_due() const;
   // After a reset or another jump of time: due times start again at the first multiple of each period at or after `now`.
   void rewind(std::chrono::nanoseconds now, std::uint32_t resets);
-  void set_lockstep(bool is_lockstep);
   // All participants with this name; false when there is none.
   bool drop(const std::string& name);
   std::vector<ParticipantRecord> records() const;

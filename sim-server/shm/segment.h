@@ -59,7 +59,6 @@ class Segment {
   Segment(Segment&&) = default;
   Segment& operator=(Segment&&) = default;
 
-  bool is_open() const { return base_ != nullptr; }
   Header& header() const { return *static_cast<Header*>(base_.get()); }
   const SegmentName& name() const { return name_; }
   // What the header said at the time of opening: private, so that nobody can change it under us.
