@@ -2,6 +2,7 @@
 rtmsim_test(manager_core_test manager/config_test.cpp manager/names_test.cpp manager/task_runner_test.cpp LIBRARIES rt_corba)
 rtmsim_test(manager_orb_test manager/orb_test.cpp LIBRARIES rt_corba LABELS process)
 rtmsim_test(manager_test manager/manager_test.cpp LIBRARIES openrtm)
+rtmsim_test(manager_locks_test manager/locks_test.cpp LIBRARIES openrtm LABELS process)
 rtmsim_test(manager_process_test manager/process_test.cpp LIBRARIES openrtm LABELS process)
 rtmsim_test(manager_servant_test manager/servant_test.cpp LIBRARIES openrtm LABELS process)
 rtmsim_test(manager_keys_test manager/keys_test.cpp LIBRARIES openrtm LABELS process)

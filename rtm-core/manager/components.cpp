@@ -125,8 +125,9 @@ void ManagerImpl::destroy(std::uint64_t id) {
   }
   withdraw(record);
   if (record.numbered) {
-    const std::scoped_lock lock(numbering_mutex);
-    if (numbering != nullptr) numbering->onDelete(record.component);
+    const auto mine = numbering_turn.take(numbering_patience);
+    if (mine && numbering != nullptr) numbering->onDelete(record.component);
+    if (!mine) RTC_WARN(("the naming policy is busy with another component; it does not hear that %s goes", record.instance_name.c_str()));
   }
   {
     // Nobody finds it any more; who is looking at it has a reference.

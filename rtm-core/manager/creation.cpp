@@ -171,7 +171,7 @@ base::Result<RTObject_impl*> ManagerImpl::create(std::string argument) {
 
 coil::Properties ManagerImpl::inherited_properties() const {
   coil::Properties properties;
-  const std::scoped_lock lock(config_mutex);
+  const auto mine = config_turn.take();
   for (const auto* path : inherited_nodes) {
     const auto* node = config.findNode(path);
     if (node == nullptr) continue;
@@ -207,7 +207,7 @@ coil::Properties ManagerImpl::configured_properties(const std::string& category,
   if (category.empty() || name.empty()) return properties;
   coil::Properties in_line;
   {
-    const std::scoped_lock lock(config_mutex);
+    const auto mine = config_turn.take();
     if (const auto* node = config.findNode(category + "." + name)) in_line = *node;
   }
   const auto file_key = category + "." + name + ".config_file";
@@ -227,11 +227,10 @@ base::Result<std::string> ManagerImpl::name_component(const Managed& component, 
       std::any_of(argument.properties.begin(), argument.properties.end(), [](const auto& p) { return p.first == "instance_name"; });
   if (is_given) {
     if (auto checked = rt::check_instance_name(name); !checked) return checked.error();
-  }
-  {
-    // Those with a name of their own count too: T0, mine, T2.
-    const std::scoped_lock lock(numbering_mutex);
-    const std::string number = numbering->onCreate(component.object());
+  } else {
+    const auto mine = numbering_turn.take(numbering_patience);
+    if (!mine) return base::Error{"the naming policy " + value("manager.components.naming_policy") + " is busy with another component"};
+    name = component.type_name() + numbering->onCreate(component.object());
     numbered = true;
     if (!is_given) name = component.type_name() + number;
   }

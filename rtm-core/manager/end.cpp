@@ -241,8 +241,9 @@ void ManagerImpl::end() {
   cleaner->stop();
   naming.reset();
   {
-    const std::scoped_lock lock(numbering_mutex);
-    RTM::NumberingPolicyFactory::instance().deleteObject(numbering);
+    // A policy that does not return stays in memory.
+    const auto mine = numbering_turn.take(grace);
+    if (mine) RTM::NumberingPolicyFactory::instance().deleteObject(numbering);
   }
   begin_step(in_orb);
   orb.reset();

@@ -105,14 +105,19 @@ base::Result<void> ManagerImpl::start(const ManagerConfig& configuration, const 
     servant->activate();
     facade.m_mgrservant = servant;
   }
-  {
-    const std::scoped_lock lock(config_mutex);
-    RTM::LocalServiceAdmin::instance().init(config.getNode("manager.local_service"));
-  }
   start_timer_tasks();
   auto locked = state.lock();
   life = std::thread([this] { live(); });
   return {};
+}
+
+void ManagerImpl::start_services() {
+  coil::Properties local_services;
+  {
+    const auto mine = config_turn.take();
+    if (const auto* node = config.findNode("manager.local_service")) local_services = *node;
+  }
+  RTM::LocalServiceAdmin::instance().init(local_services);
 }
 
 void ManagerImpl::start_logging() {
@@ -171,7 +176,7 @@ base::Result<void> ManagerImpl::start_orb() {
   std::vector<std::string> ipv4;
   std::vector<std::string> ipv6;
   for (auto& address : orb->addresses()) (address.starts_with('[') ? ipv6 : ipv4).push_back(std::move(address));
-  const std::scoped_lock lock(config_mutex);
+  const auto mine = config_turn.take();
   config.setProperty("corba.endpoints_ipv4", base::join(ipv4, ","));
   config.setProperty("corba.endpoints_ipv6", base::join(ipv6, ","));
   return {};
@@ -257,7 +262,7 @@ bool ManagerImpl::activate_all() {
     auto* plugin = LogstreamFactory::instance().createObject(id);
     coil::Properties node;
     {
-      const std::scoped_lock lock(config_mutex);
+      const auto mine = config_turn.take();
       if (const auto* found = config.findNode("logger.logstream." + id)) node = *found;
     }
     if (plugin == nullptr) continue;

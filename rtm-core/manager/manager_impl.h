@@ -82,6 +82,8 @@ class ManagerImpl {
   // --- life (life.cpp)
   // Starts ORB, threads and naming. One line on failure.
   base::Result<void> start(const ManagerConfig& config, const ManagerOptions& options);
+  // When other threads may already use the manager, and a signal ends it: local services are authors' code.
+  void start_services();
   bool activate();
   // As the logger.* keys say now.
   void start_logging();
@@ -130,7 +132,8 @@ class ManagerImpl {
   Manager& facade;
   Logger rtclog{"manager"};
   LogStreamBuf log_buffers;
-  mutable std::mutex config_mutex;  // guards config against our own writers; components read it as they like
+  // Between our own readers and writers of config; authors reach it as they like. Held for copies alone.
+  mutable base::Turn<base::Rank::log> config_turn;
   coil::Properties config;
   std::map<std::string, std::string> origins;  // of ManagerConfig
   ManagerOptions options;
@@ -180,7 +183,9 @@ class ManagerImpl {
   base::Result<std::string> name_component(const Managed& component, const rt::ComponentArgument& argument, bool& numbered);
   std::vector<std::string> naming_names(const Managed& component, const coil::Properties& properties) const;
   base::Result<RTObject_impl*> finish_creation(std::uint64_t id, const RegisteredFactory& source, const rt::ComponentArgument& argument);
-  std::mutex numbering_mutex;  // policies are called one at a time, user-written or not
+  // Policies are called one at a time, user-written or not; one may ask the manager for anything, another component included.
+  base::UsersTurn numbering_turn;
+  static constexpr std::chrono::seconds numbering_patience{30};  // more than a policy that asks a naming service which hangs
   RTM::NumberingPolicyBase* numbering = nullptr;
   std::unique_ptr<rt::SignalWatcher> signals;
   std::vector<LogstreamBase*> log_plugins;

@@ -16,7 +16,6 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <mutex>
 
 #include "base/log.h"
 #include "base/text.h"
@@ -155,9 +154,8 @@ struct ModuleManager::Impl {
   };
 
   Manager* manager;
-  mutable std::mutex mutex;  // guards the two
-  std::vector<Module> modules;
-  std::map<std::string, Profile> known_profiles;
+  base::Guarded<std::vector<Module>, base::Rank::registry> modules;
+  base::Guarded<std::map<std::string, Profile>, base::Rank::registry> known_profiles;
 
   std::vector<fs::path> load_path() const {
     std::vector<fs::path> folders;
@@ -205,8 +203,7 @@ struct ModuleManager::Impl {
   }
 
   std::optional<Module> find(const std::string& name, const std::string& file) const {
-    const std::scoped_lock lock(mutex);
-    for (const auto& module : modules) {
+    for (const auto& module : modules.snapshot()) {
       const fs::path path(module.file);
       if (module.file == file || path.filename() == name || path.stem() == name) return module;
     }
@@ -219,9 +216,9 @@ struct ModuleManager::Impl {
     profile.time = fs::last_write_time(file, error);
     profile.size = fs::file_size(file, error);
     {
-      const std::scoped_lock lock(mutex);
-      const auto at = known_profiles.find(file.string());
-      if (at != known_profiles.end() && at->second.time == profile.time && at->second.size == profile.size) return at->second.profiles;
+      auto known = known_profiles.lock();
+      const auto at = known->find(file.string());
+      if (at != known->end() && at->second.time == profile.time && at->second.size == profile.size) return at->second.profiles;
     }
     auto command = profile_command();
     command.push_back(file.string());
@@ -249,8 +246,7 @@ struct ModuleManager::Impl {
       profile.profiles.push_back(std::move(properties));
       block.clear();
     }
-    const std::scoped_lock lock(mutex);
-    known_profiles[file.string()] = profile;
+    known_profiles.lock()->insert_or_assign(file.string(), profile);
     return profile.profiles;
   }
 };
@@ -327,8 +323,8 @@ ReturnCode_t ModuleManager::load(const std::string& text, const std::string& ini
     impl_->manager->impl_->forget_module(file);
     return complain(function + " failed: " + failure);
   }
-  const std::scoped_lock lock(impl_->mutex);
-  impl_->modules.push_back({file, function, handle, ExecutionContextFactory::instance().getIdentifiers().size() != contexts_before});
+  impl_->modules.lock()->push_back(
+      {file, function, handle, ExecutionContextFactory::instance().getIdentifiers().size() != contexts_before});
   return RTC_OK;
 }
 
@@ -336,21 +332,13 @@ ReturnCode_t ModuleManager::unload(const std::string& name) {
   const auto module = impl_->find(name, findFile(name));
   if (!module) return BAD_PARAMETER;
   if (impl_->manager->impl_->forget_module(module->file) > 0) return PRECONDITION_NOT_MET;
-  {
-    const std::scoped_lock lock(impl_->mutex);
-    std::erase_if(impl_->modules, [&](const auto& other) { return other.file == module->file; });
-  }
+  std::erase_if(*impl_->modules.lock(), [&](const auto& other) { return other.file == module->file; });
   if (!module->registers_contexts && !contains_stubs(module->file)) dlclose(module->handle);
   return RTC_OK;
 }
 
 void ModuleManager::unloadAll() {
-  std::vector<Module> modules;
-  {
-    const std::scoped_lock lock(impl_->mutex);
-    modules = impl_->modules;
-  }
-  for (const auto& module : modules) unload(module.file);
+  for (const auto& module : impl_->modules.snapshot()) unload(module.file);
 }
 
 void* ModuleManager::symbol(const std::string& name, const std::string& function) const {
@@ -360,8 +348,7 @@ void* ModuleManager::symbol(const std::string& name, const std::string& function
 
 std::vector<coil::Properties> ModuleManager::getLoadedModules() const {
   std::vector<coil::Properties> result;
-  const std::scoped_lock lock(impl_->mutex);
-  for (const auto& module : impl_->modules) {
+  for (const auto& module : impl_->modules.snapshot()) {
     coil::Properties properties;
     properties.setProperty("file_path", module.file);
     properties.setProperty("import_path", fs::path(module.file).parent_path().string());

@@ -292,7 +292,7 @@ RTM::ManagerProfile* ManagerServant::get_profile() {
   RTM::ManagerProfile_var profile = new RTM::ManagerProfile;
   coil::Properties node;
   {
-    const std::scoped_lock lock(manager_.impl_->config_mutex);
+    const auto mine = manager_.impl_->config_turn.take();
     node = manager_.impl_->config.getNode("manager");
   }
   NVUtil::copyFromProperties(profile->properties, node);
@@ -303,7 +303,7 @@ RTM::NVList* ManagerServant::get_configuration() {
   RTM::NVList_var list = new RTM::NVList;
   coil::Properties config;
   {
-    const std::scoped_lock lock(manager_.impl_->config_mutex);
+    const auto mine = manager_.impl_->config_turn.take();
     config = manager_.impl_->config;
   }
   NVUtil::copyFromProperties(list.inout(), config);
@@ -319,7 +319,7 @@ RTC::ReturnCode_t ManagerServant::set_configuration(const char* name, const char
   const auto complaint = rt::complain_about(key, value);
   if (complaint && !complaint->takes_value) return RTC::BAD_PARAMETER;
   {
-    const std::scoped_lock lock(manager_.impl_->config_mutex);
+    const auto mine = manager_.impl_->config_turn.take();
     manager_.impl_->config.setProperty(key, value);
   }
   if (key.starts_with("logger.")) manager_.impl_->start_logging();

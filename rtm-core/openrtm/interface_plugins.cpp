@@ -1,9 +1,9 @@
 #include "openrtm/interface_plugins.h"
 
 #include <cstring>
-#include <mutex>
 #include <set>
 
+#include "base/guarded.h"
 #include "base/text.h"
 #include "corba/payload.h"
 #include "rtm/InPortConsumer.h"
@@ -72,8 +72,13 @@ class Subscribed {
   // One call at a time.
   template <class Call>
   DataPortStatus call(const char* what, Call call) {
-    const std::lock_guard lock(mutex_);
     DataPortStatus status = DataPortStatus::PORT_ERROR;
+    const auto mine = turn_.take(patience);
+    if (!mine) {
+      auto& rtclog = rtclog_;
+      RTC_WARN(("%s: the one before has not returned", what));
+      return status;
+    }
     guarded(rtclog_, what, [&] {
       status = call(*consumer_);
       return true;
@@ -85,7 +90,8 @@ class Subscribed {
   const std::shared_ptr<Consumer> consumer_;
   const SDOPackage::NVList properties_;
   Logger rtclog_;
-  std::mutex mutex_;
+  base::UsersTurn turn_;
+  static constexpr std::chrono::seconds patience{10};  // as calls of the ORB
 };
 
 class AuthorSender final : public corba::Sender {

@@ -132,6 +132,18 @@ TEST(CoilPeriodicTask, a_signal_that_comes_while_the_function_runs_is_not_lost) 
   EXPECT_EQ(counter.wait_for(2), 2);
 }
 
+TEST(CoilTimer, a_listener_asks_the_timer_while_it_is_deleted) {
+  coil::Timer timer(coil::TimeValue(0, 1000));
+  const auto other = timer.registerListenerFunc([] {}, coil::TimeValue(1.0));
+  std::shared_ptr<int> last_breath(new int, [&](const int* number) {
+    delete number;
+    EXPECT_TRUE(timer.unregisterListener(other));
+  });
+  auto id = timer.registerListenerFunc([owner = last_breath] {}, coil::TimeValue(1.0));
+  last_breath.reset();
+  EXPECT_TRUE(timer.unregisterListener(id));
+}
+
 TEST(CoilTimer, calls_listeners_when_their_period_has_passed) {
   coil::Timer timer(coil::TimeValue(0, 1000));
   Counter fast, slow;

@@ -66,7 +66,7 @@ bool PeriodicTask::setTask(TaskFuncBase* func, bool delete_in_dtor) {
 bool PeriodicTask::setTask(std::function<void()> func) {
   if (!func) return false;
   std::lock_guard lock(mutex_);
-  function_ = std::move(func);
+  function_.swap(func);  // the one before ends without the lock
   return true;
 }
 

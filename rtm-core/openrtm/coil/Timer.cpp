@@ -67,7 +67,9 @@ ListenerId Timer::registerListenerFunc(std::function<void()> callback, TimeValue
 }
 
 bool Timer::unregisterListener(ListenerId id) {
+  std::list<Entry> before;  // a listener that ends here ends without the lock
   std::lock_guard lock(mutex_);
+  before = entries_;
   return std::erase_if(entries_, [id](const Entry& entry) { return entry.listener.get() == id; }) != 0;
 }
 

@@ -32,8 +32,29 @@ void log_listener_exception() {
 namespace RTC {
 namespace {
 
-std::recursive_mutex the_mutex;  // guards the_manager; held while it starts, and what starts asks for it
-Manager* the_manager = nullptr;  // lives until the process ends: components' and the ORB's threads may outlive main()
+struct Place {
+  Manager* manager = nullptr;              // lives until the process ends: components' and the ORB's threads may outlive main()
+  std::optional<std::thread::id> starter;  // a thread starts it; nobody else sees it before it can be used
+};
+base::Guarded<Place, base::Rank::log> the_place;  // asked for under any lock
+std::condition_variable has_started;
+
+// Waits while another thread starts it. No code of authors runs meanwhile, so that start waits for nobody who asks here.
+Manager* the_manager() {
+  auto place = the_place.lock();
+  const auto is_for_us = [&] { return !place->starter || *place->starter == std::this_thread::get_id(); };
+  while (!place.wait_for(has_started, std::chrono::hours(1), is_for_us)) {
+  }
+  return place->manager;
+}
+
+// True for the one thread that is to start it.
+bool takes_the_start(Manager* found) {
+  auto place = the_place.lock();
+  if (place->starter || place->manager != found) return false;
+  place->starter = std::this_thread::get_id();
+  return true;
+}
 
 std::string base_name(const char* path) {
   const std::string text(path != nullptr ? path : "rtm");
@@ -71,7 +92,7 @@ ManagerImpl::~ManagerImpl() {
 // ---------------------------------------------------------------------------------------------- settings
 
 std::string ManagerImpl::value(const std::string& key) const {
-  const std::scoped_lock lock(config_mutex);
+  const auto mine = config_turn.take();
   return static_cast<const coil::Properties&>(config).getProperty(key);
 }
 
@@ -92,18 +113,24 @@ Manager::~Manager() = default;
 Manager* Manager::init(int argc, char** argv) { return init(argc, argv, ManagerOptions{}); }
 
 Manager* Manager::init(int argc, char** argv, const ManagerOptions& options) {
-  const std::scoped_lock lock(the_mutex);
-  if (the_manager != nullptr && the_manager->impl_->state.lock()->phase != ManagerImpl::Phase::ended) return the_manager;
+  auto* manager = the_manager();
+  const auto lives = [](const Manager* one) { return one != nullptr && one->impl_->state.lock()->phase != ManagerImpl::Phase::ended; };
+  while (!lives(manager) && !takes_the_start(manager)) manager = the_manager();
+  if (lives(manager)) return manager;
   ManagerConfig config;
   if (!config.init(argc, argv, options.strict_arguments)) give_up(argc, argv, config.exitCode(), config.error());
-  if (the_manager == nullptr) {
-    the_manager = new Manager;
+  if (manager == nullptr) {
+    manager = new Manager;
+    the_place.lock()->manager = manager;
   } else {
-    the_manager->impl_ = std::make_unique<ManagerImpl>(*the_manager);
+    manager->impl_ = std::make_unique<ManagerImpl>(*manager);
   }
-  if (auto started = the_manager->impl_->start(config, options); !started) give_up(argc, argv, 1, started.error().message);
+  if (auto started = manager->impl_->start(config, options); !started) give_up(argc, argv, 1, started.error().message);
+  the_place.lock()->starter.reset();
+  has_started.notify_all();
+  manager->impl_->start_services();
   on_exit(&ManagerImpl::end_at_exit, nullptr);
-  return the_manager;
+  return manager;
 }
 
 Manager& Manager::instance() {
@@ -111,10 +138,7 @@ Manager& Manager::instance() {
   return *init(0, nullptr);
 }
 
-Manager* Manager::instance_if_any() {
-  const std::scoped_lock lock(the_mutex);
-  return the_manager;
-}
+Manager* Manager::instance_if_any() { return the_manager(); }
 
 Manager& Manager::profile_reader() {
   static Manager& reader = *new Manager;

@@ -4,16 +4,19 @@
 #include <cstdarg>
 #include <cstdio>
 #include <ctime>
+#include <deque>
 #include <fstream>
 #include <iostream>
 #include <memory>
-#include <mutex>
+#include <optional>
 #include <streambuf>
+#include <thread>
 
 #include <coil/ClockManager.h>
 #include <coil/Logger.h>
 
 #include "base/clock.h"
+#include "base/guarded.h"
 #include "base/log.h"
 #include "base/text.h"
 
@@ -115,7 +118,7 @@ class Router {
   Router() {
     open_outputs();
     base::set_log_sink([this](const base::LogRecord& record) { route(from_base(record.level), record.name, record.message, false); });
-    base::set_log_level(to_base(settings_->level));
+    base::set_log_level(to_base(shared_.lock()->settings->level));
   }
 
   // `wanted`: the logger's own level let it pass, whatever the process's level is.
@@ -124,13 +127,8 @@ class Router {
     const auto& clock = base::current_clock();
     if (!dynamic_cast<const base::SystemClock*>(&clock)) record.simulated = clock.now();
 
-    std::shared_ptr<const LogSettings> settings;
-    Sinks sinks;
-    {
-      const std::scoped_lock lock(mutex_);
-      settings = settings_;
-      sinks = sinks_;
-    }
+    base::expect_no_data_held();
+    const auto [settings, sinks, last] = shared_.snapshot();
     if (!settings->clock.empty()) {
       const auto time = coil::ClockManager::instance().getClock(settings->clock).gettime();
       record.time = std::chrono::seconds(time.sec()) + std::chrono::microseconds(time.usec());
@@ -138,7 +136,7 @@ class Router {
     if (settings->enabled && (wanted || level <= settings->level)) {
       const auto line = format_line(*settings, record);
       {
-        const std::scoped_lock lock(output_mutex_);
+        const auto mine = writing_.take();
         for (const auto& output : outputs_) output->stream << line << std::flush;
       }
       give_to_buffers(*settings, record, line);
@@ -149,82 +147,134 @@ class Router {
   }
 
   LogSinkId add_sink(int level, LogSink call) {
-    const std::scoped_lock lock(mutex_);
-    const auto id = ++last_id_;
-    sinks_.push_back(std::make_shared<const Sink>(Sink{id, level, std::move(call)}));
-    update_level();
+    auto shared = shared_.lock();
+    const auto id = ++shared->last_id;
+    shared->sinks.push_back(std::make_shared<const Sink>(Sink{id, level, std::move(call)}));
+    update_level(*shared);
     return id;
   }
 
   void remove_sink(LogSinkId id) {
-    const std::scoped_lock lock(mutex_);
-    std::erase_if(sinks_, [&](const auto& sink) { return sink->id == id; });
-    update_level();
+    Sinks before;  // what ends with the sink ends without the lock
+    auto shared = shared_.lock();
+    before = shared->sinks;
+    std::erase_if(shared->sinks, [&](const auto& sink) { return sink->id == id; });
+    update_level(*shared);
   }
 
   std::vector<std::string> set_settings(const LogSettings& settings) {
     {
-      const std::scoped_lock lock(mutex_);
-      settings_ = std::make_shared<const LogSettings>(settings);
-      update_level();
+      auto shared = shared_.lock();
+      shared->settings = std::make_shared<const LogSettings>(settings);
+      update_level(*shared);
     }
     return open_outputs();
   }
 
   void change_date_format(const char* format) {
-    const std::scoped_lock lock(mutex_);
-    auto changed = *settings_;
+    auto shared = shared_.lock();
+    auto changed = *shared->settings;
     changed.date_format = format;
-    settings_ = std::make_shared<const LogSettings>(std::move(changed));
+    shared->settings = std::make_shared<const LogSettings>(std::move(changed));
   }
 
-  void add_buffer(std::streambuf* buffer) {
-    const std::scoped_lock lock(buffers_mutex_);
-    buffers_.push_back(buffer);
-  }
+  void add_buffer(std::streambuf* buffer) { mail_.lock()->buffers.push_back(buffer); }
+  // The buffer is not used any more when it returns, unless it is its own code that asks.
   void remove_buffer(std::streambuf* buffer) {
-    const std::scoped_lock lock(buffers_mutex_);
-    std::erase(buffers_, buffer);
+    auto mail = mail_.lock();
+    std::erase(mail->buffers, buffer);
+    const auto is_let_go = [&] { return mail->in_use != buffer || mail->giver == std::this_thread::get_id(); };
+    while (!mail.wait_for(given_, std::chrono::hours(1), is_let_go)) {
+    }
   }
 
  private:
-  // Buffers are other people's code: what they log does not come back to them.
+  // A record that waits for the buffers.
+  struct Letter {
+    int level;
+    std::string name, date, message, line;
+  };
+  // Buffers are other people's code, and called without a lock, by one thread at a time: whoever finds nobody at it gives them all that
+  // waits, and others leave their records to it. What a buffer logs does not come back to it.
+  struct Mail {
+    static constexpr std::size_t most = 10000;  // records that wait for a buffer that does not return; later ones are dropped
+    std::vector<std::streambuf*> buffers;
+    std::deque<Letter> letters;
+    std::optional<std::thread::id> giver;
+    std::streambuf* in_use = nullptr;
+  };
+
   void give_to_buffers(const LogSettings& settings, const LogRecord& record, const std::string& line) {
-    thread_local bool giving = false;
-    if (giving) return;
-    const std::scoped_lock lock(buffers_mutex_);
-    giving = true;
-    for (auto* buffer : buffers_) {
-      try {
-        if (auto* records = dynamic_cast<coil::LogStreamBuffer*>(buffer)) {
-          const auto date = settings.date_format.empty() ? std::string() : format_date(settings.date_format, record.time);
-          records->write(record.level, std::string(record.name), date, std::string(record.message));
-        } else {
-          buffer->sputn(line.data(), static_cast<std::streamsize>(line.size()));
-          buffer->pubsync();
-        }
-      } catch (...) {  // a record that cannot be logged cannot be complained about either
-        continue;
-      }
+    {
+      auto mail = mail_.lock();
+      if (mail->buffers.empty() || mail->letters.size() >= Mail::most || mail->giver == std::this_thread::get_id()) return;
     }
-    giving = false;
+    const auto date = settings.date_format.empty() ? std::string() : format_date(settings.date_format, record.time);
+    {
+      auto mail = mail_.lock();
+      mail->letters.push_back({record.level, std::string(record.name), date, std::string(record.message), line});
+      if (mail->giver) return;
+      mail->giver = std::this_thread::get_id();
+    }
+    while (const auto letter = next_letter()) {
+      for (auto* buffer : buffers()) {
+        if (use(buffer)) give(*buffer, *letter);
+      }
+      static_cast<void>(use(nullptr));
+    }
+  }
+  std::optional<Letter> next_letter() {
+    auto mail = mail_.lock();
+    if (mail->letters.empty()) {
+      mail->giver.reset();
+      return std::nullopt;
+    }
+    auto letter = std::move(mail->letters.front());
+    mail->letters.pop_front();
+    return letter;
+  }
+  std::vector<std::streambuf*> buffers() { return mail_.lock()->buffers; }
+  // Keeps the buffer from going until the next is used; false if it has gone already.
+  bool use(std::streambuf* buffer) {
+    bool is_there = false;
+    {
+      auto mail = mail_.lock();
+      is_there = std::ranges::find(mail->buffers, buffer) != mail->buffers.end();
+      mail->in_use = is_there ? buffer : nullptr;
+    }
+    given_.notify_all();
+    return is_there;
+  }
+  static void give(std::streambuf& buffer, const Letter& letter) {
+    try {
+      if (auto* records = dynamic_cast<coil::LogStreamBuffer*>(&buffer)) {
+        records->write(letter.level, letter.name, letter.date, letter.message);
+      } else {
+        buffer.sputn(letter.line.data(), static_cast<std::streamsize>(letter.line.size()));
+        buffer.pubsync();
+      }
+    } catch (...) {  // a record that cannot be logged cannot be complained about either
+      return;
+    }
   }
 
-  // With mutex_ held: base must let pass what anybody wants.
-  void update_level() {
-    int level = settings_->enabled ? settings_->level : static_cast<int>(Logger::RTL_SILENT);
-    for (const auto& sink : sinks_) level = std::max(level, sink->level);
+  struct Shared {
+    std::shared_ptr<const LogSettings> settings = std::make_shared<const LogSettings>();
+    Sinks sinks;
+    LogSinkId last_id = 0;
+  };
+
+  // Base must let pass what anybody wants.
+  static void update_level(const Shared& shared) {
+    int level = shared.settings->enabled ? shared.settings->level : static_cast<int>(Logger::RTL_SILENT);
+    for (const auto& sink : shared.sinks) level = std::max(level, sink->level);
     base::set_log_level(to_base(level));
   }
 
   std::vector<std::string> open_outputs() {
     std::vector<std::string> complaints;
     std::vector<std::unique_ptr<Output>> outputs;
-    std::shared_ptr<const LogSettings> settings;
-    {
-      const std::scoped_lock lock(mutex_);
-      settings = settings_;
-    }
+    const auto settings = shared_.snapshot().settings;
     for (const auto& name : settings->files) {
       if (!settings->enabled) break;
       if (name == "stderr") {
@@ -241,19 +291,16 @@ class Router {
         outputs.back()->file = std::move(file);
       }
     }
-    const std::scoped_lock lock(output_mutex_);
+    const auto mine = writing_.take();
     outputs_.swap(outputs);
     return complaints;
   }
 
-  std::mutex mutex_;
-  std::shared_ptr<const LogSettings> settings_ = std::make_shared<const LogSettings>();
-  Sinks sinks_;
-  LogSinkId last_id_ = 0;
-  std::mutex output_mutex_;
+  base::Guarded<Shared, base::Rank::log> shared_;
+  base::Turn<base::Rank::log> writing_;  // of outputs_
   std::vector<std::unique_ptr<Output>> outputs_;
-  std::mutex buffers_mutex_;
-  std::vector<std::streambuf*> buffers_;
+  base::Guarded<Mail, base::Rank::log> mail_;
+  std::condition_variable given_;
 };
 
 }  // namespace

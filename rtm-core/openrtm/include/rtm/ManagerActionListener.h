@@ -91,7 +91,9 @@ class ListenerHolder {
   }
 
   void removeListener(Listener* listener) {
+    std::vector<std::shared_ptr<Listener>> before;  // a listener that is deleted is deleted without the lock
     const std::scoped_lock lock(mutex_);
+    before = listeners_;
     std::erase_if(listeners_, [&](const auto& held) { return held.get() == listener; });
   }
 
