@@ -26,12 +26,12 @@ Commander::Commander(shm::IfaceType type, Say say)
     : link_(type, [](bool, const std::string&) {}), say_(std::move(say)), values_(type == shm::IfaceType::position3d ? 6 : 3) {}
 
 base::Result<void> Commander::attach(const Device& device) {
-  const std::scoped_lock lock(mutex_);
+  const auto mine = turn_.take();
   return link_.attach(device, false);
 }
 
 void Commander::detach() {
-  const std::scoped_lock lock(mutex_);
+  const auto mine = turn_.take();
   link_.detach();
   is_driving_ = false;
 }
@@ -44,7 +44,7 @@ void Commander::received(std::span<const double> velocity) {
 void Commander::drive(std::span<const double> velocity) {
   std::string problem;
   {
-    const std::scoped_lock lock(mutex_);
+    const auto mine = turn_.take();
     auto* robot = link_.live();
     if (!robot) return;
     const bool is_plausible = std::ranges::all_of(velocity, [](double v) { return std::abs(v) <= fastest; });
@@ -60,7 +60,7 @@ void Commander::drive(std::span<const double> velocity) {
 }
 
 bool Commander::stop() {
-  const std::scoped_lock lock(mutex_);
+  const auto mine = turn_.take();
   if (!is_driving_) return false;
   is_driving_ = false;
   static constexpr std::array<double, 6> standing{};

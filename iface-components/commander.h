@@ -2,8 +2,9 @@
 // In real time a velocity goes to the robot on the thread that brings it; in simulated time the component hands it on in its own phase.
 #pragma once
 
+#include <base/guarded.h>
+
 #include <atomic>
-#include <mutex>
 #include <span>
 
 #include "iface_link.h"
@@ -27,7 +28,7 @@ class Commander {
   void set_simulated_time(bool simulated) { in_simulated_time_.store(simulated, std::memory_order_release); }  // pairs with received
 
  private:
-  std::mutex mutex_;
+  base::Turn<> turn_;  // to use what follows; attaching looks at files
   IfaceLink link_;
   Say say_;
   std::size_t values_;  // of a command

@@ -17,9 +17,12 @@ Errand::~Errand() = default;  // the thread is asked to stop and joined first
 void Errand::post(int server_id, const shm::Request& request) {
   bool is_full = false;
   {
-    const std::scoped_lock lock(mutex_);
-    is_full = jobs_.size() >= longest_queue;
-    if (!is_full) jobs_.push_back({server_id, request});
+    auto jobs = jobs_.lock();
+    is_full = jobs->size() >= longest_queue;
+    if (!is_full) jobs->push_back({server_id, request});
+  }
+  {
+    const auto mine = starting_.take();
     if (!thread_.joinable()) thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
   }
   posted_.notify_one();
@@ -31,10 +34,10 @@ void Errand::run(const std::stop_token& stop) {
   while (true) {
     Job job;
     {
-      std::unique_lock lock(mutex_);
-      if (!posted_.wait(lock, stop, [this] { return !jobs_.empty(); })) return;
-      job = std::move(jobs_.front());
-      jobs_.pop_front();
+      auto jobs = jobs_.lock();
+      if (!jobs.wait(posted_, stop, [&] { return !jobs->empty(); })) return;
+      job = std::move(jobs->front());
+      jobs->pop_front();
     }
     const auto what = "request " + std::string(shm::request_name(job.request));
     auto requester = shm::Requester::open(static_cast<std::uint32_t>(job.server_id));

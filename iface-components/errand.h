@@ -2,11 +2,11 @@
 // and the tick waits for the component. post() from any thread.
 #pragma once
 
+#include <base/guarded.h>
 #include <shm/requests.h>
 
 #include <condition_variable>
 #include <deque>
-#include <mutex>
 #include <thread>
 
 #include "iface_link.h"
@@ -29,10 +29,10 @@ class Errand {
   void run(const std::stop_token& stop);
 
   Say say_;
-  std::mutex mutex_;
+  base::Guarded<std::deque<Job>, base::Rank::buffer> jobs_;
   std::condition_variable_any posted_;
-  std::deque<Job> jobs_;
-  std::jthread thread_;  // last: it uses the others
+  base::Turn<> starting_;  // the thread, with the first post
+  std::jthread thread_;    // last: it uses the others
 };
 
 }  // namespace iface

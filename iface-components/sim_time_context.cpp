@@ -80,8 +80,7 @@ std::shared_ptr<shm::Participant> SimTimeContext::join() {
            std::to_string(server_id_) +
            (options.period < step ? "; that is once a step, " + base::format_number(1e9 / static_cast<double>(step.count())) + " Hz" : ""));
   auto participant = std::make_shared<shm::Participant>(std::move(*joined));
-  const std::scoped_lock lock(mutex_);
-  participant_ = participant;
+  *participant_.lock() = participant;
   return participant;
 }
 
@@ -111,8 +110,7 @@ int SimTimeContext::svc() {
   while (threadRunning()) {
     if (const auto participant = join()) {
       run(*participant);
-      const std::scoped_lock lock(mutex_);
-      participant_.reset();
+      participant_.lock()->reset();  // ours is the last one, but for who interrupts it right now
     } else {
       // Without a simulator time stands still, and a component can still be activated and deactivated.
       invokeWorkerPreDo();
@@ -124,8 +122,7 @@ int SimTimeContext::svc() {
 }
 
 void SimTimeContext::interrupt() {
-  const std::scoped_lock lock(mutex_);
-  if (participant_) participant_->interrupt();
+  if (const auto participant = participant_.snapshot()) participant->interrupt();
 }
 
 void SimTimeContext::onWakeUp() {
@@ -139,8 +136,7 @@ RTC::ReturnCode_t SimTimeContext::onStopping() {
 }
 
 RTC::ReturnCode_t SimTimeContext::onSetRate(double) {
-  const std::scoped_lock lock(mutex_);
-  if (participant_) participant_->set_period(getPeriod());
+  if (const auto participant = participant_.snapshot()) participant->set_period(getPeriod());
   return RTC::RTC_OK;
 }
 

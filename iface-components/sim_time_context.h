@@ -12,12 +12,12 @@
 // Threads: the context's own thread ticks; everything else may be called from any thread.
 #pragma once
 
+#include <base/guarded.h>
 #include <rtm/Manager.h>
 #include <rtm/PeriodicExecutionContext.h>
 #include <shm/lockstep.h>
 
 #include <memory>
-#include <mutex>
 #include <string>
 
 #include "sim_clock.h"
@@ -52,8 +52,7 @@ class SimTimeContext : public RTC::PeriodicExecutionContext {
   bool waits_for_members_ = true;  // in lock step, as long as `rtse run` waits for a tick; false: the option member_timeout says how long
   std::string said_;               // the last line, not to be said again
   bool is_waiting_ = false;        // and has said so
-  std::mutex mutex_;               // of participant_
-  std::shared_ptr<shm::Participant> participant_;
+  base::Guarded<std::shared_ptr<shm::Participant>, base::Rank::context> participant_;
 };
 
 extern "C" {

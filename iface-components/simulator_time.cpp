@@ -5,38 +5,38 @@
 namespace iface {
 
 void SimulatorTime::follow(std::optional<shm::Iface> simulation) {
-  const std::scoped_lock lock(mutex_);
-  std::swap(simulation_, simulation);
-  if (!simulation_) return;
-  const auto generation = simulation_->segment().facts().generation;
-  const auto* sample = read();
+  auto state = state_.lock();
+  state->simulation.swap(simulation);  // the one before ends without the lock
+  if (!state->simulation) return;
+  const auto generation = state->simulation->segment().facts().generation;
+  const auto* sample = state->read();
   const auto resets = sample ? sample->stamp.resets : 0;
   // The same simulator once more has no new time, unless it was reset meanwhile.
-  if (generation_ != 0 && (generation != generation_ || resets != resets_)) ++era_;
-  generation_ = generation;
-  resets_ = resets;
+  if (state->generation != 0 && (generation != state->generation || resets != state->resets)) ++state->era;
+  state->generation = generation;
+  state->resets = resets;
 }
 
 std::uint64_t SimulatorTime::era() const {
-  const std::scoped_lock lock(mutex_);
-  const auto* sample = read();
-  if (sample && std::exchange(resets_, sample->stamp.resets) != sample->stamp.resets) ++era_;
-  return era_;
+  auto state = state_.lock();
+  const auto* sample = state->read();
+  if (sample && std::exchange(state->resets, sample->stamp.resets) != sample->stamp.resets) ++state->era;
+  return state->era;
 }
 
-const shm::SimulationSample* SimulatorTime::read() const {
-  return simulation_ && simulation_->read() ? &simulation_->sample<shm::SimulationSample>() : nullptr;
+const shm::SimulationSample* SimulatorTime::State::read() {
+  return simulation && simulation->read() ? &simulation->sample<shm::SimulationSample>() : nullptr;
 }
 
 std::chrono::nanoseconds SimulatorTime::now() const {
-  const std::scoped_lock lock(mutex_);
-  if (const auto* sample = read()) last_ = std::chrono::nanoseconds(sample->stamp.sim_time_ns);
-  return last_;
+  auto state = state_.lock();
+  if (const auto* sample = state->read()) state->last = std::chrono::nanoseconds(sample->stamp.sim_time_ns);
+  return state->last;
 }
 
 bool SimulatorTime::stands_still() const {
-  const std::scoped_lock lock(mutex_);
-  const auto* sample = read();
+  auto state = state_.lock();
+  const auto* sample = state->read();
   return !sample || sample->paused != 0 || sample->waiting_for != 0;
 }
 

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <base/clock.h>
+#include <base/guarded.h>
 #include <shm/client.h>
 
-#include <mutex>
 #include <optional>
 
 namespace iface {
@@ -20,14 +20,15 @@ class SimulatorTime final : public base::Clock {
   bool stands_still() const;
 
  private:
-  const shm::SimulationSample* read() const;
-
-  mutable std::mutex mutex_;
-  mutable std::optional<shm::Iface> simulation_;
-  mutable std::chrono::nanoseconds last_{0};
-  mutable std::uint64_t era_ = 0;
-  mutable std::uint32_t resets_ = 0;  // as seen last
-  std::uint64_t generation_ = 0;      // of the simulator seen last; 0: none
+  struct State {
+    std::optional<shm::Iface> simulation;
+    std::chrono::nanoseconds last{0};
+    std::uint64_t era = 0;
+    std::uint32_t resets = 0;      // as seen last
+    std::uint64_t generation = 0;  // of the simulator seen last; 0: none
+    const shm::SimulationSample* read();
+  };
+  mutable base::Guarded<State, base::Rank::log> state_;  // asked for by whatever is logged
 };
 
 }  // namespace iface

@@ -20,7 +20,7 @@ rtmsim_test(classic_context_test classic-api/context_test.cpp LIBRARIES openrtm)
 # Component sources in the style of every version of the API; that they compile is the test. LINKED: also as module and program.
 add_subdirectory(classic-api)
 
-rtmsim_test(include_rules_test unit/include_rules_test.cpp)
+rtmsim_test(include_rules_test unit/include_rules_test.cpp unit/lock_rules_test.cpp)
 rtmsim_test(include_closure_test unit/include_closure_test.cpp)
 
 # A program and a module of another project, against the build tree and against an installation.

@@ -1,4 +1,6 @@
 // EchoProvider: offers the service Example::EchoService.
+#include <coil/Mutex.h>
+#include <rtm/CorbaPort.h>
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/Manager.h>
 
@@ -29,7 +31,7 @@ class EchoServant : public virtual POA_Example::EchoService, public virtual Port
   }
 
  private:
-  std::mutex mutex_;
+  coil::Mutex mutex_;
   std::deque<std::string> texts_;
 };
 

@@ -3,9 +3,7 @@
 // long.
 #pragma once
 
-#include <rtm/idl/ExtendedDataTypesSkel.h>
-#include <rtm/idl/InterfaceDataTypesSkel.h>
-
+#include <base/guarded.h>
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/DataInPort.h>
 #include <rtm/DataOutPort.h>
@@ -13,7 +11,6 @@
 
 #include <chrono>
 #include <condition_variable>
-#include <mutex>
 
 #include "avoidance.h"
 
@@ -42,9 +39,8 @@ class LaserObstacleAvoid : public RTC::DataFlowComponentBase {
   RTC::TimedVelocity2D velocity_;
   RTC::OutPort<RTC::TimedVelocity2D> velocity_out_;
 
-  std::mutex mutex_;
+  base::Guarded<bool, base::Rank::buffer> has_arrived_{false};
   std::condition_variable arrived_;
-  bool has_arrived_ = false;
   std::chrono::nanoseconds last_scan_{0};
   bool is_driving_ = false;
 };

@@ -25,10 +25,7 @@ std::uint32_t wake_word(const shm::Segment& segment) { return shm::load(segment.
 Alarm::Alarm() : descriptor_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)), thread_([this] { run(); }) {}
 
 Alarm::~Alarm() {
-  {
-    const std::lock_guard lock(mutex_);
-    is_over_ = true;
-  }
+  next_.lock()->is_over = true;
   shm::word(control_).fetch_add(1, std::memory_order_seq_cst);  // pairs with the load in run
   shm::futex_wake(control_, INT_MAX);
   thread_.join();
@@ -37,8 +34,12 @@ Alarm::~Alarm() {
 
 void Alarm::watch(std::vector<SharedSegment> segments) {
   {
-    const std::lock_guard lock(mutex_);
-    next_ = std::move(segments);
+    auto next = next_.lock();
+    if (next->segments) {
+      next->segments->swap(segments);  // the ones before are unmapped without the lock
+    } else {
+      next->segments.emplace(std::move(segments));
+    }
   }
   shm::word(control_).fetch_add(1, std::memory_order_seq_cst);  // pairs with the load in run
   shm::futex_wake(control_, INT_MAX);
@@ -55,18 +56,13 @@ void Alarm::run() {
   while (true) {
     const std::uint32_t control = shm::load(control_, std::memory_order_seq_cst);
     bool is_news = false;
-    std::vector<Watched> before;  // unmapped without the lock
-    {
-      const std::lock_guard lock(mutex_);
-      if (is_over_) return;
-      if (next_) {
-        before = std::exchange(watched, {});
-        // Nobody knows what the loop has seen of new ones: it is told once.
-        for (auto& segment : *next_) watched.push_back({std::move(segment), 0});
-        next_.reset();
-        is_news = !watched.empty();
-        for (Watched& one : watched) one.seen = wake_word(*one.segment);
-      }
+    auto next = std::exchange(*next_.lock(), {});
+    if (next.is_over) return;
+    if (next.segments) {
+      watched.clear();
+      // Nobody knows what the loop has seen of new ones: it is told once.
+      for (auto& segment : *next.segments) watched.push_back({segment, wake_word(*segment)});
+      is_news = !watched.empty();
     }
     for (Watched& one : watched) {
       const std::uint32_t word = wake_word(*one.segment);

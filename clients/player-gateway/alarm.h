@@ -4,11 +4,11 @@
 
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <thread>
 #include <vector>
 
+#include "base/guarded.h"
 #include "shm/segment.h"
 
 namespace gateway {
@@ -38,10 +38,12 @@ class Alarm {
   void sleep(const std::vector<Watched>& watched, std::uint32_t control) const;
 
   int descriptor_ = -1;
-  std::uint32_t control_ = 0;  // [atomic] futex of this process: changes when `next_` or `is_over_` does
-  std::mutex mutex_;
-  std::optional<std::vector<SharedSegment>> next_;  // under mutex_, as is_over_
-  bool is_over_ = false;
+  std::uint32_t control_ = 0;  // [atomic] futex of this process: changes when `next_` does
+  struct Wish {
+    std::optional<std::vector<SharedSegment>> segments;
+    bool is_over = false;
+  };
+  base::Guarded<Wish, base::Rank::buffer> next_;
   std::thread thread_;
 };
 

@@ -51,13 +51,13 @@ Errands::~Errands() {
 
 void Errands::post(shm::Request request, Done done) {
   {
-    const std::lock_guard lock(mutex_);
-    if (jobs_.size() < max_waiting) {
-      jobs_.push_back({std::move(request), std::move(done), std::chrono::steady_clock::now() + limit});
+    auto queues = queues_.lock();
+    if (queues->jobs.size() < max_waiting) {
+      queues->jobs.push_back({std::move(request), std::move(done), std::chrono::steady_clock::now() + limit});
       posted_.notify_one();
       return;
     }
-    answers_.push_back({std::move(done), base::Error{"too many requests wait for the simulator"}});
+    queues->answers.push_back({std::move(done), base::Error{"too many requests wait for the simulator"}});
   }
   ring(descriptor_);
 }
@@ -67,10 +67,7 @@ void Errands::deliver() {
   while (::read(descriptor_, &count, sizeof count) < 0 && errno == EINTR) {
   }
   std::deque<Answer> answers;
-  {
-    const std::lock_guard lock(mutex_);
-    answers.swap(answers_);
-  }
+  queues_.lock()->answers.swap(answers);
   for (Answer& answer : answers) answer.done(std::move(answer.reply));
 }
 
@@ -79,16 +76,13 @@ void Errands::run(const std::stop_token& stop) {
   while (true) {
     Job job;
     {
-      std::unique_lock lock(mutex_);
-      if (!posted_.wait(lock, stop, [&] { return !jobs_.empty(); }) || stop.stop_requested()) return;
-      job = std::move(jobs_.front());
-      jobs_.pop_front();
+      auto queues = queues_.lock();
+      if (!queues.wait(posted_, stop, [&] { return !queues->jobs.empty(); }) || stop.stop_requested()) return;
+      job = std::move(queues->jobs.front());
+      queues->jobs.pop_front();
     }
     auto reply = ask(requester, server_id_, job.request, job.deadline - std::chrono::steady_clock::now());
-    {
-      const std::lock_guard lock(mutex_);
-      answers_.push_back({std::move(job.done), std::move(reply)});
-    }
+    queues_.lock()->answers.push_back({std::move(job.done), std::move(reply)});
     ring(descriptor_);
   }
 }

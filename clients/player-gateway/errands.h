@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <mutex>
 #include <thread>
 
+#include "base/guarded.h"
 #include "base/result.h"
 #include "shm/requests.h"
 
@@ -48,10 +48,12 @@ class Errands {
 
   const std::uint32_t server_id_;
   int descriptor_ = -1;
-  std::mutex mutex_;
+  struct Queues {
+    std::deque<Job> jobs;
+    std::deque<Answer> answers;
+  };
+  base::Guarded<Queues, base::Rank::buffer> queues_;
   std::condition_variable_any posted_;
-  std::deque<Job> jobs_;
-  std::deque<Answer> answers_;
   std::jthread thread_;  // last: it uses the others
 };
 

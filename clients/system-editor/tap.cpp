@@ -1,7 +1,6 @@
 #include "tap.h"
 
-#include <mutex>
-
+#include "base/guarded.h"
 #include "base/id.h"
 #include "base/text.h"
 #include "corba/return_code.h"
@@ -14,19 +13,19 @@ class Tap::Receiver final : public POA_OpenRTM::InPortCdr {
  public:
   explicit Receiver(OnData on_data) : on_data_(std::move(on_data)) {}
   OpenRTM::PortStatus put(const OpenRTM::CdrData& data) override {
-    const std::scoped_lock lock(mutex_);
+    const auto mine = turn_.take();
     if (!on_data_) return OpenRTM::PORT_ERROR;
     on_data_({data.get_buffer(), data.length()}, little_endian);
     return OpenRTM::PORT_OK;
   }
   void stop() {
-    const std::scoped_lock lock(mutex_);
+    const auto mine = turn_.take();
     on_data_ = nullptr;
   }
   bool little_endian = true;
 
  private:
-  std::mutex mutex_;
+  base::Turn<> turn_;  // of samples, and of the end: none is handed over after it
   OnData on_data_;
 };
 
@@ -43,10 +42,7 @@ class Tap::Port final : public POA_RTC::PortService {
   }
 
   RTC::PortService_ptr self() const { return self_; }
-  OpenRTM::InPortCdr_var target() {
-    const std::scoped_lock lock(mutex_);
-    return target_;
-  }
+  OpenRTM::InPortCdr_var target() { return connection_.lock()->target; }
   void deactivate() {
     receiver_->stop();
     deactivate(*this);
@@ -67,8 +63,9 @@ class Tap::Port final : public POA_RTC::PortService {
   }
   RTC::ConnectorProfileList* get_connector_profiles() override { return new RTC::ConnectorProfileList(list()); }
   RTC::ConnectorProfile* get_connector_profile(const char* id) override {
-    const std::scoped_lock lock(mutex_);
-    return new RTC::ConnectorProfile(std::string(id) == connector_.connector_id.in() ? connector_ : RTC::ConnectorProfile());
+    auto connection = connection_.lock();
+    const auto& profile = connection->profile;
+    return new RTC::ConnectorProfile(std::string(id) == profile.connector_id.in() ? profile : RTC::ConnectorProfile());
   }
   RTC::ReturnCode_t connect(RTC::ConnectorProfile&) override { return RTC::UNSUPPORTED; }
   RTC::ReturnCode_t disconnect(const char* id) override { return notify_disconnect(id); }
@@ -89,15 +86,14 @@ class Tap::Port final : public POA_RTC::PortService {
     }
     auto code = call_next(profile);
     if (CORBA::is_nil(receiver_reference_) && code == RTC::RTC_OK) code = find_target(profile);
-    const std::scoped_lock lock(mutex_);
-    connector_ = profile;
+    connection_.lock()->profile = profile;
     return code;
   }
   RTC::ReturnCode_t notify_disconnect(const char* id) override {
-    const std::scoped_lock lock(mutex_);
-    if (std::string(id) != connector_.connector_id.in()) return RTC::BAD_PARAMETER;
-    connector_ = RTC::ConnectorProfile();
-    target_ = OpenRTM::InPortCdr::_nil();
+    Connection ended;  // its references are given back without the lock
+    auto connection = connection_.lock();
+    if (std::string(id) != connection->profile.connector_id.in()) return RTC::BAD_PARAMETER;
+    std::swap(*connection, ended);
     return RTC::RTC_OK;
   }
 
@@ -109,11 +105,11 @@ class Tap::Port final : public POA_RTC::PortService {
     poa->deactivate_object(id);
   }
   RTC::ConnectorProfileList list() {
-    const std::scoped_lock lock(mutex_);
+    auto connection = connection_.lock();
     RTC::ConnectorProfileList list;
-    if (connector_.ports.length() > 0) {
+    if (connection->profile.ports.length() > 0) {
       list.length(1);
-      list[0] = connector_;
+      list[0] = connection->profile;
     }
     return list;
   }
@@ -127,8 +123,8 @@ class Tap::Port final : public POA_RTC::PortService {
     const auto ior = property(to_properties(profile.properties), "dataport.corba_cdr.inport_ior");
     if (ior.empty()) return RTC::BAD_PARAMETER;
     CORBA::Object_var object = orb_->string_to_object(ior.c_str());
-    const std::scoped_lock lock(mutex_);
-    target_ = OpenRTM::InPortCdr::_unchecked_narrow(object);
+    OpenRTM::InPortCdr_var target = OpenRTM::InPortCdr::_unchecked_narrow(object);
+    connection_.lock()->target = target;
     return RTC::RTC_OK;
   }
 
@@ -138,9 +134,11 @@ class Tap::Port final : public POA_RTC::PortService {
   PortableServer::Servant_var<Receiver> receiver_;
   RTC::PortService_var self_;
   OpenRTM::InPortCdr_var receiver_reference_;
-  std::mutex mutex_;
-  RTC::ConnectorProfile connector_;
-  OpenRTM::InPortCdr_var target_;
+  struct Connection {
+    RTC::ConnectorProfile profile;
+    OpenRTM::InPortCdr_var target;
+  };
+  base::Guarded<Connection, base::Rank::port> connection_;
 };
 
 Tap::Tap() : port_(nullptr, [](Port* port) { port->_remove_ref(); }) {}

@@ -142,18 +142,15 @@ RTC::ReturnCode_t VideoPlayer::onAborting(RTC::UniqueId) {
 }
 
 void VideoPlayer::frame_arrived() {
-  {
-    const std::scoped_lock lock(mutex_);
-    has_arrived_ = true;
-  }
+  *has_arrived_.lock() = true;
   arrived_.notify_one();
 }
 
 void VideoPlayer::wait_for_frame() {
   const base::ScopedWait waiting;
-  std::unique_lock lock(mutex_);
-  arrived_.wait_for(lock, longest_wait, [this] { return has_arrived_; });
-  has_arrived_ = false;
+  auto has_arrived = has_arrived_.lock();
+  has_arrived.wait_for(arrived_, longest_wait, [&] { return *has_arrived; });
+  *has_arrived = false;
 }
 
 RTC::ReturnCode_t VideoPlayer::onExecute(RTC::UniqueId ec_id) {

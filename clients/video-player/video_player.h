@@ -6,8 +6,7 @@
 // already stays, and the numbers go on. window: 0 or 1.
 #pragma once
 
-#include <rtm/idl/InterfaceDataTypesSkel.h>
-
+#include <base/guarded.h>
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/DataInPort.h>
 #include <rtm/Manager.h>
@@ -18,7 +17,6 @@
 #include <cstdint>
 #include <fstream>
 #include <memory>
-#include <mutex>
 #include <string>
 
 #include "picture.h"
@@ -73,9 +71,8 @@ class VideoPlayer : public RTC::DataFlowComponentBase {
   std::string said_;
   std::ofstream times_;  // of the recorded frames
 
-  std::mutex mutex_;
+  base::Guarded<bool, base::Rank::buffer> has_arrived_{false};
   std::condition_variable arrived_;
-  bool has_arrived_ = false;
 };
 
 extern "C" {

@@ -14,7 +14,6 @@
 #include <cstdlib>
 #include <functional>
 #include <future>
-#include <mutex>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -148,7 +147,7 @@ class Window::Screen : public std::enable_shared_from_this<Screen> {
   Screen& operator=(const Screen&) = delete;
 
   base::Result<void> open(const std::shared_ptr<Shared>& shared, const std::string& title) {
-    const std::scoped_lock lock(turnstile_);
+    const auto mine = turnstile_.take();
     if (!thread_.joinable()) thread_ = std::thread([self = shared_from_this()] { self->run(); });
     const auto opened = std::make_shared<base::Result<void>>();
     const auto answer = run_there([this, shared, title, opened] { *opened = open_pane(shared, title); });
@@ -157,7 +156,7 @@ class Window::Screen : public std::enable_shared_from_this<Screen> {
     return answer;
   }
   base::Result<void> close(const std::shared_ptr<Shared>& shared) {
-    const std::scoped_lock lock(turnstile_);
+    const auto mine = turnstile_.take();
     return run_there([this, shared] { close_pane(shared.get()); });
   }
   // Any thread.
@@ -301,7 +300,7 @@ class Window::Screen : public std::enable_shared_from_this<Screen> {
   }
 
   const int bell_ = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-  std::mutex turnstile_;  // whoever opens or closes goes through here, one at a time, and waits for the display meanwhile
+  base::Turn<> turnstile_;  // whoever opens or closes goes through here, one at a time, and waits for the display meanwhile
   std::thread thread_;
   base::Guarded<State, base::Rank::buffer> state_;
   std::condition_variable changed_;

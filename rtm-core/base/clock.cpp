@@ -27,24 +27,18 @@ const Clock& current_clock_or(const Clock& otherwise) {
   return clock ? *clock : otherwise;
 }
 
-std::shared_ptr<const Clock> FollowingClock::followed() const {
-  const std::lock_guard lock(mutex_);
-  return clock_;
-}
-
 std::chrono::nanoseconds FollowingClock::now() const {
-  const auto clock = followed();
+  const auto clock = clock_.snapshot();
   return (clock ? *clock : current_clock()).now();
 }
 
 std::uint64_t FollowingClock::era() const {
-  const auto clock = followed();
+  const auto clock = clock_.snapshot();
   return clock ? clock->era() : 0;
 }
 
 void FollowingClock::follow(std::shared_ptr<const Clock> clock) {
-  const std::lock_guard lock(mutex_);
-  clock_.swap(clock);
+  clock_.lock()->swap(clock);  // the one before ends without the lock
 }
 
 ScopedClock::ScopedClock(const Clock& clock) : previous_(scoped_clock()) { scoped_clock() = &clock; }

@@ -5,7 +5,8 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
-#include <mutex>
+
+#include "base/guarded.h"
 
 namespace base {
 
@@ -54,10 +55,7 @@ class FollowingClock final : public Clock {
   void follow(std::shared_ptr<const Clock> clock);
 
  private:
-  std::shared_ptr<const Clock> followed() const;
-
-  mutable std::mutex mutex_;
-  std::shared_ptr<const Clock> clock_;
+  Guarded<std::shared_ptr<const Clock>, Rank::log> clock_;  // asked for by whatever is logged
 };
 
 // Makes `clock` the current one of this thread for the guard's life; guards nest.

@@ -5,7 +5,8 @@
 
 #include <atomic>
 #include <memory>
-#include <mutex>
+
+#include "base/guarded.h"
 
 namespace base {
 namespace {
@@ -15,8 +16,7 @@ using Sink = std::function<void(const LogRecord&)>;
 // The log is the one thing a process has exactly one of.
 struct Log {
   std::atomic<Level> level{Level::info};
-  std::mutex mutex;
-  std::shared_ptr<const Sink> sink;
+  Guarded<std::shared_ptr<const Sink>, Rank::log> sink;
   std::shared_ptr<spdlog::logger> standard_error = [] {
     auto logger = std::make_shared<spdlog::logger>("rtm", std::make_shared<spdlog::sinks::stderr_sink_mt>());
     logger->set_level(spdlog::level::trace);
@@ -63,19 +63,14 @@ bool is_logged(Level level) { return level >= log_level() && level != Level::sil
 
 void set_log_sink(Sink sink) {
   auto next = sink ? std::make_shared<const Sink>(std::move(sink)) : nullptr;
-  const std::scoped_lock lock(the_log().mutex);
-  the_log().sink = std::move(next);
+  the_log().sink.lock()->swap(next);  // the one before ends without the lock
 }
 
 void log_text(Level level, std::string_view name, std::string_view message) {
   if (!is_logged(level)) return;
   auto& log = the_log();
-  std::shared_ptr<const Sink> sink;
-  {
-    const std::scoped_lock lock(log.mutex);
-    sink = log.sink;
-  }
-  if (sink) return (*sink)({level, name, message});
+  expect_no_data_held();
+  if (const auto sink = log.sink.snapshot()) return (*sink)({level, name, message});
   log.standard_error->log(spdlog::level::info, "{}: {}: {}", level_name(level), name, message);
 }
 

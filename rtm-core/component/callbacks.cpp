@@ -64,6 +64,7 @@ class RTObject_impl::Impl::Visit {
 
 template <class Function>
 ReturnCode_t RTObject_impl::callUser(const char* name, Function function) {
+  base::expect_no_data_held();
   const Impl::Visit visit(*impl_, name);
   try {
     return function();

@@ -54,16 +54,14 @@ struct RTObject_impl::Impl {
 
   base::Guarded<Data, base::Rank::component> shared;
   // Held while the runtime reads or writes m_properties and profile_, which are the author's and no members of ours.
-  struct Turn {};
-  base::Guarded<Turn, base::Rank::registry> properties_turn;
+  base::Turn<base::Rank::registry> properties_turn;
   SdoServiceAdmin services;
   // Of the context that the component joined last; for time stamps.
   const std::shared_ptr<base::FollowingClock> clock = std::make_shared<base::FollowingClock>();
   class Visit;
   base::Guarded<std::vector<RunningCallback>, base::Rank::buffer> running;
   std::condition_variable callback_ended;
-  std::thread exiter;  // runs exit() when a callback asked for it
-  std::mutex exiter_mutex;
+  base::Guarded<std::thread, base::Rank::registry> exiter;  // runs exit() when a callback asked for it
 };
 
 inline constexpr ExecutionContextHandle_t foreign_offset = 1000;

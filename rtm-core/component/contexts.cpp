@@ -117,7 +117,7 @@ bool is_same(ExecutionContext_ptr a, ExecutionContext_ptr b) { return !CORBA::is
 
 // exec_cxt.*, then exec_cxt.periodic.*, ec.<type>.* and ec.<name>.*; the last word counts.
 coil::Properties RTObject_impl::contextOptions(const std::string& type, const std::string& name) const {
-  const auto turn = impl_->properties_turn.lock();
+  const auto turn = impl_->properties_turn.take();
   coil::Properties options;
   options["sync_transition"] = "YES";
   options["transition_timeout"] = "0.5";

@@ -10,7 +10,7 @@
 namespace RTC {
 
 std::string RTObject_impl::portNameOf(const std::string& name) const {
-  const auto turn = impl_->properties_turn.lock();
+  const auto turn = impl_->properties_turn.take();
   return profile_.instance_name + "." + name;
 }
 
@@ -21,7 +21,7 @@ bool RTObject_impl::addPort(Port port) {
     const std::string for_all = port.in || port.out ? std::string("port.") + kind + ".dataport" : "port.corba";
     coil::Properties properties;
     {
-      const auto turn = impl_->properties_turn.lock();
+      const auto turn = impl_->properties_turn.take();
       if (const coil::Properties* node = m_properties.findNode(for_all)) properties << *node;
       if (const coil::Properties* node = m_properties.findNode(std::string("port.") + kind + "." + port.name)) properties << *node;
     }

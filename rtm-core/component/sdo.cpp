@@ -23,12 +23,12 @@ SDOPackage::OrganizationList* RTObject_impl::get_owned_organizations() {
 }
 
 char* RTObject_impl::get_sdo_id() {
-  const auto turn = impl_->properties_turn.lock();
+  const auto turn = impl_->properties_turn.take();
   return CORBA::string_dup(profile_.instance_name.c_str());
 }
 
 char* RTObject_impl::get_sdo_type() {
-  const auto turn = impl_->properties_turn.lock();
+  const auto turn = impl_->properties_turn.take();
   return CORBA::string_dup(profile_.description.c_str());
 }
 

@@ -7,10 +7,11 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <mutex>
 #include <optional>
 #include <system_error>
+#include <utility>
 
+#include "base/guarded.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "corba/call_timeout.h"
@@ -91,13 +92,12 @@ namespace {
 // ---- what the ORB says
 
 struct OrbMessages {
-  std::mutex mutex;
   bool collecting = false;
   std::string last;
 };
 
-OrbMessages& orb_messages() {
-  static OrbMessages messages;
+auto& orb_messages() {
+  static base::Guarded<OrbMessages, base::Rank::log> messages;
   return messages;
 }
 
@@ -105,10 +105,9 @@ void take_orb_message(const char* text) {
   std::string_view line = base::trim(text);
   if (line.starts_with("omniORB:")) line = base::trim(line.substr(8));
   {
-    auto& messages = orb_messages();
-    const std::scoped_lock lock(messages.mutex);
-    if (messages.collecting) {
-      messages.last = line;
+    auto messages = orb_messages().lock();
+    if (messages->collecting) {
+      messages->last = line;
       return;
     }
   }
@@ -228,12 +227,7 @@ base::Result<std::unique_ptr<Orb>> Orb::start(const OrbSettings& settings) {
   int argc = static_cast<int>(arguments->size());
 
   set_port_call_timeout(call_timeout_of(*arguments));
-  auto& messages = orb_messages();
-  {
-    const std::scoped_lock lock(messages.mutex);
-    messages.collecting = true;
-    messages.last.clear();
-  }
+  *orb_messages().lock() = {.collecting = true, .last = ""};
   omniORB::setLogFunction(&take_orb_message);
   std::string failure;
   try {
@@ -248,12 +242,7 @@ base::Result<std::unique_ptr<Orb>> Orb::start(const OrbSettings& settings) {
   } catch (const omniORB::fatalException& e) {
     failure = e.errmsg();
   }
-  std::string detail;
-  {
-    const std::scoped_lock lock(messages.mutex);
-    messages.collecting = false;
-    detail = messages.last;
-  }
+  const auto detail = std::exchange(*orb_messages().lock(), {}).last;
   if (failure.empty()) {
     begin_farewells();
     if (settings.peer_check_interval.count() > 0) result->watch_ = std::make_unique<PeerWatch>(settings.peer_check_interval);

@@ -1,8 +1,8 @@
 #include "physics/shard.h"
 
 #include <algorithm>
-#include <mutex>
 
+#include "base/guarded.h"
 #include "physics/contact_surface.h"
 #include "physics/mesh_contacts.h"
 
@@ -16,14 +16,14 @@ constexpr std::uint32_t exact_contacts = 200;
 constexpr std::uint32_t stacked_contacts = 4;
 
 // ODE's mesh and height field colliders work in global buffers.
-std::mutex& shared_collider() {
-  static std::mutex mutex;
-  return mutex;
+base::Turn<>& shared_collider() {
+  static base::Turn<> turn;
+  return turn;
 }
 // The iterative solver draws from a global random sequence.
-std::mutex& shared_random() {
-  static std::mutex mutex;
-  return mutex;
+base::Turn<>& shared_random() {
+  static base::Turn<> turn;
+  return turn;
 }
 
 bool masks_match(const SurfaceDef& a, const SurfaceDef& b) {
@@ -105,7 +105,7 @@ void Shard::step(const std::vector<ShapeInstance*>& statics, std::uint64_t step_
   for (auto* model : models) model->apply_forces(contact_joints_.id(), physics_);
   const bool is_heap = contacts > exact_contacts || moving_contacts_ >= stacked_contacts;
   if (physics_.solver == PhysicsDef::Solver::iterative || (physics_.solver == PhysicsDef::Solver::automatic && is_heap)) {
-    const std::lock_guard lock(shared_random());
+    const auto mine = shared_random().take();
     dRandSetSeed(static_cast<unsigned long>(step_count) * 2654435761U + 1);
     dWorldQuickStep(world_.id(), physics_.step);
   } else {
@@ -164,7 +164,7 @@ void Shard::collide(ModelInstance& model_a, ShapeInstance& a, ModelInstance* mod
   const int most = std::clamp(physics_.max_contacts, 1, most_contacts);
   int count = 0;
   if (a.needs_lock || b.needs_lock) {
-    const std::lock_guard lock(shared_collider());
+    const auto mine = shared_collider().take();
     const auto is_mesh = [](const ShapeInstance& shape) { return dGeomGetClass(shape.geom.id()) == dTriMeshClass; };
     count = is_mesh(a) && is_mesh(b) ? collide_meshes(a, b, most, found)
                                      : dCollide(a.geom.id(), b.geom.id(), most, found, sizeof(dContactGeom));

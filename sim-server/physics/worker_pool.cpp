@@ -16,32 +16,37 @@ WorkerPool::WorkerPool(int threads, Sharing sharing) : sharing_(sharing) {
 }
 
 WorkerPool::~WorkerPool() {
-  {
-    const std::lock_guard lock(mutex_);
-    is_ending_ = true;
-  }
+  parts_.lock()->is_ending = true;
   started_.notify_all();
   for (auto& worker : workers_) worker.join();
 }
 
-void WorkerPool::take_parts(std::unique_lock<std::mutex>& lock) {
-  while (next_ < count_) {
-    const std::size_t mine = next_++;
-    ++running_;
-    const auto& part = *part_;
-    lock.unlock();
-    part(mine);
-    lock.lock();
-    --running_;
+bool WorkerPool::take_parts() {
+  bool has_run = false;
+  while (true) {
+    const std::function<void(std::size_t)>* part = nullptr;
+    std::size_t mine = 0;
+    {
+      auto parts = parts_.lock();
+      if (has_run) --parts->running;
+      if (parts->next >= parts->count) return parts->running == 0;
+      mine = parts->next++;
+      ++parts->running;
+      part = parts->part;
+    }
+    (*part)(mine);
+    has_run = true;
   }
 }
 
 void WorkerPool::work() {
-  std::unique_lock lock(mutex_);
-  while (!is_ending_) {
-    started_.wait(lock, [&] { return is_ending_ || next_ < count_; });
-    take_parts(lock);
-    if (running_ == 0) finished_.notify_one();
+  while (true) {
+    {
+      auto parts = parts_.lock();
+      parts.wait(started_, [&] { return parts->is_ending || parts->next < parts->count; });
+      if (parts->is_ending) return;
+    }
+    if (take_parts()) finished_.notify_one();
   }
 }
 
@@ -50,17 +55,18 @@ void WorkerPool::run(std::size_t count, const std::function<void(std::size_t)>& 
     for (std::size_t i = 0; i < count; ++i) part(i);
     return;
   }
-  std::unique_lock lock(mutex_);
-  part_ = &part;
-  next_ = 0;
-  count_ = count;
-  lock.unlock();
+  {
+    auto parts = parts_.lock();
+    parts->part = &part;
+    parts->next = 0;
+    parts->count = count;
+  }
   started_.notify_all();
-  lock.lock();
-  take_parts(lock);
-  finished_.wait(lock, [&] { return running_ == 0 && next_ >= count_; });
-  count_ = next_ = 0;
-  part_ = nullptr;
+  static_cast<void>(take_parts());
+  auto parts = parts_.lock();
+  parts.wait(finished_, [&] { return parts->running == 0 && parts->next >= parts->count; });
+  parts->count = parts->next = 0;
+  parts->part = nullptr;
 }
 
 void WorkerPool::run(std::size_t count, const std::function<void(std::size_t)>& part, Pace& pace) {

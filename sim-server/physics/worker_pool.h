@@ -5,9 +5,10 @@
 #include <condition_variable>
 #include <cstddef>
 #include <functional>
-#include <mutex>
 #include <thread>
 #include <vector>
+
+#include "base/guarded.h"
 
 namespace sim {
 
@@ -36,14 +37,16 @@ class WorkerPool {
 
  private:
   void work();
-  // Takes parts until none is left. The lock is held on entry and exit, not while a part runs.
-  void take_parts(std::unique_lock<std::mutex>& lock);
+  // Takes parts until none is left; true when none runs any more.
+  bool take_parts();
 
-  std::mutex mutex_;
+  struct Parts {
+    const std::function<void(std::size_t)>* part = nullptr;
+    std::size_t next = 0, count = 0, running = 0;
+    bool is_ending = false;
+  };
+  base::Guarded<Parts, base::Rank::buffer> parts_;
   std::condition_variable started_, finished_;
-  const std::function<void(std::size_t)>* part_ = nullptr;
-  std::size_t next_ = 0, count_ = 0, running_ = 0;
-  bool is_ending_ = false;
   Sharing sharing_;
   std::vector<std::thread> workers_;
 };

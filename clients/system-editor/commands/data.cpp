@@ -4,12 +4,12 @@
 #include <csignal>
 #include <deque>
 #include <iostream>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "base/clock.h"
 #include "base/command_line.h"
+#include "base/guarded.h"
 #include "base/text.h"
 #include "command.h"
 #include "commands/commands.h"
@@ -36,10 +36,12 @@ struct Sample {
 // From the ORB's threads to the printing one. When the printer cannot follow, the oldest samples are dropped and counted.
 struct Queue {
   static constexpr std::size_t longest = 1000;
-  std::mutex mutex;
+  struct Content {
+    std::deque<Sample> samples;
+    std::size_t dropped = 0;
+  };
+  base::Guarded<Content, base::Rank::buffer> content;
   std::condition_variable arrived;
-  std::deque<Sample> samples;
-  std::size_t dropped = 0;
 };
 
 std::string as_text(const Json& value) {
@@ -74,12 +76,12 @@ void print_ports(Editor& editor, const PrintOptions& options) {
   }
   for (std::size_t i = 0; i < ports.size(); ++i) {
     auto tap = Tap::connect(editor.orb(), ports[i].port, {}, [&queue, i](std::span<const unsigned char> payload, bool little_endian) {
-      const std::scoped_lock lock(queue.mutex);
-      if (queue.samples.size() >= Queue::longest) {
-        queue.samples.pop_front();
-        ++queue.dropped;
+      auto content = queue.content.lock();
+      if (content->samples.size() >= Queue::longest) {
+        content->samples.pop_front();
+        ++content->dropped;
       }
-      queue.samples.push_back({i, {payload.begin(), payload.end()}, little_endian});
+      content->samples.push_back({i, {payload.begin(), payload.end()}, little_endian});
       queue.arrived.notify_one();
     });
     if (!tap) return editor.fail(tap.error());
@@ -96,13 +98,13 @@ void print_ports(Editor& editor, const PrintOptions& options) {
          (options.count <= 0 || printed < options.count)) {
     Sample sample;
     {
-      std::unique_lock lock(queue.mutex);
+      auto content = queue.content.lock();
       // Wakes now and then to see an interrupt, or that nobody reads any more.
-      if (!queue.arrived.wait_until(lock, std::min(end, Clock::now() + std::chrono::milliseconds(100)),
-                                    [&] { return !queue.samples.empty(); }))
+      if (!content.wait_until(queue.arrived, std::min(end, Clock::now() + std::chrono::milliseconds(100)),
+                              [&] { return !content->samples.empty(); }))
         continue;
-      sample = std::move(queue.samples.front());
-      queue.samples.pop_front();
+      sample = std::move(content->samples.front());
+      content->samples.pop_front();
     }
     if (options.rate > 0) {
       if (Clock::now() < next_line) continue;
@@ -119,8 +121,8 @@ void print_ports(Editor& editor, const PrintOptions& options) {
     }
   }
   taps.clear();
-  if (queue.dropped > 0)
-    editor.fail({"print: " + std::to_string(queue.dropped) + " samples were dropped, they came faster than they could be written"});
+  if (const auto dropped = queue.content.lock()->dropped; dropped > 0)
+    editor.fail({"print: " + std::to_string(dropped) + " samples were dropped, they came faster than they could be written"});
   if (options.count > 0 && printed < options.count && !output_is_closed() && !interrupted.load(std::memory_order_relaxed)) {
     editor.fail({"print: got " + std::to_string(printed) + " of " + std::to_string(options.count) + " samples in " +
                  base::format_number(options.timeout_s) + " s"});

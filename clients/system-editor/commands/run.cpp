@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <iostream>
 #include <map>
-#include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "base/command_line.h"
+#include "base/guarded.h"
 #include "base/text.h"
 #include "command.h"
 #include "commands/commands.h"
@@ -161,9 +161,9 @@ Result<void> check_files(const RunOptions& options) {
 }
 
 std::vector<RunResult> run_seeds(Editor& editor, const RunOptions& options, const std::vector<std::uint64_t>& seeds, int jobs) {
+  base::Turn<> telling;                   // one result at a time
   std::map<std::size_t, RunResult> done;  // by place in `seeds`
   std::size_t reported = 0;               // rows come in the order of the seeds
-  std::mutex mutex;
   const bool shows = !options.quiet && isatty(2);
   const auto show = [&] {
     constexpr std::size_t width = 30;
@@ -180,7 +180,7 @@ std::vector<RunResult> run_seeds(Editor& editor, const RunOptions& options, cons
       [&](std::size_t i) {
         if (is_interrupted()) return;
         auto result = run_apart(options, seeds[i]);
-        const std::scoped_lock lock(mutex);
+        const auto mine = telling.take();
         done.emplace(i, std::move(result));
         if (shows) hide();
         for (auto next = done.find(reported); next != done.end(); next = done.find(reported)) {

@@ -4,7 +4,6 @@
 #include <ctime>
 #include <iostream>
 #include <map>
-#include <mutex>
 #include <set>
 
 #include "base/text.h"

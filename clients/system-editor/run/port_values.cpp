@@ -69,8 +69,7 @@ Result<void> PortValues::listen(CORBA::ORB_ptr orb, const Editor& editor, const 
 
 std::map<std::string, SeenValue> PortValues::end() {
   taps_.clear();
-  const std::scoped_lock lock(mutex_);
-  return seen_;
+  return seen_.snapshot();
 }
 
 void PortValues::take(CORBA::TypeCode_ptr type, const Expectation& expectation, const std::vector<std::string>& path,
@@ -88,8 +87,8 @@ void PortValues::take(CORBA::TypeCode_ptr type, const Expectation& expectation, 
   } else {
     problem = "the samples have no number " + expectation.member + "; they have " + numbers_of(*sample);
   }
-  const std::scoped_lock lock(mutex_);
-  auto& seen = seen_[expectation.port + " " + expectation.member];
+  auto all = seen_.lock();
+  auto& seen = (*all)[expectation.port + " " + expectation.member];
   if (problem.empty()) {
     seen.take(number);
   } else {

@@ -3,11 +3,11 @@
 
 #include <map>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "base/guarded.h"
 #include "editor.h"
 #include "run/expectations.h"
 #include "tap.h"
@@ -25,8 +25,7 @@ class PortValues {
   void take(CORBA::TypeCode_ptr type, const Expectation& expectation, const std::vector<std::string>& path,
             std::span<const unsigned char> payload, bool little);
 
-  std::mutex mutex_;  // of seen_
-  std::map<std::string, SeenValue> seen_;
+  base::Guarded<std::map<std::string, SeenValue>, base::Rank::buffer> seen_;
   std::vector<std::unique_ptr<Tap>> taps_;
 };
 

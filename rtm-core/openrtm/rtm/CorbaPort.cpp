@@ -58,8 +58,8 @@ struct CorbaPort::Consumer {
 struct CorbaPort::State {
   std::vector<Provider> providers;
   std::vector<Consumer> consumers;
-  base::Guarded<int, base::Rank::component> activation;  // of the providers, held during calls of the POA, which are local
-  base::Guarded<int, base::Rank::connector> binding;     // of the consumers
+  base::Turn<base::Rank::component> activation;  // of the providers: calls of the POA, which are local
+  base::Turn<base::Rank::connector> binding;     // of the consumers
 };
 
 CorbaPort::CorbaPort(const char* name) : PortBase(name), state_(std::make_unique<State>()) { addProperty("port.port_type", "CorbaPort"); }
@@ -99,7 +99,7 @@ bool CorbaPort::registerConsumer(const char* instance_name, const char* type_nam
 }
 
 void CorbaPort::activateInterfaces() {
-  const auto activation = state_->activation.lock();
+  const auto activation = state_->activation.take();
   for (auto& provider : state_->providers) {
     if (std::exchange(provider.is_active, true)) continue;
     try {
@@ -114,7 +114,7 @@ void CorbaPort::activateInterfaces() {
 }
 
 void CorbaPort::deactivateInterfaces() {
-  const auto activation = state_->activation.lock();
+  const auto activation = state_->activation.take();
   for (auto& provider : state_->providers) {
     if (!std::exchange(provider.is_active, false)) continue;
     try {
@@ -192,7 +192,7 @@ ReturnCode_t CorbaPort::subscribeInterfaces(const ConnectorProfile& profile) {
       if (is_strict) return RTC::RTC_ERROR;
       continue;
     }
-    auto binding = state_->binding.lock();
+    const auto binding = state_->binding.take();
     consumer.connector_id = profile.connector_id.in();
   }
   return RTC_OK;
@@ -201,7 +201,7 @@ ReturnCode_t CorbaPort::subscribeInterfaces(const ConnectorProfile& profile) {
 void CorbaPort::unsubscribeInterfaces(const ConnectorProfile& profile) {
   for (auto& consumer : state_->consumers) {
     {
-      auto binding = state_->binding.lock();
+      const auto binding = state_->binding.take();
       if (consumer.connector_id != profile.connector_id.in()) continue;
       consumer.connector_id.clear();
     }

@@ -43,12 +43,12 @@ RTObject_impl::RTObject_impl(CORBA::ORB_ptr orb, PortableServer::POA_ptr poa) : 
 }
 
 RTObject_impl::~RTObject_impl() {
-  if (impl_->exiter.joinable()) {
-    if (impl_->exiter.get_id() == std::this_thread::get_id())
-      impl_->exiter.detach();
-    else
-      impl_->exiter.join();
-  }
+  std::thread exiter;
+  exiter.swap(*impl_->exiter.lock());
+  if (exiter.get_id() == std::this_thread::get_id())
+    exiter.detach();
+  else if (exiter.joinable())
+    exiter.join();
   // A component that never lived, or was deleted without exit. Its ports are members of the derived class and gone already.
   impl_->shared.lock()->ports.clear();
   finalizeContexts();
@@ -76,7 +76,7 @@ ReturnCode_t RTObject_impl::initialize() {
   prepareBinding();
   coil::Properties properties;
   {
-    const auto turn = impl_->properties_turn.lock();
+    const auto turn = impl_->properties_turn.take();
     properties = m_properties;
   }
   const std::string active_set = properties.getProperty("configuration.active_config");
@@ -136,8 +136,7 @@ ReturnCode_t RTObject_impl::exitBy(std::chrono::steady_clock::time_point deadlin
   if (!isInsideCallback()) return exitNow(deadline);
   // A context cannot be stopped from inside one of its callbacks. The thread holds a reference: the component may be given back meanwhile.
   _add_ref();
-  const std::scoped_lock lock(impl_->exiter_mutex);
-  impl_->exiter = std::thread([this, deadline] {
+  *impl_->exiter.lock() = std::thread([this, deadline] {
     exitNow(deadline);
     _remove_ref();
   });
@@ -148,9 +147,9 @@ ReturnCode_t RTObject_impl::exitBy(std::chrono::steady_clock::time_point deadlin
 void RTObject_impl::waitForExiter() {
   std::thread exiter;
   {
-    const std::scoped_lock lock(impl_->exiter_mutex);
-    if (impl_->exiter.get_id() == std::this_thread::get_id()) return;
-    exiter.swap(impl_->exiter);
+    auto own = impl_->exiter.lock();
+    if (own->get_id() == std::this_thread::get_id()) return;
+    exiter.swap(*own);
   }
   if (exiter.joinable()) exiter.join();
 }
@@ -214,7 +213,7 @@ void RTObject_impl::shutdown() {
 
 void RTObject_impl::setInstanceName(const char* instance_name) {
   {
-    const auto turn = impl_->properties_turn.lock();
+    const auto turn = impl_->properties_turn.take();
     profile_.instance_name = instance_name ? instance_name : "";
     m_properties["instance_name"] = profile_.instance_name;
   }
@@ -228,7 +227,7 @@ void RTObject_impl::setInstanceName(const char* instance_name) {
 void RTObject_impl::takeNames() {
   std::string instance;
   {
-    const auto turn = impl_->properties_turn.lock();
+    const auto turn = impl_->properties_turn.take();
     const auto take = [this](const char* key, std::string& name) { name = m_properties.getProperty(key, name); };
     take("type_name", profile_.type_name);
     take("description", profile_.description);
@@ -241,7 +240,7 @@ void RTObject_impl::takeNames() {
 }
 
 std::string RTObject_impl::property(const std::string& key, const std::string& otherwise) const {
-  const auto turn = impl_->properties_turn.lock();
+  const auto turn = impl_->properties_turn.take();
   return m_properties.getProperty(key, otherwise);
 }
 
@@ -253,7 +252,7 @@ RTObject_ptr RTObject_impl::getObjRef() const { return RTC::RTObject::_duplicate
 
 void RTObject_impl::setProperties(const coil::Properties& prop) {
   {
-    const auto turn = impl_->properties_turn.lock();
+    const auto turn = impl_->properties_turn.take();
     m_properties << prop;
   }
   takeNames();
@@ -280,7 +279,7 @@ void RTObject_impl::prepareBinding() {
   if (phase != Impl::Phase::created && phase != Impl::Phase::initializing) return;
   coil::Properties sets;
   {
-    const auto turn = impl_->properties_turn.lock();
+    const auto turn = impl_->properties_turn.take();
     const coil::Properties* conf = m_properties.findNode("conf");
     if (!conf) return;
     sets = *conf;
@@ -292,7 +291,7 @@ ComponentProfile* RTObject_impl::get_component_profile() {
   ComponentProfile_var profile = new ComponentProfile();
   coil::Properties properties;
   {
-    const auto turn = impl_->properties_turn.lock();
+    const auto turn = impl_->properties_turn.take();
     properties = m_properties;
     profile->instance_name = profile_.instance_name.c_str();
     profile->type_name = profile_.type_name.c_str();

@@ -1,0 +1,90 @@
+// Every lock is one of base/guarded.h, which has ranks and asserts their order: reads every source of the project and reports raw ones.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "support/paths.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::vector<std::string>;
+
+// Files that have a raw lock, and why. The list only gets shorter: a file that no longer has one is reported too.
+const std::map<std::string, std::string> allowed = {
+    {"rtm-core/base/guarded.h", "the locks themselves"},
+    // coil is an author's library and stands alone, and headers for authors may not include ours. Nothing is called under these locks.
+    {"rtm-core/openrtm/include/coil/ClockManager.h", "coil stands alone"},
+    {"rtm-core/openrtm/include/coil/Factory.h", "coil stands alone"},
+    {"rtm-core/openrtm/include/coil/Mutex.h", "an author's lock"},
+    {"rtm-core/openrtm/include/coil/PeriodicTask.h", "coil stands alone"},
+    {"rtm-core/openrtm/include/coil/Timer.h", "coil stands alone"},
+    {"rtm-core/openrtm/coil/PeriodicTask.cpp", "coil stands alone"},
+    {"rtm-core/openrtm/include/rtm/CdrBufferBase.h", "an author's header"},
+    {"rtm-core/openrtm/include/rtm/CorbaConsumer.h", "an author's header"},
+    {"rtm-core/openrtm/include/rtm/ListenerList.h", "an author's header, a template"},
+    {"rtm-core/openrtm/include/rtm/LocalServiceAdmin.h", "an author's header"},
+    {"rtm-core/openrtm/include/rtm/ManagerActionListener.h", "an author's header, a template"},
+    {"rtm-core/openrtm/include/rtm/ManagerServant.h", "an author's header"},
+    {"rtm-core/openrtm/include/rtm/ObjectManager.h", "an author's header, a template"},
+    {"rtm-core/openrtm/include/rtm/PeriodicLoop.h", "an author's header"},
+    {"rtm-core/openrtm/include/rtm/PortConnectListener.h", "an author's header, a template"},
+    {"rtm-core/openrtm/include/rtm/RingBuffer.h", "an author's header, a template"},
+    {"rtm-core/openrtm/include/rtm/StaticFSM.h", "an author's header, a template"},
+};
+
+// "file:line", one per raw lock, sorted.
+Names raw_locks(const fs::path& root) {
+  static const std::regex lock(
+      R"(\b(std::(recursive_|timed_|recursive_timed_|shared_|shared_timed_)?mutex|pthread_(mutex|rwlock|spin)\w*|omni_mutex|std::binary_semaphore)\b)");
+  Names found;
+  for (const char* top : {"rtm-core", "sim-server", "iface-components", "clients", "idl"}) {
+    if (!fs::exists(root / top)) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+      const std::string extension = entry.path().extension().string();
+      if (!entry.is_regular_file() || (extension != ".h" && extension != ".cpp")) continue;
+      const std::string file = fs::relative(entry.path(), root).generic_string();
+      std::ifstream in(entry.path());
+      std::string line;
+      for (int number = 1; std::getline(in, line); ++number) {
+        const auto code = line.substr(0, line.find("//"));
+        if (std::regex_search(code, lock)) found.push_back(file + ":" + std::to_string(number));
+      }
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::string file_of(const std::string& place) { return place.substr(0, place.rfind(':')); }
+
+TEST(LockRules, every_lock_of_the_project_has_a_rank) {
+  for (const auto& place : raw_locks(paths::source_dir))
+    EXPECT_TRUE(allowed.contains(file_of(place))) << place << ": a raw lock; expected base::Guarded, base::Turn or base::UsersTurn";
+}
+
+TEST(LockRules, the_list_of_exceptions_has_no_file_without_a_raw_lock) {
+  Names files;
+  for (const auto& place : raw_locks(paths::source_dir)) files.push_back(file_of(place));
+  for (const auto& [file, reason] : allowed) EXPECT_TRUE(std::ranges::count(files, file) > 0) << file << " (" << reason << ")";
+}
+
+TEST(LockRules, raw_locks_of_every_kind_are_found) {
+  const fs::path root = fs::path(testing::TempDir()) / ("lock_rules_" + std::to_string(getpid()));
+  fs::create_directories(root / "sim-server");
+  std::ofstream(root / "sim-server" / "a.cpp")
+      << "#include <mutex>\nstd::mutex a;\n// std::mutex b;\nstd::recursive_mutex c;\nmy_mutex d;\n"
+         "std::shared_mutex e;\npthread_mutex_t f;\n";
+  const auto found = raw_locks(root);
+  fs::remove_all(root);
+  EXPECT_EQ(found, (Names{"sim-server/a.cpp:2", "sim-server/a.cpp:4", "sim-server/a.cpp:6", "sim-server/a.cpp:7"}));
+}
+
+}  // namespace
