@@ -2,6 +2,8 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <iostream>
 #include <numbers>
@@ -9,6 +11,7 @@
 
 #include "base/command_line.h"
 #include "base/log.h"
+#include "base/text.h"
 #include "leader_tracker.h"
 #include "player_connection.h"
 #include "protocol/payloads.h"
@@ -22,6 +25,8 @@ struct Options {
   std::string host = "127.0.0.1";
   std::uint16_t port = 6666;
   std::uint16_t drive = 0, laser = 0;
+  std::string key;
+  double wait = 10;     // [s] for a server that is not there yet
   double duration = 0;  // [s], simulated; 0: without end
   follow::SteeringSettings steering;
 };
@@ -121,11 +126,17 @@ class Follower {
 };
 
 int run(const Options& options) {
+  using Clock = std::chrono::steady_clock;
+  const auto patience_ends = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.wait));
   bool was_there = false;
   std::string complaint;
   while (is_told_to_end == 0) {
     std::optional<base::Error> error;
-    if (auto connection = PlayerConnection::open(options.host, options.port)) {
+    const auto socket = PlayerConnection::connect(options.host, options.port);
+    const bool may_come = !socket && !was_there && Clock::now() < patience_ends;
+    if (!socket) {
+      error = socket.error();
+    } else if (auto connection = PlayerConnection::open(*socket, options.host, options.port, options.key)) {
       if (!was_there) say("connected to " + options.host + ":" + std::to_string(options.port));
       was_there = true;
       const auto done = Follower(std::move(*connection), options).run();
@@ -135,9 +146,15 @@ int run(const Options& options) {
       error = connection.error();
     }
     if (is_told_to_end != 0) return 0;
-    if (!was_there) {
+    if (!was_there && !may_come) {
       std::cerr << "follow: " << error->message << '\n';
       return 1;
+    }
+    if (may_come) {
+      if (error->message != complaint) say(fmt::format("waiting for up to {} s: {}", base::format_number(options.wait), error->message));
+      complaint = error->message;
+      ::usleep(100'000);
+      continue;
     }
     // The server may come back, and the robot has been stopped meanwhile.
     if (error->message != complaint) base::log(base::Level::warn, "follow", "{}; trying again", error->message);
@@ -164,6 +181,10 @@ int main(int argc, char** argv) {
       ->check(base::number_between(0.4, 10))
       ->capture_default_str();
   app.add_option("--max-speed", options.steering.max_speed, "[m/s]")->check(base::number_between(0, 10))->capture_default_str();
+  app.add_option("--wait", options.wait, "For a server that is not there yet [s]")
+      ->check(base::number_between(0, 1e6))
+      ->capture_default_str();
+  app.add_option("--auth", options.key, "Key that the server wants (player-gateway --auth)")->envname("RTMSIM_PLAYER_AUTH");
   app.add_option("--duration", options.duration, "End after so many seconds of the server's time; 0: never")
       ->check(base::number_between(0, 1e9))
       ->capture_default_str();

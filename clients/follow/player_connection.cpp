@@ -33,7 +33,20 @@ bool wait_for(int socket, short events, Clock::time_point deadline) {
   }
 }
 
-base::Result<int> connect_to(const std::string& host, std::uint16_t port) {
+// Empty when it is connected.
+std::string why_not_connected(int socket, const addrinfo& address) {
+  if (::connect(socket, address.ai_addr, address.ai_addrlen) == 0) return {};
+  if (errno != EINPROGRESS) return std::strerror(errno);
+  if (!wait_for(socket, POLLOUT, Clock::now() + answer_limit)) return "does not answer";
+  int error = 0;
+  socklen_t size = sizeof error;
+  ::getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size);
+  return error == 0 ? std::string() : std::strerror(error);
+}
+
+}  // namespace
+
+base::Result<int> PlayerConnection::connect(const std::string& host, std::uint16_t port) {
   const std::string where = host + ":" + std::to_string(port);
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
@@ -43,15 +56,13 @@ base::Result<int> connect_to(const std::string& host, std::uint16_t port) {
   const std::unique_ptr<addrinfo, void (*)(addrinfo*)> info(found, &::freeaddrinfo);
   std::string why = "no address";
   for (const addrinfo* one = found; one != nullptr; one = one->ai_next) {
-    const int socket = ::socket(one->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    if (socket >= 0 && ::connect(socket, one->ai_addr, one->ai_addrlen) == 0) return socket;
-    why = std::strerror(errno);
+    const int socket = ::socket(one->ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    why = socket >= 0 ? why_not_connected(socket, *one) : std::strerror(errno);
+    if (why.empty()) return socket;
     if (socket >= 0) ::close(socket);
   }
   return base::Error{where + ": " + why};
 }
-
-}  // namespace
 
 PlayerConnection::PlayerConnection(PlayerConnection&& other) noexcept
     : socket_(std::exchange(other.socket_, -1)),
@@ -73,20 +84,18 @@ PlayerConnection::~PlayerConnection() {
   if (socket_ >= 0) ::close(socket_);
 }
 
-base::Result<PlayerConnection> PlayerConnection::open(const std::string& host, std::uint16_t port) {
-  const auto socket = connect_to(host, port);
-  if (!socket) return socket.error();
-  PlayerConnection connection(*socket);
+base::Result<PlayerConnection> PlayerConnection::open(int socket, const std::string& host, std::uint16_t port, const std::string& key) {
+  PlayerConnection connection(socket);
   connection.where_ = host + ":" + std::to_string(port);
   connection.port_ = port;
   const int on = 1;
-  ::setsockopt(*socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
   std::array<char, player::banner_size> hello;
   std::size_t size = 0;
   const auto deadline = Clock::now() + answer_limit;
   while (size < hello.size()) {
-    if (!wait_for(*socket, POLLIN, deadline)) return base::Error{connection.where_ + " says nothing: it is no server of Player"};
-    const ssize_t got = ::recv(*socket, hello.data() + size, hello.size() - size, 0);
+    if (!wait_for(socket, POLLIN, deadline)) return base::Error{connection.where_ + " says nothing: it is no server of Player"};
+    const ssize_t got = ::recv(socket, hello.data() + size, hello.size() - size, 0);
     if (got <= 0) return base::Error{connection.where_ + " has closed the connection"};
     size += static_cast<std::size_t>(got);
   }
@@ -95,6 +104,10 @@ base::Result<PlayerConnection> PlayerConnection::open(const std::string& host, s
   const auto pull =
       connection.request({}, player::player_request::datamode, player::encode_u32(static_cast<std::uint32_t>(player::DataMode::pull)));
   if (!pull) return pull.error();
+  if (!key.empty()) {
+    const auto admitted = connection.request({}, player::player_request::auth, player::encode_key(key));
+    if (!admitted) return base::Error{connection.where_ + " refuses the key"};
+  }
   return connection;
 }
 

@@ -14,8 +14,10 @@ namespace follow {
 
 class PlayerConnection {
  public:
-  // With the server's hello, and PULL mode agreed upon.
-  static base::Result<PlayerConnection> open(const std::string& host, std::uint16_t port);
+  // A socket for open().
+  static base::Result<int> connect(const std::string& host, std::uint16_t port);
+  // With the server's hello, PULL mode agreed upon, and the key sent, if there is one. Takes the socket.
+  static base::Result<PlayerConnection> open(int socket, const std::string& host, std::uint16_t port, const std::string& key);
   PlayerConnection(PlayerConnection&& other) noexcept;
   PlayerConnection& operator=(PlayerConnection&& other) noexcept;
   ~PlayerConnection();

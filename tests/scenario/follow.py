@@ -124,6 +124,25 @@ def losses():
             await_("a robot that stands", rig.stands)
 
 
+# The gateway comes after the follower, which says that it waits; it does not wait for ever.
+def late_gateway():
+    with Rig() as rig:
+        rig.server(f"{source}/worlds/leader_follower.sdf", "--rtf", "2")
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            first = probe.getsockname()[1]
+        waiting = rig.start(f"{bin_dir}/follow", "--port", str(first), "--wait", "60")
+        await_("a follower that says so", lambda: "waiting for up to 60 s" in rig.log(waiting))
+        gone = subprocess.run([f"{bin_dir}/follow", "--port", str(first), "--wait", "0.3"], capture_output=True, text=True, timeout=60)
+        assert gone.returncode == 1 and "waiting for up to 0.3 s" in gone.stdout and "refused" in gone.stderr, gone
+        config = f"{rig.work}/ports.yaml"
+        with open(config, "w") as file:
+            file.write(f"ports:\n- port: {first}\n  robots: [follower]\n")
+        rig.gateway("--config", config)
+        await_("a leader", lambda: "leader at" in rig.log(waiting))
+        assert rig.log(waiting).count("waiting for") == 1, rig.log(waiting)
+
+
 # Servers that are none.
 def wrong_servers():
     def follow(port, *words):
@@ -135,7 +154,7 @@ def wrong_servers():
     with socket.socket() as listener:
         listener.bind(("127.0.0.1", 0))
         port = listener.getsockname()[1]
-        refused(follow(port), "refused")
+        refused(follow(port, "--wait", "0"), "refused")
         listener.listen()
         for hello, says in ((b"HTTP/1.1 400 Bad Request\r\n\r\n" + bytes(20), "no server of Player"), (b"Player v", "closed"), (b"Player v.3".ljust(32, b"\0") + b"\xff" * 40, "sends")):
             process = subprocess.Popen([f"{bin_dir}/follow", "--port", str(port)], stderr=subprocess.PIPE, text=True)
@@ -150,4 +169,4 @@ def wrong_servers():
             refused(follow(port, *words), "follow:", 2)
 
 
-{"leader": leader, "losses": losses, "wrong_servers": wrong_servers}[case]()
+{"leader": leader, "losses": losses, "late_gateway": late_gateway, "wrong_servers": wrong_servers}[case]()
