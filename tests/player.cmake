@@ -3,8 +3,9 @@ rtmsim_test(player_protocol_test unit/player_protocol_test.cpp LIBRARIES player_
 rtmsim_test(player_gateway_test unit/player_gateway_test.cpp LIBRARIES player_gateway)
 rtmsim_test(player_devices_test unit/player_devices_test.cpp LIBRARIES player_gateway)
 rtmsim_test(pose_control_test unit/pose_control_test.cpp LIBRARIES player_gateway)
+rtmsim_test(door_test unit/door_test.cpp LIBRARIES player_gateway)
 rtmsim_test(alarm_test unit/alarm_test.cpp LIBRARIES player_gateway)
-foreach(case listing drive properties flow rate two_clients gateway_ends restart hung late_and_changing simulation rangers sensors config bad_input stuck exhausted)
+foreach(case listing drive properties flow rate two_clients gateway_ends restart hung late_and_changing simulation rangers sensors config bad_input stuck)
   add_test(NAME player.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/player.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(player.${case} PROPERTIES LABELS integration TIMEOUT 300)
@@ -21,8 +22,14 @@ foreach(case identity configure meters_and_depths)
   set_tests_properties(player.${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
 
+foreach(case accounts key silent exhausted few_descriptors)
+  add_test(NAME player.${case}
+    COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/player_doors.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+  set_tests_properties(player.${case} PROPERTIES LABELS integration TIMEOUT 300)
+endforeach()
+
 rtmsim_test(leader_follower_test unit/leader_follower_test.cpp LIBRARIES leader_follower)
-foreach(case leader losses wrong_servers)
+foreach(case leader losses late_gateway wrong_servers)
   add_test(NAME follow.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/follow.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(follow.${case} PROPERTIES LABELS integration TIMEOUT 300)

@@ -137,9 +137,11 @@ std::optional<player::PropertyValue> Device::property(const std::string& key) co
   return key == "iface" ? std::optional<player::PropertyValue>(iface().name()) : std::nullopt;
 }
 
-void Device::command(Client& client, std::uint8_t subtype, const std::string& payload) {
-  if (!source_ || !is_subscribed(client) || !is_served(served(), static_cast<std::uint32_t>(player::Type::command), subtype)) return;
+bool Device::command(Client& client, std::uint8_t subtype, const std::string& payload) {
+  if (!source_ || !is_subscribed(client)) return true;
+  if (!is_served(served(), static_cast<std::uint32_t>(player::Type::command), subtype)) return false;
   obey(client, subtype, payload);
+  return true;
 }
 
 void Device::publish(std::uint8_t subtype, const std::string& payload, const shm::Stamp& stamp) {

@@ -75,7 +75,8 @@ class Device {
   void show_latest(Client& newcomer);
   // Nothing: `later` will be called with the answer, from the same thread.
   std::optional<Answer> request(std::uint8_t subtype, const std::string& payload, const Later& later);
-  void command(Client& client, std::uint8_t subtype, const std::string& payload);
+  // Of a client that is subscribed; false when there is no such command.
+  bool command(Client& client, std::uint8_t subtype, const std::string& payload);
 
  protected:
   virtual ServedTable served() const = 0;

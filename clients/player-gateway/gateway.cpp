@@ -5,9 +5,11 @@
 #include <sys/signalfd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 
+#include "base/descriptors.h"
 #include "base/log.h"
 
 namespace gateway {
@@ -19,16 +21,24 @@ constexpr std::uint64_t tag(Kind kind, std::uint64_t which = 0) { return static_
 constexpr Kind kind_of(std::uint64_t value) { return static_cast<Kind>(value >> 56); }
 constexpr std::uint64_t which_of(std::uint64_t value) { return value & ((std::uint64_t{1} << 56) - 1); }
 
+// Descriptors that clients leave: for ifaces, requests and the log.
+std::size_t client_limit(std::size_t descriptors) {
+  constexpr std::size_t most_left = 128;
+  return descriptors == 0 ? 256 : descriptors - std::min(most_left, descriptors / 2);
+}
+
 constexpr int look_period = 200;  // [ms] between looks at the simulator's life
 
 }  // namespace
 
 Gateway::Gateway(Options options)
     : options_(std::move(options)),
+      descriptors_(base::raise_descriptor_limit()),
       epoll_(::epoll_create1(EPOLL_CLOEXEC)),
       errands_(options_.server_id),
       simulator_(
-          options_.server_id, errands_, [this](const std::vector<ListedIface>& ifaces) { arrange(ifaces); }, [this] { lose(); }) {}
+          options_.server_id, errands_, [this](const std::vector<ListedIface>& ifaces) { arrange(ifaces); },
+          [this] { lose(); }) {}
 
 Gateway::~Gateway() {
   sessions_.clear();  // before the robots that they use
@@ -44,11 +54,16 @@ void Gateway::add(int descriptor, std::uint64_t what) {
 }
 
 base::Result<void> Gateway::run() {
+  constexpr std::size_t fewest = 32;
+  if (descriptors_ != 0 && descriptors_ < fewest)
+    return base::Error{fmt::format("too few file descriptors: {} may be open, expected at least {}", descriptors_, fewest)};
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
   signals_ = ::signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
+  if (epoll_ < 0 || signals_ < 0 || alarm_.descriptor() < 0 || errands_.descriptor() < 0)
+    return base::Error{"no file descriptors left"};
   add(signals_, tag(Kind::signal));
   add(alarm_.descriptor(), tag(Kind::alarm));
   add(errands_.descriptor(), tag(Kind::errand));
@@ -57,6 +72,8 @@ base::Result<void> Gateway::run() {
       if (auto good = open_port(port.port); !good) return good;
     }
   }
+  if (const auto words = describe(options_.door, options_.address); !words.empty())
+    base::log(base::Level::warn, "player-gateway", "{}", words);
   simulator_.look();
   if (!simulator_.is_there()) base::log(base::Level::info, "player-gateway", "waiting for simulator {}", options_.server_id);
   auto next_look = std::chrono::steady_clock::now();
@@ -67,6 +84,7 @@ base::Result<void> Gateway::run() {
     if (const auto now = std::chrono::steady_clock::now(); now >= next_look) {
       next_look = now + std::chrono::milliseconds(look_period);
       simulator_.look();
+      check_patience();
       set_accepting(true);
     }
     serve_clients();
@@ -191,12 +209,45 @@ void Gateway::accept(Port& port) {
       return set_accepting(false);
     }
     if (accepted.socket < 0) return;
+    const Entry entry = options_.door.entry(accepted.socket);
+    if (entry == Entry::refused || !make_room()) {
+      ::close(accepted.socket);
+      refuse(port, accepted.peer, entry == Entry::refused ? "of another account or host" : "too many clients");
+      continue;
+    }
     const std::uint64_t id = next_session_++;
-    auto session = std::make_unique<Session>(accepted.socket, std::move(accepted.peer), *port.robot, timeline_);
+    auto session = std::make_unique<Session>(accepted.socket, std::move(accepted.peer), options_.door, entry == Entry::needs_key,
+                                             *port.robot, timeline_);
     session->known_events = EPOLLIN;
     add(accepted.socket, tag(Kind::session, id));
     sessions_.emplace(id, std::move(session));
   }
+}
+
+bool Gateway::make_room() {
+  if (sessions_.size() < client_limit(descriptors_)) return true;
+  const auto oldest = std::find_if(sessions_.begin(), sessions_.end(), [](const auto& entry) { return !entry.second->is_admitted(); });
+  if (oldest == sessions_.end()) return false;
+  oldest->second->give_way();
+  sessions_.erase(oldest);
+  return true;
+}
+
+void Gateway::refuse(const Port& port, const std::string& peer, const std::string& why) {
+  constexpr std::chrono::seconds quiet{1};  // between lines, whatever comes
+  const auto now = std::chrono::steady_clock::now();
+  if (now - refusals_.told < quiet) {
+    ++refusals_.untold;
+    return;
+  }
+  base::log(base::Level::warn, "player-gateway", "port {}: {} refused: {}{}", port.robot->port(), peer, why,
+            refusals_.untold > 0 ? fmt::format(" ({} others before it)", refusals_.untold) : std::string());
+  refusals_ = {now, 0};
+}
+
+void Gateway::check_patience() {
+  const auto now = std::chrono::steady_clock::now();
+  for (const auto& [id, session] : sessions_) session->check_patience(now);
 }
 
 void Gateway::set_accepting(bool is_accepting) {

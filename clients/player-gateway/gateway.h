@@ -6,6 +6,7 @@
 
 #include <sys/epoll.h>
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -15,6 +16,7 @@
 
 #include "alarm.h"
 #include "base/result.h"
+#include "door.h"
 #include "errands.h"
 #include "listener.h"
 #include "mapping.h"
@@ -29,6 +31,7 @@ struct Options {
   std::uint32_t server_id = 0;
   std::string address = "127.0.0.1";
   std::uint16_t first_port = 6665;  // 0: any free ones
+  Door door;
   std::optional<std::vector<ConfiguredPort>> config;
 };
 
@@ -53,6 +56,11 @@ class Gateway {
   void arrange(const std::vector<ListedIface>& ifaces);
   void lose();
   void accept(Port& port);
+  // Admits at most as many clients as leave descriptors for ifaces and pictures; of those that have asked for nothing the oldest gives way.
+  // False when there is no room.
+  bool make_room();
+  void refuse(const Port& port, const std::string& peer, const std::string& why);
+  void check_patience();
   void set_accepting(bool is_accepting);
   void handle(const epoll_event& event);
   void take_samples();
@@ -60,6 +68,7 @@ class Gateway {
   void serve_clients();
 
   const Options options_;
+  const std::size_t descriptors_;  // that may be open; 0: not known
   int epoll_ = -1, signals_ = -1;
   Timeline timeline_;
   Errands errands_;
@@ -71,6 +80,10 @@ class Gateway {
   std::vector<std::string> missing_;  // of the mapping file, as said last
   std::vector<SharedSegment> watched_;
   std::uint64_t arranged_for_ = 0;  // which simulator the ports show
+  struct {
+    std::chrono::steady_clock::time_point told;
+    std::uint64_t untold = 0;
+  } refusals_;
   bool is_accepting_ = true;
   bool is_serving_ = false;  // all ports of the first world are open
   bool is_over_ = false;

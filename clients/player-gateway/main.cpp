@@ -19,6 +19,14 @@ void block_signals() {
   sigprocmask(SIG_BLOCK, &signals, nullptr);
 }
 
+const CLI::Validator is_key(
+    [](const std::string& text) {
+      return text.empty() || text.size() > gateway::Door::max_key
+                 ? "key must have 1 to " + std::to_string(gateway::Door::max_key) + " characters"
+                 : std::string();
+    },
+    "KEY");
+
 int fail(const base::Error& error) {
   std::cerr << "player-gateway: " << error.message << '\n';
   return 1;
@@ -43,6 +51,11 @@ int main(int argc, char** argv) {
                    ->check(CLI::Range(0, 65535))
                    ->capture_default_str();
   app.add_option("--address", options.address, "Address to listen on; 0.0.0.0: all")->capture_default_str();
+  app.add_option("--auth", options.door.key,
+                 "Also serve clients of other accounts and hosts that send this key (Player's authentication request)")
+      ->check(is_key)
+      ->envname("RTMSIM_PLAYER_AUTH");
+  app.add_flag("--open", options.door.is_open)->description("Serve everybody who reaches the ports, without a key");
   app.add_option("--config", config, "Mapping file: which port shows which devices (docs/player.md)")->excludes(port);
   app.add_flag("-q,--quiet", is_quiet)->description("Say nothing of clients that come with bytes of another protocol");
   bool is_table_asked = false;

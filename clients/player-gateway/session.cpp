@@ -26,8 +26,14 @@ void set_flag(int socket, int level, int option) {
 
 }  // namespace
 
-Session::Session(int socket, std::string peer, Robot& robot, const Timeline& timeline)
-    : socket_(socket), peer_(std::move(peer)), robot_(robot), timeline_(timeline), outbox_(robot.port()) {
+Session::Session(int socket, std::string peer, const Door& door, bool needs_key, Robot& robot, const Timeline& timeline)
+    : socket_(socket),
+      peer_(std::move(peer)),
+      door_(door),
+      robot_(robot),
+      timeline_(timeline),
+      outbox_(robot.port()),
+      needs_key_(needs_key) {
   set_flag(socket_, IPPROTO_TCP, TCP_NODELAY);
   set_flag(socket_, SOL_SOCKET, SO_KEEPALIVE);
   // Clients expect it whole in their first read.
@@ -43,6 +49,11 @@ Session::~Session() {
 void Session::end(const std::string& why) {
   if (!is_over_ && !why.empty()) base::log(base::Level::info, "player-gateway", "port {}: {}: {}; closed", robot_.port(), peer_, why);
   is_over_ = true;
+}
+
+void Session::check_patience(Patience::Time now) {
+  // Bytes that wait while the client is not listened to are not its fault.
+  if (const auto why = patience_.look(now, is_admitted(), is_listening() && parser_.pending() > 0)) end(std::string(*why));
 }
 
 void Session::deliver(const player::Address& device, std::uint8_t subtype, const SharedBytes& message) {
@@ -76,8 +87,16 @@ void Session::serve() {
 void Session::handle(const player::Message& message) {
   const player::Header& header = message.header;
   const bool is_player = header.address.interface == player::Interface::player;
+  if (header.type == player::Type::request) has_asked_ = true;
+  if (needs_key_ && !(header.type == player::Type::request && is_player && header.address.index == 0)) {
+    if (header.type == player::Type::request) answer(header, nack());
+    return;
+  }
   if (header.type == player::Type::command) {
-    if (Device* device = robot_.find(header.address)) device->command(*this, header.subtype, message.payload);
+    Device* device = robot_.find(header.address);
+    if (device != nullptr && !device->command(*this, header.subtype, message.payload))
+      complain(header.address, header.subtype,
+               fmt::format("command {} of {} is not served", header.subtype, player::to_text(header.address)));
     return;
   }
   if (header.type != player::Type::request) return;  // clients have nothing else to say
@@ -95,9 +114,23 @@ void Session::handle(const player::Message& message) {
   if (at_once) later(*at_once);
 }
 
+void Session::authenticate(const player::Message& message) {
+  constexpr int most_wrong_keys = 3;
+  const auto key = player::decode_key(message.payload);
+  const bool is_right = key && door_.fits(*key);
+  needs_key_ = needs_key_ && !is_right;
+  answer(message.header, is_right ? ack() : nack());
+  if (!is_right && needs_key_ && ++wrong_keys_ == most_wrong_keys) end("has sent three keys that are wrong");
+}
+
 void Session::handle_player(const player::Message& message) {
   const player::Header& header = message.header;
+  // The mode is asked for before anything else, by clients that do not look at the answer.
+  if (needs_key_ && header.subtype != player::player_request::auth && header.subtype != player::player_request::datamode)
+    return answer(header, nack());
   switch (header.subtype) {
+    case player::player_request::auth:
+      return authenticate(message);
     case player::player_request::devlist:
       return answer(header, ack(player::encode_device_list(robot_.devices())));
     case player::player_request::driverinfo:
@@ -138,10 +171,10 @@ base::Error Session::why_unknown(const player::Address& device) const {
   return {"there is no " + player::to_text(device) + (there.empty() ? "" : "; there are " + base::join(there, " "))};
 }
 
-void Session::complain(const player::Address& device, const std::string& why) {
+void Session::complain(const player::Address& device, std::uint8_t command, const std::string& what) {
   constexpr std::size_t most = 20;  // of one client
-  if (complaints_.size() >= most || !complaints_.insert(device).second) return;
-  base::log(base::Level::warn, "player-gateway", "port {}: {}: subscription refused: {}", robot_.port(), peer_, why);
+  if (complaints_.size() >= most || !complaints_.insert({device, command}).second) return;
+  base::log(base::Level::warn, "player-gateway", "port {}: {}: {}", robot_.port(), peer_, what);
 }
 
 // Clients look into the answer without asking whether there is one, so also a refusal has it.
@@ -154,7 +187,7 @@ void Session::open_or_close(const player::Message& message) {
   if (request->access == static_cast<std::uint32_t>(player::Access::open)) {
     const auto opened = device != nullptr ? device->subscribe(*this) : base::Result<void>(why_unknown(request->address));
     is_done = opened.ok();
-    if (!opened) complain(request->address, opened.error().message);
+    if (!opened) complain(request->address, 0, "subscription refused: " + opened.error().message);
   } else if (device != nullptr && request->access == static_cast<std::uint32_t>(player::Access::close)) {
     is_done = device->unsubscribe(*this);
     if (!device->is_subscribed(*this)) outbox_.forget(request->address);

@@ -6,7 +6,9 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 
+#include "door.h"
 #include "outbox.h"
 #include "protocol/message.h"
 #include "robot.h"
@@ -20,8 +22,9 @@ class Session final : public Client {
   // Answers that wait [bytes] before the client is no longer listened to.
   static constexpr std::size_t max_answers = 1 << 18;
 
-  // Takes the connected, non-blocking socket and says hello. `robot` and `timeline` outlive the session.
-  Session(int socket, std::string peer, Robot& robot, const Timeline& timeline);
+  // Takes the connected, non-blocking socket and says hello. `door`, `robot` and `timeline` outlive the session. A client that needs the
+  // key is served once it has sent it.
+  Session(int socket, std::string peer, const Door& door, bool needs_key, Robot& robot, const Timeline& timeline);
   ~Session() override;  // leaves all devices and closes
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -32,6 +35,12 @@ class Session final : public Client {
   void receive();
   // Answers what has come and sends what may go; to be called after anything has happened.
   void serve();
+  // Ends the session of a client that lets others wait; to be called now and then.
+  void check_patience(Patience::Time now);
+  // Has sent a whole request, and the key if it needs it.
+  bool is_admitted() const { return has_asked_ && !needs_key_; }
+  // Makes room for somebody else.
+  void give_way() { end("there is no room for more clients, and this one has asked for nothing"); }
   // Once true it stays: the session is to be ended.
   bool is_over() const { return is_over_; }
   // EPOLLIN and EPOLLOUT as they are needed now.
@@ -44,21 +53,26 @@ class Session final : public Client {
   void end(const std::string& why);
   void handle(const player::Message& message);
   void handle_player(const player::Message& message);
+  void authenticate(const player::Message& message);
   void open_or_close(const player::Message& message);
   base::Error why_unknown(const player::Address& device) const;
-  // Each device once.
-  void complain(const player::Address& device, const std::string& why);
+  // Once for each device and command (0: of a subscription).
+  void complain(const player::Address& device, std::uint8_t command, const std::string& what);
   void name_driver(const player::Message& message);
   void answer(const player::Header& asked, const Answer& answer);
   void send();
 
   const int socket_;
   const std::string peer_;
+  const Door& door_;
   Robot& robot_;
   const Timeline& timeline_;
   player::MessageParser parser_{max_payload};
   Outbox outbox_;
-  std::set<player::Address> complaints_;
+  std::set<std::pair<player::Address, std::uint8_t>> complaints_;
+  Patience patience_{std::chrono::steady_clock::now()};
+  bool needs_key_, has_asked_ = false;
+  int wrong_keys_ = 0;
   bool is_waiting_ = false;  // for the simulator to answer: the next request is not looked at before
   bool is_blocked_ = false;  // the socket takes no more
   bool is_over_ = false;

@@ -1,0 +1,62 @@
+#include "door.h"
+
+#include <gtest/gtest.h>
+
+namespace gateway {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+TEST(Door, only_the_whole_key_fits) {
+  const Door door{false, "open sesame"};
+  EXPECT_TRUE(door.fits("open sesame"));
+  for (const auto wrong : {"", "open", "open sesame ", "Open sesame", "xxxxxxxxxxx"}) EXPECT_FALSE(door.fits(wrong)) << wrong;
+  EXPECT_FALSE(door.fits(std::string(1000, 'x')));
+  EXPECT_FALSE(door.fits(std::string("open sesame\0", 12)));
+}
+
+TEST(Door, without_a_key_none_fits) {
+  EXPECT_FALSE(Door{}.fits(""));
+  EXPECT_FALSE(Door{}.fits("x"));
+}
+
+TEST(Door, no_socket_is_welcome_unless_it_is_open) {
+  EXPECT_EQ(Door{}.entry(-1), Entry::refused);
+  EXPECT_EQ((Door{false, "k"}).entry(-1), Entry::needs_key);
+  EXPECT_EQ((Door{true, ""}).entry(-1), Entry::welcome);
+}
+
+TEST(Door, says_what_is_open) {
+  EXPECT_EQ(describe({}, "127.0.0.1"), "");
+  EXPECT_EQ(describe({}, "127.9.9.9"), "");
+  EXPECT_EQ(describe({}, "::1"), "");
+  EXPECT_NE(describe({}, "0.0.0.0").find("are refused"), std::string::npos);
+  EXPECT_NE(describe({}, "::").find("are refused"), std::string::npos);
+  EXPECT_NE(describe({false, "k"}, "127.0.0.1").find("send the key"), std::string::npos);
+  EXPECT_NE(describe({true, ""}, "127.0.0.1").find("everybody"), std::string::npos);
+}
+
+TEST(Patience, ends_with_those_who_ask_for_nothing) {
+  const auto start = Patience::Time();
+  Patience patience(start);
+  EXPECT_FALSE(patience.look(start + milliseconds(4999), false, false));
+  EXPECT_TRUE(patience.look(start + seconds(5), false, true));
+  EXPECT_FALSE(patience.look(start + seconds(5000), true, false));
+}
+
+TEST(Patience, ends_with_those_who_do_not_end_a_message) {
+  const auto start = Patience::Time();
+  Patience patience(start);
+  EXPECT_FALSE(patience.look(start + seconds(100), true, true));
+  EXPECT_FALSE(patience.look(start + seconds(129), true, true));
+  EXPECT_TRUE(patience.look(start + seconds(130), true, true));
+  // One message after another is no long message.
+  Patience other(start);
+  EXPECT_FALSE(other.look(start + seconds(1), true, true));
+  EXPECT_FALSE(other.look(start + seconds(20), true, false));
+  EXPECT_FALSE(other.look(start + seconds(40), true, true));
+}
+
+}  // namespace
+}  // namespace gateway
