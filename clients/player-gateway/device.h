@@ -14,6 +14,7 @@
 #include "outbox.h"
 #include "protocol/message.h"
 #include "protocol/payloads.h"
+#include "real_time.h"
 #include "served.h"
 #include "shm/iface_types.h"
 #include "source.h"
@@ -40,6 +41,7 @@ using Later = std::function<void(Answer)>;
 struct Services {
   Errands& errands;
   Timeline& timeline;
+  RealTime& real_time;
 };
 
 class Device {

@@ -37,7 +37,7 @@ Gateway::Gateway(Options options)
       epoll_(::epoll_create1(EPOLL_CLOEXEC)),
       errands_(options_.server_id),
       simulator_(
-          options_.server_id, errands_, [this](const std::vector<ListedIface>& ifaces) { arrange(ifaces); },
+          options_.server_id, errands_, real_time_, [this](const std::vector<ListedIface>& ifaces) { arrange(ifaces); },
           [this] { lose(); }) {}
 
 Gateway::~Gateway() {
@@ -161,7 +161,7 @@ void Gateway::serve_ports(std::vector<PortPlan> plans) {
 base::Result<void> Gateway::open_port(std::uint16_t number) {
   auto listener = Listener::open(options_.address, number);
   if (!listener) return listener.error();
-  const Services services{errands_, timeline_};
+  const Services services{errands_, timeline_, real_time_};
   auto robot = std::make_unique<Robot>(listener->port(), services);
   add(listener->socket(), tag(Kind::port, ports_.size()));
   ports_.push_back({std::move(*listener), std::move(robot), ""});

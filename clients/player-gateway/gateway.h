@@ -20,6 +20,7 @@
 #include "errands.h"
 #include "listener.h"
 #include "mapping.h"
+#include "real_time.h"
 #include "robot.h"
 #include "session.h"
 #include "simulator.h"
@@ -71,6 +72,7 @@ class Gateway {
   const std::size_t descriptors_;  // that may be open; 0: not known
   int epoll_ = -1, signals_ = -1;
   Timeline timeline_;
+  RealTime real_time_;
   Errands errands_;
   Alarm alarm_;
   Simulator simulator_;

@@ -1,9 +1,12 @@
 #include "simulation_device.h"
 
+#include <chrono>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "protocol/payloads.h"
+#include "simulator.h"
 
 namespace gateway {
 namespace {
@@ -68,6 +71,11 @@ std::optional<Answer> Simulation::property(const std::string& payload) {
   std::string value;
   if (is_world && request->property == "sim_time") {
     value = bytes_of(static_cast<double>(clock.stamp.sim_time_ns) / 1e9);
+  } else if (is_world && (request->property == "real_time" || request->property == "pause_time")) {
+    const auto now = std::chrono::steady_clock::now();
+    RealTime& time = services_.real_time;
+    time.see(now, clock.paused != 0, age_of(clock.stamp));
+    value = bytes_of(request->property == "real_time" ? time.since_start(now) : time.paused(now));
   } else if (is_world && request->property == "state") {
     value = bytes_of(static_cast<std::uint8_t>(clock.paused == 0 ? 1 : 0));
   } else if (request->property == "time") {

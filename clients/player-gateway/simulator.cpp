@@ -1,14 +1,34 @@
 #include "simulator.h"
 
+#include <time.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <chrono>
 
 #include "base/log.h"
+#include "shm/process.h"
 
 namespace gateway {
+namespace {
 
-Simulator::Simulator(std::uint32_t server_id, Errands& errands, std::function<void(const std::vector<ListedIface>&)> on_list,
-                     std::function<void()> on_loss)
-    : server_id_(server_id), errands_(errands), on_list_(std::move(on_list)), on_loss_(std::move(on_loss)) {}
+// Of the process that serves it.
+std::chrono::nanoseconds age_of(const shm::Iface& iface) {
+  const std::uint64_t ticks = iface.segment().header().server.start_time;
+  timespec now{};
+  if (ticks == 0 || ::clock_gettime(CLOCK_BOOTTIME, &now) != 0) return {};
+  const double age = static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) -
+                     static_cast<double>(ticks) / static_cast<double>(::sysconf(_SC_CLK_TCK));
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(age));
+}
+
+}  // namespace
+
+std::chrono::nanoseconds age_of(const shm::Stamp& stamp) { return std::chrono::nanoseconds(shm::wall_ns() - stamp.wall_time_ns); }
+
+Simulator::Simulator(std::uint32_t server_id, Errands& errands, RealTime& real_time,
+                     std::function<void(const std::vector<ListedIface>&)> on_list, std::function<void()> on_loss)
+    : server_id_(server_id), errands_(errands), real_time_(real_time), on_list_(std::move(on_list)), on_loss_(std::move(on_loss)) {}
 
 void Simulator::look() {
   if (world_ && world_->iface().status() != shm::Status::live) lose();
@@ -19,11 +39,16 @@ void Simulator::look() {
     ++met_;
     has_list_ = false;
     found_.clear();
+    if (world_->iface().read()) {
+      const auto& sample = world_->iface().sample<shm::SimulationSample>();
+      real_time_.begin(std::chrono::steady_clock::now(), age_of(world_->iface()), sample.paused != 0, sample.steps > 0);
+    }
   }
   std::pair<std::uint32_t, std::uint32_t> present = listed_;
   if (world_->iface().read()) {
     const auto& sample = world_->iface().sample<shm::SimulationSample>();
     present = {sample.ifaces, sample.models};
+    real_time_.see(std::chrono::steady_clock::now(), sample.paused != 0, age_of(sample.stamp));
   }
   const auto used = sources();
   const bool is_one_gone = std::any_of(used.begin(), used.end(), [](const auto& one) { return one->is_closed(); });

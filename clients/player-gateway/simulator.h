@@ -2,6 +2,7 @@
 // at a time.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -12,14 +13,18 @@
 
 #include "errands.h"
 #include "mapping.h"
+#include "real_time.h"
 #include "source.h"
 
 namespace gateway {
 
+// Since it was published.
+std::chrono::nanoseconds age_of(const shm::Stamp& stamp);
+
 class Simulator {
  public:
   // `on_list` is called with what there is each time that is known anew, `on_loss` when the simulator has ended.
-  Simulator(std::uint32_t server_id, Errands& errands, std::function<void(const std::vector<ListedIface>&)> on_list,
+  Simulator(std::uint32_t server_id, Errands& errands, RealTime& real_time, std::function<void(const std::vector<ListedIface>&)> on_list,
             std::function<void()> on_loss);
 
   // Looks whether it is there and still the same; to be called some times a second.
@@ -38,6 +43,7 @@ class Simulator {
 
   const std::uint32_t server_id_;
   Errands& errands_;
+  RealTime& real_time_;
   const std::function<void(const std::vector<ListedIface>&)> on_list_;
   const std::function<void()> on_loss_;
   std::shared_ptr<Source> world_;  // the simulation iface
