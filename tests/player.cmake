@@ -1,7 +1,7 @@
 # The protocol of Player, player-gateway before a peer of another make, and the follower.
 rtmsim_test(player_protocol_test unit/player_protocol_test.cpp LIBRARIES player_protocol)
 rtmsim_test(player_gateway_test unit/player_gateway_test.cpp LIBRARIES player_gateway)
-rtmsim_test(player_devices_test unit/player_devices_test.cpp LIBRARIES player_gateway)
+rtmsim_test(player_devices_test unit/player_devices_test.cpp unit/new_player_interface_test.cpp LIBRARIES player_gateway)
 rtmsim_test(pose_control_test unit/pose_control_test.cpp LIBRARIES player_gateway)
 rtmsim_test(door_test unit/door_test.cpp LIBRARIES player_gateway)
 rtmsim_test(alarm_test unit/alarm_test.cpp LIBRARIES player_gateway)
@@ -16,7 +16,7 @@ foreach(case position heading cars flight)
   set_tests_properties(player.${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
 
-foreach(case identity configure meters_and_depths)
+foreach(case identity configure meters_and_depths storm)
   add_test(NAME player.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/player_devices.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(player.${case} PROPERTIES LABELS integration TIMEOUT 300)

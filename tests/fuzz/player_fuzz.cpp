@@ -32,6 +32,9 @@ std::vector<std::string> make_seeds() {
       message(Interface::position2d, command, 1, player::encode(player::Velocity2d{{0.5, 0, 1}, true})),
       message(Interface::position2d, data, 1, player::encode(player::Position2dState{{1, 2, 3}, {4, 5, 6}, false})),
       message(Interface::laser, data, 1, player::encode(player::LaserScan{-1, 1, 0.5F, 8, {1, 2, 3, 4, 5}, "abcde", 7})),
+      message(Interface::player, request, 7, player::encode_key("open sesame")),
+      message(Interface::laser, request, 2, player::encode(player::LaserConfig{-1, 1, 0.5F, 8, 0.01F, true, 10})),
+      message(Interface::ranger, request, 4, player::encode(player::RangerConfig{-1, 1, 0.5, 0.1, 8, 0.01, 10})),
       message(Interface::simulation, request, 1, player::encode(player::NamedPose2d{"robot", {1, 2, 3}})),
       message(Interface::simulation, request, 3, player::encode(player::NamedPose3d{"robot", {1, 2, 3, 4, 5, 6}, 7})),
       message(Interface::position2d, request, player::universal_request::set_double, player::encode(player::DriverProperty{"speed", 0.5})),
@@ -83,12 +86,14 @@ bool decode_all(std::string_view payload) {
   static_cast<void>(decode_pid(payload));
   static_cast<void>(decode_speed_profile(payload));
   static_cast<void>(decode_capability(payload));
+  if (const auto config = decode_laser_config(payload)) static_cast<void>(encode(*config));
   for (unsigned subtype = 0; subtype < 256; ++subtype) {
     const auto decode = [subtype](std::string_view bytes) { return decode_driver_property(static_cast<std::uint8_t>(subtype), bytes); };
     if (universal_request::is_one(static_cast<std::uint8_t>(subtype)) && !comes_back(decode(payload), decode)) return false;
   }
+  if (const auto key = decode_key(payload); key && decode_key(encode_key(*key)) != key) return false;
   return comes_back(decode_device_request(payload), decode_device_request) && comes_back(decode_driver_info(payload), decode_driver_info) &&
-         comes_back(decode_velocity2d(payload), decode_velocity2d) &&
+         comes_back(decode_velocity2d(payload), decode_velocity2d) && comes_back(decode_ranger_config(payload), decode_ranger_config) &&
          comes_back(decode_position2d_state(payload), decode_position2d_state) &&
          comes_back(decode_laser_scan(payload), decode_laser_scan) && comes_back(decode_named_pose2d(payload), decode_named_pose2d) &&
          comes_back(decode_named_pose3d(payload), decode_named_pose3d) && comes_back(decode_property(payload), decode_property);

@@ -1,5 +1,6 @@
 # Which iface is which device of Player, what scanners can be told, and sensors beyond the usual: player_devices.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
 import math
+import random
 import struct
 
 from player_rig import *
@@ -159,4 +160,57 @@ def meters_and_depths():
         assert client.request(AIO, 0, 255, struct.pack(">II", DATA, 1))[0] == ACK and client.request(POINTCLOUD3D, 0, 1)[0] == NACK
 
 
-run(identity, configure, meters_and_depths)
+# Requests, commands and nonsense of all kinds to all devices, in streams that are cut anywhere: all that is good is answered, and the gateway lives.
+def storm():
+    seed = random.randrange(1 << 32)
+    print("seed", seed)
+    dice = random.Random(seed)
+    numbers = (0, 1, -1, 0.5, math.pi, 1e308, -1e308, math.inf, math.nan, 1e-310)
+
+    def payload():
+        kind = dice.randrange(6)
+        if kind == 0:
+            return dice.randbytes(dice.randrange(100))
+        if kind == 1:
+            return struct.pack(f">{n}d", *(dice.choice(numbers) for _ in range(n))) + bytes(4) if (n := dice.randrange(13)) else b""
+        if kind == 2:
+            return struct.pack(f">{n}f", *(dice.uniform(-5, 5) for _ in range(n))) if (n := dice.randrange(9)) else b""
+        if kind == 3:
+            return text(dice.choice(("mast", "world", "speed", "", "x" * 4000, "a::b", "%n"))) + dice.randbytes(dice.choice((0, 4, 24, 56)))
+        if kind == 4:
+            return struct.pack(">II", *(dice.choice((0, 1, 5, 0x7FFFFFFF, 0xFFFFFFFF)) for _ in range(2))) + dice.randbytes(8)
+        return dev_request(dice.randrange(70), dice.randrange(4), dice.choice((OPEN, OPEN, CLOSE, 7)))
+
+    with started_with(meters) as rig:
+        good = Client(rig.ports[0])
+        good.subscribe(AIO)
+        devices = [(PLAYER, 0), *good.devices()]
+        for _ in range(12):
+            client = Client(rig.ports[0], pull=dice.random() < 0.5)
+            client.open_devices = set(devices)
+            for device in devices[1:]:
+                if dice.random() < 0.5 and device[0] != SIMULATION:
+                    client.request(PLAYER, 0, 3, dev_request(*device, OPEN))
+            for _ in range(150):
+                interface, index = dice.choice(devices)
+                subtype = dice.choice((*range(11), *range(247, 256)))
+                if interface == SIMULATION and subtype in (1, 2):
+                    continue  # a pause would stop what is looked for below
+                if dice.random() < 0.3:
+                    client.command(interface, index, subtype, payload())
+                else:
+                    client.send(message(interface, index, REQ, subtype, payload()))
+                    while client.next().kind not in (ACK, NACK):
+                        pass
+            stream = b"".join(message(*dice.choice(devices), dice.randrange(8), dice.randrange(256), payload()) for _ in range(20))
+            stream = stream[: dice.randrange(len(stream))] + dice.randbytes(dice.randrange(50))
+            try:
+                client.send(stream)
+                client.close()
+            except (BrokenPipeError, ConnectionResetError):
+                pass
+            good.read_until(AIO)
+        rig.is_alive()
+
+
+run(identity, configure, meters_and_depths, storm)
