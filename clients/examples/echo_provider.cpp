@@ -1,6 +1,4 @@
 // EchoProvider: offers the service Example::EchoService.
-#include <coil/Mutex.h>
-#include <rtm/CorbaPort.h>
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/Manager.h>
 
@@ -31,7 +29,7 @@ class EchoServant : public virtual POA_Example::EchoService, public virtual Port
   }
 
  private:
-  coil::Mutex mutex_;
+  std::mutex mutex_;
   std::deque<std::string> texts_;
 };
 

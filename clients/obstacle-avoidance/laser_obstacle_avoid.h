@@ -3,6 +3,9 @@
 // long.
 #pragma once
 
+#include <rtm/idl/ExtendedDataTypesSkel.h>
+#include <rtm/idl/InterfaceDataTypesSkel.h>
+
 #include <base/guarded.h>
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/DataInPort.h>

@@ -6,6 +6,8 @@
 // already stays, and the numbers go on. window: 0 or 1.
 #pragma once
 
+#include <rtm/idl/InterfaceDataTypesSkel.h>
+
 #include <base/guarded.h>
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/DataInPort.h>

@@ -227,10 +227,12 @@ base::Result<std::string> ManagerImpl::name_component(const Managed& component, 
       std::any_of(argument.properties.begin(), argument.properties.end(), [](const auto& p) { return p.first == "instance_name"; });
   if (is_given) {
     if (auto checked = rt::check_instance_name(name); !checked) return checked.error();
-  } else {
+  }
+  {
+    // Those with a name of their own count too: T0, mine, T2.
     const auto mine = numbering_turn.take(numbering_patience);
     if (!mine) return base::Error{"the naming policy " + value("manager.components.naming_policy") + " is busy with another component"};
-    name = component.type_name() + numbering->onCreate(component.object());
+    const std::string number = numbering->onCreate(component.object());
     numbered = true;
     if (!is_given) name = component.type_name() + number;
   }
