@@ -185,4 +185,34 @@ TEST(Properties, an_escaped_dot_belongs_to_the_name) {
   EXPECT_EQ(p.findNode("a"), nullptr);
 }
 
+std::string deep_name(std::size_t steps) {
+  std::string name = "a";
+  for (std::size_t i = 1; i < steps; ++i) name += ".a";
+  return name;
+}
+
+TEST(Properties, as_deep_as_a_peer_likes_are_made_copied_listed_printed_and_gone_without_a_deep_stack) {
+  const auto name = deep_name(200'000);
+  coil::Properties p;
+  p.setProperty(name, "1");
+  p.setProperty(name + ".b", "2");
+  coil::Properties copy(p);
+  copy << p;
+  EXPECT_EQ(copy.propertyNames(), (std::vector<std::string>{name, name + ".b"}));
+  EXPECT_EQ(copy.getProperty(name), "1");
+  std::ostringstream out;
+  out << copy;
+  EXPECT_LT(out.str().size(), name.size() * 100);
+  copy = coil::Properties();
+  EXPECT_EQ(copy.size(), 0);
+}
+
+TEST(Properties, list_names_below_nodes_without_a_name) {
+  coil::Properties p;
+  p.setProperty(".x", "1");
+  p.setProperty("a..y", "2");
+  for (const auto& name : p.propertyNames()) EXPECT_NE(p.getProperty(name), "") << name;
+  EXPECT_EQ(p.size(), 2);
+}
+
 }  // namespace

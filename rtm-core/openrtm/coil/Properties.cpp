@@ -113,9 +113,10 @@ Properties::Properties(const std::map<std::string, std::string>& defaults) {
 
 Properties::Properties(const char* const* defaults, long count) { setDefaults(defaults, count); }
 
-Properties::Properties(const Properties& other) : name_(other.name_), value_(other.value_), default_value_(other.default_value_) {
-  copy_children(other);
-}
+Properties::Properties(const Properties& other) : Properties(other, WithoutChildren{}) { copy_descendants(other); }
+
+Properties::Properties(const Properties& other, WithoutChildren)
+    : name_(other.name_), value_(other.value_), default_value_(other.default_value_) {}
 
 Properties::Properties(Properties&& other) noexcept
     : name_(std::move(other.name_)), value_(std::move(other.value_)), default_value_(std::move(other.default_value_)) {
@@ -192,11 +193,37 @@ void Properties::store(std::ostream& out, const std::string& header) const {
   }
 }
 
-void Properties::list(std::ostream& out) const { print(out, 0); }
+// Every descendant, parents before children, in order; without recursion, since names from peers decide how deep a tree is.
+template <class Visit>
+void Properties::walk(Visit visit) const {
+  struct Level {
+    const Properties* node;
+    std::size_t next_child;
+  };
+  std::vector<Level> way{{this, 0}};
+  while (!way.empty()) {
+    if (way.back().next_child == way.back().node->leaf_.size()) {
+      way.pop_back();
+      continue;
+    }
+    const Properties* node = way.back().node->leaf_[way.back().next_child++];
+    visit(*node, way.size() - 1);
+    way.push_back({node, 0});
+  }
+}
 
 std::vector<std::string> Properties::propertyNames() const {
   std::vector<std::string> names;
-  for (const Properties* node : leaf_) node->collect_names({}, names);
+  std::string path;
+  std::vector<std::size_t> parents;  // the length of `path` up to each node on the way
+  walk([&](const Properties& node, std::size_t depth) {
+    parents.resize(depth);
+    path.resize(depth == 0 ? 0 : parents.back());
+    if (depth > 0) path += '.';
+    path += node.name_;
+    parents.push_back(path.size());
+    if (node.leaf_.empty() || !node.value_.empty() || !node.default_value_.empty()) names.push_back(path);
+  });
   return names;
 }
 
@@ -229,8 +256,14 @@ Properties* Properties::hasKey(const std::string& key) const { return child(key)
 
 void Properties::clear() {
   index_.reset();
-  auto children = std::exchange(leaf_, {});
-  for (Properties* node : children) delete node;
+  auto doomed = std::exchange(leaf_, {});
+  while (!doomed.empty()) {
+    const std::unique_ptr<Properties> node(doomed.back());
+    doomed.pop_back();
+    doomed.insert(doomed.end(), node->leaf_.begin(), node->leaf_.end());
+    node->index_.reset();
+    node->leaf_.clear();
+  }
 }
 
 Properties& Properties::operator<<(const Properties& other) {
@@ -289,12 +322,18 @@ void Properties::add_child(Properties* node) {
   }
 }
 
-void Properties::copy_children(const Properties& other) {
-  leaf_.reserve(other.leaf_.size());
-  for (const Properties* node : other.leaf_) {
-    auto copy = std::make_unique<Properties>(*node);
-    copy->root_ = this;
-    add_child(copy.release());
+void Properties::copy_descendants(const Properties& other) {
+  std::vector<std::pair<const Properties*, Properties*>> open{{&other, this}};
+  while (!open.empty()) {
+    const auto [from, to] = open.back();
+    open.pop_back();
+    to->leaf_.reserve(from->leaf_.size());
+    for (const Properties* node : from->leaf_) {
+      std::unique_ptr<Properties> copy(new Properties(*node, WithoutChildren{}));
+      copy->root_ = to;
+      to->add_child(copy.get());
+      open.emplace_back(node, copy.release());
+    }
   }
 }
 
@@ -304,25 +343,18 @@ void Properties::adopt_children(Properties& other) noexcept {
   for (Properties* node : leaf_) node->root_ = this;
 }
 
-void Properties::collect_names(const std::string& prefix, std::vector<std::string>& names) const {
-  const std::string path = prefix.empty() ? name_ : prefix + "." + name_;
-  if (leaf_.empty() || !value_.empty() || !default_value_.empty()) names.push_back(path);
-  for (const Properties* node : leaf_) node->collect_names(path, names);
-}
-
-void Properties::print(std::ostream& out, int depth) const {
-  const std::string indent(static_cast<std::size_t>(depth) * 2, ' ');
-  for (const Properties* node : leaf_) {
-    const std::string& value = node->value_.empty() ? node->default_value_ : node->value_;
-    out << indent << "- " << node->name_;
+void Properties::list(std::ostream& out) const {
+  constexpr std::size_t deepest_indent = 40;  // a tree of any depth is printed in proportion to its size
+  walk([&](const Properties& node, std::size_t depth) {
+    const std::string& value = node.value_.empty() ? node.default_value_ : node.value_;
+    out << std::string(2 * std::min(depth, deepest_indent), ' ') << "- " << node.name_;
     if (!value.empty()) out << ": " << value;
     out << '\n';
-    node->print(out, depth + 1);
-  }
+  });
 }
 
 std::ostream& operator<<(std::ostream& out, const Properties& properties) {
-  properties.print(out, 0);
+  properties.list(out);
   return out;
 }
 

@@ -86,10 +86,12 @@ class Properties {
   const Properties* find(std::string_view path) const;
   Properties& make(std::string_view path);
   void add_child(Properties* node);
-  void copy_children(const Properties& other);
+  struct WithoutChildren {};
+  Properties(const Properties& other, WithoutChildren);
+  void copy_descendants(const Properties& other);
   void adopt_children(Properties& other) noexcept;
-  void collect_names(const std::string& prefix, std::vector<std::string>& names) const;
-  void print(std::ostream& out, int depth) const;
+  template <class Visit>
+  void walk(Visit visit) const;
 
   std::string name_;
   std::string value_;
