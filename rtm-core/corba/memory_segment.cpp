@@ -42,29 +42,37 @@ base::Result<std::unique_ptr<MemorySegment>> MemorySegment::create(const std::st
   std::unique_ptr<MemorySegment> segment(new MemorySegment(name, file, size));
   segment->is_named_ = true;
   if (ftruncate(file, static_cast<off_t>(size)) != 0) return failure("cannot be made that long", name);
-  void* memory = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
-  if (memory == MAP_FAILED) return failure("cannot be mapped", name);
-  segment->memory_ = static_cast<std::byte*>(memory);
+  if (auto mapped = segment->map(PROT_READ | PROT_WRITE); !mapped) return mapped.error();
   return segment;
 }
 
 base::Result<std::unique_ptr<MemorySegment>> MemorySegment::open(const std::string& name) {
   if (!is_plain(name)) return base::Error{"shared memory " + base::in_quotes(name) + ": no name for a segment"};
-  const int file = shm_open(path_of(name).c_str(), O_RDONLY | O_CLOEXEC, 0);
+  // Whatever a peer has put there in place of a segment: nobody waits for a fifo.
+  const int file = shm_open(path_of(name).c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0);
   if (file < 0) return failure("cannot be opened", name);
   std::unique_ptr<MemorySegment> segment(new MemorySegment(name, file, 0));
   struct stat status {};
-  if (fstat(file, &status) != 0 || !S_ISREG(status.st_mode)) return failure("is no segment", name);
+  if (fstat(file, &status) != 0 || !S_ISREG(status.st_mode)) {
+    return base::Error{"shared memory " + base::in_quotes(name) + ": is no segment"};
+  }
   if (static_cast<std::size_t>(status.st_size) < header) return base::Error{"shared memory " + base::in_quotes(name) + ": too short"};
-  void* memory = mmap(nullptr, static_cast<std::size_t>(status.st_size), PROT_READ, MAP_SHARED, file, 0);
-  if (memory == MAP_FAILED) return failure("cannot be mapped", name);
   segment->size_ = static_cast<std::size_t>(status.st_size);
-  segment->memory_ = static_cast<std::byte*>(memory);
+  if (auto mapped = segment->map(PROT_READ); !mapped) return mapped.error();
   return segment;
+}
+
+base::Result<void> MemorySegment::map(int protection) {
+  void* memory = mmap(nullptr, size_, protection, MAP_SHARED, file_, 0);
+  if (memory == MAP_FAILED) return failure("cannot be mapped", name_);
+  memory_ = static_cast<std::byte*>(memory);
+  guard_.emplace(memory_, size_);
+  return {};
 }
 
 MemorySegment::~MemorySegment() {
   unlink();
+  guard_.reset();
   if (memory_) munmap(memory_, size_);
   close(file_);
 }
@@ -84,6 +92,7 @@ base::Result<void> MemorySegment::write(const Pieces& pieces, rt::ByteOrder orde
     std::memcpy(to, part.data(), part.size());
     to += part.size();
   }
+  if (base::was_cut(memory_)) return base::Error{"shared memory " + name_ + ": the reader has cut it short"};
   return {};
 }
 
@@ -96,8 +105,10 @@ base::Result<std::shared_ptr<rt::Block>> MemorySegment::read(rt::ByteOrder order
   std::memcpy(&length, memory_, sizeof length);
   length = in_order(length, order);
   if (length > size_ - header) return base::Error{"shared memory " + name_ + ": the sample is longer than the segment"};
+  if (length > longest) return base::Error{"shared memory " + name_ + ": the sample is longer than " + std::to_string(longest)};
   auto block = pool.take(length);
   std::memcpy(block->data(), memory_ + header, length);
+  if (base::was_cut(memory_)) return base::Error{"shared memory " + name_ + ": has become shorter"};
   return block;
 }
 

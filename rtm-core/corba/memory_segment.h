@@ -1,12 +1,14 @@
 // One sample in a named POSIX shared-memory segment: 8 octets of length in the connection's byte order, then the payload.
-// One thread at a time. What the other process writes is not trusted; only one that shortens the segment in the middle of a read, which
-// takes the same user and nobody does by mistake, could harm the reader.
+// One thread at a time. What the other process writes is not trusted: lengths are checked, and a segment that it cuts short becomes an error
+// (base/cut_guard.h).
 #pragma once
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "base/cut_guard.h"
 #include "base/result.h"
 #include "corba/payload.h"
 #include "core/sample.h"
@@ -24,6 +26,7 @@ class MemorySegment {
   MemorySegment& operator=(const MemorySegment&) = delete;
 
   static constexpr std::size_t header = 8;
+  static constexpr std::size_t longest = std::size_t{256} << 20;  // [octets], of samples that are read
   std::size_t size() const { return size_; }
   const std::string& name() const { return name_; }
   // pieces.size + header <= size().
@@ -33,11 +36,13 @@ class MemorySegment {
   void unlink();
 
  private:
+  base::Result<void> map(int protection);
   MemorySegment(std::string name, int file, std::size_t size) : name_(std::move(name)), file_(file), size_(size) {}
   std::string name_;
   int file_;
   std::size_t size_;
   std::byte* memory_ = nullptr;
+  std::optional<base::CutGuard> guard_{};
   bool is_named_ = false;
 };
 

@@ -78,7 +78,10 @@ class Outlet {
       reader_->setEndian(order == rt::ByteOrder::little);
       told_ = order;
     }
-    if (auto written = segment_->write(pieces, order); !written) return complain(written.error()), false;
+    if (auto written = segment_->write(pieces, order); !written) {
+      segment_.reset();  // the next sample gets a new one
+      return complain(written.error()), false;
+    }
     return true;
   }
 
@@ -300,7 +303,7 @@ class SharedMemoryFetcher final : public Fetcher {
 
 // nil if it is another interface or does not answer when asked for it.
 OpenRTM::PortSharedMemory_ptr narrow(CORBA::Object_ptr object, const Line& line) {
-  limit_calls(object, line.call_timeout);
+  limit_calls(object, std::min(line.call_timeout, port_call_timeout()));
   try {
     OpenRTM::PortSharedMemory_var narrowed = OpenRTM::PortSharedMemory::_narrow(object);
     limit_calls(narrowed, line.call_timeout);

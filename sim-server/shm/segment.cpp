@@ -20,7 +20,7 @@
 
 #include "base/guarded.h"
 #include "base/text.h"
-#include "shm/cut_guard.h"
+#include "base/cut_guard.h"
 #include "shm/futex.h"
 #include "shm/process.h"
 #include "shm/words.h"
@@ -69,25 +69,35 @@ struct FileKey {
   auto operator<=>(const FileKey&) const = default;
 };
 
-// Maps a file, or gives the mapping that this process has of it already; null with errno set when that fails.
-std::shared_ptr<void> map_file(int file, std::size_t size) {
-  static base::Guarded<std::map<FileKey, std::weak_ptr<void>>, base::Rank::registry> mappings;
+// The size is the one that the file had when it was mapped: it may have grown since, and what came later is not mapped.
+struct Mapping {
+  std::shared_ptr<void> base;  // null with errno set when mapping failed
+  std::size_t size = 0;
+};
+
+// Maps a file, or gives the mapping that this process has of it already.
+Mapping map_file(int file, std::size_t size) {
+  struct Known {
+    std::weak_ptr<void> base;
+    std::size_t size;
+  };
+  static base::Guarded<std::map<FileKey, Known>, base::Rank::registry> mappings;
   struct stat status {};
-  if (::fstat(file, &status) != 0) return nullptr;
+  if (::fstat(file, &status) != 0) return {};
   const FileKey key{status.st_dev, status.st_ino};
   auto table = mappings.lock();
   if (auto found = table->find(key); found != table->end()) {
-    if (auto mapping = found->second.lock()) return mapping;
+    if (auto mapping = found->second.base.lock()) return {std::move(mapping), found->second.size};
   }
-  std::erase_if(*table, [](const auto& entry) { return entry.second.expired(); });
-  void* base = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
-  if (base == MAP_FAILED) return nullptr;
-  std::shared_ptr<void> mapping(base, [size, guard = std::make_shared<CutGuard>(base, size)](void* mapped) mutable {
+  std::erase_if(*table, [](const auto& entry) { return entry.second.base.expired(); });
+  void* memory = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+  if (memory == MAP_FAILED) return {};
+  std::shared_ptr<void> mapping(memory, [size, guard = std::make_shared<base::CutGuard>(memory, size)](void* mapped) mutable {
     guard.reset();
     ::munmap(mapped, size);
   });
-  (*table)[key] = mapping;
-  return mapping;
+  (*table)[key] = {mapping, size};
+  return {std::move(mapping), size};
 }
 
 // Places all areas; returns the total size.
@@ -148,7 +158,7 @@ void tell_readers(Header& header) {
 // and whoever comes second finds that the name leads to another file.
 base::Result<Eviction> evict(const SegmentName& name) {
   const std::string path = path_of(name);
-  FileHandle file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW));
+  FileHandle file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   if (file.get() < 0) {
     if (errno == ENOENT) return Eviction{Judgement::gone, 0};
     return base::Error{"shared memory " + name.text() + " exists and can't be opened: " + reason()};
@@ -160,10 +170,10 @@ base::Result<Eviction> evict(const SegmentName& name) {
   struct stat status {};
   if (::fstat(file.get(), &status) != 0 || inode_of_path(path) != status.st_ino) return Eviction{};
   Eviction eviction{Judgement::removed, 0};
-  if (static_cast<std::size_t>(status.st_size) >= sizeof(Header)) {
-    const auto base = map_file(file.get(), static_cast<std::size_t>(status.st_size));
-    if (!base) return base::Error{"shared memory " + name.text() + " can't be mapped: " + reason()};
-    Header& header = *static_cast<Header*>(base.get());
+  if (S_ISREG(status.st_mode) && static_cast<std::size_t>(status.st_size) >= sizeof(Header)) {
+    const auto mapping = map_file(file.get(), static_cast<std::size_t>(status.st_size));
+    if (!mapping.base) return base::Error{"shared memory " + name.text() + " can't be mapped: " + reason()};
+    Header& header = *static_cast<Header*>(mapping.base.get());
     const bool is_ours = std::memcmp(header.magic, RTMSIM_MAGIC, sizeof header.magic) == 0;
     const bool is_closed = load(header.state) == RTMSIM_STATE_CLOSED;
     const ProcessMark server = header.server;
@@ -260,7 +270,7 @@ base::Result<Segment> Segment::create(const SegmentName& name, const Geometry& g
   auto made = make_file(name, size, access);
   if (!made) return made.error();
   FileHandle file(*made);
-  std::shared_ptr<void> base = map_file(file.get(), size);
+  std::shared_ptr<void> base = map_file(file.get(), size).base;
   if (!base) return base::Error{"shared memory " + name.text() + " can't be mapped: " + reason()};
 
   std::memcpy(header.magic, RTMSIM_MAGIC, sizeof header.magic);
@@ -311,21 +321,22 @@ base::Result<Segment> Segment::create(const SegmentName& name, const Geometry& g
 base::Result<Segment> Segment::open(const SegmentName& name) {
   if (auto good = check_name(name.iface); !good) return good.error();
   const std::string path = path_of(name);
-  FileHandle file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW));
+  FileHandle file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   if (file.get() < 0) return base::Error{"shared memory " + name.text() + " can't be opened: " + reason()};
   struct stat status {};
   if (::fstat(file.get(), &status) != 0) return base::Error{"shared memory " + name.text() + " can't be read: " + reason()};
+  if (!S_ISREG(status.st_mode)) return base::Error{"shared memory " + name.text() + " is no file"};
   if (status.st_uid != name.uid) return base::Error{"shared memory " + name.text() + " does not belong to the user in its name"};
   const auto size = static_cast<std::size_t>(status.st_size);
   if (size < sizeof(Header)) return base::Error{"shared memory " + name.text() + " is shorter than a header"};
-  std::shared_ptr<void> base = map_file(file.get(), size);
-  if (!base) return base::Error{"shared memory " + name.text() + " can't be mapped: " + reason()};
+  Mapping mapping = map_file(file.get(), size);
+  if (!mapping.base) return base::Error{"shared memory " + name.text() + " can't be mapped: " + reason()};
   Segment segment;
-  segment.base_ = std::move(base);
+  segment.base_ = std::move(mapping.base);
   segment.inode_ = status.st_ino;
   segment.name_ = name;
   std::memcpy(&segment.facts_, segment.base_.get(), offsetof(Header, state));
-  if (const std::string problem = check_header(segment.facts_, name, size); !problem.empty()) {
+  if (const std::string problem = check_header(segment.facts_, name, mapping.size); !problem.empty()) {
     return base::Error{"shared memory " + name.text() + " " + problem};
   }
   return segment;
@@ -341,7 +352,7 @@ std::span<const std::byte> Segment::info() const {
   return {place.count > 0 ? at(AreaIndex::info) : nullptr, place.count > 0 ? place.size : 0};
 }
 
-bool Segment::was_cut() const { return shm::was_cut(base_.get()); }
+bool Segment::was_cut() const { return base::was_cut(base_.get()); }
 
 bool Segment::is_current() const { return inode_ != 0 && inode_of_path(path_of(name_)) == inode_; }
 

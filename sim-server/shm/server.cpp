@@ -7,7 +7,7 @@
 
 #include "base/guarded.h"
 #include "base/text.h"
-#include "shm/cut_guard.h"
+#include "base/cut_guard.h"
 #include "shm/writer_impl.h"
 
 namespace shm {
@@ -86,7 +86,7 @@ void Server::tend() {
 
 std::vector<std::string> Server::take_cuts() {
   std::vector<std::string> names;
-  const std::size_t now = cuts();
+  const std::size_t now = base::cuts();
   if (now == state_->cuts_told.load(std::memory_order_relaxed)) return names;
   state_->cuts_told.store(now, std::memory_order_relaxed);
   auto ifaces = state_->ifaces.lock();

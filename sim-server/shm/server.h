@@ -38,7 +38,7 @@ class Server {
   // Renews heartbeats and takes leases of dead clients back. Cheap when called often: does its work at most ten times a second, or at once
   // after a death.
   void tend();
-  // Names of the segments that another process has cut short since the last call (cut_guard.h): nobody can use them until the server
+  // Names of the segments that another process has cut short since the last call (base/cut_guard.h): nobody can use them until the server
   // starts anew. One load when there are none.
   std::vector<std::string> take_cuts();
   ProcessWatch& watch();

@@ -390,6 +390,21 @@ TEST(Faults, a_file_that_is_cut_short_ends_neither_server_nor_readers) {
   }
 }
 
+TEST(Faults, a_file_that_is_made_longer_ends_no_client_that_opens_it_again) {
+  Fixture f;
+  auto laser = f.make(laser_spec("laser", laser_info()));
+  Iface reader = f.open(IfaceType::laser, "laser");
+  const std::string path = "/dev/shm/" + laser->segment().name().text();
+  const std::uint64_t longer = laser->segment().facts().total_size + (std::uint64_t{64} << 20);
+  ASSERT_EQ(::truncate(path.c_str(), static_cast<off_t>(longer)), 0);
+  Header& header = laser->segment().header();
+  header.total_size = longer;
+  header.areas[static_cast<std::size_t>(AreaIndex::leases)].offset = longer - 64 * 1024;
+  EXPECT_FALSE(Iface::open(f.id, IfaceType::laser, "laser")) << "this process has mapped less than the header says";
+  (void)find_segments(f.id);
+  EXPECT_TRUE(reader.subscribe()) << "who had it before goes on";
+}
+
 TEST(Faults, a_participant_killed_in_the_middle_of_a_tick_is_dropped_at_once) {
   Fixture f;
   auto simulation = f.make(simulation_spec(simulation_info()));

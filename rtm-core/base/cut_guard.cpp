@@ -1,4 +1,4 @@
-#include "shm/cut_guard.h"
+#include "base/cut_guard.h"
 
 #include <signal.h>
 #include <sys/mman.h>
@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <cstdint>
 
-namespace shm {
+namespace base {
 namespace {
 
 // Read by the signal handler, which may interrupt any line of any thread: no lock, no memory that moves. Untouched pages cost nothing.
@@ -87,4 +87,4 @@ bool was_cut(const void* base) {
 
 std::size_t cuts() { return cut_count.load(); }
 
-}  // namespace shm
+}  // namespace base
