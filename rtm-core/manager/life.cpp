@@ -205,6 +205,7 @@ void ManagerImpl::start_timer_tasks() {
     for (const auto& component : held_components()) component->leave_the_dead();
   };
   peers->add(look_after_components, look, look);
+  if (servant != nullptr) peers->add([this] { servant->tell_dropped_slaves(); }, look, look);
   // Both spellings are in the documentation.
   const bool greets = flag("manager.update_master_manager.enable", flag("corba.update_master_manager.enable", true));
   if (servant != nullptr && !is_master() && greets) {

@@ -9,8 +9,10 @@
 
 #include "base/log.h"
 #include "base/text.h"
+#include "corba/call_timeout.h"
 #include "corba/orb.h"
 #include "core/config_keys.h"
+#include "core/key_limits.h"
 #include "manager/manager_impl.h"
 #include "rtm/LocalServiceAdmin.h"
 #include "rtm/Manager.h"
@@ -21,6 +23,10 @@ namespace {
 
 constexpr std::size_t longest_name = std::size_t{64} << 10;
 constexpr std::chrono::seconds peer_timeout{2};
+constexpr std::chrono::milliseconds ping_timeout{300};  // of a slave that has hung
+constexpr std::chrono::seconds shortest_absence{10};    // of a slave that has hung; twice as long each time
+constexpr int most_doublings = 6;
+constexpr std::size_t most_managers = 256;  // of each list
 constexpr std::chrono::seconds creation_timeout{10};
 constexpr std::chrono::seconds modules_timeout{30};  // each module is read in a process of its own
 
@@ -105,8 +111,9 @@ bool answers(RTM::Manager_ptr manager) {
   }
 }
 
-// Adds the reference unless an equivalent one is there.
+// Adds the reference unless an equivalent one is there or there are too many.
 bool add_unique(std::vector<RTM::Manager_var>& list, RTM::Manager_ptr manager) {
+  if (list.size() >= most_managers) return false;
   for (const auto& known : list) {
     if (known->_is_equivalent(manager)) return false;
   }
@@ -118,9 +125,11 @@ bool add_unique(std::vector<RTM::Manager_var>& list, RTM::Manager_ptr manager) {
 bool is_below(RTM::Manager_ptr manager, RTM::Manager_ptr wanted) {
   constexpr std::size_t most = 100;
   std::vector<RTM::Manager_var> family{RTM::Manager_var(RTM::Manager::_duplicate(manager))};
+  const corba::ChainDeadline deadline(peer_timeout);
   for (std::size_t i = 0; i < family.size() && family.size() < most; ++i) {
+    if (deadline.is_over()) return true;  // nobody waits for a family that hangs
     try {
-      corba::set_call_timeout(family[i], peer_timeout);
+      deadline.limit(family[i]);
       RTM::ManagerList_var slaves = family[i]->get_slave_managers();
       for (CORBA::ULong k = 0; k < slaves->length(); ++k) {
         if (!CORBA::is_nil(slaves[k])) add_unique(family, slaves[k]);
@@ -175,15 +184,15 @@ void ManagerServant::deactivate() {
 RTC::ReturnCode_t ManagerServant::load_module(const char* pathname, const char* initfunc) { return manager_.load(pathname, initfunc); }
 RTC::ReturnCode_t ManagerServant::unload_module(const char* pathname) { return manager_.unload(pathname); }
 
-// What every living slave answers, appended.
+// What every living slave answers, appended. One that takes the time-out is dropped: nobody waits for it twice.
 template <class List, class Ask>
 void ManagerServant::append_from_slaves(List& list, Ask ask) {
   for (const auto& slave : living_slaves()) {
     try {
       auto theirs = ask(slave.in());
       for (CORBA::ULong i = 0; i < theirs->length(); ++i) append(list, theirs[i]);
-    } catch (const CORBA::Exception&) {  // gone meanwhile
-      continue;
+    } catch (const CORBA::Exception& e) {  // gone meanwhile, or hanging
+      if (corba::is_time_out(e)) drop(slave, true);
     }
   }
 }
@@ -248,8 +257,8 @@ RTC::ReturnCode_t ManagerServant::delete_component(const char* instance_name) {
   for (const auto& slave : living_slaves()) {
     try {
       if (slave->delete_component(instance_name) == RTC::RTC_OK) return RTC::RTC_OK;
-    } catch (const CORBA::Exception&) {  // gone meanwhile
-      continue;
+    } catch (const CORBA::Exception& e) {  // gone meanwhile, or hanging
+      if (corba::is_time_out(e)) drop(slave, true);
     }
   }
   return RTC::BAD_PARAMETER;
@@ -312,7 +321,7 @@ RTM::NVList* ManagerServant::get_configuration() {
 
 RTC::ReturnCode_t ManagerServant::set_configuration(const char* name, const char* value) {
   const std::string key(base::trim(name));
-  if (key.empty() || key.size() > 1024 || std::string_view(value).size() > longest_name || key.front() == '.' || key.back() == '.' ||
+  if (key.empty() || !rt::check_key("key", key) || std::string_view(value).size() > longest_name || key.front() == '.' || key.back() == '.' ||
       key.find("..") != std::string::npos) {
     return RTC::BAD_PARAMETER;
   }
@@ -352,7 +361,15 @@ RTM::ManagerList* ManagerServant::get_slave_managers() { return to_list(living_s
 
 // A manager asks its slaves for theirs: one that is above this one already would be asked without end.
 RTC::ReturnCode_t ManagerServant::add_slave_manager(RTM::Manager_ptr mgr) {
-  if (CORBA::is_nil(mgr) || !answers(mgr) || is_below(mgr, reference_)) return RTC::BAD_PARAMETER;
+  if (CORBA::is_nil(mgr)) return RTC::BAD_PARAMETER;
+  {
+    const std::scoped_lock lock(mutex_);
+    const auto now = std::chrono::steady_clock::now();
+    for (const auto& dropped : dropped_) {
+      if (dropped.manager->_is_equivalent(mgr) && now < dropped.may_return) return RTC::BAD_PARAMETER;
+    }
+  }
+  if (!answers(mgr) || is_below(mgr, reference_)) return RTC::BAD_PARAMETER;
   const std::scoped_lock lock(mutex_);
   return add_unique(slaves_, mgr) ? RTC::RTC_OK : RTC::BAD_PARAMETER;
 }
@@ -364,6 +381,47 @@ RTC::ReturnCode_t ManagerServant::remove_slave_manager(RTM::Manager_ptr mgr) {
   return std::erase_if(slaves_, [&](const auto& known) { return known->_is_equivalent(mgr); }) > 0 ? RTC::RTC_OK : RTC::BAD_PARAMETER;
 }
 
+void ManagerServant::drop(RTM::Manager_ptr slave, bool hangs) {
+  const std::scoped_lock lock(mutex_);
+  std::erase_if(slaves_, [&](const auto& known) { return known->_is_equivalent(slave); });
+  if (!hangs) return;
+  auto found = std::find_if(dropped_.begin(), dropped_.end(), [&](const auto& known) { return known.manager->_is_equivalent(slave); });
+  if (found == dropped_.end()) {
+    if (dropped_.size() >= most_managers) dropped_.erase(dropped_.begin());
+    found = dropped_.insert(dropped_.end(), Dropped{RTM::Manager_var(RTM::Manager::_duplicate(slave))});
+  }
+  const auto absence = shortest_absence * (1 << std::min(found->times, most_doublings));
+  ++found->times;
+  found->is_told = false;
+  found->may_return = std::chrono::steady_clock::now() + absence;
+  base::log(base::Level::warn, "manager", "a slave manager does not answer: it is dropped, and may come back after {} s", absence.count());
+}
+
+void ManagerServant::tell_dropped_slaves() {
+  std::vector<RTM::Manager_var> untold;
+  {
+    const std::scoped_lock lock(mutex_);
+    for (const auto& dropped : dropped_) {
+      if (!dropped.is_told) untold.push_back(dropped.manager);
+    }
+  }
+  const corba::ChainDeadline deadline(ping_timeout);
+  for (const auto& slave : untold) {
+    if (deadline.is_over()) return;
+    bool is_told = true;
+    try {
+      deadline.limit(slave);
+      slave->remove_master_manager(reference_);
+    } catch (const CORBA::Exception& e) {  // gone, or still hanging
+      is_told = !corba::is_time_out(e);
+    }
+    const std::scoped_lock lock(mutex_);
+    for (auto& dropped : dropped_) {
+      if (dropped.manager->_is_equivalent(slave)) dropped.is_told = is_told;
+    }
+  }
+}
+
 // The slaves that answer; the others are forgotten.
 std::vector<RTM::Manager_var> ManagerServant::living_slaves() {
   std::vector<RTM::Manager_var> slaves;
@@ -372,17 +430,19 @@ std::vector<RTM::Manager_var> ManagerServant::living_slaves() {
     slaves = slaves_;
   }
   std::vector<RTM::Manager_var> living;
+  const corba::ChainDeadline deadline(peer_timeout);
   for (auto& slave : slaves) {
+    if (deadline.left() < peer_timeout / 2) break;  // several hang: they are dropped call by call
     try {
-      corba::set_call_timeout(slave, peer_timeout);
+      deadline.limit(slave);
       if (!slave->_non_existent()) {
         living.push_back(slave);
         continue;
       }
-    } catch (const CORBA::Exception&) {  // as good as gone
+      drop(slave, false);
+    } catch (const CORBA::Exception& e) {  // as good as gone
+      drop(slave, corba::is_time_out(e));
     }
-    const std::scoped_lock lock(mutex_);
-    std::erase_if(slaves_, [&](const auto& known) { return known->_is_equivalent(slave); });
   }
   return living;
 }

@@ -5,6 +5,7 @@
 
 #include <rtm/idl/ManagerSkel.h>
 
+#include <chrono>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -54,19 +55,30 @@ class ManagerServant final : public POA_RTM::Manager {
 
   // As a slave: says hello to the master of corba.master_manager if it is not in the list yet. On the timer.
   void greet_master();
+  // Slaves that were dropped because they hung are told when they wake, so that they can come back. On the timer.
+  void tell_dropped_slaves();
   void leave_masters();
 
  private:
+  // A slave that has taken the time-out of a call. It may come back, later each time.
+  struct Dropped {
+    RTM::Manager_var manager;
+    int times = 0;
+    bool is_told = false;
+    std::chrono::steady_clock::time_point may_return{};
+  };
   std::vector<RTM::Manager_var> living_slaves();
+  void drop(RTM::Manager_ptr slave, bool hangs);
   RTM::Manager_var manager_at(const std::string& address);
   template <class List, class Ask>
   void append_from_slaves(List& list, Ask ask);
 
   RTC::Manager& manager_;
   RTM::Manager_var reference_;
-  std::mutex mutex_;  // guards the two lists
+  std::mutex mutex_;  // guards the three lists
   std::vector<RTM::Manager_var> masters_;
   std::vector<RTM::Manager_var> slaves_;
+  std::vector<Dropped> dropped_;
   RTM::Manager_var greeted_;  // the master of corba.master_manager; the timer's thread only
 };
 
