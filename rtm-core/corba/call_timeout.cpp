@@ -1,5 +1,6 @@
 #include "corba/call_timeout.h"
 
+#include <omniORB4/minorCode.h>
 #include <omniORB4/omniORB.h>
 
 #include <algorithm>
@@ -21,6 +22,32 @@ std::chrono::milliseconds port_call_timeout() { return std::chrono::milliseconds
 void limit_calls(CORBA::Object_ptr object, std::chrono::milliseconds timeout) {
   if (CORBA::is_nil(object)) return;
   omniORB::setClientCallTimeout(object, static_cast<CORBA::ULong>(std::clamp<std::int64_t>(timeout.count(), 1, 3'600'000)));
+}
+
+bool is_time_out(const CORBA::Exception& problem) {
+  if (dynamic_cast<const CORBA::TIMEOUT*>(&problem)) return true;
+  const auto* transient = dynamic_cast<const CORBA::TRANSIENT*>(&problem);
+  return transient && transient->minor() == omni::TRANSIENT_CallTimedout;
+}
+
+namespace {
+
+constexpr int most_patience = 3;
+
+}  // namespace
+
+ChainDeadline::ChainDeadline(std::chrono::milliseconds patience_for_one)
+    : patience_for_one_(patience_for_one), end_(std::chrono::steady_clock::now() + most_patience * patience_for_one) {}
+
+std::chrono::milliseconds ChainDeadline::left() const {
+  return std::chrono::ceil<std::chrono::milliseconds>(end_ - std::chrono::steady_clock::now());
+}
+
+void ChainDeadline::limit(CORBA::Object_ptr object) const { limit_calls(object, std::min(left(), patience_for_one_)); }
+
+std::chrono::milliseconds chain_timeout(std::chrono::milliseconds patience_for_one, std::size_t left, std::size_t all) {
+  if (all <= most_patience) return patience_for_one * static_cast<int>(left);
+  return patience_for_one * most_patience * static_cast<int>(left) / static_cast<int>(all);
 }
 
 }  // namespace corba

@@ -4,6 +4,7 @@
 #include <omniORB4/CORBA.h>
 
 #include <chrono>
+#include <cstddef>
 
 namespace corba {
 
@@ -14,5 +15,26 @@ std::chrono::milliseconds port_call_timeout();
 
 // Every later call of this reference ends after `timeout`, with CORBA::TIMEOUT or TRANSIENT if the other side hangs. Nil is ignored.
 void limit_calls(CORBA::Object_ptr object, std::chrono::milliseconds timeout);
+
+// The other side has taken the whole time-out: it hangs, or the way there does.
+bool is_time_out(const CORBA::Exception& problem);
+
+// One deadline for calls that are made one after the other to peers that may all hang: three times the patience for one. Any thread.
+class ChainDeadline {
+ public:
+  explicit ChainDeadline(std::chrono::milliseconds patience_for_one);
+  bool is_over() const { return left() <= std::chrono::milliseconds::zero(); }
+  std::chrono::milliseconds left() const;
+  // Later calls of this reference end with the deadline, or with the patience for one if that is earlier; at once when it is over.
+  void limit(CORBA::Object_ptr object) const;
+
+ private:
+  std::chrono::milliseconds patience_for_one_;
+  std::chrono::steady_clock::time_point end_;
+};
+
+// The time-out of a call that leads through `left` of the `all` members of a chain, each of which waits for the next one: whoever comes
+// later gives up earlier, and the whole chain takes at most three times the patience for one.
+std::chrono::milliseconds chain_timeout(std::chrono::milliseconds patience_for_one, std::size_t left, std::size_t all);
 
 }  // namespace corba

@@ -335,7 +335,7 @@ class CdrFetcher final : public Fetcher {
 // nil if it is another interface or does not answer when asked for it.
 template <class Stub>
 typename Stub::_ptr_type narrow(CORBA::Object_ptr object, const Line& line) {
-  limit_calls(object, line.call_timeout);
+  limit_calls(object, std::min(line.call_timeout, port_call_timeout()));
   try {
     typename Stub::_var_type narrowed = Stub::_narrow(object);
     limit_calls(narrowed, line.call_timeout);

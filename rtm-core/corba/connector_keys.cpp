@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "base/text.h"
 #include "corba/call_timeout.h"
 #include "corba/nv_list.h"
 
@@ -14,15 +15,17 @@ std::string prefix_of(rt::Interface interface, rt::Side side) {
          (side == rt::Side::in ? ".inport" : ".outport");
 }
 
+}  // namespace
+
 CORBA::Object_ptr parse_reference(const char* text) {
+  const auto form = base::to_lower(std::string_view(text).substr(0, 10));
+  if (!form.starts_with("ior:") && !form.starts_with("corbaloc:")) return CORBA::Object::_nil();
   try {
     return orb()->string_to_object(text);
   } catch (const CORBA::Exception&) {
     return CORBA::Object::_nil();
   }
 }
-
-}  // namespace
 
 void publish_reference(RTC::ConnectorProfile& profile, rt::Interface interface, rt::Side side, const Provider& provider) {
   const std::string prefix = prefix_of(interface, side);

@@ -11,6 +11,9 @@ namespace corba {
 void publish_reference(RTC::ConnectorProfile& profile, rt::Interface interface, rt::Side provider_side, const Provider& provider);
 // The object of the other side: the last _ior that can be read, else _ref; nil if there is neither.
 CORBA::Object_ptr published_reference(const RTC::ConnectorProfile& profile, rt::Interface interface, rt::Side provider_side);
+// The object that a peer has named; nil if the text is no reference. Only IOR: and corbaloc: count, since other forms, as corbaname, ask
+// servers that the sender of the text chooses.
+CORBA::Object_ptr parse_reference(const char* text);
 // Takes out references that an earlier life of this connection has left in the profile.
 void remove_references(RTC::ConnectorProfile& profile);
 // The time-out, byte order and sizes of a connection.

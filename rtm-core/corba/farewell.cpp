@@ -1,6 +1,5 @@
 #include "corba/farewell.h"
 
-#include <omniORB4/minorCode.h>
 #include <omnithread.h>
 
 #include <algorithm>
@@ -32,6 +31,8 @@ constexpr auto attempt = std::chrono::milliseconds(300);
 constexpr auto longest_pause = std::chrono::milliseconds(1000);
 constexpr auto longest_hang = std::chrono::minutes(10);
 constexpr auto longest_absence = std::chrono::hours(24);
+
+std::chrono::milliseconds patience_for_one() { return std::min(port_call_timeout(), patience); }
 
 struct Message {
   RTC::PortService_var port;
@@ -70,11 +71,6 @@ bool leave_message(const std::string& address, RTC::PortService_ptr port, const 
   if (found == state->processes.end() || !found->second.hangs) return false;
   found->second.untold.push_back({RTC::PortService::_duplicate(port), connector_id, Clock::now() + port_call_timeout(), nullptr});
   return true;
-}
-
-bool is_time_out(const CORBA::SystemException& problem) {
-  return dynamic_cast<const CORBA::TIMEOUT*>(&problem) ||
-         (dynamic_cast<const CORBA::TRANSIENT*>(&problem) && problem.minor() == omni::TRANSIENT_CallTimedout);
 }
 
 // It is asked something harmless until it answers: what waits in its sockets when it wakes must not end a connection that was made anew
@@ -182,12 +178,19 @@ void end_farewells() {
   state.wait_for(table.changed, attempt * 10, [&] { return state->threads == 0; });
 }
 
-std::optional<RTC::ReturnCode_t> take_leave(RTC::PortService_ptr port, const char* connector_id, CORBA::ULong left) {
+ChainDeadline farewell_deadline() { return ChainDeadline(2 * patience_for_one()); }
+
+std::optional<RTC::ReturnCode_t> take_leave(RTC::PortService_ptr port, const char* connector_id, CORBA::ULong left,
+                                            const ChainDeadline& deadline) {
   std::string address;
   try {
     address = process_address(port);
     if (leave_message(address, port, connector_id)) return std::nullopt;
-    limit_calls(port, std::min(port_call_timeout(), patience) * static_cast<int>(left));
+    if (deadline.is_over()) {
+      tell_later(address, port, connector_id, false, port_call_timeout());
+      return std::nullopt;
+    }
+    limit_calls(port, std::min(deadline.left(), chain_timeout(patience_for_one(), std::min<std::size_t>(left, 3), 3)));
     return port->notify_disconnect(connector_id);
   } catch (const CORBA::SystemException& e) {
     if (is_time_out(e)) tell_later(address, port, connector_id, true, port_call_timeout());  // or it is dead, and there is nobody to tell

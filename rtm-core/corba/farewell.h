@@ -7,14 +7,19 @@
 
 #include <optional>
 
+#include "corba/call_timeout.h"
 #include "rtm/idl/RTCStub.h"
 
 namespace corba {
 
 // notify_disconnect; nothing if the port is dead or does not answer in about a second. `left`: ports of the chain from this one on, each of
 // which may find that the next one hangs. The process that did not answer is told later, if it wakes within the time-out of calls between
-// ports; until that is known nobody waits for it any more.
-std::optional<RTC::ReturnCode_t> take_leave(RTC::PortService_ptr port, const char* connector_id, CORBA::ULong left);
+// ports; until that is known nobody waits for it any more. After the deadline nobody is waited for at all.
+std::optional<RTC::ReturnCode_t> take_leave(RTC::PortService_ptr port, const char* connector_id, CORBA::ULong left,
+                                            const ChainDeadline& deadline);
+
+// The deadline for the calls of take_leave to all ports of one connection.
+ChainDeadline farewell_deadline();
 
 // For a connection that was dropped because the port's process did not answer: says notify_disconnect to the port when the process has
 // woken, within ten minutes; nothing if it is dead. Returns at once.

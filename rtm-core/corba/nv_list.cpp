@@ -1,5 +1,7 @@
 #include "corba/nv_list.h"
 
+#include "core/key_limits.h"
+
 namespace corba {
 namespace {
 
@@ -36,6 +38,14 @@ std::optional<std::string> find_text(const SDOPackage::NVList& list, std::string
   const char* text = nullptr;
   if (!value || !(*value >>= text)) return std::nullopt;
   return text;
+}
+
+base::Result<void> check_keys(std::string_view what, const SDOPackage::NVList& list) {
+  rt::KeyCounter counter(what);
+  for (CORBA::ULong i = 0; i < list.length(); ++i) {
+    if (auto checked = counter.add(list[i].name.in()); !checked) return checked;
+  }
+  return {};
 }
 
 void set_text(SDOPackage::NVList& list, std::string_view name, std::string_view value) {

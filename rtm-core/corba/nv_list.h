@@ -3,7 +3,9 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
+#include "base/result.h"
 #include "core/connector_settings.h"
 #include "rtm/idl/SDOPackageStub.h"
 
@@ -15,6 +17,8 @@ rt::KeyValues to_key_values(const SDOPackage::NVList& list);
 const CORBA::Any* find_value(const SDOPackage::NVList& list, std::string_view name);
 // Nothing if there is none of that name or it is no string.
 std::optional<std::string> find_text(const SDOPackage::NVList& list, std::string_view name);
+// Fails with one line that begins with `what` when the names are more, longer or deeper than core/key_limits.h allows.
+base::Result<void> check_keys(std::string_view what, const SDOPackage::NVList& list);
 // Replaces the entry of that name or adds one.
 void set_text(SDOPackage::NVList& list, std::string_view name, std::string_view value);
 void set_value(SDOPackage::NVList& list, std::string_view name, const CORBA::Any& value);

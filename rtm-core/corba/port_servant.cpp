@@ -10,21 +10,32 @@
 #include "corba/farewell.h"
 #include "corba/nv_list.h"
 #include "corba/peer_watch.h"
+#include "core/key_limits.h"
 
 namespace corba {
 namespace {
 
-// Every name the protocol needs is far shorter; longer ones only fill the memory of all peers.
-constexpr std::size_t longest_id = 64 * 1024;
-
 // For others to let go of a port that dies. They do at once, unless the POA was destroyed before.
 constexpr auto longest_wait = std::chrono::seconds(10);
 
-bool has_nil(const RTC::PortServiceList& ports) {
-  for (CORBA::ULong i = 0; i < ports.length(); ++i) {
-    if (CORBA::is_nil(ports[i])) return true;
+// Every name that the protocol needs is far shorter than the limits; longer ones only fill the memory of all peers.
+base::Result<void> check_profile(const RTC::ConnectorProfile& profile) {
+  if (profile.ports.length() > rt::most_ports_of_a_connection) {
+    return base::Error{"connection: has " + std::to_string(profile.ports.length()) + " ports, expected at most " +
+                       std::to_string(rt::most_ports_of_a_connection)};
   }
-  return false;
+  for (CORBA::ULong i = 0; i < profile.ports.length(); ++i) {
+    if (CORBA::is_nil(profile.ports[i])) return base::Error{"connection: a port is nil"};
+  }
+  constexpr std::size_t longest_id = 64 * 1024;
+  if (std::strlen(profile.connector_id) > longest_id) return base::Error{"connection: its id is longer than 64 KiB"};
+  return check_keys("connection: property", profile.properties);
+}
+
+bool is_good(const RTC::ConnectorProfile& profile, const std::string& port) {
+  const auto checked = check_profile(profile);
+  if (!checked) base::log(base::Level::warn, port, "refused: {}", checked.error().message);
+  return bool(checked);
 }
 
 template <class T>
@@ -213,8 +224,7 @@ void PortServant::tell(Step step, RTC::ConnectorProfile& profile, RTC::ReturnCod
 RTC::ReturnCode_t PortServant::connect(RTC::ConnectorProfile& profile) {
   const Gate::Visit visit(gate_);
   if (!visit) return RTC::RTC_ERROR;
-  if (has_nil(profile.ports) || position(profile.ports) < 0) return RTC::BAD_PARAMETER;
-  if (std::strlen(profile.connector_id) > longest_id) return RTC::BAD_PARAMETER;
+  if (!is_good(profile, port_name()) || position(profile.ports) < 0) return RTC::BAD_PARAMETER;
   complete_profile(profile);
   const bool is_id_ours = *profile.connector_id.in() == '\0';
   if (is_id_ours) {
@@ -227,7 +237,7 @@ RTC::ReturnCode_t PortServant::connect(RTC::ConnectorProfile& profile) {
   RTC::ReturnCode_t code = RTC::RTC_ERROR;
   try {
     const RTC::PortService_var first = RTC::PortService::_duplicate(profile.ports[0]);
-    limit_calls(first, port_call_timeout() * static_cast<int>(profile.ports.length()));
+    limit_calls(first, chain_timeout(port_call_timeout(), profile.ports.length(), profile.ports.length()));
     code = first->notify_connect(profile);
     // What the others have set up is of no use if one has refused; a port that knew a given id before keeps its connection.
     if (code != RTC::RTC_OK && (is_id_ours || code != RTC::PRECONDITION_NOT_MET)) break_up(profile);
@@ -242,8 +252,7 @@ RTC::ReturnCode_t PortServant::connect(RTC::ConnectorProfile& profile) {
 RTC::ReturnCode_t PortServant::notify_connect(RTC::ConnectorProfile& profile) {
   const Gate::Visit visit(gate_);
   if (!visit) return RTC::RTC_ERROR;
-  const std::size_t id_length = std::strlen(profile.connector_id);
-  if (id_length == 0 || id_length > longest_id || has_nil(profile.ports)) return RTC::BAD_PARAMETER;
+  if (*profile.connector_id.in() == '\0' || !is_good(profile, port_name())) return RTC::BAD_PARAMETER;
   return join(profile);
 }
 
@@ -310,6 +319,7 @@ RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile) {
                   base::in_quotes(profile.name.in()));
         code = RTC::RTC_ERROR;
       }
+      if (code == RTC::RTC_OK && !is_good(profile, port_name())) code = RTC::BAD_PARAMETER;
       profile.connector_id = id.c_str();
       profile.ports = ports;
       tell(Step::next_connected, profile, code);
@@ -356,8 +366,7 @@ RTC::ReturnCode_t PortServant::join_next(RTC::ConnectorProfile& profile, int sel
   if (next >= profile.ports.length()) return RTC::RTC_OK;
   const RTC::PortService_var port = RTC::PortService::_duplicate(profile.ports[next]);
   try {
-    // Whoever comes later in the chain gives up earlier.
-    limit_calls(port, port_call_timeout() * static_cast<int>(profile.ports.length() - next));
+    limit_calls(port, chain_timeout(port_call_timeout(), profile.ports.length() - next, profile.ports.length()));
     return port->notify_connect(profile);
   } catch (const CORBA::Exception& e) {
     base::log(base::Level::warn, port_name(), "the next port of connection {} does not answer: {}", base::in_quotes(profile.name.in()),
@@ -368,10 +377,11 @@ RTC::ReturnCode_t PortServant::join_next(RTC::ConnectorProfile& profile, int sel
 
 RTC::ReturnCode_t PortServant::break_up(const RTC::ConnectorProfile& profile) {
   RTC::ReturnCode_t code = RTC::RTC_ERROR;
+  const auto deadline = farewell_deadline();
   for (CORBA::ULong i = 0; i < profile.ports.length(); ++i) {
     if (is_same(profile.ports[i], reference())) return leave(profile.connector_id.in(), true, false);
     // If it is dead or hangs, the next one takes the lead.
-    if (const auto answer = take_leave(profile.ports[i], profile.connector_id, profile.ports.length() - i)) return *answer;
+    if (const auto answer = take_leave(profile.ports[i], profile.connector_id, profile.ports.length() - i, deadline)) return *answer;
   }
   return code;
 }
@@ -460,8 +470,9 @@ void PortServant::tell_lost(const RTC::ConnectorProfile& profile) {
 RTC::ReturnCode_t PortServant::leave_next(const RTC::ConnectorProfile& profile) {
   const int self = position(profile.ports);
   if (self < 0) return RTC::BAD_PARAMETER;
+  const auto deadline = farewell_deadline();
   for (CORBA::ULong next = static_cast<CORBA::ULong>(self) + 1; next < profile.ports.length(); ++next) {
-    if (const auto answer = take_leave(profile.ports[next], profile.connector_id, profile.ports.length() - next)) return *answer;
+    if (const auto answer = take_leave(profile.ports[next], profile.connector_id, profile.ports.length() - next, deadline)) return *answer;
   }
   return RTC::RTC_OK;
 }

@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "base/text.h"
+#include "core/key_limits.h"
 
 namespace rt {
 namespace {
@@ -52,12 +53,14 @@ base::Result<ComponentArgument> parse_component_argument(std::string_view text) 
   auto id = parse_id(base::trim(text.substr(0, question)));
   if (!id) return id.error();
   ComponentArgument argument{std::move(*id), {}};
+  KeyCounter counter("component: key");
   if (question == std::string_view::npos) return argument;
   for (const auto piece : pieces_of(text.substr(question + 1), '&')) {
     if (base::trim(piece).empty()) continue;  // `Type?&instance_name=x` is what some tools send
     const auto equals = piece.find('=');
     const auto key = base::trim(piece.substr(0, equals));
     if (key.empty()) return base::Error{"component " + base::in_quotes(text) + ": expected key=value, got " + base::in_quotes(piece)};
+    if (auto checked = counter.add(key); !checked) return checked.error();
     const auto value = equals == std::string_view::npos ? std::string_view() : base::trim(piece.substr(equals + 1));
     argument.properties.emplace_back(key, value);
   }

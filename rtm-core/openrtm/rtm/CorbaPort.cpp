@@ -5,6 +5,7 @@
 
 #include "base/guarded.h"
 #include "base/text.h"
+#include "corba/connector_keys.h"
 #include "corba/nv_list.h"
 #include "corba/port_servant.h"
 #include "corba/transport.h"
@@ -181,12 +182,7 @@ ReturnCode_t CorbaPort::subscribeInterfaces(const ConnectorProfile& profile) {
       return RTC::RTC_ERROR;
     }
     if (means_unbound(*reference)) continue;
-    CORBA::Object_var object;
-    try {
-      object = corba::orb()->string_to_object(reference->c_str());
-    } catch (const CORBA::Exception&) {
-      // Refused below, like nil.
-    }
+    const CORBA::Object_var object = corba::parse_reference(reference->c_str());  // nil is refused below
     if (!consumer.consumer->setObject(object)) {
       RTC_WARN_STR("the object for consumer " << consumer.instance << " is no " << consumer.type << " or does not answer");
       if (is_strict) return RTC::RTC_ERROR;

@@ -4,21 +4,22 @@
 #include <rtm/SdoConfiguration.h>
 #include <rtm/SdoServiceAdmin.h>
 
-#include <cstring>
-
 #include "base/text.h"
 #include "corba/gate.h"
+#include "corba/nv_list.h"
+#include "core/key_limits.h"
 
 namespace SDOPackage {
 
 namespace {
 
-// Names become paths in a tree: longer ones are nobody's parameter but somebody's attack.
-constexpr std::size_t longest_name = 1024;
+void check_id(const char* what, const char* id) {
+  if (id[0] == '\0') throw InvalidParameter((std::string(what) + " is empty").c_str());
+  if (auto checked = rt::check_key(what, id); !checked) throw InvalidParameter(checked.error().message.c_str());
+}
 
-void check_name(const char* what, const char* name) {
-  if (name[0] == '\0') throw InvalidParameter((std::string(what) + " is empty").c_str());
-  if (std::strlen(name) > longest_name) throw InvalidParameter((std::string(what) + " is too long").c_str());
+void check_names(const char* what, const NVList& list) {
+  if (auto checked = corba::check_keys(what, list); !checked) throw InvalidParameter(checked.error().message.c_str());
 }
 
 class Inside {
@@ -32,9 +33,10 @@ class Inside {
 };
 
 coil::Properties to_properties(const ConfigurationSet& set) {
-  check_name("id of the configuration set", set.id);
+  check_id("id of the configuration set", set.id);
+  check_names("configuration parameter", set.configuration_data);
   for (CORBA::ULong i = 0; i < set.configuration_data.length(); ++i)
-    check_name("name of a configuration parameter", set.configuration_data[i].name);
+    check_id("name of a configuration parameter", set.configuration_data[i].name);
   coil::Properties node(set.id.in());
   NVUtil::copyToProperties(node, set.configuration_data);
   if (set.description.in()[0] != '\0') node.setProperty("description", set.description.in());
@@ -60,12 +62,15 @@ void Configuration_impl::close() { gate_->close(); }
 
 CORBA::Boolean Configuration_impl::set_device_profile(const DeviceProfile& profile) {
   const Inside inside(*gate_);
+  check_names("property of the device", profile.properties);
   component_.setDeviceProfile(profile);
   return true;
 }
 
 CORBA::Boolean Configuration_impl::add_service_profile(const ServiceProfile& profile) {
   const Inside inside(*gate_);
+  if (profile.id.in()[0] != '\0') check_id("id of the service", profile.id);
+  check_names("property of the service", profile.properties);
   return services_.addSdoServiceConsumer(profile);
 }
 

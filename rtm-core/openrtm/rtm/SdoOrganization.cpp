@@ -6,6 +6,7 @@
 #include "base/guarded.h"
 #include "base/id.h"
 #include "base/text.h"
+#include "corba/call_timeout.h"
 #include "corba/orb.h"
 
 namespace SDOPackage {
@@ -86,9 +87,11 @@ SDOList* Organization_impl::get_members() {
 
 std::vector<Organization_impl::Member> Organization_impl::ask(const SDOList& sdos) {
   std::vector<Member> members;
+  const corba::ChainDeadline deadline(corba::port_call_timeout());
   for (CORBA::ULong i = 0; i < sdos.length(); ++i) {
     if (CORBA::is_nil(sdos[i])) throw InvalidParameter("a member is nil");
     try {
+      deadline.limit(sdos[i]);
       CORBA::String_var id = sdos[i]->get_sdo_id();
       members.push_back({id.in(), SDO::_duplicate(sdos[i])});
     } catch (const CORBA::Exception& exception) {
