@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <memory>
+#include <new>
 
 namespace sim::embree {
 
@@ -22,6 +23,13 @@ struct GeometryRelease {
 using Device = std::unique_ptr<RTCDeviceTy, DeviceRelease>;
 using Scene = std::unique_ptr<RTCSceneTy, SceneRelease>;
 using Geometry = std::unique_ptr<RTCGeometryTy, GeometryRelease>;
+
+// Embree gives nothing when there is no memory; the next call with it would end the process.
+template <class Handle>
+Handle made(Handle handle) {
+  if (handle == nullptr) throw std::bad_alloc();
+  return handle;
+}
 
 // Embree wants denormals off while it traces; the rest of the program keeps them.
 class FlushDenormals {

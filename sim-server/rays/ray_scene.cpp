@@ -127,9 +127,9 @@ Beams Beams::fan(int beams, double from, double to, int layers, double lowest, d
 class RayScene::Impl {
  public:
   explicit Impl(TriangleCache& cache)
-      : cache_(cache), device_(rtcNewDevice("threads=1,start_threads=0")), statics_(device_.get(), RTC_BUILD_QUALITY_HIGH) {
+      : cache_(cache), device_(embree::made(rtcNewDevice("threads=1,start_threads=0"))), statics_(device_.get(), RTC_BUILD_QUALITY_HIGH) {
     rtcSetDeviceErrorFunction(device_.get(), on_error, nullptr);
-    crowd_.reset(rtcNewScene(device_.get()));
+    crowd_.reset(embree::made(rtcNewScene(device_.get())));
     rtcSetSceneFlags(crowd_.get(), RTC_SCENE_FLAG_DYNAMIC | RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(crowd_.get(), RTC_BUILD_QUALITY_LOW);
   }
@@ -210,7 +210,7 @@ class RayScene::Impl {
     const Eigen::Vector3f low(bounds.lower_x, bounds.lower_y, bounds.lower_z), high(bounds.upper_x, bounds.upper_y, bounds.upper_z);
     body.middle = (low + high) / 2;
     body.half = (high - low) / 2 + Eigen::Vector3f::Constant(1e-4F);
-    body.instance.reset(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE));
+    body.instance.reset(embree::made(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE)));
     rtcSetGeometryInstancedScene(body.instance.get(), body.shapes->scene.get());
     rtcSetGeometryTimeStepCount(body.instance.get(), 1);
     body.instance_id = rtcAttachGeometry(crowd_.get(), body.instance.get());

@@ -12,7 +12,7 @@ using embree::Geometry;
 
 Geometry triangles(RTCDevice device, const std::vector<Eigen::Vector3d>& vertices, const std::vector<std::array<std::uint32_t, 3>>& faces,
                    const Eigen::Isometry3d& pose) {
-  Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
+  Geometry geometry(embree::made(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE)));
   auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, vertices.size()));
   auto* f =
       static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, faces.size()));
@@ -29,7 +29,7 @@ Geometry triangles(RTCDevice device, const std::vector<Eigen::Vector3d>& vertice
 // where rounding puts it outside of both.
 Geometry box(RTCDevice device, const Eigen::Vector3d& size, const Eigen::Isometry3d& pose) {
   const double flap = 1e-5 + 1e-6 * pose.translation().norm();  // [m]; above what floats round off there
-  Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_QUAD));
+  Geometry geometry(embree::made(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_QUAD)));
   auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, 24));
   auto* f = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 16, 6));
   if (v == nullptr || f == nullptr) return nullptr;
@@ -50,7 +50,7 @@ Geometry box(RTCDevice device, const Eigen::Vector3d& size, const Eigen::Isometr
 }
 
 Geometry sphere(RTCDevice device, double radius, const Eigen::Isometry3d& pose) {
-  Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT));
+  Geometry geometry(embree::made(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT)));
   auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 16, 1));
   const Eigen::Vector3f p = pose.translation().cast<float>();
   v[0] = p.x(), v[1] = p.y(), v[2] = p.z(), v[3] = static_cast<float>(radius);
@@ -59,7 +59,7 @@ Geometry sphere(RTCDevice device, double radius, const Eigen::Isometry3d& pose) 
 
 // A cylinder with flat ends (a cone of equal radii) or round ones.
 Geometry rod(RTCDevice device, RTCGeometryType type, double radius, double length, const Eigen::Isometry3d& pose) {
-  Geometry geometry(rtcNewGeometry(device, type));
+  Geometry geometry(embree::made(rtcNewGeometry(device, type)));
   auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 16, 2));
   auto* i = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, 4, 1));
   for (int end = 0; end < 2; ++end) {
@@ -72,7 +72,7 @@ Geometry rod(RTCDevice device, RTCGeometryType type, double radius, double lengt
 
 }  // namespace
 
-ShapeScene::ShapeScene(RTCDevice device, RTCBuildQuality quality) : scene(rtcNewScene(device)) {
+ShapeScene::ShapeScene(RTCDevice device, RTCBuildQuality quality) : scene(embree::made(rtcNewScene(device))) {
   rtcSetSceneBuildQuality(scene.get(), quality);
 }
 
