@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
@@ -123,8 +124,35 @@ base::Result<void> check_port(std::string_view endpoint, std::string_view port) 
   return base::Error{"end point " + base::in_quotes(endpoint) + ": expected a port from 0 to 65535, got " + base::in_quotes(port)};
 }
 
+// Nobody on another host reaches it.
+bool is_on_this_host(std::string_view endpoint) {
+  endpoint = base::trim(endpoint);
+  for (const std::string_view kind : {"giop:tcp:", "giop:ssl:", "iiop://"}) {
+    if (endpoint.starts_with(kind)) endpoint.remove_prefix(kind.size());
+  }
+  if (endpoint.empty() || endpoint.starts_with("giop:unix:") || endpoint == "unix") return true;
+  for (const std::string_view host : {":", "localhost", "127.", "[::1]"}) {
+    if (endpoint.starts_with(host)) return true;
+  }
+  return false;
+}
+
+bool is_every_end_point_on_this_host(const OrbSettings& settings) {
+  for (const auto& endpoint : settings.endpoints) {
+    if (!is_on_this_host(endpoint)) return false;
+  }
+  for (std::size_t i = 0; i + 1 < settings.arguments.size(); ++i) {
+    if (settings.arguments[i].starts_with("-ORBendPoint") && !is_on_this_host(settings.arguments[i + 1])) return false;
+  }
+  return true;
+}
+
+OpenTo who_may_call(const OrbSettings& settings) {
+  return settings.open_to.value_or(is_every_end_point_on_this_host(settings) ? OpenTo::account : OpenTo::network);
+}
+
 // As omniORB wants it.
-base::Result<std::string> to_orb_endpoint(std::string_view endpoint) {
+base::Result<std::string> to_orb_endpoint(std::string_view endpoint, bool is_open) {
   auto text = base::trim(endpoint);
   if (text.starts_with("giop:")) return std::string(text);
   if (text.starts_with("iiop://")) text.remove_prefix(7);
@@ -135,7 +163,7 @@ base::Result<std::string> to_orb_endpoint(std::string_view endpoint) {
   auto host = colon == std::string_view::npos || is_bare_ipv6 ? text : text.substr(0, colon);
   const auto port = colon == std::string_view::npos || is_bare_ipv6 ? std::string_view() : text.substr(colon + 1);
   if (auto checked = check_port(endpoint, port); !checked) return checked.error();
-  if (host.empty()) host = "127.0.0.1";
+  if (host.empty()) host = is_open ? "0.0.0.0" : "127.0.0.1";
   if (host.find_first_of(" \t/") != std::string_view::npos || (host.find(':') != std::string_view::npos && !host.starts_with('['))) {
     return base::Error{"end point " + base::in_quotes(endpoint) + ": expected host:port, :port, all, unix or giop:..."};
   }
@@ -167,26 +195,45 @@ base::Result<std::vector<std::string>> to_arguments(const OrbSettings& settings,
   for (const auto& endpoint : endpoints) {
     if (given_by_arguments) break;
     if (endpoint == "unix") continue;
-    auto converted = to_orb_endpoint(endpoint);
+    auto converted = to_orb_endpoint(endpoint, who_may_call(settings) == OpenTo::network);
     if (!converted) return converted.error();
-    result.insert(result.end(), {"-ORBendPoint", *converted});
+    result.insert(result.end(), {"-ORBendPoint", guarded(*converted)});
   }
-  if (!unix_folder.empty()) result.insert(result.end(), {"-ORBendPoint", "giop:unix:" + unix_folder + "/socket"});
+  if (!unix_folder.empty()) result.insert(result.end(), {"-ORBendPoint", guarded("giop:unix:" + unix_folder + "/socket")});
   for (const auto& address : settings.further_addresses) {
     const auto port = address.find(':') == std::string::npos ? ":2809" : "";
     result.insert(result.end(), {"-ORBendPointNoListen", "giop:tcp:" + address + port});
   }
-  result.insert(result.end(), settings.arguments.begin(), settings.arguments.end());
+  for (std::size_t i = 0; i < settings.arguments.size(); ++i) {
+    const bool is_endpoint = i > 0 && (settings.arguments[i - 1] == "-ORBendPoint" || settings.arguments[i - 1] == "-ORBendPointNoPublish");
+    result.push_back(is_endpoint ? guarded(settings.arguments[i]) : settings.arguments[i]);
+  }
   return result;
 }
 
-// The one of the last -ORBclientCallTimeOutPeriod, so that calls between ports keep what rtc.conf says in corba.args; 0 is none.
-std::chrono::milliseconds call_timeout_of(const std::vector<std::string>& arguments) {
+// Of the last argument of that name; 0 if there is none.
+std::int64_t last_number(const std::vector<std::string>& arguments, std::string_view name) {
   std::optional<std::int64_t> given;
   for (std::size_t i = 0; i + 1 < arguments.size(); ++i) {
-    if (arguments[i] == "-ORBclientCallTimeOutPeriod") given = base::parse_integer(arguments[i + 1]);
+    if (arguments[i] == name) given = base::parse_integer(arguments[i + 1]);
   }
-  return given.value_or(0) > 0 ? std::chrono::milliseconds(*given) : std::chrono::hours(1);
+  return given.value_or(0);
+}
+
+// Of the arguments, so that calls between ports keep what rtc.conf says in corba.args; 0 is none.
+std::chrono::milliseconds call_timeout_of(const std::vector<std::string>& arguments) {
+  const auto given = last_number(arguments, "-ORBclientCallTimeOutPeriod");
+  return given > 0 ? std::chrono::milliseconds(given) : std::chrono::hours(1);
+}
+
+DoorSettings doors_of(const OrbSettings& settings, const std::vector<std::string>& arguments) {
+  DoorSettings doors{who_may_call(settings), {}};
+  doors.limits.sample = static_cast<std::size_t>(std::max<std::int64_t>(last_number(arguments, "-ORBgiopMaxMsgSize"), 8192));
+  // Who says how long a message may be by an argument of the ORB means every message.
+  const bool is_said = has_argument(settings.arguments, "-ORBgiopMaxMsgSize");
+  doors.limits.request = is_said ? doors.limits.sample : std::min(settings.max_request_size, doors.limits.sample);
+  doors.limits.total = std::max(doors.limits.total, 2 * doors.limits.sample);
+  return doors;
 }
 
 // ---- object keys that people can write
@@ -227,11 +274,14 @@ base::Result<std::unique_ptr<Orb>> Orb::start(const OrbSettings& settings) {
   int argc = static_cast<int>(arguments->size());
 
   set_port_call_timeout(call_timeout_of(*arguments));
+  const DoorSettings doors = doors_of(settings, *arguments);
+  set_doors(doors);
   *orb_messages().lock() = {.collecting = true, .last = ""};
   omniORB::setLogFunction(&take_orb_message);
   std::string failure;
   try {
     result->orb_ = CORBA::ORB_init(argc, argv.data(), "omniORB4");
+    remember_callers();
     CORBA::Object_var poa = result->orb_->resolve_initial_references("RootPOA");
     result->root_poa_ = PortableServer::POA::_narrow(poa);
     result->poa_manager_ = result->root_poa_->the_POAManager();
@@ -244,6 +294,11 @@ base::Result<std::unique_ptr<Orb>> Orb::start(const OrbSettings& settings) {
   }
   const auto detail = std::exchange(*orb_messages().lock(), {}).last;
   if (failure.empty()) {
+    if (doors.open_to != OpenTo::account) {
+      base::log(base::Level::info, "orb", "open to {}: {}",
+                doors.open_to == OpenTo::host ? "every account of this machine" : "everybody who reaches it",
+                base::join(result->addresses(), ", "));
+    }
     begin_farewells();
     if (settings.peer_check_interval.count() > 0) result->watch_ = std::make_unique<PeerWatch>(settings.peer_check_interval);
     return result;

@@ -1,5 +1,6 @@
 // The ORB as a value: made with settings, gone with its destructor. One per process at a time (omniORB's rule). Any thread after start.
-// Listens on the loopback interface unless told otherwise, on tcp and on a unix socket in a private folder; both are published.
+// Listens on the loopback interface unless told otherwise, on tcp and on a unix socket in a private folder; both are published, and guarded
+// (corba/guarded_transport.h).
 #pragma once
 
 #include <omniORB4/CORBA.h>
@@ -7,10 +8,12 @@
 #include <chrono>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/result.h"
+#include "corba/guarded_transport.h"
 
 namespace corba {
 
@@ -18,7 +21,8 @@ class PeerWatch;
 
 struct OrbSettings {
   // Where to listen: "HOST:PORT", ":PORT" (loopback), "HOST", "all" (every interface), "unix" or an omniORB end point "giop:...". Empty:
-  // any free port on loopback. An empty list is the same as one empty string.
+  // any free port on loopback. An empty list is the same as one empty string. An end point without a host is one of every interface when
+  // everybody may call.
   std::vector<std::string> endpoints{};
   bool ipv4 = true;  // which families "all" stands for
   bool ipv6 = false;
@@ -26,8 +30,11 @@ struct OrbSettings {
   bool unix_socket = true;                                // a further end point for processes of this host
   std::chrono::milliseconds call_timeout{10'000};         // of every call to another process; 0: none
   std::chrono::milliseconds peer_check_interval{2000};    // between looks for dead ports at the other ends of connections; 0: none
-  std::size_t max_message_size = std::size_t{128} << 20;  // [byte]
-  std::vector<std::string> arguments{};                   // further -ORB... arguments; they win over the settings above
+  std::size_t max_message_size = std::size_t{128} << 20;  // [byte], of samples of data ports and of answers to our own calls
+  std::size_t max_request_size = std::size_t{2} << 20;    // [byte], of all other calls that come in
+  // Who may call. Nothing: everybody when an end point is not on the loopback interface, else the own account only.
+  std::optional<OpenTo> open_to{};
+  std::vector<std::string> arguments{};  // further -ORB... arguments; they win over the settings above
 };
 
 class Orb {

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "core/component_argument.h"
+#include "core/connector_settings.h"
 #include "core/preconnect.h"
 
 namespace rt {
@@ -25,6 +26,8 @@ constexpr ConfigKey keys[] = {
     {"corba.endpoint_property", "ipv4", choices, "ipv4,ipv6"},
     {"corba.endpoints_ipv4", ""},
     {"corba.endpoints_ipv6", ""},
+    {"corba.open_to", "", choices, "account,host,network"},
+    {"corba.max_request_size", "2M", size},
     {"corba.unix_socket", "YES", boolean},
     {"corba.call_timeout", "10", number},
     {"corba.peer_check_interval", "2", number},
@@ -75,6 +78,7 @@ constexpr ConfigKey keys[] = {
     {"manager.command", ""},
     {"manager.language", "C++"},
     {"manager.supported_languages", "C++"},
+    {"manager.remote_rights", "components", choices, "read,components,everything"},
     {"manager.components.naming_policy", "process_unique"},
     {"manager.components.precreate", "", components},
     {"manager.components.preconnect", "", connections},
@@ -243,6 +247,9 @@ std::optional<Complaint> complain_about_value(const ConfigKey& key, std::string_
       return complain_about_requests(value, parse_connection);
     case components:
       return complain_about_requests(value, parse_component_argument);
+    case size:
+      if (!parse_size(value)) return wrong("must be a number of octets, as 500000, 64k or 2M");
+      break;
     case text:
       break;
   }

@@ -10,7 +10,7 @@ namespace rt {
 
 // number: not negative; level: SILENT ... PARANOID; the plural ones are comma lists. choices: any of ConfigKey::choices; addresses: host,
 // host:port or corbaloc/IOR texts; processors: their numbers; connections, components: as preconnect and precreate take them.
-enum class KeyKind { text, boolean, number, level, choices, addresses, processors, connections, components };
+enum class KeyKind { text, boolean, number, size, level, choices, addresses, processors, connections, components };
 
 struct ConfigKey {
   std::string_view name;           // a last part * stands for any further parts

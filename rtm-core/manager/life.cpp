@@ -9,6 +9,7 @@
 
 #include "base/log.h"
 #include "base/text.h"
+#include "core/connector_settings.h"
 #include "core/name_format.h"
 #include "manager/manager_impl.h"
 #include "rtm/FactoryInit.h"
@@ -161,6 +162,11 @@ base::Result<void> ManagerImpl::start_orb() {
   settings.ipv6 = families.find("ipv6") != std::string::npos;
   settings.ipv4 = !settings.ipv6 || families.find("ipv4") != std::string::npos;
   settings.arguments = split_arguments(value("corba.args"));
+  const auto open_to = base::to_lower(value("corba.open_to"));
+  if (open_to == "account") settings.open_to = corba::OpenTo::account;
+  if (open_to == "host") settings.open_to = corba::OpenTo::host;
+  if (open_to == "network") settings.open_to = corba::OpenTo::network;
+  settings.max_request_size = rt::parse_size(value("corba.max_request_size")).value_or(settings.max_request_size);
   settings.unix_socket = flag("corba.unix_socket", true);
   settings.call_timeout = to_milliseconds(number("corba.call_timeout", 10.0));
   settings.peer_check_interval = to_milliseconds(number("corba.peer_check_interval", 2.0));

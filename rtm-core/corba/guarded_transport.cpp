@@ -1,0 +1,364 @@
+#include "corba/guarded_transport.h"
+
+#include <omniORB4/CORBA.h>
+
+#include <omniORB4/giopEndpoint.h>
+#include <omniORB4/omniInterceptors.h>
+#include <omniORB4/omniTransport.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "base/descriptors.h"
+#include "base/guarded.h"
+#include "base/log.h"
+#include "base/peer_account.h"
+#include "base/text.h"
+
+namespace corba {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::string_view prefix = "giop:guarded:";
+constexpr std::chrono::seconds first_message_time{10};  // for the first whole message of a connection
+constexpr std::chrono::seconds silence{30};             // in the middle of a message
+constexpr std::size_t most_connections = 2000;          // each has a thread
+constexpr std::size_t leaving_files = 16;               // of connections that have been sent away and are not gone yet
+constexpr std::size_t reserved_files = 64;              // for everything that is no connection from outside, and for those
+
+class GuardedConnection;
+
+struct State {
+  DoorSettings settings{};
+  std::size_t most = most_connections;
+  std::map<const omni::giopConnection*, GuardedConnection*> connections{};  // by the connection that is guarded
+  Clock::time_point last_complaint{};
+  std::size_t complaints = 0;  // that were not logged
+};
+
+// The end points are those of the process. Never destroyed: connections may go after it otherwise.
+struct Doors {
+  base::Guarded<State, base::Rank::registry> state;
+  std::condition_variable gone;             // a connection
+  std::atomic<std::size_t> in_progress{0};  // see GiopGate
+  static Doors& instance() {
+    static Doors& doors = *new Doors;
+    return doors;
+  }
+};
+
+// One line a second at most, however many are sent away.
+void complain(const std::string& line) {
+  constexpr std::chrono::seconds pause{1};
+  std::size_t others = 0;
+  {
+    auto state = Doors::instance().state.lock();
+    const auto now = Clock::now();
+    if (now - state->last_complaint < pause) {
+      ++state->complaints;
+      return;
+    }
+    state->last_complaint = now;
+    others = std::exchange(state->complaints, 0);
+  }
+  base::log(base::Level::warn, "doors", "{}{}", line, others > 0 ? "; so were " + std::to_string(others) + " others" : "");
+}
+
+// "giop:tcp:127.0.0.1:40000", "giop:ssl:[::1]:2809"; nothing for other kinds.
+std::optional<base::TcpEnd> tcp_end(std::string_view address) {
+  if (!address.starts_with("giop:tcp:") && !address.starts_with("giop:ssl:")) return std::nullopt;
+  address.remove_prefix(9);
+  const auto colon = address.rfind(':');
+  if (colon == std::string_view::npos) return std::nullopt;
+  const auto port = base::parse_integer(address.substr(colon + 1));
+  auto host = address.substr(0, colon);
+  if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
+  if (!port || *port < 0 || *port > 65535) return std::nullopt;
+  return base::TcpEnd{std::string(host), static_cast<std::uint16_t>(*port)};
+}
+
+struct Visitor {
+  std::string address;
+  std::optional<uid_t> account;
+  bool is_own = false;
+};
+
+std::string to_text(const Visitor& visitor) {
+  if (visitor.address.starts_with("giop:unix:")) return visitor.address;
+  return visitor.address + (visitor.account ? " (account " + std::to_string(*visitor.account) + ")" : " (account unknown)");
+}
+
+Visitor recognise(omni::giopConnection& connection) {
+  const auto text = [](const char* address) { return std::string(address != nullptr ? address : ""); };
+  Visitor visitor{text(connection.peeraddress()), std::nullopt, false};
+  const auto theirs = tcp_end(visitor.address);
+  const auto ours = tcp_end(text(connection.myaddress()));
+  if (!theirs || !ours) {
+    visitor.is_own = true;  // a unix socket: the folder that it lies in lets nobody else come here
+    return visitor;
+  }
+  visitor.account = base::account_of(*theirs, *ours);
+  visitor.is_own = base::is_own_account(visitor.account);
+  return visitor;
+}
+
+bool may_come_in(const Visitor& visitor, OpenTo open_to) {
+  if (visitor.is_own || open_to == OpenTo::network) return true;
+  return open_to == OpenTo::host && visitor.account;
+}
+
+std::atomic<Clock::rep> now_of(Clock::time_point time) { return time.time_since_epoch().count(); }
+
+// Who sent the request that this thread runs; an address is shorter.
+thread_local std::array<char, 128> address_of_caller{};
+
+_CORBA_Boolean remember_caller(omni::omniInterceptors::serverReceiveRequest_T::info_T& request) {
+  const char* address = request.peeraddress();
+  const std::string_view text = address != nullptr ? address : "";
+  const auto length = text.copy(address_of_caller.data(), address_of_caller.size() - 1);
+  address_of_caller[length] = '\0';
+  return true;
+}
+
+// ---- a connection
+
+class GuardedConnection final : public omni::giopConnection {
+ public:
+  GuardedConnection(omni::giopConnection* inner, Visitor visitor, const GiopLimits& limits)
+      : inner_(inner), visitor_(std::move(visitor)), gate_(limits, Doors::instance().in_progress), last_use_(now_of(born_)) {}
+
+  int Send(void* octets, std::size_t size, const omni_time_t& deadline) override { return inner_->Send(octets, size, deadline); }
+
+  int Recv(void* to, std::size_t size, const omni_time_t& deadline) override {
+    const auto read = [&](std::byte* at, std::size_t most) { return inner_->Recv(at, most, earlier(deadline)); };
+    const int got = gate_.receive(static_cast<std::byte*>(to), size, read);
+    last_use_.store(Clock::now().time_since_epoch().count(), std::memory_order_relaxed);  // a hint, it orders nothing
+    if (got > 0) return got;
+    if (!gate_.problem().empty() && !std::exchange(is_complained_, true)) complain(to_text(visitor_) + " sent away: " + gate_.problem());
+    if (gate_.messages() == 0 && gate_.problem().empty() && Clock::now() - born_ >= first_message_time) {
+      complain(to_text(visitor_) + " sent away: no whole message in " + std::to_string(first_message_time.count()) + " s");
+    }
+    return -1;
+  }
+
+  void Shutdown() override { inner_->Shutdown(); }
+  const char* myaddress() override { return inner_->myaddress(); }
+  const char* peeraddress() override { return inner_->peeraddress(); }
+  const char* peeridentity() override { return inner_->peeridentity(); }
+  void* peerdetails() override { return inner_->peerdetails(); }
+  _CORBA_Boolean gatekeeperCheckSpecific(omni::giopStrand* strand) override { return inner_->gatekeeperCheckSpecific(strand); }
+  void setSelectable(int now, _CORBA_Boolean has_more) override { inner_->setSelectable(now, has_more || gate_.has_more()); }
+  void clearSelectable() override { inner_->clearSelectable(); }
+  _CORBA_Boolean isSelectable() override { return inner_->isSelectable(); }
+  _CORBA_Boolean Peek() override { return gate_.has_more() || inner_->Peek(); }
+
+  const Visitor& visitor() const { return visitor_; }
+  bool is_leaving() const { return is_leaving_; }
+  // Its thread finds that there is nothing more to read, and takes it away.
+  void send_away() {
+    is_leaving_ = true;
+    inner_->Shutdown();
+  }
+  Clock::rep last_use() const { return last_use_.load(std::memory_order_relaxed); }
+
+ private:
+  ~GuardedConnection() override {
+    Doors::instance().state.lock()->connections.erase(inner_);
+    Doors::instance().gone.notify_all();
+    inner_->decrRefCount(true);
+  }
+
+  // The ORB's deadline, or ours if that is earlier.
+  omni_time_t earlier(const omni_time_t& given) const {
+    std::optional<Clock::duration> left;
+    if (gate_.messages() == 0) left = born_ + first_message_time - Clock::now();
+    if (gate_.is_in_message() && gate_.messages() > 0) left = silence;
+    if (!left) return given;
+    const auto ns = std::max<std::int64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(*left).count(), 1'000'000);
+    constexpr std::int64_t second = 1'000'000'000;
+    omni_time_t own;
+    omni_thread::get_time(own, omni_time_t(static_cast<unsigned long>(ns / second), static_cast<unsigned long>(ns % second)));
+    return given && given < own ? given : own;
+  }
+
+  omni::giopConnection* const inner_;
+  const Visitor visitor_;
+  const Clock::time_point born_ = Clock::now();
+  GiopGate gate_;
+  std::atomic<Clock::rep> last_use_;
+  bool is_complained_ = false;
+  bool is_leaving_ = false;  // guarded by the lock of Doors
+};
+
+// ---- an end point
+
+class GuardedEndpoint final : public omni::giopEndpoint {
+ public:
+  // The end point of omniORB points into the text that it is made from.
+  static omni::giopEndpoint* make(const std::string& plain) {
+    auto text = std::make_unique<std::string>(plain);
+    omni::giopEndpoint* inner = omni::giopEndpoint::str2Endpoint(text->c_str());
+    return inner != nullptr ? new GuardedEndpoint(inner, std::move(text)) : nullptr;
+  }
+  ~GuardedEndpoint() override { delete inner_; }
+
+  const char* type() const override { return inner_->type(); }
+  const char* address() const override { return inner_->address(); }
+  const omni::orbServer::EndpointList* addresses() const override { return inner_->addresses(); }
+  _CORBA_Boolean publish(const omni::orbServer::PublishSpecs& specs, _CORBA_Boolean all_specs, _CORBA_Boolean all_endpoints,
+                         omni::orbServer::EndpointList& published) override {
+    if (no_publish()) inner_->set_no_publish();
+    return inner_->publish(specs, all_specs, all_endpoints, published);
+  }
+  _CORBA_Boolean Bind() override { return inner_->Bind(); }
+
+  omni::giopConnection* AcceptAndMonitor(omni::giopConnection::notifyReadable_t notify, void* cookie) override {
+    notify_ = notify;
+    cookie_ = cookie;
+    for (;;) {
+      omni::giopConnection* come = inner_->AcceptAndMonitor(&GuardedEndpoint::on_readable, this);
+      if (come == nullptr) return nullptr;
+      if (omni::giopConnection* guarded = let_in(come)) return guarded;
+      come->Shutdown();
+      come->decrRefCount(true);
+    }
+  }
+
+  void Poke() override {
+    is_poked_ = true;  // the next one to come is ourselves, and gone at once
+    inner_->Poke();
+  }
+
+  void Shutdown() override {
+    (void)text_.release();  // it deletes itself with its last connection, some time
+    std::exchange(inner_, nullptr)->Shutdown();
+    delete this;
+  }
+
+ private:
+  omni::giopConnection* let_in(omni::giopConnection* come) {
+    auto& doors = Doors::instance();
+    Visitor visitor = recognise(*come);
+    const DoorSettings settings = doors.state.lock()->settings;
+    if (!is_poked_ && !may_come_in(visitor, settings.open_to)) {
+      complain(to_text(visitor) + " refused: corba.open_to is " + (settings.open_to == OpenTo::host ? "host" : "account"));
+      return nullptr;
+    }
+    make_room();
+    auto* made = new GuardedConnection(come, std::move(visitor), settings.limits);
+    doors.state.lock()->connections[come] = made;
+    return made;
+  }
+
+  // Sends away whoever has been silent longest, strangers first. Callers that still want something connect again.
+  static void make_room() {
+    std::string gone;
+    {
+      auto& doors = Doors::instance();
+      auto state = doors.state.lock();
+      // Those that leave have their files until their threads have seen it.
+      constexpr std::chrono::milliseconds patience{500};
+      if (state->connections.size() >= state->most + leaving_files)
+        state.wait_for(doors.gone, patience, [&] { return state->connections.size() < state->most + leaving_files; });
+      std::size_t staying = 0;
+      GuardedConnection* oldest = nullptr;
+      for (const auto& [inner, connection] : state->connections) {
+        if (connection->is_leaving()) continue;
+        ++staying;
+        const auto order = [](const GuardedConnection& c) { return std::pair(c.visitor().is_own, c.last_use()); };
+        if (oldest == nullptr || order(*connection) < order(*oldest)) oldest = connection;
+      }
+      if (staying < state->most || oldest == nullptr) return;
+      gone = to_text(oldest->visitor());
+      oldest->send_away();
+    }
+    complain(gone + " sent away: too many connections, and it has been silent longest");
+  }
+
+  // The ORB forgets a connection before it goes; nothing keeps it from going between the socket's news and this call but the count.
+  static void on_readable(void* self, omni::giopConnection* inner) {
+    auto* endpoint = static_cast<GuardedEndpoint*>(self);
+    GuardedConnection* connection = nullptr;
+    {
+      const omni_tracedmutex_lock transport(*omni::omniTransportLock);
+      auto state = Doors::instance().state.lock();
+      const auto found = state->connections.find(inner);
+      if (found == state->connections.end()) return;
+      connection = found->second;
+      connection->incrRefCount();
+    }
+    endpoint->notify_(endpoint->cookie_, connection);
+    const omni_tracedmutex_lock transport(*omni::omniTransportLock);
+    connection->decrRefCount();
+  }
+
+  GuardedEndpoint(omni::giopEndpoint* inner, std::unique_ptr<std::string> text) : text_(std::move(text)), inner_(inner) {}
+
+  std::unique_ptr<std::string> text_;
+  omni::giopEndpoint* inner_;
+  omni::giopConnection::notifyReadable_t notify_ = nullptr;
+  void* cookie_ = nullptr;
+  std::atomic<bool> is_poked_{false};
+};
+
+// ---- the transport
+
+class GuardedTransport final : public omni::giopTransportImpl {
+ public:
+  GuardedTransport() : giopTransportImpl("giop:guarded") {}
+  omni::giopEndpoint* toEndpoint(const char* rest) override { return GuardedEndpoint::make(plain(rest)); }
+  omni::giopAddress* toAddress(const char* rest) override { return omni::giopAddress::str2Address(plain(rest).c_str()); }
+  _CORBA_Boolean isValid(const char* rest) override { return omni::giopEndpoint::strIsValidEndpoint(plain(rest).c_str()); }
+  _CORBA_Boolean addToIOR(const char* rest, omni::IORPublish* publish) override {
+    return omni::giopEndpoint::addToIOR(plain(rest).c_str(), publish);
+  }
+  const omnivector<const char*>* getInterfaceAddress() override { return nullptr; }
+
+ private:
+  static std::string plain(const char* rest) { return "giop:" + std::string(rest); }
+};
+
+}  // namespace
+
+void set_doors(const DoorSettings& settings) {
+  static GuardedTransport& transport = *new GuardedTransport;  // known to the ORB from now on
+  (void)transport;
+  std::size_t most = most_connections;
+  if (const std::size_t allowed = base::raise_descriptor_limit(); allowed > 0) {
+    most = std::min(most, allowed > 2 * reserved_files ? allowed - reserved_files : allowed / 2);
+  }
+  auto state = Doors::instance().state.lock();
+  state->settings = settings;
+  state->most = std::max<std::size_t>(most, 1);
+}
+
+bool doors_are_open() { return Doors::instance().state.lock()->settings.open_to != OpenTo::account; }
+
+std::string guarded(const std::string& endpoint) {
+  for (const std::string_view kind : {"giop:tcp:", "giop:unix:", "giop:ssl:"}) {
+    if (endpoint.starts_with(kind)) return std::string(prefix) + endpoint.substr(5);
+  }
+  return endpoint;
+}
+
+void remember_callers() { omniORB::getInterceptors()->serverReceiveRequest.add(&remember_caller); }
+
+std::string caller() {
+  const std::string address = address_of_caller.data();
+  if (address.empty()) return "this process";
+  auto state = Doors::instance().state.lock();
+  for (const auto& [inner, connection] : state->connections) {
+    if (connection->visitor().address == address) return to_text(connection->visitor());
+  }
+  return address;
+}
+
+}  // namespace corba

@@ -1,0 +1,40 @@
+// The doors of the ORB: every end point that it listens on is one of omniORB's own, looked after by this transport. Who comes in is asked
+// for the account; what comes in passes a GiopGate; who says nothing is sent away. An end point "giop:guarded:tcp:HOST:PORT" is
+// "giop:tcp:HOST:PORT" with a guard, and is published as that. Any thread.
+#pragma once
+
+#include <string>
+
+#include "corba/giop_gate.h"
+
+namespace corba {
+
+// Who may call.
+enum class OpenTo {
+  account,  // processes of the own account, and root
+  host,     // every account of this machine
+  network,  // everybody who reaches an end point
+};
+
+struct DoorSettings {
+  OpenTo open_to = OpenTo::account;
+  GiopLimits limits{};
+};
+
+// Takes effect for connections that come from now on. Also raises the number of files that this process may open to what it is allowed.
+void set_doors(const DoorSettings& settings);
+
+// Others than the own account may call.
+bool doors_are_open();
+
+// The end point with a guard before it; others than giop:tcp:, giop:unix: and giop:ssl: as they are.
+std::string guarded(const std::string& endpoint);
+
+// To be called once there is an ORB.
+void remember_callers();
+
+// Where the request comes from that runs on this thread: "giop:tcp:127.0.0.1:40000 (account 1000)". "this process" on a thread that has
+// answered none.
+std::string caller();
+
+}  // namespace corba

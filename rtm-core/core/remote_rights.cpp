@@ -1,0 +1,23 @@
+#include "core/remote_rights.h"
+
+#include "base/text.h"
+
+namespace rt {
+
+RemoteRights parse_remote_rights(std::string_view text) {
+  if (base::equal_ignoring_case(text, "read")) return RemoteRights::read;
+  if (base::equal_ignoring_case(text, "everything")) return RemoteRights::everything;
+  return RemoteRights::components;
+}
+
+bool is_protected_key(std::string_view key) {
+  constexpr std::string_view groups[] = {"corba",          "logger",      "manager.modules", "manager.local_service", "manager.preload",
+                                         "manager.remote", "manager.pid", "manager.command", "manager.refstring_path"};
+  for (const auto group : groups) {
+    const bool is_inside = key.starts_with(group) && (key.size() == group.size() || key[group.size()] == '.' || key[group.size()] == '_');
+    if (is_inside) return true;
+  }
+  return key == "config_file" || key.ends_with(".config_file");
+}
+
+}  // namespace rt

@@ -1,0 +1,105 @@
+# What the campaigns share: an rtcd of their own on a port of loopback, and connections that send it whatever they like. Traffic goes to 127.0.0.1 only.
+import ctypes
+import os
+import random
+import resource
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+
+watchdog = 60
+
+
+def message(kind, body, more=False, minor=2):
+    return b"GIOP" + bytes([1, minor, 1 | 2 * more, kind]) + struct.pack("<I", len(body)) + body
+
+
+def pad(data, size=8, offset=12):
+    return data + bytes(-(len(data) + offset) % size)
+
+
+def head(identity, key, operation):
+    """The head of a request of GIOP 1.2, up to its arguments."""
+    data = struct.pack("<IBxxxHxxI", identity, 3, 0, len(key)) + key
+    data = data + bytes(-len(data) % 4)
+    name = operation.encode() + b"\0"
+    return pad(data + struct.pack("<I", len(name)) + name + bytes(-len(name) % 4) + struct.pack("<I", 0))
+
+
+def locate(identity, key=b"manager"):
+    return message(3, struct.pack("<IHxxI", identity, 0, len(key)) + key)
+
+
+class Host:
+    """An rtcd; with `wrapper` a program before it, as valgrind. Ended by pid."""
+
+    def __init__(self, bin_dir, lib_dir, *options, wrapper=(), files=None):
+        bin_dir, lib_dir = os.path.abspath(bin_dir), os.path.abspath(lib_dir)
+        self.folder = tempfile.TemporaryDirectory()
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            self.port = probe.getsockname()[1]
+        self.log = open(f"{self.folder.name}/log", "wb")
+        command = [*wrapper, f"{bin_dir}/rtcd", "-i", "-f", "none.conf", "-d", "-p", str(self.port), "-o", "naming.enable:NO", "-o", f"manager.modules.load_path:{lib_dir}", *options]
+
+        def prepare():
+            ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG: it ends with us, however we end
+            if files:
+                resource.setrlimit(resource.RLIMIT_NOFILE, (files, files))
+
+        self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=self.log, stderr=self.log, cwd=self.folder.name, preexec_fn=prepare)
+        until = time.monotonic() + watchdog
+        while not self.answers():
+            if self.process.poll() is not None or time.monotonic() > until:
+                raise AssertionError("rtcd does not start: " + self.text())
+            time.sleep(0.05)
+
+    def text(self):
+        with open(self.log.name, errors="replace") as log:
+            return log.read()
+
+    def connect(self, timeout=10):
+        return socket.create_connection(("127.0.0.1", self.port), timeout=timeout)
+
+    # One whole request is answered.
+    def answers(self, timeout=10):
+        try:
+            with self.connect(timeout) as stream:
+                stream.sendall(locate(7))
+                return stream.recv(12)[:4] == b"GIOP"
+        except OSError:
+            return False
+
+    def memory(self):
+        with open(f"/proc/{self.process.pid}/status") as status:
+            return next(int(line.split()[1]) for line in status if line.startswith("VmHWM:")) // 1024  # [MiB]
+
+    def end(self):
+        self.process.send_signal(signal.SIGTERM)
+        try:
+            return self.process.wait(watchdog)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+            return "hangs"
+        finally:
+            self.log.close()
+
+
+def check(condition, what, host):
+    if not condition:
+        print(what, host.text()[-4000:], sep="\n", file=sys.stderr)
+        if host.process.poll() is None:
+            host.process.kill()
+            host.process.wait()
+        sys.exit(1)
+
+
+def seeded(given):
+    seed = given if given is not None else int.from_bytes(os.urandom(4), "little")
+    print(f"seed {seed}", flush=True)
+    return random.Random(seed)

@@ -1,0 +1,144 @@
+# Who is let in, and what idle or lying connections cost: doors.py BIN_DIR LIB_DIR [unittest arguments]. What needs a second account is skipped unless run by root.
+import os
+import resource
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+from attacker import Host, head, locate, message
+
+bin_dir, lib_dir = sys.argv[1:3]
+del sys.argv[1:3]
+
+# Sends one whole request to a port of 127.0.0.1 and prints what comes back; its own program, so that it can be another account.
+asker = """
+import socket, sys
+try:
+    with socket.create_connection(("127.0.0.1", int(sys.argv[1])), timeout=10) as stream:
+        stream.sendall(bytes.fromhex(sys.argv[2]))
+        print(stream.recv(4).decode("latin-1"))
+except OSError:
+    print("")
+"""
+
+
+def ask_as(account, port, octets=locate(1)):
+    def become():
+        if account:
+            os.setgroups([])
+            os.setgid(account)
+            os.setuid(account)
+
+    done = subprocess.run(["/usr/bin/python3", "-c", asker, str(port), octets.hex()], stdout=subprocess.PIPE, text=True, timeout=60, preexec_fn=become, cwd="/")
+    return done.stdout.strip()
+
+
+class Doors(unittest.TestCase):
+    def host(self, *options, **more):
+        host = Host(bin_dir, lib_dir, *options, **more)
+
+        def end():
+            self.assertEqual(host.end(), 0, host.text())
+
+        self.addCleanup(end)
+        return host
+
+    @unittest.skipUnless(os.geteuid() == 0, "needs a second account, so root")
+    def test_another_account_is_not_let_in_and_the_log_says_who(self):
+        host = self.host()
+        self.assertEqual(ask_as(0, host.port), "GIOP")
+        self.assertEqual(ask_as(65534, host.port), "")
+        self.assertIn("(account 65534) refused", host.text())
+        self.assertTrue(host.answers())
+
+    @unittest.skipUnless(os.geteuid() == 0, "needs a second account, so root")
+    def test_one_key_opens_the_door_to_other_accounts_and_the_log_says_so(self):
+        host = self.host("-o", "corba.open_to:host")
+        self.assertEqual(ask_as(65534, host.port), "GIOP")
+        self.assertIn("open to every account of this machine", host.text())
+
+    @unittest.skipUnless(os.geteuid() == 0, "needs a second account, so root")
+    def test_the_naming_service_that_rtcd_starts_is_as_closed(self):
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            port = probe.getsockname()[1]
+        self.host("--with-naming", "-o", f"corba.nameservers:127.0.0.1:{port}")
+        root = locate(1, b"NameService")
+        self.assertEqual(ask_as(0, port, root), "GIOP")
+        self.assertEqual(ask_as(65534, port, root), "")
+
+    def test_what_48_octets_claim_takes_no_memory(self):
+        host = self.host()
+        before = host.memory()
+        streams = [host.connect() for _ in range(20)]
+        for stream in streams:
+            claim = head(1, b"manager", "set_configuration")
+            stream.sendall(b"GIOP\x01\x02\x01\x00" + struct.pack("<I", 128 << 20) + claim[:36])
+        time.sleep(0.2)
+        self.assertTrue(host.answers())
+        self.assertLess(host.memory() - before, 100)
+        for stream in streams:
+            stream.close()
+
+    def test_idle_connections_lock_nobody_out(self):
+        host = self.host(files=256)
+        idle = []
+        for _ in range(400):
+            try:
+                idle.append(host.connect())
+            except OSError:
+                break
+        self.assertTrue(host.answers(30), "the owner's tool was locked out")
+        for stream in idle:
+            stream.close()
+        self.assertTrue(host.answers())
+
+    def test_who_sends_no_whole_request_is_sent_away(self):
+        host = self.host()
+        with host.connect(timeout=30) as silent, host.connect(timeout=30) as slow:
+            slow.sendall(locate(1)[:5])
+            self.assertEqual(silent.recv(1), b"")
+            while slow.recv(100):
+                pass
+        self.assertIn("no whole message", host.text())
+        with host.connect(timeout=30) as polite:
+            polite.sendall(locate(1))
+            self.assertEqual(polite.recv(4), b"GIOP")
+
+    @unittest.skipUnless(os.geteuid() == 0, "needs an account without threads, so root")
+    def test_rtcd_without_threads_says_so_in_one_line(self):
+        def become():
+            resource.setrlimit(resource.RLIMIT_NPROC, (1, 1))
+            os.setgroups([])
+            os.setgid(65533)
+            os.setuid(65533)
+
+        with tempfile.TemporaryDirectory() as folder:
+            os.chmod(folder, 0o777)
+            done = subprocess.run([f"{bin_dir}/rtcd", "-i", "-f", "none.conf", "-o", "naming.enable:NO"], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60, preexec_fn=become, cwd=folder)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("rtcd: ", done.stderr)
+        self.assertNotIn("terminate", done.stderr)
+
+    def test_output_to_a_full_device_is_a_failure(self):
+        for program in ["rtcd", "rtse", "simctl", "sim-server"]:
+            if not os.path.exists(f"{bin_dir}/{program}"):
+                continue
+            with open("/dev/full", "w") as full:
+                done = subprocess.run([f"{bin_dir}/{program}", "--help"], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
+            self.assertEqual((program, done.returncode), (program, 1))
+            self.assertIn("cannot be written", done.stderr)
+
+    def test_fragments_are_put_together(self):
+        host = self.host()
+        with host.connect() as stream:
+            first = head(9, b"manager", "_non_existent")
+            stream.sendall(message(0, first, True) + message(7, struct.pack("<I", 9) + bytes(4)))
+            self.assertEqual(stream.recv(4), b"GIOP")
+
+
+unittest.main()

@@ -1,0 +1,105 @@
+# Requests in fragments of every kind, many connections at the same time: fragments.py BIN_DIR LIB_DIR [--messages N] [--seed S] [--valgrind]
+# omniORB 4.2 dies of 1,400 of them when they reach it. Ends well when rtcd still answers, has ended with 0 and has not taken much memory.
+import argparse
+import re
+import shutil
+import struct
+import threading
+
+from attacker import Host, check, head, locate, message, pad, seeded
+
+parser = argparse.ArgumentParser()
+parser.add_argument("bin_dir")
+parser.add_argument("lib_dir")
+parser.add_argument("--messages", type=int, default=20000)
+parser.add_argument("--connections", type=int, default=8)
+parser.add_argument("--seed", type=int)
+parser.add_argument("--valgrind", action="store_true")
+options = parser.parse_args()
+random = seeded(options.seed)
+
+keys = [b"manager", b"INIT", b"nobody", b"\xff\x00\x00\x00"]
+operations = ["get_profile", "set_configuration", "create_component", "get_components", "nonsense", "put", "_is_a", "_non_existent"]
+
+
+def burst(rng):
+    """Messages of one connection, and whether a good peer could have sent them."""
+    identity = rng.randrange(1 << 20)
+    first = head(identity, rng.choice(keys), rng.choice(operations))
+    tail = struct.pack("<I", 8) + b"key.any\0" + struct.pack("<I", 6) + b"value\0"
+    pieces = [pad(tail + bytes(rng.randrange(64)), 8, 16) for _ in range(rng.randrange(1, 5))]
+    good = [message(0, first, True)] + [message(7, struct.pack("<I", identity) + piece, i + 1 < len(pieces)) for i, piece in enumerate(pieces)]
+    shape = rng.randrange(8)
+    if shape < 3:
+        return good, True
+    if shape == 3:
+        return good[:-1] + [message(2, struct.pack("<I", identity))], True  # cancelled
+    if shape == 4:
+        return good[:1] + [locate(identity + 1)] + good[1:], False
+    if shape == 5:
+        return good[:1] + [message(7, struct.pack("<I", identity + 1) + bytes(12), True)] + good[1:], False
+    if shape == 6:
+        return [good[-1]] + good, False
+    broken = bytearray(b"".join(good))
+    for _ in range(rng.randrange(1, 4)):
+        broken[rng.randrange(len(broken))] = rng.randrange(256)
+    return [bytes(broken)], False
+
+
+class Attack(threading.Thread):
+    def __init__(self, host, seed, count):
+        super().__init__(daemon=True)
+        self.host, self.rng, self.left, self.sent, self.closed = host, __import__("random").Random(seed), count, 0, 0
+
+    def run(self):
+        while self.left > 0 and self.host.process.poll() is None:
+            try:
+                with self.host.connect() as stream:
+                    self.talk(stream)
+            except OSError:
+                self.closed += 1
+
+    def talk(self, stream):
+        reader = threading.Thread(target=self.drain, args=(stream,), daemon=True)
+        reader.start()
+        good = True
+        while good and self.left > 0:
+            messages = []
+            while good and len(messages) < 200:
+                more, good = burst(self.rng)
+                messages += more
+            self.left -= len(messages)
+            self.sent += len(messages)
+            stream.sendall(b"".join(messages))
+        try:
+            stream.shutdown(1)
+        except OSError:
+            pass
+        reader.join(30)
+
+    @staticmethod
+    def drain(stream):
+        try:
+            while stream.recv(65536):
+                pass
+        except OSError:
+            pass
+
+
+wrapper = ()
+if options.valgrind:
+    wrapper = (shutil.which("valgrind") or "valgrind", "--error-exitcode=99", "-q", "--num-callers=20")
+host = Host(options.bin_dir, options.lib_dir, wrapper=wrapper)
+attacks = [Attack(host, random.randrange(1 << 30), options.messages // options.connections) for _ in range(options.connections)]
+for attack in attacks:
+    attack.start()
+for attack in attacks:
+    attack.join()
+check(host.process.poll() is None, "rtcd has died", host)
+check(host.answers(), "rtcd does not answer any more", host)
+memory = host.memory()
+code = host.end()
+check(code == 0, f"rtcd has ended with {code}", host)
+check(options.valgrind or memory < 400, f"rtcd has taken {memory} MiB", host)
+check(not re.search("Invalid (read|write)", host.text()), "valgrind has found something", host)
+print(f"{sum(a.sent for a in attacks)} messages, {sum(a.closed for a in attacks)} connections refused, {memory} MiB at most")

@@ -1,0 +1,9 @@
+# Who and what comes in over the wire.
+rtmsim_test(giop_gate_test doors/giop_gate_test.cpp LIBRARIES rt_corba)
+rtmsim_test(remote_rights_test doors/remote_rights_test.cpp LIBRARIES openrtm LABELS process)
+add_dependencies(remote_rights_test rtcd SinkAll)
+
+# Bounded attacks; more of them by hand (tests/campaign).
+add_test(NAME doors COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/campaign/doors.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY})
+add_test(NAME fragments COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/campaign/fragments.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} --messages 20000)
+set_tests_properties(doors fragments PROPERTIES LABELS process TIMEOUT 300)
