@@ -10,9 +10,12 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "corba/call_timeout.h"
+#include "corba/guarded_transport.h"
 #include "corba/orb.h"
+#include "core/component_argument.h"
 #include "core/config_keys.h"
 #include "core/key_limits.h"
+#include "core/remote_rights.h"
 #include "manager/manager_impl.h"
 #include "rtm/LocalServiceAdmin.h"
 #include "rtm/Manager.h"
@@ -179,10 +182,40 @@ void ManagerServant::deactivate() {
   }
 }
 
+// ---------------------------------------------------------------------------------------------- who may do what
+
+// rtc.conf says it, and nobody over the wire.
+bool ManagerServant::may(rt::RemoteRights needed, const std::string& what) const {
+  const auto given = rt::parse_remote_rights(manager_.configValue("manager.remote_rights"));
+  if (given >= needed) return true;
+  refuse(what, given == rt::RemoteRights::read ? "manager.remote_rights is read" : "manager.remote_rights is not everything");
+  return false;
+}
+
+void ManagerServant::refuse(const std::string& what, const std::string& why) const {
+  base::log(base::Level::warn, "manager", "{} asked for {}: refused, {}", corba::caller(), what, why);
+}
+
 // ---------------------------------------------------------------------------------------------- modules
 
-RTC::ReturnCode_t ManagerServant::load_module(const char* pathname, const char* initfunc) { return manager_.load(pathname, initfunc); }
-RTC::ReturnCode_t ManagerServant::unload_module(const char* pathname) { return manager_.unload(pathname); }
+// Whoever may put a file somewhere would be this account. A module of the load path was put there by somebody who is.
+RTC::ReturnCode_t ManagerServant::load_module(const char* pathname, const char* initfunc) {
+  const std::string path(pathname);
+  const std::string what = "the module " + base::in_quotes(path);
+  if (!may(rt::RemoteRights::components, what)) return RTC::RTC_ERROR;
+  const bool is_said = !manager_.impl_->where("manager.modules.abs_path_allowed").empty() ||
+                       rt::parse_remote_rights(manager_.configValue("manager.remote_rights")) == rt::RemoteRights::everything;
+  if (path.find('/') != std::string::npos && corba::doors_are_open() && !is_said) {
+    refuse(what, "others than the own account may call and manager.modules.abs_path_allowed is not set");
+    return RTC::RTC_ERROR;
+  }
+  return manager_.load(pathname, initfunc);
+}
+
+RTC::ReturnCode_t ManagerServant::unload_module(const char* pathname) {
+  if (!may(rt::RemoteRights::components, "the end of module " + base::in_quotes(pathname))) return RTC::RTC_ERROR;
+  return manager_.unload(pathname);
+}
 
 // What every living slave answers, appended. One that takes the time-out is dropped: nobody waits for it twice.
 template <class List, class Ask>
@@ -223,7 +256,13 @@ RTM::ModuleProfileList* ManagerServant::get_factory_profiles() {
 // Here, unless the argument names another manager: manager_address=host:port any, manager_name=instance name a slave. Slaves are also asked
 // for what cannot be made here.
 RTC::RTObject_ptr ManagerServant::create_component(const char* module_name) {
+  if (!may(rt::RemoteRights::components, "the component " + base::in_quotes(module_name))) return RTC::RTObject::_nil();
   const auto [argument, name, address] = take_manager(module_name);
+  const auto wanted = rt::parse_component_argument(argument);
+  for (const auto& [key, text] : wanted ? wanted->properties : decltype(wanted->properties){}) {
+    if (rt::is_protected_key(key) && !may(rt::RemoteRights::everything, "a component with " + base::in_quotes(key)))
+      return RTC::RTObject::_nil();
+  }
   if (!address.empty()) {
     RTM::Manager_var other = manager_at(address);
     if (CORBA::is_nil(other)) {
@@ -252,6 +291,7 @@ RTC::RTObject_ptr ManagerServant::create_component(const char* module_name) {
 }
 
 RTC::ReturnCode_t ManagerServant::delete_component(const char* instance_name) {
+  if (!may(rt::RemoteRights::components, "the end of component " + base::in_quotes(instance_name))) return RTC::RTC_ERROR;
   const auto code = manager_.deleteComponent(instance_name);
   if (code != RTC::BAD_PARAMETER) return code;
   for (const auto& slave : living_slaves()) {
@@ -321,10 +361,12 @@ RTM::NVList* ManagerServant::get_configuration() {
 
 RTC::ReturnCode_t ManagerServant::set_configuration(const char* name, const char* value) {
   const std::string key(base::trim(name));
-  if (key.empty() || !rt::check_key("key", key) || std::string_view(value).size() > longest_name || key.front() == '.' || key.back() == '.' ||
-      key.find("..") != std::string::npos) {
+  if (key.empty() || !rt::check_key("key", key) || std::string_view(value).size() > longest_name || key.front() == '.' ||
+      key.back() == '.' || key.find("..") != std::string::npos) {
     return RTC::BAD_PARAMETER;
   }
+  const auto needed = rt::is_protected_key(key) ? rt::RemoteRights::everything : rt::RemoteRights::components;
+  if (!may(needed, "the key " + base::in_quotes(key))) return RTC::RTC_ERROR;
   const auto complaint = rt::complain_about(key, value);
   if (complaint && !complaint->takes_value) return RTC::BAD_PARAMETER;
   {
@@ -345,6 +387,10 @@ RTM::ManagerList* ManagerServant::get_master_managers() {
 }
 
 RTC::ReturnCode_t ManagerServant::add_master_manager(RTM::Manager_ptr mgr) {
+  return may(rt::RemoteRights::components, "another master") ? add_master(mgr) : RTC::RTC_ERROR;
+}
+
+RTC::ReturnCode_t ManagerServant::add_master(RTM::Manager_ptr mgr) {
   if (CORBA::is_nil(mgr) || !answers(mgr) || mgr->_is_equivalent(reference_)) return RTC::BAD_PARAMETER;
   const std::scoped_lock lock(mutex_);
   return add_unique(masters_, mgr) ? RTC::RTC_OK : RTC::BAD_PARAMETER;
@@ -361,6 +407,7 @@ RTM::ManagerList* ManagerServant::get_slave_managers() { return to_list(living_s
 
 // A manager asks its slaves for theirs: one that is above this one already would be asked without end.
 RTC::ReturnCode_t ManagerServant::add_slave_manager(RTM::Manager_ptr mgr) {
+  if (!may(rt::RemoteRights::components, "another slave")) return RTC::RTC_ERROR;
   if (CORBA::is_nil(mgr)) return RTC::BAD_PARAMETER;
   {
     const std::scoped_lock lock(mutex_);
@@ -466,7 +513,7 @@ void ManagerServant::greet_master() {
   try {
     // A manager that is no master has that address because the port was free; it may be this one.
     if (!CORBA::is_nil(master) && master->is_master()) {
-      add_master_manager(master);             // BAD_PARAMETER: it is in the list
+      add_master(master);                     // BAD_PARAMETER: it is in the list
       master->add_slave_manager(reference_);  // BAD_PARAMETER: it knows us
       greeted_ = master;
       return;
@@ -508,6 +555,7 @@ RTC::ReturnCode_t ManagerServant::fork() { return RTC::RTC_OK; }
 RTC::ReturnCode_t ManagerServant::restart() { return RTC::RTC_OK; }
 
 RTC::ReturnCode_t ManagerServant::shutdown() {
+  if (!may(rt::RemoteRights::components, "the end of this process")) return RTC::RTC_ERROR;
   manager_.terminate();
   return RTC::RTC_OK;
 }

@@ -135,7 +135,7 @@ TEST_F(Servant, a_module_that_is_cut_short_or_fails_is_refused) {
 
 TEST_F(Servant, the_log_follows_the_configuration_at_once) {
   const int port = support::free_port();
-  support::Process rtcd(at_port(port, {}));
+  support::Process rtcd(at_port(port, {"-o", "manager.remote_rights:everything"}));
   RTM::Manager_var manager = manager_at(port);
   ASSERT_FALSE(CORBA::is_nil(manager)) << rtcd.output();
   EXPECT_EQ(manager->set_configuration("logger.log_level", "LOUD"), RTC::BAD_PARAMETER);

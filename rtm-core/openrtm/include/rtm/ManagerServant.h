@@ -13,6 +13,9 @@
 namespace RTC {
 class Manager;
 }
+namespace rt {
+enum class RemoteRights;
+}
 
 namespace RTM {
 
@@ -67,6 +70,9 @@ class ManagerServant final : public POA_RTM::Manager {
     bool is_told = false;
     std::chrono::steady_clock::time_point may_return{};
   };
+  bool may(rt::RemoteRights needed, const std::string& what) const;
+  void refuse(const std::string& what, const std::string& why) const;
+  RTC::ReturnCode_t add_master(RTM::Manager_ptr mgr);
   std::vector<RTM::Manager_var> living_slaves();
   void drop(RTM::Manager_ptr slave, bool hangs);
   RTM::Manager_var manager_at(const std::string& address);

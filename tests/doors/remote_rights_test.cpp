@@ -1,0 +1,82 @@
+// What callers of a manager may change: manager.remote_rights.
+#include "core/remote_rights.h"
+
+#include <gtest/gtest.h>
+#include <rtm/NVUtil.h>
+
+#include <fstream>
+
+#include "manager/rtcd_fixture.h"
+
+namespace manager_test {
+namespace {
+
+TEST(RemoteRights, keys_that_name_programs_files_and_doors_are_protected) {
+  for (const char* key : {"manager.modules.abs_path_allowed", "manager.modules.C++.profile_cmd", "manager.modules.load_path",
+                          "logger.file_name", "logger.date_format", "corba.args", "corba.open_to", "config_file", "test.X.config_file",
+                          "manager.remote_rights", "manager.local_service.modules", "manager.preload.modules"}) {
+    EXPECT_TRUE(rt::is_protected_key(key)) << key;
+  }
+  for (const char* key : {"my.key", "test.X.conf.default.gain", "exec_cxt.periodic.rate", "naming.formats", "manager.components.precreate",
+                          "manager.modulesque", "loggers", "corbaloc", "my_config_file"}) {
+    EXPECT_FALSE(rt::is_protected_key(key)) << key;
+  }
+}
+
+class RemoteRightsOf : public Rtcd {
+ protected:
+  void start(const std::vector<std::string>& further) {
+    port_ = support::free_port();
+    std::vector<std::string> words{"-p", std::to_string(port_)};
+    words.insert(words.end(), further.begin(), further.end());
+    rtcd_ = std::make_unique<support::Process>(command(words));
+    manager_ = manager_at(port_);
+    ASSERT_FALSE(CORBA::is_nil(manager_)) << rtcd_->output();
+  }
+  std::string value(const std::string& key) {
+    RTM::NVList_var list = manager_->get_configuration();
+    return NVUtil::toString(list.in(), key.c_str());
+  }
+  bool can_create(const std::string& argument) { return !CORBA::is_nil(RTC::RTObject_var(manager_->create_component(argument.c_str()))); }
+
+  int port_ = 0;
+  std::unique_ptr<support::Process> rtcd_;
+  RTM::Manager_var manager_;
+};
+
+TEST_F(RemoteRightsOf, a_caller_sets_no_protected_key_and_the_log_says_who_tried) {
+  start({});
+  for (const char* key : {"manager.modules.abs_path_allowed", "manager.modules.C++.profile_cmd", "logger.file_name", "logger.date_format",
+                          "corba.args", "config_file", "manager.remote_rights"}) {
+    const auto before = value(key);
+    EXPECT_EQ(manager_->set_configuration(key, "YES"), RTC::RTC_ERROR) << key;
+    EXPECT_EQ(value(key), before) << key;
+    EXPECT_TRUE(
+        eventually([&] { return rtcd_->output().find("asked for the key \"" + std::string(key) + "\": refused") != std::string::npos; }));
+  }
+  EXPECT_EQ(manager_->set_configuration("my.key", "x"), RTC::RTC_OK);
+  EXPECT_FALSE(can_create("SinkAll?config_file=/etc/hostname"));
+  EXPECT_TRUE(can_create("SinkAll"));
+  EXPECT_NE(rtcd_->output().find("giop:"), std::string::npos) << "where the caller is";
+}
+
+TEST_F(RemoteRightsOf, a_manager_may_be_for_looking_only) {
+  start({"-o", "manager.remote_rights:read", "SinkAll"});
+  EXPECT_TRUE(eventually([&] { return RTC::RTCList_var(manager_->get_components())->length() == 1; }));
+  EXPECT_EQ(manager_->set_configuration("my.key", "x"), RTC::RTC_ERROR);
+  EXPECT_EQ(manager_->load_module("SinkAll.so", ""), RTC::RTC_ERROR);
+  EXPECT_EQ(manager_->delete_component("SinkAll0"), RTC::RTC_ERROR);
+  EXPECT_EQ(manager_->shutdown(), RTC::RTC_ERROR);
+  EXPECT_FALSE(can_create("SinkAll"));
+  EXPECT_EQ(RTC::RTCList_var(manager_->get_components())->length(), 1u);
+}
+
+TEST_F(RemoteRightsOf, a_key_of_rtc_conf_allows_everything) {
+  start({"-o", "manager.remote_rights:everything"});
+  EXPECT_EQ(manager_->set_configuration("logger.log_level", "DEBUG"), RTC::RTC_OK);
+  EXPECT_EQ(manager_->set_configuration("manager.modules.search_auto", "NO"), RTC::RTC_OK);
+  EXPECT_EQ(value("manager.modules.search_auto"), "NO");
+}
+
+}  // namespace
+}  // namespace manager_test
