@@ -74,7 +74,7 @@ install(DIRECTORY ${PROJECT_BINARY_DIR}/include/ DESTINATION ${package_include} 
 install(DIRECTORY idl/ DESTINATION ${package_include}/rtm/idl FILES_MATCHING PATTERN "*.idl" PATTERN ext EXCLUDE)
 install(DIRECTORY idl/ext/ DESTINATION ${package_include}/rtm/ext FILES_MATCHING PATTERN "*.idl")
 
-install(TARGETS base rt_core rt_corba openrtm coil rtm_idl LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS base own_account_door rt_core rt_corba openrtm coil rtm_idl LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS rtcprof RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 # Manual page and completion of each program, printed by the program itself.
 set(package_share ${PROJECT_BINARY_DIR}/share)

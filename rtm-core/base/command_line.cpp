@@ -1,5 +1,9 @@
 #include "base/command_line.h"
 
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <vector>
 
@@ -12,6 +16,15 @@ namespace {
 struct Printed : CLI::Success {
   Printed() : CLI::Success("printed", "", CLI::ExitCodes::Success) {}
 };
+
+// What was printed may still wait in a buffer for a device that is full. At the end of a program that would succeed.
+void check_output(int code, void*) {
+  if (code != 0) return;
+  const bool is_good = std::cout.flush().good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (is_good) return;
+  std::fputs("the output cannot be written\n", stderr);
+  _exit(1);
+}
 
 // Troff takes a leading dot or quote for a request, and a bare hyphen for a typographic one.
 std::string troff(const std::string& text) {
@@ -58,6 +71,8 @@ std::string manual_page(const CLI::App& app, const std::string& name, const std:
 }
 
 void add_standard_options(CLI::App& app, const std::string& name, const std::string& version) {
+  static const bool is_checked = on_exit(&check_output, nullptr) == 0;
+  (void)is_checked;
   app.set_version_flag("--version", name + " " + version);
   app.add_option_function<std::string>(
          "--completion",

@@ -3,11 +3,14 @@
 #include <rtm/ManagerConfig.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <new>
 #include <optional>
 #include <set>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "base/command_line.h"
@@ -76,9 +79,13 @@ bool take(std::vector<char*>& arguments, std::string_view option) {
   return true;
 }
 
-}  // namespace
+// Whoever may call the components may look for them.
+bool is_open(const coil::Properties& properties) {
+  const auto open_to = base::to_lower(properties.getProperty("corba.open_to"));
+  return open_to == "host" || open_to == "network";
+}
 
-int main(int argc, char** argv) {
+int host(int argc, char** argv) {
   std::vector<char*> arguments(argv, argv + argc);
   if (arguments.size() > 1 && std::string_view(arguments[1]) == "--complete") {
     Description description;
@@ -104,7 +111,7 @@ int main(int argc, char** argv) {
     coil::Properties properties;
     config.configure(properties);
     const auto servers = base::split_list(properties.getProperty("corba.nameservers"));
-    auto started = NameService::start_if_none(servers.empty() ? "localhost" : servers.front());
+    auto started = NameService::start_if_none(servers.empty() ? "localhost" : servers.front(), is_open(properties));
     if (!started) return fail(1, started.error().message);
     name_service = std::move(*started);
   }
@@ -118,4 +125,17 @@ int main(int argc, char** argv) {
   }
   manager->runManager();
   return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return host(argc, argv);
+  } catch (const std::system_error& e) {
+    fail(1, std::string("the system refuses what is needed, as threads or files: ") + e.what());
+  } catch (const std::bad_alloc&) {
+    fail(1, "out of memory");
+  }
+  std::_Exit(1);  // what has been started cannot be ended in order
 }

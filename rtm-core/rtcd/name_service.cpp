@@ -4,8 +4,10 @@
 #include <netdb.h>
 #include <poll.h>
 #include <signal.h>
+#include <sys/file.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,8 +15,10 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <string_view>
 #include <thread>
 
+#include "base/own_account.h"
 #include "base/text.h"
 
 namespace {
@@ -68,9 +72,45 @@ bool answers(const Address& address) {
   return answered;
 }
 
+constexpr std::string_view folder_prefix = "rtcd-names-";
+
+// Folders whose keeper was killed: a living one holds a lock on the file in it.
+void remove_stale_folders(const std::filesystem::path& where) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(where, error)) {
+    if (!entry.path().filename().string().starts_with(folder_prefix)) continue;
+    struct stat status {};
+    if (lstat(entry.path().c_str(), &status) != 0 || status.st_uid != geteuid() || !S_ISDIR(status.st_mode)) continue;
+    const int lock = open((entry.path() / "lock").c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+    if (lock < 0) continue;
+    if (flock(lock, LOCK_EX | LOCK_NB) == 0) std::filesystem::remove_all(entry.path(), error);
+    close(lock);
+  }
+}
+
+struct Folder {
+  std::string path;
+  int lock;
+};
+
+base::Result<Folder> make_folder() {
+  std::error_code error;
+  const auto where = std::filesystem::temp_directory_path(error);
+  remove_stale_folders(where);
+  for (int attempt = 0; attempt < 5; ++attempt) {
+    auto path = (where / (std::string(folder_prefix) + "XXXXXX")).string();
+    if (mkdtemp(path.data()) == nullptr) break;
+    const int lock = open((path + "/lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600);
+    struct stat opened {};
+    if (lock >= 0 && flock(lock, LOCK_EX | LOCK_NB) == 0 && fstat(lock, &opened) == 0 && opened.st_nlink > 0) return Folder{path, lock};
+    if (lock >= 0) close(lock);  // another process took the new folder for a stale one
+  }
+  return base::Error{"naming service: no folder can be made in the temporary folder"};
+}
+
 // The keeper: a child of ours, because somebody has to remove the folder when we are killed. Signals of the terminal are not for it; it
 // ends when the pipe from us closes or omniNames ends.
-[[noreturn]] void keep(const Address& address, const std::string& folder, int alive) {
+[[noreturn]] void keep(const Address& address, const std::string& folder, const std::string& door, int alive) {
   setpgid(0, 0);
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) ::signal(number, SIG_IGN);
   const pid_t keeper = getpid();
@@ -81,6 +121,7 @@ bool answers(const Address& address) {
     for (const int number : {SIGINT, SIGTERM, SIGHUP}) ::signal(number, SIG_DFL);
     const int null = open("/dev/null", O_RDWR);
     for (const int file : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(null, file);
+    if (!door.empty()) setenv("LD_PRELOAD", door.c_str(), 1);
     const auto end_point = "giop:tcp:" + address.host + ":" + address.port;
     execlp("omniNames", "omniNames", "-always", "-ignoreport", "-start", address.port.c_str(), "-datadir", folder.c_str(), "-ORBendPoint",
            end_point.c_str(), static_cast<char*>(nullptr));
@@ -105,14 +146,16 @@ bool answers(const Address& address) {
 
 }  // namespace
 
-base::Result<std::unique_ptr<NameService>> NameService::start_if_none(const std::string& text) {
+base::Result<std::unique_ptr<NameService>> NameService::start_if_none(const std::string& text, bool is_open) {
   const auto address = parse(text);
   if (!address) return address.error();
   if (answers(*address)) return std::unique_ptr<NameService>();
 
-  std::error_code error;
-  auto folder = (std::filesystem::temp_directory_path(error) / "rtcd-names-XXXXXX").string();
-  if (mkdtemp(folder.data()) == nullptr) return base::Error{"naming service: no folder can be made in the temporary folder"};
+  const auto door = is_open ? std::string() : base::own_account_door();
+  if (!is_open && door.empty()) return base::Error{"naming service: librtmsim_own_account.so is missing, which keeps other accounts out"};
+  const auto made = make_folder();
+  if (!made) return made.error();
+  const auto& folder = made->path;
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) return base::Error{"naming service: no pipe can be made"};
   std::unique_ptr<NameService> service(new NameService);
@@ -120,9 +163,10 @@ base::Result<std::unique_ptr<NameService>> NameService::start_if_none(const std:
   service->keeper_ = fork();
   if (service->keeper_ == 0) {
     close(ends[1]);
-    keep(*address, folder, ends[0]);
+    keep(*address, folder, door, ends[0]);
   }
   close(ends[0]);
+  close(made->lock);  // the keeper has it now
 
   constexpr std::chrono::seconds patience{10};
   const auto deadline = std::chrono::steady_clock::now() + patience;

@@ -10,9 +10,9 @@
 
 class NameService {
  public:
-  // `address`: host, host:port; the port is 2809 if missing. Returns nothing when one answers there already. The child ends with this
-  // object and with this process, however that ends; its folder is removed.
-  static base::Result<std::unique_ptr<NameService>> start_if_none(const std::string& address);
+  // `address`: host, host:port; the port is 2809 if missing. Only processes of this account are served unless `is_open`. Returns nothing
+  // when one answers there already. The child ends with this object and with this process, however that ends; its folder is removed.
+  static base::Result<std::unique_ptr<NameService>> start_if_none(const std::string& address, bool is_open);
   ~NameService();
   NameService(const NameService&) = delete;
   NameService& operator=(const NameService&) = delete;

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "base/own_account.h"
 #include "base/text.h"
 #include "commands/system.h"
 #include "run/child_process.h"
@@ -160,7 +161,7 @@ class Run {
     server_ = "127.0.0.1:" + std::to_string(port);
     auto started = ChildProcess::start({{"omniNames", "-start", std::to_string(port), "-datadir", place_.scratch("names"), "-errlog",
                                          place_.new_file("omninames.err"), "-ORBendPoint", "giop:tcp:127.0.0.1:" + std::to_string(port)},
-                                        {},
+                                        {{"LD_PRELOAD", base::own_account_door()}},
                                         place_.new_file("omninames.log")});
     if (!started) return started.error();
     naming_.emplace(std::move(*started));
