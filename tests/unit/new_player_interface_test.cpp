@@ -9,12 +9,13 @@
 #include <sstream>
 
 #include "device_kinds.h"
+#include "support/paths.h"
 
 namespace gateway {
 namespace {
 
 namespace fs = std::filesystem;
-const fs::path source = RTMSIM_SOURCE_DIR;
+const fs::path source = paths::source_dir;
 
 std::string text_of(const fs::path& path) {
   std::ifstream file(path);
