@@ -28,6 +28,7 @@ const std::map<std::string, std::string> allowed = {
     {"rtm-core/openrtm/include/coil/PeriodicTask.h", "coil stands alone"},
     {"rtm-core/openrtm/include/coil/Timer.h", "coil stands alone"},
     {"rtm-core/openrtm/coil/PeriodicTask.cpp", "coil stands alone"},
+    {"rtm-core/openrtm/coil/Task.cpp", "coil stands alone"},
     {"rtm-core/openrtm/include/rtm/CdrBufferBase.h", "an author's header"},
     {"rtm-core/openrtm/include/rtm/CorbaConsumer.h", "an author's header"},
     {"rtm-core/openrtm/include/rtm/ListenerList.h", "an author's header, a template"},
