@@ -40,7 +40,7 @@ enum {
   RTMSIM_FORCE_TORQUE = 13,
   RTMSIM_ALTIMETER = 14,
   RTMSIM_MAGNETOMETER = 15,
-  RTMSIM_AIR_PRESSURE = 16
+  RTMSIM_AIR_PRESSURE = 16,
 };
 
 /* Areas of a segment, by index into rtmsim_header.areas; those an iface does not have are all zero. */

@@ -1,6 +1,6 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <map>
 #include <numbers>
 
 #include "base/text.h"
@@ -15,33 +15,6 @@ namespace {
 constexpr int most_rays = 4000000;  // of one scan
 constexpr int most_pixels_a_side = 16384;
 constexpr double most_pixels = 1 << 26;  // an iface holds no larger frames
-
-const std::map<std::string_view, SensorKind>& kinds() {
-  static const std::map<std::string_view, SensorKind> table{
-      {"ray", SensorKind::ray},
-      {"gpu_ray", SensorKind::ray},
-      {"lidar", SensorKind::ray},
-      {"gpu_lidar", SensorKind::ray},
-      {"camera", SensorKind::camera},
-      {"wideanglecamera", SensorKind::camera},
-      {"wide_angle_camera", SensorKind::camera},
-      {"depth", SensorKind::depth_camera},
-      {"depth_camera", SensorKind::depth_camera},
-      {"rgbd", SensorKind::rgbd_camera},
-      {"rgbd_camera", SensorKind::rgbd_camera},
-      {"multicamera", SensorKind::multi_camera},
-      {"contact", SensorKind::contact},
-      {"imu", SensorKind::imu},
-      {"gps", SensorKind::gps},
-      {"navsat", SensorKind::gps},
-      {"sonar", SensorKind::sonar},
-      {"force_torque", SensorKind::force_torque},
-      {"altimeter", SensorKind::altimeter},
-      {"magnetometer", SensorKind::magnetometer},
-      {"air_pressure", SensorKind::air_pressure},
-  };
-  return table;
-}
 
 NoiseDef build_noise(pugi::xml_node node, BuildContext& context) {
   NoiseDef noise;
@@ -258,72 +231,111 @@ GpsDef build_gps(pugi::xml_node sensor, BuildContext& context) {
   return gps;
 }
 
-// The part of the sensor that depends on its kind; false when it is left out.
-bool build_data(SensorDef& out, pugi::xml_node sensor, BuildContext& context) {
-  const auto take = [&](auto&& data) {
-    if (data) out.data = std::move(*data);
-    return data.has_value();
-  };
-  switch (out.kind) {
-    case SensorKind::ray:
-      return take(build_ray(sensor, context));
-    case SensorKind::camera:
-    case SensorKind::depth_camera:
-    case SensorKind::rgbd_camera:
-    case SensorKind::multi_camera:
-      return take(build_cameras(sensor, out.kind, context));
-    case SensorKind::sonar:
-      return take(build_sonar(sensor, context));
-    case SensorKind::contact: {
-      ContactDef contact;
-      for (pugi::xml_node name : sensor.child("contact").children("collision")) contact.collisions.push_back(text_of(name));
-      out.data = std::move(contact);
-      return true;
-    }
-    case SensorKind::imu:
-      out.data = build_imu(sensor, context);
-      return true;
-    case SensorKind::gps:
-      out.data = build_gps(sensor, context);
-      return true;
-    case SensorKind::force_torque:
-      out.data = build_force_torque(sensor, context);
-      return true;
-    case SensorKind::altimeter:
-      out.data =
-          AltimeterDef{noise_at(sensor, "altimeter/vertical_position", context), noise_at(sensor, "altimeter/vertical_velocity", context)};
-      return true;
-    case SensorKind::magnetometer:
-      out.data = MagnetometerDef{noises_at(sensor, "magnetometer", context)};
-      return true;
-    case SensorKind::air_pressure:
-      out.data =
-          AirPressureDef{noise_at(sensor, "air_pressure/pressure", context), number_at(sensor, "air_pressure/reference_altitude", 0)};
-      return true;
-  }
-  return false;
+// Takes what a builder has made; false when it has left the sensor out.
+template <class Data>
+bool take(SensorDef& out, std::optional<Data> data) {
+  if (data) out.data = std::move(*data);
+  return data.has_value();
+}
+
+bool take_cameras(SensorDef& out, pugi::xml_node sensor, BuildContext& context) {
+  return take(out, build_cameras(sensor, out.kind, context));
+}
+
+ContactDef build_contact(pugi::xml_node sensor) {
+  ContactDef contact;
+  for (pugi::xml_node name : sensor.child("contact").children("collision")) contact.collisions.push_back(text_of(name));
+  return contact;
+}
+
+AltimeterDef build_altimeter(pugi::xml_node sensor, BuildContext& context) {
+  return {noise_at(sensor, "altimeter/vertical_position", context), noise_at(sensor, "altimeter/vertical_velocity", context)};
+}
+
+AirPressureDef build_air_pressure(pugi::xml_node sensor, BuildContext& context) {
+  return {noise_at(sensor, "air_pressure/pressure", context), number_at(sensor, "air_pressure/reference_altitude", 0)};
+}
+
+using Node = pugi::xml_node;
+
+// A kind of sensor: what files call it, the first being its name in messages, and how the part of it that is the kind's own is read; false
+// when the sensor is left out.
+struct KindRow {
+  SensorKind kind;
+  std::array<std::string_view, 4> spellings;
+  bool (*build)(SensorDef& out, Node sensor, BuildContext& context);
+};
+
+constexpr std::array kinds{
+    KindRow{SensorKind::ray,
+            {"ray", "gpu_ray", "lidar", "gpu_lidar"},
+            [](SensorDef& out, Node sensor, BuildContext& context) { return take(out, build_ray(sensor, context)); }},
+    KindRow{SensorKind::camera, {"camera", "wideanglecamera", "wide_angle_camera"}, take_cameras},
+    KindRow{SensorKind::depth_camera, {"depth_camera", "depth"}, take_cameras},
+    KindRow{SensorKind::rgbd_camera, {"rgbd_camera", "rgbd"}, take_cameras},
+    KindRow{SensorKind::multi_camera, {"multicamera"}, take_cameras},
+    KindRow{SensorKind::contact,
+            {"contact"},
+            [](SensorDef& out, Node sensor, BuildContext&) { return take(out, std::optional(build_contact(sensor))); }},
+    KindRow{SensorKind::imu,
+            {"imu"},
+            [](SensorDef& out, Node sensor, BuildContext& context) { return take(out, std::optional(build_imu(sensor, context))); }},
+    KindRow{SensorKind::gps,
+            {"gps", "navsat"},
+            [](SensorDef& out, Node sensor, BuildContext& context) { return take(out, std::optional(build_gps(sensor, context))); }},
+    KindRow{SensorKind::sonar,
+            {"sonar"},
+            [](SensorDef& out, Node sensor, BuildContext& context) { return take(out, build_sonar(sensor, context)); }},
+    KindRow{
+        SensorKind::force_torque,
+        {"force_torque"},
+        [](SensorDef& out, Node sensor, BuildContext& context) { return take(out, std::optional(build_force_torque(sensor, context))); }},
+    KindRow{SensorKind::altimeter,
+            {"altimeter"},
+            [](SensorDef& out, Node sensor, BuildContext& context) { return take(out, std::optional(build_altimeter(sensor, context))); }},
+    KindRow{SensorKind::magnetometer,
+            {"magnetometer"},
+            [](SensorDef& out, Node sensor, BuildContext& context) {
+              return take(out, std::optional(MagnetometerDef{noises_at(sensor, "magnetometer", context)}));
+            }},
+    KindRow{
+        SensorKind::air_pressure,
+        {"air_pressure"},
+        [](SensorDef& out, Node sensor, BuildContext& context) { return take(out, std::optional(build_air_pressure(sensor, context))); }},
+};
+
+const KindRow* row_of(std::string_view spelling) {
+  const auto row = std::find_if(kinds.begin(), kinds.end(), [&](const KindRow& one) {
+    return !spelling.empty() && std::find(one.spellings.begin(), one.spellings.end(), spelling) != one.spellings.end();
+  });
+  return row == kinds.end() ? nullptr : &*row;
 }
 
 }  // namespace
+
+std::string_view to_text(SensorKind kind) {
+  const auto row = std::find_if(kinds.begin(), kinds.end(), [&](const KindRow& one) { return one.kind == kind; });
+  return row == kinds.end() ? "unknown" : row->spellings.front();
+}
 
 std::optional<SensorDef> build_sensor(pugi::xml_node node, BuildContext& context) {
   SensorDef sensor;
   sensor.name = node.attribute("name").value();
   sensor.type = node.attribute("type").value();
-  const auto kind = kinds().find(sensor.type);
-  if (kind == kinds().end()) {
+  const KindRow* kind = row_of(sensor.type);
+  if (kind == nullptr) {
     context.complaints.drop(
         node, "sensors of type " + base::in_quotes(sensor.type) + " are not simulated; " + describe_in_context(node) + " is left out");
     return std::nullopt;
   }
-  sensor.kind = kind->second;
+  sensor.kind = kind->kind;
   sensor.pose = pose_at(node, "pose");
   sensor.update_rate = std::min(number_at(node, "update_rate", 0), 1e6);
   sensor.always_on = bool_at(node, "always_on", false);
   sensor.visualize = bool_at(node, "visualize", false);
   sensor.topic = text_at(node, "topic");
   if (sensor.topic == "__default__") sensor.topic.clear();
-  if (!build_data(sensor, node, context)) return std::nullopt;
+  if (!kind->build(sensor, node, context)) return std::nullopt;
   return sensor;
 }
 

@@ -69,38 +69,6 @@ std::optional<SolidProperties> solid_properties(const GeometryDef& geometry) {
   return std::nullopt;
 }
 
-std::string_view to_text(SensorKind kind) {
-  switch (kind) {
-    case SensorKind::ray:
-      return "ray";
-    case SensorKind::camera:
-      return "camera";
-    case SensorKind::depth_camera:
-      return "depth_camera";
-    case SensorKind::rgbd_camera:
-      return "rgbd_camera";
-    case SensorKind::multi_camera:
-      return "multi_camera";
-    case SensorKind::contact:
-      return "contact";
-    case SensorKind::imu:
-      return "imu";
-    case SensorKind::gps:
-      return "gps";
-    case SensorKind::sonar:
-      return "sonar";
-    case SensorKind::force_torque:
-      return "force_torque";
-    case SensorKind::altimeter:
-      return "altimeter";
-    case SensorKind::magnetometer:
-      return "magnetometer";
-    case SensorKind::air_pressure:
-      return "air_pressure";
-  }
-  return "unknown";
-}
-
 std::string_view to_text(JointDef::Kind kind) {
   switch (kind) {
     case JointDef::Kind::fixed:

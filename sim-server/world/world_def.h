@@ -307,7 +307,7 @@ enum class SensorKind {
   force_torque,
   altimeter,
   magnetometer,
-  air_pressure
+  air_pressure,
 };
 std::string_view to_text(SensorKind kind);
 
