@@ -1,0 +1,13 @@
+# The pages on how to add something are followed in a copy of the sources.
+foreach(page new-device new-component new-data-type new-rtse-command)
+  add_test(NAME docs.${page}
+    COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/follow_page.py list ${page} ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR})
+  set_tests_properties(docs.${page} PROPERTIES LABELS docs TIMEOUT 600)
+endforeach()
+# The whole simulator of the copy, with the new device in it: minutes of building.
+option(RTMSIM_SLOW_TESTS "tests that build much" OFF)
+if(RTMSIM_SLOW_TESTS)
+  add_test(NAME docs.new-device_runs
+    COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/follow_page.py build new-device ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR})
+  set_tests_properties(docs.new-device_runs PROPERTIES LABELS docs TIMEOUT 7200)
+endif()
