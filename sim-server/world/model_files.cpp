@@ -29,6 +29,8 @@ int version_number(std::string_view text) {
 }
 
 constexpr int newest_known = 109;
+constexpr int first_with_frames = 107;
+constexpr int first_with_nested_names = 108;
 
 // Nested models count for more: their frames cost more than anything else.
 std::size_t element_count(pugi::xml_node node) {
@@ -48,6 +50,7 @@ base::Error wrong_root(pugi::xml_node root, const std::string& file_name) {
   if (name == "gazebo" || name.starts_with("gazebo:") || name.find(':') != std::string::npos) {
     return {file_name + ": is a file of Gazebo before SDFormat (<" + name + ">); SDFormat 1.2 or newer (<sdf version=...>) is expected"};
   }
+  if (name.empty()) return {file_name + ": holds no element; <sdf> is expected at the top"};
   if (name == "COLLADA") return {file_name + ": is a mesh (COLLADA), not SDFormat"};
   return {file_name + ": an <sdf> element is expected at the top, got <" + name.substr(0, 60) + ">"};
 }
@@ -88,7 +91,17 @@ base::Result<pugi::xml_document> ModelFiles::open_text(const std::string& text, 
     return parsed;
   }
   if (number == newest_known) return parsed;
+  if (number < first_with_frames && has_flattened_names(sdf)) {
+    if (base::Result<pugi::xml_document> newer = library_.translate(sdf, "1.7")) {
+      parsed = std::move(newer);
+      sdf = parsed->child("sdf");
+      sdf.append_attribute(file_mark) = complaints_.add_file(file_name);
+      keep_axes_in_nested_models(sdf);
+    }
+  }
+  if (number < first_with_nested_names && has_torn_names(sdf)) flatten_names(sdf, complaints_);
   base::Result<pugi::xml_document> translated = library_.translate(sdf);
+  if (!translated && flatten_names(sdf, complaints_)) translated = library_.translate(sdf);
   if (!translated) return base::Error{complaints_.place_of(sdf).text() + ": " + translated.error().message};
   pugi::xml_node root = translated->child("sdf");
   root.remove_attribute(file_mark);
@@ -235,7 +248,9 @@ pugi::xml_node ModelFiles::included(pugi::xml_node include, const fs::path& fold
     complaints_.drop(include, "<include> has no <uri> and is left out");
     return {};
   }
-  const std::optional<fs::path> path = model_path_.find(uri, folder);
+  const auto [known, is_new] = found_.try_emplace(uri + "\n" + folder.string());
+  if (is_new) known->second = model_path_.find(uri, folder);
+  const std::optional<fs::path>& path = known->second;
   if (!path) {
     complaints_.drop(include, "model " + base::in_quotes(uri) + " is not found and is left out");
     return {};

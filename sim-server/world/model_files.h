@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <pugixml.hpp>
 #include <set>
 #include <string>
@@ -49,6 +50,7 @@ class ModelFiles {
   Complaints& complaints_;
   std::map<std::string, pugi::xml_document> documents_;
   std::map<std::string, std::string> failures_;
+  std::map<std::string, std::optional<std::filesystem::path>> found_;  // by URI and folder
   std::set<std::string> being_loaded_;
 };
 

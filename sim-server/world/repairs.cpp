@@ -1,7 +1,9 @@
 #include "world/repairs.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -126,6 +128,15 @@ void make_lower_case(pugi::xml_node node, const char* key) {
   if (pugi::xml_attribute attribute = node.attribute(key)) attribute = base::to_lower(attribute.value()).c_str();
 }
 
+// Gazebo classic writes frame="" into every pose, which says nothing; libsdformat takes it for a reference where nested models were
+// flattened.
+void remove_empty_references(pugi::xml_node node) {
+  for (const char* key : {"frame", "relative_to", "attached_to", "expressed_in"}) {
+    if (const pugi::xml_attribute reference = node.attribute(key); reference && base::trim(reference.value()).empty())
+      node.remove_attribute(reference);
+  }
+}
+
 void repair(pugi::xml_node node, Complaints& complaints) {
   for (pugi::xml_node child = node.first_child(), next; child; child = next) {
     next = child.next_sibling();
@@ -139,6 +150,7 @@ void repair(pugi::xml_node node, Complaints& complaints) {
     }
     if (name == "joint" || name == "light") make_lower_case(child, "type");
     if (name == "joint") take_screw_pitch(child);
+    remove_empty_references(child);
     take_urdf_attributes(child, complaints);
     take_urdf_origin(child, complaints);
     mark_automatic_inertia(child);
@@ -160,6 +172,97 @@ void repair_document(pugi::xml_node sdf, Complaints& complaints) {
   }
 }
 
+namespace {
+
+using NewNames = std::map<std::string, std::string, std::less<>>;
+
+void flatten_names(pugi::xml_node node, NewNames& names) {
+  for (pugi::xml_node child : node.children()) {
+    const std::string_view kind = child.name();
+    if (kind == "plugin" || kind == "state") continue;
+    flatten_names(child, names);
+    pugi::xml_attribute name = child.attribute("name");
+    std::string flat = name.value();
+    if ((kind != "link" && kind != "joint" && kind != "frame" && kind != "model") || flat.find("::") == std::string::npos) continue;
+    for (std::size_t at; (at = flat.find("::")) != std::string::npos;) flat.replace(at, 2, "_");
+    names[name.value()] = flat;
+    name = flat.c_str();
+  }
+}
+
+constexpr std::array<const char*, 4> reference_keys{"frame", "relative_to", "attached_to", "expressed_in"};
+
+bool has_reference_outside(pugi::xml_node node, std::string_view prefix) {
+  const auto is_outside = [&](std::string_view reference) { return !reference.empty() && !reference.starts_with(prefix); };
+  for (const char* key : reference_keys) {
+    if (is_outside(node.attribute(key).value())) return true;
+  }
+  const std::string_view kind = node.name();
+  if ((kind == "parent" || kind == "child") && is_outside(text_of(node))) return true;
+  for (pugi::xml_node child : node.children()) {
+    if (has_reference_outside(child, prefix)) return true;
+  }
+  return false;
+}
+
+void rename_references(pugi::xml_node node, const NewNames& names) {
+  for (const char* key : reference_keys) {
+    pugi::xml_attribute reference = node.attribute(key);
+    if (const auto found = names.find(std::string_view(reference.value())); found != names.end()) reference = found->second.c_str();
+  }
+  if (const auto found = names.find(text_of(node)); found != names.end()) node.text() = found->second.c_str();
+  for (pugi::xml_node child : node.children()) rename_references(child, names);
+}
+
+}  // namespace
+
+bool has_flattened_names(pugi::xml_node node) {
+  const auto is_one = [](pugi::xml_node child) {
+    const std::string_view kind = child.name();
+    if (kind == "plugin" || kind == "state") return false;
+    return std::string_view(child.attribute("name").value()).find("::") != std::string_view::npos || has_flattened_names(child);
+  };
+  return std::any_of(node.begin(), node.end(), is_one);
+}
+
+void keep_axes_in_nested_models(pugi::xml_node node) {
+  for (pugi::xml_node child : node.children()) {
+    const std::string_view kind = child.name(), name = child.attribute("name").value();
+    const std::size_t last = name.rfind("::");
+    if (kind != "joint" || last == std::string_view::npos) {
+      keep_axes_in_nested_models(child);
+      continue;
+    }
+    for (const char* axis : {"axis", "axis2"}) {
+      pugi::xml_attribute frame = child.child(axis).child("xyz").attribute("expressed_in");
+      if (frame && std::string_view(frame.value()) == "__model__")
+        frame = std::string(name.substr(0, last + 2)).append("__model__").c_str();
+    }
+  }
+}
+
+bool has_torn_names(pugi::xml_node node) {
+  for (pugi::xml_node child : node.children()) {
+    const std::string_view kind = child.name(), name = child.attribute("name").value();
+    if (kind == "plugin" || kind == "state") continue;
+    if (has_torn_names(child)) return true;
+    const std::size_t last = name.rfind("::");
+    if ((kind != "link" && kind != "joint" && kind != "frame") || last == std::string_view::npos || name.ends_with("::__model__")) continue;
+    if (has_reference_outside(child, name.substr(0, last + 2))) return true;
+  }
+  return false;
+}
+
+bool flatten_names(pugi::xml_node sdf, Complaints& complaints) {
+  NewNames names;
+  flatten_names(sdf, names);
+  if (names.empty()) return false;
+  rename_references(sdf, names);
+  complaints.warn(sdf, "names with '::' (" + base::in_quotes(names.begin()->first) +
+                           " and the like) do not make nested models here; '_' is written in place of '::'");
+  return true;
+}
+
 pugi::xml_node model_of_road(pugi::xml_node road, pugi::xml_node parent) {
   constexpr double thickness = 0.01;
   const double width = number_at(road, "width", 1);
@@ -174,6 +277,7 @@ pugi::xml_node model_of_road(pugi::xml_node road, pugi::xml_node parent) {
   pugi::xml_node link = model.append_child("link");
   link.append_attribute("name") = "link";
   int count = 0;
+  const pugi::xml_node material = road.child("material");
   const auto add = [&](const char* shape, const Eigen::Vector3d& middle, double pitch, double yaw) {
     pugi::xml_node visual = link.append_child("visual");
     visual.append_attribute("name") = ("strip_" + std::to_string(count++)).c_str();
@@ -182,7 +286,7 @@ pugi::xml_node model_of_road(pugi::xml_node road, pugi::xml_node parent) {
       pose += base::format_number(number) + " ";
     visual.append_child("pose").text() = pose.c_str();
     visual.append_child("cast_shadows").text() = false;
-    if (const pugi::xml_node material = road.child("material")) visual.append_copy(material);
+    if (material) visual.append_copy(material);
     return visual.append_child("geometry").append_child(shape);
   };
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -10,6 +10,17 @@ namespace sim {
 
 void repair_document(pugi::xml_node sdf, Complaints& complaints);
 
+// Whether something is called like "a::b": how versions before 1.8 write what stands in nested models.
+bool has_flattened_names(pugi::xml_node sdf);
+// Version 1.7 only: what such things say of the model's axes they say of those of their own nested model, which are the same in files that
+// were older. Axes of joints are written that way before version 1.5, and by use_parent_model_frame.
+void keep_axes_in_nested_models(pugi::xml_node sdf);
+// Whether something called like "a::b", from which the translation of versions before 1.8 makes a nested model, refers to what will lie
+// outside of it: the reference would be lost.
+bool has_torn_names(pugi::xml_node sdf);
+// Writes "a_b" for such names and in what refers to them. False when there is none.
+bool flatten_names(pugi::xml_node sdf, Complaints& complaints);
+
 // A <road> of a world as a static <model> in `parent`: strips along its points, round at the corners.
 pugi::xml_node model_of_road(pugi::xml_node road, pugi::xml_node parent);
 

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
-#include <sdf/sdf.hh>
 #include <set>
 
 #include "base/text.h"
+#include "world/sdf_border.h"
 #include "world/xml_file.h"
 #include "world/xml_values.h"
 
@@ -54,21 +54,16 @@ void copy_element(const sdf::ElementPtr& from, pugi::xml_node to) {
   }
 }
 
-pugi::xml_document to_document(const sdf::SDFPtr& source) {
+pugi::xml_document to_document(const sdf::SDFPtr& source, const std::string& version = current_sdf_version) {
   pugi::xml_document document;
   pugi::xml_node root = document.append_child("sdf");
   copy_element(source->Root(), root);
   root.remove_attribute("version");
-  root.prepend_attribute("version") = current_sdf_version;
+  root.prepend_attribute("version") = version.c_str();
   return document;
 }
 
-std::string first_message(const sdf::Errors& errors) {
-  if (errors.empty()) return "libsdformat gives no reason";
-  std::string message = errors.front().Message();
-  for (char& c : message) c = c == '\n' ? ' ' : c;
-  return message;
-}
+base::Error first_reason(const sdf::Errors& errors) { return reason(errors.empty() ? std::string() : errors.front().Message()); }
 
 sdf::ElementPtr shallow_copy(const sdf::ElementPtr& description) {
   auto copy = std::make_shared<sdf::Element>();
@@ -256,32 +251,40 @@ SdfLibrary::SdfLibrary() : state_(std::make_unique<State>()) {}
 
 SdfLibrary::~SdfLibrary() = default;
 
-base::Result<pugi::xml_document> SdfLibrary::translate(pugi::xml_node sdf) {
-  const sdf::SDFPtr document = free_form();
-  try {
-    if (sdf::convertString(to_xml(sdf, true), current_sdf_version, state_->config, document)) return to_document(document);
-  } catch (const std::exception& problem) {
-    return base::Error{std::string("cannot be translated to SDFormat ") + current_sdf_version + ": " + problem.what()};
-  }
-  return base::Error{"cannot be translated from SDFormat " + base::in_quotes(sdf.attribute("version").value()) + " to " +
-                     current_sdf_version};
+base::Result<pugi::xml_document> SdfLibrary::translate(pugi::xml_node sdf, const std::string& version) {
+  const std::string text = to_xml(sdf, true);
+  auto done = ask_library([&]() -> std::optional<pugi::xml_document> {
+    const sdf::SDFPtr document = free_form();
+    if (!sdf::convertString(text, version, state_->config, document)) return std::nullopt;
+    return to_document(document, version);
+  });
+  const std::string refusal = "cannot be translated from SDFormat " + base::in_quotes(sdf.attribute("version").value()) + " to " + version;
+  if (!done) return base::Error{refusal + ": " + done.error().message};
+  if (!*done) return base::Error{refusal};
+  return std::move(**done);
 }
 
 base::Result<pugi::xml_document> SdfLibrary::translate_urdf(const std::string& text) {
-  const sdf::SDFPtr document = free_form();
-  sdf::Errors errors;
-  try {
-    if (sdf::readString(text, state_->config, document, errors)) return to_document(document);
-  } catch (const std::exception& problem) {
-    return base::Error{std::string("the URDF robot cannot be read: ") + problem.what()};
-  }
-  return base::Error{"the URDF robot cannot be read: " + first_message(errors)};
+  auto done = ask_library([&]() -> base::Result<pugi::xml_document> {
+    const sdf::SDFPtr document = free_form();
+    sdf::Errors errors;
+    if (!sdf::readString(text, state_->config, document, errors)) return first_reason(errors);
+    return to_document(document);
+  });
+  const std::string refusal = "the URDF robot cannot be read: ";
+  if (!done) return base::Error{refusal + done.error().message};
+  if (!*done) return base::Error{refusal + (*done).error().message};
+  return std::move(**done);
 }
 
 void SdfLibrary::check(pugi::xml_node entity, Complaints& complaints) {
   state_->complaints = &complaints;
-  const sdf::ElementPtr description = specification()->GetElementDescription(entity.name());
-  if (description) state_->check(entity, description);
+  const auto done = ask_library([&] {
+    const sdf::ElementPtr description = specification()->GetElementDescription(entity.name());
+    if (description) state_->check(entity, description);
+    return true;
+  });
+  if (!done) complaints.warn(entity, describe(entity) + " cannot be checked: " + done.error().message);
   state_->complaints = nullptr;
 }
 
@@ -377,6 +380,30 @@ void SdfLibrary::State::check(pugi::xml_node node, const sdf::ElementPtr& descri
   }
 }
 
+namespace {
+
+base::Result<ResolvedWorld> resolve_text(const std::string& text, const sdf::ElementPtr& descriptions, const sdf::ParserConfig& config) {
+  const sdf::SDFPtr document = std::make_shared<sdf::SDF>();
+  document->Root(descriptions);
+  sdf::Errors errors;
+  if (!sdf::readString(text, config, document, errors)) return first_reason(errors);
+  sdf::Root root;
+  const sdf::Errors problems = root.Load(document, config);
+  errors.insert(errors.end(), problems.begin(), problems.end());
+  if (!errors.empty() || root.WorldCount() == 0) return first_reason(errors);
+  const sdf::World& world = *root.WorldByIndex(0);
+  Resolver resolver(errors);
+  ResolvedWorld out;
+  for (std::size_t i = 0; i < world.FrameCount(); ++i)
+    out.frames[world.FrameByIndex(i)->Name()] = resolver.pose_of(*world.FrameByIndex(i), "world");
+  for (std::size_t i = 0; i < world.ModelCount(); ++i)
+    out.models[world.ModelByIndex(i)->Name()] = resolver.model(*world.ModelByIndex(i), "world");
+  if (!errors.empty()) return first_reason(errors);
+  return out;
+}
+
+}  // namespace
+
 base::Result<ResolvedWorld> SdfLibrary::resolve(pugi::xml_node sdf) {
   std::set<std::string> used;
   int nested = 0;
@@ -387,27 +414,9 @@ base::Result<ResolvedWorld> SdfLibrary::resolve(pugi::xml_node sdf) {
     for (const pugi::xml_node& child : node.children()) look(child, models);
   };
   look(sdf, 0);
-  sdf::Errors errors;
-  ResolvedWorld out;
-  try {
-    const sdf::SDFPtr document = std::make_shared<sdf::SDF>();
-    document->Root(prune(specification(), state_->model, used, nested));
-    if (!sdf::readString(to_xml(sdf, false), state_->config, document, errors)) return base::Error{first_message(errors)};
-    sdf::Root root;
-    const sdf::Errors problems = root.Load(document, state_->config);
-    errors.insert(errors.end(), problems.begin(), problems.end());
-    if (!errors.empty() || root.WorldCount() == 0) return base::Error{first_message(errors)};
-    const sdf::World& world = *root.WorldByIndex(0);
-    Resolver resolver(errors);
-    for (std::size_t i = 0; i < world.FrameCount(); ++i)
-      out.frames[world.FrameByIndex(i)->Name()] = resolver.pose_of(*world.FrameByIndex(i), "world");
-    for (std::size_t i = 0; i < world.ModelCount(); ++i)
-      out.models[world.ModelByIndex(i)->Name()] = resolver.model(*world.ModelByIndex(i), "world");
-  } catch (const std::exception& problem) {
-    return base::Error{problem.what()};
-  }
-  if (!errors.empty()) return base::Error{first_message(errors)};
-  return out;
+  const std::string text = to_xml(sdf, false);
+  auto done = ask_library([&] { return resolve_text(text, prune(specification(), state_->model, used, nested), state_->config); });
+  return done ? std::move(*done) : done.error();
 }
 
 }  // namespace sim

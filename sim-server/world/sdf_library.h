@@ -43,8 +43,8 @@ class SdfLibrary {
   SdfLibrary(const SdfLibrary&) = delete;
   SdfLibrary& operator=(const SdfLibrary&) = delete;
 
-  // The document (its <sdf> element) in the current version; the marks are kept.
-  base::Result<pugi::xml_document> translate(pugi::xml_node sdf);
+  // The document (its <sdf> element) in a later version; the marks are kept.
+  base::Result<pugi::xml_document> translate(pugi::xml_node sdf, const std::string& version = current_sdf_version);
   // A URDF robot as an SDFormat document; without marks.
   base::Result<pugi::xml_document> translate_urdf(const std::string& text);
 

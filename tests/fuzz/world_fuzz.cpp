@@ -81,6 +81,26 @@ void step(sim::WorldDef world) {
   physics.step();
 }
 
+// The first model of the text, as `simctl spawn` would bring it into a running world.
+void spawn(const std::string& text, const sim::ModelPath& path) {
+  const std::size_t begin = text.find("<model"), end = text.rfind("</model>");
+  if (begin == std::string::npos || end == std::string::npos || end < begin) return;
+  const std::size_t at = text.find("version");
+  const std::string version = at == std::string::npos || at > begin ? "1.6" : text.substr(std::min(at + 9, text.size()), 3);
+  const std::string wrapped = "<sdf version=\"" + version + "\">" + text.substr(begin, end + 8 - begin) + "</sdf>";
+  const base::Result<sim::LoadedModel> model = sim::load_model(wrapped, "spawned", std::nullopt, path);
+  if (!model) return require(model.error().message.find('\n') == std::string::npos, "error is not one line");
+  check(model->model);
+  if (model->model.links.size() + model->model.joints.size() > 100) return;
+  sim::WorkerPool pool(1);
+  sim::TriangleCache triangles;
+  std::vector<std::string> notes, dropped;
+  sim::Physics physics(std::make_shared<const sim::WorldDef>(), pool, triangles, notes, dropped);
+  physics.step();
+  if (!physics.spawn(std::make_shared<const sim::ModelDef>(model->model), notes)) return;
+  for (int i = 0; i < 3; ++i) physics.step();
+}
+
 void run(const std::string& text, const fs::path& folder, const sim::ModelPath& path) {
   const base::Result<sim::LoadResult> world = sim::load_world_text(text, folder, "fuzz", path);
   if (world) {
@@ -92,10 +112,7 @@ void run(const std::string& text, const fs::path& folder, const sim::ModelPath& 
   } else {
     require(!world.error().message.empty() && world.error().message.find('\n') == std::string::npos, "error is not one line");
   }
-  if (text.find("<model") != std::string::npos) {
-    const base::Result<sim::LoadedModel> model = sim::load_model("<" + text, "spawned", std::nullopt, path);
-    if (model) check(model->model);
-  }
+  spawn(text, path);
 }
 
 }  // namespace
