@@ -1,1 +1,1 @@
-rtmsim_test(world_test unit/world_loader_test.cpp unit/world_sensors_test.cpp unit/world_bad_test.cpp unit/world_wild_test.cpp LIBRARIES simworld LABELS world)
+rtmsim_test(world_test unit/world_loader_test.cpp unit/world_sensors_test.cpp unit/world_bad_test.cpp unit/world_wild_test.cpp unit/world_border_test.cpp unit/world_limits_test.cpp LIBRARIES simworld LABELS world)

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "world/frame_references.h"
+#include "world/taken_names.h"
 #include "world/xml_file.h"
 #include "world/xml_values.h"
 
@@ -344,7 +345,7 @@ void rename_references(pugi::xml_node model, const std::string& from, const std:
 }
 
 void mend_names(pugi::xml_node model, Complaints& complaints) {
-  std::set<std::string> taken;
+  TakenNames taken;
   // Joints last: when they clash with a link it is their name that nobody else refers to.
   for (const char* kind : {"link", "model", "frame", "joint"}) {
     for (pugi::xml_node node : model.children(kind)) {
@@ -364,9 +365,9 @@ void mend_names(pugi::xml_node model, Complaints& complaints) {
       }
       if (taken.contains(name)) {
         const bool is_joint = std::string_view(kind) == "joint";
-        std::string other = is_joint ? name + std::string(joint_alias_ending) : free_name(name, taken);
+        std::string other = is_joint ? name + std::string(joint_alias_ending) : taken.free(name);
         if (!is_joint || taken.contains(other)) {
-          other = free_name(name, taken);
+          other = taken.free(name);
           rename(node, other, "has a name that is taken", complaints);
         }
         node.attribute("name") = other.c_str();
@@ -377,10 +378,10 @@ void mend_names(pugi::xml_node model, Complaints& complaints) {
   }
   for (pugi::xml_node link : model.children("link")) {
     for (const char* kind : {"collision", "visual", "sensor", "light"}) {
-      std::set<std::string> used;
+      TakenNames used;
       for (pugi::xml_node node : link.children(kind)) {
         const std::string name = name_of(node);
-        if (used.contains(name)) rename(node, free_name(name, used), "has a name that is taken", complaints);
+        if (used.contains(name)) rename(node, used.free(name), "has a name that is taken", complaints);
         used.insert(name_of(node));
       }
     }

@@ -24,12 +24,4 @@ bool mend_model(pugi::xml_node model, Complaints& complaints);
 // A joint may share its name with a link in files, but not in frame graphs; meanwhile it carries this ending.
 inline constexpr std::string_view joint_alias_ending = "_joint_of_that_name";
 
-// `name`, or the first of name_1, name_2, ... that is not taken.
-template <class Set>
-std::string free_name(const std::string& name, const Set& taken) {
-  std::string candidate = name;
-  for (int i = 1; taken.contains(candidate); ++i) candidate = name + "_" + std::to_string(i);
-  return candidate;
-}
-
 }  // namespace sim

@@ -91,4 +91,14 @@ void append_skeleton(pugi::xml_node model, pugi::xml_node parent, const std::str
   for (pugi::xml_node nested : model.children("model")) append_skeleton(nested, out, nested.attribute("name").value(), true);
 }
 
+std::size_t frames_of(pugi::xml_node model) {
+  std::size_t count = 0;
+  for (pugi::xml_node child : model.children()) {
+    const std::string_view kind = child.name();
+    if (kind == "link" || kind == "joint" || kind == "frame") ++count;
+    if (kind == "model") count += 1 + frames_of(child);
+  }
+  return count;
+}
+
 }  // namespace sim

@@ -23,4 +23,7 @@ void append_pose(pugi::xml_node thing, pugi::xml_node parent);
 // Whether the <pose> of the element is relative to a named frame.
 bool has_relative_pose(pugi::xml_node thing);
 
+// Links, joints, frames and nested models of the model and of those in it.
+std::size_t frames_of(pugi::xml_node model);
+
 }  // namespace sim

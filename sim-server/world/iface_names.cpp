@@ -5,9 +5,9 @@
 #include <set>
 
 #include "base/text.h"
-#include "world/checks.h"
 #include "world/complaints.h"
 #include "world/plugin_kind.h"
+#include "world/taken_names.h"
 
 namespace sim {
 
@@ -70,8 +70,8 @@ class Namer {
   }
 
  private:
-  std::string take(std::set<std::string>& taken, const std::string& what, const std::string& scope, const std::string& own) {
-    const std::string name = free_name(scoped_and_short(scope, own), taken);
+  std::string take(TakenNames& taken, const std::string& what, const std::string& scope, const std::string& own) {
+    const std::string name = taken.free(scoped_and_short(scope, own));
     taken.insert(name);
     if (name != joined(scope, own)) {
       complaints_.add(Finding::Severity::warning, {model_.source, 0},
@@ -83,8 +83,8 @@ class Namer {
 
   const ModelDef& model_;
   Complaints& complaints_;
-  std::map<int, std::set<std::string>> taken_;
-  std::set<std::string> drives_;
+  std::map<int, TakenNames> taken_;
+  TakenNames drives_;
 };
 
 template <class Do>

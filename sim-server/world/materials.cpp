@@ -216,12 +216,19 @@ void apply_line(MaterialDef& material, const std::vector<std::string>& words) {
 
 }  // namespace
 
-std::map<std::string, MaterialDef> parse_material_script(const std::string& text) {
-  std::map<std::string, MaterialDef> materials;
-  const ScriptLines lines(text);
-  MaterialDef* current = nullptr;
-  int depth = 0;
-  int passes = 0;
+namespace {
+
+constexpr std::size_t most_ancestors = 32;
+
+struct ScriptBlock {
+  std::string parent;                                  // may be empty
+  std::vector<const std::vector<std::string>*> lines;  // of the first pass
+};
+
+std::map<std::string, ScriptBlock> blocks_of(const ScriptLines& lines) {
+  std::map<std::string, ScriptBlock> blocks;
+  ScriptBlock* current = nullptr;
+  int depth = 0, passes = 0;
   for (const std::vector<std::string>& words : lines.all()) {
     if (words[0] == "{") {
       ++depth;
@@ -230,22 +237,49 @@ std::map<std::string, MaterialDef> parse_material_script(const std::string& text
     } else if (depth == 0) {
       current = nullptr;
       if (words[0] != "material" || words.size() < 2) continue;
-      MaterialDef base_material = plain(grey(1), grey(0));
+      current = &(blocks[words[1]] = {});
       const auto colon = std::find(words.begin(), words.end(), ":");
-      if (colon != words.end() && colon + 1 != words.end()) {
-        if (const auto parent = materials.find(*(colon + 1)); parent != materials.end()) {
-          base_material = parent->second;
-        } else if (const auto built_in = built_in_material(*(colon + 1))) {
-          base_material = *built_in;
-        }
-      }
-      current = &(materials[words[1]] = base_material);
-      current->script = words[1];
+      if (colon != words.end() && colon + 1 != words.end()) current->parent = *(colon + 1);
       passes = 0;
     } else if (current) {
       passes += words[0] == "pass" ? 1 : 0;
-      if (passes <= 1) apply_line(*current, words);
+      if (passes <= 1) current->lines.push_back(&words);
     }
+  }
+  return blocks;
+}
+
+}  // namespace
+
+std::map<std::string, MaterialDef> parse_material_script(const std::string& text, std::map<std::string, std::string>* faults) {
+  const ScriptLines lines(text);
+  const std::map<std::string, ScriptBlock> blocks = blocks_of(lines);
+  std::map<std::string, MaterialDef> materials;
+  for (const auto& start : blocks) {
+    std::vector<const std::pair<const std::string, ScriptBlock>*> line;  // of descent, the youngest first
+    const auto is_in_line = [&](const auto* block) { return std::find(line.begin(), line.end(), block) != line.end(); };
+    MaterialDef material = plain(grey(1), grey(0));
+    for (const auto* at = &start; at;) {
+      line.push_back(at);
+      const std::string& parent = at->second.parent;
+      const auto next = blocks.find(parent);
+      at = parent.empty() || next == blocks.end() ? nullptr : &*next;
+      if (!parent.empty() && !at) material = built_in_material(parent).value_or(material);
+      if (!is_in_line(at) && line.size() < most_ancestors) continue;
+      if (at && faults) {
+        (*faults)[start.first] = is_in_line(at) ? "inherits from itself by way of " + base::in_quotes(line.back()->first)
+                                                : "inherits over more than " + std::to_string(most_ancestors) + " generations";
+      }
+      break;
+    }
+    for (auto block = line.rbegin(); block != line.rend(); ++block) {
+      // The first texture of the nearest of kin counts.
+      std::string inherited = std::exchange(material.texture, {});
+      for (const auto* words : (*block)->second.lines) apply_line(material, *words);
+      if (material.texture.empty()) material.texture = std::move(inherited);
+    }
+    material.script = start.first;
+    materials.emplace(start.first, std::move(material));
   }
   return materials;
 }
@@ -272,7 +306,7 @@ const std::map<std::string, MaterialDef>& Materials::script_file(const std::stri
       complaints_.add(Finding::Severity::warning, {}, text.error().message);
       continue;
     }
-    for (auto& [name, material] : parse_material_script(*text)) {
+    for (auto& [name, material] : parse_material_script(*text, &faults_)) {
       // Textures are named without a folder: they lie beside the script or in the "textures" folder next to its own.
       if (!material.texture.empty()) {
         for (const fs::path& folder :
@@ -294,6 +328,7 @@ std::optional<MaterialDef> Materials::from_script(pugi::xml_node script, const s
     const auto& materials = script_file(text_of(uri));
     const auto found = materials.find(name);
     if (found == materials.end()) continue;
+    if (const auto fault = faults_.extract(name)) complaints_.warn(script, "material " + base::in_quotes(name) + " " + fault.mapped());
     MaterialDef material = found->second;
     if (material.texture.empty() || material.texture.front() == '/') return material;
     std::error_code problem;

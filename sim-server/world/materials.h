@@ -15,7 +15,8 @@
 namespace sim {
 
 // The materials in the text of an OGRE script, by name, each with what it inherits from others of the same text. Textures stay as written.
-std::map<std::string, MaterialDef> parse_material_script(const std::string& text);
+// `faults` gets those that inherit in a circle, each with what to say of it.
+std::map<std::string, MaterialDef> parse_material_script(const std::string& text, std::map<std::string, std::string>* faults = nullptr);
 
 // The built-in material "Gazebo/..." as a plain colour; empty for names that Gazebo does not have.
 std::optional<MaterialDef> built_in_material(std::string_view name);
@@ -34,6 +35,7 @@ class Materials {
   const ModelPath& model_path_;
   Complaints& complaints_;
   std::map<std::string, std::map<std::string, MaterialDef>> scripts_;
+  std::map<std::string, std::string> faults_;  // of materials that nobody has asked for yet
 };
 
 }  // namespace sim

@@ -38,16 +38,31 @@ std::string without_percent_codes(std::string_view text) {
   return out;
 }
 
-// "owner/models/Cardboard box/2/files/meshes/x.dae" -> "Cardboard box/meshes/x.dae": what the address means without its server and version.
-std::string fuel_model(std::string_view address) {
+// "https://fuel.gazebosim.org/1.0/Owner/models/Cardboard box/2/files/meshes/x.dae" and
+// "https://app.gazebosim.org/Owner/fuel/models/Cardboard box"; empty texts for what the address does not say.
+struct FuelAddress {
+  std::string server, owner, model, version, file;
+
+  std::string path() const { return file.empty() ? model : model + "/" + file; }
+};
+
+FuelAddress fuel_address(std::string_view address) {
+  FuelAddress out;
   const std::size_t models = address.find("/models/");
-  if (models == std::string_view::npos) return {};
+  if (models == std::string_view::npos) return out;
+  const std::vector<std::string> before = base::split_list(std::string(address.substr(0, models)), '/');
+  if (!before.empty()) out.server = before.front();
+  const std::size_t owner = before.size() > 1 && before.back() == "fuel" ? 2 : 1;
+  if (before.size() > owner) out.owner = before[before.size() - owner];
   std::string_view rest = address.substr(models + 8);
+  if (const std::size_t files = rest.find("/files/"); files != std::string_view::npos) {
+    out.file = rest.substr(files + 7);
+    rest = rest.substr(0, files);
+  }
   const std::size_t slash = rest.find('/');
-  std::string name(rest.substr(0, slash));
-  const std::size_t files = address.find("/files/", models);
-  if (files != std::string_view::npos) name.append("/").append(address.substr(files + 7));
-  return name;
+  out.model = rest.substr(0, slash);
+  if (slash != std::string_view::npos) out.version = rest.substr(slash + 1);
+  return out;
 }
 
 // Folders are usually named in lower case with underscores where Fuel has "Cardboard box".
@@ -81,6 +96,43 @@ std::optional<fs::path> find_model(const std::string& name, const fs::path& fold
   return std::nullopt;
 }
 
+std::vector<fs::path> folders_in(const fs::path& folder) {
+  std::vector<fs::path> out;
+  std::error_code problem;
+  for (fs::directory_iterator at(folder, problem), end; !problem && at != end; at.increment(problem)) {
+    if (at->is_directory(problem)) out.push_back(at->path());
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+// The version that is asked for, else the newest.
+std::optional<fs::path> newest_version(const fs::path& model, const std::string& asked) {
+  if (!asked.empty() && is_there(model / asked)) return model / asked;
+  std::optional<fs::path> newest;
+  std::int64_t best = 0;
+  for (const fs::path& folder : folders_in(model)) {
+    const std::optional<std::int64_t> number = base::parse_integer(folder.filename().string());
+    if (number && *number > best) best = *number, newest = folder;
+  }
+  return newest;
+}
+
+// Names of owners and models are kept in lower case.
+std::optional<fs::path> find_in_cache(const fs::path& cache, const FuelAddress& address) {
+  std::vector<fs::path> servers = folders_in(cache);
+  std::stable_partition(servers.begin(), servers.end(), [&](const fs::path& server) { return server.filename() == address.server; });
+  for (const fs::path& server : servers) {
+    for (const auto& [owner, model] :
+         {std::pair(base::to_lower(address.owner), base::to_lower(address.model)), std::pair(address.owner, address.model)}) {
+      const std::optional<fs::path> version = newest_version(server / owner / "models" / model, address.version);
+      if (!version) continue;
+      if (auto found = usable(address.file.empty() ? *version : *version / address.file)) return found;
+    }
+  }
+  return std::nullopt;
+}
+
 void append_list(std::vector<fs::path>& folders, const char* variable) {
   if (const char* list = std::getenv(variable)) {
     for (std::string& folder : base::split_list(list, ':')) folders.emplace_back(std::move(folder));
@@ -98,7 +150,14 @@ ModelPath ModelPath::from_environment(const std::vector<std::string>& command_li
     append_list(folders, variable);
   }
   if (!installed.empty()) folders.push_back(installed);
-  return ModelPath(std::move(folders));
+  ModelPath path(std::move(folders));
+  for (const char* variable : {"GZ_FUEL_CACHE_PATH", "IGN_FUEL_CACHE_PATH"}) {
+    if (const char* folder = std::getenv(variable)) path.add_fuel_cache(folder);
+  }
+  if (const char* home = std::getenv("HOME")) {
+    for (const char* folder : {".gz/fuel", ".ignition/fuel"}) path.add_fuel_cache(fs::path(home) / folder);
+  }
+  return path;
 }
 
 void ModelPath::add_first(const fs::path& folder) { folders_.insert(folders_.begin(), folder); }
@@ -111,15 +170,20 @@ std::optional<fs::path> ModelPath::find(std::string_view uri, const fs::path& fo
     // As in launch files and xacro.
     return find_model(std::string(base::trim(rest.substr(7, end - 7))).append(rest.substr(end + 1)), folder, folders_);
   }
-  if (take_prefix(rest, "model://") || take_prefix(rest, "package://") || take_prefix(rest, "fuel://")) {
+  if (take_prefix(rest, "http://") || take_prefix(rest, "https://") || take_prefix(rest, "fuel://")) {
+    const FuelAddress address = fuel_address(rest);
+    if (address.model.empty()) return find_model(std::string(rest), folder, folders_);
+    if (auto found = find_model(address.path(), folder, folders_)) return found;
+    if (auto found = find_model(folder_spelling(address.path()), folder, folders_)) return found;
+    for (const fs::path& cache : fuel_caches_) {
+      if (auto found = find_in_cache(cache, address)) return found;
+    }
+    return std::nullopt;
+  }
+  if (take_prefix(rest, "model://") || take_prefix(rest, "package://")) {
     while (take_prefix(rest, "/")) {
     }
     return find_model(std::string(rest), folder, folders_);
-  }
-  if (rest.starts_with("http://") || rest.starts_with("https://")) {
-    const std::string name = fuel_model(rest);
-    if (auto found = find_model(name, folder, folders_)) return found;
-    return find_model(folder_spelling(name), folder, folders_);
   }
   if (take_prefix(rest, "file://") || take_prefix(rest, "material://")) {
   } else if (rest.find("://") != std::string_view::npos) {

@@ -15,20 +15,24 @@ class ModelPath {
   explicit ModelPath(std::vector<std::filesystem::path> folders);
 
   // The folders given on the command line first, then RTMSIM_RESOURCE_PATH, GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH and
-  // GAZEBO_MODEL_PATH (lists separated by ":"), then `installed` (the folder of our own worlds, with models/ in it; may be empty).
+  // GAZEBO_MODEL_PATH (lists separated by ":"), then `installed` (the folder of our own worlds, with models/ in it; may be empty). What
+  // Gazebo has fetched from Fuel is looked for last: GZ_FUEL_CACHE_PATH, IGN_FUEL_CACHE_PATH, ~/.gz/fuel and ~/.ignition/fuel.
   static ModelPath from_environment(const std::vector<std::string>& command_line, const std::filesystem::path& installed);
 
   // The folder and models/ in it are searched before all others: the place of the world itself.
   void add_first(const std::filesystem::path& folder);
 
   const std::vector<std::filesystem::path>& folders() const { return folders_; }
+  // A folder in which Gazebo keeps what it has fetched: SERVER/OWNER/models/NAME/VERSION/...; only for Fuel addresses.
+  void add_fuel_cache(const std::filesystem::path& folder) { fuel_caches_.push_back(folder); }
 
-  // What a URI in a file of `folder` means: model://name/..., model:///name, package://, file://, Fuel addresses (by the model's name),
-  // absolute and relative paths. The file or folder exists; empty when none does.
+  // What a URI in a file of `folder` means: model://name/..., model:///name, package://, file://, Fuel addresses (by the model's name,
+  // then in the caches), absolute and relative paths. The file or folder exists; empty when none does.
   std::optional<std::filesystem::path> find(std::string_view uri, const std::filesystem::path& folder) const;
 
  private:
   std::vector<std::filesystem::path> folders_;
+  std::vector<std::filesystem::path> fuel_caches_;
 };
 
 }  // namespace sim

@@ -17,6 +17,7 @@
 #include "world/population.h"
 #include "world/repairs.h"
 #include "world/sdf_library.h"
+#include "world/taken_names.h"
 #include "world/xml_file.h"
 #include "world/xml_values.h"
 
@@ -26,6 +27,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr std::size_t most_frames = 5000;      // of one model; libsdformat resolves them in a time that grows with the square: 9 s
 constexpr std::size_t batch_text = 48 * 1024;  // libsdformat needs some hundred times the text it reads; this is what it gets at once
 
 // A model as it is written, however often it stands in the world.
@@ -66,6 +68,8 @@ class Loader {
 
   base::Result<LoadResult> world(const std::string& text, const fs::path& folder, const std::string& name);
   base::Result<LoadedModel> model(std::string_view what, const std::string& instance_name, const std::optional<Eigen::Isometry3d>& pose);
+  // What was done last.
+  const std::string& busy_with() const { return busy_with_; }
 
  private:
   void apply_state(pugi::xml_node world);
@@ -100,7 +104,8 @@ class Loader {
   std::vector<DistinctModel> distinct_;
   std::map<std::string, std::size_t> distinct_by_key_;
   std::vector<Instance> instances_;
-  std::set<std::string> names_;
+  TakenNames names_;
+  std::string busy_with_ = "the world";            // for when memory runs out
   std::map<std::string, ResolvedModel> resolved_;  // by skeleton
   std::optional<ResolvedWorld> whole_;             // when the world's own frames had to be resolved
 };
@@ -183,6 +188,11 @@ std::size_t Loader::distinct_for(const std::string& key, pugi::xml_node node) {
   DistinctModel& model = distinct_.emplace_back();
   model.node = node;
   model.is_usable = mend_model(node, complaints_);
+  if (model.is_usable && frames_of(node) > most_frames) {
+    complaints_.drop(node, describe(node) + " has more than " + std::to_string(most_frames) +
+                               " links, joints, frames and nested models in all and is left out");
+    model.is_usable = false;
+  }
   return found->second;
 }
 
@@ -192,7 +202,7 @@ void Loader::add_instance(std::size_t distinct, pugi::xml_node named, pugi::xml_
   for (std::size_t at; (at = legal.find("::")) != std::string::npos;) legal.replace(at, 2, "_");
   legal = without_slashes(legal);
   if (legal == "world" || (legal.starts_with("__") && legal.ends_with("__"))) legal = "model_" + legal;
-  legal = free_name(legal, names_);
+  legal = names_.free(legal);
   if (legal != name)
     complaints_.warn(named,
                      "model " + base::in_quotes(name) + " has a name that is taken or not allowed and is called " + base::in_quotes(legal));
@@ -357,6 +367,7 @@ void Loader::build_instances(WorldDef& world) {
   BuildContext context{complaints_, materials_};
   for (const Instance& instance : instances_) {
     DistinctModel& distinct = distinct_[instance.distinct];
+    busy_with_ = "model " + base::in_quotes(instance.name);
     if (!distinct.built) {
       const auto resolved = resolved_.find(distinct.skeleton);
       if (resolved == resolved_.end()) continue;
@@ -393,6 +404,7 @@ base::Result<LoadResult> Loader::world(const std::string& text, const fs::path& 
   if (!files_.complete(world, folder)) return base::Error{name + ": the world is not fit to be used"};
   collect(world, folder);
   if (has_world_frames(world)) resolve_whole_world(world);
+  busy_with_ = "the tree of its frames";
   resolve_models();
   LoadResult result;
   BuildContext context{complaints_, materials_};
@@ -449,17 +461,28 @@ base::Result<LoadedModel> Loader::model(std::string_view what, const std::string
   return result;
 }
 
+// What `load` makes of a new loader; errors for what is thrown on the way.
+template <class Load>
+auto loaded(const ModelPath& path, const std::string& name, const Load& load) -> std::invoke_result_t<Load, Loader&> {
+  std::optional<Loader> loader;
+  try {
+    return load(loader.emplace(path));
+  } catch (const std::bad_alloc&) {
+    return base::Error{name + ": cannot be loaded: " + (loader ? loader->busy_with() : name) + " needs more memory than there is"};
+  } catch (const std::exception& problem) {
+    return base::Error{name + ": cannot be loaded: " + problem.what()};
+  } catch (...) {
+    return base::Error{name + ": cannot be loaded: a library gives no reason"};
+  }
+}
+
 }  // namespace
 
 base::Result<LoadResult> load_world_text(std::string_view text, const fs::path& folder, const std::string& name,
                                          const ModelPath& model_path) {
   ModelPath path = model_path;
   if (!folder.empty()) path.add_first(folder);
-  try {
-    return Loader(std::move(path)).world(std::string(text), folder, name);
-  } catch (const std::exception& problem) {
-    return base::Error{name + ": cannot be loaded: " + problem.what()};
-  }
+  return loaded(path, name, [&](Loader& loader) { return loader.world(std::string(text), folder, name); });
 }
 
 base::Result<LoadResult> load_world(const fs::path& file, const ModelPath& model_path) {
@@ -472,11 +495,7 @@ base::Result<LoadResult> load_world(const fs::path& file, const ModelPath& model
 
 base::Result<LoadedModel> load_model(std::string_view what, const std::string& instance_name, const std::optional<Eigen::Isometry3d>& pose,
                                      const ModelPath& model_path) {
-  try {
-    return Loader(model_path).model(what, instance_name, pose);
-  } catch (const std::exception& problem) {
-    return base::Error{"the model cannot be loaded: " + std::string(problem.what())};
-  }
+  return loaded(model_path, "the model", [&](Loader& loader) { return loader.model(what, instance_name, pose); });
 }
 
 }  // namespace sim

@@ -15,6 +15,7 @@ namespace {
 constexpr std::uintmax_t most_bytes = 64U << 20U;
 constexpr int most_depth = 100;
 constexpr std::size_t most_elements = 400000;
+constexpr std::size_t most_attributes = 1000;  // of one element; they are found by walking through them
 
 class LineTable {
  public:
@@ -39,9 +40,13 @@ base::Result<void> mark_lines(pugi::xml_document& document, const LineTable& lin
   while (node) {
     if (node.type() == pugi::node_element) {
       if (++elements > most_elements) return base::Error{file_name + ": has more than " + std::to_string(most_elements) + " elements"};
+      const int line = lines.line_at(static_cast<std::size_t>(std::max<std::ptrdiff_t>(node.offset_debug(), 0)));
+      if (static_cast<std::size_t>(std::distance(node.attributes_begin(), node.attributes_end())) > most_attributes) {
+        return base::Error{file_name + ":" + std::to_string(line) + ": " + describe(node) + " has more than " +
+                           std::to_string(most_attributes) + " attributes"};
+      }
       node.remove_attribute(line_mark);
       node.remove_attribute(file_mark);
-      const int line = lines.line_at(static_cast<std::size_t>(std::max<std::ptrdiff_t>(node.offset_debug(), 0)));
       node.append_attribute(line_mark) = line;
       if (depth == 0) node.append_attribute(file_mark) = file;
       if (depth >= most_depth) {
@@ -106,6 +111,18 @@ void append_xml(std::string& out, pugi::xml_node node, bool with_marks) {
   out.append("</").append(node.name()).append(">");
 }
 
+// Whether the start of what is no XML has more bytes than a slip of the hand that no text has, in 8 bits a character or in more.
+bool is_binary(std::string_view text) {
+  constexpr std::size_t looked_at = 4096;
+  const std::string_view start = text.substr(0, looked_at);
+  const auto zeros = static_cast<std::size_t>(std::count(start.begin(), start.end(), '\0'));
+  const auto controls = static_cast<std::size_t>(
+      std::count_if(start.begin(), start.end(), [](char c) { return static_cast<unsigned char>(c) < 32 && (c < 9 || c > 13); }));
+  const std::size_t first = start.find_first_not_of(std::string_view("\0\xff\xfe", 3));
+  const bool is_wide = first < 4 && start[first] == '<' && zeros * 3 > start.size();
+  return !is_wide && (zeros > 0 || controls * 50 > start.size());
+}
+
 }  // namespace
 
 bool is_lfs_pointer(std::string_view text) { return text.starts_with("version https://git-lfs."); }
@@ -154,6 +171,7 @@ base::Result<pugi::xml_document> parse_xml(const std::string& text, const std::s
     }
   }
   if (!parsed) {
+    if (is_binary(text)) return base::Error{file_name + ": is a binary file; SDFormat is text (XML)"};
     if (const std::size_t code = text.find("<%"); code != std::string::npos) {
       return base::Error{file_name + ":" + std::to_string(LineTable(text).line_at(code)) +
                          ": is a template (<% ... %>); the world that erb makes of it is expected"};

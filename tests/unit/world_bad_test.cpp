@@ -23,7 +23,10 @@ TEST(BadWorld, that_is_no_world_fails_with_one_line) {
   EXPECT_THAT(error_of("<sdf version='1.9'/>"), HasSubstr("a <world> is expected"));
   EXPECT_THAT(error_of("<sdf version='1.9'><model name='m'><link name='l'/></model></sdf>"), HasSubstr("included in a world or spawned"));
   EXPECT_THAT(error_of("<html><body/></html>"), HasSubstr("an <sdf> element is expected"));
-  EXPECT_THAT(error_of(std::string("\0\0\0\0garbage", 11)), HasSubstr("w.sdf"));
+  EXPECT_EQ(error_of(std::string("\0\0\0\0garbage", 11)), "w.sdf: is a binary file; SDFormat is text (XML)");
+  EXPECT_EQ(error_of(std::string("PK\3\4\0<% %>", 10)), "w.sdf: is a binary file; SDFormat is text (XML)") << "no template";
+  EXPECT_THAT(error_of("<sdf><% 3.times do %></sdf>"), HasSubstr("is a template"));
+  EXPECT_THAT(error_of("<!-- nothing -->"), HasSubstr("no document element"));
   const base::Result<LoadResult> missing = load_world("/nowhere/at/all.sdf", ModelPath{});
   ASSERT_FALSE(missing.ok());
   EXPECT_EQ(missing.error().message, "/nowhere/at/all.sdf: no such file");

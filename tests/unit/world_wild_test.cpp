@@ -356,6 +356,32 @@ TEST(Materials, scripts_with_inheritance_and_textures_are_read) {
   EXPECT_TRUE(wall.double_sided);
 }
 
+TEST(Materials, inherit_from_later_ones_and_never_from_themselves) {
+  std::map<std::string, std::string> faults;
+  const auto materials = parse_material_script(
+      "material Child : Parent { technique { pass { texture_unit { texture child.png\n } } } }\n"
+      "material Parent { technique { pass { diffuse 0 0 1\n texture_unit { texture parent.png\n } } } }\n"
+      "material A : B { technique { pass { diffuse 1 0 0\n } } }\nmaterial B : A { }\nmaterial Own : Own { }\n",
+      &faults);
+  EXPECT_EQ(materials.at("Child").diffuse, (Color{0, 0, 1, 1}));
+  EXPECT_EQ(materials.at("Child").texture, "child.png");
+  EXPECT_EQ(materials.at("A").diffuse, (Color{1, 0, 0, 1}));
+  EXPECT_THAT(faults, testing::UnorderedElementsAre(testing::Pair("A", "inherits from itself by way of \"B\""),
+                                                    testing::Pair("B", "inherits from itself by way of \"A\""),
+                                                    testing::Pair("Own", "inherits from itself by way of \"Own\"")));
+}
+
+TEST(Materials, that_inherit_in_a_circle_are_told_once_when_used) {
+  const WorldFiles files;
+  files.write("a.material", "material A : A { technique { pass { diffuse 1 0 0\n } } }");
+  const std::string visual =
+      "<geometry><box/></geometry><material><script><uri>a.material</uri><name>A</name></script></material></visual>";
+  const LoadResult result = files.load(model_of("<visual name='v'>" + visual + "<visual name='w'>" + visual));
+  ASSERT_EQ(result.findings.size(), 1U) << all_findings(result);
+  EXPECT_THAT(result.findings[0].text(), HasSubstr("material \"A\" inherits from itself"));
+  EXPECT_EQ(result.world.models.at(0).links[0].visuals.at(1).material->diffuse, (Color{1, 0, 0, 1}));
+}
+
 TEST(Materials, of_visuals_come_from_scripts_built_in_colours_and_pbr) {
   const WorldFiles files;
   files.write("wall/materials/scripts/wall.material", "material Wall { technique { pass { texture_unit { texture wall.png\n } } } }");
@@ -418,6 +444,27 @@ TEST(ModelPath, finds_what_uris_mean) {
   for (const char* uri : {"", "model://", "model://nothing", "ftp://box/meshes/a.dae", "https://example.com/a.dae"})
     EXPECT_FALSE(path.find(uri, own)) << uri;
   EXPECT_TRUE(path.find("file://" + (own / "meshes/a.dae").string(), "/")) << "absolute";
+}
+
+// As `gz fuel download` leaves them: names in lower case, a folder for each version.
+TEST(ModelPath, finds_what_gazebo_has_fetched) {
+  const WorldFiles files;
+  for (const char* version : {"2", "10"}) {
+    files.write("fuel.gazebosim.org/openrobotics/models/coke can/" + std::string(version) + "/model.sdf", "x");
+  }
+  files.write("fuel.gazebosim.org/openrobotics/models/coke can/2/meshes/a.dae", "x");
+  ModelPath path;
+  path.add_fuel_cache(files.folder());
+  const auto found = [&](const std::string& uri) { return path.find(uri, "/").value_or("").string(); };
+  for (const std::string uri :
+       {"https://fuel.gazebosim.org/1.0/OpenRobotics/models/Coke Can", "https://fuel.gazebosim.org/1.0/openrobotics/models/coke%20can/tip",
+        "https://app.gazebosim.org/OpenRobotics/fuel/models/Coke Can", "fuel://fuel.gazebosim.org/openrobotics/models/coke can"}) {
+    EXPECT_THAT(found(uri), testing::EndsWith("/coke can/10")) << uri;
+  }
+  EXPECT_THAT(found("https://fuel.gazebosim.org/1.0/OpenRobotics/models/Coke Can/2"), testing::EndsWith("/coke can/2"));
+  EXPECT_THAT(found("https://fuel.gazebosim.org/1.0/OpenRobotics/models/Coke Can/2/files/meshes/a.dae"),
+              testing::EndsWith("/2/meshes/a.dae"));
+  EXPECT_EQ(found("https://fuel.gazebosim.org/1.0/somebody/models/Coke Can"), "");
 }
 
 }  // namespace

@@ -1,0 +1,68 @@
+// Files that are large or repeat themselves: loaded in a time that grows with them, or refused with the limit that they break. Where a cost
+// is quadratic these tests reach their watchdog.
+#include <gmock/gmock.h>
+
+#include "support/world_files.h"
+
+namespace sim {
+namespace {
+
+using testing::HasSubstr;
+
+std::string repeated(int count, const std::function<std::string(int)>& part) {
+  std::string text;
+  for (int i = 0; i < count; ++i) text += part(i);
+  return text;
+}
+
+TEST(LargeFiles, with_too_many_attributes_on_an_element_are_refused) {
+  const std::string attributes = repeated(100000, [](int i) { return " a" + std::to_string(i) + "='1'"; });
+  for (const char* version : {"1.4", "1.9"}) {
+    const auto result = WorldFiles().load_text("<sdf version='" + std::string(version) + "'><world name='w'>\n<model name='m'" +
+                                               attributes + "/></world></sdf>");
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().message, "w.sdf:2: model \"m\" has more than 1000 attributes");
+  }
+}
+
+TEST(LargeFiles, with_one_name_for_everything_are_numbered) {
+  const WorldFiles files;
+  files.write_model("box", "<model name='box'><static>1</static><link name='l'/></model>");
+  const LoadResult models = files.load(repeated(20000, [](int) { return "<include><uri>model://box</uri></include>"; }));
+  ASSERT_EQ(models.world.models.size(), 20000U);
+  EXPECT_EQ(models.world.models.back().name, "box_19999");
+  const LoadResult visuals =
+      files.load(model_of(repeated(20000, [](int) { return "<visual name='v'><geometry><box/></geometry></visual>"; })));
+  EXPECT_EQ(visuals.world.models.at(0).links.at(0).visuals.back().name, "v_19999");
+  const LoadResult sensors =
+      files.load("<model name='m'>" +
+                 repeated(200,
+                          [](int i) {
+                            return "<link name='l" + std::to_string(i) + "'>" +
+                                   repeated(100, [](int k) { return "<sensor name='s" + std::to_string(k) + "' type='imu'/>"; }) +
+                                   "</link>";
+                          }) +
+                 "</model>");
+  ASSERT_EQ(sensors.world.models.size(), 1U) << all_findings(sensors);
+  EXPECT_EQ(sensors.world.models[0].links.back().sensors.back().iface, "s99_199");
+}
+
+TEST(LargeFiles, with_a_model_of_too_many_frames_lose_the_model_alone) {
+  const LoadResult result =
+      WorldFiles().load("<model name='big'>" + repeated(5001, [](int i) { return "<link name='l" + std::to_string(i) + "'/>"; }) +
+                        "</model><model name='small'><link name='l'/></model>");
+  EXPECT_EQ(result.world.models.size(), 1U);
+  EXPECT_EQ(findings_with(result, "model \"big\" has more than 5000 links, joints, frames and nested models in all and is left out"), 1)
+      << all_findings(result);
+}
+
+TEST(LargeFiles, with_a_long_road_are_loaded) {
+  const LoadResult result =
+      WorldFiles().load("<road name='r'><width>2</width><material><diffuse>1 0 0 1</diffuse></material>" +
+                        repeated(50000, [](int i) { return "<point>" + std::to_string(i) + " 0 0</point>"; }) + "</road>");
+  ASSERT_EQ(result.world.models.size(), 1U);
+  EXPECT_EQ(result.world.models[0].links.at(0).visuals.size(), 99999U);
+}
+
+}  // namespace
+}  // namespace sim
