@@ -23,7 +23,7 @@ void add_poses(const SceneActor& seen, const ActorDef& actor, const ActorMoment&
 
 }  // namespace
 
-RenderWorld::RenderWorld(const Physics& physics, const WorldDef& world) : physics_(physics), world_(world) {
+RenderWorld::RenderWorld(const Physics& physics, const WorldDef& world) : physics_(physics), world_(world), assets_(world.model_path) {
   for (const auto& actor : world.actors) motions_.emplace_back(actor);
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 
 namespace sim {
@@ -58,6 +59,12 @@ Image chequer() {
   return image;
 }
 
+// "#rrggbb".
+Image plain_picture(const std::string& color) {
+  const auto rgb = static_cast<std::uint32_t>(std::strtoul(color.substr(std::min<std::size_t>(1, color.size())).c_str(), nullptr, 16));
+  return {1, 1, {static_cast<std::uint8_t>(rgb >> 16U), static_cast<std::uint8_t>(rgb >> 8U), static_cast<std::uint8_t>(rgb), 255}};
+}
+
 std::string key_of(const MeshShape& shape) {
   return fmt::format("{}|{}|{}|{},{},{}", shape.path, shape.submesh, shape.center_submesh, shape.scale.x(), shape.scale.y(),
                      shape.scale.z());
@@ -95,8 +102,9 @@ std::vector<double> layer_weights(const HeightmapShape& shape, double height) {
 
 }  // namespace
 
-Assets::Assets()
-    : box_(std::make_shared<Mesh>(make_box())),
+Assets::Assets(ModelPath model_path)
+    : model_path_(std::move(model_path)),
+      box_(std::make_shared<Mesh>(make_box())),
       sphere_(std::make_shared<Mesh>(make_sphere())),
       cylinder_(std::make_shared<Mesh>(make_cylinder())),
       plane_(std::make_shared<Mesh>(make_plane())) {
@@ -160,7 +168,7 @@ std::shared_ptr<const Mesh> Assets::load(const MeshShape& shape) {
   if (shape.path == missing_file) return missing_mesh_;
   auto& kept = meshes_[key_of(shape)];
   if (kept) return kept;
-  auto file = read_mesh_file(shape);
+  auto file = read_mesh_file(shape, model_path_);
   if (!file) {
     complaints_.push_back(file.error().message + "; a magenta box stands in");
     return kept = missing_mesh_;
@@ -173,7 +181,7 @@ std::shared_ptr<const SkinFile> Assets::skin(const std::string& path, double sca
   if (path == missing_file) return nullptr;
   const auto [kept, is_new] = skins_.try_emplace(fmt::format("{}|{}", path, scale));
   if (!is_new) return kept->second;
-  auto file = read_skin_file(path, scale);
+  auto file = read_skin_file(path, scale, model_path_);
   if (!file) {
     complaints_.push_back(file.error().message + "; a magenta box stands in");
     return nullptr;
@@ -217,18 +225,22 @@ std::shared_ptr<const Mesh> Assets::load(const PolylineShape& shape) {
 }
 
 base::Result<Image> Assets::image(const std::string& path) {
+  if (path.starts_with(color_file)) return plain_picture(path.substr(std::string_view(color_file).size()));
   const auto inside = embedded_.find(path);
   return inside != embedded_.end() ? decode_image(inside->second, path) : read_image(path);
 }
 
-std::shared_ptr<const Texture> Assets::texture(const std::string& path) {
+std::shared_ptr<const Texture> Assets::texture(const std::string& path, bool has_alpha) {
   if (path == missing_file) return missing_texture_;
-  auto& kept = textures_[path];
+  auto& kept = textures_[(has_alpha ? "" : "opaque|") + path];
   if (kept) return kept;
   auto picture = image(path);
   if (!picture) {
     complaints_.push_back(picture.error().message + "; a chequer stands in");
     return kept = missing_texture_;
+  }
+  if (!has_alpha) {
+    for (std::size_t i = 3; i < picture->rgba.size(); i += 4) picture->rgba[i] = 255;
   }
   return kept = std::make_shared<Texture>(make_texture(std::move(*picture)));
 }

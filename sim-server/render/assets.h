@@ -25,7 +25,8 @@ struct Texture {
 
 class Assets {
  public:
-  Assets();
+  // Of a world: where files are looked for that mesh files name.
+  explicit Assets(ModelPath model_path = {});
 
   // Never null. Unit box, sphere, cylinder and plane are shared: scale_of() tells how to scale them.
   std::shared_ptr<const Mesh> mesh(const GeometryDef& geometry);
@@ -35,8 +36,8 @@ class Assets {
   // From the mesh that mesh() returns to the shape.
   static Eigen::Affine3d placement_of(const GeometryDef& geometry);
 
-  // Never null.
-  std::shared_ptr<const Texture> texture(const std::string& path);
+  // Never null. Without its alpha all of it is opaque.
+  std::shared_ptr<const Texture> texture(const std::string& path, bool has_alpha = true);
   // Bumps: bytes are used as they are.
   std::shared_ptr<const Texture> normal_map(const std::string& path);
   // One white pixel.
@@ -53,6 +54,7 @@ class Assets {
   std::shared_ptr<const Mesh> load(const PolylineShape& shape);
   base::Result<Image> image(const std::string& path);
 
+  ModelPath model_path_;
   std::shared_ptr<const Mesh> box_, sphere_, cylinder_, plane_, missing_mesh_;
   std::shared_ptr<const Texture> missing_texture_, flat_normals_, white_;
   TriangleCache triangles_;

@@ -14,6 +14,7 @@
 #include <memory>
 
 #include "base/text.h"
+#include "render/dds.h"
 
 namespace sim {
 namespace {
@@ -105,7 +106,8 @@ float to_srgb(float linear) { return linear <= 0.0031308F ? linear * 12.92F : 1.
 base::Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& name) {
   if (is_png(bytes)) return decode_png(bytes, name);
   if (is_jpeg(bytes)) return decode_jpeg(bytes, name);
-  return bad(name, "neither PNG nor JPEG");
+  if (is_dds(bytes)) return decode_dds(bytes, name);
+  return bad(name, "neither PNG, JPEG nor DDS");
 }
 
 base::Result<Image> read_image(const std::filesystem::path& file) {

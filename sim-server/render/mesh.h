@@ -76,7 +76,7 @@ Mesh make_height_grid(int columns, int rows, double width, double depth, std::sp
 Mesh make_flat(std::span<const Eigen::Vector3d> vertices, std::span<const std::array<std::uint32_t, 3>> triangles);
 
 // By Assimp: COLLADA, STL, OBJ and the like; all parts, or the submesh (a node or a mesh of that name). The result is scaled and, when
-// asked for, centred.
-base::Result<MeshFile> read_mesh_file(const MeshShape& shape);
+// asked for, centred. `model_path`: where the pictures lie that it names by model://.
+base::Result<MeshFile> read_mesh_file(const MeshShape& shape, const ModelPath& model_path = {});
 
 }  // namespace sim

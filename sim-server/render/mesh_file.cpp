@@ -32,10 +32,15 @@ Eigen::Affine3d to_affine(const aiMatrix4x4& in) {
 Color to_color(const aiColor4D& c) { return {c.r, c.g, c.b, c.a}; }
 
 // Where texture files of a mesh are found in the wild: beside it, in its model's usual folders, or where the author's disk had them.
-std::string find_texture(const std::string& written, const std::filesystem::path& folder) {
+std::string find_texture(const std::string& written, const std::filesystem::path& folder, const ModelPath& model_path) {
   namespace fs = std::filesystem;
+  if (written == no_image) return {};
   std::string name = written;
   for (auto& c : name) c = c == '\\' ? '/' : c;
+  if (name.find("://") != std::string::npos && !name.starts_with("file://")) {
+    if (const auto found = model_path.find(name, folder)) return found->string();
+    name.erase(0, name.find("://") + 3);
+  }
   if (name.starts_with("file://")) name.erase(0, 7);
   const fs::path last = fs::path(name).filename();
   for (const fs::path& candidate : {folder / name, folder / last, folder / "../materials/textures" / last,
@@ -49,8 +54,8 @@ std::string find_texture(const std::string& written, const std::filesystem::path
 class Reader {
  public:
   // With a skin the vertices are taken as they hang on the skeleton at rest.
-  Reader(const aiScene& scene, const MeshShape& shape, Skin* skin)
-      : scene_(scene), shape_(shape), folder_(std::filesystem::path(shape.path).parent_path()), skin_(skin) {}
+  Reader(const aiScene& scene, const MeshShape& shape, Skin* skin, const ModelPath& model_path)
+      : scene_(scene), shape_(shape), folder_(std::filesystem::path(shape.path).parent_path()), skin_(skin), model_path_(model_path) {}
 
   MeshFile read() {
     if (skin_ != nullptr) add_nodes(*scene_.mRootNode, -1);
@@ -238,14 +243,22 @@ class Reader {
       aiString path;
       if (out.texture.empty() && in.GetTexture(kind, 0, &path) == aiReturn_SUCCESS) out.texture = texture(path.C_Str());
     }
+    out.has_alpha_texture = has_alpha_texture(in);
     // Exporters write black beside a texture although the texture is what they mean.
     if (!out.texture.empty() && out.diffuse.r + out.diffuse.g + out.diffuse.b <= 0) out.diffuse = {1, 1, 1, out.diffuse.a};
     return out;
   }
 
+  // The alpha of a picture means something only where the material says that it is not opaque.
+  static bool has_alpha_texture(const aiMaterial& in) {
+    aiString mode;
+    if (in.Get("$mat.gltf.alphaMode", 0, 0, mode) == aiReturn_SUCCESS) return std::string_view(mode.C_Str()) != "OPAQUE";
+    return in.GetTextureCount(aiTextureType_OPACITY) > 0;
+  }
+
   std::string texture(const std::string& written) {
     const aiTexture* inside = scene_.GetEmbeddedTexture(written.c_str());
-    if (inside == nullptr || inside->mHeight != 0) return find_texture(written, folder_);
+    if (inside == nullptr || inside->mHeight != 0) return find_texture(written, folder_, model_path_);
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(inside->pcData);
     std::string name = shape_.path + "#" + written;
     out_.images.push_back({name, {bytes, bytes + inside->mWidth}});
@@ -274,17 +287,20 @@ class Reader {
   const MeshShape& shape_;
   std::filesystem::path folder_;
   Skin* skin_;  // may be null
+  const ModelPath& model_path_;
   std::map<std::string, std::uint32_t> node_by_name_;
   std::map<const aiNode*, std::uint32_t> node_by_place_;
   MeshFile out_;
   std::map<unsigned, std::vector<std::uint32_t>> indices_by_material_;
 };
 
-base::Result<MeshFile> read_file(const MeshShape& shape, Skin* skin) {
+base::Result<MeshFile> read_file(const MeshShape& shape, Skin* skin, const ModelPath& model_path, bool by_id = false) {
   try {
     Assimp::Importer importer;
     importer.SetIOHandler(new MeshIo);  // the importer's from now on
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+    // Gazebo finds submeshes by the names of their nodes, older worlds of ours by their ids.
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, !shape.submesh.empty() && !by_id);
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 45.0F);
     const aiScene* scene = importer.ReadFile(shape.path, aiProcess_Triangulate | aiProcess_GenSmoothNormals |
@@ -292,7 +308,8 @@ base::Result<MeshFile> read_file(const MeshShape& shape, Skin* skin) {
                                                              aiProcess_ImproveCacheLocality | aiProcess_TransformUVCoords);
     if (scene == nullptr || scene->mRootNode == nullptr)
       return base::Error{fmt::format("mesh {}: {}", shape.path, base::in_quotes(importer.GetErrorString()))};
-    MeshFile file = Reader(*scene, shape, skin).read();
+    MeshFile file = Reader(*scene, shape, skin, model_path).read();
+    if (file.mesh.indices.empty() && !shape.submesh.empty() && !by_id) return read_file(shape, skin, model_path, true);
     if (file.mesh.indices.empty())
       return base::Error{shape.submesh.empty() ? fmt::format("mesh {}: has no triangle", shape.path)
                                                : fmt::format("mesh {}: has no submesh {}", shape.path, base::in_quotes(shape.submesh))};
@@ -304,14 +321,14 @@ base::Result<MeshFile> read_file(const MeshShape& shape, Skin* skin) {
 
 }  // namespace
 
-base::Result<MeshFile> read_mesh_file(const MeshShape& shape) { return read_file(shape, nullptr); }
+base::Result<MeshFile> read_mesh_file(const MeshShape& shape, const ModelPath& model_path) { return read_file(shape, nullptr, model_path); }
 
-base::Result<SkinFile> read_skin_file(const std::string& path, double scale) {
+base::Result<SkinFile> read_skin_file(const std::string& path, double scale, const ModelPath& model_path) {
   MeshShape shape;
   shape.path = path;
   shape.scale.setConstant(scale);
   SkinFile out;
-  auto file = read_file(shape, &out.skin);
+  auto file = read_file(shape, &out.skin, model_path);
   if (!file) return file.error();
   out.mesh = std::move(file->mesh);
   out.images = std::move(file->images);

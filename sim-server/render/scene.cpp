@@ -28,7 +28,7 @@ Material to_material(const MaterialDef& in, double transparency, Assets& assets)
     out.albedo.head<3>() *= 1.0F - 0.8F * in.metalness;
   }
   if (out.shininess <= 0) out.specular.setZero();
-  if (!in.texture.empty()) out.texture = assets.texture(in.texture);
+  if (!in.texture.empty()) out.texture = assets.texture(in.texture, in.has_alpha_texture);
   if (!in.normal_map.empty()) out.normal_map = assets.normal_map(in.normal_map);
   if (!in.emissive_map.empty()) {
     out.emissive_map = assets.texture(in.emissive_map);

@@ -267,7 +267,7 @@ void main() {
 #else
   base.a *= texel.a;
 #endif
-  base.rgb *= texel.rgb * texel.rgb;
+  vec3 image = texel.rgb * texel.rgb;
 #endif
 #if GRID
   vec2 ground = v_position.xy + eye.xy;
@@ -326,12 +326,21 @@ void main() {
 #endif
   }
 #endif
-  vec3 light = glow + base.rgb * diffuse;
-#if SPECULAR
-  light += specular * shine.rgb;
+  vec3 light = base.rgb * diffuse;
+#else
+  vec3 light = base.rgb;
+#endif
+#if TEXTURE
+#if EMISSIVE_MAP
+  light = glow + min(light, 1.0) * image;
+#else
+  light = min(glow + light, 1.0) * image;
 #endif
 #else
-  vec3 light = glow + base.rgb;
+  light += glow;
+#endif
+#if LIT && SPECULAR
+  light += specular * shine.rgb;
 #endif
 #if FOG
   float distance = length(v_position);

@@ -6,7 +6,9 @@
 //
 //   diffuse  = ambient * (1 + 0.25 n.z) + sum over lights of  L * max(0, n.l)
 //   specular = sum over lights of  L.specular * material.specular * max(0, n.h)^shininess    with h = (l + v) / |l + v|, where n.l > 0
-//   linear   = emissive + albedo * diffuse + specular          albedo = material diffuse * texture;  materials without lighting: albedo
+//   linear   = emissive + material diffuse * diffuse + specular       materials without lighting: emissive + material diffuse
+//              with a texture: min(1, emissive + material diffuse * diffuse) * texture + specular, so that no light makes a picture
+//              brighter than it is; an emissive map stays outside of that
 //   L        = light diffuse * intensity * reach * shade
 //   reach    = 1 (directional);  within the range 1 / (constant + linear d + quadratic d^2), else 0 (point and spot);  a spot's is times
 //              clamp((cos a - cos(outer / 2)) / (cos(inner / 2) - cos(outer / 2)), 0, 1)^falloff,  a: off the spot's axis

@@ -74,7 +74,7 @@ struct SkinFile {
 };
 
 // By Assimp: COLLADA, glTF and the like, also of things without a skeleton. `scale`: metres in a unit of the file.
-base::Result<SkinFile> read_skin_file(const std::string& path, double scale);
+base::Result<SkinFile> read_skin_file(const std::string& path, double scale, const ModelPath& model_path = {});
 
 // By Assimp: of COLLADA, BVH and the like. Nodes are known by their names; fails when none of them is the skin's. `scale`: metres in a unit
 // of the file.

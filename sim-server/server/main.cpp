@@ -137,7 +137,7 @@ int run(const Options& options, Signals& signals) {
   dropped += left_out.size();
   if (options.check) {
     // Pictures are made when somebody looks; their files are read now.
-    Assets assets;
+    Assets assets(world->model_path);
     Scene::build(*world, assets);
     for (const auto& line : assets.take_complaints()) {
       std::fprintf(stderr, "%s: %s\n", options.world.c_str(), line.c_str());

@@ -42,7 +42,7 @@ HeightmapShape build_heightmap(pugi::xml_node node) {
   for (pugi::xml_node texture : node.children("texture")) {
     const auto file = [&](const char* key) {
       const std::string path = text_at(texture, key);
-      return path.starts_with('/') ? path : std::string();
+      return path.starts_with('/') || path.starts_with(color_file) ? path : std::string();
     };
     shape.textures.push_back({std::max(number_at(texture, "size", 10), 1e-3), file("diffuse"), file("normal")});
   }

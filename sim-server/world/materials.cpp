@@ -1,6 +1,7 @@
 #include "world/materials.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 
@@ -69,6 +70,8 @@ std::optional<MaterialDef> built_in_material(std::string_view name) {
       {"YellowTransparent", plain({1, 1, 0, 0.5F})},
       {"DarkOrangeTransparent", plain({0.6F, 0.3F, 0.02F, 0.4F})},
       {"OrangeTransparent", plain({1, 0.51F, 0.06F, 0.4F})},
+      {"GreyTransparent", plain(grey(0.5F, 0.5F))},
+      {"GrayTransparent", plain(grey(0.5F, 0.5F))},
       {"BlueLaser", plain({0, 0, 1, 0.4F})},
       {"LightBlueLaser", plain({0.5F, 0.5F, 1, 0.4F})},
       {"Residential", plain(grey(0.38F))},
@@ -204,6 +207,9 @@ void apply_line(MaterialDef& material, const std::vector<std::string>& words) {
     if (words.size() > 4) material.shininess = static_cast<float>(base::parse_number(words.back()).value_or(0));
   } else if (key == "texture" && words.size() > 1) {
     if (material.texture.empty()) material.texture = words[1];
+  } else if ((key == "alpha_rejection" && words.size() > 1 && words[1] != "always_pass") ||
+             (key == "scene_blend" && words.size() > 1 && words[1] != "replace" && words[1] != "one")) {
+    material.has_alpha_texture = true;
   } else if (key == "scale" && words.size() > 2) {
     const double u = base::parse_number(words[1]).value_or(1), v = base::parse_number(words[2]).value_or(1);
     if (std::abs(u) > 1e-9 && std::abs(v) > 1e-9) material.texture_scale = Eigen::Vector2d(1 / u, 1 / v);
@@ -259,6 +265,7 @@ std::map<std::string, MaterialDef> parse_material_script(const std::string& text
     std::vector<const std::pair<const std::string, ScriptBlock>*> line;  // of descent, the youngest first
     const auto is_in_line = [&](const auto* block) { return std::find(line.begin(), line.end(), block) != line.end(); };
     MaterialDef material = plain(grey(1), grey(0));
+    material.has_alpha_texture = false;
     for (const auto* at = &start; at;) {
       line.push_back(at);
       const std::string& parent = at->second.parent;
@@ -282,6 +289,21 @@ std::map<std::string, MaterialDef> parse_material_script(const std::string& text
     materials.emplace(start.first, std::move(material));
   }
   return materials;
+}
+
+std::string color_of_media(std::string_view uri) {
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 21> colors{{
+      {"grass", "#47692a"},       {"dirt", "#6b5237"},   {"fungus", "#55602e"},   {"rock", "#73706a"},    {"brick", "#8c4d3d"},
+      {"wood", "#8c6138"},        {"pallet", "#997548"}, {"ceiling", "#d9d6cc"},  {"road", "#4d4d4d"},    {"asphalt", "#4d4d4d"},
+      {"tarmac", "#4d4d4d"},      {"runway", "#545454"}, {"motorway", "#4d4d4d"}, {"primary", "#575757"}, {"secondary", "#5c5c5c"},
+      {"residential", "#616161"}, {"paint", "#dbd6c2"},  {"cloud", "#99b3d9"},    {"steel", "#8c8c8c"},   {"rust", "#6b4d38"},
+      {"sand", "#c2b280"},
+  }};
+  const std::string name = base::to_lower(uri);
+  if (name.find("media/materials/textures/") == std::string::npos) return {};
+  const auto like =
+      std::find_if(colors.begin(), colors.end(), [&](const auto& entry) { return name.find(entry.first) != std::string::npos; });
+  return std::string(color_file).append(like == colors.end() ? "#9a9a9a" : like->second);
 }
 
 Materials::Materials(const ModelPath& model_path, Complaints& complaints) : model_path_(model_path), complaints_(complaints) {}

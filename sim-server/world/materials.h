@@ -21,6 +21,10 @@ std::map<std::string, MaterialDef> parse_material_script(const std::string& text
 // The built-in material "Gazebo/..." as a plain colour; empty for names that Gazebo does not have.
 std::optional<MaterialDef> built_in_material(std::string_view name);
 
+// For a picture that Gazebo brings along ("file://media/materials/textures/grass.jpg") and that is not here: what stands for its path, in
+// its colour. Empty for others.
+std::string color_of_media(std::string_view uri);
+
 class Materials {
  public:
   Materials(const ModelPath& model_path, Complaints& complaints);

@@ -6,19 +6,19 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace sim {
 
+// What a COLLADA image without a file is said to be: Assimp refuses the whole mesh otherwise.
+inline constexpr std::string_view no_image = "no_image";
+std::string with_named_images(const std::string& collada);
+
 class MeshIo : public Assimp::DefaultIOSystem {
  public:
-  bool Exists(const char* file) const override {
-    std::error_code problem;
-    return std::filesystem::is_regular_file(file, problem);
-  }
+  bool Exists(const char* file) const override;
   // Null: it is none; the importer that asked says what it misses.
-  Assimp::IOStream* Open(const char* file, const char* mode) override {
-    return Exists(file) ? Assimp::DefaultIOSystem::Open(file, mode) : nullptr;
-  }
+  Assimp::IOStream* Open(const char* file, const char* mode) override;
 };
 
 }  // namespace sim

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "world/checks.h"
+#include "world/materials.h"
 #include "world/repairs.h"
 #include "world/xml_file.h"
 #include "world/xml_values.h"
@@ -146,6 +147,12 @@ void ModelFiles::resolve_uris(pugi::xml_node entity, const fs::path& folder) {
     const std::optional<fs::path> found = model_path_.find(uri, folder);
     if (found && !is_lfs_pointer_file(*found)) {
       node.text() = found->string().c_str();
+      return;
+    }
+    if (const std::string color = color_of_media(uri); !found && is_image && !color.empty()) {
+      const bool is_colored = name == "albedo_map" || name == "diffuse";
+      if (is_colored) node.text() = color.c_str();
+      if (!is_colored) lost.push_back(node);  // bumps and the like are nothing that is missed
       return;
     }
     const std::string fault(found ? lfs_pointer_fault : "is not found");

@@ -63,11 +63,13 @@ void finish_mesh(const MeshShape& shape, TriangleMesh& mesh) {
   }
 }
 
-base::Result<TriangleMesh> read_mesh(const MeshShape& shape) {
+base::Result<TriangleMesh> read_mesh(const MeshShape& shape, bool by_id = false) {
   try {
     Assimp::Importer importer;
     importer.SetIOHandler(new MeshIo);  // the importer's from now on
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+    // Gazebo finds submeshes by the names of their nodes, older worlds of ours by their ids.
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, !shape.submesh.empty() && !by_id);
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
                                                             aiComponent_TEXCOORDS | aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
@@ -81,6 +83,7 @@ base::Result<TriangleMesh> read_mesh(const MeshShape& shape) {
     }
     TriangleMesh mesh;
     collect(*scene, *scene->mRootNode, aiMatrix4x4(), shape, false, mesh);
+    if (mesh.triangles.empty() && !shape.submesh.empty() && !by_id) return read_mesh(shape, true);
     finish_mesh(shape, mesh);
     if (mesh.triangles.empty()) {
       return base::Error{shape.submesh.empty() ? fmt::format("mesh {}: has no triangle", shape.path)

@@ -15,6 +15,7 @@
 #include <variant>
 #include <vector>
 
+#include "world/model_path.h"
 #include "world/pixel_format.h"
 
 namespace sim {
@@ -157,6 +158,8 @@ struct CollisionDef {
 // Fully resolved: scripts and built-in Gazebo colours are already colours and texture paths.
 // In place of the path of a mesh, height map or picture that was not found, and of which a line has told: pictures show a stand-in.
 inline constexpr const char* missing_file = "missing:";
+// In place of the path of a picture that Gazebo brings along: this, then its colour as #rrggbb.
+inline constexpr const char* color_file = "color:";
 
 struct MaterialDef {
   Color ambient{0.7F, 0.7F, 0.7F, 1};
@@ -165,6 +168,7 @@ struct MaterialDef {
   Color emissive{0, 0, 0, 1};
   float shininess = 0;
   std::string texture;                  // colour (albedo) image, path or empty; modulates diffuse
+  bool has_alpha_texture = true;        // the alpha of the texture counts
   std::string normal_map;               // path or empty
   std::string emissive_map;             // path or empty
   Eigen::Vector2d texture_scale{1, 1};  // how often the image repeats along u and v
@@ -496,6 +500,7 @@ struct WorldDef {
   std::vector<ActorDef> actors;
   std::vector<PluginDef> plugins;
   std::optional<Eigen::Isometry3d> gui_camera;  // where the author's window looked from
+  ModelPath model_path;                         // for what mesh files refer to
 
   const ModelDef* model(std::string_view model_name) const;  // null when absent
 };

@@ -18,6 +18,7 @@
 #include "world/repairs.h"
 #include "world/sdf_library.h"
 #include "world/taken_names.h"
+#include "world/unseen_models.h"
 #include "world/xml_file.h"
 #include "world/xml_values.h"
 
@@ -410,6 +411,8 @@ base::Result<LoadResult> Loader::world(const std::string& text, const fs::path& 
   BuildContext context{complaints_, materials_};
   result.world = build_world(world, whole_ ? *whole_ : ResolvedWorld{}, context);
   build_instances(result.world);
+  result.world.model_path = model_path_;
+  tell_of_unseen_models(result.world, complaints_);
   result.dropped = complaints_.dropped();
   result.findings = complaints_.take();
   return result;

@@ -1,0 +1,71 @@
+#include "world/mesh_io.h"
+
+#include <assimp/MemoryIOWrapper.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+
+#include "base/text.h"
+
+namespace sim {
+
+namespace {
+
+bool is_blank(std::string_view text) { return base::trim(text).empty(); }
+
+// Whether what stands between <image> and </image> names no file and holds no picture.
+bool names_nothing(std::string_view inside) {
+  if (inside.find("<data") != std::string_view::npos) return false;
+  const std::size_t begin = inside.find("<init_from");
+  if (begin == std::string_view::npos) return true;
+  const std::size_t end = inside.find('>', begin);
+  if (end == std::string_view::npos) return false;
+  if (inside[end - 1] == '/') return true;
+  const std::size_t close = inside.find("</init_from", end);
+  return close != std::string_view::npos && is_blank(inside.substr(end + 1, close - end - 1));
+}
+
+}  // namespace
+
+std::string with_named_images(const std::string& collada) {
+  const std::string naming = "<init_from>" + std::string(no_image) + "</init_from>";
+  std::string out;
+  std::size_t copied = 0;
+  for (std::size_t at = collada.find("<image"); at != std::string::npos; at = collada.find("<image", at + 1)) {
+    const char next = at + 6 < collada.size() ? collada[at + 6] : '\0';
+    const std::size_t tag_end = collada.find('>', at);
+    if ((next != ' ' && next != '>' && next != '/' && next != '\n' && next != '\t' && next != '\r') || tag_end == std::string::npos)
+      continue;
+    if (collada[tag_end - 1] == '/') {
+      out.append(collada, copied, tag_end - 1 - copied).append(">" + naming + "</image>");
+      copied = tag_end + 1;
+      continue;
+    }
+    const std::size_t close = collada.find("</image", tag_end);
+    if (close == std::string::npos) break;
+    if (!names_nothing(std::string_view(collada).substr(tag_end + 1, close - tag_end - 1))) continue;
+    out.append(collada, copied, tag_end + 1 - copied).append(naming);
+    copied = close;
+  }
+  return copied == 0 ? collada : out.append(collada, copied);
+}
+
+bool MeshIo::Exists(const char* file) const {
+  std::error_code problem;
+  return std::filesystem::is_regular_file(file, problem);
+}
+
+Assimp::IOStream* MeshIo::Open(const char* file, const char* mode) {
+  if (!Exists(file)) return nullptr;
+  if (base::to_lower(std::filesystem::path(file).extension().string()) != ".dae") return Assimp::DefaultIOSystem::Open(file, mode);
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return nullptr;
+  const std::string text = with_named_images({std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()});
+  auto* bytes = new std::uint8_t[text.size() + 1];  // the stream's from now on
+  std::copy(text.begin(), text.end(), bytes);
+  return new Assimp::MemoryIOStream(bytes, text.size(), true);
+}
+
+}  // namespace sim
