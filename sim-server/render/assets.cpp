@@ -12,6 +12,8 @@
 namespace sim {
 namespace {
 
+constexpr int largest_texture = 4096;  // [pixel] a side; larger ones are halved
+
 // sRGB byte -> gamma 2 byte.
 std::array<std::uint8_t, 256> gamma2_table() {
   std::array<std::uint8_t, 256> table{};
@@ -239,6 +241,7 @@ std::shared_ptr<const Texture> Assets::texture(const std::string& path, bool has
     complaints_.push_back(picture.error().message + "; a chequer stands in");
     return kept = missing_texture_;
   }
+  while (std::max(picture->width, picture->height) > largest_texture) *picture = halve(*picture);
   if (!has_alpha) {
     for (std::size_t i = 3; i < picture->rgba.size(); i += 4) picture->rgba[i] = 255;
   }

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <set>
 
@@ -148,8 +149,10 @@ void take_automatic_inertia(LinkDef& link, pugi::xml_node inertial, BuildContext
   double mass = 0;
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
   std::vector<std::pair<Eigen::Isometry3d, SolidProperties>> parts;
+  std::map<std::string, pugi::xml_node, std::less<>> nodes;
+  for (pugi::xml_node child : inertial.parent().children("collision")) nodes.emplace(child.attribute("name").value(), child);
   for (const CollisionDef& collision : link.collisions) {
-    const pugi::xml_node node = inertial.parent().find_child_by_attribute("collision", "name", collision.name.c_str());
+    const pugi::xml_node node = nodes[collision.name];
     const double density = node.attribute(density_mark).as_double(usual);
     const std::optional<SolidProperties> solid = solid_properties(collision.geometry);
     if (!solid || !(density > 0 && density < 1e9)) {
@@ -293,6 +296,8 @@ class ModelBuilder {
     for (pugi::xml_node child : node.children("collision")) {
       if (child.child("laser_retro")) return;
     }
+    constexpr std::size_t most_comparisons = 10'000'000;
+    if (link.collisions.size() * link.visuals.size() > most_comparisons) return;
     for (CollisionDef& collision : link.collisions) {
       const auto distance = [&](const VisualDef& visual) {
         return (visual.pose.translation() - collision.pose.translation()).squaredNorm();

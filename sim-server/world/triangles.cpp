@@ -20,6 +20,8 @@ namespace sim {
 namespace {
 
 constexpr std::size_t most_triangles = 20'000'000;
+constexpr std::size_t most_corners = 5000;  // of all outlines of a polyline: joining and clipping them costs more than their square
+constexpr int most_heights_a_side = 2049;   // what larger maps have between is left out: every height costs some 250 bytes
 
 bool is_finite(const Eigen::Vector3d& v) { return v.allFinite() && v.cwiseAbs().maxCoeff() < 1e7; }
 
@@ -172,6 +174,9 @@ std::vector<std::array<std::uint32_t, 3>> clip_ears(const Outline& outline) {
 }
 
 base::Result<TriangleMesh> polyline_triangles(const PolylineShape& shape) {
+  std::size_t corners = 0;
+  for (const Outline& ring : shape.outlines) corners += ring.size();
+  if (corners > most_corners) return base::Error{fmt::format("polyline: has {} corners, at most {} are expected", corners, most_corners)};
   TriangleMesh mesh;
   Outline outline;
   const auto add_walls = [&](const Outline& ring) {
@@ -188,7 +193,7 @@ base::Result<TriangleMesh> polyline_triangles(const PolylineShape& shape) {
   for (std::size_t i = 0; i < shape.outlines.size(); ++i) {
     Outline ring = shape.outlines[i];
     if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
-    if (ring.size() < 3 || ring.size() > 5000) continue;
+    if (ring.size() < 3) continue;
     const bool is_hole = !outline.empty();
     if ((area(ring) < 0) != is_hole) std::reverse(ring.begin(), ring.end());
     add_walls(ring);
@@ -236,11 +241,18 @@ base::Result<HeightGrid> read_heights(const HeightmapShape& shape) {
   if (png_image_finish_read(&image, nullptr, is_deep ? static_cast<void*>(deep.data()) : flat.data(), 0, nullptr) == 0) {
     return base::Error{fmt::format("height map {}: {}", shape.path, image.message)};
   }
-  HeightGrid grid{static_cast<int>(image.width), static_cast<int>(image.height), shape.size.x(), shape.size.y(), {}};
-  grid.heights.resize(std::size_t{image.width} * image.height);
-  for (std::size_t i = 0; i < grid.heights.size(); ++i) {
-    const double level = is_deep ? deep[i] / 65535.0 : flat[i] / 255.0;
-    grid.heights[i] = static_cast<float>(level * shape.size.z());
+  const auto kept = [](std::uint32_t side) { return std::min(static_cast<int>(side), most_heights_a_side); };
+  HeightGrid grid{kept(image.width), kept(image.height), shape.size.x(), shape.size.y(), {}};
+  grid.heights.reserve(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows));
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      // The corners stay where they are.
+      const auto x = static_cast<std::size_t>(column) * (image.width - 1) / static_cast<std::size_t>(grid.columns - 1);
+      const auto y = static_cast<std::size_t>(row) * (image.height - 1) / static_cast<std::size_t>(grid.rows - 1);
+      const std::size_t i = y * image.width + x;
+      const double level = is_deep ? deep[i] / 65535.0 : flat[i] / 255.0;
+      grid.heights.push_back(static_cast<float>(level * shape.size.z()));
+    }
   }
   return grid;
 }

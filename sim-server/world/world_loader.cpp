@@ -28,8 +28,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t most_frames = 5000;      // of one model; libsdformat resolves them in a time that grows with the square: 9 s
-constexpr std::size_t batch_text = 48 * 1024;  // libsdformat needs some hundred times the text it reads; this is what it gets at once
+constexpr std::size_t most_frames = 5000;            // of one model; libsdformat resolves them in a time that grows with the square: 9 s
+constexpr std::size_t most_frames_of_world = 10000;  // where models stand relative to each other
+constexpr std::size_t batch_text = 48 * 1024;        // libsdformat needs some hundred times the text it reads; this is what it gets at once
 
 // A model as it is written, however often it stands in the world.
 struct DistinctModel {
@@ -94,11 +95,11 @@ class Loader {
   ModelFiles files_;
   Materials materials_;
   struct SavedLink {
-    std::string model, link;                // with its scope
+    std::string link;                       // with its scope
     std::optional<Eigen::Isometry3d> pose;  // in the world
     Eigen::Vector3d linear{0, 0, 0}, angular{0, 0, 0};
   };
-  std::vector<SavedLink> saved_links_;
+  std::multimap<std::string, SavedLink> saved_links_;  // by model, in the order of the file
   pugi::xml_document holder_;
   pugi::xml_node copies_;
   std::vector<std::unique_ptr<pugi::xml_document>> documents_;
@@ -113,13 +114,18 @@ class Loader {
 
 namespace {
 
+// How a saved state calls this child of the world.
+std::string called_name(pugi::xml_node entity) {
+  if (std::string_view(entity.name()) != "include") return entity.attribute("name").value();
+  if (std::string given = text_of(entity.child("name")); !given.empty()) return given;
+  const std::string uri = text_of(entity.child("uri"));
+  return uri.substr(uri.rfind('/') + 1);  // from the start when there is no slash
+}
+
 // Whether a saved state speaks of this child of the world.
 bool is_called(pugi::xml_node entity, std::string_view kind, std::string_view name) {
   const std::string_view own_kind = entity.name();
-  if (own_kind != "include") return own_kind == kind && name == entity.attribute("name").value();
-  if (const std::string given = text_of(entity.child("name")); !given.empty()) return name == given;
-  const std::string uri = text_of(entity.child("uri"));
-  return name == std::string_view(uri).substr(uri.rfind('/') + 1);  // from the start when there is no slash
+  return (own_kind == "include" || own_kind == kind) && name == called_name(entity);
 }
 
 }  // namespace
@@ -135,12 +141,16 @@ void Loader::apply_state(pugi::xml_node world) {
         if (is_called(entity, "model", name) || is_called(entity, "light", name)) world.remove_child(entity);
       }
     }
+    std::multimap<std::string, pugi::xml_node> called;
+    for (pugi::xml_node entity : world.children()) called.emplace(called_name(entity), entity);
     for (pugi::xml_node saved : state.children()) {
       const std::string_view kind = saved.name();
       const pugi::xml_node pose = saved.child("pose");
       if ((kind != "model" && kind != "light") || !pose || !parse_pose(pose)) continue;
-      for (pugi::xml_node entity : world.children()) {
-        if (!is_called(entity, kind, saved.attribute("name").value())) continue;
+      const auto [first, last] = called.equal_range(saved.attribute("name").value());
+      for (auto entry = first; entry != last; ++entry) {
+        pugi::xml_node entity = entry->second;
+        if (!is_called(entity, kind, entry->first)) continue;
         entity.remove_child("pose");
         pugi::xml_node moved = entity.append_copy(pose);
         moved.remove_attribute("relative_to");
@@ -155,7 +165,7 @@ void Loader::apply_state(pugi::xml_node world) {
 void Loader::collect_saved_links(pugi::xml_node saved, const std::string& model, const std::string& scope) {
   const auto named = [&](pugi::xml_node node) { return (scope.empty() ? "" : scope + "::") + node.attribute("name").value(); };
   for (pugi::xml_node link : saved.children("link")) {
-    SavedLink out{model, named(link), parse_pose(link.child("pose")), {}, {}};
+    SavedLink out{named(link), parse_pose(link.child("pose")), {}, {}};
     const auto velocity = parse_numbers(text_of(link.child("velocity")));
     if (velocity && velocity->size() == 6) {
       out.linear = Eigen::Vector3d(velocity->data());
@@ -164,14 +174,15 @@ void Loader::collect_saved_links(pugi::xml_node saved, const std::string& model,
     const bool is_usable = (!out.pose || out.pose->matrix().allFinite()) && out.linear.allFinite() && out.angular.allFinite() &&
                            (!out.pose || out.pose->translation().cwiseAbs().maxCoeff() < 1e9) && out.linear.cwiseAbs().maxCoeff() < 1000 &&
                            out.angular.cwiseAbs().maxCoeff() < 1000;
-    if (is_usable) saved_links_.push_back(std::move(out));
+    if (is_usable) saved_links_.emplace(model, std::move(out));
   }
   for (pugi::xml_node inner : saved.children("model")) collect_saved_links(inner, model, named(inner));
 }
 
 void Loader::move_to_saved_places(ModelDef& model) const {
-  for (const SavedLink& saved : saved_links_) {
-    if (saved.model != model.name) continue;
+  const auto [first, last] = saved_links_.equal_range(model.name);
+  for (auto entry = first; entry != last; ++entry) {
+    const SavedLink& saved = entry->second;
     const auto link = std::find_if(model.links.begin(), model.links.end(), [&](const LinkDef& l) { return l.name == saved.link; });
     if (link == model.links.end()) continue;
     if (saved.pose) {
@@ -296,6 +307,13 @@ void Loader::mend_world_references(pugi::xml_node world) {
 
 // Models that stand relative to each other or to frames of the world are resolved in one go.
 bool Loader::resolve_whole_world(pugi::xml_node world) {
+  std::size_t count = static_cast<std::size_t>(std::distance(world.children("frame").begin(), world.children("frame").end()));
+  for (const Instance& instance : instances_) count += 1 + frames_of(distinct_[instance.distinct].node);
+  if (count > most_frames_of_world) {
+    complaints_.drop(world, "frames of the world, and of models in it, are more than " + std::to_string(most_frames_of_world) +
+                                "; poses are taken relative to the world");
+    return false;
+  }
   mend_world_references(world);
   pugi::xml_document document;
   pugi::xml_node sdf = document.append_child("sdf");

@@ -166,6 +166,26 @@ TEST(RenderMedia, pictures_of_gazebo_itself_get_a_colour_like_theirs) {
   EXPECT_TRUE(is_bytes(table.colors()[1], {92, 92, 92}, 40)) << "half of grey, and black behind";
 }
 
+TEST(RenderMedia, shapes_of_too_many_corners_are_refused_and_large_height_maps_thinned) {
+  PolylineShape polyline;
+  polyline.outlines.emplace_back(5001, Eigen::Vector2d(0, 0));
+  const auto outline = TriangleCache().triangles(polyline);
+  ASSERT_FALSE(outline);
+  EXPECT_EQ(outline.error().message, "polyline: has 5001 corners, at most 5000 are expected");
+  const WorldFiles files;
+  HeightmapShape map;
+  map.path = write_picture(files, "h.png", 2051, [](int x, int) {
+    const auto level = static_cast<std::uint8_t>(x * 255 / 2050);
+    return Pixel{level, level, level, 255};
+  });
+  map.size = {10, 10, 255};
+  const auto grid = TriangleCache().heights(map);
+  ASSERT_TRUE(grid) << grid.error().message;
+  EXPECT_EQ((*grid)->columns, 2049);
+  EXPECT_NEAR((*grid)->heights.front(), 0, 1e-3);
+  EXPECT_NEAR((*grid)->heights.back(), 255, 1e-3) << "the corners stay where they are";
+}
+
 // --- DirectDraw surfaces
 
 std::vector<std::uint8_t> dds(const std::string& code, int width, int height, const std::vector<std::uint8_t>& data,

@@ -56,6 +56,17 @@ TEST(LargeFiles, with_a_model_of_too_many_frames_lose_the_model_alone) {
       << all_findings(result);
 }
 
+TEST(LargeFiles, with_many_saved_places_are_loaded) {
+  const auto models = repeated(10000, [](int i) { return "<model name='m" + std::to_string(i) + "'><link name='l'/></model>"; });
+  const auto places = repeated(10000, [](int i) {
+    const std::string pose = "<pose>" + std::to_string(i) + " 0 0 0 0 0</pose>";
+    return "<model name='m" + std::to_string(i) + "'>" + pose + "<link name='l'>" + pose + "</link></model>";
+  });
+  const LoadResult result = WorldFiles().load(models + "<state world_name='w'>" + places + "</state>");
+  ASSERT_EQ(result.world.models.size(), 10000U);
+  EXPECT_EQ(result.world.models.back().pose.translation().x(), 9999);
+}
+
 TEST(LargeFiles, with_a_long_road_are_loaded) {
   const LoadResult result =
       WorldFiles().load("<road name='r'><width>2</width><material><diffuse>1 0 0 1</diffuse></material>" +
