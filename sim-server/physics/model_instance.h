@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -70,6 +71,7 @@ class ModelInstance {
   std::vector<Contact> contacts, previous_contacts;
   std::uint64_t contacts_so_far = 0;
   bool records_forces = false;
+  std::optional<std::uint64_t> put_back_at;  // the step in which it last left the numbers
 
  private:
   void make_shapes(ShapeStore& shapes, std::vector<std::string>& lost);

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double margin = 0.3;  // of neighbourhoods [m]
 constexpr std::size_t most_shards = 16;
+constexpr double same_event = 1;  // [s] between two times that a model leaves the numbers
 
 bool is_sane(const Eigen::Vector3d& v, double limit) { return v.allFinite() && v.cwiseAbs().maxCoeff() <= limit; }
 
@@ -204,8 +205,13 @@ void Physics::Impl::move_to(ModelInstance& model, int shard) {
 void Physics::Impl::put_back_insane(Shard& shard) {
   for (auto* model : std::vector<ModelInstance*>(shard.models)) {
     if (model->is_sane()) continue;
-    complaints_.push_back(
-        fmt::format("model {}: left the range of numbers and was put back to where it started", model->blueprint().model->name));
+    // What leaves them again at once is one event, not one in each step.
+    const bool is_told = model->put_back_at && static_cast<double>(steps_ - *model->put_back_at) * world_->physics.step < same_event;
+    model->put_back_at = steps_;
+    if (!is_told) {
+      complaints_.push_back(
+          fmt::format("model {}: left the range of numbers and was put back to where it started", model->blueprint().model->name));
+    }
     model->enter(shard.world(), world_->physics);
     model->left_neighbourhood = true;
     shard.has_left = true;

@@ -254,6 +254,17 @@ TEST(Physics, numbers_that_are_not_finite_are_refused) {
   EXPECT_EQ(f.hash(), before);
 }
 
+TEST(Physics, tells_once_of_a_model_that_leaves_the_numbers_again_and_again) {
+  Fixture f(world_of({ground(), body("dust", SphereShape{0.1}, at(0, 0, 5), 0.001)}));
+  std::vector<std::string> lines;
+  for (int i = 0; i < 200; ++i) {
+    ASSERT_TRUE(f.physics.add_wrench({f.id("dust"), 0}, {1e7, 0, 0}, {0, 0, 0}));
+    f.physics.step();
+    for (const auto& line : f.physics.take_complaints()) lines.push_back(line);
+  }
+  EXPECT_EQ(lines, std::vector<std::string>{"model dust: left the range of numbers and was put back to where it started"});
+}
+
 TEST(Physics, what_is_spawned_moves_and_what_is_deleted_is_gone_until_a_reset) {
   Fixture f(world_of({ground(), body("shelf", BoxShape{}, at(0, 0, 0.5)), body("cup", SphereShape{0.1}, at(0, 0, 1.1))}));
   f.run(2);
