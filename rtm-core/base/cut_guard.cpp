@@ -21,6 +21,7 @@ struct Slot {
 constexpr std::size_t no_slot = 65536;
 std::array<Slot, no_slot> slots;
 std::atomic<std::size_t> used{0};  // slots from here on have never been used
+std::atomic<std::size_t> hint{0};  // where a free slot is looked for first; any value is right
 std::atomic<std::size_t> cut_count{0};
 struct sigaction before {};
 
@@ -56,11 +57,15 @@ void install_handler() {
 
 }  // namespace
 
-CutGuard::CutGuard(void* base, std::size_t size) : slot_(0) {
+CutGuard::CutGuard(void* base, std::size_t size) : slot_(no_slot) {
   install_handler();
-  while (slot_ < no_slot && slots[slot_].is_taken.exchange(true, std::memory_order_acquire))
-    ++slot_;  // pairs with the release in ~CutGuard
+  const std::size_t first = hint.load(std::memory_order_relaxed);
+  for (std::size_t i = 0; i < no_slot && slot_ == no_slot; ++i) {
+    const std::size_t at = (first + i) % no_slot;
+    if (!slots[at].is_taken.exchange(true, std::memory_order_acquire)) slot_ = at;  // pairs with the release in ~CutGuard
+  }
   if (slot_ == no_slot) return;
+  hint.store(slot_ + 1, std::memory_order_relaxed);
   Slot& slot = slots[slot_];
   slot.size.store(size, std::memory_order_relaxed);
   slot.is_cut.store(false, std::memory_order_relaxed);
@@ -74,6 +79,7 @@ CutGuard::~CutGuard() {
   if (slot_ == no_slot) return;
   slots[slot_].begin.store(0, std::memory_order_release);         // pairs with the acquire in the handler
   slots[slot_].is_taken.store(false, std::memory_order_release);  // pairs with the acquire in CutGuard
+  if (slot_ < hint.load(std::memory_order_relaxed)) hint.store(slot_, std::memory_order_relaxed);
 }
 
 bool was_cut(const void* base) {

@@ -179,8 +179,9 @@ class RayScene::Impl {
   }
 
   RayBodyId add(bool is_moving, std::span<const RayShape> shapes, const Eigen::Isometry3d& pose, std::vector<std::string>& notes) {
-    RayBodyId id = 0;
+    RayBodyId id = first_free_;
     while (id < bodies_.size() && bodies_[id].is_used) ++id;
+    first_free_ = id + 1;
     if (id == bodies_.size()) bodies_.emplace_back();
     Body& body = bodies_[id];
     body = Body();
@@ -263,6 +264,7 @@ class RayScene::Impl {
   ShapeScene statics_;
   embree::Scene crowd_;  // instances of all moving bodies
   std::vector<Body> bodies_;
+  RayBodyId first_free_ = 0;       // all ids below are used
   std::vector<RayBodyId> moving_;  // those with something to see
   std::map<std::string, std::weak_ptr<ShapeScene>> shared_;
   std::vector<const Body*> body_of_instance_;
@@ -332,6 +334,7 @@ void RayScene::remove(RayBodyId id) {
   impl_->statics_changed_ = impl_->statics_changed_ || !body.geometry_ids.empty();
   std::erase_if(impl_->planes_, [&](const Plane& plane) { return plane.body == id; });
   body = Impl::Body();
+  impl_->first_free_ = std::min(impl_->first_free_, id);
 }
 
 void RayScene::set_pose(RayBodyId id, const Eigen::Isometry3d& pose) {

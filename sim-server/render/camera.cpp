@@ -16,8 +16,6 @@ constexpr double widest_pinhole = 3.1;  // [rad]
 
 Camera::Camera(const CameraDef& def, Output output, std::uint64_t seed) : def_(def), output_(output), seed_(seed), lens_(Lens::make(def)) {
   def_.horizontal_fov = lens_ ? def_.horizontal_fov : std::min(def_.horizontal_fov, widest_pinhole);
-  if (output != Output::depth) rgba_.resize(pixels() * 4);
-  if (output != Output::color) depth_.resize(pixels());
 }
 
 std::size_t Camera::pixels() const { return static_cast<std::size_t>(def_.width) * static_cast<std::size_t>(def_.height); }
@@ -33,6 +31,9 @@ Eigen::Vector2d Camera::principal_point() const {
 base::Result<void> Camera::take(Renderer& renderer, const std::shared_ptr<const Scene>& scene, std::span<const Eigen::Isometry3d> poses,
                                 const Eigen::Isometry3d& pose, std::int64_t time, Output wanted) {
   time_ = time;
+  // The first picture brings them; most cameras of a world are never looked at.
+  if (output_ != Output::depth) rgba_.resize(pixels() * 4);
+  if (output_ != Output::color) depth_.resize(pixels());
   View plain = View::pinhole(pose, def_.horizontal_fov, def_.width, def_.height);
   plain.near_clip = def_.near_clip;
   plain.far_clip = def_.far_clip;

@@ -30,6 +30,7 @@ struct Options {
   std::uint64_t seed = 1;
   std::vector<std::string> resource_paths;
   std::string record, shm_mode = "0600", shm_group;
+  std::uint64_t shm_limit = shm::ServerOptions::usual_most_bytes >> 20U;  // [MiB]
   int verbosity = 1, threads = 0;
 };
 
@@ -46,8 +47,8 @@ int fail(const std::string& message) {
   return 1;
 }
 
-// SIGINT, SIGTERM and SIGHUP, received by a thread of their own instead of a handler. They stop the loop; before there is one they end the
-// process at once, however long the world takes to load.
+// SIGINT, SIGTERM and SIGHUP, received by a thread of their own instead of a handler. They stop the loop after its step; before there is
+// one, and when the step takes long or a second signal comes, they end the process at once.
 class Signals {
  public:
   // Before any other thread is started this must exist.
@@ -62,8 +63,8 @@ class Signals {
       while (true) {
         int signal = 0;
         sigwait(&set_, &signal);
+        if (signal != SIGUSR2 && !is_over_.load(std::memory_order_acquire)) stop(signal);
         if (is_over_.load(std::memory_order_acquire)) return;  // pairs with the release in end
-        if (signal != SIGUSR2) stop(signal);
       }
     });
   }
@@ -78,8 +79,18 @@ class Signals {
 
  private:
   void stop(int signal) {
-    auto loop = loop_.lock();
-    if (*loop != nullptr) return (*loop)->stop();
+    constexpr timespec patience{2, 0};
+    {
+      auto loop = loop_.lock();
+      if (*loop != nullptr) (*loop)->stop();
+      if (*loop == nullptr) end_process(signal);
+    }
+    const int next = sigtimedwait(&set_, nullptr, &patience);
+    if (is_over_.load(std::memory_order_acquire)) return;  // pairs with the release in end
+    if (next < 0) std::fprintf(stderr, "sim-server: ended in the middle of a step, which takes more than %ld s\n", patience.tv_sec);
+    end_process(signal);
+  }
+  [[noreturn]] static void end_process(int signal) {
     shm::remove_own();
     std::_Exit(128 + signal);
   }
@@ -108,7 +119,7 @@ int run(const Options& options, Signals& signals) {
   // Who only looks takes no server's place; ids of this kind cannot be asked for.
   const std::uint32_t server_id = options.check ? shm::first_unnamed_server + static_cast<std::uint32_t>(getpid()) : options.server_id;
   if (options.check) shm::remove_stale(shm::first_unnamed_server);
-  auto server = shm::Server::start({.server_id = server_id, .access = *access});
+  auto server = shm::Server::start({.server_id = server_id, .access = *access, .most_bytes = options.shm_limit << 20U});
   if (!server) return fail(server.error().message);
   shm::SimulationInfo info{};
   info.step_ns = std::llround(world->physics.step * 1e9);
@@ -206,6 +217,8 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0, 64));
   app.add_option("--shm-mode", options.shm_mode, "access mode of the ifaces (0600)");
   app.add_option("--shm-group", options.shm_group, "group of the ifaces");
+  app.add_option("--shm-limit", options.shm_limit, "most shared memory that the ifaces may take together, in MiB (1536)")
+      ->check(CLI::Range(1, 1 << 20));
   app.add_option("-v", options.verbosity, "0 errors, 1 normal, 2 notes, 3 debug (1)")->check(CLI::Range(0, 3));
   if (const auto end = base::parse_command_line(app, "sim-server", argc, argv)) return *end;
   const base::Level levels[] = {base::Level::error, base::Level::info, base::Level::info, base::Level::debug};

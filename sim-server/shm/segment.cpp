@@ -18,9 +18,9 @@
 #include <tuple>
 #include <utility>
 
+#include "base/cut_guard.h"
 #include "base/guarded.h"
 #include "base/text.h"
-#include "base/cut_guard.h"
 #include "shm/futex.h"
 #include "shm/process.h"
 #include "shm/words.h"
@@ -81,22 +81,29 @@ Mapping map_file(int file, std::size_t size) {
     std::weak_ptr<void> base;
     std::size_t size;
   };
-  static base::Guarded<std::map<FileKey, Known>, base::Rank::registry> mappings;
+  struct Table {
+    std::map<FileKey, Known> mappings;
+    std::size_t swept_at = 64;  // entries at which those of mappings that are gone are taken out
+  };
+  static base::Guarded<Table, base::Rank::registry> guarded;
   struct stat status {};
   if (::fstat(file, &status) != 0) return {};
   const FileKey key{status.st_dev, status.st_ino};
-  auto table = mappings.lock();
-  if (auto found = table->find(key); found != table->end()) {
+  auto table = guarded.lock();
+  if (auto found = table->mappings.find(key); found != table->mappings.end()) {
     if (auto mapping = found->second.base.lock()) return {std::move(mapping), found->second.size};
   }
-  std::erase_if(*table, [](const auto& entry) { return entry.second.base.expired(); });
+  if (table->mappings.size() >= table->swept_at) {
+    std::erase_if(table->mappings, [](const auto& entry) { return entry.second.base.expired(); });
+    table->swept_at = 64 + 2 * table->mappings.size();
+  }
   void* memory = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
   if (memory == MAP_FAILED) return {};
   std::shared_ptr<void> mapping(memory, [size, guard = std::make_shared<base::CutGuard>(memory, size)](void* mapped) mutable {
     guard.reset();
     ::munmap(mapped, size);
   });
-  (*table)[key] = {mapping, size};
+  table->mappings[key] = {mapping, size};
   return {std::move(mapping), size};
 }
 

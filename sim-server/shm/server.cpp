@@ -5,9 +5,9 @@
 #include <atomic>
 #include <utility>
 
+#include "base/cut_guard.h"
 #include "base/guarded.h"
 #include "base/text.h"
-#include "base/cut_guard.h"
 #include "shm/writer_impl.h"
 
 namespace shm {
@@ -22,6 +22,7 @@ struct Server::State {
   };
   base::Guarded<Ifaces, base::Rank::buffer> ifaces;
   std::atomic<std::size_t> cuts_told{0};
+  Bytes bytes = std::make_shared<std::atomic<std::uint64_t>>(0);
 };
 
 Server::Server(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -44,6 +45,10 @@ base::Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options
   return std::unique_ptr<Server>(new Server(std::move(state)));
 }
 
+namespace {
+std::string mebibytes(std::uint64_t bytes) { return std::to_string((bytes + (1U << 20U) - 1) >> 20U) + " MiB"; }
+}  // namespace
+
 base::Result<std::unique_ptr<IfaceWriter>> Server::create(const IfaceSpec& spec) {
   const Geometry& geometry = spec.geometry;
   constexpr std::size_t largest = std::size_t{1} << 30;
@@ -54,12 +59,19 @@ base::Result<std::unique_ptr<IfaceWriter>> Server::create(const IfaceSpec& spec)
     return base::Error{std::string(to_text(spec.type)) + " " + base::in_quotes(spec.name) + ": its counts or sizes can't be; samples of " +
                        std::to_string(geometry.sample_size) + " bytes, frames of " + std::to_string(geometry.frame_size)};
   }
+  const std::uint64_t wanted = static_cast<std::uint64_t>(geometry.sample_size) * geometry.cells +
+                               static_cast<std::uint64_t>(geometry.frame_size) * geometry.frame_slots;
+  if (state_->bytes->load() + wanted > state_->options.most_bytes) {
+    return base::Error{std::string(to_text(spec.type)) + " " + base::in_quotes(spec.name) + " needs " + mebibytes(wanted) +
+                       " of shared memory beside " + mebibytes(state_->bytes->load()) + " of the other ifaces, which is more than " +
+                       mebibytes(state_->options.most_bytes) + " in all (--shm-limit)"};
+  }
   auto segment =
       Segment::create({::geteuid(), state_->options.server_id, spec.type, spec.name}, geometry, spec.info, state_->options.access);
   if (!segment) return segment.error();
   const IfaceRow& row = row_of(spec.type);
   const std::size_t count = row.sample_tail.arrays > 0 ? row.count(spec.info.data()) : 0;
-  auto impl = std::make_shared<IfaceWriter::Impl>(std::move(*segment), geometry.sample_size, count);
+  auto impl = std::make_shared<IfaceWriter::Impl>(std::move(*segment), geometry.sample_size, count, state_->bytes);
   if (row.is_always_full) {
     auto& filled = *static_cast<std::uint32_t*>(const_cast<void*>(row.filled(impl->staging.data())));
     filled = static_cast<std::uint32_t>(count);

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "shm/frame_ring.h"
@@ -16,11 +17,26 @@
 
 namespace shm {
 
+// Of all ifaces of a server.
+using Bytes = std::shared_ptr<std::atomic<std::uint64_t>>;
+
 struct IfaceWriter::Impl {
-  Impl(Segment made, std::size_t sample, std::size_t elements)
-      : segment(std::move(made)), sample_size(sample), count(elements), staging((sample + 7) / 8), leases(segment), ring(segment) {}
+  Impl(Segment made, std::size_t sample, std::size_t elements, Bytes all)
+      : segment(std::move(made)),
+        bytes(std::move(all)),
+        sample_size(sample),
+        count(elements),
+        staging((sample + 7) / 8),
+        leases(segment),
+        ring(segment) {
+    bytes->fetch_add(segment.facts().total_size);
+  }
+  ~Impl() { bytes->fetch_sub(segment.facts().total_size); }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
 
   Segment segment;
+  Bytes bytes;
   std::size_t sample_size;
   std::size_t count;  // elements in each array that follows a sample
   std::vector<std::uint64_t> staging;
