@@ -34,6 +34,7 @@ struct RecordOptions {
   std::vector<std::string> ports;
   bool all = false;
   std::vector<std::string> excluded;
+  std::vector<std::string> attached;  // NAME=FILE
   std::string file;
   double duration_s = 0;  // of the wall clock; 0: until stopped
   std::string compression = "zstd";
@@ -77,6 +78,19 @@ std::string file_text(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(in)), {});
   return text.size() > largest_world ? std::string() : text;
+}
+
+base::Result<void> attach_files(mcap::Writer& writer, const RecordOptions& options) {
+  for (const std::string& one : options.attached) {
+    const auto equals = one.find('=');
+    const std::string path = one.substr(equals + 1);
+    std::ifstream in(path, std::ios::binary);
+    if (!in) return base::Error{"attachment " + base::in_quotes(one) + ": cannot be read"};
+    const std::string text((std::istreambuf_iterator<char>(in)), {});
+    if (const auto done = writer.attach({mcap::Time(0), mcap::Time(0), one.substr(0, equals), "application/octet-stream", text}); !done)
+      return done;
+  }
+  return {};
 }
 
 // What makes the run again: the world, its seed, the programs.
@@ -135,6 +149,7 @@ void record(Editor& editor, const RecordOptions& options) {
   auto writer = mcap::Writer::create(options.file, {.profile = "", .compression = compression});
   if (!writer) return editor.fail(writer.error());
   attach_run(*writer, options, clock);
+  if (const auto attached = attach_files(*writer, options); !attached) return editor.fail(attached.error());
   const auto sink = std::make_shared<McapSink>(std::move(*writer));
   editor::catch_interrupts();
   {
@@ -165,6 +180,8 @@ void add_record(CLI::App& app, editor::Chosen& chosen) {
   command->add_option("PORT", options->ports, "OutPorts");
   command->add_flag("--all", options->all, "All OutPorts of the naming service");
   command->add_option("--exclude", options->excluded, "With --all: not the ports that the pattern fits, e.g. 'RTCCamera*:*'");
+  command->add_option("--attach", options->attached, "NAME=FILE: a file that the recording is to hold, too")
+      ->check([](const std::string& text) { return text.find('=') == std::string::npos ? "expected NAME=FILE" : ""; });
   command->add_option("-o,--output", options->file, "The file to write")->required();
   command->add_option("-t,--duration", options->duration_s, "End after so many seconds of real time")
       ->check(base::number_between(0.0, 1e9));

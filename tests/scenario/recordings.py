@@ -145,6 +145,22 @@ def played():
     assert done.returncode == 0 and f"sent {sent} samples" in done.stdout, done
 
 
+# `rtse run` records from before the first step on; two runs are equal, and equal to the run without.
+def of_a_run():
+    call = ["--json", "run", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "--world", f"{rig.source}/worlds/obstacle_course.sdf", "--duration", "5"]
+    hashes = []
+    for more in ([], ["--record", rig.path("a.mcap")], ["--record", rig.path("b.mcap"), "--one-process-each"]):
+        hashes.append(json.loads(rig.rtse(*call, *more).splitlines()[-1])["state_hash"])
+    assert len(set(hashes)) == 1, hashes
+    assert rig.rtse("recording", "compare", rig.path("a.mcap"), rig.path("b.mcap")).startswith("equal: ")
+    info = json.loads(rig.rtse("--json", "recording", "info", rig.path("a.mcap")))
+    assert sorted(a["name"] for a in info["attachments"]) == ["system.xml", "world.sdf"], info["attachments"]
+    velocity = next(c for c in info["channels"] if c["topic"] == "/LaserObstacleAvoid0/velocity")
+    assert velocity["missing"] == 0 and velocity["first"] <= 0.2 and velocity["last"] >= 4.8, velocity
+    done = rig.try_rtse(*call, "--record", "/no/such/folder/a.mcap")
+    assert done.returncode == 1 and "/no/such/folder" in done.stderr, done
+
+
 def refused(*words, says):
     done = rig.try_rtse(*words)
     assert done.returncode == 1 and says in done.stderr and done.stderr.count("\n") == 1, done

@@ -104,6 +104,7 @@ RunResult run_apart(const RunOptions& options, std::uint64_t seed) {
   if (options.one_process_each) add({"--one-process-each"});
   if (options.in_real_time) add({"--realtime"});
   if (!options.picture.empty()) add({"--picture", for_seed(options.picture, seed)});
+  if (!options.record.empty()) add({"--record", for_seed(options.record, seed)});
   if (!options.keep.empty()) add({"--keep", (std::filesystem::path(options.keep) / ("seed-" + std::to_string(seed))).string()});
   for (const auto& property : options.properties) add({"--property", property});
   for (const auto& path : options.module_paths) add({"--module-path", path});
@@ -150,7 +151,7 @@ Result<void> check_files(const RunOptions& options) {
   std::vector<std::filesystem::path> taken;
   for (const auto& file : {options.system, options.world, options.expectations})
     taken.push_back(std::filesystem::weakly_canonical(file, error));
-  for (const auto& file : {options.junit, options.picture}) {
+  for (const auto& file : {options.junit, options.picture, options.record}) {
     if (file.empty()) continue;
     const auto path = std::filesystem::weakly_canonical(file, error);
     if (std::ranges::find(taken, path) != taken.end()) return Error{"file " + base::in_quotes(file) + ": is used for something else too"};
@@ -273,6 +274,7 @@ void add_run(CLI::App& app, Chosen& chosen) {
       ->capture_default_str();
   run->add_option("--junit", options->junit, "Write the verdicts as JUnit XML");
   run->add_option("--picture", options->picture, "Write the world at the end as PNG");
+  run->add_option("--record", options->record, "Write what all ports send as MCAP");
   run->add_option("--keep", options->keep, "Keep logs and the record in this folder");
   run->callback([&chosen, options, seeds, jobs] { chosen.work = [=](Editor& e) { editor::run(e, *options, *seeds, *jobs); }; });
 }

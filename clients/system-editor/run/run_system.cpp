@@ -20,6 +20,7 @@
 #include "run/interrupt.h"
 #include "run/port_values.h"
 #include "run/run_files.h"
+#include "run/run_recorder.h"
 #include "run/run_simulator.h"
 
 namespace editor {
@@ -61,6 +62,8 @@ class Run {
       result_.logs = last_words();
     }
     ports_.end();
+    if (const auto recorded = recorder_.end(); !recorded)
+      result_.verdicts.push_back({"recording " + options_.record, recorded.error().message});
     take_warnings();
     stop();
     result_.wall_s = std::chrono::duration<double>(Clock::now() - began).count();
@@ -75,8 +78,8 @@ class Run {
   };
 
   Result<void> run() {
-    for (auto step : {&Run::read, &Run::start_naming, &Run::start_simulator, &Run::start_hosts, &Run::wire, &Run::listen, &Run::drive,
-                      &Run::look, &Run::run_commands, &Run::judge_all}) {
+    for (auto step : {&Run::read, &Run::start_naming, &Run::start_simulator, &Run::start_hosts, &Run::wire, &Run::listen, &Run::record,
+                      &Run::drive, &Run::look, &Run::run_commands, &Run::judge_all}) {
       if (const auto done = (this->*step)(); !done) return done;
     }
     return {};
@@ -320,6 +323,12 @@ class Run {
     return text;
   }
 
+  Result<void> record() {
+    if (options_.record.empty()) return {};
+    return recorder_.start({server_, simulator_.id(), place_.file("system.xml"), std::filesystem::absolute(options_.record).string()},
+                           [this](const auto& what, const auto& ready) { return wait_until(what, ready); });
+  }
+
   Result<void> listen() { return ports_.listen(orb_, *editor_, expectations_); }
 
   Result<void> drive() {
@@ -414,6 +423,7 @@ class Run {
   std::optional<ChildProcess> naming_;
   RunSimulator simulator_;
   std::vector<Host> hosts_;
+  RunRecorder recorder_{place_};
   std::optional<Editor> editor_;
   PortValues ports_;
 };

@@ -28,6 +28,7 @@ struct RunOptions {
   std::vector<std::string> resource_paths;
   std::string junit;    // file to write
   std::string picture;  // PNG to write
+  std::string record;   // MCAP to write
   std::string keep;     // folder for logs and the record; empty: a temporary one, removed at the end
   bool quiet = false;   // no progress line
 };

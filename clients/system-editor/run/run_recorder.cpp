@@ -1,0 +1,50 @@
+#include "run/run_recorder.h"
+
+#include <chrono>
+#include <fstream>
+#include <iterator>
+
+#include "base/text.h"
+
+namespace editor {
+
+namespace {
+
+// What waits in its queue is written first.
+constexpr std::chrono::seconds ending_limit{40};
+
+}  // namespace
+
+std::string RunRecorder::said() const {
+  std::ifstream in(log_);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+base::Result<void> RunRecorder::start(const RecorderCall& call, const Wait& wait_until) {
+  log_ = place_.new_file("recorder.log");
+  auto started = ChildProcess::start({{own_program("rtse-recorder"), "--ns", call.server, "record", "--all", "-s", call.simulator, "-o",
+                                       call.file, "--attach", "system.xml=" + call.system},
+                                      {},
+                                      log_});
+  if (!started) return started.error();
+  process_.emplace(std::move(*started));
+  const auto ready = wait_until("recorder", [&] { return said().starts_with("recording ") || !process_->is_running(); });
+  if (!ready) return ready;
+  if (process_->is_running()) return {};
+  const auto lines = base::split_list(said(), '\n');
+  return base::Error{"recording " + base::in_quotes(call.file) + ": " + (lines.empty() ? process_->how_it_ended() : lines.back())};
+}
+
+base::Result<void> RunRecorder::end() {
+  if (!process_) return {};
+  if (process_->is_running()) process_->terminate();
+  const bool has_ended = process_->wait(ending_limit);
+  const bool is_good = has_ended && process_->exit_code() == 0;
+  const auto lines = base::split_list(said(), '\n');
+  const std::string how = has_ended ? process_->how_it_ended() : "does not end";
+  process_.reset();
+  if (is_good) return {};
+  return base::Error{"recorder: " + how + (lines.empty() ? "" : ": " + lines.back())};
+}
+
+}  // namespace editor
