@@ -392,7 +392,7 @@ TEST(Faults, a_file_that_is_cut_short_ends_neither_server_nor_readers) {
 
 TEST(Faults, a_file_that_is_made_longer_ends_no_client_that_opens_it_again) {
   Fixture f;
-  auto laser = f.make(laser_spec("laser", laser_info()));
+  auto laser = f.make(iface_spec(IfaceType::laser, "laser", laser_info()));
   Iface reader = f.open(IfaceType::laser, "laser");
   const std::string path = "/dev/shm/" + laser->segment().name().text();
   const std::uint64_t longer = laser->segment().facts().total_size + (std::uint64_t{64} << 20);
