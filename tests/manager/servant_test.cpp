@@ -149,7 +149,8 @@ TEST_F(Servant, create_component_understands_every_form_of_its_argument) {
   const auto file = (folder.path() / "own.conf").string();
   std::ofstream(file) << "conf.default.how: throw\nconf.special.how: throw_number\nexec_cxt.periodic.rate: 25\n";
   const int port = support::free_port();
-  support::Process rtcd(at_port(port, {"-o", "manager.shutdown_on_nortcs:NO"}));
+  // A file is named over the wire below, which has to be allowed.
+  support::Process rtcd(at_port(port, {"-o", "manager.shutdown_on_nortcs:NO", "-o", "manager.remote_rights:everything"}));
   RTM::Manager_var manager = manager_at(port);
   ASSERT_FALSE(CORBA::is_nil(manager)) << rtcd.output();
 
@@ -157,9 +158,9 @@ TEST_F(Servant, create_component_understands_every_form_of_its_argument) {
            {"FailOnRequest", "FailOnRequest0"},
            {"FailOnRequest?", "FailOnRequest1"},
            {"FailOnRequest?&instance_name=A", "A"},
-           {"RTC:::FailOnRequest:", ""},    // five fields
-           {"RTC::::FailOnRequest::", ""},  // too many
-           {"RTC:rtm-sim:example:FailOnRequest:C++:1.0.0", "FailOnRequest2"},
+           {"RTC:::FailOnRequest:", ""},                                       // five fields
+           {"RTC::::FailOnRequest::", ""},                                     // too many
+           {"RTC:rtm-sim:example:FailOnRequest:C++:1.0.0", "FailOnRequest3"},  // A counts too
            {"RTC:::FailOnRequest::?instance_name=B", "B"},
            {"RTC:rtm-sim::FailOnRequest::?instance_name=C&conf.default.how=throw", "C"},
            {"RTC:someone:example:FailOnRequest:C++:1.0.0", ""},
@@ -167,7 +168,7 @@ TEST_F(Servant, create_component_understands_every_form_of_its_argument) {
            {"RTC:rtm-sim:example:FailOnRequest:C++:9.9", ""},
            {"FailOnRequest?manager_name=me&instance_name=D", "D"},
            {"FailOnRequest?manager_name=nobody&instance_name=E", "E"},
-           {"FailOnRequest?instance_name=A", ""},  // there is one
+           {"FailOnRequest?instance_name=A", "A"},  // the one that is there
        }) {
     RTC::RTObject_var made = make(manager, argument);
     if (CORBA::is_nil(made)) {
