@@ -100,7 +100,8 @@ def disconnect_from_one_that_hangs():
         assert "other" in rig.rtse("cat", "-l", "SourceAll0:short")
         host.send_signal(signal.SIGCONT)
         rig.rtse("dis", "SourceAll0:short", "SinkAll0:short")
-        await_("the news at the one that hung", lambda: "wire" not in rig.rtse("cat", "-l", "SinkAll0:long"))
+        for connector, port in (("wire", "SinkAll0:long"), ("other", "SinkAll0:short")):
+            await_("the news at the one that hung", lambda: connector not in rig.rtse("cat", "-l", port))
 
 
 # Several hosts on one machine: one has the name of the manager, nobody complains, and another takes it when that one has gone.
