@@ -173,7 +173,7 @@ class Window::Screen : public std::enable_shared_from_this<Screen> {
     bool is_lost = false;
   };
 
-  static constexpr std::chrono::seconds longest_answer{4};  // within what the runtime grants a callback
+  static constexpr std::chrono::milliseconds longest_answer{1500};  // within the 2 s that the runtime grants a callback at its end
   static constexpr std::chrono::seconds answer_when_held_up{1};
 
   // The process ends, perhaps with windows open.
