@@ -62,8 +62,7 @@ base::Result<void> Gateway::run() {
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
   signals_ = ::signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
-  if (epoll_ < 0 || signals_ < 0 || alarm_.descriptor() < 0 || errands_.descriptor() < 0)
-    return base::Error{"no file descriptors left"};
+  if (epoll_ < 0 || signals_ < 0 || alarm_.descriptor() < 0 || errands_.descriptor() < 0) return base::Error{"no file descriptors left"};
   add(signals_, tag(Kind::signal));
   add(alarm_.descriptor(), tag(Kind::alarm));
   add(errands_.descriptor(), tag(Kind::errand));
