@@ -37,6 +37,11 @@ std::uint64_t FollowingClock::era() const {
   return clock ? clock->era() : 0;
 }
 
+std::uint64_t FollowingClock::moment() const {
+  const auto clock = clock_.snapshot();
+  return clock ? clock->moment() : 0;
+}
+
 void FollowingClock::follow(std::shared_ptr<const Clock> clock) {
   clock_.lock()->swap(clock);  // the one before ends without the lock
 }

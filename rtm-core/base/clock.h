@@ -18,6 +18,9 @@ class Clock {
   virtual std::chrono::nanoseconds now() const = 0;
   // Differs after time has begun anew: a reset of the simulation. What is from another era is from another run.
   virtual std::uint64_t era() const { return 0; }
+  // How many phases of ticks have begun and ended in the lock step that this clock follows: odd while a phase runs, even between; 0 where
+  // nothing runs in lock step. What is written at an odd moment can be read from the next one on (base/tick.h).
+  virtual std::uint64_t moment() const { return 0; }
 };
 
 class SystemClock final : public Clock {
@@ -52,6 +55,7 @@ class FollowingClock final : public Clock {
  public:
   std::chrono::nanoseconds now() const override;
   std::uint64_t era() const override;
+  std::uint64_t moment() const override;
   void follow(std::shared_ptr<const Clock> clock);
 
  private:

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <vector>
 
+#include "base/descriptors.h"
 #include "base/text.h"
 
 namespace base {
@@ -21,7 +22,7 @@ struct Printed : CLI::Success {
 void check_output(int code, void*) {
   if (code != 0) return;
   const bool is_good = std::cout.flush().good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
-  if (is_good) return;
+  if (is_good || output_is_closed()) return;
   std::fputs("the output cannot be written\n", stderr);
   _exit(1);
 }

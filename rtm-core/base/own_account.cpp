@@ -11,8 +11,13 @@ std::string own_account_door() {
   std::string file = place.dli_fname;
   const auto slash = file.rfind('/');
   if (slash == std::string::npos) return {};
-  file = file.substr(0, slash + 1) + "librtmsim_own_account.so";
-  return access(file.c_str(), R_OK) == 0 ? file : std::string();
+  const auto folder = file.substr(0, slash + 1);
+  // Built, it is beside this library; installed, in the folder of what no one links.
+  for (const char* place : {"", "rtm-sim/"}) {
+    file = folder + place + "librtmsim_own_account.so";
+    if (access(file.c_str(), R_OK) == 0) return file;
+  }
+  return {};
 }
 
 }  // namespace base

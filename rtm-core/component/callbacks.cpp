@@ -80,6 +80,11 @@ ReturnCode_t RTObject_impl::callUser(const char* name, Function function) {
 
 ReturnCode_t RTObject_impl::on_initialize() {
   return callUser("onInitialize", [this] {
+    if (auto faults = rt::ExecuteFaults::parse(property("fault.on_execute", ""))) {
+      impl_->faults = std::move(*faults);
+    } else {
+      RTC_WARN(("%s", faults.error().message.c_str()));
+    }
     m_actionListeners.preaction_[PRE_ON_INITIALIZE].notify(0);
     const ReturnCode_t code = onInitialize();
     const std::string active = property("configuration.active_config", "default");
@@ -176,7 +181,7 @@ ReturnCode_t RTObject_impl::on_execute(ExecutionContextHandle_t exec_handle) {
       writes = data->writes_all;
     }
     if (reads) readAll();
-    const ReturnCode_t code = onExecute(exec_handle);
+    const ReturnCode_t code = impl_->faults && impl_->faults->strike() ? RTC_ERROR : onExecute(exec_handle);
     if (writes) writeAll();
     m_actionListeners.postaction_[POST_ON_EXECUTE].notify(exec_handle, code);
     return code;

@@ -17,6 +17,7 @@
 
 #include "base/clock.h"
 #include "base/guarded.h"
+#include "component/execute_fault.h"
 
 namespace RTC {
 
@@ -58,6 +59,7 @@ struct RTObject_impl::Impl {
   SdoServiceAdmin services;
   // Of the context that the component joined last; for time stamps.
   const std::shared_ptr<base::FollowingClock> clock = std::make_shared<base::FollowingClock>();
+  std::unique_ptr<rt::ExecuteFaults> faults;  // null: none are asked for
   class Visit;
   base::Guarded<std::vector<RunningCallback>, base::Rank::buffer> running;
   std::condition_variable callback_ended;

@@ -33,6 +33,7 @@ struct ExecutionContextBase::Impl {
 
     void joined(rt::MemberId id) override;
     std::string name() const override { return callee_->name(); }
+    std::string place() const override { return callee_->place(); }
     rt::ReturnCode call(rt::Action action) override { return callee_->call(action); }
 
    private:
@@ -55,7 +56,8 @@ struct ExecutionContextBase::Impl {
     std::chrono::nanoseconds activation = default_timeout, deactivation = default_timeout, reset = default_timeout;
     std::chrono::nanoseconds callback_timeout = default_callback_timeout;
     std::optional<std::chrono::steady_clock::time_point> stop_by{};
-    bool is_changing = false;  // somebody starts or stops it
+    bool is_changing = false;                     // somebody starts or stops it
+    std::shared_ptr<corba::MemberWatch> watch{};  // from the first member of another process on
   };
 
   explicit Impl(const std::string& name) : context(name) {}
@@ -64,6 +66,7 @@ struct ExecutionContextBase::Impl {
   std::vector<Member> members() const;
   // False when somebody else has been faster. `is_left_alone`: no callback of it runs any more.
   bool remove(const Member& member, std::chrono::nanoseconds patience, bool* is_left_alone = nullptr);
+  std::shared_ptr<corba::MemberWatch> member_watch();
   // Tells the component that it has left.
   static void detach(const Member& member, Logger& rtclog);
 

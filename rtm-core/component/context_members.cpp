@@ -124,6 +124,14 @@ void ExecutionContextBase::dismissMembers() {
     if (impl_->remove(member, 0ns) && !member.owner) Impl::detach(member, rtclog);
 }
 
+std::shared_ptr<corba::MemberWatch> ExecutionContextBase::Impl::member_watch() {
+  if (const auto watch = shared.lock()->watch) return watch;
+  const auto made = std::make_shared<corba::MemberWatch>();
+  auto data = shared.lock();
+  if (!data->watch) data->watch = made;
+  return data->watch;
+}
+
 void ExecutionContextBase::Impl::detach(const Member& member, Logger& rtclog) {
   try {
     RTC::LightweightRTObject_var(member.reference)->detach_context(member.handle);
@@ -167,6 +175,7 @@ RTC::ReturnCode_t ExecutionContextBase::addComponent(RTC::LightweightRTObject_pt
   if (const auto code = onAddingComponent(comp); code != RTC::RTC_OK) return code;
   RTC::ExecutionContextService_var self = getObjRef();
   Impl::Member member;
+  member.handle = -1;
   std::shared_ptr<rt::Participant> participant;
   try {
     if (const auto local = findLocalComponent(comp)) {
@@ -175,12 +184,17 @@ RTC::ReturnCode_t ExecutionContextBase::addComponent(RTC::LightweightRTObject_pt
       member.handle = local->attach_context(self);
       participant = std::make_shared<LocalParticipant>(local, member.handle);
     } else {
+      const bool has_time = impl_->patience->is_without_end();
+      const RTC::LightweightRTObject_var asked = corba::RemoteParticipant::impatient(
+          comp, has_time ? corba::RemoteParticipant::long_call_timeout : corba::RemoteParticipant::call_timeout);
       member.reference = corba::RemoteParticipant::impatient(comp);
-      member.handle = member.reference->attach_context(self);
-      if (member.handle >= 0) participant = std::make_shared<corba::RemoteParticipant>(member.reference, member.handle, impl_->patience);
+      member.handle = asked->attach_context(self);
+      if (member.handle >= 0)
+        participant = std::make_shared<corba::RemoteParticipant>(comp, member.handle, impl_->patience, impl_->member_watch());
     }
   } catch (const CORBA::Exception& exception) {
-    RTC_ERROR(("a component that is to join does not answer attach_context: %s", corba::to_text(exception).c_str()));
+    RTC_ERROR(("a component that is to join does not answer: %s", corba::to_text(exception).c_str()));
+    if (member.handle >= 0) Impl::detach(member, rtclog);
     return RTC::RTC_ERROR;
   }
   if (member.handle < 0) return RTC::RTC_ERROR;

@@ -23,6 +23,7 @@ namespace corba {
 struct ConnectionPlan {
   std::string id;
   std::string name;
+  std::string port;  // whose connection it is, with the name of its component
   rt::ConnectorSettings settings;
   std::shared_ptr<ConnectorEvents> events;
   std::shared_ptr<Codec> codec;              // null: CDR
@@ -35,6 +36,7 @@ struct ConnectionPlan {
   std::chrono::nanoseconds caller_time() const;
   // Of the component's clock.
   std::uint64_t era() const;
+  std::uint64_t moment() const;
 };
 
 // What waits in a connection to be read or sent. Any thread.

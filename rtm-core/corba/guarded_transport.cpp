@@ -111,6 +111,8 @@ Visitor recognise(omni::giopConnection& connection) {
 }
 
 bool may_come_in(const Visitor& visitor, OpenTo open_to) {
+  // The handshake comes next and refuses whoever has no certificate.
+  if (visitor.address.starts_with("giop:ssl:")) return true;
   if (visitor.is_own || open_to == OpenTo::network) return true;
   return open_to == OpenTo::host && visitor.account;
 }
@@ -340,7 +342,10 @@ void set_doors(const DoorSettings& settings) {
   state->most = std::max<std::size_t>(most, 1);
 }
 
-bool doors_are_open() { return Doors::instance().state.lock()->settings.open_to != OpenTo::account; }
+bool doors_are_open() {
+  auto state = Doors::instance().state.lock();
+  return state->settings.open_to != OpenTo::account || state->settings.has_tls;
+}
 
 std::string guarded(const std::string& endpoint) {
   for (const std::string_view kind : {"giop:tcp:", "giop:unix:", "giop:ssl:"}) {

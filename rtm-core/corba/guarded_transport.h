@@ -18,13 +18,14 @@ enum class OpenTo {
 
 struct DoorSettings {
   OpenTo open_to = OpenTo::account;
+  bool has_tls = false;  // there are end points of TLS: who comes in there is known by a certificate (corba/tls.h), not by an account
   GiopLimits limits{};
 };
 
 // Takes effect for connections that come from now on. Also raises the number of files that this process may open to what it is allowed.
 void set_doors(const DoorSettings& settings);
 
-// Others than the own account may call.
+// Others than the own account may call, by an open door or by TLS.
 bool doors_are_open();
 
 // The end point with a guard before it; others than giop:tcp:, giop:unix: and giop:ssl: as they are.

@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/chance.h"
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "base/tick.h"
 #include "corba/cdr.h"
 #include "corba/connector_keys.h"
 #include "corba/local_connections.h"
 #include "corba/out_engine.h"
+#include "corba/payload.h"
 
 namespace corba {
 namespace {
@@ -34,6 +37,24 @@ bool is_same_sample(const rt::Sample& a, const rt::Sample& b) {
   return a.block && b.block && std::ranges::equal(a.block->octets(), b.block->octets());
 }
 
+std::uint64_t moment_of_reader() {
+  const base::Tick* tick = base::current_tick();
+  return tick ? tick->moment() : 0;
+}
+
+// What was read in a tick is part of what the run did.
+template <class Read>
+void tell_tick(const Read& read, rt::ByteOrder order, const InConnection& connection) {
+  base::Tick* tick = base::current_tick();
+  if (!tick || !tick->keeps_data()) return;
+  try {
+    Payload payload(connection.ops(), read);
+    tick->passed({false, connection.port(), connection.ops().type_id, payload.pieces(order).parts});
+  } catch (const CORBA::Exception&) {
+    // It cannot be encoded, so nobody has sent it to another process either.
+  }
+}
+
 }  // namespace
 
 std::chrono::nanoseconds ConnectionPlan::port_time() const { return (clock ? *clock : base::current_clock()).now(); }
@@ -43,6 +64,14 @@ std::chrono::nanoseconds ConnectionPlan::caller_time() const {
 }
 
 std::uint64_t ConnectionPlan::era() const { return clock ? clock->era() : 0; }
+
+std::uint64_t ConnectionPlan::moment() const { return clock ? clock->moment() : 0; }
+
+std::string port_text(const ConnectionPlan& plan) {
+  std::string text = "port " + plan.port;
+  if (const auto dot = text.rfind('.'); dot != std::string::npos) text[dot] = ':';
+  return text;
+}
 
 TypeOps with_codec(const TypeOps& ops, const std::shared_ptr<Codec>& codec) {
   TypeOps own = ops;
@@ -54,7 +83,7 @@ InConnection::InConnection(const TypeOps& ops, ConnectionPlan plan, std::shared_
     : plan_(std::move(plan)),
       ops_(with_codec(ops, plan_.codec)),
       mailbox_(std::move(mailbox)),
-      channel_(mailbox_->open(plan_.settings.buffer)) {
+      channel_(mailbox_->open(plan_.settings.buffer, plan_.name + " " + plan_.id)) {
   if (plan_.settings.is_rendezvous) mailbox_->set_rendezvous(channel_, true);
 }
 
@@ -62,7 +91,9 @@ InConnection::~InConnection() { mailbox_->close(channel_); }
 
 void InConnection::finish() { mailbox_->finish(channel_); }
 
-rt::PortStatus InConnection::receive(rt::Sample sample) {
+std::size_t InConnection::unread() const { return mailbox_->unread(channel_, moment_of_reader()); }
+
+rt::PortStatus InConnection::keep(rt::Sample sample, std::uint64_t moment) {
   if (sample.block && !ops_.codec && !ops_.shape.fits(sample.block->octets(), sample.order)) {
     base::log(base::Level::warn, "data port", "connection {}: {} octets that are no {} are refused", base::in_quotes(plan_.name),
               sample.block->size(), ops_.type_id);
@@ -93,6 +124,9 @@ rt::PortStatus InConnection::receive(rt::Sample sample) {
                           [&](DataEvent event) { return events.is_observed(event); });
   const rt::Sample about = is_observed ? sample : rt::Sample{};
   sample.era = era;
+  sample.moment = moment;
+  if (moment != 0 && !base::is_in_phase(moment) && !base::current_tick())
+    base::tell_of_chance(port_text(plan_), "got a sample between two ticks", plan_.port_time());
   const rt::WriteResult result = mailbox_->write(channel_, std::move(sample));
   if (!is_observed) return result.status == rt::PortStatus::precondition_not_met ? rt::PortStatus::error : result.status;
   switch (result.status) {
@@ -133,7 +167,7 @@ rt::PortStatus InConnection::fetch(bool only_new) {
   }
   if (only_new && !plan_.peer_says_when_empty && is_same_sample(sample, *last_fetched_.lock())) return rt::PortStatus::buffer_empty;
   *last_fetched_.lock() = sample;
-  return receive(std::move(sample));
+  return keep(std::move(sample), 0);  // the peer has kept the rule of delivery
 }
 
 InEngine::InEngine(const TypeOps& ops)
@@ -264,12 +298,24 @@ void InEngine::drop_past(const Lists& lists) {
   if (era > 0) mailbox_->drop_other_eras(era);
 }
 
+namespace {
+
+// By name: in which order connections were made may be chance, and those that are asked first give what is read first.
+InEngine::Connections in_order_of_asking(const InEngine::Connections& open) {
+  InEngine::Connections ordered = open;
+  if (std::ranges::count_if(open, &InConnection::is_pull, [](const auto& connection) -> const InConnection& { return *connection; }) > 1)
+    std::ranges::stable_sort(ordered, {}, [](const auto& connection) { return std::pair(connection->name(), connection->id()); });
+  return ordered;
+}
+
+}  // namespace
+
 bool InEngine::has_new(const std::string& name, std::vector<std::string>& lost) {
   const Lists lists = lists_.snapshot();
   drop_past(lists);
   bool is_new = std::ranges::any_of(
       *lists.closed, [&](const auto& connection) { return (name.empty() || connection->name() == name) && connection->unread() > 0; });
-  for (const auto& connection : *lists.open) {
+  for (const auto& connection : in_order_of_asking(*lists.open)) {
     if (!name.empty() && connection->name() != name) continue;
     if (connection->unread() == 0) {
       if (!connection->fetcher_) continue;
@@ -300,7 +346,7 @@ rt::PortStatus InEngine::read(const std::string& name, void* value, std::vector<
   std::size_t selected = 0;
   std::size_t pulled = 0;
   rt::PortStatus pull_status = rt::PortStatus::ok;
-  for (const auto& connection : *lists.open) {
+  for (const auto& connection : in_order_of_asking(*lists.open)) {
     if (!is_meant(connection)) continue;
     ++selected;
     if (!name.empty()) channel = connection->channel();
@@ -321,12 +367,12 @@ rt::PortStatus InEngine::read(const std::string& name, void* value, std::vector<
     return rt::PortStatus::precondition_not_met;
   }
   // Where every peer has been asked and none has anything, there is nothing: what to do then was the peer's policy.
-  if (!is_left && pulled == selected && pull_status != rt::PortStatus::ok && mailbox_->unread(channel) == 0) {
+  if (!is_left && pulled == selected && pull_status != rt::PortStatus::ok && mailbox_->unread(channel, moment_of_reader()) == 0) {
     note(*lists.open, nullptr, pull_status);
     return pull_status;
   }
 
-  const rt::ReadResult result = mailbox_->read(channel);
+  const rt::ReadResult result = mailbox_->read(channel, moment_of_reader());
   std::shared_ptr<InConnection> connection = find(lists, result.channel);
   if (!connection && result.status == rt::PortStatus::ok) {  // it came, and something came over it, while we were looking
     lists = lists_.snapshot();
@@ -360,6 +406,10 @@ rt::PortStatus InEngine::deliver(const rt::Sample& received, InConnection& conne
       sample = &changed;
     }
   }
+  // A sender of another make may have stamped it with the clock of its machine: what is stamped here is told with the stamp of here.
+  const auto policy = connection.settings().stamp;
+  const bool is_stamped = ops.stamp && (policy == rt::StampPolicy::on_received || policy == rt::StampPolicy::on_read);
+  if (!is_stamped) tell_tick(*sample, sample->block ? sample->order : rt::ByteOrder::little, connection);
   if (sample->value) {
     ops.assign(value, sample->value.get());
   } else if (!decode_safely(ops, value, sample->block->octets(), sample->order)) {
@@ -368,10 +418,10 @@ rt::PortStatus InEngine::deliver(const rt::Sample& received, InConnection& conne
     mailbox_->forget_last(connection.channel());
     return rt::PortStatus::error;
   }
-  if (ops.stamp && connection.settings().stamp == rt::StampPolicy::on_received && sample->received.count()) {
-    stamp(ops, value, sample->received);
+  if (is_stamped) {
+    stamp(ops, value, policy == rt::StampPolicy::on_received ? sample->received : connection.plan_.caller_time());
+    tell_tick(static_cast<const void*>(value), rt::ByteOrder::little, connection);
   }
-  if (ops.stamp && connection.settings().stamp == rt::StampPolicy::on_read) stamp(ops, value, connection.plan_.caller_time());
   return rt::PortStatus::ok;
 }
 

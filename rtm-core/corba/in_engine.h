@@ -15,6 +15,9 @@
 
 namespace corba {
 
+// "port LaserObstacleAvoid0:velocity"
+std::string port_text(const ConnectionPlan& plan);
+
 TypeOps with_codec(const TypeOps& ops, const std::shared_ptr<Codec>& codec);
 
 class InConnection final : public Receiver, public Waiting {
@@ -24,6 +27,8 @@ class InConnection final : public Receiver, public Waiting {
 
   const std::string& id() const { return plan_.id; }
   const std::string& name() const { return plan_.name; }
+  const std::string& port() const { return plan_.port; }
+  bool is_pull() const { return fetcher_ != nullptr; }
   const TypeOps& ops() const { return ops_; }
   rt::Channel channel() const { return channel_; }
   ConnectorEvents& events() const { return *plan_.events; }
@@ -31,18 +36,21 @@ class InConnection final : public Receiver, public Waiting {
   const rt::ConnectorSettings& settings() const { return plan_.settings; }
   std::uint64_t era() const { return plan_.era(); }
 
-  rt::PortStatus receive(rt::Sample sample) override;
+  rt::PortStatus receive(rt::Sample sample) override { return keep(std::move(sample), plan_.moment()); }
   rt::BlockPool& pool() override { return *pool_; }
 
   // Pull connections: asks the peer and keeps what comes for the reader. `only_new`: not if it is what came last time.
   rt::PortStatus fetch(bool only_new);
   // Nothing is received any more; what was not read can still be read.
   void finish();
-  std::size_t unread() const override { return mailbox_->unread(channel_); }
+  // As the calling thread may see it (base/tick.h).
+  std::size_t unread() const override;
   void drop_unread() override { mailbox_->drop_unread(channel_); }
 
  private:
   friend class InEngine;
+  // 0: can be read at once.
+  rt::PortStatus keep(rt::Sample sample, std::uint64_t moment);
 
   const ConnectionPlan plan_;
   const TypeOps ops_;  // with the connection's codec

@@ -57,6 +57,7 @@ std::string to_text(const CosNaming::Name& name) {
 std::string naming_url(std::string_view address) {
   const std::string text(base::trim(address));
   if (text.starts_with("corbaloc:") || text.starts_with("corbaname:") || text.starts_with("IOR:")) return text;
+  if (text.starts_with("iiop:") || text.starts_with("ssliop:")) return "corbaloc:" + text + "/NameService";
   return "corbaloc::" + (text.empty() ? "localhost" : text) + "/NameService";
 }
 

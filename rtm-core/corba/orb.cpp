@@ -16,6 +16,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "corba/call_timeout.h"
+#include "corba/call_watch.h"
 #include "corba/farewell.h"
 #include "corba/peer_watch.h"
 
@@ -200,6 +201,14 @@ base::Result<std::vector<std::string>> to_arguments(const OrbSettings& settings,
     result.insert(result.end(), {"-ORBendPoint", guarded(*converted)});
   }
   if (!unix_folder.empty()) result.insert(result.end(), {"-ORBendPoint", guarded("giop:unix:" + unix_folder + "/socket")});
+  auto tls = prepare_tls(settings.tls);
+  if (!tls) return tls.error();
+  for (const auto& [name, value] : *tls) result.insert(result.end(), {"-ORB" + name, value});
+  for (const auto& endpoint : settings.tls.endpoints) {
+    auto converted = to_orb_endpoint(endpoint, true);
+    if (!converted) return converted.error();
+    result.insert(result.end(), {"-ORBendPoint", guarded("giop:ssl:" + converted->substr(std::string_view("giop:tcp:").size()))});
+  }
   for (const auto& address : settings.further_addresses) {
     const auto port = address.find(':') == std::string::npos ? ":2809" : "";
     result.insert(result.end(), {"-ORBendPointNoListen", "giop:tcp:" + address + port});
@@ -227,7 +236,7 @@ std::chrono::milliseconds call_timeout_of(const std::vector<std::string>& argume
 }
 
 DoorSettings doors_of(const OrbSettings& settings, const std::vector<std::string>& arguments) {
-  DoorSettings doors{who_may_call(settings), {}};
+  DoorSettings doors{who_may_call(settings), !settings.tls.endpoints.empty(), {}};
   doors.limits.sample = static_cast<std::size_t>(std::max<std::int64_t>(last_number(arguments, "-ORBgiopMaxMsgSize"), 8192));
   // Who says how long a message may be by an argument of the ORB means every message.
   const bool is_said = has_argument(settings.arguments, "-ORBgiopMaxMsgSize");
@@ -282,6 +291,7 @@ base::Result<std::unique_ptr<Orb>> Orb::start(const OrbSettings& settings) {
   try {
     result->orb_ = CORBA::ORB_init(argc, argv.data(), "omniORB4");
     remember_callers();
+    watch_calls();
     CORBA::Object_var poa = result->orb_->resolve_initial_references("RootPOA");
     result->root_poa_ = PortableServer::POA::_narrow(poa);
     result->poa_manager_ = result->root_poa_->the_POAManager();
@@ -298,6 +308,9 @@ base::Result<std::unique_ptr<Orb>> Orb::start(const OrbSettings& settings) {
       base::log(base::Level::info, "orb", "open to {}: {}",
                 doors.open_to == OpenTo::host ? "every account of this machine" : "everybody who reaches it",
                 base::join(result->addresses(), ", "));
+    }
+    if (doors.has_tls) {
+      base::log(base::Level::info, "orb", "open over TLS to whoever has a certificate of {}", base::in_quotes(settings.tls.authority));
     }
     begin_farewells();
     if (settings.peer_check_interval.count() > 0) result->watch_ = std::make_unique<PeerWatch>(settings.peer_check_interval);

@@ -14,6 +14,7 @@
 
 #include "base/result.h"
 #include "corba/guarded_transport.h"
+#include "corba/tls.h"
 
 namespace corba {
 
@@ -34,6 +35,7 @@ struct OrbSettings {
   std::size_t max_request_size = std::size_t{2} << 20;    // [byte], of all other calls that come in
   // Who may call. Nothing: everybody when an end point is not on the loopback interface, else the own account only.
   std::optional<OpenTo> open_to{};
+  TlsSettings tls{};                     // further end points for other hosts, and how to call theirs
   std::vector<std::string> arguments{};  // further -ORB... arguments; they win over the settings above
 };
 

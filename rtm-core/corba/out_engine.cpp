@@ -4,10 +4,14 @@
 #include <optional>
 #include <utility>
 
+#include "base/chance.h"
 #include "base/clock.h"
 #include "base/log.h"
+#include "base/tick.h"
 #include "corba/connector_keys.h"
 #include "corba/local_connections.h"
+#include "corba/nv_list.h"
+#include "core/fault.h"
 
 namespace corba {
 namespace {
@@ -29,6 +33,33 @@ class DirectSender final : public Sender {
 
  private:
   std::shared_ptr<InConnection> receiver_;
+};
+
+// A connection that loses, delays, doubles or mixes up what it is to send, because its profile asks for it.
+class FaultySender final : public Sender {
+ public:
+  FaultySender(const ConnectionPlan& plan, std::unique_ptr<Sender> sender, std::vector<rt::Fault> faults)
+      : plan_(plan), sender_(std::move(sender)), link_(std::move(faults)) {}
+
+  // What is dropped counts as sent.
+  rt::PortStatus send(Payload& payload) override {
+    const bool is_direct = plan_.settings.interface == rt::Interface::direct;
+    rt::Sample sample = is_direct ? payload.copied() : payload.encoded(plan_.settings.order, *pool_);
+    sample.era = plan_.era();
+    auto status = rt::PortStatus::ok;
+    for (rt::Sample& passed : link_.pass(std::move(sample), plan_.caller_time())) {
+      if (passed.era != plan_.era()) continue;  // from before a reset
+      Payload own(payload.ops(), std::move(passed));
+      status = sender_->send(own);
+    }
+    return status;
+  }
+
+ private:
+  const ConnectionPlan plan_;
+  const std::unique_ptr<Sender> sender_;
+  const std::shared_ptr<rt::BlockPool> pool_ = rt::BlockPool::make();
+  rt::FaultyLink link_;
 };
 
 // What is written when the payload itself has to be changed on the way.
@@ -69,6 +100,19 @@ void tell(ConnectorEvents& events, DataEvent event, Changed& payload, rt::ByteOr
   }
 }
 
+// What was written in a tick is part of what the run did.
+void tell_tick(Payload& payload, const OutConnection& connection) {
+  base::Tick* tick = base::current_tick();
+  const std::string& port = connection.port();
+  if (!tick) return connection.tell_of_chance();
+  if (!tick->keeps_data()) return;
+  try {
+    tick->passed({true, port, payload.ops().type_id, payload.pieces(rt::ByteOrder::little).parts});
+  } catch (const CORBA::Exception&) {
+    // It cannot be encoded; who sends it says so.
+  }
+}
+
 }  // namespace
 
 // What a publisher's thread may still use after the connection has been closed.
@@ -87,6 +131,7 @@ struct OutConnection::Line {
   rt::Sample keep(Payload& payload) {
     rt::Sample sample = is_direct() ? payload.copied() : payload.encoded(order(), *pool);
     sample.era = plan.era();
+    sample.moment = plan.moment();
     return sample;
   }
 
@@ -143,6 +188,11 @@ OutConnection::OutConnection(const TypeOps& ops, const ConnectionPlan& plan)
 OutConnection::~OutConnection() { close(); }
 
 const std::string& OutConnection::id() const { return line_->plan.id; }
+const std::string& OutConnection::port() const { return line_->plan.port; }
+void OutConnection::tell_of_chance() const {
+  if (line_->plan.moment() != 0)
+    base::tell_of_chance(port_text(line_->plan), "was written by a thread that no tick runs", line_->plan.port_time());
+}
 const TypeOps& OutConnection::ops() const { return line_->ops; }
 ConnectorEvents& OutConnection::events() const { return *line_->plan.events; }
 const std::shared_ptr<ConnectorEvents>& OutConnection::shared_events() const { return line_->plan.events; }
@@ -179,7 +229,7 @@ rt::PortStatus OutConnection::write_buffered(Payload& payload) {
   rt::WriteResult result;
   try {
     rt::Sample sample = line_->keep(changed.now());
-    result = publisher_ ? publisher_->write(std::move(sample)) : mailbox_.write(channel_, std::move(sample));
+    result = publisher_ ? publisher_->write(std::move(sample), base::tick_in_lock_step()) : mailbox_.write(channel_, std::move(sample));
   } catch (const CORBA::Exception& e) {
     base::log(base::Level::error, "data port", "a {} cannot be encoded: {}", line_->ops.type_id, e._name());
     return rt::PortStatus::error;
@@ -193,7 +243,7 @@ rt::PortStatus OutConnection::write_buffered(Payload& payload) {
 rt::PortStatus OutConnection::take(rt::Sample& sample) {
   ConnectorEvents& events = *line_->plan.events;
   if (const std::uint64_t era = line_->plan.era(); era > 0) mailbox_.drop_other_eras(era);
-  rt::ReadResult result = mailbox_.read(channel_);
+  rt::ReadResult result = mailbox_.read(channel_, line_->plan.moment());
   switch (result.status) {
     case rt::PortStatus::ok:
       break;
@@ -303,6 +353,11 @@ rt::Refusal OutEngine::consume(ConnectionPlan plan, const RTC::ConnectorProfile&
                                                                 : make_cdr_sender(settings.interface, object, line);
     if (!sender) return {rt::ReturnCode::error, "the InPort gives no object of its interface_type to send to"};
   }
+  if (const auto text = find_text(profile.properties, "dataport.fault"); text && !text->empty()) {
+    auto faults = rt::parse_faults(*text);
+    if (!faults) return {rt::ReturnCode::bad_parameter, "dataport.fault: " + faults.error().message};
+    sender = std::make_unique<FaultySender>(plan, std::move(sender), std::move(*faults));
+  }
   auto connection = std::make_shared<OutConnection>(ops_, plan, std::move(sender), loss_);
   add(connection);
   return {};
@@ -334,6 +389,7 @@ bool OutEngine::write(const void* value) {
     return false;
   }
   Payload payload(ops_, value);
+  tell_tick(payload, *all->front());
   bool is_ok = true;
   statuses_.lock()->assign(all->size(), rt::PortStatus::ok);
   const auto write_to = [&](std::size_t i) {

@@ -24,6 +24,9 @@ class OutConnection final : public Source, public Waiting {
   ~OutConnection() override;
 
   const std::string& id() const;
+  const std::string& port() const;
+  // Of a write outside of all ticks, when the component is in lock step.
+  void tell_of_chance() const;
   const TypeOps& ops() const;
   ConnectorEvents& events() const;
   const std::shared_ptr<ConnectorEvents>& shared_events() const;

@@ -4,8 +4,11 @@
 #include <utility>
 
 #include "base/log.h"
+#include "base/text.h"
 #include "corba/action_call.h"
+#include "corba/call_timeout.h"
 #include "corba/orb.h"
+#include "corba/peer_watch.h"
 #include "corba/return_code.h"
 #include "rtm/idl/SDOPackageStub.h"
 
@@ -13,11 +16,11 @@ namespace corba {
 
 namespace {
 
-std::string name_of(RTC::LightweightRTObject_ptr component) {
+std::string name_of(RTC::LightweightRTObject_ptr component, std::chrono::milliseconds timeout) {
   try {
     SDOPackage::SDO_var sdo = SDOPackage::SDO::_narrow(component);
     if (!CORBA::is_nil(sdo)) {
-      set_call_timeout(sdo, RemoteParticipant::call_timeout);
+      set_call_timeout(sdo, timeout);
       CORBA::String_var id = sdo->get_sdo_id();
       return id.in();
     }
@@ -39,25 +42,26 @@ CORBA::Object_ptr impatient_copy(CORBA::Object_ptr object, std::chrono::millisec
   return own._retn();
 }
 
-RTC::LightweightRTObject_ptr RemoteParticipant::impatient(RTC::LightweightRTObject_ptr component) {
-  CORBA::Object_var own = impatient_copy(component, call_timeout);
+RTC::LightweightRTObject_ptr RemoteParticipant::impatient(RTC::LightweightRTObject_ptr component, std::chrono::milliseconds timeout) {
+  CORBA::Object_var own = impatient_copy(component, timeout);
   return RTC::LightweightRTObject::_unchecked_narrow(own);
 }
 
 void MemberPatience::set(std::chrono::nanoseconds limit) {
   const auto count = std::chrono::duration_cast<std::chrono::milliseconds>(limit).count();
-  limit_ms_.store(std::clamp<std::int64_t>(count, 1, 3'600'000), std::memory_order_relaxed);
+  constexpr auto without_end = std::chrono::milliseconds(longest).count();
+  limit_ms_.store(limit > std::chrono::hours(24) ? without_end : std::max<std::int64_t>(count, 1), std::memory_order_relaxed);
 }
 
 RemoteParticipant::RemoteParticipant(RTC::LightweightRTObject_ptr component, RTC::ExecutionContextHandle_t handle,
-                                     std::shared_ptr<const MemberPatience> patience)
-    : component_(impatient(component)), handle_(handle), name_(name_of(component_)), patience_(std::move(patience)) {
-  try {
-    data_flow_ = RTC::DataFlowComponentAction::_narrow(component_);
-  } catch (const CORBA::Exception&) {
-    state_.lock()->is_lost = true;
-  }
-}
+                                     std::shared_ptr<const MemberPatience> patience, std::shared_ptr<MemberWatch> watch)
+    : component_(impatient(component, patience->is_without_end() ? long_call_timeout : call_timeout)),
+      data_flow_(RTC::DataFlowComponentAction::_narrow(component_)),
+      handle_(handle),
+      name_(name_of(component_, patience->is_without_end() ? long_call_timeout : call_timeout)),
+      place_(process_address(component_)),
+      patience_(std::move(patience)),
+      watch_(std::move(watch)) {}
 
 bool RemoteParticipant::prepare(rt::Action action) {
   const auto limit = patience_->limit();
@@ -76,15 +80,33 @@ bool RemoteParticipant::prepare(rt::Action action) {
 
 rt::ReturnCode RemoteParticipant::call(rt::Action action) {
   if (!prepare(action)) return rt::ReturnCode::error;
+  const MemberWatch::Call watched(*watch_, name_, action);
   try {
     const auto code = from_wire(call_action(action, *component_, CORBA::is_nil(data_flow_) ? nullptr : data_flow_.in(), handle_));
     state_.lock()->is_lost = false;
     return code;
   } catch (const CORBA::Exception& exception) {
-    state_.lock()->is_lost = true;
-    base::log(base::Level::error, name_, "component of another process does not answer {}: {}", to_text(action), to_text(exception));
+    tell(action, exception);
   }
   return rt::ReturnCode::error;
+}
+
+void RemoteParticipant::tell(rt::Action action, const CORBA::Exception& exception) {
+  const bool is_late = is_time_out(exception);
+  const bool is_gone =
+      !is_late && (dynamic_cast<const CORBA::COMM_FAILURE*>(&exception) || dynamic_cast<const CORBA::TRANSIENT*>(&exception) ||
+                   dynamic_cast<const CORBA::OBJECT_NOT_EXIST*>(&exception));
+  const auto callback = rt::callback_of(action);
+  if (is_late || is_gone) state_.lock()->is_lost = true;
+  if (is_late) {
+    base::log(base::Level::error, name_, "component of another process has not answered {} within {} s; it is left alone until it is reset",
+              callback, base::format_number(static_cast<double>(patience_->limit().count()) / 1000));
+  } else if (is_gone) {
+    base::log(base::Level::error, name_, "component of another process is gone in {} ({}); it is left alone until it is reset", callback,
+              to_text(exception));
+  } else {
+    base::log(base::Level::error, name_, "component of another process throws in {}: {}", callback, to_text(exception));
+  }
 }
 
 }  // namespace corba

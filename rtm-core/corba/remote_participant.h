@@ -1,5 +1,14 @@
-// A component of another process inside one of our execution contexts. Any thread. When the component does not answer it counts as an error
-// and is left alone until it is reset, so that nobody else waits for it again and again.
+// A component of another process, of any maker, inside one of our execution contexts. Any thread.
+//
+// Rights: it is called by the operations of RTC::ComponentAction and RTC::DataFlowComponentAction, with the handle that its attach_context
+// has given; nothing else of it is touched. Its own contexts stay as they are.
+//
+// States, beside those of every member (core/lifecycle.h): it answers, or it is lost. Failures:
+//   answers with another code than RTC_OK, or throws   an error, as of a component of this process
+//   takes long                            named in the log after a second (corba/member_watch.h), and waited for
+//   takes longer than the patience        an error; it is lost
+//   its process has ended, or the object has gone   noticed at the call, or at once during one; named; an error; it is lost
+// Who is lost is called no more, so that nobody waits for it again and again, until it is reset.
 #pragma once
 
 #include <atomic>
@@ -10,6 +19,7 @@
 
 #include "base/guarded.h"
 #include "base/result.h"
+#include "corba/member_watch.h"
 #include "core/execution_context.h"
 #include "rtm/idl/RTCStub.h"
 
@@ -22,8 +32,10 @@ CORBA::Object_ptr impatient_copy(CORBA::Object_ptr object, std::chrono::millisec
 class MemberPatience {
  public:
   static constexpr std::chrono::milliseconds usual{1000};
-  // At least 1 ms.
+  static constexpr std::chrono::hours longest{24 * 20};  // what omniORB's clock can hold, in milliseconds
+  // At least 1 ms; more than a day is without end.
   void set(std::chrono::nanoseconds limit);
+  bool is_without_end() const { return limit() == longest; }
   std::chrono::milliseconds limit() const { return std::chrono::milliseconds(limit_ms_.load(std::memory_order_relaxed)); }
 
  private:
@@ -34,15 +46,18 @@ class RemoteParticipant final : public rt::Participant {
  public:
   // What else is asked than callbacks.
   static constexpr std::chrono::milliseconds call_timeout = MemberPatience::usual;
+  // The same where the other answer would be part of a repeatable run: when members are waited for without end.
+  static constexpr std::chrono::milliseconds long_call_timeout{10'000};
 
-  // An impatient_copy with call_timeout.
-  static RTC::LightweightRTObject_ptr impatient(RTC::LightweightRTObject_ptr component);
+  // An impatient_copy.
+  static RTC::LightweightRTObject_ptr impatient(RTC::LightweightRTObject_ptr component, std::chrono::milliseconds timeout = call_timeout);
 
-  // Asks whether it has on_execute and the like.
+  // Asks whether it has on_execute and the like; throws CORBA::SystemException when it does not answer that.
   RemoteParticipant(RTC::LightweightRTObject_ptr component, RTC::ExecutionContextHandle_t handle,
-                    std::shared_ptr<const MemberPatience> patience);
+                    std::shared_ptr<const MemberPatience> patience, std::shared_ptr<MemberWatch> watch);
 
   std::string name() const override { return name_; }
+  std::string place() const override { return place_; }
   rt::ReturnCode call(rt::Action action) override;
 
  private:
@@ -52,12 +67,15 @@ class RemoteParticipant final : public rt::Participant {
   };
   // False when it is left alone.
   bool prepare(rt::Action action);
+  void tell(rt::Action action, const CORBA::Exception& exception);
 
   RTC::LightweightRTObject_var component_;      // nobody else's reference
   RTC::DataFlowComponentAction_var data_flow_;  // nil when it has no such operations
   const RTC::ExecutionContextHandle_t handle_;
   const std::string name_;
+  const std::string place_;  // its process
   const std::shared_ptr<const MemberPatience> patience_;
+  const std::shared_ptr<MemberWatch> watch_;
   base::Guarded<State, base::Rank::connector> state_;
 };
 

@@ -5,12 +5,41 @@
 #include <exception>
 #include <iterator>
 
+#include "base/clock.h"
 #include "base/log.h"
 #include "base/waiting.h"
+#include "core/workers.h"
 
 namespace rt {
 
 using namespace std::chrono_literals;
+
+// The threads on which members of other places are called.
+class Together {
+ public:
+  explicit Together(std::size_t most) {
+    crew_.start(most - 1, [this](std::size_t number, int) { work(number); });
+  }
+  // Calls work(0) here and work(1) ... work(count - 1) on the others, and returns when all have.
+  void run(std::size_t count, const std::function<void(std::size_t)>& work) {
+    count_ = count;
+    work_ = &work;
+    clock_ = &base::current_clock();
+    crew_.run(0, [&] { work(0); });
+  }
+
+ private:
+  void work(std::size_t number) {
+    if (number >= count_) return;
+    const base::ScopedClock clock(*clock_);
+    (*work_)(number);
+  }
+  // Written while the crew rests, which hands them over with its job.
+  std::size_t count_ = 0;
+  const std::function<void(std::size_t)>* work_ = nullptr;
+  const base::Clock* clock_ = nullptr;
+  Crew crew_;
+};
 
 ExecutionContext::ExecutionContext(std::string name, double rate) : name_(std::move(name)) { shared_.lock()->rate = rate; }
 
@@ -260,17 +289,60 @@ std::optional<ReturnCode> ExecutionContext::call_in_phase(Member& member, Action
 }
 
 ExecutionContext::Members ExecutionContext::begin_cycle(std::size_t number) {
+  Group members;
+  std::uint64_t version = 0;
+  {
+    auto data = shared_.lock();
+    Lane& lane = data->lanes[number];
+    lane.cycle_start = std::chrono::steady_clock::now();
+    lane.waited_before = base::time_waited();
+    if (lane.version == data->version) return lane.members;
+    version = data->version;
+    std::ranges::copy_if(data->members, std::back_inserter(members), [&](const auto& member) { return member->lane == number; });
+  }
+  Members made = plan(members);
   Members old;  // what has left is destroyed without the lock
   auto data = shared_.lock();
   Lane& lane = data->lanes[number];
-  lane.cycle_start = std::chrono::steady_clock::now();
-  lane.waited_before = base::time_waited();
-  if (lane.version == data->version) return lane.members;
-  auto members = std::make_shared<std::vector<std::shared_ptr<Member>>>();
-  std::ranges::copy_if(data->members, std::back_inserter(*members), [&](const auto& member) { return member->lane == number; });
-  old = std::exchange(lane.members, std::move(members));
-  lane.version = data->version;
-  return lane.members;
+  old = std::exchange(lane.members, made);
+  lane.version = version;
+  return made;
+}
+
+ExecutionContext::Members ExecutionContext::plan(const Group& members) {
+  auto made = std::make_shared<Plan>();
+  std::size_t most = 1;
+  std::vector<std::string> places;  // of the groups of the last stage
+  for (const auto& member : members) {
+    const std::string place = member->participant->place();
+    const bool goes_on = !places.empty() && places.front().empty() == place.empty();
+    if (!goes_on) {
+      made->stages.emplace_back();
+      places.clear();
+    }
+    Stage& stage = made->stages.back();
+    const auto at = std::ranges::find(places, place) - places.begin();
+    if (at == std::ssize(places)) {
+      places.push_back(place);
+      stage.emplace_back();
+    }
+    stage[static_cast<std::size_t>(at)].push_back(member);
+    most = std::max(most, stage.size());
+  }
+  if (most > 1) made->together = std::make_shared<Together>(most);
+  return made;
+}
+
+void ExecutionContext::for_all(const Plan& plan, const std::function<void(Member&)>& call) {
+  const auto call_group = [&](const Group& group) {
+    for (const auto& member : group) call(*member);
+  };
+  for (const Stage& stage : plan.stages) {
+    if (stage.size() == 1)
+      call_group(stage.front());
+    else
+      plan.together->run(stage.size(), [&](std::size_t number) { call_group(stage[number]); });
+  }
 }
 
 ExecutionContext::Members ExecutionContext::members_of(std::size_t lane) const { return shared_.lock()->lanes[lane].members; }
@@ -283,7 +355,7 @@ std::shared_ptr<ExecutionContext::Member> ExecutionContext::hold(MemberId id) co
 
 void ExecutionContext::transit(std::size_t lane) {
   const Members members = begin_cycle(lane);
-  for (const auto& member : *members) transit(*member);
+  for_all(*members, [this](Member& member) { transit(member); });
 }
 
 void ExecutionContext::transit_one(MemberId id) {
@@ -338,7 +410,7 @@ constexpr auto select_update = [](const StateActions& actions) { return actions.
 
 void ExecutionContext::execute(std::size_t lane) {
   const Members members = members_of(lane);
-  for (const auto& member : *members) run_phase(*member, select_execute);
+  for_all(*members, [this](Member& member) { run_phase(member, select_execute); });
 }
 
 void ExecutionContext::execute_one(MemberId id) {
@@ -351,7 +423,7 @@ void ExecutionContext::update_one(MemberId id) {
 
 void ExecutionContext::update(std::size_t lane) {
   const Members members = members_of(lane);
-  for (const auto& member : *members) run_phase(*member, select_update);
+  for_all(*members, [this](Member& member) { run_phase(member, select_update); });
   if (lane != 0) return;
   const auto now = std::chrono::steady_clock::now();
   std::chrono::nanoseconds took{0};

@@ -1,5 +1,6 @@
 // An execution context without a thread: who takes part, in which state, what is asked for, and the three phases of a cycle.
-// step() and the phases belong to one thread at a time, the stepping thread; with lanes, each lane has one. A second thread (contexts of
+// step() and the phases belong to one thread at a time, the stepping thread; with lanes, each lane has one. Members of other processes are
+// called on further threads of its own (Participant::place); a phase ends when all of them have returned. A second thread (contexts of
 // authors have them) may make a member be called twice at the same time, and does no other harm. Everything else may be called from any
 // thread. No lock is held while a participant is called.
 #pragma once
@@ -33,6 +34,10 @@ class Participant {
   virtual std::string name() const = 0;
   // Whatever it throws counts as an error and is logged.
   virtual ReturnCode call(Action action) = 0;
+  // Where it is called: empty for this process. Members of several other places that stand side by side among the members are called at the
+  // same time, each place on a thread of the context's; those of one place, and all others, one after another in the order in which they
+  // joined.
+  virtual std::string place() const { return {}; }
 };
 
 struct ContextStatistics {
@@ -48,6 +53,8 @@ struct ContextStatistics {
     return cycles == 0 ? std::chrono::nanoseconds(0) : total_waiting / static_cast<std::int64_t>(cycles);
   }
 };
+
+class Together;
 
 class ExecutionContext {
  public:
@@ -147,10 +154,16 @@ class ExecutionContext {
     std::optional<Event> pending{};
     bool removed = false;
   };
-  // A phase keeps the list it began with.
-  using Members = std::shared_ptr<const std::vector<std::shared_ptr<Member>>>;
+  // One after another; at the same time; one after another. A phase keeps the plan it began with.
+  using Group = std::vector<std::shared_ptr<Member>>;
+  using Stage = std::vector<Group>;
+  struct Plan {
+    std::vector<Stage> stages{};
+    std::shared_ptr<Together> together{};  // when a stage has several groups; the plan's own
+  };
+  using Members = std::shared_ptr<const Plan>;
   struct Lane {
-    Members members = std::make_shared<const std::vector<std::shared_ptr<Member>>>();
+    Members members = std::make_shared<const Plan>();
     std::uint64_t version = 0;
     std::chrono::steady_clock::time_point cycle_start{};
     std::chrono::nanoseconds waited_before{0};  // by its thread
@@ -186,6 +199,8 @@ class ExecutionContext {
   // Nothing when the member has left or the context is stopped: it is not called then.
   std::optional<ReturnCode> call_in_phase(Member& member, Action action);
   Members begin_cycle(std::size_t lane);
+  static Members plan(const Group& members);
+  static void for_all(const Plan& plan, const std::function<void(Member&)>& call);
   Members members_of(std::size_t lane) const;
   std::shared_ptr<Member> hold(MemberId id) const;
   void transit(Member& member);

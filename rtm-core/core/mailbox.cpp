@@ -3,7 +3,47 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/tick.h"
+
 namespace rt {
+namespace {
+
+// Of two samples that wait in channels of these names, whether this one is read first.
+bool is_before(const Sample& a, const std::string& from_a, const Sample& b, const std::string& from_b) {
+  if (a.moment != b.moment && a.moment != 0 && b.moment != 0) return a.moment < b.moment;
+  if (a.moment == b.moment && base::is_in_phase(a.moment) && from_a != from_b) return from_a < from_b;
+  return a.arrival < b.arrival;
+}
+
+}  // namespace
+
+void Mailbox::Entry::settle(std::uint64_t now) {
+  while (!aside.empty() && (!base::is_in_phase(now) || aside.front().moment < now)) {
+    ring.push(std::move(aside.front()));
+    aside.pop_front();
+  }
+  if (!base::is_in_phase(now) || now <= moment) return;
+  moment = now;
+  size_at_start = ring.size();
+}
+
+bool Mailbox::Entry::is_full(std::uint64_t now) const {
+  const bool is_aside = base::is_in_phase(now) && now == moment && !is_rendezvous;
+  return (is_aside ? size_at_start + aside.size() : ring.size()) >= ring.length();
+}
+
+bool Mailbox::Entry::put(Sample sample) {
+  if (!base::is_in_phase(sample.moment) || sample.moment != moment || is_rendezvous) return ring.push(std::move(sample));
+  const bool loses = is_full(moment);
+  if (aside.size() == ring.length()) aside.pop_front();
+  aside.push_back(std::move(sample));
+  return loses;
+}
+
+std::size_t Mailbox::Entry::readable(std::uint64_t now) const {
+  const auto is_readable = [&](const Sample& sample) { return !base::is_in_phase(now) || sample.moment < now; };
+  return std::min(ring.length(), ring.size() + static_cast<std::size_t>(std::ranges::count_if(aside, is_readable)));
+}
 
 Mailbox::Entry* Mailbox::State::find(Channel channel) {
   const auto it = std::ranges::find(entries, channel, &Entry::channel);
@@ -22,7 +62,7 @@ Mailbox::Entry* Mailbox::State::oldest(Channel channel) {
   for (auto& entry : entries) {
     if (channel != Channel::any && entry.channel != channel) continue;
     if (entry.ring.is_empty()) continue;
-    if (!found || entry.ring.front().arrival < found->ring.front().arrival) found = &entry;
+    if (!found || is_before(entry.ring.front(), entry.name, found->ring.front(), found->name)) found = &entry;
   }
   return found;
 }
@@ -32,7 +72,7 @@ Mailbox::Entry* Mailbox::State::last_read(Channel channel) {
   for (auto& entry : entries) {
     if (channel != Channel::any && entry.channel != channel) continue;
     if (!entry.last) continue;
-    if (!found || entry.last.arrival > found->last.arrival) found = &entry;
+    if (!found || is_before(found->last, found->name, entry.last, entry.name)) found = &entry;
   }
   return found;
 }
@@ -56,15 +96,15 @@ std::optional<std::chrono::nanoseconds> Mailbox::State::patience(Channel channel
   return longest;
 }
 
-Channel Mailbox::open(const BufferSettings& settings) {
+Channel Mailbox::open(const BufferSettings& settings, const std::string& name) {
   auto state = state_.lock();
   const Channel channel{++state->last_channel};
-  state->entries.push_back({channel, settings, Ring(settings.length), {}});
+  state->entries.push_back({channel, name, settings, Ring(settings.length), {}});
   return channel;
 }
 
 void Mailbox::close(Channel channel) {
-  Entry closed{channel, {}, Ring(1), {}};  // destroyed without the lock: samples may be large
+  Entry closed{channel, {}, {}, Ring(1), {}};  // destroyed without the lock: samples may be large
   {
     auto state = state_.lock();
     Entry* entry = state->find(channel);
@@ -77,13 +117,13 @@ void Mailbox::close(Channel channel) {
 }
 
 void Mailbox::finish(Channel channel) {
-  Entry closed{channel, {}, Ring(1), {}};  // as in close
+  Entry closed{channel, {}, {}, Ring(1), {}};  // as in close
   {
     auto state = state_.lock();
     Entry* entry = state->find(channel);
     if (!entry) return;
     entry->is_finished = true;
-    if (entry->ring.is_empty()) {
+    if (entry->is_empty()) {
       closed = std::move(*entry);
       state->erase(*entry);
     }
@@ -99,21 +139,19 @@ WriteResult Mailbox::write(Channel channel, Sample sample) {
     auto state = state_.lock();
     Entry* entry = state->find_writable(channel);
     if (!entry) return {PortStatus::precondition_not_met};
-    if (entry->ring.is_full() && entry->settings.full == FullPolicy::do_nothing) return {PortStatus::buffer_full};
-    if (entry->ring.is_full() && entry->settings.full == FullPolicy::block) {
+    entry->settle(sample.moment);
+    if (entry->is_full(sample.moment) && entry->settings.full == FullPolicy::do_nothing) return {PortStatus::buffer_full};
+    if (entry->is_full(sample.moment) && entry->settings.full == FullPolicy::block) {
       const bool has_room = state.wait_for(freed_, entry->settings.write_timeout, [&] {
         entry = state->find_writable(channel);
-        return !entry || !entry->ring.is_full();
+        return !entry || !entry->is_full(sample.moment);
       });
       if (!entry) return {PortStatus::precondition_not_met};
       if (!has_room) return {PortStatus::buffer_timeout};
     }
-    if (entry->ring.is_full()) {
-      lost = entry->ring.pop();
-      result.overwrote = true;
-    }
     sample.arrival = ++state->arrivals;
-    entry->ring.push(std::move(sample));
+    if (entry->is_full(sample.moment) && !entry->ring.is_empty()) lost = entry->ring.front();  // let go without the lock
+    result.overwrote = entry->put(std::move(sample));
     if (!entry->is_rendezvous) {
       arrived_.notify_all();
       return result;
@@ -130,16 +168,21 @@ WriteResult Mailbox::write(Channel channel, Sample sample) {
   return result;
 }
 
-ReadResult Mailbox::read(Channel channel) {
+ReadResult Mailbox::read(Channel channel, std::uint64_t moment) {
   ReadResult result;
   {
     auto state = state_.lock();
     if (channel == Channel::any ? state->entries.empty() : !state->find(channel))
       return {PortStatus::precondition_not_met, {}, false, channel};
+    for (auto& each : state->entries) each.settle(moment);
     Entry* entry = state->oldest(channel);
     if (!entry) {
       if (const auto patience = state->patience(channel)) {
+        // Nobody brings anything for this phase any more.
+        if (base::is_in_phase(moment) && std::ranges::none_of(state->entries, &Entry::is_rendezvous))
+          return {PortStatus::buffer_timeout, {}, false, channel};
         state.wait_for(arrived_, *patience, [&] {
+          for (auto& each : state->entries) each.settle(moment);
           entry = state->oldest(channel);
           return entry || (channel == Channel::any ? state->entries.empty() : !state->find(channel));
         });
@@ -151,17 +194,17 @@ ReadResult Mailbox::read(Channel channel) {
       }
     }
     result = state->take(*entry);
-    if (entry->is_finished && entry->ring.is_empty()) state->erase(*entry);
+    if (entry->is_finished && entry->is_empty()) state->erase(*entry);
   }
   freed_.notify_all();
   return result;
 }
 
-std::size_t Mailbox::unread(Channel channel) const {
+std::size_t Mailbox::unread(Channel channel, std::uint64_t moment) const {
   auto state = state_.lock();
   std::size_t count = 0;
   for (const auto& entry : state->entries) {
-    if (channel == Channel::any || entry.channel == channel) count += entry.ring.size();
+    if (channel == Channel::any || entry.channel == channel) count += entry.readable(moment);
   }
   return count;
 }
@@ -172,6 +215,7 @@ void Mailbox::drop_unread(Channel channel) {
     auto state = state_.lock();
     Entry* entry = state->find(channel);
     if (!entry) return;
+    entry->settle(0);
     while (!entry->ring.is_empty()) dropped.push_back(entry->ring.pop());
     dropped.push_back(std::exchange(entry->last, {}));
     if (entry->is_finished) state->erase(*entry);
@@ -184,10 +228,15 @@ void Mailbox::drop_other_eras(std::uint64_t era) {
   {
     auto state = state_.lock();
     for (auto& entry : state->entries) {
+      if (std::exchange(entry.era, era) != era) entry.moment = 0;  // moments may count anew
       while (!entry.ring.is_empty() && entry.ring.front().era != era) dropped.push_back(entry.ring.pop());
+      while (!entry.aside.empty() && entry.aside.front().era != era) {
+        dropped.push_back(std::move(entry.aside.front()));
+        entry.aside.pop_front();
+      }
       if (entry.last && entry.last.era != era) dropped.push_back(std::exchange(entry.last, {}));
     }
-    std::erase_if(state->entries, [](const Entry& entry) { return entry.is_finished && entry.ring.is_empty(); });
+    std::erase_if(state->entries, [](const Entry& entry) { return entry.is_finished && entry.is_empty(); });
   }
   if (!dropped.empty()) freed_.notify_all();
 }

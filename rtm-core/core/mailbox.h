@@ -3,10 +3,16 @@
 //
 // What has come is read also after its connection has ended (of closed connections at most 64 samples), so that a tool may connect, put a
 // value and disconnect.
+//
+// In lock step (base/tick.h) samples of an odd moment wait aside until a later one: neither what is read nor whether a ring is full depends
+// on who of a phase came first. Moments of readers and writers that are even, or 0, have no such rule. Among samples of one phase those
+// of the channel whose name comes first are read first.
 #pragma once
 
 #include <condition_variable>
 #include <cstdint>
+#include <deque>
+#include <string>
 #include <vector>
 
 #include "base/guarded.h"
@@ -32,19 +38,21 @@ struct ReadResult {
 
 class Mailbox {
  public:
-  Channel open(const BufferSettings& settings);
+  // `name`: orders the channels where time does not.
+  Channel open(const BufferSettings& settings, const std::string& name = "");
   // Drops what is in it; whoever waits to write or read there is released.
   void close(Channel channel);
   // Nothing more comes: whoever waits to write there is released. What is unread can still be read; the channel closes with its last
   // sample.
   void finish(Channel channel);
 
-  // A full ring overwrites, refuses or waits, as the channel's settings say.
+  // A full ring overwrites, refuses or waits, as the channel's settings say. The sample has the writer's moment.
   WriteResult write(Channel channel, Sample sample);
   // The oldest sample (of that channel). If nothing is unread: the last one again, nothing, or waits, as the settings of the channel say
-  // from which the last sample came; before the first sample one channel that waits is enough to wait.
-  ReadResult read(Channel channel = Channel::any);
-  std::size_t unread(Channel channel = Channel::any) const;
+  // from which the last sample came; before the first sample one channel that waits is enough to wait. At an odd moment nobody waits but
+  // for a rendezvous: what is written in this phase is not for it.
+  ReadResult read(Channel channel = Channel::any, std::uint64_t moment = 0);
+  std::size_t unread(Channel channel = Channel::any, std::uint64_t moment = 0) const;
   // Throws away what is unread in that channel, and the last sample with it.
   void drop_unread(Channel channel);
   // The same for what is of another era than this one, in all channels.
@@ -57,12 +65,26 @@ class Mailbox {
  private:
   struct Entry {
     Channel channel;
+    std::string name;
     BufferSettings settings;
     Ring ring;
-    Sample last;  // what was read last
+    Sample last;                    // what was read last
+    std::deque<Sample> aside;       // written in the phase `moment`
+    std::uint64_t moment = 0;       // the latest phase in which something happened here
+    std::size_t size_at_start = 0;  // of the ring, in that phase
     bool is_rendezvous = false;
     bool is_finished = false;
     std::uint64_t read_count = 0;
+    std::uint64_t era = 0;  // of what was dropped last
+
+    bool is_empty() const { return ring.is_empty() && aside.empty(); }
+    // Takes in what later moments may read.
+    void settle(std::uint64_t now);
+    // As the writer of this moment may know.
+    bool is_full(std::uint64_t now) const;
+    // True if an unread sample was lost.
+    bool put(Sample sample);
+    std::size_t readable(std::uint64_t now) const;
   };
   struct State {
     std::vector<Entry> entries;

@@ -7,6 +7,7 @@
 
 #include "base/guarded.h"
 #include "base/log.h"
+#include "base/tick.h"
 #include "core/send_queue.h"
 
 namespace rt {
@@ -23,12 +24,17 @@ constexpr Duration far = std::chrono::hours(24 * 365);
 
 }  // namespace
 
-struct Publisher::Work {
+struct Publisher::Work : std::enable_shared_from_this<Publisher::Work> {
   struct State {
     SendQueue queue;
     bool is_stopped = false;
     bool is_lost = false;
     bool is_in_hooks = false;
+    bool belongs_to_ticks = false;     // what is in the queue: the thread leaves it alone
+    std::weak_ptr<void> announcement;  // alive while a tick is going to call send_in
+    std::chrono::nanoseconds due{-1};  // periodic: simulated time of the next sending; negative: not known
+
+    bool has_own_work() const { return !belongs_to_ticks && !queue.is_empty(); }
   };
   enum class Next { go_on, retry, end };
 
@@ -64,11 +70,15 @@ struct Publisher::Work {
         auto locked = state.lock();
         // While the receiver is full, only the time-out or the end wakes us.
         const auto deadline = time.now() + (retry.count() ? retry : far);
-        while (!locked->is_stopped && (retry.count() || locked->queue.is_empty()) && time.now() < deadline) {
+        while (!locked->is_stopped && (retry.count() || !locked->has_own_work()) && time.now() < deadline) {
           locked.wait_until(changed, time.look_again(deadline),
-                            [&] { return locked->is_stopped || (!retry.count() && !locked->queue.is_empty()) || time.now() >= deadline; });
+                            [&] { return locked->is_stopped || (!retry.count() && locked->has_own_work()) || time.now() >= deadline; });
         }
         if (locked->is_stopped) return;
+        if (!locked->has_own_work()) {
+          retry = {};
+          continue;
+        }
         batch = locked->queue.next_batch();
       }
       room.notify_all();
@@ -94,6 +104,10 @@ struct Publisher::Work {
         while (!locked->is_stopped && time.now() < deadline)
           locked.wait_until(changed, time.look_again(deadline), [&] { return locked->is_stopped || time.now() >= deadline; });
         if (locked->is_stopped) return;
+        if (locked->belongs_to_ticks) {
+          deadline = time.now() + period;
+          continue;
+        }
         batch = locked->queue.next_batch();
       }
       room.notify_all();
@@ -105,6 +119,59 @@ struct Publisher::Work {
       if (send(std::move(batch)) == Next::end) return;
       deadline = std::max<Point>(deadline + period, time.now());
     }
+  }
+
+  // At the end of a tick.
+  void send_in(base::Tick& tick) {
+    state.lock()->announcement.reset();
+    if (subscription == Subscription::periodic) {
+      for (auto times = times_due(tick.time()); times > 0; --times) {
+        std::vector<Sample> batch = state.lock()->queue.next_batch();
+        if (batch.empty() && hooks.starved) {
+          if (!enter_hooks()) return;
+          hooks.starved();
+          state.lock()->is_in_hooks = false;
+        }
+        if (send(std::move(batch)) != Next::go_on) break;
+      }
+    } else {
+      drain();
+    }
+    const bool is_over = [&] {
+      auto locked = state.lock();
+      return locked->is_stopped || !locked->belongs_to_ticks || (subscription != Subscription::periodic && locked->queue.is_empty());
+    }();
+    if (!is_over) announce(tick);
+  }
+
+  // Sends what the policy lets through. False when the receiver is full or nothing is sent any more.
+  bool drain() {
+    while (true) {
+      std::vector<Sample> batch;
+      {
+        auto locked = state.lock();
+        if (locked->is_stopped || locked->queue.is_empty()) return !locked->is_stopped;
+        batch = locked->queue.next_batch();
+      }
+      room.notify_all();
+      if (send(std::move(batch)) != Next::go_on) return false;
+    }
+  }
+
+  void announce(base::Tick& tick);
+
+  // How many multiples of the period have come up to `now`; time that has jumped counts once.
+  std::int64_t times_due(std::chrono::nanoseconds now) {
+    constexpr std::int64_t most = 1000;
+    if (period <= std::chrono::nanoseconds(0)) return 1;
+    auto locked = state.lock();
+    auto& due = locked->due;
+    const auto next = [&](std::chrono::nanoseconds time) { return (time / period + (time % period == Duration::zero() ? 0 : 1)) * period; };
+    if (due < std::chrono::nanoseconds(0) || now + period < due) due = next(now);  // the first time, or after a reset
+    if (now < due) return 0;
+    const auto times = (now - due) / period + 1;
+    due += times * period;
+    return times > most ? 1 : times;
   }
 
   Next send(std::vector<Sample> batch) {
@@ -155,6 +222,18 @@ struct Publisher::Work {
   std::condition_variable room;
 };
 
+void Publisher::Work::announce(base::Tick& tick) {
+  const auto announcement = std::make_shared<char>();
+  {
+    auto locked = state.lock();
+    if (!locked->announcement.expired()) return;
+    locked->announcement = announcement;
+  }
+  tick.at_end([announcement, work = weak_from_this()](base::Tick& ending) {
+    if (const auto alive = work.lock()) alive->send_in(ending);
+  });
+}
+
 Publisher::Publisher(Subscription subscription, const PublisherSettings& publisher, const BufferSettings& buffer, Hooks hooks,
                      const SteadyTime& time)
     : work_(std::make_shared<Work>(subscription, publisher, buffer, std::move(hooks), time)),
@@ -172,10 +251,32 @@ Publisher::~Publisher() {
   }
 }
 
-WriteResult Publisher::write(Sample sample) {
+WriteResult Publisher::write_in(base::Tick& tick, Sample sample) {
+  const bool is_full = [&] {
+    auto state = work_->state.lock();
+    state->belongs_to_ticks = true;
+    return state->queue.is_full();
+  }();
+  if (is_full && work_->subscription != Subscription::periodic) work_->drain();
   WriteResult result;
   {
     auto state = work_->state.lock();
+    if (state->is_stopped || state->is_lost)
+      return WriteResult{state->is_lost ? PortStatus::connection_lost : PortStatus::precondition_not_met};
+    if (state->queue.is_full() && work_->buffer.full == FullPolicy::do_nothing) return {PortStatus::buffer_full};
+    if (state->queue.is_full() && work_->buffer.full == FullPolicy::block) return {PortStatus::buffer_timeout};
+    result.overwrote = state->queue.push(std::move(sample));
+  }
+  work_->announce(tick);
+  return result;
+}
+
+WriteResult Publisher::write(Sample sample, base::Tick* tick) {
+  if (tick) return write_in(*tick, std::move(sample));
+  WriteResult result;
+  {
+    auto state = work_->state.lock();
+    state->belongs_to_ticks = false;
     const auto has_ended = [&] { return state->is_stopped || state->is_lost; };
     const auto ended = [&] { return WriteResult{state->is_lost ? PortStatus::connection_lost : PortStatus::precondition_not_met}; };
     if (has_ended()) return ended();

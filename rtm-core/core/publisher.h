@@ -1,5 +1,10 @@
 // Sends what is written to one connection on a thread of its own: as soon as something is there (subscription `new`) or periodically.
 // Any thread.
+//
+// What is written in a tick of a lock step (base/tick.h) is sent on the thread of the tick when its callbacks are over, by the same
+// policies: with `new` at once, with `periodic` at the ends of those ticks that are the first at or after a multiple of the period in
+// simulated time. A receiver that is full is tried again at the end of the next tick. So what a run does never depends on the publisher's
+// thread.
 #pragma once
 
 #include <functional>
@@ -10,6 +15,10 @@
 #include "core/mailbox.h"
 #include "core/port_status.h"
 #include "core/steady_time.h"
+
+namespace base {
+class Tick;
+}
 
 namespace rt {
 
@@ -34,7 +43,8 @@ class Publisher {
   Publisher& operator=(const Publisher&) = delete;
 
   // status: ok, buffer_full, buffer_timeout; connection_lost or precondition_not_met once it does not send any more.
-  WriteResult write(Sample sample);
+  // `tick`: of the calling thread, when what is written belongs to it. A full queue is sent first then; nobody waits for room.
+  WriteResult write(Sample sample, base::Tick* tick = nullptr);
   // Samples that wait to be sent.
   std::size_t waiting() const;
   void drop_waiting();
@@ -43,6 +53,7 @@ class Publisher {
 
  private:
   struct Work;
+  WriteResult write_in(base::Tick& tick, Sample sample);
   // True if the thread is in a hook.
   bool request_stop();
   std::shared_ptr<Work> work_;

@@ -61,7 +61,8 @@ struct Sample {
   std::uint64_t arrival = 0;            // counts up over all connections of a port
   std::chrono::nanoseconds received{};  // when the port got it, by the clock of the thread that brought it; 0 if nobody asked
 
-  std::uint64_t era = 0;  // of the clock of the port's component, when it came or was written
+  std::uint64_t era = 0;     // of the clock of the port's component, when it came or was written
+  std::uint64_t moment = 0;  // likewise
 
   explicit operator bool() const { return block || value; }
 };

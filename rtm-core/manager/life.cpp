@@ -153,6 +153,19 @@ void ManagerImpl::bind_to_processors() {
   RTC_WARN(("%smanager.cpu_affinity names no processor of this machine", where("manager.cpu_affinity").c_str()));
 }
 
+// What rtc.conf says, else what is said to the tools.
+corba::TlsSettings ManagerImpl::tls_settings() const {
+  corba::TlsSettings settings = corba::tls_of_environment();
+  const auto take = [&](const char* key, std::string& field) {
+    if (auto said = value(key); !said.empty()) field = std::move(said);
+  };
+  take("corba.tls.certificate", settings.certificate);
+  take("corba.tls.authority", settings.authority);
+  take("corba.tls.password", settings.password);
+  settings.endpoints = list("corba.tls.endpoints");
+  return settings;
+}
+
 base::Result<void> ManagerImpl::start_orb() {
   corba::OrbSettings settings;
   settings.endpoints = list("corba.endpoints");
@@ -167,6 +180,7 @@ base::Result<void> ManagerImpl::start_orb() {
   if (open_to == "host") settings.open_to = corba::OpenTo::host;
   if (open_to == "network") settings.open_to = corba::OpenTo::network;
   settings.max_request_size = rt::parse_size(value("corba.max_request_size")).value_or(settings.max_request_size);
+  settings.tls = tls_settings();
   settings.unix_socket = flag("corba.unix_socket", true);
   settings.call_timeout = to_milliseconds(number("corba.call_timeout", 10.0));
   settings.peer_check_interval = to_milliseconds(number("corba.peer_check_interval", 2.0));

@@ -156,6 +156,7 @@ class ManagerImpl {
  private:
   bool activate_all();
   void bind_to_processors();
+  corba::TlsSettings tls_settings() const;
   base::Result<void> start_orb();
   void start_naming();
   void start_timer_tasks();

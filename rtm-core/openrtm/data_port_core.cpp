@@ -51,12 +51,13 @@ ConnectorInfo DataPortCore::info(const ConnectorProfile& profile, const coil::Pr
   return make_info(profile, properties, side_, type_id());
 }
 
-ReturnCode_t DataPortCore::connect(std::shared_ptr<ConnectorBase> connector, const coil::Properties& properties, ConnectorProfile& profile,
-                                   const rt::ConnectorSettings& settings, bool is_provider, Logger& rtclog) {
+ReturnCode_t DataPortCore::connect(const PortBase& owner, std::shared_ptr<ConnectorBase> connector, const coil::Properties& properties,
+                                   ConnectorProfile& profile, const rt::ConnectorSettings& settings, bool is_provider, Logger& rtclog) {
   const auto events = std::make_shared<ListenerEvents>(connector);
   corba::ConnectionPlan plan;
   plan.id = connector->id();
   plan.name = connector->name();
+  plan.port = owner.getName();
   plan.settings = settings;
   plan.events = events;
   plan.peer_says_when_empty = side_ == rt::Side::in && settings.dataflow == rt::Dataflow::pull && says_when_empty(profile);

@@ -42,15 +42,15 @@ class DataPortCore {
     const bool is_provider = (settings.dataflow == rt::Dataflow::push) == (side_ == rt::Side::in);
     if (is_provider != is_publishing) return RTC_OK;
     auto connector = std::make_shared<Connector>(owner, listeners_, info(profile, properties));
-    return connect(std::move(connector), properties, profile, settings, is_provider, rtclog);
+    return connect(owner, std::move(connector), properties, profile, settings, is_provider, rtclog);
   }
   // The connectors of open(), in the order in which they were made; kept alive by their connections.
   std::vector<ConnectorBase*> connectors() const;
 
  private:
   ConnectorInfo info(const ConnectorProfile& profile, const coil::Properties& properties) const;
-  ReturnCode_t connect(std::shared_ptr<ConnectorBase> connector, const coil::Properties& properties, ConnectorProfile& profile,
-                       const rt::ConnectorSettings& settings, bool is_provider, Logger& rtclog);
+  ReturnCode_t connect(const PortBase& owner, std::shared_ptr<ConnectorBase> connector, const coil::Properties& properties,
+                       ConnectorProfile& profile, const rt::ConnectorSettings& settings, bool is_provider, Logger& rtclog);
 
   const rt::Side side_;
   const std::unique_ptr<corba::DataPort> port_;

@@ -56,6 +56,8 @@ class ExecutionContextBase {
   static constexpr std::chrono::seconds default_callback_timeout{5};
   std::chrono::nanoseconds callbackTimeout() const;
   // How long a member of another process may take for a callback before it counts as lost: option member_timeout [s], default 1.
+  // Without end one that hangs holds up the context; one that is dead does not, and a log line names who has taken more than a second.
+  static constexpr std::chrono::nanoseconds without_end = std::chrono::nanoseconds::max();
   void setMemberTimeout(std::chrono::nanoseconds timeout);
   // [Hz]
   CORBA::Double getRate() const;

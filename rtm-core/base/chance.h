@@ -1,0 +1,23 @@
+// Tells, in the log, of what could make a run in lock step differ from the next one: a write by a thread that no tick runs, a sample that
+// came between ticks. Each is told once for each place in this process, at level info; `rtse run --strict` makes it a failure. Any thread.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string_view>
+
+namespace base {
+
+class Clock;
+
+// What such a message begins with.
+inline constexpr std::string_view chance_mark = "depends on chance: ";
+
+// "port A:out" "was written by a thread that no tick runs".
+void tell_of_chance(std::string_view where, std::string_view what, std::chrono::nanoseconds simulated);
+
+// Of the lock step that this process takes part in; the one that was told last. nullptr: there is none.
+void set_lock_step_clock(const std::shared_ptr<const Clock>& clock);
+std::shared_ptr<const Clock> lock_step_clock();
+
+}  // namespace base

@@ -1,0 +1,93 @@
+// Writing hash logs.
+#include "base/hash_log.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "base/hash_log_format.h"
+#include "base/text.h"
+
+namespace base {
+namespace {
+
+constexpr std::size_t flush_size = 1U << 16U;
+
+void put_varint(std::string& out, std::uint64_t number) {
+  for (; number >= 0x80; number >>= 7U) out += static_cast<char>(number | 0x80U);
+  out += static_cast<char>(number);
+}
+
+void put_text(std::string& out, std::string_view text) {
+  put_varint(out, text.size());
+  out += text;
+}
+
+void put_word(std::string& out, std::uint64_t word) {
+  for (unsigned i = 0; i < 8; ++i) out += static_cast<char>(word >> (8 * i));
+}
+
+}  // namespace
+
+Result<HashLogWriter> HashLogWriter::create(const std::string& path) {
+  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  if (!file) return Error{"hash log " + in_quotes(path) + ": " + std::strerror(errno)};
+  HashLogWriter writer(std::move(file));
+  writer.out_ = hash_log_format::magic;
+  return writer;
+}
+
+std::uint32_t HashLogWriter::key(const HashKey& key) {
+  const auto [place, is_new] = known_.try_emplace({key.kind, key.name}, static_cast<std::uint32_t>(known_.size()));
+  if (!is_new) return place->second;
+  keys_ += hash_log_format::key_record;
+  keys_ += static_cast<char>(key.kind);
+  put_varint(keys_, key.phase);
+  put_text(keys_, key.name);
+  put_text(keys_, key.type);
+  return place->second;
+}
+
+void HashLogWriter::begin_tick(std::uint32_t run, std::chrono::nanoseconds time) {
+  write_tick();
+  tick_.run = run;
+  tick_.time = time;
+}
+
+void HashLogWriter::add(std::uint32_t key, std::uint64_t hash, std::span<const std::byte> value) {
+  put_varint(entries_, key);
+  put_word(entries_, hash);
+  const auto kept = value.size() <= longest_hash_value ? value : std::span<const std::byte>();
+  put_text(entries_, {reinterpret_cast<const char*>(kept.data()), kept.size()});
+  ++count_;
+}
+
+void HashLogWriter::write_tick() {
+  if (count_ == 0) return;
+  out_ += std::exchange(keys_, {});
+  out_ += hash_log_format::tick_record;
+  put_varint(out_, tick_.run);
+  put_varint(out_, static_cast<std::uint64_t>(std::max<std::int64_t>(tick_.time.count(), 0)));
+  put_varint(out_, std::exchange(count_, 0));
+  out_ += entries_;
+  entries_.clear();
+  ++ticks_;
+  if (out_.size() >= flush_size) flush();
+}
+
+void HashLogWriter::flush() {
+  file_.write(out_.data(), static_cast<std::streamsize>(out_.size()));
+  out_.clear();
+}
+
+bool HashLogWriter::finish() {
+  write_tick();
+  out_ += hash_log_format::end_record;
+  put_varint(out_, ticks_);
+  flush();
+  file_.close();
+  return static_cast<bool>(file_);
+}
+
+}  // namespace base

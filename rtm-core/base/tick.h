@@ -1,0 +1,58 @@
+// The tick of a lock step that runs on this thread: what belongs to it, and what it keeps of the data that passes. Who runs one (an
+// execution context on simulated time) puts a ScopedTick around the callbacks. The thread of the tick only.
+//
+// The rule of delivery: what is written at moment m, which is odd while a phase runs, can be read at later moments only. So readers of
+// higher phases see it in the same tick, readers of the same phase and of lower ones in their next, and whether a thread came early or late
+// within its phase makes no difference.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string_view>
+
+namespace base {
+
+inline constexpr bool is_in_phase(std::uint64_t moment) { return moment % 2 == 1; }
+
+// A sample on its way through a port.
+struct Passage {
+  bool is_out = false;                                 // of an OutPort, by a write; else of an InPort, by a read
+  std::string_view port;                               // with the name of its component
+  std::string_view type;                               // of the data
+  std::span<const std::span<const std::byte>> octets;  // encoded
+};
+
+class Tick {
+ public:
+  virtual ~Tick() = default;
+  virtual std::chrono::nanoseconds time() const = 0;  // simulated
+  // Of the phase; 0 where time does not wait for the tick.
+  virtual std::uint64_t moment() const = 0;
+  // `work` is called when the callbacks are over, still within the tick, on its thread; several in the order in which they came. It may ask
+  // for the end of the next tick again.
+  virtual void at_end(std::function<void(Tick&)> work) = 0;
+  // False: nobody wants to hear of data.
+  virtual bool keeps_data() const = 0;
+  virtual void passed(const Passage& passage) = 0;
+};
+
+// nullptr: this thread is in no tick.
+Tick* current_tick();
+// Only where time waits for it.
+Tick* tick_in_lock_step();
+
+class ScopedTick {
+ public:
+  explicit ScopedTick(Tick& tick);
+  ~ScopedTick();
+  ScopedTick(const ScopedTick&) = delete;
+  ScopedTick& operator=(const ScopedTick&) = delete;
+
+ private:
+  Tick* previous_;
+};
+
+}  // namespace base

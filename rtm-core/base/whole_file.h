@@ -1,0 +1,14 @@
+// Writing a file so that under its name the whole of it is seen, or what was there before. Any thread.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "base/result.h"
+
+namespace base {
+
+// A symbolic link stays one; what is there and no ordinary file (a folder, a device, a pipe) is refused. On failure nothing is left behind.
+Result<void> write_whole_file(const std::filesystem::path& file, std::string_view octets);
+
+}  // namespace base
