@@ -2,7 +2,7 @@
 // devices in the order of the world: before_step, (step), after_step, then for those that are due take_sample, and publish. Devices that
 // publish samples are Sensors (sensor.h), which leaves them little of this to write; cameras draw in their own time.
 // The stepping thread only, but take_sample() of different devices may run in several threads at the same time: it reads the world and
-// changes nothing but its own device.
+// changes nothing but its own device. So may before_step() and after_step() of different models.
 #pragma once
 
 #include <chrono>
@@ -58,6 +58,9 @@ class Device {
   virtual shm::IfaceWriter& iface() = 0;
   virtual ModelId model() const = 0;
 
+  // Wants the next two in every step. They change nothing but the device and its own model: devices of different models may be called in
+  // several threads at the same time.
+  virtual bool follows_steps() const { return false; }
   // Commands become forces and motors.
   virtual void before_step(const Moment&) {}
   // What must be followed in every step: encoders, accelerations.

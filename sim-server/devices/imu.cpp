@@ -23,6 +23,7 @@ class Imu final : public Sensor {
     reference_ = reference_axes(def, site.world.world.spherical.heading);
   }
 
+  bool follows_steps() const override { return true; }
   void after_step(const Moment& moment) override {
     // Always, so that the first sample of who comes later is right as well.
     const Eigen::Vector3d velocity = physics().point_velocity(mount_.link, mount_.in_world(physics()).translation());

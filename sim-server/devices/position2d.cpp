@@ -66,7 +66,8 @@ void Position2d::before_step(const Moment& moment) {
     case shm::CommandChange::none:
       break;
   }
-  train_->drive(command_[0], command_[1], motors_enabled_, moment.dt);
+  const auto& followed = halted_at_ ? *halted_at_ : command_;
+  train_->drive(strength_ * followed[0], strength_ * followed[1], motors_enabled_, moment.dt);
 }
 
 void Position2d::after_step(const Moment& moment) {
@@ -123,6 +124,12 @@ void Position2d::add_state_to(StateHash& hash) const {
 bool Position2d::set_odometry(const Eigen::Isometry3d& pose) {
   odometry_ = {pose.translation().x(), pose.translation().y(), yaw_of(pose)};
   return true;
+}
+
+void Position2d::set_fault(double strength, bool is_halted) {
+  strength_ = strength;
+  if (!is_halted) halted_at_.reset();
+  if (is_halted && !halted_at_) halted_at_ = command_;
 }
 
 bool Position2d::set_motors(bool enabled) {

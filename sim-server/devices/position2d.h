@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "devices/drive_train.h"
 #include "devices/sensor.h"
@@ -15,10 +16,13 @@ class Position2d final : public Sensor {
   static MadeDevice make(DeviceWorld& world, ModelId model, const PluginDef& plugin, std::unique_ptr<DriveTrain> train);
   Position2d(Setup setup, const Traction& traction, std::unique_ptr<DriveTrain> train);
 
+  bool follows_steps() const override { return true; }
   void before_step(const Moment& moment) override;
   void after_step(const Moment& moment) override;
   bool set_odometry(const Eigen::Isometry3d& pose) override;
   bool set_motors(bool enabled) override;
+  // Out of order on purpose: follows this fraction of what is asked for; goes on as it was told last, whatever it is told.
+  void set_fault(double strength, bool is_halted);
 
  private:
   void measure(const Moment& moment) const override;
@@ -30,6 +34,8 @@ class Position2d final : public Sensor {
   std::array<double, 3> odometry_{0, 0, 0};
   std::array<double, 2> velocity_{0, 0};
   bool motors_enabled_ = true, is_commanded_ = false;
+  double strength_ = 1;
+  std::optional<std::array<double, 2>> halted_at_;  // the command then
   Traction traction_;
 };
 

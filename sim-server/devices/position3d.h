@@ -17,6 +17,7 @@ class Position3d final : public Sensor {
   static MadeDevice make(DeviceWorld& world, ModelId model, const PluginDef& plugin, std::optional<Path> path);
   Position3d(Setup setup, const PluginDef& plugin, std::optional<Path> path);
 
+  bool follows_steps() const override { return true; }
   void before_step(const Moment& moment) override;
   bool set_odometry(const Eigen::Isometry3d& pose) override;
   bool set_motors(bool enabled) override;

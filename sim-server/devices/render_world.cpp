@@ -52,6 +52,7 @@ void RenderWorld::build(Built& built, Scene::Content content) {
   }
   for (const auto& actor : world_.actors) parts.actors.push_back(&actor);
   built.scene = Scene::build(parts, assets_, content);
+  ++built.version;
   for (const auto& complaint : assets_.take_complaints()) base::log(base::Level::warn, "render", "{}", complaint);
 }
 
@@ -66,7 +67,7 @@ Snapshot RenderWorld::snapshot(std::chrono::nanoseconds time, Scene::Content con
   }
   const double seconds = std::chrono::duration<double>(time).count();
   for (std::size_t i = 0; i < motions_.size(); ++i) add_poses(built.scene->actors[i], world_.actors[i], motions_[i].at(seconds), *poses);
-  return {built.scene, std::move(poses), built.models};
+  return {built.scene, std::move(poses), built.models, built.version};
 }
 
 }  // namespace sim

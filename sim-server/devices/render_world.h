@@ -17,6 +17,7 @@ struct Snapshot {
   std::shared_ptr<const Scene> scene;
   std::shared_ptr<const std::vector<Eigen::Isometry3d>> poses;  // of the scene's links
   std::vector<ModelId> models;                                  // of Scene::models; actors come after them
+  std::uint64_t version = 0;                                    // of the scene: another one after models have come or gone
 };
 
 class RenderWorld {
@@ -35,6 +36,7 @@ class RenderWorld {
     std::shared_ptr<const Scene> scene;
     std::vector<ModelId> models;
     std::vector<std::shared_ptr<const ModelDef>> defs;
+    std::uint64_t version = 0;
   };
   bool is_current(const Built& built) const;
   void build(Built& built, Scene::Content content);

@@ -46,6 +46,7 @@ class JointInstance {
   const Drive& drive(int axis) const { return drives_[static_cast<std::size_t>(axis)]; }
   void set_drive(int axis, double velocity, double effort);
 
+  bool has_stand_in() const { return stand_in_.id() != nullptr; }
   bool has_forces() const { return has_forces_ || coupling_; }
   // What must be done before each step: springs, the damping that ODE's motors cannot do, couplings.
   void apply(dJointGroupID step_joints, double dt);

@@ -27,6 +27,14 @@ bool is_wheel(const ModelDef& model, const LinkDef& link, const CollisionDef& co
   });
 }
 
+base::Result<ShapeInstance> make_or_refuse(const CollisionDef& collision, ShapeStore& store) {
+  try {
+    return make_shape(collision, store);
+  } catch (const std::bad_alloc&) {
+    return base::Error{fmt::format("a {} is too large for the memory", kind_of(collision.geometry))};
+  }
+}
+
 constexpr double fastest = 5000;  // [m/s], [rad/s]: nothing that is simulated sanely gets there
 
 }  // namespace
@@ -44,7 +52,7 @@ void ModelInstance::make_shapes(ShapeStore& store, std::vector<std::string>& los
                                    collision.name, kind_of(collision.geometry)));
         continue;
       }
-      auto shape = make_shape(collision, store);
+      auto shape = make_or_refuse(collision, store);
       if (!shape) {
         lost.push_back(fmt::format("model {}: collision {}::{}: {}; it does not collide", model.name, model.links[l].name, collision.name,
                                    shape.error().message));
@@ -121,6 +129,7 @@ void ModelInstance::enter(dWorldID world, const PhysicsDef& physics) {
     }
   }
   joints_.clear();
+  joint_places_.assign(blueprint_->model->joints.size(), -1);
   for (auto& shape : shapes_) {
     if (!blueprint_->assemblies[shape.assembly].is_anchored) dGeomSetBody(shape.geom.id(), nullptr);
   }
@@ -140,7 +149,8 @@ void ModelInstance::enter(dWorldID world, const PhysicsDef& physics) {
   for (const auto& order : orders) {
     if (auto* restored = this->joint(order.joint)) set_drive(*restored, order.axis, order.velocity, order.effort);
   }
-  left_neighbourhood = true;
+  left_neighbourhood = may_be_awake = true;
+  still_steps_ = slow_steps_ = 0;
 }
 
 void ModelInstance::make_body(dWorldID world, const Assembly& assembly) {
@@ -164,12 +174,7 @@ void ModelInstance::make_body(dWorldID world, const Assembly& assembly) {
   dBodySetAngularDamping(body, std::clamp(assembly.angular_damping, 0.0, 1.0));
   dBodySetLinearDampingThreshold(body, 0);
   dBodySetAngularDampingThreshold(body, 0);
-  dBodySetAutoDisableFlag(body, blueprint_->model->allow_auto_disable ? 1 : 0);
-  dBodySetAutoDisableLinearThreshold(body, 0.004);
-  dBodySetAutoDisableAngularThreshold(body, 0.01);
-  dBodySetAutoDisableSteps(body, 10);
-  dBodySetAutoDisableTime(body, 0.5);
-  dBodyEnable(body);  // starts those counters
+  dBodySetAutoDisableFlag(body, 0);  // lies_still() decides
 }
 
 void ModelInstance::make_joint(dWorldID world, const PhysicsDef& physics, std::uint32_t index) {
@@ -185,6 +190,7 @@ void ModelInstance::make_joint(dWorldID world, const PhysicsDef& physics, std::u
     joint.set_gear_anchors(base_ * first, base_ * second);
   }
   has_forces_ = has_forces_ || joint.has_forces();
+  joint_places_[index] = static_cast<int>(joints_.size());
   joints_.push_back(std::move(joint));
 }
 
@@ -260,10 +266,8 @@ void ModelInstance::float_in(const FluidDef& fluid, const Eigen::Vector3d& gravi
 }
 
 JointInstance* ModelInstance::joint(std::uint32_t index) {
-  for (auto& joint : joints_) {
-    if (joint.index() == index) return &joint;
-  }
-  return nullptr;
+  const int place = index < joint_places_.size() ? joint_places_[index] : -1;
+  return place < 0 ? nullptr : &joints_[static_cast<std::size_t>(place)];
 }
 
 std::vector<BodyState> ModelInstance::save() const {
@@ -290,7 +294,7 @@ void ModelInstance::restore(const std::vector<BodyState>& states) {
     dBodySetAngularVel(body, s.angular.x(), s.angular.y(), s.angular.z());
     s.is_awake ? dBodyEnable(body) : dBodyDisable(body);
   }
-  left_neighbourhood = true;
+  left_neighbourhood = may_be_awake = true;
 }
 
 bool ModelInstance::is_awake() const {
@@ -301,9 +305,40 @@ bool ModelInstance::is_awake() const {
 }
 
 void ModelInstance::wake() {
+  may_be_awake = true;
+  still_steps_ = slow_steps_ = 0;
   for (const auto& body : bodies_) {
     if (body.id() != nullptr) dBodyEnable(body.id());
   }
+}
+
+void ModelInstance::sleep() {
+  for (const auto& handle : bodies_) {
+    const dBodyID body = handle.id();
+    if (body == nullptr || dBodyIsEnabled(body) == 0) continue;
+    dBodyDisable(body);
+    dBodySetLinearVel(body, 0, 0, 0);
+    dBodySetAngularVel(body, 0, 0, 0);
+  }
+}
+
+bool ModelInstance::lies_still(double dt, bool touches) {
+  // [m/s], [rad/s], [s]. What stays below the lower ones for the shorter time is no faster changing its speed than what stays below the
+  // higher ones for the longer time: a pendulum that turns does neither.
+  constexpr double slow = 0.004, slow_turn = 0.01, slow_time = 0.5;
+  constexpr double still = 0.0005, still_turn = 0.001, still_time = 0.1;
+  constexpr std::uint32_t least_steps = 10;
+  if (!blueprint_->model->allow_auto_disable) return false;
+  double speed = 0, turn = 0;
+  for (const auto& handle : bodies_) {
+    if (handle.id() == nullptr) continue;
+    speed = std::max(speed, ode::vector(dBodyGetLinearVel(handle.id())).squaredNorm());
+    turn = std::max(turn, ode::vector(dBodyGetAngularVel(handle.id())).squaredNorm());
+  }
+  slow_steps_ = speed < slow * slow && turn < slow_turn * slow_turn ? slow_steps_ + 1 : 0;
+  still_steps_ = speed < still * still && turn < still_turn * still_turn ? still_steps_ + 1 : 0;
+  const auto lasts = [&](std::uint32_t steps, double time) { return steps >= least_steps && steps * dt >= time; };
+  return lasts(slow_steps_, slow_time) || (touches && lasts(still_steps_, still_time) && !has_moving_drive());
 }
 
 Eigen::Isometry3d ModelInstance::assembly_pose(std::uint32_t assembly) const {
@@ -340,6 +375,51 @@ bool ModelInstance::make_kinematic() {
     if (body.id() != nullptr) dBodySetKinematic(body.id());
   }
   return true;
+}
+
+Energy ModelInstance::energy(const Eigen::Vector3d& gravity) const {
+  Energy energy;
+  for (const auto& handle : bodies_) {
+    const dBodyID body = handle.id();
+    if (body == nullptr) continue;
+    dMass mass;
+    dBodyGetMass(body, &mass);
+    const Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> inertia(mass.I);
+    const Eigen::Vector3d turn = ode::quaternion(dBodyGetQuaternion(body)).conjugate() * ode::vector(dBodyGetAngularVel(body));
+    energy.motion += 0.5 * (mass.mass * ode::vector(dBodyGetLinearVel(body)).squaredNorm() + turn.dot(inertia.leftCols<3>() * turn));
+    if (dBodyGetGravityMode(body) != 0) energy.height -= mass.mass * gravity.dot(ode::vector(dBodyGetPosition(body)));
+  }
+  return energy;
+}
+
+bool ModelInstance::is_driven() const {
+  const auto is_still = [](const dReal* v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; };
+  for (const auto& handle : bodies_) {
+    const dBodyID body = handle.id();
+    if (body == nullptr) continue;
+    if (dBodyIsKinematic(body) != 0 || !is_still(dBodyGetForce(body)) || !is_still(dBodyGetTorque(body))) return true;
+  }
+  return has_moving_drive();
+}
+
+bool ModelInstance::has_stand_ins() const {
+  return std::any_of(joints_.begin(), joints_.end(), [](const JointInstance& joint) { return joint.has_stand_in(); });
+}
+
+bool ModelInstance::has_moving_drive() const {
+  return std::any_of(joints_.begin(), joints_.end(), [](const JointInstance& joint) {
+    return (joint.drive(0).velocity != 0 && joint.drive(0).effort > 0) || (joint.drive(1).velocity != 0 && joint.drive(1).effort > 0);
+  });
+}
+
+void ModelInstance::slow_down(double factor) {
+  for (const auto& handle : bodies_) {
+    const dBodyID body = handle.id();
+    if (body == nullptr) continue;
+    const dReal *v = dBodyGetLinearVel(body), *w = dBodyGetAngularVel(body);
+    dBodySetLinearVel(body, factor * v[0], factor * v[1], factor * v[2]);
+    dBodySetAngularVel(body, factor * w[0], factor * w[1], factor * w[2]);
+  }
 }
 
 bool ModelInstance::is_sane() const {

@@ -14,6 +14,11 @@
 
 namespace sim {
 
+struct Energy {
+  double motion = 0, height = 0;  // [J]; the height's from the world's origin
+  double sum() const { return motion + height; }
+};
+
 struct BodyState {
   Eigen::Vector3d position, linear, angular;
   Eigen::Quaterniond orientation;
@@ -43,6 +48,9 @@ class ModelInstance {
   double mass() const { return mass_; }  // of all that can move
   bool is_awake() const;
   void wake();
+  void sleep();
+  // After each step of `dt` in which it took part: true when it has not moved for long enough to sleep.
+  bool lies_still(double dt, bool touches);
 
   Eigen::Isometry3d assembly_pose(std::uint32_t assembly) const;
   dBodyID body(std::uint32_t assembly) const { return bodies_[assembly].id(); }
@@ -60,11 +68,25 @@ class ModelInstance {
   void set_gravity(bool on);
   bool make_kinematic();
   void set_drive(JointInstance& joint, int axis, double velocity, double effort);
+  // Of all that can move.
+  Energy energy(const Eigen::Vector3d& gravity) const;
+  bool has_stand_ins() const;
+  // A motor is to turn a joint.
+  bool has_moving_drive() const;
+  // Motors, forces on its bodies for the next step or its own way of moving may give it energy.
+  bool is_driven() const;
+  // All its velocities times `factor`.
+  void slow_down(double factor);
   // False when a number has become infinite or a body is faster than anything should be.
   bool is_sane() const;
 
   // Owned by the world around it.
   int shard = -1;
+  bool is_active = false;                  // takes part in this step: it is awake, or near what is
+  bool may_be_awake = true;                // false: certainly not
+  std::uint32_t group_place = 0;           // among those that take part
+  bool is_iterative = false;               // the solver of this step
+  std::vector<ModelInstance*> neighbours;  // whose neighbourhoods meet its own, ascending by id
   Aabb neighbourhood;
   bool left_neighbourhood = true;
   std::vector<std::uint32_t> near_statics;
@@ -87,12 +109,14 @@ class ModelInstance {
   Eigen::Isometry3d base_;
   std::vector<ode::Body> bodies_;  // one per assembly; empty handles for anchored ones
   std::vector<JointInstance> joints_;
+  std::vector<int> joint_places_;  // in joints_, by index into ModelDef::joints; -1: it has none
   std::vector<ShapeInstance> shapes_;
   std::vector<Eigen::Isometry3d> shape_in_body_;
   std::vector<double> shape_volumes_;  // [m^3]; 0: not known
   double mass_ = 0;
   bool has_forces_ = false;
   bool gravity_ = true, is_kinematic_ = false;
+  std::uint32_t still_steps_ = 0, slow_steps_ = 0;  // since it was faster
   Aabb moving_box_;
 };
 

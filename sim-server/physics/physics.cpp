@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <set>
 
+#include "physics/neighbours.h"
 #include "physics/shard.h"
 
 namespace sim {
@@ -51,9 +51,10 @@ class Physics::Impl {
   std::vector<std::unique_ptr<Shard>> shards_;             // outlive the models
   std::vector<std::unique_ptr<ModelInstance>> models_;
   std::vector<ShapeInstance*> statics_;
-  std::set<std::pair<ModelId, ModelId>> pairs_;
+  StaticIndex static_index_;
   std::uint64_t steps_ = 0;
   std::uint32_t moves_ = 0;
+  bool is_crowding_told_ = false;
   std::vector<std::string> complaints_;
 };
 
@@ -61,7 +62,6 @@ void Physics::Impl::build(std::vector<std::string>& notes, std::vector<std::stri
   models_.clear();
   shards_.clear();
   statics_.clear();
-  pairs_.clear();
   steps_ = 0;
   moves_ = 0;
   if (dropped != nullptr) {
@@ -108,13 +108,13 @@ void Physics::Impl::refresh_statics() {
       if (model->blueprint().assemblies[shape.assembly].is_anchored) statics_.push_back(&shape);
     }
   }
+  static_index_.build(statics_);
   for (const auto& model : models_) {
     if (model && has_bodies(*model)) model->left_neighbourhood = true;
   }
 }
 
 void Physics::Impl::update_neighbourhood(ModelInstance& model) {
-  model.left_neighbourhood = false;
   const Aabb& box = model.update_boxes();
   model.neighbourhood = box;
   model.near_statics.clear();
@@ -127,43 +127,39 @@ void Physics::Impl::update_neighbourhood(ModelInstance& model) {
   const double reach = margin + std::min(speed, 20.0) * 0.25;
   model.neighbourhood.low.array() -= reach;
   model.neighbourhood.high.array() += reach;
-  for (std::uint32_t i = 0; i < statics_.size(); ++i) {
-    if (statics_[i]->box.overlaps(model.neighbourhood)) model.near_statics.push_back(i);
-  }
+  static_index_.find(model.neighbourhood, model.near_statics);
 }
 
 void Physics::Impl::partition() {
-  std::vector<ModelInstance*> moving;
-  bool changed = false;
+  std::vector<ModelInstance*> moving, left;
   for (const auto& model : models_) {
     if (!model || !has_bodies(*model)) continue;
     moving.push_back(model.get());
-    if (!model->left_neighbourhood) continue;
-    changed = true;
-    std::erase_if(pairs_, [&](const auto& pair) { return pair.first == model->id() || pair.second == model->id(); });
+    if (model->left_neighbourhood) left.push_back(model.get());
   }
-  if (!changed) return;
-  for (auto* model : moving) {
-    if (!model->left_neighbourhood) continue;
-    update_neighbourhood(*model);
-    for (auto* other : moving) {
-      if (other != model && !other->left_neighbourhood && model->neighbourhood.overlaps(other->neighbourhood)) {
-        pairs_.insert(std::minmax(model->id(), other->id()));
-      }
+  if (left.empty()) return;
+  for (auto* model : left) {
+    for (auto* other : model->neighbours) {
+      if (!other->left_neighbourhood) std::erase(other->neighbours, model);
     }
+    model->neighbours.clear();
   }
+  for (auto* model : left) update_neighbourhood(*model);
+  if (const auto* crowded = find_neighbours(moving, left); crowded != nullptr && !is_crowding_told_) {
+    is_crowding_told_ = true;
+    complaints_.push_back(fmt::format("model {}: lies near more than {} others, some of which it does not touch",
+                                      crowded->blueprint().model->name, most_neighbours));
+  }
+  for (auto* model : left) model->left_neighbourhood = false;
   std::vector<std::uint32_t> parents(models_.size());
   std::iota(parents.begin(), parents.end(), 0U);
-  for (const auto& [a, b] : pairs_) {
-    const auto x = root(parents, a), y = root(parents, b);
-    parents[std::max(x, y)] = std::min(x, y);
+  for (const auto* model : moving) {
+    for (const auto* other : model->neighbours) {
+      const auto x = root(parents, model->id()), y = root(parents, other->id());
+      parents[std::max(x, y)] = std::min(x, y);
+    }
   }
   if (shards_.size() > 1) share_out(parents);
-  for (auto& shard : shards_) shard->pairs.clear();
-  for (const auto& [a, b] : pairs_) {
-    auto &first = at(a), &second = at(b);
-    shards_[static_cast<std::size_t>(first.shard)]->pairs.emplace_back(&first, &second);
-  }
 }
 
 // Models that may meet go to one shard; shards that have become too full give models away.
@@ -302,13 +298,10 @@ base::Result<ModelId> Physics::spawn(std::shared_ptr<const ModelDef> model, std:
 void Physics::remove(ModelId model) {
   auto& instance = impl_->models_[model];
   if (instance->shard >= 0) std::erase(impl_->shards_[static_cast<std::size_t>(instance->shard)]->models, instance.get());
-  std::erase_if(impl_->pairs_, [&](const auto& pair) { return pair.first == model || pair.second == model; });
+  for (auto* neighbour : instance->neighbours) std::erase(neighbour->neighbours, instance.get());
   // What rested on it must notice.
   for (const auto& other : impl_->models_) {
     if (other && impl_->has_bodies(*other)) other->wake();
-  }
-  for (auto& shard : impl_->shards_) {
-    std::erase_if(shard->pairs, [&](const auto& pair) { return pair.first->id() == model || pair.second->id() == model; });
   }
   instance.reset();
   impl_->refresh_statics();
@@ -390,13 +383,13 @@ base::Result<void> Physics::set_model_twist(ModelId model, const Twist& twist) {
   ModelInstance& instance = impl_->at(model);
   if (!impl_->has_bodies(instance)) return base::Error{fmt::format("model {}: is static", def(model).name)};
   const Eigen::Vector3d origin = link_pose(canonical_link(model)).translation();
+  instance.wake();
   for (std::uint32_t i = 0; i < instance.body_count(); ++i) {
     const dBodyID body = instance.body(i);
     if (body == nullptr) continue;
     const Eigen::Vector3d v = twist.linear + twist.angular.cross(ode::vector(dBodyGetPosition(body)) - origin);
     dBodySetLinearVel(body, v.x(), v.y(), v.z());
     dBodySetAngularVel(body, twist.angular.x(), twist.angular.y(), twist.angular.z());
-    dBodyEnable(body);
   }
   return {};
 }
@@ -409,7 +402,7 @@ base::Result<void> Physics::add_wrench(LinkId link, const Eigen::Vector3d& force
   const dBodyID body = instance.body_count() == 0 ? nullptr : instance.body(instance.blueprint().assembly_of_link[link.link]);
   if (body == nullptr)
     return base::Error{fmt::format("model {}: link {} cannot move", def(link.model).name, def(link.model).links[link.link].name)};
-  dBodyEnable(body);
+  instance.wake();
   dBodyAddForce(body, force.x(), force.y(), force.z());
   dBodyAddTorque(body, torque.x(), torque.y(), torque.z());
   return {};
@@ -442,19 +435,23 @@ void Physics::record_forces(ModelId model) { impl_->at(model).records_forces = t
 void Physics::add_to(StateHash& hash) const {
   hash.add(impl_->steps_);
   for (const auto& model : impl_->models_) {
-    if (!model) continue;
-    hash.add(std::uint64_t{model->id()});
-    hash.add(model_pose(model->id()).translation());
-    for (const auto& state : model->save()) {
-      hash.add(state.position);
-      hash.add(state.orientation);
-      hash.add(state.linear);
-      hash.add(state.angular);
-      hash.add(std::uint64_t{state.is_awake});
-    }
-    for (const auto& joint : model->joints()) {
-      for (const int axis : {0, 1}) hash.add(joint.drive(axis).velocity), hash.add(joint.drive(axis).effort);
-    }
+    if (model) add_to(hash, model->id());
+  }
+}
+
+void Physics::add_to(StateHash& hash, ModelId id) const {
+  const ModelInstance& model = impl_->at(id);
+  hash.add(std::uint64_t{id});
+  hash.add(model_pose(id).translation());
+  for (const auto& state : model.save()) {
+    hash.add(state.position);
+    hash.add(state.orientation);
+    hash.add(state.linear);
+    hash.add(state.angular);
+    hash.add(std::uint64_t{state.is_awake});
+  }
+  for (const auto& joint : model.joints()) {
+    for (const int axis : {0, 1}) hash.add(joint.drive(axis).velocity), hash.add(joint.drive(axis).effort);
   }
 }
 

@@ -133,6 +133,8 @@ class Physics {
 
   // Everything that decides how the run goes on.
   void add_to(StateHash& hash) const;
+  // The same of one model.
+  void add_to(StateHash& hash, ModelId model) const;
   PhysicsStatistics statistics() const;
   // One line for each model that had to be put back because it left the numbers, since the last call.
   std::vector<std::string> take_complaints();

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <numbers>
 
-#include "physics/mesh_contacts.h"
-
 namespace sim {
 
 namespace {
@@ -47,7 +45,7 @@ base::Result<std::shared_ptr<ShapeStore::Mesh>> ShapeStore::mesh(const GeometryD
   mesh->vertices.reserve((*triangles)->vertices.size() * 3);
   for (const auto& v : (*triangles)->vertices) mesh->vertices.insert(mesh->vertices.end(), {v.x(), v.y(), v.z()});
   for (const auto& t : (*triangles)->triangles) mesh->indexes.insert(mesh->indexes.end(), {t[0], t[1], t[2]});
-  mesh->probes = probes_of(**triangles);
+  mesh->triangles = *triangles;
   mesh->data = ode::TriMeshData(dGeomTriMeshDataCreate());
   dGeomTriMeshDataBuildDouble(mesh->data.id(), mesh->vertices.data(), 3 * sizeof(double), static_cast<int>(mesh->vertices.size() / 3),
                               mesh->indexes.data(), static_cast<int>(mesh->indexes.size()), 3 * sizeof(dTriIndex));

@@ -11,9 +11,7 @@
 
 namespace sim {
 
-struct MeshProbe {
-  Eigen::Vector3d place, outward;  // in the mesh
-};
+class Solid;
 
 // ODE's form of meshes and height maps, shared by all shapes made from them.
 class ShapeStore {
@@ -23,7 +21,8 @@ class ShapeStore {
     ode::TriMeshData data;
     std::vector<double> vertices;
     std::vector<dTriIndex> indexes;
-    std::vector<MeshProbe> probes;  // none for very fine meshes
+    std::shared_ptr<const TriangleMesh> triangles;
+    std::shared_ptr<const Solid> solid;  // once it has met another mesh
   };
   struct Field {
     ode::HeightfieldData data;
@@ -56,6 +55,7 @@ struct ShapeInstance {
   bool needs_lock = false;  // ODE collides it through global buffers
   bool is_wheel = false;    // a cylinder that turns about its own axis in a joint
   Aabb box;
+  std::uint32_t partners = 0;  // moving shapes that it touches in this step
   std::shared_ptr<void> data;
 };
 

@@ -10,10 +10,12 @@ namespace sim {
 namespace {
 
 constexpr int most_contacts = 24;  // of one pair of shapes, before they are thinned out
-// With more contacts the exact solver, which is cubic in the size of a heap, would take seconds.
-constexpr std::uint32_t exact_contacts = 200;
-// Moving bodies that lie on each other: there the exact solver's handling of friction goes wrong (a stack of ten boxes falls at once).
-constexpr std::uint32_t stacked_contacts = 4;
+// With more contacts at once the iterative solver takes fewer rounds, unless the world asks for that solver.
+constexpr double affordable_contacts = 3000;
+constexpr int least_iterations = 10;
+// As many equal balls have room around one. Shapes that both touch more moving ones are in a muddle, of which some contacts are enough.
+constexpr std::uint32_t most_partners = 12;
+constexpr double mesh_correction = 0.1;  // [m/s] at most between meshes that are in each other
 
 // ODE's mesh and height field colliders work in global buffers.
 base::Turn<>& shared_collider() {
@@ -50,15 +52,28 @@ bool can_be_pushed(dGeomID geom) {
   return body != nullptr && dBodyIsKinematic(body) == 0;
 }
 
+bool is_mesh(const ShapeInstance& shape) { return dGeomGetClass(shape.geom.id()) == dTriMeshClass; }
+
+// Made when two meshes meet for the first time: most never do.
+const Solid& solid_of(const ShapeInstance& shape) {
+  auto& mesh = *static_cast<ShapeStore::Mesh*>(shape.data.get());
+  const auto mine = shared_collider().take();
+  if (!mesh.solid) mesh.solid = std::make_shared<const Solid>(*mesh.triangles);
+  return *mesh.solid;
+}
+
 }  // namespace
 
 Shard::Shard(const PhysicsDef& physics)
-    : physics_(physics), gravity_(physics.gravity.norm()), erp_(physics.erp.value_or(0.2)), contact_joints_(dJointGroupCreate(0)) {
+    : physics_(physics),
+      gravity_(physics.gravity.norm()),
+      erp_(physics.erp.value_or(0.2)),
+      contact_joints_(dJointGroupCreate(0)),
+      groups_(physics) {
   const dWorldID w = world_.id();
   dWorldSetGravity(w, physics.gravity.x(), physics.gravity.y(), physics.gravity.z());
   dWorldSetERP(w, erp_);
   dWorldSetCFM(w, std::max(physics.cfm.value_or(1e-9), 1e-10));
-  dWorldSetQuickStepNumIterations(w, std::clamp(physics.iterations, 1, 10000));
   if (physics.sor > 0) dWorldSetQuickStepW(w, physics.sor);
   dWorldSetContactSurfaceLayer(w, 0);  // allowed_depth() decides
   // Bodies that start inside each other are pushed apart slowly; SDF's default of 100 m/s would throw them out of the world.
@@ -66,65 +81,113 @@ Shard::Shard(const PhysicsDef& physics)
 }
 
 void Shard::find_active() {
-  active_.assign(models.size(), false);
-  const auto index = [&](const ModelInstance* model) {
-    return static_cast<std::size_t>(
-        std::lower_bound(models.begin(), models.end(), model, [](auto* a, auto* b) { return a->id() < b->id(); }) - models.begin());
-  };
-  for (std::size_t i = 0; i < models.size(); ++i) active_[i] = models[i]->is_awake();
+  for (auto* model : models) {
+    if (!model->may_be_awake) continue;
+    model->may_be_awake = model->is_awake();
+    if (!model->may_be_awake) continue;
+    model->is_active = true;
+    active_.push_back(model);
+  }
+  const std::size_t awake = active_.size();
   // What an awake model may touch takes part, and what that may touch, and so on.
-  for (bool changed = !pairs.empty(); changed;) {
-    changed = false;
-    for (const auto& [a, b] : pairs) {
-      const auto i = index(a), k = index(b);
-      if (active_[i] != active_[k] && a->moving_box().overlaps(b->moving_box())) active_[i] = active_[k] = changed = true;
+  for (std::size_t i = 0; i < active_.size(); ++i) {
+    for (auto* other : active_[i]->neighbours) {
+      if (other->is_active || !active_[i]->moving_box().overlaps(other->moving_box())) continue;
+      other->is_active = true;
+      active_.push_back(other);
     }
   }
+  if (active_.size() > awake) std::sort(active_.begin(), active_.end(), [](auto* a, auto* b) { return a->id() < b->id(); });
 }
 
 void Shard::step(const std::vector<ShapeInstance*>& statics, std::uint64_t step_count) {
   ode::prepare_thread();
-  contacts = moving_contacts_ = 0;
+  contacts = 0;
   has_left = is_insane = false;
-  if (models.empty()) return;
   find_active();
-  bool any = false;
-  for (std::size_t i = 0; i < models.size(); ++i) {
-    if (!active_[i]) continue;
-    any = true;
-    std::swap(models[i]->contacts, models[i]->previous_contacts);
-    models[i]->contacts.clear();
+  if (active_.empty()) return;
+  for (auto* model : active_) {
+    std::swap(model->contacts, model->previous_contacts);
+    model->contacts.clear();
+    for (auto& shape : model->shapes()) shape.partners = 0;
+    groups_.add(*model);
   }
-  if (!any) return;
-  for (std::size_t i = 0; i < models.size(); ++i) {
-    if (active_[i]) collide_model(*models[i], statics);
-  }
-  for (const auto& [a, b] : pairs) {
-    if (a->moving_box().overlaps(b->moving_box()) && (a->is_awake() || b->is_awake() || !a->contacts.empty())) collide_pair(*a, *b);
-  }
-  for (auto* model : models) model->apply_forces(contact_joints_.id(), physics_);
-  const bool is_heap = contacts > exact_contacts || moving_contacts_ >= stacked_contacts;
-  if (physics_.solver == PhysicsDef::Solver::iterative || (physics_.solver == PhysicsDef::Solver::automatic && is_heap)) {
-    const auto mine = shared_random().take();
-    dRandSetSeed(static_cast<unsigned long>(step_count) * 2654435761U + 1);
-    dWorldQuickStep(world_.id(), physics_.step);
-  } else {
-    dWorldStep(world_.id(), physics_.step);
-  }
+  find_contacts(statics);
+  for (auto* model : active_) model->apply_forces(contact_joints_.id(), physics_);
+  groups_.keep_energies();
+  solve(step_count);
+  groups_.limit_energies();
+  groups_.settle();
+  groups_.clear();
   read_forces();
   dJointGroupEmpty(contact_joints_.id());
   feedback_.clear();
-  for (std::size_t i = 0; i < models.size(); ++i) {
-    if (!active_[i]) continue;
-    ModelInstance& model = *models[i];
-    if (!model.is_sane()) {
+  finish();
+}
+
+void Shard::find_contacts(const std::vector<ShapeInstance*>& statics) {
+  for (auto* model : active_) collide_model(*model, statics);
+  for (auto* model : active_) {
+    for (auto* other : model->neighbours) {
+      if (other->id() < model->id() || !other->is_active || !model->moving_box().overlaps(other->moving_box())) continue;
+      if (model->may_be_awake || other->may_be_awake || !model->contacts.empty()) collide_pair(*model, *other);
+    }
+  }
+}
+
+void Shard::solve_exactly() { dWorldStep(world_.id(), physics_.step); }
+
+void Shard::solve_iteratively(std::uint64_t step_count) {
+  const auto mine = shared_random().take();
+  dRandSetSeed(static_cast<unsigned long>(step_count) * 2654435761U + 1);
+  const bool is_free = physics_.solver == PhysicsDef::Solver::automatic;
+  const int asked = std::clamp(physics_.iterations, 1, 10000);
+  const auto affordable = static_cast<int>(static_cast<double>(asked) * affordable_contacts / std::max(groups_.contacts(), 1U));
+  dWorldSetQuickStepNumIterations(world_.id(), is_free ? std::clamp(affordable, std::min(asked, least_iterations), asked) : asked);
+  dWorldQuickStep(world_.id(), physics_.step);
+}
+
+// Each group by its solver: the others sleep meanwhile.
+void Shard::solve(std::uint64_t step_count) {
+  const auto shares = groups_.share_out();
+  if (shares.iterative == 0) return solve_exactly();
+  const auto is_held = [](const ModelInstance* model) { return model->has_stand_ins(); };
+  if (shares.exact == 0 || std::any_of(active_.begin(), active_.end(), is_held)) return solve_iteratively(step_count);
+  const auto lay_down = [&](bool iterative) {
+    for (auto* model : active_) {
+      for (std::uint32_t i = 0; i < model->body_count() && model->is_iterative == iterative; ++i) {
+        const dBodyID body = model->body(i);
+        if (body == nullptr || dBodyIsEnabled(body) == 0) continue;
+        dBodyDisable(body);
+        lying_.push_back(body);
+      }
+    }
+  };
+  const auto get_up = [&] {
+    for (const dBodyID body : lying_) dBodyEnable(body);
+    lying_.clear();
+  };
+  lay_down(true);
+  solve_exactly();
+  get_up();
+  lay_down(false);
+  solve_iteratively(step_count);
+  get_up();
+}
+
+void Shard::finish() {
+  for (auto* model : active_) {
+    if (!model->is_sane()) {
       is_insane = true;
       continue;
     }
-    // It fell asleep before this step was solved: what it touches stays as it was, with the forces.
-    if (!model.is_awake()) std::swap(model.contacts, model.previous_contacts);
-    if (!model.neighbourhood.contains(model.update_boxes())) model.left_neighbourhood = has_left = true;
+    // It slept in this step: what it touches stays as it was, with the forces.
+    if (!model->may_be_awake && !model->is_awake()) std::swap(model->contacts, model->previous_contacts);
+    model->may_be_awake = true;  // ODE wakes what awake bodies touch
+    if (!model->neighbourhood.contains(model->update_boxes())) model->left_neighbourhood = has_left = true;
   }
+  for (auto* model : active_) model->is_active = false;
+  active_.clear();
 }
 
 void Shard::collide_model(ModelInstance& model, const std::vector<ShapeInstance*>& statics) {
@@ -160,14 +223,17 @@ void Shard::collide_pair(ModelInstance& a, ModelInstance& b) {
 
 void Shard::collide(ModelInstance& model_a, ShapeInstance& a, ModelInstance* model_b, ShapeInstance& b) {
   if (!masks_match(*a.surface, *b.surface)) return;
+  const std::uint32_t partners = model_b != nullptr ? std::min(a.partners, b.partners) : 0;
+  if (partners >= most_partners) return;
   dContactGeom found[most_contacts];
   const int most = std::clamp(physics_.max_contacts, 1, most_contacts);
   int count = 0;
-  if (a.needs_lock || b.needs_lock) {
+  if (is_mesh(a) && is_mesh(b)) {
+    const Solid &solid_a = solid_of(a), &solid_b = solid_of(b);
+    count = collide_meshes(a, solid_a, b, solid_b, most, found);
+  } else if (a.needs_lock || b.needs_lock) {
     const auto mine = shared_collider().take();
-    const auto is_mesh = [](const ShapeInstance& shape) { return dGeomGetClass(shape.geom.id()) == dTriMeshClass; };
-    count = is_mesh(a) && is_mesh(b) ? collide_meshes(a, b, most, found)
-                                     : dCollide(a.geom.id(), b.geom.id(), most, found, sizeof(dContactGeom));
+    count = dCollide(a.geom.id(), b.geom.id(), most, found, sizeof(dContactGeom));
   } else {
     count = dCollide(a.geom.id(), b.geom.id(), most, found, sizeof(dContactGeom));
   }
@@ -175,6 +241,8 @@ void Shard::collide(ModelInstance& model_a, ShapeInstance& a, ModelInstance* mod
   if (a.is_wheel) count = merge_under_wheel(a.geom.id(), found, count);
   if (b.is_wheel) count = merge_under_wheel(b.geom.id(), found, count);
   count = reduce(found, count);
+  if (model_b != nullptr) ++a.partners, ++b.partners;
+  if (partners >= most_partners / 2) count = 1;
   dSurfaceParameters surface = combine(*a.surface, *b.surface, physics_.step);
   if (a.is_wheel || b.is_wheel) surface.mu = std::min(surface.mu, best_grip), surface.mu2 = std::min(surface.mu2, best_grip);
   const bool has_force = !a.surface->collide_without_contact && !b.surface->collide_without_contact;
@@ -188,7 +256,6 @@ void Shard::collide(ModelInstance& model_a, ShapeInstance& a, ModelInstance* mod
 void Shard::add_contact(ModelInstance& model_a, ShapeInstance& a, ModelInstance* model_b, ShapeInstance& b, const dContactGeom& geometry,
                         const dSurfaceParameters& surface, bool has_force) {
   ++contacts;
-  if (model_b != nullptr) ++moving_contacts_;
   Contact contact;
   contact.link = a.link;
   contact.other = b.link;
@@ -212,6 +279,9 @@ void Shard::add_contact(ModelInstance& model_a, ShapeInstance& a, ModelInstance*
   joint_contact.surface = surface;
   joint_contact.geom = geometry;
   joint_contact.geom.depth = std::max(geometry.depth - allowed_depth(*a.surface, *b.surface, surface), 0.0);
+  groups_.touch(model_a, model_b != &model_a ? model_b : nullptr, is_mesh(a) || is_mesh(b), joint_contact.geom.depth, surface);
+  // What meshes are pushed apart with stays in their motion.
+  if (is_mesh(a) && is_mesh(b)) joint_contact.geom.depth = std::min(joint_contact.geom.depth, mesh_correction * physics_.step / erp_);
   const ShapeInstance* wheel = a.is_wheel ? &a : b.is_wheel ? &b : nullptr;
   if (wheel != nullptr ? wheel_friction_direction(*wheel->surface, wheel->geom.id(), surface, geometry.normal, joint_contact.fdir1)
                        : friction_direction(*a.surface, a.geom.id(), *b.surface, b.geom.id(), geometry.normal, joint_contact.fdir1)) {

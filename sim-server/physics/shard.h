@@ -2,13 +2,14 @@
 // stepped by different threads at the same time; they share static shapes, which nobody changes meanwhile.
 //
 // Moving models are found near each other by boxes of their own instead of ODE's quad-tree space, and models that can meet share a shard.
-// When many moving bodies touch, a shard takes ODE's quick step for the step.
+// Each group of models that touch is solved exactly, or by ODE's quick step where many moving bodies lie on each other. What sleeps costs
+// nothing.
 #pragma once
 
 #include <deque>
-#include <utility>
 #include <vector>
 
+#include "physics/contact_groups.h"
 #include "physics/model_instance.h"
 #include "physics/ode.h"
 
@@ -23,15 +24,18 @@ class Shard {
   dWorldID world() const { return world_.id(); }
   void step(const std::vector<ShapeInstance*>& statics, std::uint64_t step_count);
 
-  // Ascending by id. Pairs are those whose neighbourhoods overlap.
-  std::vector<ModelInstance*> models;
-  std::vector<std::pair<ModelInstance*, ModelInstance*>> pairs;
-  bool has_left = false;   // some model left its neighbourhood in the last step
-  bool is_insane = false;  // some model has to be put back
+  std::vector<ModelInstance*> models;  // ascending by id
+  bool has_left = false;               // some model left its neighbourhood in the last step
+  bool is_insane = false;              // some model has to be put back
   std::uint32_t contacts = 0;
 
  private:
   void find_active();
+  void find_contacts(const std::vector<ShapeInstance*>& statics);
+  void solve(std::uint64_t step_count);
+  void solve_exactly();
+  void solve_iteratively(std::uint64_t step_count);
+  void finish();
   void collide_model(ModelInstance& model, const std::vector<ShapeInstance*>& statics);
   void collide_pair(ModelInstance& a, ModelInstance& b);
   // `a` has a body.
@@ -50,8 +54,9 @@ class Shard {
   ode::World world_;
   ode::JointGroup contact_joints_;
   std::deque<Feedback> feedback_;
-  std::vector<bool> active_;
-  std::uint32_t moving_contacts_ = 0;  // between two bodies that can move
+  ContactGroups groups_;
+  std::vector<dBodyID> lying_;          // those of the other solver
+  std::vector<ModelInstance*> active_;  // models that take part in a step, during it, ascending by id
 };
 
 }  // namespace sim

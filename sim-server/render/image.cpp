@@ -14,6 +14,7 @@
 #include <memory>
 
 #include "base/text.h"
+#include "base/whole_file.h"
 #include "render/dds.h"
 
 namespace sim {
@@ -117,49 +118,41 @@ base::Result<Image> read_image(const std::filesystem::path& file) {
 }
 
 namespace {
-// Where a symbolic link leads, also when nothing is there yet.
-std::filesystem::path behind_links(std::filesystem::path file) {
-  constexpr int most = 40;
-  std::error_code error;
-  for (int i = 0; i < most && std::filesystem::is_symlink(file, error); ++i) {
-    const auto next = std::filesystem::read_symlink(file, error);
-    if (error) break;
-    file = file.parent_path() / next;
+// Without alpha when every pixel is opaque.
+struct PngWriter : PngReader {
+  std::vector<std::uint8_t> rgb;
+  const void* pixels;
+
+  explicit PngWriter(const Image& from) : pixels(from.rgba.data()) {
+    bool is_opaque = true;
+    for (std::size_t i = 3; i < from.rgba.size(); i += 4) is_opaque = is_opaque && from.rgba[i] == 255;
+    if (is_opaque) {
+      rgb.reserve(from.rgba.size() / 4 * 3);
+      for (std::size_t i = 0; i < from.rgba.size(); i += 4) rgb.insert(rgb.end(), &from.rgba[i], &from.rgba[i] + 3);
+      pixels = rgb.data();
+    }
+    image.width = static_cast<png_uint_32>(from.width);
+    image.height = static_cast<png_uint_32>(from.height);
+    image.format = is_opaque ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
   }
-  return file;
-}
+};
 }  // namespace
 
+base::Result<std::vector<std::uint8_t>> encode_png(const Image& image, const std::string& name) {
+  if (image.width < 1 || image.height < 1 || image.rgba.size() != image.size_bytes()) return bad(name, "has no pixels");
+  PngWriter writer(image);
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(writer.image);
+  std::vector<std::uint8_t> bytes(size);
+  if (png_image_write_to_memory(&writer.image, bytes.data(), &size, 0, writer.pixels, 0, nullptr) == 0)
+    return bad(name, writer.image.message);
+  bytes.resize(size);
+  return bytes;
+}
+
 base::Result<void> write_png(const Image& image, const std::filesystem::path& file) {
-  if (image.width < 1 || image.height < 1 || image.rgba.size() != image.size_bytes()) return bad(file.string(), "has no pixels");
-  bool is_opaque = true;
-  for (std::size_t i = 3; i < image.rgba.size(); i += 4) is_opaque = is_opaque && image.rgba[i] == 255;
-  std::vector<std::uint8_t> rgb;
-  if (is_opaque) {
-    rgb.reserve(image.rgba.size() / 4 * 3);
-    for (std::size_t i = 0; i < image.rgba.size(); i += 4) rgb.insert(rgb.end(), &image.rgba[i], &image.rgba[i] + 3);
-  }
-  PngReader writer;
-  writer.image.width = static_cast<png_uint_32>(image.width);
-  writer.image.height = static_cast<png_uint_32>(image.height);
-  writer.image.format = is_opaque ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
-  // The whole picture or none is seen under its name. A link stays one; a device or a pipe must not become a file.
-  std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
-    return bad(file.string(), std::filesystem::is_directory(status) ? "is a folder" : "is no ordinary file");
-  const auto target = behind_links(file);
-  const std::string part = target.string() + ".part" + std::to_string(::getpid());
-  const void* pixels = is_opaque ? rgb.data() : image.rgba.data();
-  if (png_image_write_to_file(&writer.image, part.c_str(), 0, pixels, 0, nullptr) == 0) {
-    std::filesystem::remove(part, error);
-    return bad(file.string(), writer.image.message);
-  }
-  std::filesystem::rename(part, target, error);
-  if (!error) return {};
-  const std::string why = error.message();
-  std::filesystem::remove(part, error);
-  return bad(file.string(), why);
+  const auto octets = encode_png(image, file.string());
+  if (!octets) return octets.error();
+  return base::write_whole_file(file, {reinterpret_cast<const char*>(octets->data()), octets->size()});
 }
 
 Image halve(const Image& image) {

@@ -23,6 +23,9 @@ struct Image {
 base::Result<Image> read_image(const std::filesystem::path& file);
 base::Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& name);
 
+// A PNG: RGB when every pixel is opaque, otherwise RGBA.
+base::Result<std::vector<std::uint8_t>> encode_png(const Image& image, const std::string& name = "in memory");  // name: for messages
+
 // Writes RGB when every pixel is opaque, otherwise RGBA; the file appears complete or not at all.
 base::Result<void> write_png(const Image& image, const std::filesystem::path& file);
 

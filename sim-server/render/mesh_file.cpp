@@ -314,6 +314,8 @@ base::Result<MeshFile> read_file(const MeshShape& shape, Skin* skin, const Model
       return base::Error{shape.submesh.empty() ? fmt::format("mesh {}: has no triangle", shape.path)
                                                : fmt::format("mesh {}: has no submesh {}", shape.path, base::in_quotes(shape.submesh))};
     return file;
+  } catch (const std::bad_alloc&) {
+    return base::Error{fmt::format("mesh {}: is too large for the memory", shape.path)};
   } catch (const std::exception& e) {
     return base::Error{fmt::format("mesh {}: {}", shape.path, base::in_quotes(e.what()))};
   }

@@ -27,9 +27,10 @@ struct Options {
   double rtf = 1;
   std::uint32_t wait_for = 0;
   double participant_timeout = 0, duration = -1;
+  double hash_period = 0.01;  // [s]
   std::uint64_t seed = 1;
-  std::vector<std::string> resource_paths;
-  std::string record, shm_mode = "0600", shm_group;
+  std::vector<std::string> resource_paths, faults;
+  std::string record, hash_log, shm_mode = "0600", shm_group;
   std::uint64_t shm_limit = shm::ServerOptions::usual_most_bytes >> 20U;  // [MiB]
   int verbosity = 1, threads = 0;
 };
@@ -135,7 +136,9 @@ int run(const Options& options, Signals& signals) {
 
   std::vector<std::string> notes, left_out;
   const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 8U));
-  auto simulation = Simulation::create(world, **server, {.seed = options.seed, .threads = threads}, notes, left_out);
+  std::vector<FaultOrder> faults;
+  for (const auto& text : options.faults) faults.push_back(parse_fault_order(text).value());  // checked with the command line
+  auto simulation = Simulation::create(world, **server, {.seed = options.seed, .threads = threads, .faults = faults}, notes, left_out);
   if (!simulation) return fail(simulation.error().message);
   for (const auto* lines : {&left_out, &notes}) {
     if (lines == &notes && options.verbosity == 0 && !options.check) continue;
@@ -163,6 +166,12 @@ int run(const Options& options, Signals& signals) {
     if (!opened) return fail(opened.error().message);
     recorder = std::move(*opened);
   }
+  std::optional<WorldHashes> hashes;
+  if (!options.hash_log.empty()) {
+    auto opened = WorldHashes::open(options.hash_log, std::chrono::nanoseconds(std::llround(options.hash_period * 1e9)));
+    if (!opened) return fail(opened.error().message);
+    hashes = std::move(*opened);
+  }
   LoopOptions loop_options;
   loop_options.rtf = options.rtf;
   loop_options.is_paused = options.is_paused;
@@ -175,6 +184,7 @@ int run(const Options& options, Signals& signals) {
   if (options.duration >= 0) loop_options.duration = std::chrono::nanoseconds(std::llround(options.duration * 1e9));
   loop_options.has_status_line = isatty(STDERR_FILENO) != 0;
   ServerLoop loop(**simulation, **server, **iface, model_path, loop_options, std::move(recorder));
+  if (hashes) loop.keep_hashes(std::move(*hashes));
   signals.watch(&loop);
   const bool is_complete = loop.run();
   signals.end();
@@ -209,8 +219,20 @@ int main(int argc, char** argv) {
                  "folder with models; repeatable (also RTMSIM_RESOURCE_PATH, GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH)")
       ->expected(1)
       ->take_all();
+  app.add_option(
+         "--fault", options.faults,
+         "KIND:FROM:FOR:AMOUNT:IFACE: what is out of order on purpose, from then on for so many simulated seconds (0: always); repeatable")
+      ->expected(1)
+      ->take_all()
+      ->check([](const std::string& text) {
+        const auto order = sim::parse_fault_order(text);
+        return order ? std::string() : order.error().message;
+      });
   app.add_flag("--check", options.check, "load, list every finding, exit with 1 when something had to be dropped");
   app.add_flag("--hash", options.print_hash, "print the hash of the final state");
+  app.add_option("--hash-log", options.hash_log, "write a hash of each model and device over time; rtse diff compares two such files");
+  app.add_option("--hash-period", options.hash_period, "simulated seconds between two hashes (0.01)")
+      ->check(base::number_between(1e-6, 1e6));
   app.add_option("--record", options.record,
                  "write the poses of moving models, ten times a simulated second, as text: time model x y z qw qx qy qz");
   app.add_option("--threads", options.threads, "threads for physics and sensors (0: one per core); no influence on results")
@@ -226,7 +248,9 @@ int main(int argc, char** argv) {
   Signals signals;
   try {
     return run(options, signals);
-  } catch (const std::exception& e) {  // out of memory and the like, from libraries
+  } catch (const std::bad_alloc&) {
+    return fail(options.world + ": the memory is not enough for this world");
+  } catch (const std::exception& e) {  // from libraries
     return fail(e.what());
   }
 }

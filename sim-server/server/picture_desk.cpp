@@ -51,15 +51,32 @@ shm::Reply PictureDesk::make(const Order& order) {
     reply.message = error.message;
     return reply;
   };
+  const auto* plan = std::get_if<ExportPlan>(&order.work);
+  auto octets = plan != nullptr ? write_export(*plan) : draw(std::get<Picture>(order.work));
+  if (!octets) return fail(octets.error());
+  if (octets->size() > shm::max_text) {
+    const std::string what = plan != nullptr ? "export: " : "picture: ";
+    return fail({what + std::to_string(octets->size() >> 20U) + " MiB, at most 64 MiB can be handed over"});
+  }
+  reply.text = std::move(*octets);
+  return reply;
+}
+
+base::Result<std::string> PictureDesk::draw(const Picture& picture) {
   if (!renderer_) {
     auto opened = Renderer::open();
-    if (!opened) return fail(opened.error());
+    if (!opened) return opened.error();
     renderer_ = std::move(*opened);
   }
-  const auto image = draw_picture(*renderer_, order.plan);
-  if (!image) return fail(image.error());
-  const auto written = write_png(*image, order.file);
-  return written ? reply : fail(written.error());
+  const auto image = draw_picture(*renderer_, picture.plan);
+  if (!image) return image.error();
+  if (!picture.file.empty()) {
+    const auto written = write_png(*image, picture.file);
+    return written ? base::Result<std::string>("") : written.error();
+  }
+  const auto octets = encode_png(*image, "of the world");
+  if (!octets) return octets.error();
+  return std::string(octets->begin(), octets->end());
 }
 
 }  // namespace sim

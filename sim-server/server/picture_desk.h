@@ -1,5 +1,5 @@
-// Where ordered pictures are drawn and written, in a thread of their own: a picture takes as long as many steps, and time goes on
-// meanwhile. The stepping thread only, but for what `on_done` does.
+// Where ordered pictures are drawn and written, and exports made, in a thread of their own: a picture takes as long as many steps, and time
+// goes on meanwhile. The stepping thread only, but for what `on_done` does.
 #pragma once
 
 #include <condition_variable>
@@ -8,9 +8,11 @@
 #include <memory>
 #include <optional>
 #include <thread>
+#include <variant>
 #include <vector>
 
 #include "base/guarded.h"
+#include "server/exchange.h"
 #include "server/picture.h"
 #include "shm/request_board.h"
 
@@ -25,11 +27,14 @@ class PictureDesk {
   PictureDesk(const PictureDesk&) = delete;
   PictureDesk& operator=(const PictureDesk&) = delete;
 
+  struct Picture {
+    PicturePlan plan;
+    std::filesystem::path file;  // empty: the PNG becomes the text of the reply
+  };
   struct Order {
     shm::RequestTicket ticket;
-    PicturePlan plan;
-    std::filesystem::path file;
-    shm::Reply reply;  // when all goes well
+    std::variant<Picture, ExportPlan> work;
+    shm::Reply reply;  // when all goes well; an export becomes its text
   };
   void take(Order order);
   // One load when nothing is ordered.
@@ -47,6 +52,8 @@ class PictureDesk {
   };
   void run();
   shm::Reply make(const Order& order);
+  // The text of the reply.
+  base::Result<std::string> draw(const Picture& picture);
 
   std::function<void()> on_done_;
   std::size_t under_way_ = 0;

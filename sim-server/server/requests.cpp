@@ -32,7 +32,8 @@ bool is_one_of(const shm::Request& request) {
 // May be served in the middle of a tick: the run goes on as without it.
 bool leaves_the_world_alone(const shm::Request& request) {
   return is_one_of<shm::PauseRequest, shm::RunRequest, shm::GetPoseRequest, shm::GetVelocityRequest, shm::ListRequest, shm::TreeRequest,
-                   shm::StatsRequest, shm::SetRtfRequest, shm::ContactsRequest, shm::DropParticipantRequest>(request);
+                   shm::StatsRequest, shm::SetRtfRequest, shm::ContactsRequest, shm::DropParticipantRequest, shm::ExportRequest,
+                   shm::PosesRequest>(request);
 }
 
 // How long a request that needs the world to stand between two steps waits for a tick to end. Clients wait for ten seconds.
@@ -135,7 +136,9 @@ struct ServerLoop::Handler {
       return refused(shm::RequestStatus::bad_request,
                      "name of a model must have at most " + std::to_string(shm::max_name_length) + " bytes");
     }
-    auto loaded = load_model(request.sdf, request.name, pose, loop.model_path_);
+    // What others ask for is made of what the model path offers to everybody.
+    const ModelPath& path = loop.model_path_;
+    auto loaded = load_model(request.sdf, request.name, pose, loop.is_shared() ? path.confined() : path);
     if (!loaded) return failed(loaded.error());
     // A name that nobody asked for gives way.
     if (request.name.empty()) loaded->model.name = unused_name(loaded->model.name);
@@ -161,17 +164,33 @@ struct ServerLoop::Handler {
   }
   // Of this moment; answered when it is drawn and written.
   shm::Reply operator()(const shm::ScreenshotRequest& request) {
+    if (loop.is_shared() && !request.path.empty()) {
+      return refused(shm::RequestStatus::unsupported,
+                     "a server that is shared with other users (--shm-mode) writes no files: ask without a path for the picture itself");
+    }
     const auto& actors = simulation.world().actors;
     const bool is_actor = std::any_of(actors.begin(), actors.end(), [&](const ActorDef& a) { return a.name == request.follow; });
     if (request.view == shm::ScreenshotRequest::View::follow && !is_actor && !physics.find(request.follow)) return no_model(request.follow);
     auto plan = plan_picture(simulation, request);
     if (!plan) return failed(plan.error());
-    if (!loop.desk_) loop.desk_ = std::make_unique<PictureDesk>([board = &loop.board_] { board->wake(); });
+    order(PictureDesk::Picture{std::move(*plan), request.path}, {});
+    return {};
+  }
+  shm::Reply operator()(const shm::ExportRequest& request) {
+    auto plan = plan_export(simulation, request);
     shm::Reply reply;
+    reply.count = static_cast<std::int64_t>(plan.world.poses->size());
+    reply.values[0] = static_cast<double>(plan.version);
+    order(std::move(plan), std::move(reply));
+    return {};
+  }
+  shm::Reply operator()(const shm::PosesRequest&) { return poses_reply(simulation); }
+  template <class Work>
+  void order(Work work, shm::Reply reply) {
+    if (!loop.desk_) loop.desk_ = std::make_unique<PictureDesk>([board = &loop.board_] { board->wake(); });
     reply.sim_time_ns = simulation.time().count();
     reply.steps = simulation.steps();
-    loop.desk_->take({ticket, std::move(*plan), request.path, std::move(reply)});
-    return {};
+    loop.desk_->take({ticket, std::move(work), std::move(reply)});
   }
   shm::Reply operator()(const shm::StatsRequest&) {
     shm::Reply reply;
@@ -239,7 +258,8 @@ void ServerLoop::handle_requests(When when) {
     }
     base::log(base::Level::debug, "sim-server", "request {} of pid {}", shm::request_name(asked.request), asked.pid);
     shm::Reply reply = handle(asked.request, asked.ticket);
-    if (is_one_of<shm::StepRequest, shm::ScreenshotRequest>(asked.request) && reply.status == shm::RequestStatus::ok) continue;
+    if (is_one_of<shm::StepRequest, shm::ScreenshotRequest, shm::ExportRequest>(asked.request) && reply.status == shm::RequestStatus::ok)
+      continue;
     reply.sim_time_ns = simulation_.time().count();
     reply.steps = simulation_.steps();
     board_.reply(asked.ticket, reply);

@@ -105,7 +105,9 @@ bool ServerLoop::run() {
     watch_rate();
   }
   if (options_.has_status_line) std::fprintf(stderr, "\n");
-  return !recorder_ || recorder_->finish();
+  const bool has_hashes = !hashes_ || hashes_->finish();
+  if (!has_hashes) base::log(base::Level::error, "sim-server", "the hash log could not be written whole");
+  return (!recorder_ || recorder_->finish()) && has_hashes;
 }
 
 void ServerLoop::wait_for_participants() {
@@ -142,6 +144,7 @@ bool ServerLoop::finish_moment() {
   simulation_.pictures().set_synchronous(options_.is_lockstep || pace_.is_free() || mode_.hurries());
   simulation_.sense(times_);
   if (recorder_) recorder_->record(simulation_.time(), simulation_.physics());
+  if (hashes_) hashes_->record(simulation_);
   publish_clock();
   times_.mark(Part::publish);
   const bool goes_on = barrier_->tick(simulation_.time(), simulation_.steps());
@@ -265,6 +268,7 @@ void ServerLoop::reset(bool poses_only) {
     is_fresh_moment_ = true;
     pace_.restart_measurement(Clock::now(), simulation_.time());
     if (recorder_) recorder_->restart();
+    if (hashes_) hashes_->restart();
   }
   start_pace();
   publish_clock();

@@ -16,6 +16,7 @@
 #include "server/picture_desk.h"
 #include "server/recorder.h"
 #include "server/simulation.h"
+#include "server/world_hashes.h"
 #include "shm/lockstep.h"
 #include "shm/request_board.h"
 #include "shm/server.h"
@@ -40,7 +41,10 @@ class ServerLoop {
              std::optional<Recorder> recorder);
   ~ServerLoop();
 
-  // Returns when the duration is over or stop() was called; false when not all of the recording could be written.
+  // Before run().
+  void keep_hashes(WorldHashes hashes) { hashes_ = std::move(hashes); }
+
+  // Returns when the duration is over or stop() was called; false when not all of the recording or of the hash log could be written.
   bool run();
   void stop();
 
@@ -68,6 +72,9 @@ class ServerLoop {
   void start_pace();
   // Somebody takes part, listens or commands.
   bool is_watched() const;
+  // Other users may use the segments (--shm-mode). Nobody can tell then who wrote a request: none is served with the rights of this
+  // process.
+  bool is_shared() const { return iface_.segment().is_shared(); }
   void watch_rate();
   void count();
   void on_barrier_event(const shm::BarrierEvent& event);
@@ -79,6 +86,7 @@ class ServerLoop {
   const ModelPath& model_path_;
   LoopOptions options_;
   std::optional<Recorder> recorder_;
+  std::optional<WorldHashes> hashes_;
   shm::RequestBoard board_;
   std::unique_ptr<shm::Barrier> barrier_;
   PartTimes times_;

@@ -2,8 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+
+#include "devices/faulty_device.h"
 
 namespace sim {
+namespace {
+
+constexpr std::size_t followers_of_share = 16;
+
+}  // namespace
 
 Simulation::Simulation(std::shared_ptr<const WorldDef> world, shm::Server& shm, const SimulationOptions& options)
     : world_(std::move(world)), options_(options), pool_(options.threads), step_(std::llround(world_->physics.step * 1e9)) {
@@ -31,6 +39,10 @@ base::Result<std::unique_ptr<Simulation>> Simulation::create(std::shared_ptr<con
     if (!s->physics_->exists(id)) continue;
     if (auto made = s->make_devices_of(id, dropped); !made) return made.error();
   }
+  for (const FaultOrder& fault : options.faults) {
+    if (!s->device(fault.iface)) return base::Error{"fault " + fault.kind + ": the world has no iface " + fault.iface};
+  }
+  s->sort_devices();
   return s;
 }
 
@@ -39,6 +51,15 @@ base::Result<void> Simulation::make_devices_of(ModelId model, std::vector<std::s
   if (!made) return made.error();
   for (auto& device : *made) {
     device->iface().set_resets(resets_);
+    std::vector<FaultOrder> faults;
+    std::ranges::copy_if(options_.faults, std::back_inserter(faults), [&](const auto& fault) {
+      return fault.iface == device->iface().name() && device->iface().type() != shm::IfaceType::truth;
+    });
+    if (!faults.empty()) {
+      auto faulty = FaultyDevice::make(std::move(device), faults, options_.seed);
+      if (!faulty) return faulty.error();
+      device = std::move(*faulty);
+    }
     devices_.push_back(std::move(device));
   }
   for (const JointHold& hold : joint_holds_of(*physics_, model, left_out)) holds_.push_back(hold);
@@ -47,12 +68,35 @@ base::Result<void> Simulation::make_devices_of(ModelId model, std::vector<std::s
 
 void Simulation::sort_devices() {
   std::stable_sort(devices_.begin(), devices_.end(), [](const auto& a, const auto& b) { return a->model() < b->model(); });
+  followers_.clear();
+  shares_.clear();
+  for (const auto& device : devices_) {
+    if (!device->follows_steps()) continue;
+    const bool is_new_model = followers_.empty() || followers_.back()->model() != device->model();
+    if (is_new_model && followers_.size() - (shares_.empty() ? 0 : shares_.back()) >= followers_of_share)
+      shares_.push_back(followers_.size());
+    followers_.push_back(device.get());
+  }
+  shares_.push_back(followers_.size());
+}
+
+void Simulation::for_followers(const std::function<void(Device&)>& work) {
+  if (shares_.size() <= 1) {
+    for (auto* device : followers_) work(*device);
+    return;
+  }
+  pool_.run(
+      shares_.size(),
+      [&](std::size_t i) {
+        for (std::size_t d = i == 0 ? 0 : shares_[i - 1]; d < shares_[i]; ++d) work(*followers_[d]);
+      },
+      commands_pace_);
 }
 
 void Simulation::step(PartTimes& times) {
   const Moment moment{time_, world_->physics.step};
   for (const JointHold& hold : holds_) hold.before_step(*physics_);  // a drive that has the same joint wins
-  for (auto& device : devices_) device->before_step(moment);
+  for_followers([&](Device& device) { device.before_step(moment); });
   for (const auto& wrench : wrenches_) {
     if (physics_->exists(wrench.link.model)) (void)physics_->add_wrench(wrench.link, wrench.force, wrench.torque);
   }
@@ -63,7 +107,7 @@ void Simulation::step(PartTimes& times) {
   std::erase_if(wrenches_, [&](const Wrench& wrench) { return wrench.until <= time_; });
   times.mark(Part::physics);
   const Moment after{time_, world_->physics.step};
-  for (auto& device : devices_) device->after_step(after);
+  for_followers([&](Device& device) { device.after_step(after); });
   if (steps_ % 16 == 0) follow_trails();
   times.mark(Part::commands);
 }
@@ -167,6 +211,16 @@ void Simulation::reset_poses() {
 }
 
 base::Result<ModelId> Simulation::spawn(const ModelDef& model, std::vector<std::string>& notes) {
+  const auto next = static_cast<ModelId>(physics_->model_slots());
+  try {
+    return spawn_whole(model, notes);
+  } catch (const std::bad_alloc&) {
+    if (physics_->exists(next)) remove(next);
+    return base::Error{"model " + model.name + ": is too large for the memory"};
+  }
+}
+
+base::Result<ModelId> Simulation::spawn_whole(const ModelDef& model, std::vector<std::string>& notes) {
   const auto id = physics_->spawn(std::make_shared<const ModelDef>(model), notes);
   if (!id) return id;
   rays_->add(*id, notes);
@@ -180,6 +234,7 @@ base::Result<ModelId> Simulation::spawn(const ModelDef& model, std::vector<std::
 
 void Simulation::remove(ModelId model) {
   std::erase_if(devices_, [&](const auto& device) { return device->model() == model; });
+  sort_devices();
   std::erase_if(holds_, [&](const JointHold& hold) { return hold.joint.model == model; });
   std::erase_if(wrenches_, [&](const Wrench& wrench) { return wrench.link.model == model; });
   if (model < trails_.size()) trails_[model] = Trail();

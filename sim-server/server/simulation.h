@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "devices/joint_hold.h"
 #include "devices/ray_world.h"
 #include "devices/render_world.h"
+#include "devices/sensor_fault.h"
 #include "physics/physics.h"
 #include "server/statistics.h"
 #include "shm/server.h"
@@ -21,6 +23,7 @@ namespace sim {
 struct SimulationOptions {
   std::uint64_t seed = 1;
   int threads = 1;
+  std::vector<FaultOrder> faults{};
 };
 
 // Places a moving model has been, for pictures [m].
@@ -73,7 +76,10 @@ class Simulation {
  private:
   Simulation(std::shared_ptr<const WorldDef> world, shm::Server& shm, const SimulationOptions& options);
   base::Result<void> make_devices_of(ModelId model, std::vector<std::string>& left_out);
+  base::Result<ModelId> spawn_whole(const ModelDef& model, std::vector<std::string>& notes);
   void sort_devices();
+  // Those of a model one after the other, those of different models on several threads when that is worth it.
+  void for_followers(const std::function<void(Device&)>& work);
   void follow_trails();
 
   struct Wrench {
@@ -91,6 +97,9 @@ class Simulation {
   std::unique_ptr<RenderWorld> pictures_;
   std::unique_ptr<DeviceWorld> device_world_;
   std::vector<std::unique_ptr<Device>> devices_;  // by model, then as made
+  std::vector<Device*> followers_;                // those that follow the steps
+  std::vector<std::size_t> shares_;               // of the followers; where each ends
+  WorkerPool::Pace commands_pace_;
   std::vector<JointHold> holds_;
   std::vector<Device*> due_;
   std::vector<Wrench> wrenches_;

@@ -64,9 +64,11 @@ struct Barrier::State {
   std::int64_t last_now = -1;
   std::int64_t earliest_due = 0;
   std::uint32_t resets = 0;
+  mutable std::uint64_t moment = 0;  // kept here, too: what a client scribbles into the shared one must not stay
 
   ParticipantSlot& slot(const Member& member) const { return slot_at(segment, member.index); }
   Control& control() const { return control_of(segment); }
+  void pass_moment() const { store(control().moment, ++moment, std::memory_order_release); }  // pairs with the loads in moment_of
   bool is_done(const Member& member) const { return load(slot(member).done, std::memory_order_seq_cst) == member.go; }
   void tell(BarrierEvent::Kind kind, const Member& member) const {
     if (options.on_event) options.on_event({kind, member.name, owner_pid(member.owner), member.phase});
@@ -286,11 +288,13 @@ bool Barrier::State::run_phase(std::span<Member*> group, std::int64_t now, std::
   // Whoever counts down to one or below wakes the server, which then looks at all `done` words itself: the count is only a hint, so
   // that a participant that died between the two costs nothing but an extra look.
   store(control().server_waiting, 1U, std::memory_order_relaxed);
+  pass_moment();  // odd
   store(control().pending, static_cast<std::int32_t>(group.size()), std::memory_order_seq_cst);
   for (Member* member : group) release(*member, now, steps);
   wake(group);
   const bool is_over = wait_for(group);
   store(control().server_waiting, 0U, std::memory_order_relaxed);
+  pass_moment();
   return is_over;
 }
 

@@ -24,6 +24,9 @@
 //   joins while a tick runs            takes part from the next tick on; leaves: at once
 //   joins without end                  refused when all slots are taken, with a message
 //
+// The beginnings and ends of phases are counted (`moment`, odd while a phase runs), for the rule by which data is delivered: what is
+// written in a phase is read in later ones (base/tick.h).
+//
 // Participants sleep on a few shared futex words told apart by bits, so that one system call wakes a whole phase.
 #pragma once
 
@@ -106,6 +109,7 @@ struct Tick {
   std::chrono::nanoseconds due{0};
   std::uint64_t steps = 0;
   std::uint32_t resets = 0;  // differs from the last tick's after a reset
+  std::uint64_t moment = 0;  // odd: the phase that runs; 0: time does not wait
 };
 
 class Participant {
@@ -131,6 +135,9 @@ class Participant {
   explicit Participant(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
+
+// 0: nothing runs in lock step there. Any thread.
+std::uint64_t moment_of(const Iface& simulation);
 
 // All participants of a server's simulation, by a client.
 base::Result<std::vector<ParticipantRecord>> read_participants(const Iface& simulation);

@@ -47,6 +47,8 @@ base::Result<std::vector<ParticipantRecord>> read_participants(const Iface& simu
   return read_records(simulation.segment());
 }
 
+std::uint64_t moment_of(const Iface& simulation) { return slot_count(simulation.segment()) == 0 ? 0 : moment_of(simulation.segment()); }
+
 struct Participant::Impl {
   explicit Impl(Iface opened) : simulation(std::move(opened)) {}
   ~Impl() { leave(); }
@@ -182,7 +184,7 @@ Participant::State Participant::wait(Tick& tick, nanoseconds timeout) {
       constexpr auto relaxed = std::memory_order_relaxed;
       store(mine.sleeping, 0U, relaxed);
       tick = {nanoseconds(load(mine.now_ns, relaxed)), nanoseconds(load(mine.due_ns, relaxed)), load(mine.steps, relaxed),
-              load(mine.resets, relaxed)};
+              load(mine.resets, relaxed), moment_of(segment)};
       impl.last_go = go;
       impl.is_in_tick = true;
       impl.tick_start = now;

@@ -29,6 +29,10 @@ inline ProcessMark mark_of(const ParticipantSlot& slot) {
   return {owner_pid(load(slot.owner)), load(slot.pid_namespace), load(slot.start_time)};
 }
 
+inline std::uint64_t moment_of(const Segment& segment) {
+  return load(control_of(segment).moment, std::memory_order_acquire);  // pairs with pass_moment
+}
+
 // Whatever a client has written there, it is one line of text for people.
 inline std::string name_of(const ParticipantSlot& slot) {
   std::string name(slot.name, strnlen(slot.name, sizeof slot.name));

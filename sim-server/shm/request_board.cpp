@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "base/text.h"
@@ -14,7 +15,6 @@
 namespace shm {
 namespace {
 
-constexpr std::size_t max_text = std::size_t{64} << 20;
 constexpr std::chrono::milliseconds slice{100};
 
 char* request_text(const Segment& segment, std::size_t index) {
@@ -36,7 +36,13 @@ struct RequestBoard::State {
     std::uint64_t id = 0;
     bool is_complete = false, is_answered = true;
     RawRequest incoming;
-    std::string remainder;  // of the reply's text
+    std::string remainder;           // of the reply's text
+    std::size_t remainder_sent = 0;  // of these octets
+
+    void drop_remainder() {
+      remainder = {};
+      remainder_sent = 0;
+    }
   };
 
   const Segment& segment;
@@ -100,13 +106,15 @@ void RequestBoard::State::end_reply(std::size_t index) {
 
 void RequestBoard::State::put_piece(std::size_t index, std::uint64_t id) {
   RequestSlot& slot = slot_at(segment, index);
-  std::string& rest = clients[index].remainder;
+  ClientRecord& client = clients[index];
+  const std::string_view rest = std::string_view(client.remainder).substr(client.remainder_sent);
   const std::size_t length = std::min(rest.size(), text_piece);
   std::memcpy(reply_text(segment, index), rest.data(), length);
-  rest.erase(0, length);
+  client.remainder_sent += length;
+  if (length == rest.size()) client.drop_remainder();
   slot.reply_id = id;
   slot.reply_length = static_cast<std::uint32_t>(length);
-  slot.reply_more = rest.empty() ? 0 : 1;
+  slot.reply_more = client.remainder.empty() ? 0 : 1;
 }
 
 // Takes a piece of a request over; the request when it is complete.
@@ -130,7 +138,7 @@ std::optional<RequestBoard::Asked> RequestBoard::State::take(std::size_t index) 
     client.id = id;
     client.is_complete = client.is_answered = false;
     client.incoming = {};
-    client.remainder.clear();
+    client.drop_remainder();
     client.incoming.kind = slot.kind;
     std::memcpy(&client.incoming.body, &slot.body, sizeof slot.body);
   }

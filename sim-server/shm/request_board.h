@@ -14,6 +14,9 @@
 
 namespace shm {
 
+// Of a request and of a reply [bytes].
+inline constexpr std::size_t max_text = std::size_t{64} << 20;
+
 // Says which request a reply belongs to.
 struct RequestTicket {
   std::uint32_t slot = 0;

@@ -16,13 +16,14 @@ constexpr std::uint32_t flag_1 = 1, flag_2 = 2;
 constexpr std::int64_t max_steps = 1'000'000'000;
 constexpr std::uint32_t max_pixels = 8192;
 
-constexpr std::array<std::string_view, 21> names = {"",           "pause",          "run",
+constexpr std::array<std::string_view, 23> names = {"",           "pause",          "run",
                                                     "step",       "reset",          "get-pose",
                                                     "set-pose",   "get-velocity",   "set-velocity",
                                                     "wrench",     "list",           "tree",
                                                     "spawn",      "delete",         "screenshot",
                                                     "statistics", "reset-odometry", "set-motors",
-                                                    "set-rtf",    "contacts",       "drop-participant"};
+                                                    "set-rtf",    "contacts",       "drop-participant",
+                                                    "export",     "poses"};
 static_assert(std::variant_size_v<Request> == names.size() - 1);
 
 void put_pose(RequestBody& body, const Pose& pose) {
@@ -100,6 +101,8 @@ struct Encoder {
   void operator()(const SetRtfRequest& r) { raw.body.values[0] = r.rtf; }
   void operator()(const ContactsRequest& r) { name(r.model); }
   void operator()(const DropParticipantRequest& r) { name(r.name); }
+  void operator()(const ExportRequest& r) { raw.body.flags = r.with_collisions ? flag_1 : 0; }
+  void operator()(const PosesRequest&) {}
 };
 
 class Decoder {
@@ -197,7 +200,7 @@ base::Result<Request> Decoder::screenshot() const {
   using View = ScreenshotRequest::View;
   ScreenshotRequest request;
   request.path = raw_.text;
-  if (request.path.empty() || request.path[0] != '/' || request.path.find('\0') != std::string::npos) {
+  if (!request.path.empty() && (request.path[0] != '/' || request.path.find('\0') != std::string::npos)) {
     return fail("path must be absolute, got " + base::in_quotes(request.path));
   }
   request.width = body().width;
@@ -289,6 +292,10 @@ base::Result<Request> Decoder::decode() {
       return named(ContactsRequest{}, &ContactsRequest::model);
     case RTMSIM_REQUEST_DROP_PARTICIPANT:
       return named(DropParticipantRequest{}, &DropParticipantRequest::name);
+    case RTMSIM_REQUEST_EXPORT:
+      return Request(ExportRequest{(body().flags & flag_1) != 0});
+    case RTMSIM_REQUEST_POSES:
+      return Request(PosesRequest{});
     default:
       return fail("unknown kind");
   }

@@ -46,9 +46,9 @@ struct TreeRequest {
   std::string model;  // empty = all
 };
 struct SpawnRequest {
-  std::string sdf;  // text, or path when is_path
-  bool is_path = false;
-  std::string name;  // empty = as in the file
+  std::string sdf;       // text, or path when is_path
+  bool is_path = false;  // a shared server opens only what is in its model path
+  std::string name;      // empty = as in the file
   bool has_pose = false;
   Pose pose = identity_pose;
 };
@@ -56,7 +56,9 @@ struct DeleteRequest {
   std::string model;
 };
 struct ScreenshotRequest {
-  std::string path;                         // absolute; written atomically
+  // Absolute; written atomically, with the rights of the server, so refused by one that is shared with others. Empty: the PNG is the text
+  // of the reply.
+  std::string path;
   std::uint32_t width = 800, height = 600;  // 1..8192
   enum class View { whole, top, follow, from, camera } view = View::whole;
   bool with_scans = false;       // fans of range finders, trails and names over the picture
@@ -85,10 +87,15 @@ struct ContactsRequest {
 struct DropParticipantRequest {
   std::string name;
 };
+struct ExportRequest {
+  bool with_collisions = false;  // the shapes that collide instead of those that are seen
+};
+struct PosesRequest {};
 
 using Request = std::variant<PauseRequest, RunRequest, StepRequest, ResetRequest, GetPoseRequest, SetPoseRequest, GetVelocityRequest,
                              SetVelocityRequest, WrenchRequest, ListRequest, TreeRequest, SpawnRequest, DeleteRequest, ScreenshotRequest,
-                             StatsRequest, ResetOdometryRequest, SetMotorsRequest, SetRtfRequest, ContactsRequest, DropParticipantRequest>;
+                             StatsRequest, ResetOdometryRequest, SetMotorsRequest, SetRtfRequest, ContactsRequest, DropParticipantRequest,
+                             ExportRequest, PosesRequest>;
 
 enum class RequestStatus : std::uint32_t {
   ok = RTMSIM_STATUS_OK,
@@ -107,7 +114,7 @@ struct RawRequest {
 struct Reply {
   RequestStatus status = RequestStatus::ok;
   std::string message;  // what went wrong; cut after 255 bytes
-  std::string text;     // JSON where the request says so
+  std::string text;     // JSON or octets where the request says so
   std::int64_t sim_time_ns = 0;
   std::uint64_t steps = 0;
   std::uint64_t hash = 0;

@@ -416,19 +416,25 @@ enum {
   RTMSIM_REQUEST_SET_VELOCITY = 8, /* name = model; values 0..5; the whole model moves as one body */
   RTMSIM_REQUEST_WRENCH =
       9, /* name = model or link; values 0..5 = force, torque, world frame at the centre of mass; 6 = duration [s], 0 = one step */
-  RTMSIM_REQUEST_LIST = 10,   /* reply text: JSON, see docs/shared-memory.md */
-  RTMSIM_REQUEST_TREE = 11,   /* name = model or empty for all; reply text: JSON tree of models, links, joints, sensors */
-  RTMSIM_REQUEST_SPAWN = 12,  /* text = SDF, or flags bit 0: text = path of an SDF file or model folder; name = new name or empty; flags bit
-                                 1: values 0..6 = pose. Reply message = name given */
-  RTMSIM_REQUEST_DELETE = 13, /* name = model */
-  RTMSIM_REQUEST_SCREENSHOT = 14,     /* text = absolute path of the PNG; width, height; flags RTMSIM_VIEW_*; name = model to follow; values
-                                         0..6 = pose of the camera, 7 = hfov or metres across for top views */
-  RTMSIM_REQUEST_STATS = 15,          /* reply text: JSON; reply values 0 = reached real-time factor; hash = state hash, computed now */
-  RTMSIM_REQUEST_RESET_ODOMETRY = 16, /* name = position iface; values 0..2 = new x y a (position3d: 0..6 = pose with flags 1) */
-  RTMSIM_REQUEST_SET_MOTORS = 17,     /* name = position iface; count = 1 on, 0 off */
-  RTMSIM_REQUEST_SET_RTF = 18,        /* values 0 = real-time factor, 0 = as fast as possible */
-  RTMSIM_REQUEST_CONTACTS = 19,       /* name = model; reply count = its contacts since the last such request; text: JSON */
-  RTMSIM_REQUEST_DROP_PARTICIPANT = 20 /* name = participant */
+  RTMSIM_REQUEST_LIST = 10,       /* reply text: JSON, see docs/shared-memory.md */
+  RTMSIM_REQUEST_TREE = 11,       /* name = model or empty for all; reply text: JSON tree of models, links, joints, sensors */
+  RTMSIM_REQUEST_SPAWN = 12,      /* text = SDF, or flags bit 0: text = path of an SDF file or model folder (of a
+                                     shared server: inside its model path); name = new name or empty; flags bit 1: values 0..6 = pose. Reply
+                                     message = name given */
+  RTMSIM_REQUEST_DELETE = 13,     /* name = model */
+  RTMSIM_REQUEST_SCREENSHOT = 14, /* text = absolute path of the PNG, or empty: the PNG is the text of the reply (a shared server writes no
+                                     files); width, height; flags RTMSIM_VIEW_*; name = model to follow; values 0..6 = pose of the
+                                     camera, 7 = hfov or metres across for top views */
+  RTMSIM_REQUEST_STATS = 15,      /* reply text: JSON; reply values 0 = reached real-time factor; hash = state hash, computed now */
+  RTMSIM_REQUEST_RESET_ODOMETRY = 16,   /* name = position iface; values 0..2 = new x y a (position3d: 0..6 = pose with flags 1) */
+  RTMSIM_REQUEST_SET_MOTORS = 17,       /* name = position iface; count = 1 on, 0 off */
+  RTMSIM_REQUEST_SET_RTF = 18,          /* values 0 = real-time factor, 0 = as fast as possible */
+  RTMSIM_REQUEST_CONTACTS = 19,         /* name = model; reply count = its contacts since the last such request; text: JSON */
+  RTMSIM_REQUEST_DROP_PARTICIPANT = 20, /* name = participant */
+  RTMSIM_REQUEST_EXPORT = 21, /* flags 1 = shapes that collide; reply text: the world as glTF 2.0 binary (render/gltf.h); reply count = its
+                                 links, values 0 = version of the scene, another one after models have come or gone */
+  RTMSIM_REQUEST_POSES = 22 /* reply count = links, values 0 = version of the scene; text: count x 7 floats x y z qw qx qy qz in the world,
+                               in the order of an export of that version */
 };
 
 /* Views of a screenshot. Without TOP and FOLLOW the camera's pose is in values; none given: one that shows the whole world. */
@@ -504,7 +510,8 @@ typedef struct {
   uint32_t server_waiting; /* [atomic] */
   uint32_t reserved1[13];
   uint32_t tick_words[RTMSIM_TICK_WORDS]; /* [atomic] futexes: the participant in slot i sleeps on tick_words[i / 32 % 4] with bit i % 32 */
-  uint32_t reserved2[12];
+  uint64_t moment;                        /* [atomic] counts the beginnings and ends of phases: odd while one runs; 0 without lock step */
+  uint32_t reserved2[10];
 } rtmsim_control;
 
 enum {

@@ -20,6 +20,7 @@
 
 #include "base/cut_guard.h"
 #include "base/guarded.h"
+#include "base/log.h"
 #include "base/text.h"
 #include "shm/futex.h"
 #include "shm/process.h"
@@ -33,7 +34,6 @@ constexpr std::string_view prefix = "rtmsim-";
 constexpr std::int64_t heartbeat_limit_ns = 5'000'000'000;  // a server that can't be judged otherwise is dead after that
 constexpr std::size_t max_segment = std::size_t{4} << 30;
 
-std::string path_of(const SegmentName& name) { return std::string(folder) + "/" + name.text(); }
 std::string reason() { return std::strerror(errno); }
 
 class FileHandle {
@@ -49,6 +49,62 @@ class FileHandle {
  private:
   int file_;
 };
+
+std::string usual_path(const SegmentName& name) { return std::string(folder) + "/" + name.text(); }
+
+bool is_owned_by(const std::string& path, uid_t uid) {
+  struct stat status {};
+  return ::lstat(path.c_str(), &status) == 0 && status.st_uid == uid;
+}
+
+std::vector<std::string> entries_of(const std::string& path) {
+  std::vector<std::string> entries;
+  std::unique_ptr<DIR, int (*)(DIR*)> dir(::opendir(path.c_str()), &::closedir);
+  if (!dir) return entries;
+  while (const dirent* entry = ::readdir(dir.get())) entries.emplace_back(entry->d_name);
+  return entries;
+}
+
+// Folders for names that somebody else has taken in /dev/shm, where everybody may make files: "rtmsim-<uid>.<six random letters>". Nobody
+// can guess one before it is there, and in one nobody else can make a name. Those of other owners are not looked at.
+std::string refuge_prefix(uid_t uid) { return std::string(prefix) + std::to_string(uid) + "."; }
+
+// The user whose folder for taken names this entry of /dev/shm is.
+std::optional<uid_t> refuge_owner(const std::string& entry) {
+  struct stat status {};
+  if (!entry.starts_with(prefix) || ::lstat((std::string(folder) + "/" + entry).c_str(), &status) != 0) return std::nullopt;
+  if (!S_ISDIR(status.st_mode) || !entry.starts_with(refuge_prefix(status.st_uid))) return std::nullopt;
+  return status.st_uid;
+}
+
+std::vector<std::string> refuges_of(uid_t uid) {
+  std::vector<std::string> paths;
+  for (const std::string& entry : entries_of(folder)) {
+    if (refuge_owner(entry) == uid) paths.push_back(std::string(folder) + "/" + entry);
+  }
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+// Those of other users may pass through, as they may read names in /dev/shm: the mode of a segment says who may use it.
+base::Result<std::string> make_refuge() {
+  if (auto known = refuges_of(::geteuid()); !known.empty()) return known.front();
+  std::string path = std::string(folder) + "/" + refuge_prefix(::geteuid()) + "XXXXXX";
+  if (::mkdtemp(path.data()) == nullptr || ::chmod(path.c_str(), 0755) != 0) {
+    return base::Error{"folder " + path + " can't be made: " + reason()};
+  }
+  return path;
+}
+
+// Where a segment of this name is: the usual path, unless another user has that name.
+std::string path_of(const SegmentName& name) {
+  std::string usual = usual_path(name);
+  if (is_owned_by(usual, name.uid)) return usual;
+  for (const std::string& refuge : refuges_of(name.uid)) {
+    if (std::string path = refuge + "/" + name.text(); is_owned_by(path, name.uid)) return path;
+  }
+  return usual;
+}
 
 template <class Number>
 bool take_number(std::string_view& text, char end, Number& number) {
@@ -148,7 +204,7 @@ base::Result<int> make_file(const SegmentName& name, std::uint64_t size, const A
   return file;
 }
 
-enum class Judgement { gone, removed, retry };
+enum class Judgement { gone, removed, retry, of_another };
 
 struct Eviction {
   Judgement judgement = Judgement::retry;
@@ -161,10 +217,14 @@ void tell_readers(Header& header) {
   futex_wake(header.wake_word, INT_MAX);
 }
 
-// Removes the segment with this name unless its server lives. Two who try at the same time do it one after the other: the file is locked,
-// and whoever comes second finds that the name leads to another file.
-base::Result<Eviction> evict(const SegmentName& name) {
-  const std::string path = path_of(name);
+// Removes the segment with this name unless its server lives. What another user has put there is removed where rights allow. Two who try at
+// the same time do it one after the other: the file is locked, and whoever comes second finds that the name leads to another file.
+base::Result<Eviction> evict(const SegmentName& name, const std::string& path) {
+  struct stat found {};
+  if (::lstat(path.c_str(), &found) == 0 && found.st_uid != name.uid) {
+    if (::unlink(path.c_str()) == 0) return Eviction{Judgement::removed, 0};
+    return Eviction{errno == ENOENT ? Judgement::gone : Judgement::of_another, 0};
+  }
   FileHandle file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   if (file.get() < 0) {
     if (errno == ENOENT) return Eviction{Judgement::gone, 0};
@@ -302,27 +362,36 @@ base::Result<Segment> Segment::create(const SegmentName& name, const Geometry& g
   struct stat status {};
   ::fstat(file.get(), &status);
   segment.inode_ = status.st_ino;
+  segment.is_shared_ = (access.mode & 077U) != 0;
 
-  const std::string path = path_of(name);
-  const std::string from = "/proc/self/fd/" + std::to_string(file.get());
-  for (int attempt = 0; attempt < 20; ++attempt) {
-    if (::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0) return segment;
-    const int error = errno;
-    if (error != EEXIST) {
-      segment.inode_ = 0;
-      return base::Error{"shared memory " + name.text() + " can't be named: " + std::strerror(error)};
-    }
-    auto eviction = evict(name);
-    if (!eviction) {
-      segment.inode_ = 0;
-      return eviction.error();
-    }
-    if (eviction->generation >= segment.facts_.generation) {
-      segment.header().generation = segment.facts_.generation = eviction->generation + 1;
-    }
+  if (auto named = segment.take_name(file.get()); !named) {
+    segment.inode_ = 0;
+    return named.error();
   }
-  segment.inode_ = 0;
-  return base::Error{"shared memory " + name.text() + " is taken again and again by others"};
+  return segment;
+}
+
+// Gives the file its name. A stale one of ours goes; when another user has the name, ours is in a folder of our own.
+base::Result<void> Segment::take_name(int file) {
+  const std::string from = "/proc/self/fd/" + std::to_string(file);
+  std::string path = path_of(name_);
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    if (::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0) return {};
+    const int error = errno;
+    if (error != EEXIST && error != ENOENT) {
+      return base::Error{"shared memory " + name_.text() + " can't be named: " + std::strerror(error)};
+    }
+    auto eviction = evict(name_, path);
+    if (!eviction) return eviction.error();
+    if (eviction->generation >= facts_.generation) header().generation = facts_.generation = eviction->generation + 1;
+    path = path_of(name_);
+    if (eviction->judgement != Judgement::of_another) continue;
+    auto refuge = make_refuge();
+    if (!refuge) return base::Error{"shared memory " + name_.text() + " is taken by another user, and " + refuge.error().message};
+    path = *refuge + "/" + name_.text();
+    base::log(base::Level::warn, "shm", "shared memory {} is taken by another user; ours is in {}", name_.text(), *refuge);
+  }
+  return base::Error{"shared memory " + name_.text() + " is taken again and again by others"};
 }
 
 base::Result<Segment> Segment::open(const SegmentName& name) {
@@ -341,6 +410,7 @@ base::Result<Segment> Segment::open(const SegmentName& name) {
   Segment segment;
   segment.base_ = std::move(mapping.base);
   segment.inode_ = status.st_ino;
+  segment.is_shared_ = (status.st_mode & 077U) != 0;
   segment.name_ = name;
   std::memcpy(&segment.facts_, segment.base_.get(), offsetof(Header, state));
   if (const std::string problem = check_header(segment.facts_, name, mapping.size); !problem.empty()) {
@@ -366,7 +436,10 @@ bool Segment::is_current() const { return inode_ != 0 && inode_of_path(path_of(n
 void Segment::close() {
   if (!base_) return;
   tell_readers(header());
-  if (is_current()) ::unlink(path_of(name_).c_str());
+  if (!is_current()) return;
+  const std::string path = path_of(name_);
+  ::unlink(path.c_str());
+  if (path != usual_path(name_)) ::rmdir(path.substr(0, path.rfind('/')).c_str());  // does so when nothing is left in it
 }
 
 namespace {
@@ -396,14 +469,18 @@ Found inspect(const SegmentName& name) {
 
 std::vector<SegmentName> all_names() {
   std::vector<SegmentName> names;
-  std::unique_ptr<DIR, int (*)(DIR*)> dir(::opendir(folder), &::closedir);
-  if (!dir) return names;
-  while (const dirent* entry = ::readdir(dir.get())) {
-    if (auto name = SegmentName::parse(entry->d_name)) names.push_back(std::move(*name));
+  for (const std::string& entry : entries_of(folder)) {
+    if (auto name = SegmentName::parse(entry)) {
+      names.push_back(std::move(*name));
+    } else if (const auto uid = refuge_owner(entry)) {
+      for (const std::string& inside : entries_of(std::string(folder) + "/" + entry)) {
+        if (auto hidden = SegmentName::parse(inside); hidden && hidden->uid == *uid) names.push_back(std::move(*hidden));
+      }
+    }
   }
-  std::sort(names.begin(), names.end(), [](const SegmentName& a, const SegmentName& b) {
-    return std::tie(a.server_id, a.uid, a.type, a.iface) < std::tie(b.server_id, b.uid, b.type, b.iface);
-  });
+  const auto key = [](const SegmentName& name) { return std::tie(name.server_id, name.uid, name.type, name.iface); };
+  std::sort(names.begin(), names.end(), [&](const SegmentName& a, const SegmentName& b) { return key(a) < key(b); });
+  names.erase(std::unique(names.begin(), names.end()), names.end());
   return names;
 }
 
@@ -427,7 +504,7 @@ std::vector<std::string> remove_stale(std::uint32_t first_server, std::uint32_t 
   std::vector<std::string> removed;
   for (const auto& name : all_names()) {
     if (name.uid != ::geteuid() || name.server_id < first_server || name.server_id > last_server) continue;
-    auto eviction = evict(name);
+    auto eviction = evict(name, path_of(name));
     if (eviction && eviction->judgement == Judgement::removed) removed.push_back(name.text());
   }
   return removed;

@@ -1,4 +1,6 @@
 // A segment of shared memory: its name, its making, its mapping. Any thread; a Segment is moved, never copied.
+// It is found at /dev/shm/<text of its name>, and belongs to the user in that name. When another user has made a file of that name, which
+// nobody but him can remove, it is in the folder /dev/shm/rtmsim-<uid>.<random letters>/ of the user in the name.
 #pragma once
 
 #include <sys/types.h>
@@ -72,6 +74,8 @@ class Segment {
   }
   std::span<const std::byte> info() const;
 
+  // True when others than its owner may use it.
+  bool is_shared() const { return is_shared_; }
   // True when another process has cut the file short: what is here are private zeros, and nobody else sees what is written.
   bool was_cut() const;
   // True when the name still leads to this segment.
@@ -80,9 +84,12 @@ class Segment {
   void close();
 
  private:
+  base::Result<void> take_name(int file);
+
   // One mapping per process and file, shared by all segments that show it: threads that talk through it use the same addresses.
   std::shared_ptr<void> base_;
   std::uint64_t inode_ = 0;
+  bool is_shared_ = false;
   SegmentName name_;
   Header facts_{};
 };

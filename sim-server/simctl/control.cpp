@@ -1,12 +1,16 @@
 // Requests and commands: step, pose, velocity, spawn, screenshot, contacts.
+#include <unistd.h>
+
 #include <cmath>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "base/text.h"
+#include "base/whole_file.h"
 #include "shm/request_board.h"
 #include "simctl.h"
 
@@ -148,12 +152,21 @@ void spawn(Control& control, const SpawnOptions& options) {
   std::error_code error;
   request.is_path = options.file.find('<') == std::string::npos;
   request.sdf = options.file;
+  auto simulation = control.open(shm::IfaceType::simulation, "world");
+  if (!simulation) return;
   // Paths are ours, not the server's; model:// and the like stay as they are.
   if (request.is_path && options.file.find("://") == std::string::npos) {
     const bool is_there = std::filesystem::exists(options.file, error);
     if (!is_there && options.file.find('/') != std::string::npos)
       return control.fail("file " + base::in_quotes(options.file) + ": does not exist");
     request.sdf = is_there ? std::filesystem::absolute(options.file, error).string() : "model://" + options.file;
+    // A server that is shared with other users opens only what lies in its model path: it gets the text of our own files.
+    if (simulation->segment().is_shared() && std::filesystem::is_regular_file(options.file, error)) {
+      std::ifstream in(options.file, std::ios::binary);
+      request.sdf.assign(std::istreambuf_iterator<char>(in), {});
+      if (!in) return control.fail("file " + base::in_quotes(options.file) + ": cannot be read");
+      request.is_path = false;
+    }
   }
   request.name = options.name;
   request.has_pose = !options.pose.empty();
@@ -195,7 +208,29 @@ void screenshot(Control& control, const ScreenshotOptions& options) {
     request.view = View::from;
     request.pose = pose_of(options.from);
   }
-  control.ask(request, std::chrono::minutes(10));  // very large ones take their time; a dead server is noticed anyway
+  // A server that is shared with other users writes no files: the picture comes here.
+  auto simulation = control.open(shm::IfaceType::simulation, "world");
+  if (!simulation) return;
+  const bool is_shared = simulation->segment().is_shared();
+  if (is_shared) request.path.clear();
+  const auto reply = control.ask(request, std::chrono::minutes(10));  // very large ones take their time; a dead server is noticed anyway
+  if (!reply || !is_shared) return;
+  if (const auto written = base::write_whole_file(options.file, reply->text); !written) control.fail(written.error().message);
+}
+
+void export_world(Control& control, const std::string& file, bool with_collisions) {
+  const auto reply = control.ask(shm::ExportRequest{with_collisions}, std::chrono::minutes(10));
+  if (!reply) return;
+  // The whole world or none is seen under its name.
+  const std::string part = file + ".part" + std::to_string(::getpid());
+  std::error_code error;
+  std::ofstream out(part, std::ios::binary);
+  out.write(reply->text.data(), static_cast<std::streamsize>(reply->text.size()));
+  out.close();
+  if (out) std::filesystem::rename(part, file, error);
+  if (out && !error) return;
+  std::filesystem::remove(part, error);
+  control.fail("file " + base::in_quotes(file) + ": cannot be written");
 }
 
 void contacts(Control& control, const std::string& model) {

@@ -208,6 +208,19 @@ void add_pictures(CLI::App& app, Work& work) {
     work = [options](Control& c) { simctl::screenshot(c, *options); };
   });
 
+  auto* exported = app.add_subcommand("export", "Write the world as glTF 2.0 binary: models, links, lights, sensors");
+  auto world_file = option_value<std::string>();
+  auto show = option_value<std::string>("visuals");
+  exported->add_option("FILE", *world_file, "Ends in .glb")->required()->check([](const std::string& file) {
+    return base::to_lower(std::filesystem::path(file).extension().string()) == ".glb"
+               ? std::string()
+               : "worlds are glTF binaries; expected a name that ends in .glb, got " + base::in_quotes(file);
+  });
+  exported->add_option("--show", *show, "visuals or collisions")->check(CLI::IsMember({"visuals", "collisions"}))->capture_default_str();
+  exported->callback([&work, world_file, show] {
+    work = [world_file, show](Control& c) { simctl::export_world(c, *world_file, *show == "collisions"); };
+  });
+
   auto* record = app.add_subcommand("record", "Record a camera as film (.mp4) or as PNG files in a folder");
   auto camera_name = option_value<std::string>();
   auto target = option_value<std::string>();

@@ -61,6 +61,8 @@ struct ScreenshotOptions {
 // "WIDTHxHEIGHT", each from 1 to 8192.
 std::optional<std::pair<std::uint32_t, std::uint32_t>> parse_size(const std::string& text);
 void screenshot(Control& control, const ScreenshotOptions& options);
+// The world as glTF 2.0 binary.
+void export_world(Control& control, const std::string& file, bool with_collisions);
 void contacts(Control& control, const std::string& model);
 
 // ---- look inside ----

@@ -162,7 +162,31 @@ ModelPath ModelPath::from_environment(const std::vector<std::string>& command_li
 
 void ModelPath::add_first(const fs::path& folder) { folders_.insert(folders_.begin(), folder); }
 
+ModelPath ModelPath::confined() const {
+  ModelPath path = *this;
+  path.is_confined_ = true;
+  return path;
+}
+
+// Of a path without links.
+bool ModelPath::holds(const fs::path& found) const {
+  const auto is_in = [&](const fs::path& folder) {
+    std::error_code problem;
+    const fs::path root = fs::canonical(folder, problem);
+    return !problem && std::mismatch(root.begin(), root.end(), found.begin(), found.end()).first == root.end();
+  };
+  return std::any_of(folders_.begin(), folders_.end(), is_in) || std::any_of(fuel_caches_.begin(), fuel_caches_.end(), is_in);
+}
+
 std::optional<fs::path> ModelPath::find(std::string_view uri, const fs::path& folder) const {
+  auto found = look_for(uri, folder);
+  if (!found || !is_confined_) return found;
+  std::error_code problem;
+  const fs::path real = fs::canonical(*found, problem);
+  return !problem && holds(real) ? std::optional(real) : std::nullopt;
+}
+
+std::optional<fs::path> ModelPath::look_for(std::string_view uri, const fs::path& folder) const {
   const std::string text = without_percent_codes(base::trim(uri));
   std::string_view rest = text;
   if (rest.empty() || rest.size() > 4096) return std::nullopt;

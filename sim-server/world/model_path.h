@@ -26,11 +26,19 @@ class ModelPath {
   // A folder in which Gazebo keeps what it has fetched: SERVER/OWNER/models/NAME/VERSION/...; only for Fuel addresses.
   void add_fuel_cache(const std::filesystem::path& folder) { fuel_caches_.push_back(folder); }
 
+  // The same places, but nothing outside of them is found, by whatever address: for models that come from those who may not read all that
+  // the server may.
+  ModelPath confined() const;
+
   // What a URI in a file of `folder` means: model://name/..., model:///name, package://, file://, Fuel addresses (by the model's name,
   // then in the caches), absolute and relative paths. The file or folder exists; empty when none does.
   std::optional<std::filesystem::path> find(std::string_view uri, const std::filesystem::path& folder) const;
 
  private:
+  std::optional<std::filesystem::path> look_for(std::string_view uri, const std::filesystem::path& folder) const;
+  bool holds(const std::filesystem::path& found) const;
+
+  bool is_confined_ = false;
   std::vector<std::filesystem::path> folders_;
   std::vector<std::filesystem::path> fuel_caches_;
 };

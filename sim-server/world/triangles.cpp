@@ -92,6 +92,8 @@ base::Result<TriangleMesh> read_mesh(const MeshShape& shape, bool by_id = false)
                                                : fmt::format("mesh {}: has no submesh {}", shape.path, base::in_quotes(shape.submesh))};
     }
     return mesh;
+  } catch (const std::bad_alloc&) {
+    return base::Error{fmt::format("mesh {}: is too large for the memory", shape.path)};
   } catch (const std::exception& e) {
     return base::Error{fmt::format("mesh {}: {}", shape.path, base::in_quotes(e.what()))};
   }

@@ -1,0 +1,136 @@
+#include "devices/sensor_fault.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "base/text.h"
+#include "shm/iface_types.h"
+
+namespace sim {
+namespace {
+
+using Kind = SensorFault::Kind;
+
+constexpr std::array<std::pair<std::string_view, Kind>, 7> kinds = {{{"off", Kind::off},
+                                                                     {"stuck", Kind::stuck},
+                                                                     {"bias", Kind::bias},
+                                                                     {"noise", Kind::noise},
+                                                                     {"missing", Kind::missing},
+                                                                     {"latency", Kind::latency},
+                                                                     {"dropout", Kind::dropout}}};
+constexpr double most_latency = 1000;
+
+bool has_ranges(const shm::IfaceWriter& writer) { return writer.type() == shm::IfaceType::laser || writer.type() == shm::IfaceType::sonar; }
+
+// What is measured; not what the simulator says of itself beside it.
+bool is_measured(const shm::Field& field) {
+  return field.kind == shm::Field::Kind::f64 && !field.name.starts_with("true") && field.name != "command";
+}
+
+// The whole sample that waits to be published, but for its stamp.
+std::span<std::byte> waiting_sample(shm::IfaceWriter& writer) {
+  const auto& row = shm::row_of(writer.type());
+  auto* start = reinterpret_cast<std::byte*>(&writer.sample<shm::Stamp>());
+  const auto size = row.sample_size + row.sample_tail.arrays * writer.count() * row.sample_tail.size;
+  return {start + sizeof(shm::Stamp), size - sizeof(shm::Stamp)};
+}
+
+}  // namespace
+
+base::Result<FaultOrder> parse_fault_order(const std::string& text) {
+  constexpr double longest = 1e9;
+  const auto fail = [&] { return base::Error{"fault " + base::in_quotes(text) + ": expected KIND:FROM:FOR:AMOUNT:IFACE"}; };
+  std::string rest = text;
+  std::array<std::string, 4> words;
+  for (auto& word : words) {
+    const auto end = rest.find(':');
+    if (end == std::string::npos) return fail();
+    word = rest.substr(0, end);
+    rest.erase(0, end + 1);
+  }
+  const auto from = base::parse_number(words[1]), length = base::parse_number(words[2]), amount = base::parse_number(words[3]);
+  if (!from || !length || !amount || rest.empty() || *from < 0 || *from > longest || *length < 0 || *length > longest) return fail();
+  FaultOrder order{rest, words[0], *amount, std::chrono::nanoseconds(std::llround(*from * 1e9))};
+  if (*length > 0) order.until = std::chrono::nanoseconds(std::llround((*from + *length) * 1e9));
+  return order;
+}
+
+base::Result<SensorFault> SensorFault::make(const FaultOrder& order, const shm::IfaceWriter& writer, std::uint64_t seed) {
+  const auto kind = std::ranges::find_if(kinds, [&](const auto& one) { return one.first == order.kind; });
+  const auto fail = [&](const std::string& what) { return base::Error{"fault " + order.kind + " of " + writer.name() + ": " + what}; };
+  if (kind == kinds.end()) return fail("a sensor can be off, stuck, or have bias, noise, missing, latency, dropout");
+  const auto& row = shm::row_of(writer.type());
+  if (row.sample_size == 0) return fail("its frames cannot be changed");
+  if (kind->second == Kind::missing && !has_ranges(writer)) return fail("only lasers and sonars have beams");
+  const bool is_changed = kind->second == Kind::bias || kind->second == Kind::noise;
+  if (is_changed && !has_ranges(writer) && std::ranges::none_of(row.sample, is_measured)) return fail("it measures no numbers");
+  const bool is_fraction = kind->second == Kind::missing || kind->second == Kind::dropout;
+  if (is_fraction && (order.amount < 0 || order.amount > 1)) return fail("its amount must be from 0 to 1");
+  if (kind->second == Kind::latency && (order.amount < 1 || order.amount > most_latency))
+    return fail("its amount must be from 1 to 1000 samples");
+  if (kind->second == Kind::noise && order.amount < 0) return fail("its amount must not be negative");
+  return SensorFault(kind->second, order, RandomStream(seed, "fault " + order.kind + " " + writer.name()));
+}
+
+bool SensorFault::leaves_out() { return kind_ == Kind::off || (kind_ == Kind::dropout && random_.uniform() < amount_); }
+
+void SensorFault::apply(shm::IfaceWriter& writer) {
+  switch (kind_) {
+    case Kind::stuck:
+    case Kind::latency:
+      return exchange(writer);
+    case Kind::bias:
+    case Kind::noise:
+      return disturb(writer);
+    case Kind::missing:
+      return lose_beams(writer);
+    case Kind::off:
+    case Kind::dropout:
+      break;
+  }
+}
+
+void SensorFault::reset() {
+  random_.restart();
+  kept_.clear();
+}
+
+// Until there is one that is late enough, the first stays.
+void SensorFault::exchange(shm::IfaceWriter& writer) {
+  const auto now = waiting_sample(writer);
+  const bool is_stuck = kind_ == Kind::stuck;
+  if (!is_stuck || kept_.empty()) kept_.emplace_back(now.begin(), now.end());
+  std::ranges::copy(kept_.front(), now.begin());
+  if (!is_stuck && kept_.size() > static_cast<std::size_t>(amount_)) kept_.pop_front();
+}
+
+void SensorFault::disturb(shm::IfaceWriter& writer) {
+  const auto change = [this](double value) { return value + (kind_ == Kind::bias ? amount_ : amount_ * random_.gaussian()); };
+  if (has_ranges(writer)) {
+    for (float& range : writer.ranges()) {
+      if (std::isfinite(range)) range = static_cast<float>(std::max(0.0, change(static_cast<double>(range))));
+    }
+    return;
+  }
+  for (const shm::Field& field : shm::row_of(writer.type()).sample) {
+    if (!is_measured(field)) continue;
+    // The table gives read access to whatever it is asked about; this sample is ours to write.
+    auto* values = static_cast<double*>(const_cast<void*>(field.in(&writer.sample<shm::Stamp>())));
+    for (std::size_t i = 0; i < field.count; ++i) values[i] = change(values[i]);
+  }
+}
+
+// The same beams each time.
+void SensorFault::lose_beams(shm::IfaceWriter& writer) {
+  random_.restart();
+  for (float& range : writer.ranges()) {
+    if (random_.uniform() < amount_) range = std::numeric_limits<float>::infinity();
+  }
+}
+
+}  // namespace sim

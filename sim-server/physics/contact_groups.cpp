@@ -1,0 +1,112 @@
+#include "physics/contact_groups.h"
+
+#include <algorithm>
+
+namespace sim {
+namespace {
+
+// With more contacts the exact solver, which is cubic in the size of a heap, would take seconds.
+constexpr std::uint32_t exact_contacts = 200;
+// Moving bodies that lie on each other: there the exact solver's handling of friction goes wrong (a stack of ten boxes falls at once).
+constexpr std::uint32_t stacked_contacts = 4;
+
+}  // namespace
+
+void ContactGroups::add(ModelInstance& model) {
+  const auto place = static_cast<std::uint32_t>(members_.size());
+  model.group_place = place;
+  Member member;
+  member.model = &model;
+  member.parent = place;
+  members_.push_back(member);
+}
+
+std::uint32_t ContactGroups::root(std::uint32_t i) {
+  while (members_[i].parent != i) i = members_[i].parent = members_[members_[i].parent].parent;
+  return i;
+}
+
+void ContactGroups::touch(ModelInstance& a, ModelInstance* b, bool has_mesh, double depth, const dSurfaceParameters& surface) {
+  constexpr double deep = 5e-4;  // [m]: not at rest yet, however slowly it comes out
+  constexpr double soft = 0.1;   // of mass / step^2: a stiffness below which a contact is a spring, which gives back what it took
+  ++contacts_;
+  Member& group = members_[root(a.group_place)];
+  ++group.contacts;
+  group.has_mesh = group.has_mesh || has_mesh;
+  group.is_deep = group.is_deep || depth > deep;
+  has_mesh_ = has_mesh_ || has_mesh;
+  const double lighter = b != nullptr ? std::min(a.mass(), b->mass()) : a.mass();
+  if ((surface.mode & dContactSoftCFM) != 0 && surface.soft_erp < soft * lighter / physics_.step * surface.soft_cfm) group.is_exempt = true;
+  if (b == nullptr) return;
+  ++group.moving_contacts;
+  const auto i = root(a.group_place), k = root(b->group_place);
+  if (i == k) return;
+  Member &kept = members_[std::min(i, k)], &joined = members_[std::max(i, k)];
+  joined.parent = std::min(i, k);
+  kept.has_mesh = kept.has_mesh || joined.has_mesh;
+  kept.is_exempt = kept.is_exempt || joined.is_exempt;
+  kept.is_deep = kept.is_deep || joined.is_deep;
+  kept.contacts += joined.contacts;
+  kept.moving_contacts += joined.moving_contacts;
+}
+
+ContactGroups::Shares ContactGroups::share_out() {
+  Shares shares;
+  for (std::uint32_t i = 0; i < members_.size(); ++i) {
+    const Member& group = members_[root(i)];
+    const bool is_large = group.contacts > exact_contacts || group.moving_contacts >= stacked_contacts;
+    const bool is_iterative =
+        physics_.solver == PhysicsDef::Solver::iterative || (physics_.solver == PhysicsDef::Solver::automatic && is_large);
+    members_[i].model->is_iterative = is_iterative;
+    ++(is_iterative ? shares.iterative : shares.exact);
+  }
+  return shares;
+}
+
+void ContactGroups::keep_energies() {
+  if (!has_mesh_) return;
+  for (std::uint32_t i = 0; i < members_.size(); ++i) {
+    Member& group = members_[root(i)];
+    if (!group.has_mesh) continue;
+    members_[i].energy = members_[i].model->energy(physics_.gravity).sum();
+    group.is_exempt = group.is_exempt || members_[i].model->is_driven();
+  }
+}
+
+void ContactGroups::limit_energies() {
+  if (has_mesh_) slow_down_what_gained();
+}
+
+void ContactGroups::slow_down_what_gained() {
+  for (std::uint32_t i = 0; i < members_.size(); ++i) {
+    Member& group = members_[root(i)];
+    if (!group.has_mesh || group.is_exempt) continue;
+    const Energy now = members_[i].model->energy(physics_.gravity);
+    group.gained += now.sum() - members_[i].energy;
+    group.motion += now.motion;
+  }
+  for (std::uint32_t i = 0; i < members_.size(); ++i) {
+    const Member& group = members_[root(i)];
+    if (group.gained > 0 && group.motion > 0) members_[i].model->slow_down(std::sqrt(std::max(1 - group.gained / group.motion, 0.0)));
+  }
+}
+
+void ContactGroups::settle() {
+  for (std::uint32_t i = 0; i < members_.size(); ++i) {
+    Member& group = members_[root(i)];
+    const bool is_still = members_[i].model->lies_still(physics_.step, group.contacts > 0 && !group.is_deep);
+    // What the limit of energies lets out of a mesh moves without a velocity.
+    group.may_sleep = group.may_sleep && is_still && !(group.is_deep && group.has_mesh);
+  }
+  for (std::uint32_t i = 0; i < members_.size(); ++i) {
+    if (members_[root(i)].may_sleep) members_[i].model->sleep();
+  }
+}
+
+void ContactGroups::clear() {
+  members_.clear();
+  has_mesh_ = false;
+  contacts_ = 0;
+}
+
+}  // namespace sim

@@ -1,0 +1,58 @@
+// Models that touch in a step make a group: the unit that a solver is chosen for, that falls asleep as one, and that gains no energy from
+// contacts of meshes. A model that touches nothing that moves is a group of its own. Private to physics/. One thread at a time.
+//
+// A group in which a mesh is touched, and in which nothing drives, pulls or springs, has no more energy after the step than before; where
+// it would, all its velocities become smaller by one factor, which leaves joints as they are.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "physics/model_instance.h"
+#include "physics/ode.h"
+
+namespace sim {
+
+class ContactGroups {
+ public:
+  explicit ContactGroups(const PhysicsDef& physics) : physics_(physics) {}
+
+  // Every model that takes part in the step, once.
+  void add(ModelInstance& model);
+  // A contact with a force; `b` is null for what does not move. Both have been added. `depth` [m] is what is to be pushed back.
+  void touch(ModelInstance& a, ModelInstance* b, bool has_mesh, double depth, const dSurfaceParameters& surface);
+
+  // After the contacts: which models go to the iterative solver (ModelInstance::is_iterative), and how many do and do not.
+  struct Shares {
+    std::size_t iterative = 0, exact = 0;
+  };
+  Shares share_out();
+  std::uint32_t contacts() const { return contacts_; }
+
+  // Between them the world makes its step. Forces of the step are on the bodies before.
+  void keep_energies();
+  void limit_energies();
+  // Groups that lie still fall asleep.
+  void settle();
+  void clear();
+
+ private:
+  struct Member {
+    ModelInstance* model = nullptr;
+    std::uint32_t parent = 0;
+    double energy = 0;  // [J] before the step
+    // Of the whole group, at its root.
+    bool has_mesh = false, is_exempt = false, is_deep = false, may_sleep = true;
+    std::uint32_t contacts = 0, moving_contacts = 0;
+    double gained = 0, motion = 0;  // [J] by the step; that it moves with now
+  };
+  std::uint32_t root(std::uint32_t i);
+  void slow_down_what_gained();
+
+  const PhysicsDef& physics_;
+  std::vector<Member> members_;
+  bool has_mesh_ = false;
+  std::uint32_t contacts_ = 0;
+};
+
+}  // namespace sim

@@ -1,0 +1,48 @@
+// The world's part of a run's hash log (base/hash_log.h): each model and each device whose state has changed since the last entry, at fixed
+// moments of simulated time. The stepping thread only.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "base/hash_log.h"
+#include "base/result.h"
+#include "devices/device.h"
+#include "server/simulation.h"
+
+namespace sim {
+
+class WorldHashes {
+ public:
+  // Every `period`, or every step when that is longer.
+  static base::Result<WorldHashes> open(const std::string& path, std::chrono::nanoseconds period);
+
+  // Before anybody's tick at this moment. Changes nothing.
+  void record(const Simulation& simulation);
+  // After a reset.
+  void restart() { schedule_.restart(); }
+  // False when not everything could be written.
+  bool finish() { return log_.finish(); }
+
+ private:
+  WorldHashes(std::string path, base::HashLogWriter log, double rate) : path_(std::move(path)), log_(std::move(log)), schedule_(rate) {}
+  struct Leaf {
+    std::string name;  // the number may have been another's
+    std::uint32_t key = 0;
+    std::uint64_t hash = 0;
+    bool is_known = false;
+  };
+  Leaf& leaf(std::vector<Leaf>& leaves, std::size_t index, base::HashKey::Kind kind, const std::string& name);
+  void record_models(const Simulation& simulation);
+  void record_devices(const Simulation& simulation);
+
+  std::string path_;
+  base::HashLogWriter log_;
+  Schedule schedule_;
+  std::vector<Leaf> models_, devices_;
+};
+
+}  // namespace sim
