@@ -1,5 +1,6 @@
 #include "sim_time_context.h"
 
+#include <base/chance.h>
 #include <base/text.h>
 #include <rtm/ECFactory.h>
 
@@ -13,7 +14,6 @@ namespace {
 constexpr std::chrono::milliseconds longest_wait{100};
 constexpr std::chrono::milliseconds retry_period{100};
 constexpr std::int64_t highest_phase = 15;
-constexpr std::chrono::seconds lockstep_patience{30};  // the default of rtse run --hang-timeout
 constexpr std::chrono::seconds usual_patience{1};
 
 }  // namespace
@@ -37,7 +37,9 @@ void SimTimeContext::init(coil::Properties& properties) {
   };
   server_id_ = static_cast<int>(number("sim_time.server_id", iface::highest_server, server_id_));
   waits_for_members_ = properties.getProperty("member_timeout").empty();
+  hash_log_ = properties.getProperty("sim_time.hash_log");
   phase_ = static_cast<std::uint32_t>(number("sim_time.phase", highest_phase, phase_));
+  participant_as_ = properties.getProperty("sim_time.participant");
 }
 
 void SimTimeContext::say_once(const std::string& line) {
@@ -48,6 +50,7 @@ void SimTimeContext::say_once(const std::string& line) {
 }
 
 std::string SimTimeContext::participant_name() const {
+  if (!participant_as_.empty()) return participant_as_;
   try {
     const RTC::RTObject_var owner = getOwner();
     if (CORBA::is_nil(owner)) return getName();
@@ -74,14 +77,35 @@ std::shared_ptr<shm::Participant> SimTimeContext::join() {
   is_waiting_ = false;
   const auto& world = simulation->info<shm::SimulationInfo>();
   const auto step = std::chrono::nanoseconds(world.step_ns);
-  if (waits_for_members_) setMemberTimeout(world.lockstep != 0 ? lockstep_patience : usual_patience);
+  if (waits_for_members_) setMemberTimeout(world.lockstep != 0 ? without_end : usual_patience);
   simulator_time_->follow(std::move(*simulation));
+  base::set_lock_step_clock(simulator_time_);
   say_once("ticking at " + base::format_number(getRate()) + " Hz of simulated time, phase " + std::to_string(phase_) + " of simulator " +
            std::to_string(server_id_) +
            (options.period < step ? "; that is once a step, " + base::format_number(1e9 / static_cast<double>(step.count())) + " Hz" : ""));
+  if (const auto folder = std::exchange(hash_log_, {}); !folder.empty()) {
+    if (const auto problem = tick_.keep_hashes(folder, options.name, phase_); !problem.empty()) RTC_ERROR(("%s", problem.c_str()));
+  }
   auto participant = std::make_shared<shm::Participant>(std::move(*joined));
   *participant_.lock() = participant;
   return participant;
+}
+
+std::vector<std::uint64_t> SimTimeContext::member_states() const {
+  std::vector<std::uint64_t> states;
+  for (const auto& member : getComponents()) states.push_back(static_cast<std::uint64_t>(getComponentState(member)));
+  return states;
+}
+
+void SimTimeContext::run_tick(const shm::Tick& tick) {
+  clock_.set(tick.now);
+  tick_.begin(tick);
+  const base::ScopedTick scope(tick_);
+  invokeWorkerPreDo();
+  invokeWorkerDo();
+  invokeWorkerPostDo();
+  const base::ScopedClock clock(clock_);  // for what is sent
+  tick_.end([this] { return member_states(); });
 }
 
 void SimTimeContext::run(shm::Participant& participant) {
@@ -89,13 +113,14 @@ void SimTimeContext::run(shm::Participant& participant) {
   while (threadRunning()) {
     switch (participant.wait(tick, longest_wait)) {
       case shm::Participant::State::tick:
-        clock_.set(tick.now);
-        invokeWorkerPreDo();
-        invokeWorkerDo();
-        invokeWorkerPostDo();
+        run_tick(tick);
         break;
       case shm::Participant::State::timed_out:
-        if (simulator_time_->stands_still()) invokeWorkerPreDo();
+        if (simulator_time_->stands_still()) {
+          tick_.begin({});
+          const base::ScopedTick scope(tick_);
+          invokeWorkerPreDo();
+        }
         break;
       case shm::Participant::State::dropped:
         return say_once("the simulator has dropped this context from the lock step; joining again");

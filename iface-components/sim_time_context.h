@@ -4,9 +4,16 @@
 // A component asks for it with `exec_cxt.periodic.type: SimTimeContext` (and `manager.modules.preload: SimTimeContext.so`). Options:
 //   exec_cxt.sim_time.server_id   which simulator; default: $RTMSIM_SERVER_ID, else 0
 //   exec_cxt.sim_time.phase       0 sensors, 1 clients (default), 2 actuators: phases run in order inside a tick
+//   exec_cxt.sim_time.participant under which name it takes part in the lock step; default: that of its owner
+//   exec_cxt.sim_time.hash_log    folder: a hash log of what the components read and write (base/hash_log.h) goes into a new file there
 //   exec_cxt.member_timeout       how long a member of another process may take for a callback [s of real time]; default: 1, in lock step
-//   30,
-//                                 since its error would be part of the run
+//                                 without end, since its error would be part of the run
+//
+// Members may be components of other processes and of any maker: they join and leave by add_component and remove_component, and
+// are called in the tick of this context, in its phase, whatever their own contexts do. Rights and failures: corba/remote_participant.h.
+//
+// In lock step what components write in a phase can be read in later phases only (base/tick.h), and what they send with subscription `new`
+// or `periodic` is sent at the end of their tick.
 //
 // Transitions happen in a tick, so that they are repeatable; while time stands still (paused, or waiting for participants) at once.
 // Threads: the context's own thread ticks; everything else may be called from any thread.
@@ -21,6 +28,7 @@
 #include <string>
 
 #include "sim_clock.h"
+#include "sim_tick.h"
 #include "simulator_time.h"
 
 class SimTimeContext : public RTC::PeriodicExecutionContext {
@@ -41,6 +49,8 @@ class SimTimeContext : public RTC::PeriodicExecutionContext {
  private:
   std::shared_ptr<shm::Participant> join();
   void run(shm::Participant& participant);
+  void run_tick(const shm::Tick& tick);
+  std::vector<std::uint64_t> member_states() const;
   void interrupt();
   void say_once(const std::string& line);
   std::string participant_name() const;
@@ -49,7 +59,10 @@ class SimTimeContext : public RTC::PeriodicExecutionContext {
   const std::shared_ptr<iface::SimulatorTime> simulator_time_ = std::make_shared<iface::SimulatorTime>();
   int server_id_ = 0;
   std::uint32_t phase_ = 1;
-  bool waits_for_members_ = true;  // in lock step, as long as `rtse run` waits for a tick; false: the option member_timeout says how long
+  std::string participant_as_;     // empty: the owner's name
+  bool waits_for_members_ = true;  // in lock step, for ever; false: the option member_timeout says how long
+  SimTick tick_;                   // svc() only
+  std::string hash_log_;           // where it is still to be made
   std::string said_;               // the last line, not to be said again
   bool is_waiting_ = false;        // and has said so
   base::Guarded<std::shared_ptr<shm::Participant>, base::Rank::context> participant_;

@@ -1,5 +1,7 @@
 #include "simulator_time.h"
 
+#include <shm/lockstep.h>
+
 #include <utility>
 
 namespace iface {
@@ -22,6 +24,11 @@ std::uint64_t SimulatorTime::era() const {
   const auto* sample = state->read();
   if (sample && std::exchange(state->resets, sample->stamp.resets) != sample->stamp.resets) ++state->era;
   return state->era;
+}
+
+std::uint64_t SimulatorTime::moment() const {
+  auto state = state_.lock();
+  return state->simulation ? shm::moment_of(*state->simulation) : 0;
 }
 
 const shm::SimulationSample* SimulatorTime::State::read() {

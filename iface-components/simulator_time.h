@@ -16,6 +16,8 @@ class SimulatorTime final : public base::Clock {
   std::chrono::nanoseconds now() const override;
   // Counts the resets, and the simulators after the first.
   std::uint64_t era() const override;
+  // Of the phases of its lock step.
+  std::uint64_t moment() const override;
   // Time does not pass: paused, waiting for participants, or there is no simulator.
   bool stands_still() const;
 

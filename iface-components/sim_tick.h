@@ -1,0 +1,56 @@
+// A tick of simulated time as those see it who take part in it: what is to be sent at its end, and the hashes of the data that passes.
+// The context's thread only.
+//
+// The hash log of a context (base/hash_log.h) has the data that its components read and wrote in each tick, port by port, and the states of
+// its components when they change.
+#pragma once
+
+#include <base/hash_log.h>
+#include <base/tick.h>
+#include <shm/lockstep.h>
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+class SimTick final : public base::Tick {
+ public:
+  SimTick() = default;
+  ~SimTick() override;
+  SimTick(const SimTick&) = delete;
+  SimTick& operator=(const SimTick&) = delete;
+
+  // From now on into a new file of this folder; a problem is the answer. Once.
+  std::string keep_hashes(const std::string& folder, const std::string& component, std::uint32_t phase);
+
+  void begin(const shm::Tick& tick);
+  // After the callbacks. `states`: of the context's components; its hash is kept when it has changed.
+  void end(const std::function<std::vector<std::uint64_t>()>& states);
+
+  std::chrono::nanoseconds time() const override { return tick_.now; }
+  std::uint64_t moment() const override { return tick_.moment; }
+  void at_end(std::function<void(Tick&)> work) override { at_end_.push_back(std::move(work)); }
+  bool keeps_data() const override { return log_.has_value(); }
+  void passed(const base::Passage& passage) override;
+
+ private:
+  struct Leaf {
+    std::uint32_t key = 0;
+    base::Hash64 hash;
+    std::uint64_t samples = 0;  // in this tick
+    std::string value;
+  };
+
+  using Leaves = std::map<std::string, Leaf, std::less<>>;  // by port
+  void write(Leaves& leaves);
+  void write_log(const std::vector<std::uint64_t>& states);
+
+  shm::Tick tick_;
+  std::vector<std::function<void(Tick&)>> at_end_;
+  std::optional<base::HashLogWriter> log_;
+  std::uint32_t phase_ = 0, component_ = 0;
+  std::optional<std::uint64_t> states_;
+  Leaves read_, written_;
+};
