@@ -54,7 +54,18 @@ void read_contexts(ComponentView& component) {
   RTC::ExecutionContextList_var owned = component.object->get_owned_contexts();
   for (CORBA::ULong i = 0; i < owned->length(); ++i) read_context(component, owned[i], true);
   RTC::ExecutionContextList_var others = component.object->get_participating_contexts();
-  for (CORBA::ULong i = 0; i < others->length(); ++i) read_context(component, others[i], false);
+  for (CORBA::ULong i = 0; i < others->length(); ++i) {
+    try {
+      read_context(component, others[i], false);
+    } catch (const CORBA::Exception& exception) {  // a context of another process: the component itself is well
+      ContextView gone;
+      gone.is_owned = false;
+      gone.object = RTC::ExecutionContext::_duplicate(others[i]);
+      gone.handle = component.object->get_context_handle(others[i]);
+      gone.problem = describe(exception);
+      component.contexts.push_back(std::move(gone));
+    }
+  }
 }
 
 void read_configuration(ComponentView& component) {
@@ -109,9 +120,12 @@ void read_profile(ComponentView& component) {
 
 }  // namespace
 
-// A member of a composite has its own context stopped and runs in another.
+// A member of a composite has its own context stopped and runs in another. One that has joined simulated time has two that run.
 const ContextView* ComponentView::shown_context() const {
   if (contexts.empty()) return nullptr;
+  for (const auto& context : contexts) {
+    if (!context.is_owned && context.is_running && editor::property(context.properties, "type") == "SimTimeContext") return &context;
+  }
   const auto running = std::find_if(contexts.begin(), contexts.end(), [](const ContextView& context) { return context.is_running; });
   return running == contexts.end() ? &contexts.front() : &*running;
 }

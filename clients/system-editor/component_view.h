@@ -46,6 +46,9 @@ struct ContextView {
   RTC::LifeCycleState state = RTC::CREATED_STATE;
   Properties properties;
   RTC::ExecutionContext_var object;
+  std::string problem;  // its process does not answer, and why; only the handle is known then
+
+  bool is_gone() const { return !problem.empty(); }
 };
 
 struct ConfigurationSetView {
@@ -82,7 +85,8 @@ struct ComponentView {
   std::string problem;  // it could not be read, and why
 
   std::string profile_id() const { return "RTC:" + vendor + ":" + category + ":" + type + ":" + version; }
-  // What is meant when nobody names a context: the first that runs, else the first; nullptr when there is none.
+  // What is meant when nobody names a context: one on simulated time that another process runs for it, else the first that runs, else
+  // the first; nullptr when there is none.
   const ContextView* shown_context() const;
   // In that context.
   RTC::LifeCycleState state() const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <stdexcept>
 
 #include "base/text.h"
 #include "editor.h"
@@ -151,9 +152,13 @@ std::optional<std::vector<base::Offer>> names_offered(const std::string& value, 
                                                       const std::string& current) {
   static constexpr std::array asked{"PATH", "PORT", "ARGUMENT", "--manager", "--set"};
   if (std::ranges::find(asked, value) == asked.end()) return std::nullopt;
-  const Orb orb;
-  const Editor editor(orb.get(), option_value(before, "--ns", default_server()), false, patience);
-  return offered(editor, value, before, current);
+  try {
+    const Orb orb;
+    const Editor editor(orb.get(), option_value(before, "--ns", default_server()), false, patience);
+    return offered(editor, value, before, current);
+  } catch (const std::runtime_error&) {
+    return std::nullopt;  // no ORB can be had; the command itself will say why
+  }
 }
 
 }  // namespace editor

@@ -115,16 +115,17 @@ void find_tail(const Entry& entry, const std::vector<std::string>& tail, std::ve
 bool same_server(std::string a, std::string b) {
   for (auto* name : {&a, &b}) {
     if (name->starts_with("iiop:")) name->erase(0, 5);
-    if (name->find(':') == std::string::npos) *name += ":2809";
+    if (name->find(':', name->starts_with("ssliop:") ? 7 : 0) == std::string::npos) *name += ":2809";
     if (name->starts_with("localhost:")) name->replace(0, 9, "127.0.0.1");
   }
   return a == b;
 }
 
-// HOST[:PORT], iiop:HOST[:PORT] as newer tools of the field write it, or a whole corbaloc address.
+// HOST[:PORT], iiop:HOST[:PORT] and over TLS ssliop:HOST[:PORT] as newer tools of the field write it, or a whole corbaloc address.
 std::string address_of(const std::string& server) {
   if (server.starts_with("corbaloc:")) return server;
-  return "corbaloc:" + std::string(server.starts_with("iiop:") ? "" : ":") + server + "/NameService";
+  const bool has_protocol = server.starts_with("iiop:") || server.starts_with("ssliop:");
+  return "corbaloc:" + std::string(has_protocol ? "" : ":") + server + "/NameService";
 }
 
 // When several match, one that is alive beats zombies.

@@ -22,12 +22,26 @@ struct Verb {
 };
 
 constexpr std::array verbs = {
+    Verb{"demo", "rtse-demo", "Let a robot drive: simulator, components, wiring, a picture"},
     Verb{"record", "rtse-recorder", "Record what ports send into an MCAP file"},
     Verb{"play", "rtse-recorder", "Send a recording into the ports of a running system"},
+    Verb{"sweep", "rtse-campaign", "Run all rows of a campaign's plan and store their results"},
+    Verb{"hunt", "rtse-campaign", "Look for faults, events and parameters that break what a plan expects"},
+    Verb{"results", "rtse-campaign", "Show the results of a campaign: tables, rates, pages"},
+    Verb{"replay", "rtse-recorder", "Send a component its recorded inputs again and compare what it answers"},
+    Verb{"goto", "rtse-recorder", "Make a recorded run again up to a moment and stand there"},
     Verb{"recording", "rtse-recorder", "Look into recordings: info, ls, cat, export, compare, repair"},
 };
 
 constexpr std::array<std::string_view, 2> options_with_value = {"--ns", "--call-timeout"};
+
+// `rtse run --like FILE` reads a recording.
+constexpr Verb run_like{"run", "rtse-recorder", ""};
+
+bool is_like(int argc, char** argv) {
+  return std::any_of(argv + 1, argv + argc,
+                     [](const char* word) { return std::string_view(word) == "--like" || std::string_view(word).starts_with("--like="); });
+}
 
 // The verb that stands where a command is expected; with --complete only when the cursor is behind it.
 const Verb* verb_of(int argc, char** argv) {
@@ -40,6 +54,7 @@ const Verb* verb_of(int argc, char** argv) {
     }
     if (word.starts_with("-")) continue;
     if (completes && i + 1 == argc) return nullptr;
+    if (!completes && word == run_like.name && is_like(argc, argv)) return &run_like;
     const auto verb = std::find_if(verbs.begin(), verbs.end(), [&](const Verb& one) { return one.name == word; });
     return verb == verbs.end() ? nullptr : &*verb;
   }

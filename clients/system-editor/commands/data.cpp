@@ -9,6 +9,7 @@
 
 #include "base/clock.h"
 #include "base/command_line.h"
+#include "base/descriptors.h"
 #include "base/guarded.h"
 #include "base/text.h"
 #include "command.h"
@@ -94,7 +95,7 @@ void print_ports(Editor& editor, const PrintOptions& options) {
                        : Clock::time_point::max();
   auto next_line = Clock::now();
   int printed = 0;
-  while (!interrupted.load(std::memory_order_relaxed) && !output_is_closed() && Clock::now() < end &&
+  while (!interrupted.load(std::memory_order_relaxed) && !base::output_is_closed() && Clock::now() < end &&
          (options.count <= 0 || printed < options.count)) {
     Sample sample;
     {
@@ -123,7 +124,7 @@ void print_ports(Editor& editor, const PrintOptions& options) {
   taps.clear();
   if (const auto dropped = queue.content.lock()->dropped; dropped > 0)
     editor.fail({"print: " + std::to_string(dropped) + " samples were dropped, they came faster than they could be written"});
-  if (options.count > 0 && printed < options.count && !output_is_closed() && !interrupted.load(std::memory_order_relaxed)) {
+  if (options.count > 0 && printed < options.count && !base::output_is_closed() && !interrupted.load(std::memory_order_relaxed)) {
     editor.fail({"print: got " + std::to_string(printed) + " of " + std::to_string(options.count) + " samples in " +
                  base::format_number(options.timeout_s) + " s"});
   }

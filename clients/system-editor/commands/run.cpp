@@ -14,7 +14,9 @@
 #include "commands/commands.h"
 #include "run/child_process.h"
 #include "run/interrupt.h"
+#include "run/run_options.h"
 #include "run/run_system.h"
+#include "run/run_twice.h"
 
 namespace editor {
 namespace {
@@ -24,9 +26,10 @@ using Json = nlohmann::ordered_json;
 constexpr std::chrono::seconds ending_limit{60};  // of a run that was interrupted
 
 Json to_json(const RunResult& result) {
-  Json json{{"seed", result.seed},   {"passed", result.is_passed()},    {"problem", result.problem}, {"logs", result.logs},
-            {"notes", result.notes}, {"state_hash", result.state_hash}, {"path", result.path_m},     {"simulated", result.simulated_s},
-            {"wall", result.wall_s}, {"expectations", Json::array()}};
+  Json json{{"seed", result.seed},         {"passed", result.is_passed()}, {"problem", result.problem},
+            {"logs", result.logs},         {"notes", result.notes},        {"state_hash", result.state_hash},
+            {"run_hash", result.run_hash}, {"path", result.path_m},        {"simulated", result.simulated_s},
+            {"wall", result.wall_s},       {"expectations", Json::array()}};
   for (const auto& verdict : result.verdicts)
     json["expectations"].push_back({{"expectation", verdict.expectation}, {"problem", verdict.problem}, {"details", verdict.details}});
   return json;
@@ -39,6 +42,7 @@ RunResult from_json(const Json& json, std::uint64_t seed) {
   result.logs = json.value("logs", "");
   result.notes = json.value("notes", std::vector<std::string>());
   result.state_hash = json.value("state_hash", "");
+  result.run_hash = json.value("run_hash", "");
   result.path_m = json.value("path", 0.0);
   result.simulated_s = json.value("simulated", 0.0);
   result.wall_s = json.value("wall", 0.0);
@@ -71,9 +75,10 @@ void report(Editor& editor, const RunResult& result, bool is_row) {
   } else if (is_row) {
     print_row(result);
   } else {
-    std::printf("%s  seed %llu  %.1f s simulated in %.1f s (%.1f x real time)  path %.2f m  state %s\n",
+    std::printf("%s  seed %llu  %.1f s simulated in %.1f s (%.1f x real time)  path %.2f m  state %s%s%s\n",
                 result.is_passed() ? "passed" : "FAILED", static_cast<unsigned long long>(result.seed), result.simulated_s, result.wall_s,
-                times_real_time(result), result.path_m, result.state_hash.empty() ? "-" : result.state_hash.c_str());
+                times_real_time(result), result.path_m, result.state_hash.empty() ? "-" : result.state_hash.c_str(),
+                result.run_hash.empty() ? "" : "  run ", result.run_hash.c_str());
   }
   std::fflush(stdout);
   const std::string seed = is_row ? "seed " + std::to_string(result.seed) + ": " : "";
@@ -101,10 +106,15 @@ RunResult run_apart(const RunOptions& options, std::uint64_t seed) {
                    ""};
   const auto add = [&](std::initializer_list<std::string> words) { call.words.insert(call.words.end(), words); };
   if (!options.expectations.empty()) add({"--expect", options.expectations});
+  if (!options.run_file.empty()) add({"--run-file", options.run_file});
+  for (const auto& command : options.start) add({"--start", command});
   if (options.one_process_each) add({"--one-process-each"});
   if (options.in_real_time) add({"--realtime"});
   if (!options.picture.empty()) add({"--picture", for_seed(options.picture, seed)});
   if (!options.record.empty()) add({"--record", for_seed(options.record, seed)});
+  if (!options.hash_log.empty()) add({"--hash-log", for_seed(options.hash_log, seed)});
+  if (options.twice) add({"--twice"});
+  if (options.strict) add({"--strict"});
   if (!options.keep.empty()) add({"--keep", (std::filesystem::path(options.keep) / ("seed-" + std::to_string(seed))).string()});
   for (const auto& property : options.properties) add({"--property", property});
   for (const auto& path : options.module_paths) add({"--module-path", path});
@@ -151,7 +161,7 @@ Result<void> check_files(const RunOptions& options) {
   std::vector<std::filesystem::path> taken;
   for (const auto& file : {options.system, options.world, options.expectations})
     taken.push_back(std::filesystem::weakly_canonical(file, error));
-  for (const auto& file : {options.junit, options.picture, options.record}) {
+  for (const auto& file : {options.junit, options.picture, options.record, options.hash_log}) {
     if (file.empty()) continue;
     const auto path = std::filesystem::weakly_canonical(file, error);
     if (std::ranges::find(taken, path) != taken.end()) return Error{"file " + base::in_quotes(file) + ": is used for something else too"};
@@ -228,7 +238,7 @@ void run(Editor& editor, const RunOptions& options, const std::optional<std::str
     if (!seeds) return editor.fail(seeds.error());
     results = run_seeds(editor, options, *seeds, jobs);
   } else {
-    results.push_back(run_system(editor.orb(), options));
+    results.push_back(options.twice ? run_twice(editor.orb(), options) : run_system(editor.orb(), options));
     report(editor, results.back(), false);
     if (!results.back().logs.empty() && options.keep.empty() && !editor.json())
       std::fprintf(stderr, "rtse: --keep DIR keeps the logs of all processes\n");
@@ -261,6 +271,9 @@ void add_run(CLI::App& app, Chosen& chosen) {
   run->add_option("-j,--jobs", *jobs, "So many seeds at a time")->check(CLI::Range(1, 64))->capture_default_str();
   run->add_flag("--one-process-each", options->one_process_each, "A process for every component instead of one for all");
   run->add_flag("--realtime", options->in_real_time, "No faster than real time");
+  run->add_option("--start", options->start, "Command that starts components of others, those that have no module")
+      ->allow_extra_args(false);
+  run->add_option("--run-file", options->run_file, "Processes of others and their components, YAML")->check(CLI::ExistingFile);
   run->add_option("--module-path", options->module_paths, "Folder with modules of components")->allow_extra_args(false);
   run->add_option("--resource-path", options->resource_paths, "Folder with models")->allow_extra_args(false);
   run->add_option("--property", options->properties, "INSTANCE:KEY=VALUE, a property that a component is created with")
@@ -275,6 +288,7 @@ void add_run(CLI::App& app, Chosen& chosen) {
   run->add_option("--junit", options->junit, "Write the verdicts as JUnit XML");
   run->add_option("--picture", options->picture, "Write the world at the end as PNG");
   run->add_option("--record", options->record, "Write what all ports send as MCAP");
+  add_repeatability_options(*run, *options);
   run->add_option("--keep", options->keep, "Keep logs and the record in this folder");
   run->callback([&chosen, options, seeds, jobs] { chosen.work = [=](Editor& e) { editor::run(e, *options, *seeds, *jobs); }; });
 }

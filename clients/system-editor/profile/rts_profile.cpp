@@ -1,12 +1,12 @@
 #include "profile/rts_profile.h"
 
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
 
 #include "base/text.h"
+#include "base/whole_file.h"
 
 namespace editor {
 namespace {
@@ -50,18 +50,7 @@ base::Result<void> write_system(const SavedSystem& system, const std::string& fi
     std::cout << text;
     return {};
   }
-  const auto temporary = file + ".part";
-  {
-    std::ofstream out(temporary, std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) return base::Error{"file " + base::in_quotes(file) + ": cannot be written"};
-  }
-  if (std::rename(temporary.c_str(), file.c_str()) != 0) {
-    std::remove(temporary.c_str());
-    return base::Error{"file " + base::in_quotes(file) + ": cannot be written"};
-  }
-  return {};
+  return base::write_whole_file(file, text);
 }
 
 }  // namespace editor

@@ -38,10 +38,11 @@ void wait_for_event(pid_t pid, int handle, std::chrono::milliseconds limit) {
 int code_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
 
 // Between fork and exec only what is safe there: everything is made before.
-[[noreturn]] void become(char* const* words, char* const* environment, int output, pid_t parent) {
+[[noreturn]] void become(char* const* words, char* const* environment, int output, const char* folder, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(127);  // the parent died before the line above
   setpgid(0, 0);                        // an interrupt from the terminal is ours to hand on
+  const bool is_there = *folder == '\0' || chdir(folder) == 0;
   const int null = open("/dev/null", O_RDONLY);
   dup2(null, 0);
   dup2(output, 1);
@@ -51,7 +52,7 @@ int code_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 +
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
-  execvpe(words[0], words, environment);
+  if (is_there) execvpe(words[0], words, environment);
   const char* text = "cannot be started\n";
   static_cast<void>(!write(2, text, std::strlen(text)));
   _exit(127);
@@ -78,16 +79,17 @@ Result<ChildProcess> ChildProcess::start(const ProgramCall& call) {
   environment.push_back(nullptr);
   const pid_t parent = getpid();
   const pid_t child = fork();
-  if (child == 0) become(words.data(), environment.data(), output, parent);
+  if (child == 0) become(words.data(), environment.data(), output, call.folder.c_str(), parent);
   if (!collects || child < 0) close(output);
   if (child < 0) return Error{"program " + call.words[0] + ": no process can be made"};
   setpgid(child, child);  // as it does itself: whoever comes first
-  return ChildProcess(child, collects ? output : -1, std::filesystem::path(call.words[0]).filename().string());
+  return ChildProcess(child, collects ? output : -1, std::filesystem::path(call.words[0]).filename().string(), call.ends_as_group);
 }
 
 ChildProcess::ChildProcess(ChildProcess&& other) noexcept
     : pid_(std::exchange(other.pid_, -1)),
       started_(other.started_),
+      ends_as_group_(other.ends_as_group_),
       is_told_(other.is_told_),
       collected_(std::exchange(other.collected_, -1)),
       exit_code_(other.exit_code_),
@@ -98,6 +100,7 @@ ChildProcess& ChildProcess::operator=(ChildProcess&& other) noexcept {
   end();
   pid_ = std::exchange(other.pid_, -1);
   started_ = other.started_;
+  ends_as_group_ = other.ends_as_group_;
   is_told_ = other.is_told_;
   collected_ = std::exchange(other.collected_, -1);
   exit_code_ = other.exit_code_;
@@ -143,7 +146,7 @@ Ending ChildProcess::wait_or_interrupt(std::chrono::milliseconds limit) {
 }
 
 void ChildProcess::terminate() {
-  if (pid_ > 0 && !std::exchange(is_told_, true)) kill(pid_, SIGTERM);
+  if (pid_ > 0 && !std::exchange(is_told_, true)) kill(ends_as_group_ ? -pid_ : pid_, SIGTERM);
 }
 
 std::string ChildProcess::how_it_ended() const {
@@ -197,8 +200,12 @@ Result<std::string> output_of(const ProgramCall& call, std::chrono::milliseconds
 
 std::string own_program(const std::string& name) {
   std::error_code error;
-  const auto beside = std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / name;
-  return std::filesystem::exists(beside, error) ? beside.string() : name;
+  const auto folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  // Where packages of others may have a program of that name, ours has a name of its own too (docs/packages.md).
+  for (const auto& own : {name + ".rtm-sim", name}) {
+    if (const auto beside = folder / own; std::filesystem::exists(beside, error)) return beside.string();
+  }
+  return name;
 }
 
 }  // namespace editor

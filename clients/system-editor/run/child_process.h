@@ -16,7 +16,9 @@ namespace editor {
 struct ProgramCall {
   std::vector<std::string> words;                  // program and arguments
   std::map<std::string, std::string> environment;  // added to ours
-  std::string output;                              // file for its standard output and error; empty: they are collected, see said()
+  std::string output{};                            // file for its standard output and error; empty: they are collected, see said()
+  std::string folder{};                            // where it starts; empty: in ours
+  bool ends_as_group = false;                      // what it has started is told to end with it
 };
 
 enum class Ending { ended, timed_out, interrupted };
@@ -44,12 +46,13 @@ class ChildProcess {
   const std::string& program() const { return program_; }
 
  private:
-  ChildProcess(pid_t pid, int collected, std::string program)
-      : pid_(pid), started_(pid), collected_(collected), program_(std::move(program)) {}
+  ChildProcess(pid_t pid, int collected, std::string program, bool ends_as_group)
+      : pid_(pid), started_(pid), ends_as_group_(ends_as_group), collected_(collected), program_(std::move(program)) {}
   bool reap();
   void end();
   pid_t pid_ = -1;  // -1: it has ended
   pid_t started_ = -1;
+  bool ends_as_group_ = false;
   bool is_told_ = false;  // to end: programs may take a second time for impatience
   int collected_ = -1;
   int exit_code_ = -1;

@@ -335,6 +335,13 @@ void SeenValue::take(double number) {
   const bool is_first = samples - not_numbers == 1;
   lowest = is_first ? number : std::min(lowest, number);
   highest = is_first ? number : std::max(highest, number);
+  sum += number;
+  last = number;
+}
+
+std::optional<double> SeenValue::mean() const {
+  const auto numbers = samples - not_numbers;
+  return numbers > 0 ? std::optional(sum / static_cast<double>(numbers)) : std::nullopt;
 }
 
 double path_length(const std::vector<RecordedPose>& poses) {

@@ -60,8 +60,11 @@ struct SeenValue {
   std::size_t samples = 0;      // that had the member as a number
   std::size_t not_numbers = 0;  // of these: NaN
   double lowest = 0, highest = 0;
-  std::string problem;  // why other samples did not count
+  double sum = 0, last = 0;  // of the numbers
+  std::string problem;       // why other samples did not count
   void take(double number);
+  // Of the numbers that were no NaN; nothing when there were none.
+  std::optional<double> mean() const;
 };
 
 // How a command of the user's ended; `text` is what it said last, or why it has no exit code.

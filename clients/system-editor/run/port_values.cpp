@@ -28,6 +28,12 @@ std::string numbers_of(const Json& json) {
   return names.empty() ? "none" : base::join(names, ", ");
 }
 
+void take_all(const Json& json, SeenValue& seen) {
+  if (json.is_number()) return seen.take(json.get<double>());
+  if (!json.is_structured()) return;
+  for (const auto& value : json) take_all(value, seen);
+}
+
 const Json* find(const Json& sample, const std::vector<std::string>& path) {
   const Json* at = &sample;
   for (const auto& step : path) {
@@ -55,7 +61,9 @@ Result<void> PortValues::listen(CORBA::ORB_ptr orb, const Editor& editor, const 
     const auto type = type_code_of(port->port.data_type());
     if (CORBA::is_nil(type))
       return Error{"port " + expectation.port + ": carries " + port->port.data_type() + ", which rtse does not know"};
-    const auto path = member_path(expectation.member);
+    if (!listened_.insert(expectation.port + " " + expectation.member).second) continue;
+    const auto path =
+        expectation.member.empty() ? Result<std::vector<std::string>>(std::vector<std::string>()) : member_path(expectation.member);
     if (!path) return path.error();
     auto tap = Tap::connect(orb, port->port, {{"dataport.allow_dup_connection", "YES"}},
                             [this, type, &expectation, path = *path](std::span<const unsigned char> payload, bool little) {
@@ -67,6 +75,12 @@ Result<void> PortValues::listen(CORBA::ORB_ptr orb, const Editor& editor, const 
   return {};
 }
 
+std::optional<SeenValue> PortValues::so_far(const std::string& port, const std::string& member) const {
+  const auto all = seen_.lock();
+  const auto found = all->find(port + " " + member);
+  return found == all->end() ? std::nullopt : std::optional(found->second);
+}
+
 std::map<std::string, SeenValue> PortValues::end() {
   taps_.clear();
   return seen_.snapshot();
@@ -75,6 +89,10 @@ std::map<std::string, SeenValue> PortValues::end() {
 void PortValues::take(CORBA::TypeCode_ptr type, const Expectation& expectation, const std::vector<std::string>& path,
                       std::span<const unsigned char> payload, bool little) {
   const auto sample = decode(type, payload, little);
+  if (sample && path.empty()) {
+    auto all = seen_.lock();
+    return take_all(*sample, (*all)[expectation.port + " "]);
+  }
   const Json* member = sample ? find(*sample, path) : nullptr;
   std::string problem;
   double number = 0;

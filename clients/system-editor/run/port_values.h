@@ -3,6 +3,8 @@
 
 #include <map>
 #include <memory>
+#include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,8 +18,11 @@ namespace editor {
 
 class PortValues {
  public:
-  // `expectations` must live until end(). Others than those of values are left alone.
+  // `expectations` must live until end(). Others than those of values are left alone, and values that are listened to already. One with an
+  // empty member is about all numbers of a sample.
   Result<void> listen(CORBA::ORB_ptr orb, const Editor& editor, const std::vector<Expectation>& expectations);
+  // What was seen so far of a port's member; nothing yet when no sample came.
+  std::optional<SeenValue> so_far(const std::string& port, const std::string& member) const;
   // What was seen, by "port member". Listens no more.
   std::map<std::string, SeenValue> end();
 
@@ -26,6 +31,7 @@ class PortValues {
             std::span<const unsigned char> payload, bool little);
 
   base::Guarded<std::map<std::string, SeenValue>, base::Rank::buffer> seen_;
+  std::set<std::string> listened_;
   std::vector<std::unique_ptr<Tap>> taps_;
 };
 

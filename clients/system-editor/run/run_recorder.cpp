@@ -22,10 +22,12 @@ std::string RunRecorder::said() const {
 
 base::Result<void> RunRecorder::start(const RecorderCall& call, const Wait& wait_until) {
   log_ = place_.new_file("recorder.log");
-  auto started = ChildProcess::start({{own_program("rtse-recorder"), "--ns", call.server, "record", "--all", "-s", call.simulator, "-o",
-                                       call.file, "--attach", "system.xml=" + call.system},
-                                      {},
-                                      log_});
+  ProgramCall program{{own_program("rtse-recorder"), "--ns", call.server, "record", "--all", "-s", call.simulator, "-o", call.file,
+                       "--attach", "system.xml=" + call.system},
+                      {},
+                      log_};
+  for (const auto& [key, value] : call.notes) program.words.insert(program.words.end(), {"--note", key + "=" + value});
+  auto started = ChildProcess::start(program);
   if (!started) return started.error();
   process_.emplace(std::move(*started));
   const auto ready = wait_until("recorder", [&] { return said().starts_with("recording ") || !process_->is_running(); });

@@ -5,6 +5,8 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "run/child_process.h"
 #include "run/run_files.h"
@@ -12,10 +14,11 @@
 namespace editor {
 
 struct RecorderCall {
-  std::string server;     // of the naming service
-  std::string simulator;  // its id
-  std::string system;     // the profile as it is for this run
-  std::string file;       // to write
+  std::string server;                                      // of the naming service
+  std::string simulator;                                   // its id
+  std::string system;                                      // the profile as it is for this run
+  std::string file;                                        // to write
+  std::vector<std::pair<std::string, std::string>> notes;  // how the run was made
 };
 
 class RunRecorder {

@@ -17,6 +17,8 @@ using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr auto call_limit = 5s;
+constexpr auto look_period = 100ms;                         // at the processes: one that dies is named within it
+constexpr auto long_time = 1s;                              // without a step: somebody is named
 constexpr int lowest_server = 5000, highest_server = 9999;  // those below are for people and their scripts
 const std::string log_name = "sim-server.log";
 
@@ -42,7 +44,9 @@ Result<void> RunSimulator::try_start(const Wait& wait_until) {
                     options_.in_real_time ? "1" : "0", "--seed", std::to_string(options_.seed), "--record", place_.new_file("record.txt")},
                    {},
                    place_.new_file(log_name)};
+  if (hashes_.is_wanted()) call.words.insert(call.words.end(), {"--hash-log", hashes_.world_part()});
   for (const auto& path : options_.resource_paths) call.words.insert(call.words.end(), {"--resource-path", path});
+  call.words.insert(call.words.end(), options_.simulator_options.begin(), options_.simulator_options.end());
   auto started = ChildProcess::start(call);
   if (!started) return started.error();
   process_.emplace(std::move(*started));
@@ -118,31 +122,47 @@ Result<void> RunSimulator::make_steps(std::int64_t steps, const std::function<Re
   if (!stepping) return stepping.error();
   std::uint64_t last = 0;
   auto moved = Clock::now();
-  for (;;) {
-    const auto ending = stepping->wait_or_interrupt(500ms);
+  bool is_told = false;
+  for (auto asked = moved;;) {
+    const auto ending = stepping->wait_or_interrupt(look_period);
     if (ending == Ending::interrupted) return Error{"run: interrupted"};
     if (const auto good = alive(); !good) return good;
     if (ending == Ending::ended) {
       const auto said = output_of(*stepping);
       return said ? Result<void>() : said.error();
     }
+    if (Clock::now() - asked < 500ms) continue;
+    asked = Clock::now();
     const auto stats = statistics(1s);
     const auto now = stats.value("steps", last);
     last_time_ = stats.value("sim_time", last_time_);
     if (std::exchange(last, now) != now) moved = Clock::now();
+    if (Clock::now() - moved > long_time && !std::exchange(is_told, true)) std::fprintf(stderr, "rtse: %s\n", who_waits().c_str());
     if (Clock::now() - moved > std::chrono::duration<double>(options_.hang_timeout_s)) return Error{who_hangs()};
   }
 }
 
-std::string RunSimulator::who_hangs() const {
+std::vector<std::string> RunSimulator::late() const {
   const auto json = parsed(simctl({"--json", "participants"}, 1s));
   std::vector<std::string> late;
   for (const auto& participant : json.is_array() ? json : Json::array()) {
     if (participant.value("late", false)) late.push_back(participant.value("name", "?"));
   }
+  return late;
+}
+
+std::string RunSimulator::who_waits() const {
+  const auto names = late();
+  return (names.empty() ? "the simulator" : base::join(names, ", ")) + ": has not ended its tick at " + base::format_number(last_time_) +
+         " s for more than a second of real time; it is waited for up to " + base::format_number(options_.hang_timeout_s) +
+         " s (--hang-timeout)";
+}
+
+std::string RunSimulator::who_hangs() const {
+  const auto names = late();
   const auto end =
       " at " + base::format_number(last_time_) + " s after " + base::format_number(options_.hang_timeout_s) + " s (--hang-timeout)";
-  return late.empty() ? "the simulator has not ended its step" + end : base::join(late, ", ") + ": has not ended its tick" + end;
+  return names.empty() ? "the simulator has not ended its step" + end : base::join(names, ", ") + ": has not ended its tick" + end;
 }
 
 // After an orderly end there is nothing. The id was ours alone.

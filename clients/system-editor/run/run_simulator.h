@@ -13,6 +13,7 @@
 
 #include "run/child_process.h"
 #include "run/run_files.h"
+#include "run/run_hashes.h"
 #include "run/run_system.h"
 
 namespace editor {
@@ -22,8 +23,9 @@ class RunSimulator {
   // Waits until `ready`, or says of `what` why it never will be.
   using Wait = std::function<Result<void>(const std::string& what, const std::function<bool()>& ready)>;
 
-  // Both must live as long.
-  RunSimulator(const RunOptions& options, const Workplace& place) : options_(options), place_(place) {}
+  // All must live as long.
+  RunSimulator(const RunOptions& options, const Workplace& place, const RunHashes& hashes)
+      : options_(options), place_(place), hashes_(hashes) {}
 
   // Returns when it answers, paused before its first step.
   Result<void> start(const Wait& wait_until);
@@ -33,6 +35,7 @@ class RunSimulator {
   // An error that says how it ended, when it has started and ended.
   Result<void> check();
   const std::string& id() const { return id_; }
+  pid_t pid() const { return process_ ? process_->pid() : 0; }
   double step() const { return step_s_; }  // [s]
   // What it said before its first step that is more than information.
   std::vector<std::string> notes() const;
@@ -50,11 +53,14 @@ class RunSimulator {
  private:
   Result<void> try_start(const Wait& wait_until);
   std::optional<pid_t> owner() const;
+  std::vector<std::string> late() const;  // participants
+  std::string who_waits() const;
   std::string who_hangs() const;
   void remove_segments() const;
 
   const RunOptions& options_;
   const Workplace& place_;
+  const RunHashes& hashes_;
   std::optional<ChildProcess> process_;
   std::string id_;
   double step_s_ = 0;

@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <signal.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -16,12 +17,17 @@
 #include "base/own_account.h"
 #include "base/text.h"
 #include "commands/system.h"
+#include "run/chance_report.h"
 #include "run/child_process.h"
+#include "run/foreign_processes.h"
 #include "run/interrupt.h"
 #include "run/port_values.h"
 #include "run/run_files.h"
+#include "run/run_hashes.h"
 #include "run/run_recorder.h"
+#include "run/run_script.h"
 #include "run/run_simulator.h"
+#include "run/time_members.h"
 
 namespace editor {
 namespace {
@@ -49,10 +55,15 @@ int free_port() {
 }
 
 // Everything of one run. Its end takes the processes down, the components before the simulator before the naming service.
-class Run {
+class Run final : public RunningSystem {
  public:
   Run(CORBA::ORB_ptr orb, const RunOptions& options)
-      : orb_(CORBA::ORB::_duplicate(orb)), options_(options), place_(options.keep), simulator_(options_, place_) {}
+      : orb_(CORBA::ORB::_duplicate(orb)),
+        options_(options),
+        place_(options.keep),
+        hashes_(options.hash_log, place_),
+        simulator_(options_, place_, hashes_),
+        foreign_(place_) {}
 
   RunResult go() {
     const auto began = Clock::now();
@@ -65,22 +76,38 @@ class Run {
     if (const auto recorded = recorder_.end(); !recorded)
       result_.verdicts.push_back({"recording " + options_.record, recorded.error().message});
     take_warnings();
+    if (options_.script) options_.script->end(scene_ ? &*scene_ : nullptr, seen_, result_);
     stop();
+    keep_hashes();
     result_.wall_s = std::chrono::duration<double>(Clock::now() - began).count();
     return result_;
+  }
+
+  const std::string& naming() const override { return server_; }
+  const std::string& simulator() const override { return simulator_.id(); }
+  double step() const override { return simulator_.step(); }
+  std::vector<Process> processes() const override {
+    std::vector<Process> all = {{"sim-server", simulator_.pid()}};
+    for (const auto& host : hosts_) all.push_back({"rtcd of " + host.components, host.process.pid()});
+    if (naming_) all.push_back({"omniNames", naming_->pid()});
+    return all;
+  }
+  Result<void> make_steps(std::int64_t steps) override {
+    return simulator_.make_steps(steps, [this] { return check_children(); });
   }
 
  private:
   struct Host {
     ChildProcess process;
+    std::vector<const SavedComponent*> members;
     std::string components;
     std::string log;
   };
 
   Result<void> run() {
-    for (auto step : {&Run::read, &Run::start_naming, &Run::start_simulator, &Run::start_hosts, &Run::wire, &Run::listen, &Run::record,
-                      &Run::drive, &Run::look, &Run::run_commands, &Run::judge_all}) {
-      if (const auto done = (this->*step)(); !done) return done;
+    for (auto step : {&Run::read, &Run::start_naming, &Run::start_simulator, &Run::start_foreign, &Run::start_hosts, &Run::wire,
+                      &Run::listen, &Run::record, &Run::begin_script, &Run::drive, &Run::look, &Run::run_commands, &Run::judge_all}) {
+      if (const auto done = (this->*step)(); !done || (options_.driver && step == &Run::drive)) return done;
     }
     return {};
   }
@@ -108,6 +135,10 @@ class Run {
         return fail("property " + base::in_quotes(text) + ": the system has no component " + property->instance);
       properties_.push_back(std::move(*property));
     }
+    if (options_.script) {
+      if (const auto altered = options_.script->alter(system_); !altered) return altered;
+    }
+    if (const auto known = foreign_.read(options_, system_, properties_); !known) return known;
     if (options_.expectations.empty()) return {};
     auto expectations = read_expectations(options_.expectations);
     if (!expectations) return expectations.error();
@@ -133,12 +164,12 @@ class Run {
   static Result<void> fail(const std::string& what) { return Error{what}; }
 
   // Waits until `ready`, a child ends, an interrupt comes, or time is up.
-  Result<void> wait_until(const std::string& what, const std::function<bool()>& ready) {
-    const auto deadline = Clock::now() + start_limit;
+  Result<void> wait_until(const std::string& what, const std::function<bool()>& ready, std::chrono::duration<double> limit = start_limit) {
+    const auto deadline = Clock::now() + limit;
     while (!ready()) {
       if (is_interrupted()) return fail("run: interrupted");
       if (const auto alive = check_children(); !alive) return alive;
-      if (Clock::now() > deadline) return fail(what + ": not ready after " + std::to_string(start_limit.count()) + " s");
+      if (Clock::now() > deadline) return fail(what + ": not ready after " + base::format_number(limit.count()) + " s");
       std::this_thread::sleep_for(20ms);  // what is waited for is another program's start, which nobody announces
     }
     return {};
@@ -148,6 +179,10 @@ class Run {
     if (naming_ && !naming_->is_running())
       return fail("omniNames " + naming_->how_it_ended() + ": " + telling_line(place_.file("omninames.log")));
     if (const auto alive = simulator_.check(); !alive) return alive;
+    if (const auto alive = foreign_.check(); !alive) {
+      const auto time = simulator_.time();
+      return fail(alive.error().message + (time && *time > 0 ? ", at " + base::format_number(*time) + " s" : ""));
+    }
     for (auto& host : hosts_) {
       if (host.process.is_running()) continue;
       const auto time = simulator_.time();
@@ -175,6 +210,17 @@ class Run {
     const auto started = simulator_.start([this](const auto& what, const auto& ready) { return wait_until(what, ready); });
     if (started) result_.notes = simulator_.notes();
     return started;
+  }
+
+  // When everybody has ended.
+  void keep_hashes() {
+    if (!hashes_.is_wanted()) return;
+    const auto hash = hashes_.merge();
+    if (hash) {
+      result_.run_hash = hash_text(*hash);
+    } else {
+      result_.verdicts.push_back({"hash log " + options_.hash_log, hash.error().message});
+    }
   }
 
   // What the components have to say that should not be missed.
@@ -206,66 +252,84 @@ class Run {
   }
 
   Result<void> start_host(const std::vector<const SavedComponent*>& components) {
-    const auto libraries = std::filesystem::path(own_program("rtcd")).parent_path().parent_path() / "lib";
-    auto paths = options_.module_paths;
-    paths.push_back(libraries.string());
-    paths.push_back((libraries / "rtm-sim").string());
-    const auto set = [](const std::string& key, const std::string& value) { return key + ":" + value; };
+    std::vector<std::string> creations;
+    std::vector<std::string> names;
+    for (const auto* component : components) {
+      creations.push_back(creation(*component));
+      names.push_back(component->instance);
+    }
+    return start_host(creations, components, base::join(names, ", "));
+  }
+
+  Result<void> start_host(const std::vector<std::string>& creations, const std::vector<const SavedComponent*>& components,
+                          const std::string& names) {
     // What stands in an rtc.conf of the folder or of the user is none of this run's business.
     const auto configuration = place_.scratch("rtc.conf");
     std::ofstream(configuration) << "# empty\n";
-    const auto log = place_.new_file("rtcd-" + std::to_string(hosts_.size()) + ".log");
-    ProgramCall call{
-        {own_program("rtcd"), "-f", configuration}, {{"RTMSIM_SERVER_ID", simulator_.id()}, {"TMPDIR", place_.scratch("tmp")}}, log};
-    for (const auto& option : {set("corba.nameservers", server_), set("manager.modules.load_path", base::join(paths, ",")),
-                               set("manager.modules.preload", "SimTimeContext.so"), set("exec_cxt.periodic.type", "SimTimeContext"),
-                               set("manager.instance_name", "host" + std::to_string(hosts_.size())), set("manager.shutdown_auto", "NO"),
-                               set("manager.shutdown_on_nortcs", "NO"), set("logger.log_level", "INFO")}) {
-      call.words.insert(call.words.end(), {"-o", option});
-    }
-    std::vector<std::string> names;
-    // However busy the machine is, a member of another process is waited for as long as the tick is: else its error would be part of the
-    // run.
-    if (!options_.in_real_time)
-      call.words.insert(call.words.end(), {"-o", set("exec_cxt.member_timeout", base::format_number(options_.hang_timeout_s))});
-    for (const auto* component : components) {
-      call.words.push_back(creation(*component));
-      names.push_back(component->instance);
-    }
-    auto started = ChildProcess::start(call);
+    const auto log = place_.new_file("rtcd-" + std::to_string(hosts_started_) + ".log");
+    std::vector<std::string> more = {"manager.shutdown_auto:NO", "manager.shutdown_on_nortcs:NO"};
+    if (hashes_.is_wanted()) more.push_back("exec_cxt.sim_time.hash_log:" + hashes_.folder());
+    const HostSettings settings{.naming = server_,
+                                .name = "host" + std::to_string(hosts_started_++),
+                                .module_paths = options_.module_paths,
+                                .empty_file = configuration,
+                                .options = more,
+                                .creations = creations};
+    auto started =
+        ChildProcess::start({host_words(settings), {{"RTMSIM_SERVER_ID", simulator_.id()}, {"TMPDIR", place_.scratch("tmp")}}, log});
     if (!started) return started.error();
-    hosts_.push_back({std::move(*started), base::join(names, ", "), log});
+    hosts_.push_back({std::move(*started), components, names, log});
     return {};
+  }
+
+  Result<void> start_foreign() { return foreign_.start(server_, simulator_.id()); }
+
+  // The contexts in which components of others are called.
+  Result<void> start_time_host() {
+    return foreign_.empty() ? Result<void>() : start_host(foreign_.creations(simulator_.id()), {}, "the contexts of components of others");
   }
 
   Result<void> start_hosts() {
     std::vector<const SavedComponent*> all;
-    for (const auto& component : system_.components) all.push_back(&component);
-    if (all.empty()) return fail("system " + options_.system + ": has no components");
+    for (const auto& component : system_.components) {
+      if (!foreign_.has(component.instance)) all.push_back(&component);
+    }
+    if (system_.components.empty()) return fail("system " + options_.system + ": has no components");
+    if (const auto started = start_time_host(); !started) return started;
     if (!options_.one_process_each) {
-      if (const auto started = start_host(all); !started) return started;
+      if (const auto started = all.empty() ? Result<void>() : start_host(all); !started) return started;
     } else {
       for (const auto* component : all) {
         if (const auto started = start_host({component}); !started) return started;
       }
     }
+    std::vector<std::string> expected = foreign_.proxies();
+    for (const auto* component : all) expected.push_back(component->instance);
+    if (const auto there = await_components(expected, start_limit); !there) return there;
+    expected.clear();
+    for (const auto& member : foreign_.members()) expected.push_back(member.instance);
+    return await_components(expected, foreign_.patience());
+  }
+
+  Result<void> await_components(const std::vector<std::string>& expected, std::chrono::duration<double> limit) {
     std::string missing;
-    auto waited = wait_until("components", [&] {
+    const auto are_there = [&] {
       const auto names = NamingTree::read(orb_, server_, 1000ms);
       if (!names) return false;
       missing.clear();
-      for (const auto& component : system_.components) {
-        if (!names->find_component({false, {component.instance + ".rtc"}, ""})) missing = component.instance;
+      for (const auto& name : expected) {
+        if (!names->find_component({false, {name + ".rtc"}, ""})) missing = name;
       }
       return missing.empty();
-    });
+    };
+    const auto waited = wait_until("components", are_there, limit);
     // A host that has ended has been named already.
     if (waited || missing.empty() || is_interrupted() || !check_children()) return waited;
-    std::string why;
+    std::string why = foreign_.about(missing);
     for (const auto& host : hosts_) {
       if (host.components.find(missing) != std::string::npos) why = ": " + telling_line(host.log);
     }
-    return fail("component " + missing + ": is not there after " + std::to_string(start_limit.count()) + " s" + why);
+    return fail("component " + missing + ": is not there after " + base::format_number(limit.count()) + " s" + why);
   }
 
   // The profile as it is for this run: the simulator has an id of its own.
@@ -279,9 +343,15 @@ class Run {
       }
     }
     const auto file = place_.file("system.xml");
+    const auto stamps = foreign_.set_stamps(system_);
+    result_.notes.insert(result_.notes.end(), stamps.begin(), stamps.end());
     if (const auto written = write_system(system_, file); !written) return written;
     editor_.emplace(orb_, server_, false, std::chrono::milliseconds(call_limit));
     load(*editor_, {.file = file});
+    if (!editor_->failed() && !foreign_.empty()) {
+      if (const auto joined = foreign_.join(*editor_, system_); !joined) return joined;
+      if (const auto written = write_system(system_, file); !written) return written;
+    }
     if (!editor_->failed()) start(*editor_, file, false);
     if (!editor_->failed()) {
       if (const auto joined = wait_for_participants(); !joined) return joined;
@@ -290,10 +360,74 @@ class Run {
     return {};
   }
 
+  std::vector<Host>::iterator host_of(const std::string& instance) {
+    return std::ranges::find_if(hosts_, [&](const Host& host) {
+      return std::ranges::any_of(host.members, [&](const auto* member) { return member->instance == instance; });
+    });
+  }
+
+  // Returns when lock step does not wait for its contexts any more.
+  Result<void> kill_host(const std::string& instance) {
+    const auto host = host_of(instance);
+    if (host == hosts_.end()) return fail("component " + instance + ": its host does not run");
+    kill(host->process.pid(), SIGKILL);
+    host->process.wait(call_limit);
+    const auto members = host->members;
+    killed_.push_back(std::move(*host));
+    hosts_.erase(host);
+    return wait_until("end of the host of " + killed_.back().components, [&] {
+      const auto there = simulator_.participants();
+      return std::ranges::none_of(members, [&](const auto* member) { return there.contains(member->instance); });
+    });
+  }
+
+  Result<void> restart_host(const std::string& instance) {
+    const auto killed = std::ranges::find_if(killed_, [&](const Host& host) {
+      return std::ranges::any_of(host.members, [&](const auto* member) { return member->instance == instance; });
+    });
+    if (killed == killed_.end()) return fail("component " + instance + ": its host was not killed");
+    const auto members = killed->members;
+    killed_.erase(killed);
+    if (const auto started = start_host(members); !started) return started;
+    const auto back = wait_until("components of the host of " + instance, [&] {
+      return std::ranges::all_of(members, [&](const auto* member) {
+        const auto view = editor_->component(member->instance + ".rtc", {.contexts = true});
+        return view.ok() && view->problem.empty();
+      });
+    });
+    if (!back) return back;
+    return wire_again(members);
+  }
+
+  // Connections that a dead process has left behind are made again, the others stand.
+  Result<void> wire_again(const std::vector<const SavedComponent*>& members) {
+    const auto is_member = [&](const SavedComponent& component) { return std::ranges::find(members, &component) != members.end(); };
+    auto all = system_;
+    auto started = system_;
+    for (std::size_t i = 0; i < system_.components.size(); ++i) {
+      if (!is_member(system_.components[i])) all.components[i].configuration_sets.clear();
+      for (auto& context : all.components[i].contexts) context.state.clear();
+    }
+    std::erase_if(started.components, [&](const SavedComponent& component) {
+      return std::ranges::none_of(members, [&](const auto* member) { return member->instance == component.instance; });
+    });
+    std::erase_if(started.start_up, [&](const SavedTurn& turn) { return started.component(turn.instance) == nullptr; });
+    const auto wired_file = place_.scratch("wired-again.xml"), started_file = place_.scratch("started-again.xml");
+    for (const auto& [system, file] : {std::pair(&all, &wired_file), std::pair(&started, &started_file)}) {
+      if (const auto written = write_system(*system, *file); !written) return written;
+    }
+    load(*editor_, {.file = wired_file});
+    if (!editor_->failed()) start(*editor_, started_file, false);
+    if (editor_->failed()) return fail("system " + options_.system + ": could not be wired and activated again: " + editor_->problem());
+    return wait_for_participants();
+  }
+
   // Every context on simulated time takes part before the first step, or the run would not be the same each time.
   Result<void> wait_for_participants() {
     std::vector<std::string> expected;
+    for (const auto& member : foreign_.members()) expected.push_back(member.instance);
     for (const auto& component : system_.components) {
+      if (host_of(component.instance) == hosts_.end()) continue;  // killed by a script
       const auto view = editor_->component(component.instance + ".rtc", {.contexts = true});
       if (!view) return view.error();
       for (const auto& context : view->contexts) {
@@ -320,27 +454,62 @@ class Run {
   std::string last_words() const {
     std::string text = last_lines(place_.file("sim-server.log"));
     for (const auto& host : hosts_) text += last_lines(host.log);
-    return text;
+    return text + foreign_.last_words();
+  }
+
+  // What makes this run again, beside the profile and the world.
+  std::vector<std::pair<std::string, std::string>> notes() const {
+    const auto absolute = [](std::vector<std::string> paths) {
+      for (auto& path : paths) path = std::filesystem::absolute(path).string();
+      return base::join(paths, "\n");
+    };
+    return {{"duration", base::format_number(options_.duration_s)},
+            {"one_process_each", options_.one_process_each ? "yes" : "no"},
+            {"properties", base::join(options_.properties, "\n")},
+            {"module_paths", absolute(options_.module_paths)},
+            {"resource_paths", absolute(options_.resource_paths)}};
   }
 
   Result<void> record() {
     if (options_.record.empty()) return {};
-    return recorder_.start({server_, simulator_.id(), place_.file("system.xml"), std::filesystem::absolute(options_.record).string()},
-                           [this](const auto& what, const auto& ready) { return wait_until(what, ready); });
+    return recorder_.start(
+        {server_, simulator_.id(), place_.file("system.xml"), std::filesystem::absolute(options_.record).string(), notes()},
+        [this](const auto& what, const auto& ready) { return wait_until(what, ready); });
   }
 
-  Result<void> listen() { return ports_.listen(orb_, *editor_, expectations_); }
+  Result<void> listen() {
+    if (const auto listening = ports_.listen(orb_, *editor_, expectations_); !listening || !options_.script) return listening;
+    return ports_.listen(orb_, *editor_, options_.script->watched());
+  }
+
+  Result<void> begin_script() {
+    if (!options_.script) return {};
+    scene_.emplace(RunScene{orb_, *editor_, simulator_, place_, server_, system_, ports_,
+                            [this](const auto& instance) { return kill_host(instance); },
+                            [this](const auto& instance) { return restart_host(instance); },
+                            [this](bool is_there) { kill(naming_->pid(), is_there ? SIGCONT : SIGSTOP); }});
+    return options_.script->begin(*scene_);
+  }
 
   Result<void> drive() {
+    if (options_.driver) return options_.driver(*this);
     auto left = static_cast<std::int64_t>(std::llround(options_.duration_s / simulator_.step()));
     const auto second = std::max<std::int64_t>(1, std::llround(1 / simulator_.step()));
     const bool shows = !options_.quiet && isatty(2);
+    const auto piece = shows ? second : left;  // each costs a program's start
     for (std::int64_t done = 0; left > 0;) {
-      const auto steps = std::min(left, second);
-      if (const auto stepped = simulator_.make_steps(steps, [this] { return check_children(); }); !stepped) return stepped;
+      const auto stop = options_.script ? options_.script->next_stop(done).value_or(done + left) : done + left;
+      const auto steps = std::min({left, piece, stop - done});
+      if (const auto stepped = simulator_.make_steps(steps, [this] { return check_children(); }); !stepped) {
+        result_.simulated_s = simulator_.time().value_or(result_.simulated_s);
+        return stepped;
+      }
       left -= steps;
       done += steps;
       result_.simulated_s = static_cast<double>(done) * simulator_.step();
+      if (options_.script && stop == done) {
+        if (const auto acted = options_.script->act(*scene_, done); !acted) return acted;
+      }
       if (shows) std::fprintf(stderr, "\r%6.1f of %.1f s", result_.simulated_s, options_.duration_s);
     }
     if (shows) std::fprintf(stderr, "\r                         \r");
@@ -364,7 +533,20 @@ class Run {
       seen_.states[component.instance] = view ? state_text(view->state()) : "gone";
     }
     check_states();
+    check_chances();
     return {};
+  }
+
+  // What a next run may do otherwise: a failure when the run is to be strict, a note for each in a CI job.
+  void check_chances() {
+    std::vector<std::string> logs;
+    for (const auto& host : hosts_) logs.push_back(host.log);
+    const auto chances = chances_in(logs);
+    if (options_.strict) {
+      result_.verdicts.push_back({"nothing depends on chance", base::join(chances, "; ")});
+    } else if (std::getenv("CI")) {
+      for (const auto& chance : chances) result_.notes.push_back("depends on chance: " + chance);
+    }
   }
 
   // A component that has ended in an error, or has gone, is no success, whether somebody has asked for its state or not.
@@ -374,6 +556,7 @@ class Run {
       const bool is_judged = std::ranges::any_of(expectations_, [&](const Expectation& expectation) {
         return expectation.kind == Expectation::Kind::state && expectation.component == component;
       });
+      if (options_.script && options_.script->excuses(component)) continue;
       if (!is_judged && (state == "Error" || state == "gone")) problem += (problem.empty() ? "" : ", ") + component + " is " + state;
     }
     result_.verdicts.push_back({"no component ends in an error", problem});
@@ -405,8 +588,10 @@ class Run {
 
   // Ends components first, so that they can say good-bye to the naming service.
   void stop() {
+    foreign_.terminate();
     for (auto& host : hosts_) host.process.terminate();
     hosts_.clear();
+    foreign_.end();
     simulator_.end();
     naming_.reset();
   }
@@ -421,11 +606,15 @@ class Run {
   Seen seen_;
   RunResult result_;
   std::optional<ChildProcess> naming_;
+  RunHashes hashes_;
   RunSimulator simulator_;
-  std::vector<Host> hosts_;
+  std::vector<Host> hosts_, killed_;
+  int hosts_started_ = 0;
+  ForeignProcesses foreign_;
   RunRecorder recorder_{place_};
   std::optional<Editor> editor_;
   PortValues ports_;
+  std::optional<RunScene> scene_;  // of a script
 };
 
 }  // namespace

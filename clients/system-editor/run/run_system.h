@@ -2,8 +2,11 @@
 // trace. One thread at a time.
 #pragma once
 
+#include <sys/types.h>
+
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +16,24 @@
 #include "run/expectations.h"
 
 namespace editor {
+
+class RunScript;
+
+// A system that is wired and active and stands before its first step, in the hands of who drives it.
+class RunningSystem {
+ public:
+  struct Process {
+    std::string what;  // "sim-server", "rtcd of A, B"
+    pid_t pid = 0;
+  };
+  virtual ~RunningSystem() = default;
+  virtual const std::string& naming() const = 0;     // HOST:PORT
+  virtual const std::string& simulator() const = 0;  // its id
+  virtual double step() const = 0;                   // [s]
+  virtual std::vector<Process> processes() const = 0;
+  // As fast as it can. Fails when a process has ended or hangs, after an interrupt, and when another client pauses the simulation.
+  virtual Result<void> make_steps(std::int64_t steps) = 0;
+};
 
 struct RunOptions {
   std::string system;        // RTSProfile
@@ -24,13 +45,22 @@ struct RunOptions {
   bool in_real_time = false;
   double hang_timeout_s = 30;           // of real time, that one tick may take
   std::vector<std::string> properties;  // "INSTANCE:key=value", of the component when it is created
+  std::vector<std::string> start;       // commands that start components of others
+  std::string run_file;                 // YAML, see run_file.h
   std::vector<std::string> module_paths;
   std::vector<std::string> resource_paths;
-  std::string junit;    // file to write
-  std::string picture;  // PNG to write
-  std::string record;   // MCAP to write
-  std::string keep;     // folder for logs and the record; empty: a temporary one, removed at the end
-  bool quiet = false;   // no progress line
+  std::string junit;     // file to write
+  std::string picture;   // PNG to write
+  std::string record;    // MCAP to write
+  std::string hash_log;  // to write
+  bool twice = false;    // and compare
+  bool strict = false;   // what could depend on chance fails the run; else it is a note, when the run is in a CI job
+  std::string keep;      // folder for logs and the record; empty: a temporary one, removed at the end
+  bool quiet = false;    // no progress line
+  std::vector<std::string> simulator_options{};  // more words for sim-server
+  RunScript* script = nullptr;                   // see run_script.h; null: nothing happens but the run
+  // Makes the steps instead of the run; nothing is judged then.
+  std::function<Result<void>(RunningSystem&)> driver{};
 };
 
 struct RunResult {
@@ -40,6 +70,7 @@ struct RunResult {
   std::vector<std::string> notes;  // what is not as the world's file says
   std::vector<Verdict> verdicts;
   std::string state_hash;
+  std::string run_hash;  // of the hash log
   double simulated_s = 0;
   double wall_s = 0;
   double path_m = 0;  // of the model that went farthest

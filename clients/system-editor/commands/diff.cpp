@@ -1,0 +1,55 @@
+// diff: where two runs differ first.
+#include <unistd.h>
+
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "command.h"
+#include "commands/commands.h"
+#include "run/child_process.h"
+#include "run/hash_report.h"
+#include "run/run_hashes.h"
+
+namespace editor {
+namespace {
+
+bool is_recording(const std::string& file) {
+  std::string start(5, '\0');
+  std::ifstream(file, std::ios::binary).read(start.data(), static_cast<std::streamsize>(start.size()));
+  return start == "\x89MCAP";
+}
+
+void diff(Editor& editor, const std::string& a, const std::string& b) {
+  if (is_recording(a) && is_recording(b)) {
+    const auto program = own_program("rtse-recorder");
+    execl(program.c_str(), program.c_str(), "recording", "compare", a.c_str(), b.c_str(), nullptr);
+    return editor.fail({"program " + program + ": cannot be started; expected it beside rtse"});
+  }
+  const auto comparison = base::compare_hash_logs(a, b);
+  if (!comparison) return editor.fail(comparison.error());
+  const auto difference = difference_text(*comparison);
+  if (editor.json()) {
+    std::cout << difference_json(*comparison).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+  } else if (difference.empty()) {
+    std::printf("the same in %llu ticks, hash %s\n", static_cast<unsigned long long>(comparison->ticks),
+                hash_text(comparison->hash).c_str());
+  }
+  if (!difference.empty()) editor.fail({difference});
+}
+
+}  // namespace
+
+void add_diff(CLI::App& app, Chosen& chosen) {
+  auto* command =
+      app.add_subcommand("diff", "Compare two runs: hash logs of rtse run --hash-log, or recordings; name the first difference");
+  auto files = std::make_shared<std::pair<std::string, std::string>>();
+  command->add_option("RUN1", files->first, "Hash log or recording")->required()->check(CLI::ExistingFile);
+  command->add_option("RUN2", files->second, "Another of the same kind")->required()->check(CLI::ExistingFile);
+  command->callback([&chosen, files] {
+    chosen.needs_orb = false;
+    chosen.work = [files](Editor& editor) { diff(editor, files->first, files->second); };
+  });
+}
+
+}  // namespace editor

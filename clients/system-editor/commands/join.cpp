@@ -1,0 +1,213 @@
+// join, leave: components that run already, of any maker, take part in the simulated time of a simulator.
+//
+// The contexts in which they are called live in a host of their own, an rtcd that outlives this command and ends with the last proxy in it.
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "base/command_line.h"
+#include "base/text.h"
+#include "command.h"
+#include "commands/commands.h"
+#include "run/time_members.h"
+
+namespace editor {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+constexpr auto start_limit = 30s;
+constexpr auto participant_limit = 10s;
+constexpr int highest_server = 9999;
+
+struct JoinOptions {
+  std::vector<std::string> components;
+  int phase = 1;
+  double rate = 0;  // [Hz]; 0: that of the component's own context
+  std::string server_id;
+  bool ticks = false;  // its own context instead
+  std::string log;
+  std::vector<std::string> options;  // of the host
+};
+
+// A program that belongs to nobody: it goes on when we end.
+class ProgramApart {
+ public:
+  // `log`: a file; empty: what it says at first is kept for said().
+  static Result<ProgramApart> start(const std::vector<std::string>& words, const std::string& log) {
+    const int output = log.empty() ? memfd_create("output", MFD_CLOEXEC) : open(log.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
+    if (output < 0) return Error{"log file " + base::in_quotes(log) + ": cannot be written"};
+    std::vector<char*> arguments;
+    for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+    arguments.push_back(nullptr);
+    const pid_t pid = fork();
+    if (pid == 0) {
+      setsid();
+      dup2(open("/dev/null", O_RDONLY), 0);
+      dup2(output, 1);
+      dup2(output, 2);
+      close_range(3, ~0U, 0);
+      execvp(arguments[0], arguments.data());
+      _exit(127);
+    }
+    if (pid < 0) return Error{"program " + words[0] + ": no process can be made"};
+    return ProgramApart(pid, output);
+  }
+
+  bool has_ended() const { return waitpid(pid_, nullptr, WNOHANG) == pid_; }
+  // The last line.
+  std::string said() const {
+    std::string text(4096, '\0');
+    const auto size = lseek(output_, 0, SEEK_END);
+    const auto from = std::max<off_t>(0, size - static_cast<off_t>(text.size()));
+    const auto count = pread(output_, text.data(), text.size(), from);
+    text.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
+    const auto lines = base::split_list(text, '\n');
+    return lines.empty() ? "it said nothing" : lines.back();
+  }
+
+ private:
+  ProgramApart(pid_t pid, int output) : pid_(pid), output_(output) {}
+  pid_t pid_;
+  int output_;  // until we end
+};
+
+struct Joining {
+  std::string path;
+  TimeMember member;
+};
+
+Result<Joining> look_at(const Editor& editor, const std::string& path, const JoinOptions& options) {
+  const auto component = editor.component(path, {.contexts = true});
+  if (!component) return component.error();
+  if (simulated_context(*component)) return Error{"component " + component->path + ": takes part in simulated time already (rtse leave)"};
+  auto rate = options.rate;
+  for (const auto& context : component->contexts) {
+    if (rate == 0 && context.is_owned) rate = context.rate;
+  }
+  if (!(rate > 0)) return Error{"component " + component->path + ": has no context with a rate to take over; name one with --rate"};
+  const auto how = options.ticks ? TimeMember::How::tick : TimeMember::How::member;
+  return Joining{component->path, {component->instance, options.phase, base::format_number(rate), how}};
+}
+
+Result<void> await_proxies(const Editor& editor, const ProgramApart& host, const std::vector<Joining>& all) {
+  const auto deadline = Clock::now() + start_limit;
+  for (const auto& one : all) {
+    for (;;) {
+      const auto names = editor.tree();
+      if (names && names->find_component({false, {proxy_name(one.member.instance) + ".rtc"}, ""})) break;
+      if (host.has_ended()) return Error{"host of the contexts on simulated time: has ended: " + host.said()};
+      if (Clock::now() > deadline)
+        return Error{"component " + proxy_name(one.member.instance) + ": is not there after " + std::to_string(start_limit.count()) + " s"};
+      std::this_thread::sleep_for(20ms);  // nobody announces the start of another program
+    }
+  }
+  return {};
+}
+
+void end_proxy_of(const Editor& editor, const Joining& one) {
+  const auto proxy = editor.component(proxy_name(one.member.instance) + ".rtc", {});
+  if (proxy) static_cast<void>(remote("proxy", [&] { proxy->object->exit(); }));
+}
+
+// From when on time waits for them; false when there is no such simulator.
+bool await_participants(const std::vector<Joining>& all, const std::string& server_id) {
+  const auto deadline = Clock::now() + participant_limit;
+  while (Clock::now() < deadline) {
+    const auto said = output_of({{own_program("simctl"), "-s", server_id, "--json", "participants"}, {}, ""}, 5s);
+    if (!said) return false;
+    const auto json = nlohmann::json::parse(*said, nullptr, false);
+    std::size_t found = 0;
+    for (const auto& one : all) {
+      for (const auto& participant : json.is_array() ? json : nlohmann::json::array()) {
+        if (participant.value("name", "") == one.member.instance) ++found;
+      }
+    }
+    if (found >= all.size()) return true;
+    std::this_thread::sleep_for(20ms);  // the simulator takes them in between two steps, and tells nobody
+  }
+  return false;
+}
+
+void join(Editor& editor, const JoinOptions& options) {
+  std::vector<Joining> all;
+  HostSettings settings{
+      .naming = editor.server(), .name = "time" + std::to_string(getpid()), .empty_file = "/dev/null", .options = options.options};
+  for (const auto& path : options.components) {
+    auto one = look_at(editor, path, options);
+    if (!one) return editor.fail(one.error());
+    settings.creations.push_back(proxy_creation(one->member, options.server_id));
+    all.push_back(std::move(*one));
+  }
+  const auto host = ProgramApart::start(host_words(settings), options.log);
+  if (!host) return editor.fail(host.error());
+  if (const auto there = await_proxies(editor, *host, all); !there) {
+    for (const auto& one : all) end_proxy_of(editor, one);
+    return editor.fail(there.error());
+  }
+  for (const auto& one : all) {
+    if (const auto joined = join_time(editor, one.path, proxy_name(one.member.instance) + ".rtc", one.member.how); !joined) {
+      end_proxy_of(editor, one);
+      editor.fail(joined.error());
+    }
+  }
+  if (editor.failed()) return;
+  const bool runs = await_participants(all, options.server_id);
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const auto& one : all) {
+    if (!editor.json())
+      std::cout << one.path << ": takes part in simulator " << options.server_id << (runs ? "" : ", once that runs,") << " at "
+                << one.member.rate << " Hz, phase " << one.member.phase << '\n';
+    json.push_back({{"component", one.path},
+                    {"server_id", options.server_id},
+                    {"phase", one.member.phase},
+                    {"rate", one.member.rate},
+                    {"takes_part", runs}});
+  }
+  if (editor.json()) editor.print(json);
+}
+
+void leave(Editor& editor, const std::vector<std::string>& components) {
+  for (const auto& path : components) {
+    if (const auto left = leave_time(editor, path); !left) editor.fail(left.error());
+  }
+}
+
+std::string usual_server() {
+  const char* id = std::getenv("RTMSIM_SERVER_ID");
+  return id && *id ? id : "0";
+}
+
+}  // namespace
+
+void add_join(CLI::App& app, Chosen& chosen) {
+  auto* join = app.add_subcommand("join", "Let running components, of any maker, take part in the simulated time of a simulator");
+  auto options = std::make_shared<JoinOptions>();
+  options->server_id = usual_server();
+  join->add_option("COMPONENT", options->components, "Components; they join in this order")->required();
+  join->add_option("-p,--phase", options->phase, "Order inside a tick: 0 sensors, 1 clients, 2 actuators")
+      ->check(CLI::Range(0, highest_phase))
+      ->capture_default_str();
+  join->add_option("-r,--rate", options->rate, "Ticks per simulated second; default: the rate of the component's own context")
+      ->check(base::number_between(1e-6, 1e6));
+  join->add_option("-s,--server-id", options->server_id, "Which simulator")->check(CLI::Range(0, highest_server))->capture_default_str();
+  join->add_flag("--tick", options->ticks, "Tick the component's own context, which must be one that is ticked from outside");
+  join->add_option("--log", options->log, "File for what the host of the contexts says");
+  join->add_option("-o,--option", options->options, "KEY:VALUE of rtc.conf for that host, such as corba.endpoints")
+      ->allow_extra_args(false);
+  join->callback([&chosen, options] { chosen.work = [options](Editor& e) { editor::join(e, *options); }; });
+
+  auto* leave = app.add_subcommand("leave", "Undo join: components run in their own contexts again");
+  auto components = std::make_shared<std::vector<std::string>>();
+  leave->add_option("COMPONENT", *components, "Components")->required();
+  leave->callback([&chosen, components] { chosen.work = [components](Editor& e) { editor::leave(e, *components); }; });
+}
+
+}  // namespace editor

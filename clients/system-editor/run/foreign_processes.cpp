@@ -1,0 +1,214 @@
+#include "run/foreign_processes.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "base/text.h"
+
+namespace editor {
+namespace {
+
+constexpr const char* phase_key = "exec_cxt.sim_time.phase";
+constexpr const char* stamp_key = "dataport.timestamp_policy";
+
+std::string type_of(const SavedComponent& component) {
+  const auto parts = base::split_list(component.id, ':');
+  return parts.size() >= 4 ? parts[3] : component.instance;
+}
+
+bool has_module(const std::string& type, const std::vector<std::string>& paths) {
+  return std::ranges::any_of(paths,
+                             [&](const auto& path) { return std::filesystem::exists(std::filesystem::path(path) / (type + ".so")); });
+}
+
+std::string shortened(const std::string& command) {
+  constexpr std::size_t most = 60;
+  return command.size() <= most ? command : command.substr(0, most) + "...";
+}
+
+// The system speaks of the component's state in this context.
+void use_context(SavedSystem& system, const std::string& instance, const std::string& handle) {
+  for (auto& component : system.components) {
+    if (component.instance != instance) continue;
+    if (component.contexts.empty()) component.contexts.emplace_back();
+    component.contexts.resize(1);
+    component.contexts.front().id = handle;
+  }
+  for (auto* turns : {&system.start_up, &system.shut_down}) {
+    for (auto& turn : *turns) {
+      if (turn.instance == instance) turn.context_id = handle;
+    }
+  }
+}
+
+const ForeignComponent* find(const std::vector<ForeignProcess>& processes, const std::string& instance) {
+  for (const auto& process : processes) {
+    for (const auto& component : process.components) {
+      if (component.instance == instance) return &component;
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+Result<void> ForeignProcesses::read(const RunOptions& options, const SavedSystem& system,
+                                    const std::vector<ComponentProperty>& properties) {
+  if (!options.run_file.empty()) {
+    auto processes = read_run_file(options.run_file);
+    if (!processes) return processes.error();
+    processes_ = std::move(*processes);
+  }
+  for (const auto& process : processes_) {
+    for (const auto& component : process.components) {
+      if (!system.component(component.instance))
+        return Error{"run file " + options.run_file + ": the system has no component " + component.instance};
+    }
+  }
+  for (const auto& command : options.start) processes_.push_back({.command = command});
+  for (const auto& component : system.components) {
+    const auto* named = find(processes_, component.instance);
+    if (!named && (options.start.empty() || has_module(type_of(component), module_paths(options.module_paths)))) continue;
+    if (!named) open_.push_back(component.instance);
+    TimeMember member{.instance = component.instance};
+    if (named) member.how = named->how;
+    if (named && named->phase) member.phase = *named->phase;
+    member.rate = named && !named->rate.empty() ? named->rate : component.contexts.empty() ? "" : component.contexts.front().rate;
+    for (const auto& property : properties) {
+      if (property.instance != component.instance) continue;
+      if (property.key != phase_key)
+        return Error{"property " + property.instance + ":" + property.key + ": the component comes from a process of others, only its " +
+                     phase_key + " can be chosen"};
+      member.phase = static_cast<int>(base::parse_integer(property.value).value_or(1));
+    }
+    if (member.rate.empty()) return Error{"component " + component.instance + ": neither the system nor the run file names its rate"};
+    members_.push_back(std::move(member));
+  }
+  if (!options.start.empty() && open_.empty())
+    return Error{"command " + base::in_quotes(shortened(options.start.front())) +
+                 ": there is a module for each component of the system; name those of the process in a run file"};
+  return {};
+}
+
+bool ForeignProcesses::has(const std::string& instance) const {
+  return std::ranges::any_of(members_, [&](const auto& member) { return member.instance == instance; });
+}
+
+std::vector<std::string> ForeignProcesses::components_of(const ForeignProcess& process) const {
+  if (process.components.empty()) return open_;
+  std::vector<std::string> names;
+  for (const auto& component : process.components) names.push_back(component.instance);
+  return names;
+}
+
+std::chrono::duration<double> ForeignProcesses::patience() const {
+  double longest = 0;
+  for (const auto& process : processes_) longest = std::max(longest, process.wait_s);
+  return std::chrono::duration<double>(longest);
+}
+
+Result<void> ForeignProcesses::start(const std::string& naming, const std::string& server_id) {
+  const auto configuration = place_.scratch("foreign-rtc.conf");
+  std::ofstream(configuration) << "corba.nameservers: " << naming
+                               << "\nlogger.enable: YES\nlogger.file_name: stdout\nlogger.log_level: INFO\n"
+                               << "manager.shutdown_auto: NO\n";
+  const std::map<std::string, std::string> usual = {
+      {"RTCTREE_NAMESERVERS", naming},       {"RTMSIM_NAMING", naming},       {"ORBInitRef", "NameService=corbaname::" + naming},
+      {"RTC_MANAGER_CONFIG", configuration}, {"RTMSIM_SERVER_ID", server_id}, {"PYTHONUNBUFFERED", "1"}};
+  for (const auto& process : processes_) {
+    const auto components = base::join(components_of(process), ", ");
+    const auto log = place_.new_file("foreign-" + std::to_string(running_.size()) + ".log");
+    ProgramCall call{{"sh", "-c", process.command}, process.environment, log, process.folder, true};
+    call.environment.insert(usual.begin(), usual.end());
+    auto started = ChildProcess::start(call);
+    if (!started) return started.error();
+    running_.push_back({std::move(*started), components, log});
+  }
+  return {};
+}
+
+std::vector<std::string> ForeignProcesses::proxies() const {
+  std::vector<std::string> names;
+  for (const auto& member : members_) {
+    if (member.how != TimeMember::How::clock) names.push_back(proxy_name(member.instance));
+  }
+  return names;
+}
+
+std::vector<std::string> ForeignProcesses::creations(const std::string& server_id) const {
+  int phase = 1;
+  for (const auto& member : members_) {
+    if (member.how == TimeMember::How::clock) phase = member.phase;
+  }
+  std::vector<std::string> all = {clock_creation(phase, server_id)};
+  for (const auto& member : members_) {
+    if (member.how != TimeMember::How::clock) all.push_back(proxy_creation(member, server_id));
+  }
+  return all;
+}
+
+Result<void> ForeignProcesses::join(const Editor& editor, SavedSystem& system) const {
+  for (const auto& member : members_) {
+    if (member.how == TimeMember::How::clock) continue;
+    const auto path = member.instance + ".rtc";
+    if (const auto joined = join_time(editor, path, proxy_name(member.instance) + ".rtc", member.how); !joined) return joined;
+    const auto view = editor.component(path, {.contexts = true});
+    if (!view) return view.error();
+    if (const auto* context = simulated_context(*view)) use_context(system, member.instance, std::to_string(context->handle));
+  }
+  return {};
+}
+
+Result<void> ForeignProcesses::check() {
+  for (std::size_t i = 0; i < running_.size(); ++i) {
+    auto& one = running_[i];
+    if (!one.process.is_running())
+      return Error{"process of " + one.components + " (" + shortened(processes_[i].command) + ") " + one.process.how_it_ended() + ": " +
+                   telling_line(one.log)};
+  }
+  return {};
+}
+
+std::string ForeignProcesses::about(const std::string& instance) const {
+  for (std::size_t i = 0; i < running_.size(); ++i) {
+    const auto names = components_of(processes_[i]);
+    if (std::ranges::find(names, instance) != names.end())
+      return " (" + shortened(processes_[i].command) + "): " + telling_line(running_[i].log);
+  }
+  return "";
+}
+
+std::string ForeignProcesses::last_words() const {
+  std::string text;
+  for (const auto& one : running_) text += last_lines(one.log);
+  return text;
+}
+
+void ForeignProcesses::terminate() {
+  for (auto& one : running_) one.process.terminate();
+}
+
+std::vector<std::string> ForeignProcesses::set_stamps(SavedSystem& system) const {
+  std::vector<std::string> stamped, differing;
+  for (auto& connector : system.connectors) {
+    if (!connector.is_data || !has(connector.source.instance)) continue;
+    const auto link = connector.source.port_name + " to " + connector.target.port_name;
+    const bool is_said = std::ranges::any_of(connector.properties, [](const auto& one) { return one.first.ends_with("timestamp_policy"); });
+    if (has(connector.target.instance)) {
+      differing.push_back(link);
+    } else if (!is_said) {
+      connector.properties.emplace_back(stamp_key, "on_received");
+      stamped.push_back(link);
+    }
+  }
+  std::vector<std::string> notes;
+  if (!stamped.empty())
+    notes.push_back("stamped with simulated time by the receiver (timestamp_policy on_received): " + base::join(stamped, ", "));
+  if (!differing.empty())
+    notes.push_back("between components of others, with stamps of their own clocks, which differ in each run: " +
+                    base::join(differing, ", "));
+  return notes;
+}
+
+}  // namespace editor

@@ -1,0 +1,70 @@
+// The processes of others in a run: what `rtse run --start` and a run file name. They are started with the run's naming service in their
+// environment, their components take part in simulated time through proxies (time_members.h), and they are ended by process group. One
+// thread at a time.
+//
+// What a process finds in its environment:
+//   RTCTREE_NAMESERVERS, RTMSIM_NAMING   the naming service, "127.0.0.1:43210"
+//   ORBInitRef                           the same for omniORB: "NameService=corbaname::127.0.0.1:43210"
+//   RTC_MANAGER_CONFIG                   an rtc.conf of the run: corba.nameservers, and logs to standard output
+//   RTMSIM_SERVER_ID                     the simulator
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "profile/rts_profile.h"
+#include "run/child_process.h"
+#include "run/run_file.h"
+#include "run/run_files.h"
+#include "run/run_system.h"
+
+namespace editor {
+
+class ForeignProcesses {
+ public:
+  explicit ForeignProcesses(const Workplace& place) : place_(place) {}
+
+  // Which components of the system come from where: those that the run file names, and with --start all others of whose type there is no
+  // module. Each must be in the system, with a rate; `properties` may choose its phase.
+  Result<void> read(const RunOptions& options, const SavedSystem& system, const std::vector<ComponentProperty>& properties);
+  bool empty() const { return processes_.empty(); }
+  bool has(const std::string& instance) const;
+  // In the order of the system.
+  const std::vector<TimeMember>& members() const { return members_; }
+  // The longest that somebody waits for the components of a process.
+  std::chrono::duration<double> patience() const;
+
+  Result<void> start(const std::string& naming, const std::string& server_id);
+  // What the host of their contexts is made of: a proxy for each that needs one, and OpenHRP's clock.
+  std::vector<std::string> creations(const std::string& server_id) const;
+  std::vector<std::string> proxies() const;
+  // Brings them into simulated time, once they and their proxies are there. In `system` their states are then those in these contexts.
+  Result<void> join(const Editor& editor, SavedSystem& system) const;
+  // An error that names the components of a process that has ended, and how.
+  Result<void> check();
+  // Where a component comes from, and what its process says, for messages.
+  std::string about(const std::string& instance) const;
+  std::string last_words() const;
+  void terminate();
+  void end() { running_.clear(); }
+
+  // Links into our ports get stamps of simulated time, unless the system says otherwise. What there is to say of stamps.
+  std::vector<std::string> set_stamps(SavedSystem& system) const;
+
+ private:
+  struct Running {
+    ChildProcess process;
+    std::string components;
+    std::string log;
+  };
+  std::vector<std::string> components_of(const ForeignProcess& process) const;
+
+  const Workplace& place_;
+  std::vector<ForeignProcess> processes_;
+  std::vector<std::string> open_;  // those of --start, of whom nobody knows from which process
+  std::vector<TimeMember> members_;
+  std::vector<Running> running_;
+};
+
+}  // namespace editor

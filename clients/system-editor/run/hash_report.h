@@ -1,0 +1,15 @@
+// What people read of two hash logs: the first difference with the values that are there. One thread at a time.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "base/hash_log.h"
+
+namespace editor {
+
+// Empty when the runs are the same; else one line: when, where, and both values.
+std::string difference_text(const base::HashComparison& comparison);
+nlohmann::ordered_json difference_json(const base::HashComparison& comparison);
+
+}  // namespace editor

@@ -1,0 +1,52 @@
+// What somebody adds to a run of a system who has more in mind than to watch it: other values before it starts, deeds between two steps,
+// numbers at the end. One thread at a time; the calls come in the order in which they are written here.
+//
+// Deeds are done while simulated time stands still and every participant has ended its tick, so a run with the same deeds at the same steps
+// is the same to the bit.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "run/port_values.h"
+#include "run/run_simulator.h"
+#include "run/run_system.h"
+
+namespace editor {
+
+// What a script may use of the run while it stands between two steps.
+struct RunScene {
+  CORBA::ORB_ptr orb;
+  const Editor& editor;  // of the run's naming service
+  RunSimulator& simulator;
+  const Workplace& place;
+  const std::string& naming;  // HOST:PORT of its service
+  const SavedSystem& system;
+  const PortValues& values;
+  std::function<Result<void>(const std::string& instance)> kill_host;     // the host of a component, with SIGKILL
+  std::function<Result<void>(const std::string& instance)> restart_host;  // one that was killed; its components are wired and started
+  std::function<void(bool is_there)> set_naming;                          // stops the naming service, or lets it go on
+};
+
+class RunScript {
+ public:
+  virtual ~RunScript() = default;
+  // The system as it is read, before anything is started.
+  virtual Result<void> alter(SavedSystem&) { return {}; }
+  // Values of ports to be seen; their limits do not matter. They must live until the end of the run.
+  virtual const std::vector<Expectation>& watched() const = 0;
+  // Everything is wired and active; no step has been made.
+  virtual Result<void> begin(RunScene&) { return {}; }
+  // The number of steps after which it wants to do something next, more than `done`; nothing: never again.
+  virtual std::optional<std::int64_t> next_stop(std::int64_t done) const = 0;
+  virtual Result<void> act(RunScene&, std::int64_t done) = 0;
+  // Whether it was asked for that this component is in its error state, or gone, at the end.
+  virtual bool excuses(const std::string& instance) const = 0;
+  // The last call. `seen` is what the verdicts are about. The files of the run are still there, and the simulator if there is a scene.
+  virtual void end(RunScene* scene, const Seen& seen, RunResult& result) = 0;
+};
+
+}  // namespace editor

@@ -1,0 +1,43 @@
+#include "run/run_twice.h"
+
+#include <filesystem>
+
+#include "base/hash_log.h"
+#include "run/hash_report.h"
+#include "run/run_files.h"
+
+namespace editor {
+namespace {
+
+constexpr const char* verdict_name = "a second run is the same";
+
+Verdict compare(const std::string& first, const std::string& second) {
+  const auto comparison = base::compare_hash_logs(first, second);
+  return {verdict_name, comparison ? difference_text(*comparison) : comparison.error().message};
+}
+
+std::string below(const std::string& folder, const char* name) {
+  return folder.empty() ? "" : (std::filesystem::path(folder) / name).string();
+}
+
+}  // namespace
+
+RunResult run_twice(CORBA::ORB_ptr orb, const RunOptions& options) {
+  const Workplace place("");
+  RunOptions first = options, second = options;
+  if (first.hash_log.empty()) first.hash_log = place.scratch("first.hashlog");
+  second.hash_log = options.hash_log.empty() ? place.scratch("second.hashlog") : options.hash_log + ".2";
+  first.keep = below(options.keep, "first");
+  second.keep = below(options.keep, "second");
+  second.picture.clear();
+  second.record.clear();
+  RunResult result = run_system(orb, first);
+  if (!result.problem.empty()) return result;
+  const RunResult again = run_system(orb, second);
+  result.wall_s += again.wall_s;
+  result.simulated_s += again.simulated_s;
+  result.verdicts.push_back(again.problem.empty() ? compare(first.hash_log, second.hash_log) : Verdict{verdict_name, again.problem});
+  return result;
+}
+
+}  // namespace editor

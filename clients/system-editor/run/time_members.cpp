@@ -1,0 +1,179 @@
+#include "run/time_members.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/text.h"
+#include "commands/conf.h"
+#include "commands/state.h"
+#include "rtm/idl/LogicalTimeTriggeredECStub.h"
+#include "rtm/idl/OpenRTMStub.h"
+
+namespace editor {
+namespace {
+
+const std::string proxy_type = "SimTimeProxy";
+
+bool is_simulated(const ContextView& context) { return property(context.properties, "type") == "SimTimeContext"; }
+
+int index_of(const ComponentView& component, const ContextView& context) { return static_cast<int>(&context - component.contexts.data()); }
+
+// It may run in one context only. True when it was active.
+Result<bool> rest_in_own_contexts(const ComponentView& component) {
+  bool was_active = false;
+  for (const auto& context : component.contexts) {
+    if (!context.is_owned) continue;
+    if (context.state == RTC::ERROR_STATE) return Error{"component " + component.path + ": is Error in its own context (try: rtse reset)"};
+    if (context.state != RTC::ACTIVE_STATE) continue;
+    if (const auto rests = change_state(component, Transition::deactivate, index_of(component, context)); !rests) return rests.error();
+    was_active = true;
+  }
+  return was_active;
+}
+
+Result<void> activate_in(const Editor& editor, const std::string& path, bool in_simulated_time) {
+  const auto component = editor.component(path, {.contexts = true});
+  if (!component) return component.error();
+  for (const auto& context : component->contexts) {
+    if (in_simulated_time ? &context == simulated_context(*component) : context.is_owned)
+      return change_state(*component, Transition::activate, index_of(*component, context));
+  }
+  return {};  // without a context of its own it rests
+}
+
+// The proxy, active from now on, ticks the first context of the component's own.
+Result<void> tick_own_context(const Editor& editor, const ComponentView& component, const ComponentView& proxy) {
+  const auto own = std::ranges::find_if(component.contexts, [](const auto& context) { return context.is_owned; });
+  if (own == component.contexts.end()) return Error{"component " + component.path + ": has no context of its own that could be ticked"};
+  bool is_ticked = false;
+  const auto asked = remote("component " + component.path, [&] {
+    is_ticked = own->object->_is_a(OpenRTM::ExtTrigExecutionContextService::_PD_repoId) ||
+                own->object->_is_a(OpenRTM::LogicalTimeTriggeredEC::_PD_repoId);
+  });
+  if (!asked) return asked;
+  if (!is_ticked)
+    return Error{"component " + component.path + ": its context (" + property(own->properties, "type", "of no type") +
+                 ") is not ticked from outside; join it as a member"};
+  const CORBA::String_var reference = editor.orb()->object_to_string(own->object);
+  if (const auto set = set_values(proxy, "default", {{"ticks", reference.in()}}); !set) return set;
+  if (const auto used = use_set(proxy, "default"); !used) return used;
+  return change_state(proxy, Transition::activate, 0);
+}
+
+// Ends the owner of a context if that is a proxy of ours.
+Result<void> end_proxy(const ContextView& context) {
+  return remote("the owner of the context on simulated time", [&] {
+    const RTC::ExecutionContextService_var service = RTC::ExecutionContextService::_narrow(context.object);
+    if (CORBA::is_nil(service)) return;
+    RTC::ExecutionContextProfile_var profile = service->get_profile();
+    if (CORBA::is_nil(profile->owner)) return;
+    RTC::ComponentProfile_var owner = profile->owner->get_component_profile();
+    if (owner->type_name.in() == proxy_type) profile->owner->exit();
+  });
+}
+
+// Of one whose own context is ticked.
+bool leave_proxy(const Editor& editor, const std::string& instance) {
+  const auto proxy = editor.component(proxy_name(instance) + ".rtc", {});
+  return proxy && proxy->type == proxy_type && remote("proxy of " + instance, [&] { proxy->object->exit(); });
+}
+
+}  // namespace
+
+std::string proxy_name(const std::string& instance) { return instance + "_time"; }
+
+std::string proxy_creation(const TimeMember& member, const std::string& server_id) {
+  return proxy_type + "?instance_name=" + proxy_name(member.instance) +
+         "&exec_cxt.periodic.type=SimTimeContext&exec_cxt.periodic.rate=" + member.rate +
+         "&exec_cxt.sim_time.phase=" + std::to_string(member.phase) + "&exec_cxt.sim_time.server_id=" + server_id +
+         "&exec_cxt.sim_time.participant=" + member.instance;
+}
+
+std::string clock_creation(int phase, const std::string& server_id) {
+  return "ClockGenerator?conf.default.phase=" + std::to_string(phase) + "&conf.default.server_id=" + server_id;
+}
+
+std::optional<TimeMember::How> parse_how(const std::string& text) {
+  if (text == "member") return TimeMember::How::member;
+  if (text == "tick") return TimeMember::How::tick;
+  if (text == "clock") return TimeMember::How::clock;
+  return std::nullopt;
+}
+
+std::vector<std::string> module_paths(const std::vector<std::string>& before) {
+  const auto libraries = std::filesystem::path(own_program("rtcd")).parent_path().parent_path() / "lib";
+  auto paths = before;
+  paths.push_back(libraries.string());
+  paths.push_back((libraries / "rtm-sim").string());
+  return paths;
+}
+
+std::vector<std::string> host_words(const HostSettings& settings) {
+  const auto paths = module_paths(settings.module_paths);
+  std::vector<std::string> options = {"corba.nameservers:" + settings.naming,      "manager.modules.load_path:" + base::join(paths, ","),
+                                      "manager.modules.preload:SimTimeContext.so", "exec_cxt.periodic.type:SimTimeContext",
+                                      "manager.instance_name:" + settings.name,    "logger.log_level:INFO"};
+  options.insert(options.end(), settings.options.begin(), settings.options.end());
+  std::vector<std::string> words = {own_program("rtcd"), "-f", settings.empty_file};
+  for (const auto& option : options) words.insert(words.end(), {"-o", option});
+  words.insert(words.end(), settings.creations.begin(), settings.creations.end());
+  return words;
+}
+
+const ContextView* simulated_context(const ComponentView& component) {
+  const auto it = std::ranges::find_if(component.contexts, [](const auto& context) { return !context.is_owned && is_simulated(context); });
+  return it == component.contexts.end() ? nullptr : &*it;
+}
+
+Result<void> join_time(const Editor& editor, const std::string& path, const std::string& proxy, TimeMember::How how) {
+  const auto component = editor.component(path, {.contexts = true});
+  if (!component) return component.error();
+  if (simulated_context(*component)) return Error{"component " + component->path + ": takes part in simulated time already (rtse leave)"};
+  const auto host = editor.component(proxy, {.contexts = true});
+  if (!host) return host.error();
+  if (host->contexts.empty() || !is_simulated(host->contexts.front())) return Error{"component " + host->path + ": is no proxy of ours"};
+  if (how == TimeMember::How::tick) return tick_own_context(editor, *component, *host);
+  const auto was_active = rest_in_own_contexts(*component);
+  if (!was_active) return was_active.error();
+  RTC::ReturnCode_t code = RTC::RTC_ERROR;
+  const auto what = "component " + component->path + ": joining simulated time";
+  constexpr std::chrono::seconds patience{20};  // the context asks the component in turn
+  const CallLimit limited(patience);
+  const auto called = remote(what, [&] { code = host->contexts.front().object->add_component(component->object); });
+  if (!called) return called.error();
+  if (const auto added = check(what, code, "it does not answer attach_context, or has refused; the log of its process may say why"); !added)
+    return added;
+  return *was_active ? activate_in(editor, path, true) : Result<void>();
+}
+
+Result<void> leave_time(const Editor& editor, const std::string& path) {
+  const auto component = editor.component(path, {.contexts = true});
+  if (!component) return component.error();
+  bool is_active = false;
+  int left = 0;
+  for (const auto& context : component->contexts) {
+    if (context.is_owned || !(is_simulated(context) || context.is_gone())) continue;
+    ++left;
+    if (context.is_gone()) {  // its host has died: only the component still knows of it
+      const auto detached = remote("component " + component->path, [&] { component->object->detach_context(context.handle); });
+      if (!detached) return detached;
+      continue;
+    }
+    if (context.state == RTC::ACTIVE_STATE || context.state == RTC::ERROR_STATE) {
+      is_active = is_active || context.state == RTC::ACTIVE_STATE;
+      const auto step = context.state == RTC::ACTIVE_STATE ? Transition::deactivate : Transition::reset;
+      if (const auto rests = change_state(*component, step, index_of(*component, context)); !rests) return rests;
+    }
+    RTC::ReturnCode_t code = RTC::RTC_OK;
+    const auto what = "component " + component->path + ": leaving simulated time";
+    const auto called = remote(what, [&] { code = context.object->remove_component(component->object); });
+    if (!called) return called;
+    if (const auto removed = check(what, code); !removed) return removed;
+    if (const auto ended = end_proxy(context); !ended) return ended;
+  }
+  if (left == 0 && leave_proxy(editor, component->instance)) return {};
+  if (left == 0) return Error{"component " + component->path + ": takes no part in simulated time"};
+  return is_active ? activate_in(editor, path, false) : Result<void>();
+}
+
+}  // namespace editor
