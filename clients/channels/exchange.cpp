@@ -34,6 +34,11 @@ class Outlet {
     changed_.notify_all();
   }
 
+  void close(ChannelId id) {
+    data_.lock()->closed.push_back(id);
+    changed_.notify_all();
+  }
+
   // False when the sample was dropped.
   bool put(const SharedSample& sample) {
     const std::size_t size = sample->octets.size() + sizeof(Sample);
@@ -57,29 +62,44 @@ class Outlet {
   }
 
   std::optional<base::Error> failure() const { return data_.lock()->failure; }
+  void on_failure(std::function<void()> told) {
+    bool has_failed = false;
+    {
+      auto data = data_.lock();
+      data->told = told;
+      has_failed = data->failure.has_value();
+    }
+    if (has_failed && told) told();
+  }
 
  private:
   struct Data {
     std::vector<std::pair<ChannelId, SharedChannel>> news;  // channels that the sink has not heard of
     std::deque<SharedSample> queue;
+    std::vector<ChannelId> closed;  // behind the queue
     std::size_t octets = 0;
     std::uint64_t rests_wanted = 0;
     std::uint64_t rests_done = 0;
     std::optional<base::Error> failure;
+    std::function<void()> told;  // of it
     bool is_ending = false;
   };
   struct Work {
     std::vector<std::pair<ChannelId, SharedChannel>> news;
     std::deque<SharedSample> samples;
+    std::vector<ChannelId> closed;
     std::uint64_t rests_wanted = 0;
     bool is_ending = false;
   };
 
   Work next() {
     auto data = data_.lock();
-    data.wait_for(changed_, rest_period,
-                  [&] { return !data->queue.empty() || !data->news.empty() || data->is_ending || data->rests_wanted != data->rests_done; });
-    Work work{std::exchange(data->news, {}), std::exchange(data->queue, {}), data->rests_wanted, data->is_ending};
+    data.wait_for(changed_, rest_period, [&] {
+      return !data->queue.empty() || !data->news.empty() || !data->closed.empty() || data->is_ending ||
+             data->rests_wanted != data->rests_done;
+    });
+    Work work{std::exchange(data->news, {}), std::exchange(data->queue, {}), std::exchange(data->closed, {}), data->rests_wanted,
+              data->is_ending};
     data->octets = 0;
     room_.notify_all();
     return work;
@@ -92,6 +112,9 @@ class Outlet {
     for (const SharedSample& sample : work.samples) {
       if (const auto done = sink_->take(*sample); !done) return done;
     }
+    for (const ChannelId id : work.closed) {
+      if (const auto done = sink_->close(id); !done) return done;
+    }
     return sink_->rest();
   }
 
@@ -99,10 +122,17 @@ class Outlet {
     for (;;) {
       const Work work = next();
       const auto done = give(work);
-      auto data = data_.lock();
-      data->rests_done = work.rests_wanted;
-      if (!done) data->failure = done.error();
-      room_.notify_all();
+      std::function<void()> told;
+      {
+        auto data = data_.lock();
+        data->rests_done = work.rests_wanted;
+        if (!done) {
+          data->failure = done.error();
+          told = data->told;
+        }
+        room_.notify_all();
+      }
+      if (told) told();
       if (!done || work.is_ending) return;
     }
   }
@@ -123,6 +153,7 @@ struct Exchange::State {
     std::vector<std::uint32_t> sequences;  // likewise: of the next sample
     std::vector<std::uint64_t> dropped;
     std::vector<std::shared_ptr<Outlet>> outlets;
+    std::function<void()> told;  // of failures
   };
   base::Guarded<Data, base::Rank::connector> data;
 };
@@ -133,6 +164,7 @@ Exchange::~Exchange() = default;
 void Exchange::attach(std::shared_ptr<Sink> sink, const QueueOptions& options) {
   auto outlet = std::make_shared<Outlet>(std::move(sink), options);
   auto data = state_->data.lock();
+  outlet->on_failure(data->told);
   for (std::size_t i = 0; i < data->channels.size(); ++i) outlet->announce(static_cast<ChannelId>(i + 1), data->channels[i]);
   data->outlets.push_back(std::move(outlet));
 }
@@ -148,12 +180,17 @@ base::Result<ChannelId> Exchange::open(Channel channel) {
   return id;
 }
 
-// Samples of one channel are put by one thread at a time, so their numbers are in the order of each queue.
 void Exchange::put(ChannelId channel, Time log_time, std::span<const char> head, std::span<const char> octets) {
-  Sample sample{channel, 0, log_time, base::SystemClock().now(), {}};
-  sample.octets.reserve(head.size() + octets.size());
-  sample.octets.insert(sample.octets.end(), head.begin(), head.end());
-  sample.octets.insert(sample.octets.end(), octets.begin(), octets.end());
+  std::vector<char> all;
+  all.reserve(head.size() + octets.size());
+  all.insert(all.end(), head.begin(), head.end());
+  all.insert(all.end(), octets.begin(), octets.end());
+  put(channel, log_time, std::move(all));
+}
+
+// Samples of one channel are put by one thread at a time, so their numbers are in the order of each queue.
+void Exchange::put(ChannelId channel, Time log_time, std::vector<char>&& octets) {
+  Sample sample{channel, 0, log_time, base::SystemClock().now(), std::move(octets)};
   std::vector<std::shared_ptr<Outlet>> outlets;
   {
     auto data = state_->data.lock();
@@ -165,6 +202,11 @@ void Exchange::put(ChannelId channel, Time log_time, std::span<const char> head,
   std::uint64_t dropped = 0;
   for (const auto& outlet : outlets) dropped += outlet->put(shared) ? 0 : 1;
   if (dropped > 0) state_->data.lock()->dropped[channel - 1u] += dropped;
+}
+
+void Exchange::close(ChannelId channel) {
+  const auto outlets = state_->data.lock()->outlets;
+  for (const auto& outlet : outlets) outlet->close(channel);
 }
 
 bool Exchange::drain(std::chrono::milliseconds limit) {
@@ -198,6 +240,16 @@ std::optional<base::Error> Exchange::failure() const {
 std::string_view cdr_head(bool is_little_endian) {
   using namespace std::string_view_literals;
   return is_little_endian ? "\0\1\0\0"sv : "\0\0\0\0"sv;
+}
+
+void Exchange::on_failure(std::function<void()> told) {
+  std::vector<std::shared_ptr<Outlet>> outlets;
+  {
+    auto data = state_->data.lock();
+    data->told = told;
+    outlets = data->outlets;
+  }
+  for (const auto& outlet : outlets) outlet->on_failure(told);
 }
 
 }  // namespace channels

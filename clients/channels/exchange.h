@@ -1,14 +1,15 @@
 // Where sources and sinks of channels meet. Each sink has a thread and a queue of its own, so that a slow one costs neither the sources nor
 // the other sinks anything beyond its queue.
 //
-// Any thread may put, open and attach. A sink is called on its thread alone: open() before the first sample of a channel, take() in the
-// order in which samples were put, rest() when there is nothing to take and at least once in rest_period. When a sink fails it is called
-// no more, and failure() says why. When a queue is full, put() waits up to `patience` of that sink; then the sample is dropped for it and
-// counted. With a patience of zero a source never waits.
+// Any thread may put, open, close and attach. A sink is called on its thread alone: open() before the first sample of a channel, take() in
+// the order in which samples were put, close() behind the last sample, rest() when there is nothing to take and at least once in
+// rest_period. When a sink fails it is called no more, and failure() says why. When a queue is full, put() waits up to `patience` of that
+// sink; then the sample is dropped for it and counted. With a patience of zero a source never waits.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -28,6 +29,7 @@ class Sink {
   virtual ~Sink() = default;
   virtual base::Result<void> open(ChannelId id, const Channel& channel) = 0;
   virtual base::Result<void> take(const Sample& sample) = 0;
+  virtual base::Result<void> close(ChannelId) { return {}; }
   virtual base::Result<void> rest() { return {}; }
 };
 
@@ -45,9 +47,12 @@ class Exchange final {
 
   // A sink hears of all channels, also of those that were opened before it came.
   void attach(std::shared_ptr<Sink> sink, const QueueOptions& options = {});
-  // At most 65535.
+  // At most 65535, with those that were closed.
   base::Result<ChannelId> open(Channel channel);
   void put(ChannelId channel, Time log_time, std::span<const char> head, std::span<const char> octets = {});
+  void put(ChannelId channel, Time log_time, std::vector<char>&& octets);
+  // Nothing more comes on it.
+  void close(ChannelId channel);
   // Gives the sinks what waits for them and lets them rest; false when they have not done so in time.
   bool drain(std::chrono::milliseconds limit);
 
@@ -55,6 +60,8 @@ class Exchange final {
   std::map<std::string, std::uint64_t> dropped() const;
   // What the first sink that failed said.
   std::optional<base::Error> failure() const;
+  // Called once for each sink that fails, on its thread; also for those that came before. It must not wait, nor call the exchange.
+  void on_failure(std::function<void()> told);
 
  private:
   struct State;

@@ -13,7 +13,9 @@
 #include "mcap/mcap.h"
 #include "recorder_commands.h"
 #include "run/interrupt.h"
+#include "run_clock.h"
 #include "sample_text.h"
+#include "shm/lockstep.h"
 #include "tap.h"
 
 namespace recorder {
@@ -30,6 +32,8 @@ struct PlayOptions {
   bool loop = false;
   double from_s = 0;
   double to_s = 0;
+  bool by_simulation = false;
+  int server_id = static_cast<int>(default_server_id());
 };
 
 // A channel of the recording, and the InPorts that get it.
@@ -74,7 +78,14 @@ base::Result<void> add_route(Editor& editor, const mcap::Reader& reader, const s
   return {};
 }
 
-// True when the time has come, false after an interrupt.
+// When what was recorded is sent: at moments since the start.
+class Pace {
+ public:
+  virtual ~Pace() = default;
+  // True when the time has come, false after an interrupt, or when time has ended.
+  virtual bool wait(std::chrono::nanoseconds moment) = 0;
+};
+
 bool wait_until(WallClock::time_point due) {
   while (!editor::is_interrupted()) {
     const auto left = due - WallClock::now();
@@ -87,6 +98,43 @@ bool wait_until(WallClock::time_point due) {
   return false;
 }
 
+class WallPace final : public Pace {
+ public:
+  bool wait(std::chrono::nanoseconds moment) override { return wait_until(start_ + moment); }
+
+ private:
+  const WallClock::time_point start_ = WallClock::now();
+};
+
+// By the clock of a simulator: as a component of phase 0, whose tick lasts until all that is due has been sent.
+class SimulatedPace final : public Pace {
+ public:
+  explicit SimulatedPace(shm::Participant participant) : participant_(std::move(participant)) {}
+  static base::Result<std::unique_ptr<Pace>> join(int server_id) {
+    auto participant =
+        shm::Participant::join(static_cast<std::uint32_t>(server_id), {.name = "play", .phase = 0, .period = std::chrono::milliseconds(1)});
+    if (!participant) return participant.error();
+    return std::unique_ptr<Pace>(new SimulatedPace(std::move(*participant)));
+  }
+  bool wait(std::chrono::nanoseconds moment) override {
+    while (!start_ || now_ - *start_ < moment) {
+      if (editor::is_interrupted()) return false;
+      shm::Tick tick;
+      const auto what = participant_.wait(tick, std::chrono::milliseconds(100));
+      if (what == shm::Participant::State::timed_out) continue;
+      if (what != shm::Participant::State::tick) return false;
+      now_ = tick.now;
+      if (!start_ || now_ < *start_) start_ = now_;
+    }
+    return true;
+  }
+
+ private:
+  shm::Participant participant_;
+  std::optional<std::chrono::nanoseconds> start_;
+  std::chrono::nanoseconds now_{0};
+};
+
 // Plain CDR in the order that the connections of taps announce.
 std::optional<std::span<const unsigned char>> payload_of(const mcap::Message& message) {
   if (message.data.size() < 4 || message.data[1] != 1) return std::nullopt;
@@ -94,13 +142,12 @@ std::optional<std::span<const unsigned char>> payload_of(const mcap::Message& me
 }
 
 // False when it was interrupted, or failed.
-bool play_once(Editor& editor, mcap::Reader& reader, const PlayOptions& options, Routes& routes) {
+bool play_once(Editor& editor, mcap::Reader& reader, const PlayOptions& options, Routes& routes, Pace& pace) {
   mcap::Query query;
   for (const auto& [channel, route] : routes) query.channels.push_back(channel);
   query.from = mcap::Time(static_cast<std::uint64_t>(options.from_s * 1e9));
   if (options.to_s > 0) query.to = mcap::Time(static_cast<std::uint64_t>(options.to_s * 1e9));
   reader.seek(std::move(query));
-  const auto start = WallClock::now();
   std::optional<mcap::Time> first;
   for (;;) {
     const auto message = reader.next();
@@ -111,7 +158,7 @@ bool play_once(Editor& editor, mcap::Reader& reader, const PlayOptions& options,
     if (!message->has_value()) return true;
     if (!first) first = (*message)->log_time;
     const std::chrono::duration<double> offset(static_cast<double>(((*message)->log_time - *first).count()) * 1e-9 / options.rate);
-    if (!wait_until(start + std::chrono::duration_cast<WallClock::duration>(offset))) return false;
+    if (!pace.wait(std::chrono::duration_cast<std::chrono::nanoseconds>(offset))) return false;
     const auto payload = payload_of(**message);
     Route& route = routes.at((*message)->channel);
     const std::string& topic = reader.channels().at((*message)->channel).topic;
@@ -139,7 +186,11 @@ void play(Editor& editor, const PlayOptions& options) {
   }
   editor::catch_interrupts();
   const editor::CallLimit limited(editor.limit());
-  while (play_once(editor, *reader, options, routes) && options.loop) {
+  for (bool goes_on = true; goes_on;) {
+    auto pace =
+        options.by_simulation ? SimulatedPace::join(options.server_id) : base::Result<std::unique_ptr<Pace>>(std::make_unique<WallPace>());
+    if (!pace) return editor.fail(pace.error());
+    goes_on = play_once(editor, *reader, options, routes, **pace) && options.loop;
   }
   std::uint64_t sent = 0;
   for (const auto& [channel, route] : routes) sent += route.sent;
@@ -160,6 +211,10 @@ void add_play(CLI::App& app, editor::Chosen& chosen) {
   command->add_flag("--loop", options->loop, "Start over at the end, until stopped");
   command->add_option("--from", options->from_s, "From this time on [s]")->check(base::number_between(0.0, 1e10));
   command->add_option("--to", options->to_s, "Up to this time [s]")->check(base::number_between(0.0, 1e10));
+  command->add_flag("--sim-time", options->by_simulation,
+                    "By the clock of the simulator; in lock step time waits until all that is due was sent");
+  command->add_option("-s,--server-id", options->server_id, "With --sim-time: which simulator; default: $RTMSIM_SERVER_ID, else 0")
+      ->check(base::number_between(0, 9999));
   command->callback([&chosen, options] { chosen.work = [options](Editor& editor) { play(editor, *options); }; });
 }
 

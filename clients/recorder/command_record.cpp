@@ -1,12 +1,16 @@
 // record.
 #include <fnmatch.h>
 #include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <map>
 #include <memory>
 
 #include "base/clock.h"
@@ -18,7 +22,10 @@
 #include "recorder_commands.h"
 #include "run/interrupt.h"
 #include "run_clock.h"
+#include "sample_filters.h"
 #include "shm/client.h"
+#include "shm/lockstep.h"
+#include "views/world_source.h"
 
 namespace recorder {
 
@@ -33,13 +40,34 @@ constexpr std::size_t largest_world = 64 << 20;  // [octets] that are attached
 struct RecordOptions {
   std::vector<std::string> ports;
   bool all = false;
+  bool views = false;       // of the simulator, too
+  bool only_ports = false;  // with `all`: no views
+  bool raw_pictures = false;
   std::vector<std::string> excluded;
   std::vector<std::string> attached;  // NAME=FILE
+  std::vector<std::string> notes;     // KEY=VALUE
   std::string file;
   double duration_s = 0;  // of the wall clock; 0: until stopped
+  Split split;
+  double rate = 0;    // [Hz] of each channel at most; 0: all
+  double last_s = 0;  // only so much before the end; 0: all
   std::string compression = "zstd";
   int server_id = static_cast<int>(default_server_id());
   bool quiet = false;
+};
+
+// Readable when a sink has failed.
+class FailureHandle {
+ public:
+  FailureHandle() : descriptor_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
+  ~FailureHandle() { ::close(descriptor_); }
+  FailureHandle(const FailureHandle&) = delete;
+  FailureHandle& operator=(const FailureHandle&) = delete;
+  int descriptor() const { return descriptor_; }
+  void raise() const { (void)::eventfd_write(descriptor_, 1); }
+
+ private:
+  int descriptor_;
 };
 
 bool is_excluded(const RecordOptions& options, const std::string& name) {
@@ -109,67 +137,133 @@ void attach_run(mcap::Writer& writer, const RecordOptions& options, const RunClo
     const std::string world = file_text(text(info.file));
     if (!world.empty()) (void)writer.attach({mcap::Time(0), mcap::Time(0), "world.sdf", "application/xml", world});
   }
+  for (const auto& note : options.notes) {
+    const auto equals = note.find('=');
+    run[note.substr(0, equals)] = note.substr(equals + 1);
+  }
   (void)writer.add_metadata({"run", run});
 }
 
-void report(Editor& editor, const RecordOptions& options, const mcap::Writer& writer, const channels::Exchange& exchange) {
+// Of the components that take part in the lock step: with its phase a sample can be sent again in its place.
+std::map<std::string, std::map<std::string, std::string>> lockstep_facts(const RecordOptions& options) {
+  std::map<std::string, std::map<std::string, std::string>> facts;
+  auto simulation = shm::Iface::open(static_cast<std::uint32_t>(options.server_id), shm::IfaceType::simulation, "world");
+  if (!simulation) return facts;
+  if (const auto there = shm::read_participants(*simulation)) {
+    for (const auto& one : *there) facts[one.name] = {{"phase", std::to_string(one.phase)}, {"period_ns", std::to_string(one.period_ns)}};
+  }
+  return facts;
+}
+
+void report(Editor& editor, const RecordOptions& options, const McapSink& sink, const channels::Exchange& exchange) {
   for (const auto& [topic, count] : exchange.dropped()) {
     editor.fail(
         {"record: " + std::to_string(count) + " samples of " + topic + " were dropped, they came faster than they could be written"});
   }
-  if (!options.quiet) {
-    std::cerr << "recorded " << writer.statistics().messages << " samples of " << writer.statistics().channels << " channels in "
-              << base::in_quotes(options.file) << '\n';
-  }
+  if (options.quiet) return;
+  std::cerr << "recorded " << sink.samples() << " samples of " << sink.channels() << " channels in " << base::in_quotes(options.file);
+  if (options.split.octets > 0 || options.split.time.count() > 0) std::cerr << ", " << sink.files() << " files";
+  std::cerr << '\n';
 }
 
-void wait_for_end(const RecordOptions& options, const channels::Exchange& exchange) {
+// An interrupt, the end of the time that was asked for, or a file that takes no more: which announces itself here.
+void wait_for_end(const RecordOptions& options, channels::Exchange& exchange) {
+  const auto handle = std::make_shared<FailureHandle>();
+  exchange.on_failure([handle] { handle->raise(); });
   const auto start = std::chrono::steady_clock::now();
-  const auto is_over = [&] {
-    return options.duration_s > 0 && std::chrono::steady_clock::now() - start >= std::chrono::duration<double>(options.duration_s);
-  };
-  while (!editor::is_interrupted() && !exchange.failure() && !is_over()) {
-    pollfd handle{editor::interrupt_handle(), POLLIN, 0};
-    double wait_ms = 200;  // a sink's failure announces itself to nobody
+  while (!editor::is_interrupted() && !exchange.failure()) {
+    int wait_ms = -1;
     if (options.duration_s > 0) {
       const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
-      wait_ms = std::clamp((options.duration_s - passed.count()) * 1000 + 1, 0.0, wait_ms);
+      if (passed.count() >= options.duration_s) return;
+      wait_ms = static_cast<int>(std::clamp((options.duration_s - passed.count()) * 1000 + 1, 0.0, 1e9));
     }
-    (void)::poll(&handle, 1, static_cast<int>(wait_ms));
+    pollfd handles[2] = {{editor::interrupt_handle(), POLLIN, 0}, {handle->descriptor(), POLLIN, 0}};
+    (void)::poll(handles, 2, wait_ms);
   }
 }
 
-void record(Editor& editor, const RecordOptions& options) {
-  const auto ports = chosen_ports(editor, options);
-  if (!ports) return editor.fail(ports.error());
-  const RunClock clock(static_cast<std::uint32_t>(options.server_id));
+// The views of the simulator; nothing when none are wanted, or there is no simulator and nobody named them.
+base::Result<std::unique_ptr<channels::WorldSource>> open_views(channels::Exchange& exchange, const RecordOptions& options,
+                                                                const RunClock& clock) {
+  if (!options.views && (!options.all || options.only_ports || !clock.is_simulated())) return std::unique_ptr<channels::WorldSource>();
+  return channels::WorldSource::open(exchange, {.server_id = static_cast<std::uint32_t>(options.server_id),
+                                                .pictures = options.raw_pictures ? channels::Pictures::raw : channels::Pictures::jpeg,
+                                                .wants_all = true,
+                                                .excluded = options.excluded});
+}
+
+// A file with what makes the run again.
+base::Result<mcap::Writer> new_file(const std::string& path, const RecordOptions& options, const RunClock& clock) {
   const auto compression = options.compression == "zstd"  ? mcap::Compression::zstd
                            : options.compression == "lz4" ? mcap::Compression::lz4
                                                           : mcap::Compression::none;
-  auto writer = mcap::Writer::create(options.file, {.profile = "", .compression = compression});
-  if (!writer) return editor.fail(writer.error());
+  auto writer = mcap::Writer::create(path, {.profile = "", .compression = compression});
+  if (!writer) return writer.error();
   attach_run(*writer, options, clock);
-  if (const auto attached = attach_files(*writer, options); !attached) return editor.fail(attached.error());
-  const auto sink = std::make_shared<McapSink>(std::move(*writer));
+  if (const auto attached = attach_files(*writer, options); !attached) return attached.error();
+  return writer;
+}
+
+// What is wanted of what comes, on its way into the file.
+struct Sinks {
+  std::shared_ptr<McapSink> file;
+  std::shared_ptr<LastSink> last;  // if there is one
+  std::shared_ptr<channels::Sink> first;
+};
+
+base::Result<Sinks> open_sinks(const RecordOptions& options, const RunClock& clock) {
+  auto file = McapSink::create(options.file, options.split, [&](const std::string& path) { return new_file(path, options, clock); });
+  if (!file) return file.error();
+  Sinks sinks{*file, nullptr, *file};
+  if (options.last_s > 0) {
+    sinks.last = std::make_shared<LastSink>(sinks.first, std::chrono::nanoseconds(std::llround(options.last_s * 1e9)));
+    sinks.first = sinks.last;
+  }
+  if (options.rate > 0) sinks.first = std::make_shared<RateSink>(sinks.first, options.rate);
+  return sinks;
+}
+
+// From all sources into the sink, until it is to end. False when there is nothing to record.
+bool record_into(Editor& editor, const RecordOptions& options, const RunClock& clock, const std::vector<Editor::Port>& ports,
+                 channels::Exchange& exchange) {
+  PortSource source(editor.orb(), exchange, clock);
+  auto facts = lockstep_facts(options);
+  for (const auto& [component, port] : ports) {
+    if (const auto added = source.add(component, port, facts[component.instance]); !added) editor.fail(added.error());
+  }
+  const auto views = open_views(exchange, options, clock);
+  if (!views) {
+    editor.fail(views.error());
+    return false;
+  }
+  if (source.size() == 0 && !*views) return false;
+  if (!options.quiet)
+    std::cerr << "recording " << source.size() << " ports" << (*views ? " and the simulator" : "") << " into "
+              << base::in_quotes(options.file) << "; Ctrl-C ends it\n";
+  wait_for_end(options, exchange);
+  return true;
+}
+
+void record(Editor& editor, const RecordOptions& options) {
+  const RunClock clock(static_cast<std::uint32_t>(options.server_id));
+  const auto ports = chosen_ports(editor, options);
+  if (!ports) return editor.fail(ports.error());
+  auto sinks = open_sinks(options, clock);
+  if (!sinks) return editor.fail(sinks.error());
   editor::catch_interrupts();
   {
     channels::Exchange exchange;
-    exchange.attach(sink, {.patience = clock.is_lockstep() ? lockstep_patience : std::chrono::seconds(0)});
-    {
-      PortSource source(editor.orb(), exchange, clock);
-      for (const auto& [component, port] : *ports) {
-        if (const auto added = source.add(component, port); !added) editor.fail(added.error());
-      }
-      if (source.size() == 0) return;
-      if (!options.quiet)
-        std::cerr << "recording " << source.size() << " ports into " << base::in_quotes(options.file) << "; Ctrl-C ends it\n";
-      wait_for_end(options, exchange);
-    }
+    exchange.attach(sinks->first, {.patience = clock.is_lockstep() ? lockstep_patience : std::chrono::seconds(0)});
+    if (!record_into(editor, options, clock, *ports, exchange)) return;
     if (!exchange.drain(std::chrono::seconds(30))) editor.fail({"record: the file took no more samples for 30 s; the last ones are lost"});
     if (const auto failure = exchange.failure()) editor.fail(*failure);
-    report(editor, options, sink->writer(), exchange);
+    if (sinks->last) {
+      if (const auto done = sinks->last->hand_on(); !done) editor.fail(done.error());
+    }
+    report(editor, options, *sinks->file, exchange);
   }
-  if (const auto closed = sink->writer().close(); !closed) editor.fail(closed.error());
+  if (const auto closed = sinks->file->close(); !closed) editor.fail(closed.error());
 }
 
 }  // namespace
@@ -179,20 +273,38 @@ void add_record(CLI::App& app, editor::Chosen& chosen) {
   auto options = std::make_shared<RecordOptions>();
   command->add_option("PORT", options->ports, "OutPorts");
   command->add_flag("--all", options->all, "All OutPorts of the naming service");
-  command->add_option("--exclude", options->excluded, "With --all: not the ports that the pattern fits, e.g. 'RTCCamera*:*'");
+  command->add_flag("--views", options->views, "What the simulator shows, too: poses, sensors, cameras, as messages of ROS 2");
+  command->add_flag("--only-ports", options->only_ports, "With --all: without what the simulator shows")->needs("--all");
+  command->add_flag("--raw-pictures", options->raw_pictures, "Pictures of cameras to the bit; else as JPEG");
+  command->add_option("--exclude", options->excluded,
+                      "Not the ports and topics that the pattern fits, e.g. 'RTCCamera*:*', '/sim/camera/*'");
   command->add_option("--attach", options->attached, "NAME=FILE: a file that the recording is to hold, too")
       ->check([](const std::string& text) { return text.find('=') == std::string::npos ? "expected NAME=FILE" : ""; });
+  command->add_option("--note", options->notes, "KEY=VALUE: a text among those that say how the run was made")
+      ->allow_extra_args(false)
+      ->check([](const std::string& text) { return text.find('=') == std::string::npos ? "expected KEY=VALUE" : ""; });
   command->add_option("-o,--output", options->file, "The file to write")->required();
   command->add_option("-t,--duration", options->duration_s, "End after so many seconds of real time")
       ->check(base::number_between(0.0, 1e9));
+  auto split = std::make_shared<std::string>();
+  command->add_option("--split", *split, "Begin a new file after so many octets (500M) or so much time (10m)")
+      ->check([](const std::string& text) {
+        const auto parsed = parse_split(text);
+        return parsed ? std::string() : parsed.error().message;
+      });
+  command->add_option("--rate", options->rate, "At most so many samples of each channel in a second")
+      ->check(base::number_between(1e-3, 1e6));
+  command->add_option("--last", options->last_s, "Keep only so many seconds before the end")->check(base::number_between(0.1, 1e6));
   command->add_option("--compression", options->compression, "zstd, lz4 or none")
       ->check(CLI::IsMember({"zstd", "lz4", "none"}))
       ->capture_default_str();
   command->add_option("-s,--server-id", options->server_id, "The simulator whose time counts; default: $RTMSIM_SERVER_ID, else 0")
       ->check(base::number_between(0, 9999));
   command->add_flag("-q,--quiet", options->quiet, "Say nothing but errors");
-  command->callback([&chosen, options] {
-    editor::require(options->all != !options->ports.empty(), "record", "name OutPorts, or --all");
+  command->callback([&chosen, options, split] {
+    if (!split->empty()) options->split = *parse_split(*split);
+    editor::require(options->all ? options->ports.empty() : options->views || !options->ports.empty(), "record",
+                    "name OutPorts, or --all, or --views");
     chosen.work = [options](Editor& editor) { record(editor, *options); };
   });
 }

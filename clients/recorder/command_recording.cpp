@@ -1,6 +1,4 @@
 // recording info, ls, cat, export, compare, repair.
-#include <fnmatch.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -13,58 +11,22 @@
 #include <set>
 
 #include "base/command_line.h"
+#include "base/descriptors.h"
 #include "base/text.h"
 #include "command.h"
+#include "compare.h"
 #include "mcap/mcap.h"
 #include "output.h"
+#include "picture_export.h"
 #include "recorder_commands.h"
 #include "sample_text.h"
+#include "selection.h"
 
 namespace recorder {
 
 namespace {
 
 using editor::Editor;
-
-struct Selection {
-  std::string file;
-  std::vector<std::string> topics;  // patterns; none: all
-  double from_s = 0;
-  double to_s = 0;  // 0: the end
-  int count = 0;    // 0: all
-};
-
-mcap::Time to_time(double seconds) { return mcap::Time(static_cast<std::uint64_t>(std::llround(seconds * 1e9))); }
-
-base::Result<mcap::Query> query_of(const mcap::Reader& reader, const Selection& selection) {
-  mcap::Query query;
-  query.from = to_time(selection.from_s);
-  if (selection.to_s > 0) query.to = to_time(selection.to_s);
-  for (const std::string& pattern : selection.topics) {
-    const auto before = query.channels.size();
-    for (const auto& [id, channel] : reader.channels()) {
-      const bool fits = ::fnmatch(pattern.c_str(), channel.topic.c_str(), 0) == 0 ||
-                        channel.topic == "/" + pattern.substr(0, pattern.find(':')) + "/" + pattern.substr(pattern.find(':') + 1);
-      if (fits) query.channels.push_back(id);
-    }
-    if (query.channels.size() != before) continue;
-    std::vector<std::string> topics;
-    for (const auto& [id, channel] : reader.channels()) topics.push_back(channel.topic);
-    return base::Error{base::in_quotes(selection.file) + ": has no channel " + base::in_quotes(pattern) +
-                       "; channels: " + base::join(topics, ", ")};
-  }
-  return query;
-}
-
-std::optional<mcap::Reader> open(Editor& editor, const std::string& file) {
-  auto reader = mcap::Reader::open(file);
-  if (!reader) {
-    editor.fail(reader.error());
-    return std::nullopt;
-  }
-  if (reader->damage()) std::cerr << "rtse: " << *reader->damage() << '\n';
-  return std::move(*reader);
-}
 
 // Calls `take` with each message of the selection until it says false; broken chunks are told and passed over.
 void for_each(Editor& editor, mcap::Reader& reader, const Selection& selection, const std::function<bool(const mcap::Message&)>& take) {
@@ -77,7 +39,7 @@ void for_each(Editor& editor, mcap::Reader& reader, const Selection& selection, 
       editor.fail(message.error());
       continue;
     }
-    if (!message->has_value() || editor::output_is_closed()) return;
+    if (!message->has_value() || base::output_is_closed()) return;
     if (!take(**message)) return;
     ++n;
   }
@@ -113,8 +75,6 @@ void take_in(ChannelFacts& facts, const mcap::Message& message) {
   facts.octets += message.data.size();
   ++facts.samples;
 }
-
-double seconds(mcap::Time time) { return static_cast<double>(time.count()) * 1e-9; }
 
 double rate_of(const ChannelFacts& facts) {
   const double duration = seconds(facts.last - facts.first);
@@ -206,8 +166,9 @@ void cat(Editor& editor, const Selection& selection) {
   auto reader = open(editor, selection.file);
   if (!reader) return;
   std::set<std::uint16_t> unreadable;  // told once
+  SampleValues values(*reader);
   for_each(editor, *reader, selection, [&](const mcap::Message& message) {
-    const auto value = value_of(*reader, message);
+    const auto value = values.of(message);
     if (!value) {
       if (unreadable.insert(message.channel).second) editor.fail(value.error());
       return true;
@@ -229,6 +190,7 @@ std::string quoted(const std::string& text) {
 struct ExportOptions {
   Selection selection;
   std::string folder;
+  bool png = false;
 };
 
 std::string file_name_of(const std::string& topic) {
@@ -281,8 +243,9 @@ void export_tables(Editor& editor, const ExportOptions& options) {
   if (error) return editor.fail({base::in_quotes(options.folder) + ": cannot be made: " + error.message()});
   std::map<std::uint16_t, std::unique_ptr<Table>> tables;
   std::set<std::uint16_t> unreadable;
+  SampleValues values(*reader);
   for_each(editor, *reader, options.selection, [&](const mcap::Message& message) {
-    const auto value = value_of(*reader, message);
+    const auto value = values.of(message);
     if (!value) {
       if (unreadable.insert(message.channel).second) editor.fail(value.error());
       return true;
@@ -299,147 +262,41 @@ void export_tables(Editor& editor, const ExportOptions& options) {
   if (!editor.json()) std::cout << tables.size() << " tables in " << options.folder << '\n';
 }
 
-// ---- compare ----
-
-struct CompareOptions {
-  std::string first, second;
-  std::vector<std::string> topics;
-  std::vector<std::string> ignored;  // members
-};
-
-// The messages of one recording, channel by channel of its topic.
-class Side {
- public:
-  Side(mcap::Reader reader, const Selection& selection) : reader_(std::move(reader)), selection_(selection) {}
-  base::Result<void> begin() {
-    auto query = query_of(reader_, selection_);
-    if (!query) return query.error();
-    reader_.seek(std::move(*query));
-    return {};
-  }
-  base::Result<std::optional<mcap::Message>> next() { return reader_.next(); }
-  const mcap::Reader& reader() const { return reader_; }
-  const std::string& topic(const mcap::Message& message) const { return reader_.channels().at(message.channel).topic; }
-
- private:
-  mcap::Reader reader_;
-  Selection selection_;
-};
-
-struct Entry {
-  mcap::Time time{0};
-  std::string topic;
-  std::string octets;
-};
-
-// All messages of one moment, in the order of topics: within a moment the order of arrival says nothing.
-class Moments {
- public:
-  explicit Moments(Side& side) : side_(side) {}
-  base::Result<std::vector<Entry>> next() {
-    std::vector<Entry> moment;
-    if (ahead_) moment.push_back(std::move(*std::exchange(ahead_, std::nullopt)));
-    for (;;) {
-      const auto message = side_.next();
-      if (!message) return message.error();
-      if (!message->has_value()) break;
-      Entry entry{(*message)->log_time, side_.topic(**message), std::string((*message)->data)};
-      if (!moment.empty() && entry.time != moment.front().time) {
-        ahead_ = std::move(entry);
-        break;
-      }
-      moment.push_back(std::move(entry));
-    }
-    std::stable_sort(moment.begin(), moment.end(), [](const Entry& a, const Entry& b) { return a.topic < b.topic; });
-    return moment;
-  }
-
- private:
-  Side& side_;
-  std::optional<Entry> ahead_;
-};
-
-base::Result<Json> value_of(const Side& side, const Entry& entry) {
-  for (const auto& [id, channel] : side.reader().channels()) {
-    if (channel.topic == entry.topic) return recorder::value_of(side.reader(), {id, 0, entry.time, entry.time, entry.octets});
-  }
-  return base::Error{"channel " + entry.topic + " is not there"};
-}
-
-bool is_ignored(const CompareOptions& options, const std::string& member) {
-  return std::any_of(options.ignored.begin(), options.ignored.end(), [&](const std::string& one) {
-    return member == one || (member.starts_with(one) && (member[one.size()] == '.' || member[one.size()] == '['));
-  });
-}
-
-// The first member that differs, as "data.vx: 0.5 and 0.4"; nothing when none counts.
-std::optional<std::string> difference(const CompareOptions& options, const Json& first, const Json& second) {
-  const auto a = members_of(first);
-  const auto b = members_of(second);
-  for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
-    if (i >= a.size() || i >= b.size() || a[i].first != b[i].first) {
-      const std::string& member = i < a.size() ? a[i].first : b[i].first;
-      return member + ": is there in one of them only";
-    }
-    if (is_ignored(options, a[i].first) || a[i].second == b[i].second) continue;
-    if (a[i].second.dump() == b[i].second.dump()) continue;  // not a number in both
-    return a[i].first + ": " + a[i].second.dump() + " and " + b[i].second.dump();
-  }
-  return std::nullopt;
-}
-
-std::optional<std::string> difference(const CompareOptions& options, const Side& first, const Side& second, const Entry& a,
-                                      const Entry& b) {
-  if (a.octets == b.octets) return std::nullopt;
-  const auto left = value_of(first, a);
-  const auto right = value_of(second, b);
-  if (left && right) return difference(options, *left, *right);
-  return "octets differ";
-}
-
-void compare(Editor& editor, const CompareOptions& options) {
-  std::vector<std::unique_ptr<Side>> sides;
-  for (const std::string& file : {options.first, options.second}) {
-    auto reader = open(editor, file);
-    if (!reader) return;
-    sides.push_back(std::make_unique<Side>(std::move(*reader), Selection{.file = file, .topics = options.topics}));
-    if (const auto begun = sides.back()->begin(); !begun) return editor.fail(begun.error());
-  }
-  Moments first(*sides[0]);
-  Moments second(*sides[1]);
-  std::uint64_t samples = 0;
-  const auto differ = [&](mcap::Time time, const std::string& what) {
-    const std::string place = "time " + seconds_text(time) + " s: " + what;
-    if (editor.json())
-      editor.print(Json{{"equal", false}, {"time", seconds(time)}, {"difference", what}});
-    else
-      std::cout << "first difference at " << place << '\n';
-    editor.set_failed();
+// FOLDER/CHANNEL/000001.png, ... of each channel that has pictures.
+void export_pictures(Editor& editor, const ExportOptions& options) {
+  auto reader = open(editor, options.selection.file);
+  if (!reader) return;
+  std::map<std::uint16_t, std::uint64_t> written;
+  std::set<std::uint16_t> unreadable;
+  SampleValues values(*reader);
+  const auto type_of = [&](std::uint16_t channel) {
+    const auto schema = reader->schemas().find(reader->channels().at(channel).schema);
+    return schema == reader->schemas().end() ? std::string() : schema->second.name;
   };
-  for (;;) {
-    const auto a = first.next();
-    const auto b = second.next();
-    if (!a) return editor.fail(a.error());
-    if (!b) return editor.fail(b.error());
-    if (a->empty() && b->empty()) break;
-    for (std::size_t i = 0; i < std::max(a->size(), b->size()); ++i) {
-      const bool in_first =
-          i < a->size() && (i >= b->size() || std::pair((*a)[i].time, (*a)[i].topic) <= std::pair((*b)[i].time, (*b)[i].topic));
-      const bool in_second =
-          i < b->size() && (i >= a->size() || std::pair((*b)[i].time, (*b)[i].topic) <= std::pair((*a)[i].time, (*a)[i].topic));
-      if (!in_first || !in_second) {
-        const Entry& entry = in_first ? (*a)[i] : (*b)[i];
-        return differ(entry.time, entry.topic + " has a sample in " + (in_first ? options.first : options.second) + " only");
-      }
-      ++samples;
-      if (const auto what = difference(options, *sides[0], *sides[1], (*a)[i], (*b)[i]))
-        return differ((*a)[i].time, (*a)[i].topic + " " + *what);
-    }
-  }
-  if (editor.json())
-    editor.print(Json{{"equal", true}, {"samples", samples}});
-  else
-    std::cout << "equal: " << samples << " samples\n";
+  for_each(editor, *reader, options.selection, [&](const mcap::Message& message) {
+    if (!has_pictures(type_of(message.channel)) || unreadable.contains(message.channel)) return true;
+    const std::string& topic = reader->channels().at(message.channel).topic;
+    const auto fail = [&](const base::Error& error) {
+      editor.fail({"channel " + base::in_quotes(topic) + ": " + error.message});
+      unreadable.insert(message.channel);
+      return true;
+    };
+    const auto value = values.of(message);
+    if (!value) return fail(value.error());
+    const auto picture = picture_of(type_of(message.channel), *value);
+    if (!picture) return fail(picture.error());
+    const auto folder = std::filesystem::path(options.folder) / file_name_of(topic);
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    char name[32];
+    std::snprintf(name, sizeof name, "%06llu.png", static_cast<unsigned long long>(++written[message.channel]));
+    const auto done = write_png(*picture, (folder / name).string());
+    return done ? true : fail(done.error());
+  });
+  std::uint64_t pictures = 0;
+  for (const auto& [channel, count] : written) pictures += count;
+  if (pictures == 0 && !editor.failed()) editor.fail({base::in_quotes(options.selection.file) + ": has no pictures in these channels"});
+  if (!editor.json()) std::cout << pictures << " pictures in " << options.folder << '\n';
 }
 
 // ---- repair ----
@@ -484,19 +341,31 @@ void add_recording(CLI::App& app, editor::Chosen& chosen) {
   cat_command->add_option("-n,--count", selection->count, "End after so many samples")->check(base::number_between(0, 1e9));
   choose(cat_command, [selection](Editor& editor) { cat(editor, *selection); });
 
-  auto* export_command = recording->add_subcommand("export", "Write a CSV table for each channel");
+  auto* export_command = recording->add_subcommand("export", "Write a CSV table for each channel, or its pictures");
   auto exported = std::make_shared<ExportOptions>();
   add_selection(*export_command, exported->selection);
-  export_command->add_option("-o,--output", exported->folder, "The folder for the tables")->required();
-  choose(export_command, [exported](Editor& editor) { export_tables(editor, *exported); });
+  export_command->add_option("-o,--output", exported->folder, "The folder for what is written")->required();
+  export_command->add_flag("--png", exported->png, "The pictures of cameras as PNG files, instead of tables");
+  choose(export_command,
+         [exported](Editor& editor) { exported->png ? export_pictures(editor, *exported) : export_tables(editor, *exported); });
 
   auto* compare_command = recording->add_subcommand("compare", "Name the first difference of two recordings");
   auto compared = std::make_shared<CompareOptions>();
   compare_command->add_option("A", compared->first, "A recording")->required();
   compare_command->add_option("B", compared->second, "Another one")->required();
   compare_command->add_option("--channel", compared->topics, "Only these topics or COMPONENT:PORT, patterns too");
-  compare_command->add_option("--ignore", compared->ignored, "Members that do not count, e.g. tm");
-  choose(compare_command, [compared](Editor& editor) { compare(editor, *compared); });
+  compare_command->add_option("--ignore", compared->tolerated.ignored, "Members that do not count, e.g. tm");
+  auto tolerances = std::make_shared<std::vector<std::string>>();
+  compare_command->add_option("--tolerance", *tolerances, "MEMBER=EPS, or EPS for all: numbers may differ so far")
+      ->allow_extra_args(false)
+      ->check([](const std::string& text) {
+        const auto parsed = parse_tolerance(text);
+        return parsed ? std::string() : parsed.error().message;
+      });
+  choose(compare_command, [compared, tolerances](Editor& editor) {
+    for (const auto& text : *tolerances) compared->tolerated.tolerances.insert(*parse_tolerance(text));
+    compare(editor, *compared);
+  });
 
   auto* repair_command = recording->add_subcommand("repair", "Give a file that was cut off its summary again");
   auto file = std::make_shared<std::string>();

@@ -1,7 +1,12 @@
 #include "mcap_sink.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
 #include <utility>
+
+#include "base/text.h"
 
 namespace recorder {
 
@@ -9,29 +14,99 @@ namespace {
 
 constexpr std::chrono::milliseconds flush_period{500};  // what a kill may cost, with the time that a rest may take
 
+// "run.mcap" -> "run-002.mcap"
+std::string numbered(const std::string& path, std::size_t number) {
+  char text[24];
+  std::snprintf(text, sizeof text, "-%03zu", number);
+  const std::filesystem::path whole(path);
+  return (whole.parent_path() / (whole.stem().string() + text + whole.extension().string())).string();
+}
+
 }  // namespace
 
-base::Result<void> McapSink::open(channels::ChannelId id, const channels::Channel& channel) {
+base::Result<Split> parse_split(const std::string& text) {
+  const auto wrong = base::Error{"split " + base::in_quotes(text) + ": expected octets as 64k, 500M or 2G, or a time as 30s, 10m or 1h"};
+  if (text.empty()) return wrong;
+  const auto number = base::parse_number(text.substr(0, text.size() - 1));
+  if (!number || !(*number > 0) || *number > 1e9) return wrong;
+  switch (text.back()) {
+    case 'k':
+      return Split{.octets = static_cast<std::uint64_t>(std::ceil(*number * 1024))};
+    case 'M':
+      return Split{.octets = static_cast<std::uint64_t>(std::ceil(*number * 1024 * 1024))};
+    case 'G':
+      return Split{.octets = static_cast<std::uint64_t>(std::ceil(*number * 1024 * 1024 * 1024))};
+    case 's':
+      return Split{.time = std::chrono::nanoseconds(std::llround(*number * 1e9))};
+    case 'm':
+      return Split{.time = std::chrono::nanoseconds(std::llround(std::min(*number, 1e7) * 60e9))};
+    case 'h':
+      return Split{.time = std::chrono::nanoseconds(std::llround(std::min(*number, 1e5) * 3600e9))};
+    default:
+      return wrong;
+  }
+}
+
+base::Result<std::shared_ptr<McapSink>> McapSink::create(const std::string& path, const Split& split, NewFile make) {
+  std::shared_ptr<McapSink> sink(new McapSink(path, split, std::move(make)));
+  if (const auto begun = sink->begin_file(); !begun) return begun.error();
+  return sink;
+}
+
+base::Result<void> McapSink::begin_file() {
+  if (writer_) {
+    samples_ += writer_->statistics().messages;
+    if (const auto closed = writer_->close(); !closed) return closed;
+  }
+  ++files_;
+  const bool is_one = split_.octets == 0 && split_.time.count() == 0;
+  auto writer = make_(is_one ? path_ : numbered(path_, files_));
+  if (!writer) return writer.error();
+  writer_.emplace(std::move(*writer));
+  ids_.clear();
+  schemas_.clear();
+  first_.reset();
+  for (const auto& [id, channel] : channels_) {
+    if (const auto added = add(id, channel); !added) return added;
+  }
+  return {};
+}
+
+bool McapSink::is_full(const channels::Sample& sample) const {
+  if (split_.octets > 0 && writer_->size() >= split_.octets) return true;
+  return split_.time.count() > 0 && first_ && sample.log_time - *first_ >= split_.time;
+}
+
+base::Result<void> McapSink::add(channels::ChannelId id, const channels::Channel& channel) {
   const auto& schema = channel.schema;
   auto& known = schemas_[{schema.name, schema.text}];
   if (known == 0 && !schema.name.empty()) {
-    const auto added = writer_.add_schema(schema.name, schema.encoding, schema.text);
+    const auto added = writer_->add_schema(schema.name, schema.encoding, schema.text);
     if (!added) return added.error();
     known = *added;
   }
-  const auto added = writer_.add_channel(known, channel.topic, channel.encoding, channel.metadata);
+  const auto added = writer_->add_channel(known, channel.topic, channel.encoding, channel.metadata);
   if (!added) return added.error();
   ids_[id] = *added;
   return {};
 }
 
+base::Result<void> McapSink::open(channels::ChannelId id, const channels::Channel& channel) {
+  if (split_.octets > 0 || split_.time.count() > 0) channels_.emplace(id, channel);
+  return add(id, channel);
+}
+
 base::Result<void> McapSink::take(const channels::Sample& sample) {
+  if (is_full(sample)) {
+    if (const auto begun = begin_file(); !begun) return begun;
+  }
+  if (!first_) first_ = sample.log_time;
   const auto time = [](channels::Time one) { return mcap::Time(static_cast<std::uint64_t>(std::max<std::int64_t>(one.count(), 0))); };
-  const auto done = writer_.write({ids_[sample.channel],
-                                   sample.sequence,
-                                   time(sample.log_time),
-                                   time(sample.publish_time),
-                                   {sample.octets.data(), sample.octets.size()}});
+  const auto done = writer_->write({ids_[sample.channel],
+                                    sample.sequence,
+                                    time(sample.log_time),
+                                    time(sample.publish_time),
+                                    {sample.octets.data(), sample.octets.size()}});
   return done ? rest() : done;
 }
 
@@ -39,7 +114,9 @@ base::Result<void> McapSink::rest() {
   const auto now = std::chrono::steady_clock::now();
   if (now - flushed_ < flush_period) return {};
   flushed_ = now;
-  return writer_.flush();
+  return writer_->flush();
 }
+
+base::Result<void> McapSink::close() { return writer_->close(); }
 
 }  // namespace recorder

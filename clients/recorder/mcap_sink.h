@@ -1,9 +1,11 @@
-// Channels into an MCAP file. Called on one thread at a time, as every sink. What came more than a second ago is in the file, whatever
-// happens to the process.
+// Channels into an MCAP file, or into a row of them. Called on one thread at a time, as every sink. What came more than a second ago is in
+// the file, whatever happens to the process.
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "exchange.h"
@@ -11,18 +13,45 @@
 
 namespace recorder {
 
+// When a file is ended and the next one begun; 0: never. Each file can be read alone.
+struct Split {
+  std::uint64_t octets = 0;
+  std::chrono::nanoseconds time{0};  // by the samples' own clock
+};
+
+// "500M", "2G", "64k" octets; "30s", "10m", "1h".
+base::Result<Split> parse_split(const std::string& text);
+
 class McapSink final : public channels::Sink {
  public:
-  explicit McapSink(mcap::Writer writer) : writer_(std::move(writer)) {}
+  // A file that holds what is to stand in every one.
+  using NewFile = std::function<base::Result<mcap::Writer>(const std::string& path)>;
+  // With a split the files are PATH with -001, -002, ... before its ending.
+  static base::Result<std::shared_ptr<McapSink>> create(const std::string& path, const Split& split, NewFile make);
 
   base::Result<void> open(channels::ChannelId id, const channels::Channel& channel) override;
   base::Result<void> take(const channels::Sample& sample) override;
   base::Result<void> rest() override;
   // After the exchange has ended.
-  mcap::Writer& writer() { return writer_; }
+  base::Result<void> close();
+  std::uint64_t samples() const { return samples_ + writer_->statistics().messages; }
+  std::uint32_t channels() const { return writer_->statistics().channels; }  // of the last file
+  std::size_t files() const { return files_; }
 
  private:
-  mcap::Writer writer_;
+  McapSink(std::string path, const Split& split, NewFile make) : path_(std::move(path)), split_(split), make_(std::move(make)) {}
+  base::Result<void> begin_file();
+  base::Result<void> add(channels::ChannelId id, const channels::Channel& channel);
+  bool is_full(const channels::Sample& sample) const;
+
+  const std::string path_;
+  const Split split_;
+  const NewFile make_;
+  std::optional<mcap::Writer> writer_;
+  std::size_t files_ = 0;
+  std::uint64_t samples_ = 0;  // in the files before
+  std::optional<channels::Time> first_;
+  std::map<channels::ChannelId, channels::Channel> channels_;             // those that every file gets
   std::map<channels::ChannelId, std::uint16_t> ids_;                      // in the file
   std::map<std::pair<std::string, std::string>, std::uint16_t> schemas_;  // by name and text
   std::chrono::steady_clock::time_point flushed_ = std::chrono::steady_clock::now();

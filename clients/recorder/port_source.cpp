@@ -35,12 +35,14 @@ channels::Channel channel_of(const editor::ComponentView& component, const edito
   return channel;
 }
 
-base::Result<void> PortSource::add(const editor::ComponentView& component, const editor::PortView& port) {
-  const auto id = exchange_.open(channel_of(component, port));
+base::Result<void> PortSource::add(const editor::ComponentView& component, const editor::PortView& port,
+                                   const std::map<std::string, std::string>& extra) {
+  auto channel = channel_of(component, port);
+  channel.metadata.insert(extra.begin(), extra.end());
+  const auto id = exchange_.open(std::move(channel));
   if (!id) return id.error();
-  auto tap = editor::Tap::connect(orb_, port, {}, [this, channel = *id](std::span<const unsigned char> payload, bool is_little_endian) {
-    exchange_.put(channel, clock_.now(), channels::cdr_head(is_little_endian),
-                  {reinterpret_cast<const char*>(payload.data()), payload.size()});
+  auto tap = editor::Tap::connect(orb_, port, {}, [this, id = *id](std::span<const unsigned char> payload, bool is_little_endian) {
+    exchange_.put(id, clock_.now(), channels::cdr_head(is_little_endian), {reinterpret_cast<const char*>(payload.data()), payload.size()});
   });
   if (!tap) return tap.error();
   taps_.push_back(std::move(*tap));

@@ -2,7 +2,9 @@
 // samples come on the ORB's threads.
 #pragma once
 
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "base/clock.h"
@@ -22,7 +24,9 @@ class PortSource final {
   PortSource(CORBA::ORB_ptr orb, channels::Exchange& exchange, const base::Clock& clock)
       : orb_(CORBA::ORB::_duplicate(orb)), exchange_(exchange), clock_(clock) {}
 
-  base::Result<void> add(const editor::ComponentView& component, const editor::PortView& port);
+  // `extra` is added to the metadata of the channel.
+  base::Result<void> add(const editor::ComponentView& component, const editor::PortView& port,
+                         const std::map<std::string, std::string>& extra = {});
   std::size_t size() const { return taps_.size(); }
 
  private:

@@ -35,17 +35,29 @@ void collect(const Json& value, const std::string& place, std::vector<std::pair<
 
 }  // namespace
 
-base::Result<Json> value_of(const mcap::Reader& reader, const mcap::Message& message) {
-  const mcap::Channel& channel = reader.channels().at(message.channel);
+base::Result<Json> SampleValues::ros_value(const mcap::Schema& schema, std::string_view octets) {
+  auto known = definitions_.find(schema.id);
+  if (known == definitions_.end()) known = definitions_.emplace(schema.id, RosDefinition::parse(schema.data)).first;
+  return known->second ? known->second->decode(octets) : base::Result<Json>(known->second.error());
+}
+
+base::Result<Json> SampleValues::of(const mcap::Message& message) {
+  const mcap::Channel& channel = reader_.channels().at(message.channel);
   const auto wrong = [&](const std::string& what) { return base::Error{"channel " + base::in_quotes(channel.topic) + ": " + what}; };
   if (channel.encoding == "json") {
     Json value = Json::parse(message.data, nullptr, false);
     if (value.is_discarded()) return wrong("a sample is no JSON");
     return value;
   }
-  const auto schema = reader.schemas().find(channel.schema);
-  const std::string name = schema == reader.schemas().end() ? "" : schema->second.name;
-  if (channel.encoding != "cdr" || schema == reader.schemas().end() || schema->second.encoding != "omgidl") {
+  const auto schema = reader_.schemas().find(channel.schema);
+  const bool is_known = schema != reader_.schemas().end();
+  const std::string name = is_known ? schema->second.name : "";
+  const std::string encoding = is_known ? schema->second.encoding : "";
+  if (channel.encoding == "cdr" && encoding == "ros2msg") {
+    auto value = ros_value(schema->second, message.data);
+    return value ? std::move(value) : wrong(value.error().message);
+  }
+  if (channel.encoding != "cdr" || encoding != "omgidl") {
     return wrong("samples of encoding " + base::in_quotes(channel.encoding) + " and schema " + base::in_quotes(name) + " cannot be shown");
   }
   const auto type = editor::type_code_of(repository_id(name));

@@ -7,13 +7,25 @@
 
 #include "base/result.h"
 #include "mcap/mcap.h"
+#include "ros_text.h"
 
 namespace recorder {
 
 using Json = nlohmann::ordered_json;
 
-// What a channel's samples say. Types of ports by their IDL, JSON as it is; of others an error that names the encoding.
-base::Result<Json> value_of(const mcap::Reader& reader, const mcap::Message& message);
+// What the samples of a file say: types of ports by their IDL, definitions of ROS 2, JSON as it is; of others an error that names the
+// encoding. Keeps what it has learnt of the schemas.
+class SampleValues {
+ public:
+  // The reader must live as long.
+  explicit SampleValues(const mcap::Reader& reader) : reader_(reader) {}
+  base::Result<Json> of(const mcap::Message& message);
+
+ private:
+  base::Result<Json> ros_value(const mcap::Schema& schema, std::string_view octets);
+  const mcap::Reader& reader_;
+  std::map<std::uint16_t, base::Result<RosDefinition>> definitions_;  // by schema
+};
 
 // "data.vx" -> 0.5, "ranges[0]" -> 3.1: the numbers, texts and truths of a value with their places, in its order.
 std::vector<std::pair<std::string, Json>> members_of(const Json& value);

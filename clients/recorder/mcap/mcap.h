@@ -70,9 +70,9 @@ struct Statistics {
 enum class Compression { none, lz4, zstd };
 
 struct WriterOptions {
-  std::string profile;  // "ros2" or nothing: which conventions its topics keep
+  std::string profile{};  // "ros2" or nothing: which conventions its topics keep
   Compression compression = Compression::zstd;
-  std::size_t chunk_size = 1024 * 1024;  // [octets] a chunk is closed when it has grown to this
+  std::size_t chunk_size = std::size_t{1} << 20U;  // [octets] a chunk is closed when it has grown to this
 };
 
 // Writes front to back and never reads. What is in closed chunks survives the end of the process; close() adds the summary by which readers

@@ -1,0 +1,184 @@
+// Messages of ROS 2 as octets and their definitions as text, both from one description: a message is a structure with its name, and
+// fields() names its members in order. Little-endian CDR behind four octets that say so. Pure; any thread.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "channel.h"
+
+namespace ros {
+
+static_assert(std::endian::native == std::endian::little, "the writer copies numbers as they lie in memory");
+
+// A type of its own in definitions, an octet on the wire.
+enum class Byte : std::uint8_t {};
+
+template <class T>
+concept Message = requires {
+  T::name;
+};
+template <class T>
+concept Number = std::is_arithmetic_v<T> || std::is_same_v<T, Byte>;
+
+class Encoder {
+ public:
+  Encoder() : octets_(channels::cdr_head(true).begin(), channels::cdr_head(true).end()) {}
+
+  template <class T>
+  void operator()(std::string_view, const T& value) {
+    put(value);
+  }
+  std::vector<char> take() { return std::move(octets_); }
+
+ private:
+  template <Number T>
+  void put(const T& value) {
+    align(sizeof value);
+    append(&value, sizeof value);
+  }
+  void put(const std::string& text) {
+    put(static_cast<std::uint32_t>(text.size() + 1));
+    append(text.c_str(), text.size() + 1);
+  }
+  template <Message T>
+  void put(const T& message) {
+    T::fields(message, *this);
+  }
+  template <class T>
+  void put(const std::vector<T>& values) {
+    put(std::span<const T>(values));
+  }
+  template <class T>
+  void put(std::span<const T> values) {
+    put(static_cast<std::uint32_t>(values.size()));
+    put_all(values);
+  }
+  template <class T, std::size_t size>
+  void put(const std::array<T, size>& values) {
+    put_all(std::span<const T>(values));
+  }
+  template <class T>
+  void put_all(std::span<const T> values) {
+    if constexpr (Number<T> && !std::is_same_v<T, bool>) {
+      if (values.empty()) return;
+      align(sizeof(T));
+      append(values.data(), values.size_bytes());
+    } else {
+      for (const T& value : values) put(value);
+    }
+  }
+  // Counted from behind the head.
+  void align(std::size_t size) { octets_.resize((octets_.size() - head_size + size - 1) / size * size + head_size); }
+  void append(const void* from, std::size_t size) {
+    const auto* octets = static_cast<const char*>(from);
+    octets_.insert(octets_.end(), octets, octets + size);
+  }
+
+  static constexpr std::size_t head_size = 4;
+  std::vector<char> octets_;
+};
+
+// The definition of a message and those that it needs, each once, its own first.
+class Definitions {
+ public:
+  template <Message T>
+  static std::string of() {
+    Definitions definitions;
+    definitions.add<T>();
+    std::string text = definitions.texts_.front().second;
+    for (std::size_t i = 1; i < definitions.texts_.size(); ++i) {
+      const auto& [name, own] = definitions.texts_[i];
+      text += std::string(80, '=') + "\nMSG: " + name + "\n" + own;
+    }
+    return text;
+  }
+
+ private:
+  // A visitor of fields().
+  struct Fields {
+    Definitions& all;
+    std::size_t place;
+    template <class T>
+    void operator()(std::string_view name, const T&) {
+      all.texts_[place].second += all.spell<T>() + " " + std::string(name) + "\n";
+    }
+  };
+
+  template <Message T>
+  std::string add() {
+    // "sensor_msgs/msg/Imu" is "sensor_msgs/Imu" in definitions.
+    const auto slash = T::name.find("/msg/");
+    const std::string name = std::string(T::name.substr(0, slash)) + std::string(T::name.substr(slash + 4));
+    if (std::ranges::find(texts_, name, &std::pair<std::string, std::string>::first) == texts_.end()) {
+      texts_.emplace_back(name, "");
+      if constexpr (requires { T::constants; }) texts_.back().second = T::constants;
+      const T example{};
+      Fields fields{*this, texts_.size() - 1};
+      T::fields(example, fields);
+    }
+    return name;
+  }
+
+  template <class T>
+  struct Part {  // of a sequence or an array
+    using type = void;
+  };
+  template <class T>
+  struct Part<std::vector<T>> {
+    using type = T;
+    static std::string brackets() { return "[]"; }
+  };
+  template <class T>
+  struct Part<std::span<const T>> : Part<std::vector<T>> {};
+  template <class T, std::size_t size>
+  struct Part<std::array<T, size>> {
+    using type = T;
+    static std::string brackets() { return "[" + std::to_string(size) + "]"; }
+  };
+
+  template <class T>
+  std::string spell() {
+    if constexpr (!std::is_void_v<typename Part<T>::type>) {
+      return spell<typename Part<T>::type>() + Part<T>::brackets();
+    } else if constexpr (Message<T>) {
+      return add<T>();
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      return "string";
+    } else if constexpr (std::is_same_v<T, bool>) {
+      return "bool";
+    } else if constexpr (std::is_same_v<T, Byte>) {
+      return "byte";
+    } else if constexpr (std::is_floating_point_v<T>) {
+      return "float" + std::to_string(8 * sizeof(T));
+    } else {
+      return (std::is_signed_v<T> ? "int" : "uint") + std::to_string(8 * sizeof(T));
+    }
+  }
+
+  std::vector<std::pair<std::string, std::string>> texts_;  // by name
+};
+
+template <Message T>
+std::vector<char> encode(const T& message) {
+  Encoder encoder;
+  T::fields(message, encoder);
+  return encoder.take();
+}
+
+template <Message T>
+channels::Schema schema() {
+  return {std::string(T::name), "ros2msg", Definitions::of<T>()};
+}
+
+}  // namespace ros

@@ -1,0 +1,447 @@
+#include "views/iface_view.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "views/jpeg.h"
+
+namespace channels {
+
+namespace {
+
+using Wanted = std::vector<bool>;
+using Saids = std::vector<Said>;
+
+template <class Message>
+Channel channel(const shm::Iface& iface, const std::string& suffix = "") {
+  return {topic_of(iface.type(), iface.name()) + suffix,
+          "cdr",
+          ros::schema<Message>(),
+          {{"iface", iface.name()}, {"iface_type", std::string(shm::to_text(iface.type()))}}};
+}
+
+ros::Vector3 vector_of(const double* v) { return {v[0], v[1], v[2]}; }
+
+std::array<double, 9> diagonal(double a, double b, double c) { return {a, 0, 0, 0, b, 0, 0, 0, c}; }
+
+shm::Pose pose_at(double x, double y, double z, double yaw) { return {x, y, z, std::cos(yaw / 2), 0, 0, std::sin(yaw / 2)}; }
+
+// A sensor on its model; its frame has the name of the iface.
+template <class Info>
+void place(IfaceView& view, const shm::Iface& iface) {
+  const Info& info = iface.info<Info>();
+  view.frames.push_back(transform_of({}, text_of(info.model), iface.name(), info.pose));
+  view.rate = info.rate;
+}
+
+// A view with one channel: `say` makes the message of the latest sample.
+template <class Message, class Info, class Sample, class Say>
+IfaceView simple_view(const shm::Iface& iface, Say say) {
+  IfaceView view;
+  view.channels = {channel<Message>(iface)};
+  place<Info>(view, iface);
+  view.tell = [say](shm::Iface& from, const shm::HeldFrame*, const Wanted&, Saids& said) {
+    if (from.sample<Sample>().stamp.valid != 0) said.push_back({0, ros::encode(say(from))});
+  };
+  return view;
+}
+
+// ---- range finders ----
+
+ros::LaserScan scan_message(const shm::Iface& iface) {
+  const auto& info = iface.info<shm::LaserInfo>();
+  const auto scan = iface.laser_scan();
+  const auto number = [](double value) { return static_cast<float>(value); };
+  return {.header = header_of(scan.sample->stamp, iface.name()),
+          .angle_min = number(info.min_angle),
+          .angle_max = number(info.max_angle),
+          .angle_increment = number(info.angle_step),
+          .scan_time = info.rate > 0 ? number(1 / info.rate) : 0,
+          .range_min = number(info.min_range),
+          .range_max = number(info.max_range),
+          .ranges = scan.ranges,
+          .intensities = scan.intensities};
+}
+
+std::vector<ros::PointField> point_fields(bool with_intensity) {
+  std::vector<ros::PointField> fields = {{"x", 0}, {"y", 4}, {"z", 8}};
+  if (with_intensity) fields.push_back({"intensity", 12});
+  return fields;
+}
+
+ros::PointCloud2 cloud_message(const shm::Stamp& stamp, const std::string& frame, std::uint32_t width, std::uint32_t height,
+                               bool with_intensity, std::span<const std::uint8_t> data) {
+  const std::uint32_t step = with_intensity ? 16 : 12;
+  return {.header = header_of(stamp, frame),
+          .height = height,
+          .width = width,
+          .point_fields = point_fields(with_intensity),
+          .point_step = step,
+          .row_step = step * width,
+          .data = data};
+}
+
+// A scanner of several layers: its hits, in the order of beams; NaN where there is none.
+std::vector<float> points_of(const shm::LaserInfo& info, const shm::ScanView& scan) {
+  std::vector<float> points;
+  points.reserve(scan.ranges.size() * 4);
+  const double rise = info.layers > 1 ? (info.max_vertical - info.min_vertical) / (info.layers - 1) : 0;
+  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+    const double range = scan.ranges[i];
+    const double yaw = info.min_angle + static_cast<double>(i % info.beams) * info.angle_step;
+    const double pitch = info.min_vertical + static_cast<double>(i / info.beams) * rise;
+    const bool is_hit = std::isfinite(range);
+    const auto coordinate = [&](double factor) {
+      return is_hit ? static_cast<float>(range * factor) : std::numeric_limits<float>::quiet_NaN();
+    };
+    points.insert(points.end(), {coordinate(std::cos(pitch) * std::cos(yaw)), coordinate(std::cos(pitch) * std::sin(yaw)),
+                                 coordinate(std::sin(pitch)), i < scan.intensities.size() ? scan.intensities[i] : 0.0F});
+  }
+  return points;
+}
+
+IfaceView laser_view(const shm::Iface& iface) {
+  if (iface.info<shm::LaserInfo>().layers == 1) return simple_view<ros::LaserScan, shm::LaserInfo, shm::LaserSample>(iface, scan_message);
+  IfaceView view;
+  view.channels = {channel<ros::PointCloud2>(iface)};
+  place<shm::LaserInfo>(view, iface);
+  view.tell = [](shm::Iface& from, const shm::HeldFrame*, const Wanted&, Saids& said) {
+    const auto scan = from.laser_scan();
+    if (scan.sample->stamp.valid == 0) return;
+    const auto& info = from.info<shm::LaserInfo>();
+    const auto points = points_of(info, scan);
+    said.push_back({0, ros::encode(cloud_message(scan.sample->stamp, from.name(), info.beams, info.layers, true,
+                                                 {reinterpret_cast<const std::uint8_t*>(points.data()), points.size() * sizeof(float)}))});
+  };
+  return view;
+}
+
+// A channel and a frame for each transducer.
+IfaceView sonar_view(const shm::Iface& iface) {
+  IfaceView view;
+  place<shm::SonarInfo>(view, iface);
+  view.frames.clear();
+  const auto& info = iface.info<shm::SonarInfo>();
+  const auto poses = iface.sonar_poses();
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    view.channels.push_back(channel<ros::Range>(iface, "/" + std::to_string(i)));
+    view.frames.push_back(transform_of({}, text_of(info.model), iface.name() + "/" + std::to_string(i), poses[i]));
+  }
+  view.tell = [](shm::Iface& from, const shm::HeldFrame*, const Wanted& wanted, Saids& said) {
+    const auto scan = from.sonar_scan();
+    if (scan.sample->stamp.valid == 0) return;
+    const auto& ring = from.info<shm::SonarInfo>();
+    for (std::size_t i = 0; i < scan.ranges.size() && i < wanted.size(); ++i) {
+      if (!wanted[i]) continue;
+      const ros::Range range{.header = header_of(scan.sample->stamp, from.name() + "/" + std::to_string(i)),
+                             .field_of_view = static_cast<float>(ring.cone),
+                             .min_range = static_cast<float>(ring.min_range),
+                             .max_range = static_cast<float>(ring.max_range),
+                             .range = scan.ranges[i]};
+      said.push_back({i, ros::encode(range)});
+    }
+  };
+  return view;
+}
+
+// ---- drives ----
+
+shm::Pose inverse(const shm::Pose& p) {
+  const double w = p.qw, x = -p.qx, y = -p.qy, z = -p.qz;
+  const double tx = 2 * (y * p.z - z * p.y), ty = 2 * (z * p.x - x * p.z), tz = 2 * (x * p.y - y * p.x);
+  return {-(p.x + w * tx + (y * tz - z * ty)), -(p.y + w * ty + (z * tx - x * tz)), -(p.z + w * tz + (x * ty - y * tx)), w, x, y, z};
+}
+
+shm::Pose product(const shm::Pose& a, const shm::Pose& b) {
+  const double tx = 2 * (a.qy * b.z - a.qz * b.y), ty = 2 * (a.qz * b.x - a.qx * b.z), tz = 2 * (a.qx * b.y - a.qy * b.x);
+  return {a.x + b.x + a.qw * tx + (a.qy * tz - a.qz * ty),       a.y + b.y + a.qw * ty + (a.qz * tx - a.qx * tz),
+          a.z + b.z + a.qw * tz + (a.qx * ty - a.qy * tx),       a.qw * b.qw - a.qx * b.qx - a.qy * b.qy - a.qz * b.qz,
+          a.qw * b.qx + a.qx * b.qw + a.qy * b.qz - a.qz * b.qy, a.qw * b.qy - a.qx * b.qz + a.qy * b.qw + a.qz * b.qx,
+          a.qw * b.qz + a.qx * b.qy - a.qy * b.qx + a.qz * b.qw};
+}
+
+// The odometry, and where its origin is in the world: so that what drifts is seen beside what is true.
+template <class Info, class Sample, class Pose, class Velocity>
+IfaceView drive_view(const shm::Iface& iface, Pose pose_by_wheels, Velocity velocity) {
+  IfaceView view;
+  view.channels = {channel<ros::Odometry>(iface), channel<ros::TFMessage>(iface, "/origin")};
+  view.tell = [pose_by_wheels, velocity](shm::Iface& from, const shm::HeldFrame*, const Wanted& wanted, Saids& said) {
+    const auto& sample = from.sample<Sample>();
+    if (sample.stamp.valid == 0) return;
+    const std::string origin = from.name() + "/origin";
+    const shm::Pose pose = pose_by_wheels(sample);
+    if (wanted[0]) {
+      ros::Odometry odometry{.header = header_of(sample.stamp, origin), .child_frame_id = text_of(from.info<Info>().model)};
+      odometry.pose.pose = pose_of(pose);
+      odometry.twist.twist = velocity(sample);
+      said.push_back({0, ros::encode(odometry)});
+    }
+    if (wanted[1]) {
+      const auto place = product(sample.true_pose, inverse(pose));
+      said.push_back({1, ros::encode(ros::TFMessage{{transform_of(sample.stamp, world_frame, origin, place)}})});
+    }
+  };
+  return view;
+}
+
+IfaceView position2d_view(const shm::Iface& iface) {
+  return drive_view<shm::Position2dInfo, shm::Position2dSample>(
+      iface, [](const shm::Position2dSample& s) { return pose_at(s.odometry[0], s.odometry[1], 0, s.odometry[2]); },
+      [](const shm::Position2dSample& s) {
+        return ros::Twist{{s.velocity[0], s.velocity[1], 0}, {0, 0, s.velocity[2]}};
+      });
+}
+
+IfaceView position3d_view(const shm::Iface& iface) {
+  return drive_view<shm::Position3dInfo, shm::Position3dSample>(
+      iface, [](const shm::Position3dSample& s) { return s.odometry; },
+      [](const shm::Position3dSample& s) {
+        return ros::Twist{vector_of(s.velocity), vector_of(s.velocity + 3)};
+      });
+}
+
+// ---- cameras ----
+
+// Pictures have z forward, x right and y down.
+ros::TransformStamped optical_frame(const std::string& sensor) {
+  return transform_of({}, sensor, sensor + "/optical", {0, 0, 0, 0.5, -0.5, 0.5, -0.5});
+}
+
+std::string encoding_of(shm::Format format) {
+  using enum shm::Format;
+  switch (format) {
+    case rgb8:
+      return "rgb8";
+    case mono8:
+      return "mono8";
+    case depth_float:
+      return "32FC1";
+    case bgr8:
+      return "bgr8";
+    case rgba8:
+      return "rgba8";
+    case bgra8:
+      return "bgra8";
+    case mono16:
+      return "mono16";
+    case bayer_rggb8:
+      return "bayer_rggb8";
+    case bayer_bggr8:
+      return "bayer_bggr8";
+    case bayer_gbrg8:
+      return "bayer_gbrg8";
+    case bayer_grbg8:
+      return "bayer_grbg8";
+    case points_float:
+    case points_intensity_float:
+      break;
+  }
+  return "";
+}
+
+ros::CameraInfo camera_message(const shm::CameraInfo& info, const ros::Header& header) {
+  return {.header = header,
+          .height = info.height,
+          .width = info.width,
+          .distortion_model = "plumb_bob",
+          .d = {std::begin(info.distortion), std::end(info.distortion)},
+          .k = {info.fx, 0, info.cx, 0, info.fy, info.cy, 0, 0, 1},
+          .r = diagonal(1, 1, 1),
+          .p = {info.fx, 0, info.cx, 0, 0, info.fy, info.cy, 0, 0, 0, 1, 0}};
+}
+
+std::vector<char> image_octets(const shm::HeldFrame& frame, const ros::Header& header) {
+  const auto& head = frame.head();
+  const ros::Image image{.header = header,
+                         .height = head.height,
+                         .width = head.width,
+                         .encoding = encoding_of(static_cast<shm::Format>(head.format)),
+                         .step = head.stride,
+                         .data = {reinterpret_cast<const std::uint8_t*>(frame.data().data()), frame.data().size()}};
+  return ros::encode(image);
+}
+
+IfaceView camera_view(const shm::Iface& iface, Pictures pictures) {
+  IfaceView view;
+  const auto format = static_cast<shm::Format>(iface.info<shm::CameraInfo>().format);
+  const bool is_jpeg = pictures == Pictures::jpeg && Jpeg::takes(format);
+  view.channels = {is_jpeg ? channel<ros::CompressedImage>(iface, "/image") : channel<ros::Image>(iface, "/image"),
+                   channel<ros::CameraInfo>(iface, "/camera_info")};
+  place<shm::CameraInfo>(view, iface);
+  view.frames.push_back(optical_frame(iface.name()));
+  const auto jpeg = is_jpeg ? std::make_shared<Jpeg>() : nullptr;
+  view.tell = [jpeg](shm::Iface& from, const shm::HeldFrame* frame, const Wanted& wanted, Saids& said) {
+    if (frame == nullptr || frame->head().stamp.valid == 0) return;
+    const auto header = header_of(frame->head().stamp, from.name() + "/optical");
+    if (wanted[0] && jpeg) {
+      const auto octets = jpeg->encode(*frame);
+      if (octets) said.push_back({0, ros::encode(ros::CompressedImage{header, "jpeg", *octets})});
+    } else if (wanted[0]) {
+      said.push_back({0, image_octets(*frame, header)});
+    }
+    if (wanted[1]) said.push_back({1, ros::encode(camera_message(from.info<shm::CameraInfo>(), header))});
+  };
+  return view;
+}
+
+IfaceView points_view(const shm::Iface& iface) {
+  IfaceView view;
+  view.channels = {channel<ros::PointCloud2>(iface)};
+  place<shm::CameraInfo>(view, iface);
+  view.tell = [](shm::Iface& from, const shm::HeldFrame* frame, const Wanted&, Saids& said) {
+    if (frame == nullptr || frame->head().stamp.valid == 0) return;
+    const auto& head = frame->head();
+    const bool with_intensity = static_cast<shm::Format>(head.format) == shm::Format::points_intensity_float;
+    said.push_back({0, ros::encode(cloud_message(head.stamp, from.name(), head.width, head.height, with_intensity,
+                                                 {reinterpret_cast<const std::uint8_t*>(frame->data().data()), frame->data().size()}))});
+  };
+  return view;
+}
+
+// ---- meters ----
+
+ros::Imu imu_message(const shm::Iface& iface) {
+  const auto& info = iface.info<shm::ImuInfo>();
+  const auto& sample = iface.sample<shm::ImuSample>();
+  const double turn = info.angular_velocity_noise * info.angular_velocity_noise;
+  const double push = info.acceleration_noise * info.acceleration_noise;
+  const double* q = sample.orientation;
+  return {.header = header_of(sample.stamp, iface.name()),
+          .orientation = {q[1], q[2], q[3], q[0]},
+          .angular_velocity = vector_of(sample.angular_velocity),
+          .angular_velocity_covariance = diagonal(turn, turn, turn),
+          .linear_acceleration = vector_of(sample.acceleration),
+          .linear_acceleration_covariance = diagonal(push, push, push)};
+}
+
+ros::NavSatFix fix_message(const shm::Iface& iface) {
+  const auto& info = iface.info<shm::GpsInfo>();
+  const auto& sample = iface.sample<shm::GpsSample>();
+  const double flat = info.position_noise * info.position_noise;
+  return {.header = header_of(sample.stamp, iface.name()),
+          .latitude = sample.latitude,
+          .longitude = sample.longitude,
+          .altitude = sample.altitude,
+          .position_covariance = diagonal(flat, flat, info.altitude_noise * info.altitude_noise),
+          .position_covariance_type = 2};
+}
+
+ros::WrenchStamped wrench_message(const shm::Iface& iface) {
+  const auto& sample = iface.sample<shm::ForceTorqueSample>();
+  return {header_of(sample.stamp, iface.name()), {vector_of(sample.force), vector_of(sample.torque)}};
+}
+
+ros::MagneticField field_message(const shm::Iface& iface) {
+  const auto& sample = iface.sample<shm::MagnetometerSample>();
+  const double noise = iface.info<shm::MeterInfo>().noise[0];
+  return {header_of(sample.stamp, iface.name()), vector_of(sample.field), diagonal(noise * noise, noise * noise, noise * noise)};
+}
+
+ros::FluidPressure pressure_message(const shm::Iface& iface) {
+  const auto& sample = iface.sample<shm::AirPressureSample>();
+  const double noise = iface.info<shm::MeterInfo>().noise[0];
+  return {header_of(sample.stamp, iface.name()), sample.pressure, noise * noise};
+}
+
+IfaceView altimeter_view(const shm::Iface& iface) {
+  IfaceView view;
+  view.channels = {channel<ros::Float64>(iface, "/height"), channel<ros::Float64>(iface, "/climb")};
+  place<shm::MeterInfo>(view, iface);
+  view.tell = [](shm::Iface& from, const shm::HeldFrame*, const Wanted& wanted, Saids& said) {
+    const auto& sample = from.sample<shm::AltimeterSample>();
+    if (sample.stamp.valid == 0) return;
+    if (wanted[0]) said.push_back({0, ros::encode(ros::Float64{sample.height})});
+    if (wanted[1]) said.push_back({1, ros::encode(ros::Float64{sample.climb})});
+  };
+  return view;
+}
+
+// An arrow for each contact, as long as the force of 100 N is a metre.
+ros::MarkerArray contacts_message(const shm::Iface& iface) {
+  constexpr double length = 0.01;  // [m/N]
+  const auto view = iface.bumper();
+  ros::MarkerArray array;
+  array.markers.push_back({.header = header_of(view.sample->stamp, world_frame), .ns = iface.name(), .action = ros::Marker::remove_all});
+  for (const shm::Contact& contact : view.contacts) {
+    ros::Marker arrow{.header = array.markers.front().header, .ns = iface.name()};
+    arrow.id = static_cast<std::int32_t>(array.markers.size());
+    arrow.type = ros::Marker::arrow;
+    arrow.scale = {0.01, 0.02, 0};
+    arrow.color = {1, 0.2F, 0.1F, 1};
+    const double* p = contact.position;
+    const double* f = contact.force;
+    arrow.points = {{p[0], p[1], p[2]}, {p[0] + length * f[0], p[1] + length * f[1], p[2] + length * f[2]}};
+    arrow.text = text_of(contact.other);
+    array.markers.push_back(std::move(arrow));
+  }
+  return array;
+}
+
+std::optional<IfaceView> make_view(const shm::Iface& iface, Pictures pictures) {
+  using enum shm::IfaceType;
+  using shm::MeterInfo;
+  switch (iface.type()) {
+    case laser:
+      return laser_view(iface);
+    case sonar:
+      return sonar_view(iface);
+    case position2d:
+      return position2d_view(iface);
+    case position3d:
+      return position3d_view(iface);
+    case camera:
+    case depth:
+      return camera_view(iface, pictures);
+    case points:
+      return points_view(iface);
+    case imu:
+      return simple_view<ros::Imu, shm::ImuInfo, shm::ImuSample>(iface, imu_message);
+    case gps:
+      return simple_view<ros::NavSatFix, shm::GpsInfo, shm::GpsSample>(iface, fix_message);
+    case bumper:
+      return simple_view<ros::MarkerArray, shm::BumperInfo, shm::BumperSample>(iface, contacts_message);
+    case force_torque:
+      return simple_view<ros::WrenchStamped, MeterInfo, shm::ForceTorqueSample>(iface, wrench_message);
+    case altimeter:
+      return altimeter_view(iface);
+    case magnetometer:
+      return simple_view<ros::MagneticField, MeterInfo, shm::MagnetometerSample>(iface, field_message);
+    case air_pressure:
+      return simple_view<ros::FluidPressure, MeterInfo, shm::AirPressureSample>(iface, pressure_message);
+    case simulation:
+    case truth:
+      break;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string topic_of(shm::IfaceType type, const std::string& name) {
+  std::string topic = "/sim/" + std::string(shm::to_text(type)) + "/";
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const bool is_border = name.compare(i, 2, "::") == 0;
+    topic += is_border ? '/' : name[i];
+    if (is_border) ++i;
+  }
+  return topic;
+}
+
+std::unique_ptr<IfaceView> view_of(const shm::Iface& iface, Pictures pictures) {
+  auto view = make_view(iface, pictures);
+  return view ? std::make_unique<IfaceView>(std::move(*view)) : nullptr;
+}
+
+ros::Header header_of(const shm::Stamp& stamp, const std::string& frame) {
+  return {ros::to_time(std::chrono::nanoseconds(stamp.sim_time_ns)), frame};
+}
+
+ros::Pose pose_of(const shm::Pose& pose) { return {{pose.x, pose.y, pose.z}, {pose.qx, pose.qy, pose.qz, pose.qw}}; }
+
+ros::TransformStamped transform_of(const shm::Stamp& stamp, const std::string& parent, const std::string& child, const shm::Pose& pose) {
+  return {header_of(stamp, parent), child, {{pose.x, pose.y, pose.z}, {pose.qx, pose.qy, pose.qz, pose.qw}}};
+}
+
+}  // namespace channels

@@ -1,0 +1,53 @@
+// An iface of the simulator as channels of ROS 2 messages: which channels it has, and what a sample says on each. No thread of its own; one
+// thread at a time.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "channel.h"
+#include "ros/messages.h"
+#include "shm/client.h"
+
+namespace channels {
+
+enum class Pictures { jpeg, raw };
+
+// What one sample of an iface says.
+struct Said {
+  std::size_t channel;  // place in IfaceView::channels
+  std::vector<char> octets;
+};
+
+struct IfaceView {
+  std::vector<Channel> channels;
+  // Where the sensor stands on its model, and frames of its own: known before there is a sample.
+  std::vector<ros::TransformStamped> frames;
+  double rate = 0;  // [Hz] of samples; 0: every step, so that more come than anybody looks at
+  // Appends what the latest sample or frame says on the channels that are wanted. Nothing while it says nothing true.
+  std::function<void(shm::Iface&, const shm::HeldFrame*, const std::vector<bool>& wanted, std::vector<Said>&)> tell;
+};
+
+// "pioneer2dx::laser" -> "/sim/laser/pioneer2dx/laser"
+std::string topic_of(shm::IfaceType type, const std::string& name);
+
+// Nothing for types that are no channel of their own: the clock and the truth of models.
+std::unique_ptr<IfaceView> view_of(const shm::Iface& iface, Pictures pictures);
+
+// ---- what they are made with ----
+
+inline constexpr const char* world_frame = "world";
+
+ros::Header header_of(const shm::Stamp& stamp, const std::string& frame);
+ros::Pose pose_of(const shm::Pose& pose);
+ros::TransformStamped transform_of(const shm::Stamp& stamp, const std::string& parent, const std::string& child, const shm::Pose& pose);
+// Of a fixed field of a segment, which need not end.
+template <std::size_t size>
+std::string text_of(const char (&field)[size]) {
+  return std::string(field, ::strnlen(field, size));
+}
+
+}  // namespace channels

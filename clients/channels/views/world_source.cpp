@@ -1,0 +1,401 @@
+#include "views/world_source.h"
+
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <condition_variable>
+#include <cstring>
+#include <map>
+#include <optional>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include "base/guarded.h"
+#include "shm/lockstep.h"
+#include "shm/words.h"
+#include "views/static_models.h"
+
+namespace channels {
+
+namespace {
+
+using std::chrono::nanoseconds;
+using namespace std::chrono_literals;
+
+constexpr auto look_period = 200ms;  // of the wall clock: how soon ifaces that came or went are seen
+constexpr std::uint32_t last_phase = 15;
+constexpr double highest_rate = 1000;
+constexpr auto join_limit = 5s;
+constexpr nanoseconds glance_period = 16ms;  // of the wall clock, for those who do not take part
+
+nanoseconds period_of(double rate) { return nanoseconds(std::llround(1e9 / std::clamp(rate, 1e-3, highest_rate))); }
+
+// Moments of simulated time a period apart, at multiples of it; time may start again.
+class Due {
+ public:
+  explicit Due(nanoseconds period) : period_(period) {}
+  bool is_due(nanoseconds now) {
+    if (last_ && *last_ <= now && now / period_ == *last_ / period_) return false;
+    last_ = now;
+    return true;
+  }
+
+ private:
+  nanoseconds period_;
+  std::optional<nanoseconds> last_;
+};
+
+// An iface and its channels.
+struct Shown {
+  shm::Iface iface;
+  std::unique_ptr<IfaceView> view;
+  std::vector<ChannelId> ids;
+  std::vector<bool> wanted;
+  Due due;
+  std::uint64_t last = 0;
+
+  bool is_wanted() const { return std::ranges::find(wanted, true) != wanted.end(); }
+};
+
+// The true pose of a model.
+struct Truth {
+  shm::Iface iface;
+  std::string model;
+};
+
+}  // namespace
+
+struct WorldSource::State {
+  State(Exchange& to, const WorldSourceOptions& chosen, shm::Iface opened)
+      : exchange(to), options(chosen), simulation(std::move(opened)), pose_due(period_of(chosen.pose_rate)) {}
+
+  // ---- shared ----
+  struct Shared {
+    std::set<ChannelId> wanted;
+    std::set<ChannelId> repeated;
+    bool is_changed = false;
+    bool is_ending = false;
+    bool is_ready = false;
+    shm::Participant* participant = nullptr;  // of the thread, while it has one
+  };
+  base::Guarded<Shared, base::Rank::registry> shared;
+  std::condition_variable changed;
+  std::atomic<bool> is_live{true};  // relaxed: says nothing but itself
+
+  // ---- of the thread ----
+  Exchange& exchange;
+  const WorldSourceOptions options;
+  shm::Iface simulation;
+  std::map<std::pair<shm::IfaceType, std::string>, Shown> shown;
+  std::map<std::string, Truth> truths;  // by name of the iface
+  std::vector<ros::TransformStamped> static_models;
+  std::pair<std::uint32_t, std::uint32_t> listed{};
+  ChannelId clock = 0, tf = 0, tf_static = 0;
+  bool says_clock = false, says_tf = false;
+  Due pose_due;
+  std::uint64_t clock_seen = 0;
+  std::optional<shm::Participant> participant;
+  nanoseconds period{0};
+  std::thread thread;
+
+  bool wants_from_start(const std::string& topic) const {
+    return options.wants_all && std::ranges::none_of(options.excluded, [&](const std::string& pattern) {
+             return ::fnmatch(pattern.c_str(), topic.c_str(), 0) == 0;
+           });
+  }
+  ChannelId open_channel(Channel channel) {
+    const bool is_wanted = wants_from_start(channel.topic);
+    const auto id = exchange.open(std::move(channel));
+    if (!id) return 0;
+    if (is_wanted) {
+      auto data = shared.lock();
+      data->wanted.insert(*id);
+      data->repeated.insert(*id);
+      data->is_changed = true;
+    }
+    return *id;
+  }
+
+  void open_common();
+  void look();
+  void show(const shm::SegmentName& name);
+  bool drop_gone();
+  void take_wishes();
+  void subscribe();
+  void choose_period();
+  void say_static();
+  void say_poses(const shm::Stamp& now);
+  void say_samples();
+  void collect();
+  bool is_ending() const { return shared.lock()->is_ending; }
+  bool join();
+  void leave();
+  void wait();
+  void run();
+};
+
+void WorldSource::State::open_common() {
+  clock = open_channel({"/clock", "cdr", ros::schema<ros::Clock>(), {}});
+  tf = open_channel({"/tf", "cdr", ros::schema<ros::TFMessage>(), {}});
+  tf_static = open_channel({"/tf_static", "cdr", ros::schema<ros::TFMessage>(), {}});
+}
+
+// ---- what there is ----
+
+void WorldSource::State::show(const shm::SegmentName& name) {
+  if (name.type == shm::IfaceType::truth ? truths.contains(name.iface) : shown.contains({name.type, name.iface})) return;
+  auto iface = shm::Iface::open(options.server_id, name.type, name.iface);
+  if (!iface) return;  // it has gone again
+  if (name.type == shm::IfaceType::truth) {
+    const std::string model = text_of(iface->info<shm::TruthInfo>().model);
+    truths.emplace(name.iface, Truth{std::move(*iface), model});
+    return;
+  }
+  auto view = view_of(*iface, options.pictures);
+  if (!view) return;
+  Shown one{std::move(*iface), std::move(view), {}, {}, Due(period_of(options.pose_rate))};
+  for (const Channel& channel : one.view->channels) one.ids.push_back(open_channel(channel));
+  one.wanted.resize(one.ids.size());
+  shown.emplace(std::pair(name.type, name.iface), std::move(one));
+}
+
+// True when something had.
+bool WorldSource::State::drop_gone() {
+  const auto is_gone = [](const shm::Iface& iface) { return shm::load(iface.segment().header().state) != RTMSIM_STATE_LIVE; };
+  std::size_t count = std::erase_if(truths, [&](const auto& entry) { return is_gone(entry.second.iface); });
+  count += std::erase_if(shown, [&](const auto& entry) {
+    if (!is_gone(entry.second.iface)) return false;
+    for (const ChannelId id : entry.second.ids) exchange.close(id);
+    return true;
+  });
+  return count > 0;
+}
+
+// Opens what has come and closes what has gone. Asks the simulator: not within a tick.
+void WorldSource::State::look() {
+  if (!simulation.read()) return;
+  const auto& sample = simulation.sample<shm::SimulationSample>();
+  const std::pair now{sample.ifaces, sample.models};
+  const bool is_one_gone = drop_gone();
+  if (!is_one_gone && now == listed && now != std::pair{0U, 0U}) return;
+  listed = now;
+  for (const auto& found : shm::find_segments(options.server_id)) {
+    if (found.is_readable && found.is_alive && found.name.type != shm::IfaceType::simulation) show(found.name);
+  }
+  if (auto models = static_models_of(options.server_id)) static_models = std::move(*models);
+  auto data = shared.lock();
+  data->is_changed = true;
+  data->repeated.insert(tf_static);
+}
+
+// ---- what is wanted ----
+
+void WorldSource::State::take_wishes() {
+  std::set<ChannelId> wanted;
+  bool is_static_due = false;
+  {
+    auto data = shared.lock();
+    if (!data->is_changed) return;
+    data->is_changed = false;
+    wanted = data->wanted;
+    is_static_due = std::exchange(data->repeated, {}).contains(tf_static) && wanted.contains(tf_static);
+  }
+  for (auto& [key, one] : shown) {
+    for (std::size_t i = 0; i < one.ids.size(); ++i) one.wanted[i] = wanted.contains(one.ids[i]);
+  }
+  says_clock = wanted.contains(clock);
+  says_tf = wanted.contains(tf);
+  subscribe();
+  choose_period();
+  if (is_static_due) say_static();
+}
+
+void WorldSource::State::subscribe() {
+  const auto set = [](shm::Iface& iface, bool is_wanted) {
+    if (is_wanted == iface.is_subscribed()) return;
+    if (is_wanted) {
+      (void)iface.subscribe();  // when it fails the iface is going, or all its places are taken: it says nothing then
+    } else {
+      iface.unsubscribe();
+    }
+  };
+  for (auto& [key, one] : shown) set(one.iface, one.is_wanted());
+  for (auto& [name, truth] : truths) set(truth.iface, says_tf);
+}
+
+void WorldSource::State::choose_period() {
+  double rate = says_tf || says_clock ? options.pose_rate : 0;
+  for (const auto& [key, one] : shown) {
+    if (one.is_wanted()) rate = std::max(rate, one.view->rate > 0 ? one.view->rate : options.pose_rate);
+  }
+  const auto chosen = rate > 0 ? period_of(rate) : nanoseconds(0);
+  if (chosen == period) return;
+  period = chosen;
+  if (period == nanoseconds(0)) leave();
+  if (participant) participant->set_period(period);
+}
+
+// ---- what is said ----
+
+void WorldSource::State::say_static() {
+  ros::TFMessage message{static_models};
+  for (const auto& [key, one] : shown)
+    message.transforms.insert(message.transforms.end(), one.view->frames.begin(), one.view->frames.end());
+  const nanoseconds now(simulation.read() ? simulation.sample<shm::SimulationSample>().stamp.sim_time_ns : 0);
+  for (auto& transform : message.transforms) transform.header.stamp = ros::to_time(now);
+  exchange.put(tf_static, now, ros::encode(message));
+}
+
+void WorldSource::State::say_poses(const shm::Stamp& now) {
+  const nanoseconds time(now.sim_time_ns);
+  if (says_clock) exchange.put(clock, time, ros::encode(ros::Clock{ros::to_time(time)}));
+  if (!says_tf) return;
+  ros::TFMessage message;
+  for (auto& [name, truth] : truths) {
+    if (!truth.iface.read()) continue;
+    const auto& sample = truth.iface.sample<shm::TruthSample>();
+    if (sample.stamp.valid != 0) message.transforms.push_back(transform_of(sample.stamp, world_frame, truth.model, sample.pose));
+  }
+  if (!message.transforms.empty()) exchange.put(tf, time, ros::encode(message));
+}
+
+void WorldSource::State::say_samples() {
+  std::vector<Said> said;
+  for (auto& [key, one] : shown) {
+    if (!one.is_wanted() || one.iface.sequence() == one.last) continue;
+    shm::Stamp stamp{};
+    said.clear();
+    if (shm::has_frames(one.iface.type())) {
+      const auto frame = one.iface.hold();
+      if (!frame || frame->sequence() == one.last) continue;
+      stamp = frame->head().stamp;
+      one.last = stamp.sequence;
+      one.view->tell(one.iface, &*frame, one.wanted, said);
+    } else {
+      if (!one.iface.read()) continue;
+      std::memcpy(&stamp, one.iface.sample_data().data(), sizeof stamp);
+      if (one.view->rate == 0 && !one.due.is_due(nanoseconds(stamp.sim_time_ns))) continue;
+      one.last = stamp.sequence;
+      one.view->tell(one.iface, nullptr, one.wanted, said);
+    }
+    for (Said& what : said) {
+      if (one.wanted[what.channel]) exchange.put(one.ids[what.channel], nanoseconds(stamp.sim_time_ns), std::move(what.octets));
+    }
+  }
+}
+
+void WorldSource::State::collect() {
+  say_samples();
+  if (!simulation.read()) return;
+  const auto& sample = simulation.sample<shm::SimulationSample>();
+  if (std::exchange(clock_seen, sample.stamp.sequence) == sample.stamp.sequence) return;
+  if (pose_due.is_due(nanoseconds(sample.stamp.sim_time_ns)) || sample.paused != 0) say_poses(sample.stamp);
+}
+
+// ---- the thread ----
+
+// While participants are counted before time starts it stays away, so that it takes nobody's place.
+bool WorldSource::State::join() {
+  if (participant) return true;
+  if (!simulation.read() || simulation.sample<shm::SimulationSample>().waiting_for > 0) return false;
+  auto joined = shm::Participant::join(options.server_id, {.name = "channels", .phase = last_phase, .period = period});
+  if (!joined) return false;
+  participant.emplace(std::move(*joined));
+  shared.lock()->participant = &*participant;
+  return true;
+}
+
+void WorldSource::State::leave() {
+  shared.lock()->participant = nullptr;
+  participant.reset();
+}
+
+// For the next tick, or until something has changed.
+void WorldSource::State::wait() {
+  shm::Tick tick;
+  if (!options.takes_part) {
+    {
+      auto data = shared.lock();
+      data.wait_for(changed, period > nanoseconds(0) ? glance_period : look_period, [&] { return data->is_changed || data->is_ending; });
+    }
+    return collect();
+  }
+  if (period > nanoseconds(0) && join()) {
+    const auto what = participant->wait(tick, look_period);
+    if (what == shm::Participant::State::dropped || what == shm::Participant::State::closed) leave();
+    if (what == shm::Participant::State::closed) is_live.store(false, std::memory_order_relaxed);
+    // In ticks alone, so that the same run says the same.
+    if (what == shm::Participant::State::tick) collect();
+    if (participant) participant->finish();
+  } else {
+    auto data = shared.lock();
+    data.wait_for(changed, look_period, [&] { return data->is_changed || data->is_ending; });
+  }
+}
+
+void WorldSource::State::run() {
+  while (is_live.load(std::memory_order_relaxed) && !is_ending()) {
+    wait();
+    if (simulation.status() != shm::Status::live) is_live.store(false, std::memory_order_relaxed);
+    look();
+    take_wishes();
+    if (period == nanoseconds(0) || !options.takes_part || (participant && participant->is_active())) {
+      shared.lock()->is_ready = true;
+      changed.notify_all();
+    }
+  }
+  leave();
+  shared.lock()->is_ready = true;
+  changed.notify_all();
+}
+
+WorldSource::WorldSource(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+base::Result<std::unique_ptr<WorldSource>> WorldSource::open(Exchange& exchange, const WorldSourceOptions& options) {
+  auto simulation = shm::Iface::open(options.server_id, shm::IfaceType::simulation, "world");
+  if (!simulation) return simulation.error();
+  auto state = std::make_unique<State>(exchange, options, std::move(*simulation));
+  state->open_common();
+  state->look();
+  state->take_wishes();
+  State& its = *state;
+  state->thread = std::thread([&its] { its.run(); });
+  auto source = std::make_unique<WorldSource>(std::move(state));
+  {
+    auto data = its.shared.lock();
+    data.wait_for(its.changed, join_limit, [&] { return data->is_ready; });
+  }
+  return source;
+}
+
+WorldSource::~WorldSource() {
+  {
+    auto data = state_->shared.lock();
+    data->is_ending = true;
+    if (data->participant != nullptr) data->participant->interrupt();
+  }
+  state_->changed.notify_all();
+  state_->thread.join();
+}
+
+void WorldSource::want(ChannelId channel, bool is_wanted) {
+  {
+    auto data = state_->shared.lock();
+    if (is_wanted) {
+      data->wanted.insert(channel);
+      data->repeated.insert(channel);
+    } else {
+      data->wanted.erase(channel);
+    }
+    data->is_changed = true;
+    if (data->participant != nullptr) data->participant->interrupt();
+  }
+  state_->changed.notify_all();
+}
+
+bool WorldSource::is_live() const { return state_->is_live.load(std::memory_order_relaxed); }
+
+}  // namespace channels

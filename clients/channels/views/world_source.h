@@ -1,0 +1,52 @@
+// What a simulator shows, as channels of ROS 2 messages that any viewer knows: the poses of models as tf, the clock, and each sensor and
+// drive. A channel is opened at the exchange when its iface is there and closed when it is gone; a sensor works, and samples come, while
+// its channel is wanted.
+//
+//   /clock                                      rosgraph_msgs/msg/Clock
+//   /tf, /tf_static                             tf2_msgs/msg/TFMessage: models in `world`, sensors on their models
+//   /sim/TYPE/NAME, "::" in names as "/"        LaserScan, Odometry, Imu, ... (docs/recordings.md has the table)
+//
+// With takes_part it is a participant of the last phase: in lock step nothing is lost and time waits until all sinks have room, else it is
+// woken when something is due and time goes on. It has a thread of its own; any thread may call it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "exchange.h"
+#include "views/iface_view.h"
+
+namespace channels {
+
+struct WorldSourceOptions {
+  std::uint32_t server_id = 0;
+  double pose_rate = 50;  // [Hz, simulated] of tf, the clock and drives; 0 < rate <= 1000
+  Pictures pictures = Pictures::jpeg;
+  bool takes_part = true;             // in the lock step; else it looks sixty times a second of the wall clock, and the newest samples win
+  bool wants_all = false;             // else nothing until want()
+  std::vector<std::string> excluded;  // with wants_all: topics that fit one of these patterns are not wanted
+};
+
+class WorldSource {
+ public:
+  // All channels that there are at this moment are open, and with wants_all the source takes part in the lock step, when it returns. Fails
+  // when there is no simulator of that id.
+  static base::Result<std::unique_ptr<WorldSource>> open(Exchange& exchange, const WorldSourceOptions& options);
+  ~WorldSource();
+
+  // What is the same for long (/tf_static) is said anew with each call for it.
+  void want(ChannelId channel, bool is_wanted);
+  // False when the simulator has gone; the source says nothing more then.
+  bool is_live() const;
+
+  struct State;
+  explicit WorldSource(std::unique_ptr<State> state);
+
+ private:
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace channels

@@ -1,0 +1,188 @@
+#include "break_watch.h"
+
+#include <omnithread.h>
+
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <thread>
+
+#include "base/guarded.h"
+#include "base/text.h"
+#include "remote.h"
+#include "sample_text.h"
+#include "shm/lockstep.h"
+#include "shm/request_board.h"
+#include "tap.h"
+#include "value_codec.h"
+
+namespace recorder {
+
+namespace {
+
+using namespace std::chrono_literals;
+using Kind = Expression::Value::Kind;
+
+constexpr std::uint32_t last_phase = 15;
+constexpr auto call_limit = 5s;
+
+std::uint32_t number_of(const std::string& simulator) { return static_cast<std::uint32_t>(base::parse_integer(simulator).value_or(0)); }
+
+// What a port sent last.
+struct Latest {
+  std::string payload;
+  bool is_little = true;
+  bool is_there = false;
+};
+struct Port {
+  CORBA::TypeCode_ptr type = CORBA::TypeCode::_nil();  // of a table that lives as long as we
+  base::Guarded<Latest, base::Rank::buffer> latest;
+  std::unique_ptr<editor::Tap> tap;  // last: it uses the others
+};
+
+}  // namespace
+
+struct BreakWatch::State {
+  State(const Expression& chosen, const editor::Editor& its_editor, shm::Participant its_participant)
+      : condition(chosen), editor(its_editor), participant(std::move(its_participant)) {}
+
+  const Expression condition;
+  const editor::Editor editor;
+  shm::Participant participant;
+  std::uint32_t simulator = 0;
+  std::map<std::string, std::unique_ptr<Port>> ports;  // by COMPONENT:PORT
+  std::map<std::string, shm::Iface> models;
+  base::Guarded<std::optional<std::chrono::nanoseconds>, base::Rank::registry> hit;
+  std::atomic<bool> is_ending{false};  // relaxed: says nothing but itself
+  std::thread thread;
+
+  base::Result<void> prepare(CORBA::ORB_ptr orb);
+  std::optional<double> look_up(const Expression::Value& value, std::chrono::nanoseconds now);
+  std::optional<double> sample_member(const Expression::Value& value);
+  void run();
+};
+
+base::Result<void> BreakWatch::State::prepare(CORBA::ORB_ptr orb) {
+  for (const auto& value : condition.values()) {
+    if (value.kind == Kind::pose && !models.contains(value.name)) {
+      auto iface = shm::Iface::open(simulator, shm::IfaceType::truth, value.name);
+      if (!iface) return iface.error();
+      if (const auto done = iface->subscribe(); !done) return done;
+      models.emplace(value.name, std::move(*iface));
+    } else if (value.kind == Kind::port && !ports.contains(value.name)) {
+      const auto colon = value.name.find(':');
+      const auto found = editor.port(value.name.substr(0, colon) + ".rtc" + value.name.substr(colon));
+      if (!found) return found.error();
+      if (found->port.port_type() != "DataOutPort") return base::Error{"port " + value.name + ": is no OutPort"};
+      auto port = std::make_unique<Port>();
+      port->type = editor::type_code_of(found->port.data_type());
+      if (CORBA::is_nil(port->type)) return base::Error{"port " + value.name + ": its data type is not known"};
+      auto tap =
+          editor::Tap::connect(orb, found->port, {}, [&latest = port->latest](std::span<const unsigned char> payload, bool is_little) {
+            *latest.lock() = {std::string(reinterpret_cast<const char*>(payload.data()), payload.size()), is_little, true};
+          });
+      if (!tap) return tap.error();
+      port->tap = std::move(*tap);
+      ports.emplace(value.name, std::move(port));
+    } else if (value.kind == Kind::state) {
+      if (const auto found = editor.component(value.name + ".rtc", {.contexts = true}); !found) return found.error();
+    }
+  }
+  return {};
+}
+
+std::optional<double> BreakWatch::State::sample_member(const Expression::Value& value) {
+  Port& port = *ports.at(value.name);
+  const Latest latest = port.latest.snapshot();
+  if (!latest.is_there) return std::nullopt;
+  const auto json =
+      editor::decode(port.type, {reinterpret_cast<const unsigned char*>(latest.payload.data()), latest.payload.size()}, latest.is_little);
+  if (!json) return std::nullopt;
+  for (const auto& [member, one] : members_of(*json)) {
+    if (member != value.member) continue;
+    if (one.is_boolean()) return one.get<bool>() ? 1 : 0;
+    return one.is_number() ? std::optional(one.get<double>()) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+std::optional<double> BreakWatch::State::look_up(const Expression::Value& value, std::chrono::nanoseconds now) {
+  switch (value.kind) {
+    case Kind::number:
+      return value.number;
+    case Kind::time:
+      return std::chrono::duration<double>(now).count();
+    case Kind::port:
+      return sample_member(value);
+    case Kind::state: {
+      const auto component = editor.component(value.name + ".rtc", {.contexts = true});
+      return component ? std::optional(static_cast<double>(component->state())) : std::nullopt;
+    }
+    case Kind::pose:
+      break;
+  }
+  shm::Iface& model = models.at(value.name);
+  if (!model.read()) return std::nullopt;
+  const shm::Pose& pose = model.sample<shm::TruthSample>().pose;
+  if (value.member == "x") return pose.x;
+  if (value.member == "y") return pose.y;
+  return value.member == "z" ? pose.z : shm::yaw_of(pose);
+}
+
+void BreakWatch::State::run() {
+  const omni_thread::ensure_self known_to_the_orb;  // time-outs per thread need it
+  const editor::CallLimit limited(call_limit);
+  while (!is_ending.load(std::memory_order_relaxed)) {
+    shm::Tick tick;
+    const auto what = participant.wait(tick, 100ms);
+    if (what == shm::Participant::State::dropped || what == shm::Participant::State::closed) return;
+    if (what != shm::Participant::State::tick) continue;
+    if (!condition.holds([&](const auto& value) { return look_up(value, tick.now); })) continue;
+    *hit.lock() = tick.now;
+    // Steps that were asked for end with this one. A server that does not answer is going.
+    if (auto requester = shm::Requester::open(simulator)) (void)requester->ask(shm::PauseRequest{});
+    return participant.finish();
+  }
+}
+
+BreakWatch::BreakWatch(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+BreakWatch::~BreakWatch() {
+  state_->is_ending.store(true, std::memory_order_relaxed);
+  state_->participant.interrupt();
+  if (state_->thread.joinable()) state_->thread.join();
+}
+
+base::Result<std::unique_ptr<BreakWatch>> BreakWatch::start(CORBA::ORB_ptr orb, const editor::RunningSystem& system,
+                                                            const Expression& condition) {
+  const auto period = tick_of(system.simulator(), system.step());
+  if (!period) return period.error();
+  auto participant = shm::Participant::join(number_of(system.simulator()), {.name = "break", .phase = last_phase, .period = *period});
+  if (!participant) return participant.error();
+  const editor::Editor editor(orb, system.naming(), false, std::chrono::milliseconds(call_limit));
+  auto state = std::make_unique<State>(condition, editor, std::move(*participant));
+  state->simulator = number_of(system.simulator());
+  if (const auto done = state->prepare(orb); !done) return done.error();
+  const auto deadline = std::chrono::steady_clock::now() + call_limit;
+  for (shm::Tick tick; !state->participant.is_active();) {
+    if (std::chrono::steady_clock::now() > deadline) return base::Error{"break: the simulator does not take it into the lock step"};
+    (void)state->participant.wait(tick, 5ms);
+  }
+  State& its = *state;
+  state->thread = std::thread([&its] { its.run(); });
+  return std::make_unique<BreakWatch>(std::move(state));
+}
+
+std::optional<std::chrono::nanoseconds> BreakWatch::hit() const { return state_->hit.snapshot(); }
+
+base::Result<std::chrono::nanoseconds> tick_of(const std::string& simulator, double step_s) {
+  auto simulation = shm::Iface::open(number_of(simulator), shm::IfaceType::simulation, "world");
+  if (!simulation) return simulation.error();
+  const auto there = shm::read_participants(*simulation);
+  if (!there) return there.error();
+  std::optional<std::int64_t> shortest;
+  for (const auto& one : *there) shortest = std::min(shortest.value_or(one.period_ns), one.period_ns);
+  return std::max(std::chrono::nanoseconds(shortest.value_or(0)), std::chrono::nanoseconds(std::llround(step_s * 1e9)));
+}
+
+}  // namespace recorder

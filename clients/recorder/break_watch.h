@@ -1,0 +1,36 @@
+// Looks in every tick whether a condition holds, and makes time stand still when it does. It has a thread of its own, which takes part in
+// the lock step as the last; construct and use it on one thread.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "editor.h"
+#include "expression.h"
+#include "run/run_system.h"
+
+namespace recorder {
+
+class BreakWatch {
+ public:
+  // Fails when a port or model that the condition needs is not there.
+  static base::Result<std::unique_ptr<BreakWatch>> start(CORBA::ORB_ptr orb, const editor::RunningSystem& system,
+                                                         const Expression& condition);
+  ~BreakWatch();
+
+  // The time of the tick in which the condition held; the simulation is paused then.
+  std::optional<std::chrono::nanoseconds> hit() const;
+
+  struct State;
+  explicit BreakWatch(std::unique_ptr<State> state);
+
+ private:
+  std::unique_ptr<State> state_;
+};
+
+// The shortest period of those that take part in the simulation's lock step; a step when nobody does.
+base::Result<std::chrono::nanoseconds> tick_of(const std::string& simulator, double step_s);
+
+}  // namespace recorder

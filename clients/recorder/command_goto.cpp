@@ -1,0 +1,259 @@
+// goto.
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "base/command_line.h"
+#include "base/text.h"
+#include "break_watch.h"
+#include "command.h"
+#include "recorded_run.h"
+#include "recorder_commands.h"
+#include "run/child_process.h"
+#include "run/interrupt.h"
+#include "sample_text.h"
+
+namespace recorder {
+
+namespace {
+
+using editor::Editor;
+
+struct Options {
+  std::string what;  // a recording or a profile
+  std::optional<double> time_s;
+  std::string condition;
+  int back = 0;  // ticks
+  std::string world;
+  std::string then;
+  std::optional<std::uint64_t> seed;
+  std::vector<std::string> module_paths, resource_paths, properties;
+  double hang_timeout_s = 30;
+};
+
+// A run that stands at a moment: what is done with it, until it is to stand at another one before it, or to end.
+class Stand {
+ public:
+  // `input`: what was read of the user's commands and not obeyed yet; it outlives the stands.
+  Stand(Editor& editor, const Options& options, const std::optional<Expression>& condition, double time_s, std::string& input)
+      : editor_(editor), options_(options), condition_(condition), time_s_(time_s), input_(input) {}
+
+  base::Result<void> drive(editor::RunningSystem& system);
+  // Where a run that is made anew is to stand.
+  std::optional<double> wish() const { return wish_; }
+
+ private:
+  base::Result<void> go_to(double time_s);
+  base::Result<void> go_to_condition();
+  base::Result<void> go_on(std::int64_t steps);
+  base::Result<void> then();
+  base::Result<void> listen();
+  base::Result<bool> obey(const std::string& line);
+  void say() const;
+  double now() const { return static_cast<double>(steps_) * system_->step(); }
+
+  Editor& editor_;
+  const Options& options_;
+  const std::optional<Expression>& condition_;
+  const double time_s_;
+  std::string& input_;
+  editor::RunningSystem* system_ = nullptr;
+  std::int64_t steps_ = 0;
+  std::int64_t tick_ = 1;  // [steps]
+  std::optional<double> wish_;
+};
+
+base::Result<void> Stand::go_on(std::int64_t steps) {
+  if (const auto made = system_->make_steps(steps); !made) return made;
+  steps_ += steps;
+  return {};
+}
+
+base::Result<void> Stand::go_to(double time_s) {
+  const auto steps = std::llround(time_s / system_->step()) - steps_;
+  return steps > 0 ? go_on(steps) : base::Result<void>();
+}
+
+base::Result<void> Stand::go_to_condition() {
+  auto watch = BreakWatch::start(editor_.orb(), *system_, *condition_);
+  if (!watch) return watch.error();
+  const auto steps = std::max<std::int64_t>(std::llround(time_s_ / system_->step()), 1);
+  const auto made = system_->make_steps(steps);
+  if (const auto hit = (*watch)->hit()) {
+    steps_ = std::llround(std::chrono::duration<double>(*hit).count() / system_->step());
+    return {};
+  }
+  if (!made) return made;
+  return base::Error{"goto: the condition " + base::in_quotes(options_.condition) + " does not hold up to " + base::format_number(time_s_) +
+                     " s"};
+}
+
+void Stand::say() const {
+  if (editor_.json()) {
+    Json json = {{"time", now()}, {"steps", steps_}, {"simulator", system_->simulator()}, {"naming", system_->naming()}};
+    json["processes"] = Json::array();
+    for (const auto& process : system_->processes()) json["processes"].push_back({{"what", process.what}, {"pid", process.pid}});
+    std::cout << json.dump() << std::endl;
+    return;
+  }
+  std::cout << "stands at " << base::format_number(now()) << " s, after " << steps_ << " steps\n";
+  for (const auto& process : system_->processes()) std::printf("%8d  %s\n", static_cast<int>(process.pid), process.what.c_str());
+  std::fflush(stdout);
+  std::cout << "export RTMSIM_SERVER_ID=" << system_->simulator() << " RTCTREE_NAMESERVERS=" << system_->naming() << std::endl;
+}
+
+base::Result<void> Stand::then() {
+  auto child = editor::ChildProcess::start({{"sh", "-c", options_.then},
+                                            {{"RTMSIM_SERVER_ID", system_->simulator()}, {"RTCTREE_NAMESERVERS", system_->naming()}},
+                                            "/dev/stdout"});
+  if (!child) return child.error();
+  if (child->wait_or_interrupt(std::chrono::hours(24 * 365)) != editor::Ending::ended) return base::Error{"goto: interrupted"};
+  if (child->exit_code() != 0) return base::Error{"command " + base::in_quotes(options_.then) + ": " + child->how_it_ended()};
+  return {};
+}
+
+// True when the run is to end.
+base::Result<bool> Stand::obey(const std::string& line) {
+  const auto words = base::split_list(line, ' ');
+  const std::string verb = words.empty() ? "n" : words[0];
+  const auto number = words.size() > 1 ? base::parse_number(words[1]) : std::nullopt;
+  if (verb == "q" || verb == "quit") return true;
+  if ((verb == "n" || verb == "next") && (words.size() < 2 || (number && *number >= 1))) {
+    const auto done = go_on(tick_ * std::llround(number.value_or(1)));
+    return done ? base::Result<bool>(false) : done.error();
+  }
+  const bool is_back = (verb == "b" || verb == "back") && (words.size() < 2 || (number && *number >= 1));
+  if (is_back || ((verb == "t" || verb == "to") && number && *number >= 0)) {
+    const double given = number ? *number : 1;
+    const double to = is_back ? std::max(0.0, now() - given * static_cast<double>(tick_) * system_->step()) : given;
+    if (to < now()) {
+      wish_ = to;
+      return true;
+    }
+    const auto done = go_to(to);
+    return done ? base::Result<bool>(false) : done.error();
+  }
+  std::cerr << "n [N]: N ticks on; t SECONDS: to that time; b [N]: N ticks back; q: end\n";
+  return false;
+}
+
+// Until the user has had enough, or sends no more.
+base::Result<void> Stand::listen() {
+  for (;;) {
+    for (auto end = input_.find('\n'); end != std::string::npos; end = input_.find('\n')) {
+      const std::string line = input_.substr(0, end);
+      input_.erase(0, end + 1);
+      const auto is_over = obey(line);
+      if (!is_over) return is_over.error();
+      if (*is_over) return {};
+      say();
+    }
+    pollfd handles[2] = {{editor::interrupt_handle(), POLLIN, 0}, {STDIN_FILENO, POLLIN, 0}};
+    (void)::poll(handles, 2, -1);
+    if (editor::is_interrupted()) return {};
+    char piece[512];
+    const auto size = ::read(STDIN_FILENO, piece, sizeof piece);
+    if (size <= 0) return {};
+    input_.append(piece, static_cast<std::size_t>(size));
+  }
+}
+
+base::Result<void> Stand::drive(editor::RunningSystem& system) {
+  system_ = &system;
+  const auto tick = tick_of(system.simulator(), system.step());
+  if (!tick) return tick.error();
+  tick_ = std::max<std::int64_t>(1, std::llround(std::chrono::duration<double>(*tick).count() / system.step()));
+  if (condition_) {
+    if (const auto gone = go_to_condition(); !gone) return gone;
+    if (options_.back > 0) {
+      wish_ = std::max(0.0, now() - options_.back * static_cast<double>(tick_) * system.step());
+      return {};
+    }
+  } else {
+    const double back = options_.back * static_cast<double>(tick_) * system.step();
+    if (const auto gone = go_to(std::max(0.0, time_s_ - back)); !gone) return gone;
+  }
+  say();
+  return options_.then.empty() ? listen() : then();
+}
+
+void go(Editor& editor, const Options& options) {
+  std::optional<Expression> condition;
+  if (!options.condition.empty()) {
+    auto parsed = Expression::parse(options.condition);
+    if (!parsed) return editor.fail(parsed.error());
+    condition = std::move(*parsed);
+  }
+  std::optional<RecordedRun> recorded;
+  editor::RunOptions call;
+  if (options.world.empty()) {
+    auto run = RecordedRun::unpack(options.what);
+    if (!run) return editor.fail(run.error());
+    recorded.emplace(std::move(*run));
+    call = recorded->options();
+  } else {
+    call.system = options.what;
+    call.world = options.world;
+    call.quiet = true;
+  }
+  if (options.seed) call.seed = *options.seed;
+  call.hang_timeout_s = options.hang_timeout_s;
+  call.module_paths.insert(call.module_paths.end(), options.module_paths.begin(), options.module_paths.end());
+  call.resource_paths.insert(call.resource_paths.end(), options.resource_paths.begin(), options.resource_paths.end());
+  call.properties.insert(call.properties.end(), options.properties.begin(), options.properties.end());
+  editor::catch_interrupts();
+  Options wanted = options;
+  double time_s = options.time_s.value_or(call.duration_s);
+  std::string input;
+  for (;;) {
+    Stand stand(editor, wanted, condition, time_s, input);
+    call.driver = [&](editor::RunningSystem& system) { return stand.drive(system); };
+    const auto made = editor::run_system(editor.orb(), call);
+    if (!made.problem.empty()) return editor.fail({made.problem});
+    if (!stand.wish()) return;
+    // The same run once more, and not so far.
+    time_s = *stand.wish();
+    condition.reset();
+    wanted.back = 0;
+  }
+}
+
+}  // namespace
+
+void add_goto(CLI::App& app, editor::Chosen& chosen) {
+  auto* command =
+      app.add_subcommand("goto", "Make a recorded run again, as fast as it can, and stand at a moment of it with all processes alive");
+  auto options = std::make_shared<Options>();
+  command->add_option("RUN", options->what, "A recording of rtse run --record, or an RTSProfile with --world")
+      ->required()
+      ->check(CLI::ExistingFile);
+  auto* time = command->add_option("TIME", options->time_s, "Simulated seconds")->check(base::number_between(0.0, 1e7));
+  command->add_option("--until", options->time_s, "The same")->check(base::number_between(0.0, 1e7))->excludes(time);
+  command->add_option(
+      "--break", options->condition,
+      "Stand at the first tick in which this holds, e.g. 'pose(pioneer2dx).x > 2 && A0:out.data < 0.1'; TIME ends the search");
+  command->add_option("--back", options->back, "So many ticks before that")->check(CLI::Range(0, 1000000));
+  command->add_option("-w,--world", options->world, "With a profile: SDFormat world")->check(CLI::ExistingFile);
+  command->add_option("--then", options->then, "Run this shell command there and end, instead of reading commands");
+  command->add_option("--seed", options->seed, "Seed of the world's noise, if not the recorded one")->check(base::number_between(0, 1e18));
+  command->add_option("--module-path", options->module_paths, "Folder with modules of components")->allow_extra_args(false);
+  command->add_option("--resource-path", options->resource_paths, "Folder with models")->allow_extra_args(false);
+  command->add_option("--property", options->properties, "INSTANCE:KEY=VALUE, a property that a component is created with")
+      ->allow_extra_args(false);
+  command->add_option("--hang-timeout", options->hang_timeout_s, "Seconds of real time that one tick may take")
+      ->check(base::number_between(0.1, 1e6))
+      ->capture_default_str();
+  command->callback([&chosen, options] {
+    editor::require(options->time_s || !options->condition.empty(), "goto", "name a TIME, or a condition with --break");
+    chosen.work = [options](Editor& editor) { go(editor, *options); };
+  });
+}
+
+}  // namespace recorder

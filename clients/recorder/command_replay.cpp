@@ -1,0 +1,254 @@
+// replay.
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <memory>
+
+#include "base/command_line.h"
+#include "base/text.h"
+#include "command.h"
+#include "profile/rts_profile.h"
+#include "recorded_run.h"
+#include "recorder_commands.h"
+#include "replay.h"
+#include "run/interrupt.h"
+
+namespace recorder {
+
+namespace {
+
+using editor::Editor;
+
+struct Options {
+  std::string file, component;
+  std::vector<std::string> links;       // COMPONENT:PORT=INPORT
+  std::vector<std::string> tolerances;  // MEMBER=EPS
+  std::vector<std::string> ignored;
+  std::vector<std::string> settings;  // NAME=VALUE, of the active configuration set
+  std::vector<std::string> module_paths, properties;
+  bool compares = false;
+  std::string junit, keep;
+  double hang_timeout_s = 30;
+};
+
+std::string after_dot(const std::string& port_name) { return port_name.substr(port_name.find('.') + 1); }
+
+// The properties that decide what an InPort keeps: its buffer.
+editor::Properties buffer_of(const editor::SavedConnector& connector) {
+  editor::Properties kept;
+  for (const auto& [key, value] : connector.properties) {
+    if (key.starts_with("dataport.") && key.find("buffer") != std::string::npos) kept[key] = value;
+  }
+  return kept;
+}
+
+// The links that the profile has, and those of the command line in their place.
+base::Result<std::vector<ReplayLink>> links_of(const editor::SavedSystem& system, const Options& options) {
+  std::vector<ReplayLink> links;
+  for (const auto& text : options.links) {
+    const auto equals = text.find('=');
+    const auto colon = text.find(':');
+    if (equals == std::string::npos || colon > equals)
+      return base::Error{"link " + base::in_quotes(text) + ": expected COMPONENT:PORT=INPORT"};
+    links.push_back({"/" + text.substr(0, colon) + "/" + text.substr(colon + 1, equals - colon - 1), text.substr(equals + 1), {}});
+  }
+  for (const auto& connector : system.connectors) {
+    if (!connector.is_data || connector.target.instance != options.component) continue;
+    const std::string port = after_dot(connector.target.port_name);
+    if (std::ranges::any_of(links, [&](const ReplayLink& link) { return link.port == port; })) continue;
+    links.push_back({"/" + connector.source.instance + "/" + after_dot(connector.source.port_name), port, buffer_of(connector)});
+  }
+  return links;
+}
+
+// What the recording cannot give the component is said, and left out.
+base::Result<std::vector<ReplayLink>> possible(std::vector<ReplayLink> links, const editor::SavedSystem& system, const Options& options) {
+  auto reader = mcap::Reader::open(options.file);
+  if (!reader) return reader.error();
+  std::erase_if(links, [&](const ReplayLink& link) {
+    if (std::ranges::any_of(reader->channels(), [&](const auto& one) { return one.second.topic == link.topic; })) return false;
+    std::cerr << "rtse: input " << options.component << ":" << link.port << ": missing, the recording has no " << link.topic << '\n';
+    return true;
+  });
+  for (const auto& connector : system.connectors) {
+    if (connector.is_data || (connector.target.instance != options.component && connector.source.instance != options.component)) continue;
+    std::cerr << "rtse: service port " << connector.source.port_name << ": missing, calls of " << connector.target.port_name
+              << " are not recorded\n";
+  }
+  return links;
+}
+
+editor::SavedSystem alone(const editor::SavedSystem& system, const std::string& instance) {
+  editor::SavedSystem one;
+  one.id = system.id;
+  one.abstract = "a component alone";
+  one.creation_date = system.creation_date;
+  one.update_date = system.update_date;
+  one.components = {*system.component(instance)};
+  one.components.front().participants.clear();
+  return one;
+}
+
+// Other values of the active configuration set than the recorded ones.
+base::Result<void> configure(editor::SavedComponent& component, const std::vector<std::string>& settings) {
+  for (const auto& text : settings) {
+    const auto equals = text.find('=');
+    const std::string name = text.substr(0, equals);
+    const auto set = std::ranges::find(component.configuration_sets, component.active_set, &editor::SavedConfigurationSet::id);
+    const bool has_set = set != component.configuration_sets.end();
+    const auto value =
+        has_set ? std::ranges::find(set->values, name, &std::pair<std::string, std::string>::first) : editor::NamedValues::iterator();
+    if (!has_set || value == set->values.end())
+      return base::Error{"component " + component.instance + ": has no parameter " + base::in_quotes(name)};
+    value->second = text.substr(equals + 1);
+  }
+  return {};
+}
+
+// A world with nothing in it. Where the component ticks at whole steps one step is one tick.
+base::Result<std::string> empty_world(const RecordedRun& run, const editor::SavedComponent& component) {
+  std::int64_t step = base::parse_integer(run.note("step_ns")).value_or(1'000'000);
+  const auto rate = component.contexts.empty() ? 0 : base::parse_number(component.contexts.front().rate).value_or(0);
+  const auto period = rate > 0 ? std::llround(1e9 / rate) : 0;
+  if (step > 0 && period >= step && period % step == 0) step = period;
+  const auto file = (run.folder() / "empty.sdf").string();
+  std::ofstream out(file);
+  out << "<?xml version=\"1.0\"?>\n<sdf version=\"1.9\"><world name=\"replay\"><physics name=\"default\" type=\"ode\"><max_step_size>"
+      << base::format_number(static_cast<double>(step) * 1e-9) << "</max_step_size></physics></world></sdf>\n";
+  out.close();
+  if (!out) return base::Error{"file " + base::in_quotes(file) + ": cannot be written"};
+  return file;
+}
+
+Json to_json(const ReplayResult& result) {
+  Json json = {{"ticks", result.ticks}, {"inputs", result.sent}, {"simulated", result.simulated_s}, {"wall", result.wall_s}};
+  json["outputs"] = Json::array();
+  for (const auto& output : result.outputs) {
+    json["outputs"].push_back({{"topic", output.topic},
+                               {"samples", output.samples},
+                               {"recorded", output.recorded},
+                               {"different", output.different},
+                               {"first", output.first}});
+  }
+  return json;
+}
+
+void report(Editor& editor, const Options& options, const ReplayResult& result) {
+  if (editor.json()) {
+    editor.print(to_json(result));
+  } else {
+    std::printf("%llu ticks, %llu inputs, %.1f s in %.2f s (%.0f x real time)\n", static_cast<unsigned long long>(result.ticks),
+                static_cast<unsigned long long>(result.sent), result.simulated_s, result.wall_s,
+                result.wall_s > 0 ? result.simulated_s / result.wall_s : 0);
+  }
+  for (const auto& output : result.outputs) {
+    const bool is_recorded = output.recorded > 0 || !options.compares;
+    if (!editor.json()) {
+      std::cout << output.topic << ": " << output.samples << " samples";
+      if (options.compares)
+        std::cout << (!is_recorded            ? ", none recorded"
+                      : output.different == 0 ? ", equal"
+                                              : ", " + std::to_string(output.different) + " differ");
+      std::cout << '\n';
+    }
+    if (output.different > 0) editor.fail({output.topic + ": first difference at " + output.first});
+  }
+}
+
+base::Result<void> write_report(const Options& options, const ReplayResult& result, const std::string& problem) {
+  editor::RunOptions names;
+  names.system = "replay";
+  names.world = options.component;
+  names.duration_s = result.simulated_s;
+  editor::RunResult run;
+  run.problem = problem;
+  run.wall_s = result.wall_s;
+  for (const auto& output : result.outputs)
+    run.verdicts.push_back(
+        {"output " + output.topic + " is as recorded", output.first.empty() ? "" : "first difference at " + output.first});
+  return editor::write_junit(options.junit, names, {run});
+}
+
+void replay_file(Editor& editor, const Options& options) {
+  const auto run = RecordedRun::unpack(options.file);
+  if (!run) return editor.fail(run.error());
+  const auto system = editor::read_system(run->system());
+  if (!system) return editor.fail(system.error());
+  if (system->component(options.component) == nullptr) {
+    std::vector<std::string> names;
+    for (const auto& component : system->components) names.push_back(component.instance);
+    return editor.fail({"component " + options.component + ": is not in the recording; components: " + base::join(names, ", ")});
+  }
+  ReplayOptions replayed{.file = options.file, .component = options.component, .compares = options.compares};
+  replayed.tolerated.ignored = options.ignored;
+  for (const auto& text : options.tolerances) replayed.tolerated.tolerances.insert(*parse_tolerance(text));
+  const auto links = links_of(*system, options);
+  if (!links) return editor.fail(links.error());
+  auto given = possible(*links, *system, options);
+  if (!given) return editor.fail(given.error());
+  replayed.links = std::move(*given);
+
+  auto call = run->options();
+  const auto world = empty_world(*run, *system->component(options.component));
+  if (!world) return editor.fail(world.error());
+  call.world = *world;
+  call.system = (run->folder() / "alone.xml").string();
+  call.keep = options.keep;
+  call.hang_timeout_s = options.hang_timeout_s;
+  call.module_paths.insert(call.module_paths.end(), options.module_paths.begin(), options.module_paths.end());
+  std::erase_if(call.properties, [&](const std::string& one) { return !one.starts_with(options.component + ":"); });
+  call.properties.insert(call.properties.end(), options.properties.begin(), options.properties.end());
+  auto one = alone(*system, options.component);
+  if (const auto done = configure(one.components.front(), options.settings); !done) return editor.fail(done.error());
+  if (const auto written = editor::write_system(one, call.system); !written) return editor.fail(written.error());
+  ReplayResult result;
+  call.driver = [&](editor::RunningSystem& running) -> base::Result<void> {
+    auto done = replay(editor.orb(), running, replayed);
+    if (!done) return done.error();
+    result = std::move(*done);
+    return {};
+  };
+  editor::catch_interrupts();
+  const auto made = editor::run_system(editor.orb(), call);
+  if (!made.problem.empty()) {
+    editor.fail({made.problem});
+  } else {
+    report(editor, options, result);
+  }
+  if (options.junit.empty()) return;
+  if (const auto written = write_report(options, result, made.problem); !written) editor.fail(written.error());
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, editor::Chosen& chosen) {
+  auto* command = app.add_subcommand("replay", "Send a component its recorded inputs again, in lock step, and compare what it answers");
+  auto options = std::make_shared<Options>();
+  command->add_option("FILE", options->file, "The recording, of rtse run --record")->required();
+  command->add_option("--into", options->component, "The component, by its instance name")->required();
+  command->add_flag("--compare", options->compares, "Its outputs are to be the recorded ones, to the bit");
+  command->add_option("--tolerance", options->tolerances, "MEMBER=EPS, or EPS for all: numbers may differ so far")
+      ->allow_extra_args(false)
+      ->check([](const std::string& text) {
+        const auto parsed = parse_tolerance(text);
+        return parsed ? std::string() : parsed.error().message;
+      });
+  command->add_option("--ignore", options->ignored, "Members that do not count, e.g. tm")->allow_extra_args(false);
+  command->add_option("--link", options->links, "COMPONENT:PORT=INPORT: what was recorded there goes to this port")
+      ->allow_extra_args(false);
+  command->add_option("--set", options->settings, "NAME=VALUE: another value of a configuration parameter than the recorded one")
+      ->allow_extra_args(false)
+      ->check([](const std::string& text) { return text.find('=') == std::string::npos ? "expected NAME=VALUE" : ""; });
+  command->add_option("--module-path", options->module_paths, "Folder with modules of components")->allow_extra_args(false);
+  command->add_option("--property", options->properties, "INSTANCE:KEY=VALUE, a property that the component is created with")
+      ->allow_extra_args(false);
+  command->add_option("--hang-timeout", options->hang_timeout_s, "Seconds of real time that one tick may take")
+      ->check(base::number_between(0.1, 1e6))
+      ->capture_default_str();
+  command->add_option("--junit", options->junit, "Write the verdicts as JUnit XML");
+  command->add_option("--keep", options->keep, "Keep logs in this folder");
+  command->callback([&chosen, options] { chosen.work = [options](Editor& editor) { replay_file(editor, *options); }; });
+}
+
+}  // namespace recorder

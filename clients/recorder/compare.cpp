@@ -1,0 +1,132 @@
+#include "compare.h"
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "mcap/mcap.h"
+#include "sample_text.h"
+#include "selection.h"
+
+namespace recorder {
+namespace {
+
+// The messages of one recording, channel by channel of its topic.
+class Side {
+ public:
+  Side(mcap::Reader reader, const Selection& selection) : reader_(std::move(reader)), selection_(selection), values_(reader_) {}
+  base::Result<void> begin() {
+    auto query = query_of(reader_, selection_);
+    if (!query) return query.error();
+    reader_.seek(std::move(*query));
+    return {};
+  }
+  base::Result<std::optional<mcap::Message>> next() { return reader_.next(); }
+  const mcap::Reader& reader() const { return reader_; }
+  SampleValues& values() { return values_; }
+  const std::string& topic(const mcap::Message& message) const { return reader_.channels().at(message.channel).topic; }
+
+ private:
+  mcap::Reader reader_;
+  Selection selection_;
+  SampleValues values_;
+};
+
+struct Entry {
+  mcap::Time time{0};
+  std::string topic;
+  std::string octets;
+};
+
+// All messages of one moment, in the order of topics: within a moment the order of arrival says nothing.
+class Moments {
+ public:
+  explicit Moments(Side& side) : side_(side) {}
+  base::Result<std::vector<Entry>> next() {
+    std::vector<Entry> moment;
+    if (ahead_) moment.push_back(std::move(*std::exchange(ahead_, std::nullopt)));
+    for (;;) {
+      const auto message = side_.next();
+      if (!message) return message.error();
+      if (!message->has_value()) break;
+      Entry entry{(*message)->log_time, side_.topic(**message), std::string((*message)->data)};
+      if (!moment.empty() && entry.time != moment.front().time) {
+        ahead_ = std::move(entry);
+        break;
+      }
+      moment.push_back(std::move(entry));
+    }
+    std::stable_sort(moment.begin(), moment.end(), [](const Entry& a, const Entry& b) { return a.topic < b.topic; });
+    return moment;
+  }
+
+ private:
+  Side& side_;
+  std::optional<Entry> ahead_;
+};
+
+base::Result<Json> value_of(Side& side, const Entry& entry) {
+  for (const auto& [id, channel] : side.reader().channels()) {
+    if (channel.topic == entry.topic) return side.values().of({id, 0, entry.time, entry.time, entry.octets});
+  }
+  return base::Error{"channel " + entry.topic + " is not there"};
+}
+
+std::optional<std::string> difference(const DifferenceOptions& options, Side& first, Side& second, const Entry& a, const Entry& b) {
+  if (a.octets == b.octets) return std::nullopt;
+  const auto left = value_of(first, a);
+  const auto right = value_of(second, b);
+  if (left && right) return difference(options, *left, *right);
+  return "octets differ";
+}
+
+}  // namespace
+
+void compare(editor::Editor& editor, const CompareOptions& options) {
+  std::vector<std::unique_ptr<Side>> sides;
+  for (const std::string& file : {options.first, options.second}) {
+    auto reader = open(editor, file);
+    if (!reader) return;
+    sides.push_back(std::make_unique<Side>(std::move(*reader), Selection{.file = file, .topics = options.topics}));
+    if (const auto begun = sides.back()->begin(); !begun) return editor.fail(begun.error());
+  }
+  Moments first(*sides[0]);
+  Moments second(*sides[1]);
+  std::uint64_t samples = 0;
+  const auto differ = [&](mcap::Time time, const std::string& what) {
+    const std::string place = "time " + seconds_text(time) + " s: " + what;
+    if (editor.json())
+      editor.print(Json{{"equal", false}, {"time", seconds(time)}, {"difference", what}});
+    else
+      std::cout << "first difference at " << place << '\n';
+    editor.set_failed();
+  };
+  for (;;) {
+    const auto a = first.next();
+    const auto b = second.next();
+    if (!a) return editor.fail(a.error());
+    if (!b) return editor.fail(b.error());
+    if (a->empty() && b->empty()) break;
+    for (std::size_t i = 0; i < std::max(a->size(), b->size()); ++i) {
+      const bool in_first =
+          i < a->size() && (i >= b->size() || std::pair((*a)[i].time, (*a)[i].topic) <= std::pair((*b)[i].time, (*b)[i].topic));
+      const bool in_second =
+          i < b->size() && (i >= a->size() || std::pair((*b)[i].time, (*b)[i].topic) <= std::pair((*a)[i].time, (*a)[i].topic));
+      if (!in_first || !in_second) {
+        const Entry& entry = in_first ? (*a)[i] : (*b)[i];
+        return differ(entry.time, entry.topic + " has a sample in " + (in_first ? options.first : options.second) + " only");
+      }
+      ++samples;
+      if (const auto what = difference(options.tolerated, *sides[0], *sides[1], (*a)[i], (*b)[i]))
+        return differ((*a)[i].time, (*a)[i].topic + " " + *what);
+    }
+  }
+  if (editor.json())
+    editor.print(Json{{"equal", true}, {"samples", samples}});
+  else
+    std::cout << "equal: " << samples << " samples\n";
+}
+
+}  // namespace recorder

@@ -1,0 +1,21 @@
+// recording compare: the first difference of two recordings. One thread.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "editor.h"
+#include "sample_difference.h"
+
+namespace recorder {
+
+struct CompareOptions {
+  std::string first, second;
+  std::vector<std::string> topics;
+  DifferenceOptions tolerated;
+};
+
+// Says what it found by the editor, which has failed when the recordings differ or can't be read.
+void compare(editor::Editor& editor, const CompareOptions& options);
+
+}  // namespace recorder

@@ -1,0 +1,41 @@
+// What a recording says of its run, as files that `rtse run` takes: the system's profile and the world, in a folder that is gone with the
+// object. One thread at a time.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "mcap/mcap.h"
+#include "run/run_system.h"
+
+namespace recorder {
+
+class RecordedRun {
+ public:
+  // Fails when the recording has no profile of the system or no world: `rtse run --record` writes both.
+  static base::Result<RecordedRun> unpack(const std::string& recording);
+  RecordedRun(RecordedRun&& other) noexcept;
+  RecordedRun& operator=(RecordedRun&&) = delete;
+  ~RecordedRun();
+
+  const std::string& system() const { return system_; }
+  const std::string& world() const { return world_; }
+  const std::filesystem::path& folder() const { return folder_; }  // for files of the caller's own
+  // A text of the metadata `run`; empty when it is not there.
+  std::string note(const std::string& key) const;
+  double end() const { return end_s_; }  // the time of the last sample [s]
+  // Those of the run.
+  editor::RunOptions options() const;
+
+ private:
+  RecordedRun() = default;
+  std::filesystem::path folder_;
+  std::string system_, world_;
+  std::vector<std::string> resource_paths_;
+  mcap::Texts notes_;
+  double end_s_ = 0;
+};
+
+}  // namespace recorder

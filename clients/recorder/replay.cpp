@@ -1,0 +1,346 @@
+#include "replay.h"
+
+#include <omnithread.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <deque>
+#include <thread>
+
+#include "base/guarded.h"
+#include "base/text.h"
+#include "remote.h"
+#include "shm/lockstep.h"
+#include "tap.h"
+
+namespace recorder {
+
+namespace {
+
+using WallClock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+constexpr auto tick_limit = 100ms;  // of one wait; there are as many as it takes
+constexpr auto call_limit = 5s;
+constexpr std::uint32_t last_phase = 15;
+
+struct Input {
+  std::vector<std::unique_ptr<editor::Tap>> targets;
+  std::string topic;
+  bool comes_before = true;  // the component's tick of the same time
+};
+
+// What the component sent on a port, and what it should have.
+struct Output {
+  ReplayedOutput result;
+  std::uint16_t channel = 0;  // of the recording; 0: it has none
+  std::unique_ptr<editor::Tap> tap;
+  std::deque<std::string> expected;  // with their heads
+};
+
+std::uint32_t phase_of(const mcap::Channel& channel) {
+  const auto phase = channel.metadata.find("phase");
+  return phase == channel.metadata.end() ? 0 : static_cast<std::uint32_t>(base::parse_integer(phase->second).value_or(0));
+}
+
+class Player {
+ public:
+  Player(CORBA::ORB_ptr orb, editor::RunningSystem& system, const ReplayOptions& options, mcap::Reader inputs, mcap::Reader outputs)
+      : orb_(orb), system_(system), options_(options), inputs_(std::move(inputs)), expected_(std::move(outputs)), values_(expected_) {}
+  ~Player() {
+    is_ending_.store(true, std::memory_order_relaxed);
+    if (thread_.joinable()) thread_.join();
+  }
+
+  base::Result<ReplayResult> run();
+
+ private:
+  base::Result<void> connect();
+  base::Result<void> join();
+  base::Result<void> await_active();
+  base::Result<void> serve();
+  base::Result<void> take_tick(shm::Participant& participant, shm::Tick& tick);
+  base::Result<void> send(Input& input, std::string_view data);
+  base::Result<void> feed(std::chrono::nanoseconds now);
+  base::Result<void> feed_rest();
+  base::Result<void> look_ahead(std::chrono::nanoseconds now);
+  base::Result<void> judge(std::chrono::nanoseconds now);
+  void complain(Output& output, std::chrono::nanoseconds now, const std::string& what);
+  std::optional<std::string> differ(const Output& output, const std::string& recorded, const std::string& sent);
+
+  CORBA::ORB_ptr orb_;
+  editor::RunningSystem& system_;
+  const ReplayOptions& options_;
+  mcap::Reader inputs_, expected_;
+  SampleValues values_;
+  std::map<std::uint16_t, Input> by_channel_;
+  std::vector<std::unique_ptr<Output>> outputs_;
+  // What came since it was judged last: place of the output, octets with their head.
+  base::Guarded<std::vector<std::pair<std::size_t, std::string>>, base::Rank::buffer> arrived_;
+  struct Waiting {
+    std::uint16_t channel;
+    mcap::Time time;
+    std::string data;
+  };
+  std::optional<Waiting> next_input_, next_expected_;
+  std::vector<Waiting> behind_;  // of this tick, for after the component's
+  std::optional<shm::Participant> before_, after_;
+  std::uint32_t phase_ = 1;
+  std::atomic<bool> is_ending_{false};  // relaxed: says nothing but itself
+  base::Guarded<std::optional<base::Error>, base::Rank::registry> failure_;
+  ReplayResult result_;
+  std::thread thread_;
+};
+
+// ---- wiring ----
+
+base::Result<void> Player::connect() {
+  editor::Editor editor(orb_, system_.naming(), false, std::chrono::milliseconds(call_limit));
+  auto component = editor.component(options_.component + ".rtc", {.connectors = true});
+  if (!component) return component.error();
+  std::map<std::string, std::uint16_t> topics;
+  for (const auto& [id, channel] : inputs_.channels()) topics.emplace(channel.topic, id);
+  for (const auto& link : options_.links) {
+    const auto* port = component->port(link.port);
+    const auto channel = topics.find(link.topic);
+    if (port == nullptr || channel == topics.end()) return base::Error{"link of " + link.topic + " with " + link.port + ": is not there"};
+    auto tap = editor::Tap::connect(orb_, *port, link.properties, {});
+    if (!tap) return tap.error();
+    Input& input = by_channel_[channel->second];
+    input.topic = link.topic;
+    input.comes_before = phase_of(inputs_.channels().at(channel->second)) < phase_;
+    input.targets.push_back(std::move(*tap));
+  }
+  mcap::Query wanted{.channels = {0}};  // none but these
+  for (const auto& port : component->ports) {
+    if (port.port_type() != "DataOutPort") continue;
+    auto output = std::make_unique<Output>();
+    output->result.topic = "/" + options_.component + "/" + port.name;
+    if (const auto channel = topics.find(output->result.topic); channel != topics.end()) {
+      output->channel = channel->second;
+      wanted.channels.push_back(channel->second);
+    }
+    auto tap =
+        editor::Tap::connect(orb_, port, {}, [this, place = outputs_.size()](std::span<const unsigned char> payload, bool is_little) {
+          std::string octets = is_little ? std::string("\0\1\0\0", 4) : std::string(4, '\0');
+          octets.append(reinterpret_cast<const char*>(payload.data()), payload.size());
+          arrived_.lock()->emplace_back(place, std::move(octets));
+        });
+    if (!tap) return tap.error();
+    output->tap = std::move(*tap);
+    outputs_.push_back(std::move(output));
+  }
+  expected_.seek(std::move(wanted));
+  mcap::Query sent{.channels = {0}};
+  for (const auto& [channel, input] : by_channel_) sent.channels.push_back(channel);
+  inputs_.seek(std::move(sent));
+  return {};
+}
+
+// ---- ticks ----
+
+base::Result<void> Player::join() {
+  const auto id = static_cast<std::uint32_t>(base::parse_integer(system_.simulator()).value_or(0));
+  auto simulation = shm::Iface::open(id, shm::IfaceType::simulation, "world");
+  if (!simulation) return simulation.error();
+  const auto there = shm::read_participants(*simulation);
+  if (!there) return there.error();
+  const auto found = std::ranges::find(*there, options_.component, &shm::ParticipantRecord::name);
+  if (found == there->end()) return base::Error{"component " + options_.component + ": does not run on simulated time"};
+  phase_ = found->phase;
+  const std::chrono::nanoseconds period(found->period_ns);
+  const auto take_place = [&](const char* name, std::uint32_t phase) {
+    return shm::Participant::join(id, {.name = name, .phase = phase, .period = period});
+  };
+  // A component of phase 0 has nobody before it.
+  if (phase_ > 0) {
+    auto before = take_place("replay-inputs", 0);
+    if (!before) return before.error();
+    before_.emplace(std::move(*before));
+  }
+  auto after = take_place("replay-outputs", last_phase);
+  if (!after) return after.error();
+  after_.emplace(std::move(*after));
+  return {};
+}
+
+// Time stands still: the server takes participants in when it looks for them, some times a second.
+base::Result<void> Player::await_active() {
+  const auto deadline = WallClock::now() + call_limit;
+  shm::Tick tick;
+  while (!after_->is_active() || (before_ && !before_->is_active())) {
+    if (WallClock::now() > deadline) return base::Error{"replay: the simulator does not take it into the lock step"};
+    if (after_->wait(tick, 5ms) == shm::Participant::State::closed) return base::Error{"replay: the simulator has gone"};
+  }
+  return {};
+}
+
+base::Result<void> Player::take_tick(shm::Participant& participant, shm::Tick& tick) {
+  while (!is_ending_.load(std::memory_order_relaxed)) {
+    switch (participant.wait(tick, tick_limit)) {
+      case shm::Participant::State::tick:
+        return {};
+      case shm::Participant::State::timed_out:
+        break;
+      case shm::Participant::State::dropped:
+      case shm::Participant::State::closed:
+        return base::Error{"replay: the simulator has gone"};
+    }
+  }
+  return base::Error{""};  // the end
+}
+
+base::Result<void> Player::serve() {
+  shm::Tick tick;
+  while (!is_ending_.load(std::memory_order_relaxed)) {
+    if (before_) {
+      if (const auto come = take_tick(*before_, tick); !come) return come;
+      if (const auto fed = feed(tick.now); !fed) return fed;
+      before_->finish();
+    }
+    if (const auto come = take_tick(*after_, tick); !come) return come;
+    if (!before_) {
+      if (const auto fed = feed(tick.now); !fed) return fed;
+    }
+    if (const auto judged = judge(tick.now); !judged) return judged;
+    if (const auto fed = feed_rest(); !fed) return fed;
+    ++result_.ticks;
+    after_->finish();
+  }
+  return {};
+}
+
+// ---- inputs ----
+
+base::Result<void> Player::send(Input& input, std::string_view data) {
+  if (data.size() < 4 || data[1] != 1) return base::Error{"channel " + input.topic + ": its samples are not in little-endian CDR"};
+  for (const auto& target : input.targets) {
+    if (const auto sent = target->put({reinterpret_cast<const unsigned char*>(data.data()) + 4, data.size() - 4}); !sent)
+      return base::Error{"channel " + input.topic + ": " + sent.error().message};
+    ++result_.sent;
+  }
+  return {};
+}
+
+base::Result<void> Player::feed(std::chrono::nanoseconds now) {
+  const mcap::Time limit(static_cast<std::uint64_t>(now.count()));
+  for (;;) {
+    if (!next_input_) {
+      const auto message = inputs_.next();
+      if (!message) return message.error();
+      if (!message->has_value()) return {};
+      next_input_ = Waiting{(*message)->channel, (*message)->log_time, std::string((*message)->data)};
+    }
+    if (next_input_->time > limit) return {};
+    Waiting input = std::move(*std::exchange(next_input_, std::nullopt));
+    Input& target = by_channel_.at(input.channel);
+    if (input.time == limit && !(before_ && target.comes_before)) {
+      behind_.push_back(std::move(input));
+    } else if (const auto sent = send(target, input.data); !sent) {
+      return sent;
+    }
+  }
+}
+
+base::Result<void> Player::feed_rest() {
+  for (const Waiting& input : std::exchange(behind_, {})) {
+    if (const auto sent = send(by_channel_.at(input.channel), input.data); !sent) return sent;
+  }
+  return {};
+}
+
+// ---- outputs ----
+
+base::Result<void> Player::look_ahead(std::chrono::nanoseconds now) {
+  const mcap::Time limit(static_cast<std::uint64_t>(now.count()));
+  for (;;) {
+    if (!next_expected_) {
+      const auto message = expected_.next();
+      if (!message) return message.error();
+      if (!message->has_value()) return {};
+      next_expected_ = Waiting{(*message)->channel, (*message)->log_time, std::string((*message)->data)};
+    }
+    if (next_expected_->time > limit) return {};
+    for (const auto& output : outputs_) {
+      if (output->channel != next_expected_->channel) continue;
+      output->expected.push_back(std::move(next_expected_->data));
+      ++output->result.recorded;
+    }
+    next_expected_.reset();
+  }
+}
+
+void Player::complain(Output& output, std::chrono::nanoseconds now, const std::string& what) {
+  ++output.result.different;
+  if (!output.result.first.empty()) return;
+  output.result.first =
+      "tick " + std::to_string(result_.ticks) + " (" + base::format_number(std::chrono::duration<double>(now).count()) + " s): " + what;
+}
+
+std::optional<std::string> Player::differ(const Output& output, const std::string& recorded, const std::string& sent) {
+  if (recorded == sent) return std::nullopt;
+  const auto left = values_.of({output.channel, 0, {}, {}, recorded});
+  const auto right = values_.of({output.channel, 0, {}, {}, sent});
+  if (left && right) return difference(options_.tolerated, *left, *right);
+  return "its octets differ";
+}
+
+base::Result<void> Player::judge(std::chrono::nanoseconds now) {
+  std::vector<std::pair<std::size_t, std::string>> sent;
+  std::swap(sent, *arrived_.lock());
+  if (options_.compares) {
+    if (const auto done = look_ahead(now); !done) return done;
+  }
+  for (auto& [place, octets] : sent) {
+    Output& output = *outputs_[place];
+    ++output.result.samples;
+    if (!options_.compares || output.channel == 0) continue;
+    if (output.expected.empty()) {
+      complain(output, now, "it sent a sample that the recording does not have");
+      continue;
+    }
+    if (const auto what = differ(output, output.expected.front(), octets)) complain(output, now, *what);
+    output.expected.pop_front();
+  }
+  for (const auto& output : outputs_) {
+    for (; !output->expected.empty(); output->expected.pop_front()) complain(*output, now, "it did not send the sample that was recorded");
+  }
+  return {};
+}
+
+base::Result<ReplayResult> Player::run() {
+  if (const auto done = join(); !done) return done.error();
+  if (const auto done = connect(); !done) return done.error();
+  if (const auto done = await_active(); !done) return done.error();
+  thread_ = std::thread([this] {
+    const omni_thread::ensure_self known_to_the_orb;  // time-outs per thread need it
+    const editor::CallLimit limited(call_limit);
+    if (const auto served = serve(); !served && !served.error().message.empty()) *failure_.lock() = served.error();
+    before_.reset();
+    after_.reset();
+  });
+  const double end = std::chrono::duration<double>(inputs_.statistics().last).count();
+  const auto began = WallClock::now();
+  const auto made = system_.make_steps(std::max<std::int64_t>(1, std::llround(end / system_.step())));
+  result_.wall_s = std::chrono::duration<double>(WallClock::now() - began).count();
+  result_.simulated_s = end;
+  is_ending_.store(true, std::memory_order_relaxed);
+  thread_.join();
+  if (const auto failure = failure_.snapshot()) return *failure;
+  if (!made) return made.error();
+  for (const auto& output : outputs_) result_.outputs.push_back(output->result);
+  return result_;
+}
+
+}  // namespace
+
+base::Result<ReplayResult> replay(CORBA::ORB_ptr orb, editor::RunningSystem& system, const ReplayOptions& options) {
+  auto inputs = mcap::Reader::open(options.file);
+  if (!inputs) return inputs.error();
+  auto outputs = mcap::Reader::open(options.file);
+  if (!outputs) return outputs.error();
+  return Player(orb, system, options, std::move(*inputs), std::move(*outputs)).run();
+}
+
+}  // namespace recorder

@@ -1,0 +1,57 @@
+// A component alone, with its recorded inputs: what was sent to it is sent again in the ticks in which it was sent, and what it answers is
+// compared. One thread at a time; it has a thread of its own, which takes part in the lock step.
+//
+// What was sent in tick t by a component of an earlier phase comes before the component's tick t, all else behind it: so it was read in the
+// recorded run, too.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "editor.h"
+#include "mcap/mcap.h"
+#include "run/run_system.h"
+#include "sample_difference.h"
+
+namespace recorder {
+
+// A recorded channel and the InPort that gets it.
+struct ReplayLink {
+  std::string topic;
+  std::string port;  // of the component
+  editor::Properties properties;
+};
+
+struct ReplayOptions {
+  std::string file;
+  std::string component;  // instance name
+  std::vector<ReplayLink> links{};
+  bool compares = false;
+  DifferenceOptions tolerated{};
+};
+
+// An OutPort of the component against its channel.
+struct ReplayedOutput {
+  std::string topic;
+  std::uint64_t samples = 0;    // that it sent
+  std::uint64_t recorded = 0;   // that it should have sent
+  std::uint64_t different = 0;  // of those, wrong or missing
+  std::string first;            // "tick 12 (1.200 s): data.vx: 0.5 and 0.4"
+};
+
+struct ReplayResult {
+  std::uint64_t ticks = 0;
+  std::uint64_t sent = 0;  // inputs
+  double simulated_s = 0;
+  double wall_s = 0;  // of the ticks alone
+  std::vector<ReplayedOutput> outputs;
+};
+
+// `system` holds the component alone, wired to nothing, before its first step.
+base::Result<ReplayResult> replay(CORBA::ORB_ptr orb, editor::RunningSystem& system, const ReplayOptions& options);
+
+}  // namespace recorder

@@ -1,0 +1,272 @@
+#include "ros_text.h"
+
+#include <bit>
+#include <cstring>
+#include <optional>
+#include <utility>
+
+#include "base/text.h"
+
+namespace recorder {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Field = RosDefinition::Field;
+using Kind = RosDefinition::Kind;
+using Message = RosDefinition::Message;
+
+constexpr int deepest = 32;                       // messages in each other
+constexpr std::size_t most_definitions = 10'000;  // in one text
+
+base::Error wrong(const std::string& what) { return base::Error{"ros2msg: " + what}; }
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::optional<Kind> primitive(std::string_view name) {
+  static const std::map<std::string_view, Kind> kinds = {
+      {"bool", Kind::boolean},  {"byte", Kind::uint8},      {"char", Kind::uint8},      {"int8", Kind::int8},     {"uint8", Kind::uint8},
+      {"int16", Kind::int16},   {"uint16", Kind::uint16},   {"int32", Kind::int32},     {"uint32", Kind::uint32}, {"int64", Kind::int64},
+      {"uint64", Kind::uint64}, {"float32", Kind::float32}, {"float64", Kind::float64}, {"string", Kind::string}};
+  const auto found = kinds.find(name);
+  return found == kinds.end() ? std::nullopt : std::optional(found->second);
+}
+
+// "sensor_msgs/msg/Imu" and "sensor_msgs/Imu" are one.
+std::string short_name(std::string_view name) {
+  const auto middle = name.find("/msg/");
+  if (middle == std::string_view::npos) return std::string(name);
+  return std::string(name.substr(0, middle)) + std::string(name.substr(middle + 4));
+}
+
+struct Line {
+  std::string type, name;
+};
+
+// Nothing for comments, constants and empty lines.
+std::optional<Line> field_line(std::string_view line) {
+  const auto comment = line.find('#');
+  line = trimmed(line.substr(0, comment));
+  const auto space = line.find_first_of(" \t");
+  if (space == std::string_view::npos) return std::nullopt;
+  const auto rest = trimmed(line.substr(space));
+  const auto end = rest.find_first_of(" \t=");
+  if (rest.substr(0, rest.find_first_of(" \t")).find('=') != std::string_view::npos) return std::nullopt;
+  if (end != std::string_view::npos && trimmed(rest.substr(end)).starts_with("=")) return std::nullopt;
+  return Line{std::string(line.substr(0, space)), std::string(rest.substr(0, end))};
+}
+
+// "float64[9]" is an array of float64.
+base::Result<Field> shape_of(std::string& type, const std::string& name) {
+  Field field;
+  field.name = name;
+  const auto bracket = type.find('[');
+  if (bracket != std::string::npos) {
+    const auto inside = type.substr(bracket + 1, type.find(']', bracket) - bracket - 1);
+    const auto number = base::parse_integer(inside);
+    field.shape = number ? Field::Shape::array : Field::Shape::sequence;
+    if (number && (*number < 0 || *number > INT32_MAX)) return wrong("field " + base::in_quotes(name) + ": its size is no size");
+    field.size = number ? static_cast<std::size_t>(*number) : 0;
+    type.resize(bracket);
+  }
+  if (const auto bound = type.find("<="); bound != std::string::npos) type.resize(bound);
+  return field;
+}
+
+class Cdr {
+ public:
+  Cdr(std::string_view octets, bool is_little) : octets_(octets), swaps_(is_little != (std::endian::native == std::endian::little)) {}
+
+  template <class T>
+  std::optional<T> number() {
+    at_ = (at_ + sizeof(T) - 1) / sizeof(T) * sizeof(T);
+    if (at_ > octets_.size() || octets_.size() - at_ < sizeof(T)) return std::nullopt;
+    char raw[sizeof(T)];
+    for (std::size_t i = 0; i < sizeof(T); ++i) raw[swaps_ ? sizeof(T) - 1 - i : i] = octets_[at_ + i];
+    at_ += sizeof(T);
+    T value;
+    std::memcpy(&value, raw, sizeof value);
+    return value;
+  }
+  std::optional<std::string_view> take(std::size_t size) {
+    if (at_ > octets_.size() || octets_.size() - at_ < size) return std::nullopt;
+    at_ += size;
+    return octets_.substr(at_ - size, size);
+  }
+  std::size_t left() const { return at_ < octets_.size() ? octets_.size() - at_ : 0; }
+
+ private:
+  std::string_view octets_;
+  bool swaps_;
+  std::size_t at_ = 0;
+};
+
+std::string base64(std::string_view octets) {
+  static constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((octets.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < octets.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (i + k < octets.size() ? static_cast<unsigned char>(octets[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k) text += i + k <= octets.size() ? letters[group >> (18 - 6 * k) & 63U] : '=';
+  }
+  return text;
+}
+
+class Decoder {
+ public:
+  Decoder(const std::vector<Message>& messages, Cdr cdr) : messages_(messages), cdr_(cdr), values_left_(4 * cdr.left() + 1000) {}
+
+  // Empty when the octets end too early.
+  std::optional<Json> message(std::size_t place, int depth) {
+    if (depth > deepest) return std::nullopt;
+    Json json = Json::object();
+    // A message without members has one octet.
+    if (messages_[place].fields.empty() && !cdr_.number<std::uint8_t>()) return std::nullopt;
+    for (const Field& field : messages_[place].fields) {
+      auto value = this->field(field, depth);
+      if (!value) return std::nullopt;
+      json[field.name] = std::move(*value);
+    }
+    return json;
+  }
+
+ private:
+  std::optional<Json> field(const Field& field, int depth) {
+    if (field.shape == Field::Shape::one) return one(field, depth);
+    std::size_t size = field.size;
+    if (field.shape == Field::Shape::sequence) {
+      const auto length = cdr_.number<std::uint32_t>();
+      if (!length) return std::nullopt;
+      size = *length;
+    }
+    if (size > cdr_.left()) return std::nullopt;  // each element has an octet at least
+    if (field.kind == Kind::uint8) {
+      const auto octets = cdr_.take(size);
+      return octets ? std::optional<Json>(base64(*octets)) : std::nullopt;
+    }
+    Json json = Json::array();
+    for (std::size_t i = 0; i < size; ++i) {
+      auto value = one(field, depth);
+      if (!value) return std::nullopt;
+      json.push_back(std::move(*value));
+    }
+    return json;
+  }
+
+  template <class T>
+  std::optional<Json> number() {
+    const auto value = cdr_.number<T>();
+    return value ? std::optional<Json>(*value) : std::nullopt;
+  }
+
+  std::optional<Json> one(const Field& field, int depth) {
+    if (values_left_-- == 0) return std::nullopt;
+    switch (field.kind) {
+      case Kind::boolean: {
+        const auto value = cdr_.number<std::uint8_t>();
+        return value ? std::optional<Json>(*value != 0) : std::nullopt;
+      }
+      case Kind::int8:
+        return number<std::int8_t>();
+      case Kind::uint8:
+        return number<std::uint8_t>();
+      case Kind::int16:
+        return number<std::int16_t>();
+      case Kind::uint16:
+        return number<std::uint16_t>();
+      case Kind::int32:
+        return number<std::int32_t>();
+      case Kind::uint32:
+        return number<std::uint32_t>();
+      case Kind::int64:
+        return number<std::int64_t>();
+      case Kind::uint64:
+        return number<std::uint64_t>();
+      case Kind::float32:
+        return number<float>();
+      case Kind::float64:
+        return number<double>();
+      case Kind::string: {
+        const auto length = cdr_.number<std::uint32_t>();
+        const auto text = length ? cdr_.take(*length) : std::nullopt;
+        if (!text) return std::nullopt;
+        return Json(std::string(text->substr(0, text->find('\0'))));
+      }
+      case Kind::message:
+        return message(field.message, depth + 1);
+    }
+    return std::nullopt;
+  }
+
+  const std::vector<Message>& messages_;
+  Cdr cdr_;
+  std::size_t values_left_;  // arrays of nothing need no octets, but time
+};
+
+}  // namespace
+
+base::Result<RosDefinition> RosDefinition::parse(std::string_view text) {
+  RosDefinition all;
+  std::vector<std::vector<std::string>> types(1);  // of the fields, as they are written
+  std::map<std::string, std::size_t> places;
+  all.messages_.push_back({});
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const auto end = std::min(text.find('\n', begin), text.size());
+    const auto line = trimmed(text.substr(begin, end - begin));
+    begin = end + 1;
+    if (line.starts_with("====")) continue;
+    if (line.starts_with("MSG:")) {
+      if (all.messages_.size() >= most_definitions) return wrong("more than " + std::to_string(most_definitions) + " definitions");
+      const auto name = short_name(trimmed(line.substr(4)));
+      places.emplace(name, all.messages_.size());
+      all.messages_.push_back({name, {}});
+      types.emplace_back();
+      continue;
+    }
+    auto parsed = field_line(line);
+    if (!parsed) continue;
+    auto field = shape_of(parsed->type, parsed->name);
+    if (!field) return field.error();
+    all.messages_.back().fields.push_back(*field);
+    types.back().push_back(parsed->type);
+  }
+  const auto find = [&](const std::string& package, const std::string& type) {
+    auto found = places.find(short_name(type));
+    if (found == places.end()) found = places.find(package + "/" + type);
+    if (found == places.end() && type == "Header") found = places.find("std_msgs/Header");
+    if (found != places.end() || type.find('/') != std::string::npos) return found;
+    // The root does not say its package; the name alone is enough when there is one of it.
+    for (auto one = places.begin(); one != places.end(); ++one) {
+      if (one->first.ends_with("/" + type)) return one;
+    }
+    return found;
+  };
+  for (std::size_t m = 0; m < types.size(); ++m) {
+    auto& message = all.messages_[m];
+    const std::string package = message.name.substr(0, message.name.find('/'));
+    for (std::size_t f = 0; f < types[m].size(); ++f) {
+      if (const auto kind = primitive(types[m][f])) {
+        message.fields[f].kind = *kind;
+        continue;
+      }
+      const auto found = find(package, types[m][f]);
+      if (found == places.end()) return wrong("type " + base::in_quotes(types[m][f]) + " is not defined");
+      message.fields[f].message = found->second;
+    }
+  }
+  return all;
+}
+
+base::Result<Json> RosDefinition::decode(std::string_view octets) const {
+  if (octets.size() < 4) return wrong("a sample has no octets that say their order");
+  auto value = Decoder(messages_, Cdr(octets.substr(4), octets[1] == 1)).message(0, 0);
+  if (!value) return wrong("a sample ends too early, or is deeper than " + std::to_string(deepest) + " messages");
+  return std::move(*value);
+}
+
+}  // namespace recorder

@@ -1,0 +1,48 @@
+#include "selection.h"
+
+#include <fnmatch.h>
+
+#include <cmath>
+#include <iostream>
+
+#include "base/text.h"
+
+namespace recorder {
+
+namespace {
+
+mcap::Time to_time(double seconds) { return mcap::Time(static_cast<std::uint64_t>(std::llround(seconds * 1e9))); }
+
+}  // namespace
+
+base::Result<mcap::Query> query_of(const mcap::Reader& reader, const Selection& selection) {
+  mcap::Query query;
+  query.from = to_time(selection.from_s);
+  if (selection.to_s > 0) query.to = to_time(selection.to_s);
+  for (const std::string& pattern : selection.topics) {
+    const auto before = query.channels.size();
+    for (const auto& [id, channel] : reader.channels()) {
+      const bool fits = ::fnmatch(pattern.c_str(), channel.topic.c_str(), 0) == 0 ||
+                        channel.topic == "/" + pattern.substr(0, pattern.find(':')) + "/" + pattern.substr(pattern.find(':') + 1);
+      if (fits) query.channels.push_back(id);
+    }
+    if (query.channels.size() != before) continue;
+    std::vector<std::string> topics;
+    for (const auto& [id, channel] : reader.channels()) topics.push_back(channel.topic);
+    return base::Error{base::in_quotes(selection.file) + ": has no channel " + base::in_quotes(pattern) +
+                       "; channels: " + base::join(topics, ", ")};
+  }
+  return query;
+}
+
+std::optional<mcap::Reader> open(editor::Editor& editor, const std::string& file) {
+  auto reader = mcap::Reader::open(file);
+  if (!reader) {
+    editor.fail(reader.error());
+    return std::nullopt;
+  }
+  if (reader->damage()) std::cerr << "rtse: " << *reader->damage() << '\n';
+  return std::move(*reader);
+}
+
+}  // namespace recorder

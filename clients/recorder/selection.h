@@ -1,0 +1,31 @@
+// Which samples of a recording a command is about. Values; one thread.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "editor.h"
+#include "mcap/mcap.h"
+
+namespace recorder {
+
+struct Selection {
+  std::string file;
+  std::vector<std::string> topics;  // patterns; none: all
+  double from_s = 0;
+  double to_s = 0;  // 0: the end
+  int count = 0;    // 0: all
+};
+
+// [s]
+inline double seconds(mcap::Time time) { return static_cast<double>(time.count()) * 1e-9; }
+
+// Fails for a pattern that no channel fits.
+base::Result<mcap::Query> query_of(const mcap::Reader& reader, const Selection& selection);
+
+// Nothing, and the editor has said why, when the file can't be read. Damage is told on stderr.
+std::optional<mcap::Reader> open(editor::Editor& editor, const std::string& file);
+
+}  // namespace recorder
