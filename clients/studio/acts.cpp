@@ -1,0 +1,33 @@
+#include "acts.h"
+
+#include <algorithm>
+
+namespace studio {
+
+const Act* find_act(std::string_view name) {
+  static const std::vector<Act> all = [] {
+    std::vector<Act> acts;
+    for (const auto& some : {system_acts(), manager_acts(), world_acts()}) acts.insert(acts.end(), some.begin(), some.end());
+    return acts;
+  }();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Act& act) { return act.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+std::string shell_line(const std::vector<std::string>& words) {
+  constexpr std::string_view plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-/:=,+@%";
+  std::string line;
+  for (const auto& word : words) {
+    if (!line.empty()) line += ' ';
+    if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) {
+      line += word;
+      continue;
+    }
+    line += '\'';
+    for (const char c : word) line += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    line += '\'';
+  }
+  return line;
+}
+
+}  // namespace studio

@@ -1,0 +1,48 @@
+// What a viewer can ask for by name: one row each. A row reads the arguments and makes a plan, which says what one would type in a terminal
+// to the same effect, and does it. Plans run on workers, several at a time; each uses what it makes itself.
+#pragma once
+
+#include <omniORB4/CORBA.h>
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "client_message.h"
+
+namespace studio {
+
+// Values that hold as long as the program runs.
+struct ActContext {
+  CORBA::ORB_ptr orb = CORBA::ORB::_nil();
+  std::string name_server;
+  std::uint32_t server_id = 0;
+  std::chrono::milliseconds call_limit{1000};
+};
+
+struct Plan {
+  std::string command;                      // empty: nothing can be typed for it
+  std::function<base::Result<Json>()> run;  // the result of the reply
+  enum class Touches { nothing, system, world } touches = Touches::nothing;
+};
+
+struct Act {
+  std::string_view name;
+  bool is_reading;  // also in a studio that only shows
+  base::Result<Plan> (*plan)(const ActContext& context, const Json& args);
+};
+
+// nullptr: there is none of this name.
+const Act* find_act(std::string_view name);
+
+// Words as a shell would have to be given them.
+std::string shell_line(const std::vector<std::string>& words);
+
+// The rows, by what they are about.
+std::vector<Act> system_acts();
+std::vector<Act> manager_acts();
+std::vector<Act> world_acts();
+
+}  // namespace studio

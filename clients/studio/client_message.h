@@ -1,0 +1,60 @@
+// What a viewer may say, read strictly. Values; any thread. Nothing that comes in here can do more than be refused.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "base/result.h"
+
+namespace studio {
+
+using Json = nlohmann::ordered_json;
+
+inline constexpr std::size_t most_message = 1 << 20;     // octets of a frame
+inline constexpr std::size_t most_subscriptions = 1024;  // of a viewer
+
+// Of foxglove.websocket.v1.
+struct Subscribe {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> subscriptions;  // id, channel
+};
+struct Unsubscribe {
+  std::vector<std::uint32_t> ids;
+};
+// Of rtmsim.studio.v1.
+struct Request {
+  std::int64_t id = 0;
+  std::string name;
+  Json args;
+  bool is_dry = false;
+};
+// Of foxglove.websocket.v1, and not offered by us: a client may say it all the same.
+struct Unused {
+  std::string op;
+};
+
+using ClientMessage = std::variant<Subscribe, Unsubscribe, Request, Unused>;
+
+base::Result<ClientMessage> parse_message(std::string_view text);
+
+// JSON as text for the wire; what is no UTF-8 becomes a replacement character.
+std::string to_text(const Json& json);
+
+// ---- arguments of requests: the value, or an error that names it and says what was expected ----
+base::Result<std::string> text_of(const Json& args, const std::string& key);
+std::string text_or(const Json& args, const std::string& key, const std::string& otherwise);
+base::Result<double> number_of(const Json& args, const std::string& key);
+base::Result<std::uint32_t> whole_number_of(const Json& args, const std::string& key);
+double number_or(const Json& args, const std::string& key, double otherwise);
+bool flag_of(const Json& args, const std::string& key);
+// `least` to `most` finite numbers.
+base::Result<std::vector<double>> numbers_of(const Json& args, const std::string& key, std::size_t least, std::size_t most);
+base::Result<std::vector<std::string>> texts_of(const Json& args, const std::string& key, std::size_t least, std::size_t most);
+// An object of texts.
+base::Result<std::vector<std::pair<std::string, std::string>>> values_of(const Json& args, const std::string& key);
+
+}  // namespace studio

@@ -1,0 +1,62 @@
+// Who may come in: the token, the Host and the Origin of what a browser or another client asks. Values; any thread.
+//
+// A page of somebody else's that runs in the user's browser can send requests here. It does not know the token; its Origin is not ours; and
+// a name that it has made to lead here (DNS rebinding) is none of our hosts. Each of the three is enough to keep it out, and all are asked.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.h"
+
+namespace studio {
+
+enum class Verdict {
+  granted,
+  no_token,      // 401
+  wrong_token,   // 403
+  wrong_host,    // 403
+  wrong_origin,  // 403
+};
+
+std::string_view to_text(Verdict verdict);
+
+// What a request says about its sender; empty: it does not say it.
+struct Caller {
+  std::string_view host{};           // "127.0.0.1:8700"
+  std::string_view origin{};         // "http://127.0.0.1:8700"
+  std::string_view cookie{};         // the whole header
+  std::string_view authorization{};  // "Bearer TOKEN"
+  std::string_view query{};          // what follows the '?' of the target
+};
+
+class Door {
+ public:
+  // `hosts`: names besides localhost and numeric addresses that browsers may know us by; `origins`: of pages of others that may connect.
+  Door(std::string token, std::string cookie_value, std::string cookie_name, std::vector<std::string> hosts,
+       std::vector<std::string> origins);
+
+  // A secret of 128 random bits in hexadecimal digits.
+  static base::Result<std::string> make_secret();
+
+  Verdict judge(const Caller& caller) const;
+  // The URL brings the right token: the cookie is to be set.
+  bool brings_token(const Caller& caller) const;
+  // "NAME=VALUE; HttpOnly; SameSite=Strict; Path=/"
+  std::string cookie() const;
+  const std::string& token() const { return token_; }
+
+ private:
+  bool knows_host(std::string_view host) const;
+  bool knows_origin(std::string_view origin, std::string_view host) const;
+  Verdict judge_token(const Caller& caller) const;
+
+  std::string token_, cookie_value_, cookie_name_;
+  std::vector<std::string> hosts_, origins_;
+};
+
+// The value of `name` in "a=1&b=2"; percent signs are decoded. Empty when it is not there.
+std::string query_value(std::string_view query, std::string_view name);
+
+}  // namespace studio

@@ -1,0 +1,104 @@
+// rtm-studio: a simulated world, a system of components and its signals in a browser. See --help.
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <iostream>
+
+#include "base/command_line.h"
+#include "orb.h"
+#include "remote.h"
+#include "started_run.h"
+#include "studio.h"
+
+namespace {
+
+struct Settings {
+  studio::StudioOptions studio;
+  studio::WebOptions web;
+  std::string page = studio::default_page_folder();
+  double call_limit_s = 1;
+  studio::StartOptions start;
+};
+
+void add_options(CLI::App& app, Settings& settings) {
+  auto* world =
+      app.add_option("-w,--world", settings.start.world, "SDFormat world: start a simulator of it, paused")->check(CLI::ExistingFile);
+  app.add_option("SYSTEM", settings.start.system, "RTSProfile: start its components and a simulator, as rtse run does, paused")
+      ->check(CLI::ExistingFile)
+      ->needs(world);
+  app.add_option("--ns", settings.studio.name_server,
+                 "Name server HOST[:PORT]; default: the first of $RTCTREE_NAMESERVERS, else localhost:2809");
+  app.add_option("-s,--server-id", settings.studio.server_id, "Which simulator")
+      ->check(CLI::Range(0, 9999))
+      ->envname("RTMSIM_SERVER_ID")
+      ->capture_default_str();
+  app.add_option("-p,--port", settings.web.port, "Port to listen on; 0: any free one")->check(CLI::Range(0, 65535))->capture_default_str();
+  app.add_option("--bind", settings.web.address, "Address to listen on; 0.0.0.0: all")->capture_default_str();
+  app.add_flag("--read-only", settings.studio.is_read_only, "Show everything, do nothing");
+  app.add_option("--host", settings.web.hosts, "A host name that browsers may use for this machine")->allow_extra_args(false);
+  app.add_option("--allow-origin", settings.web.origins, "A page of another origin that may connect, as https://HOST[:PORT]")
+      ->allow_extra_args(false);
+  app.add_option("--page", settings.page, "Folder with the built page")->capture_default_str();
+  app.add_option("--call-timeout", settings.call_limit_s, "Seconds that one call to a component may take")
+      ->check(base::number_between(0.01, 600.0))
+      ->capture_default_str();
+}
+
+int fail(const base::Error& error) {
+  std::cerr << "rtm-studio: " << error.message << '\n';
+  return 1;
+}
+
+// As a browser has to be given it.
+std::string url_of(const studio::WebOptions& options, const studio::WebServer& server) {
+  const bool is_any = options.address == "0.0.0.0" || options.address == "::";
+  const std::string host = is_any                                           ? "localhost"
+                           : options.address.find(':') != std::string::npos ? "[" + options.address + "]"
+                                                                            : options.address;
+  return "http://" + host + ":" + std::to_string(server.port()) + "/?token=" + server.door().token();
+}
+
+int serve(Settings settings) {
+  const auto page = studio::PageFiles::read(settings.page);
+  if (!page) return fail(page.error());
+  boost::asio::io_context loop(1);
+  boost::asio::signal_set signals(loop, SIGINT, SIGTERM);
+  signals.async_wait([&](boost::system::error_code, int) { loop.stop(); });
+  const editor::Orb orb;
+  std::unique_ptr<studio::StartedRun> started;
+  if (!settings.start.world.empty()) {
+    auto run = studio::StartedRun::start(orb.get(), settings.start, settings.studio.server_id);
+    if (!run) return fail(run.error());
+    started = std::move(*run);
+    settings.studio.server_id = started->server_id();
+    if (!started->name_server().empty()) settings.studio.name_server = started->name_server();
+  }
+  studio::Studio hub(loop, orb.get(), settings.studio);
+  const auto server = studio::WebServer::open(loop, settings.web, *page, hub.handlers());
+  if (!server) return fail(server.error());
+  std::cout << url_of(settings.web, **server) << std::endl;
+  loop.run();
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "rtm-studio: a simulated world, a system of RT components and its signals in a browser\nPrints a URL with a token; without it "
+      "nothing is "
+      "shown or done."};
+  base::add_standard_options(app, "rtm-studio", RTMSIM_VERSION);
+  Settings settings;
+  settings.studio.name_server = editor::default_server();
+  add_options(app, settings);
+  if (const auto end = base::parse_command_line(app, "rtm-studio", argc, argv)) return *end;
+  settings.studio.call_limit = std::chrono::milliseconds(static_cast<int>(settings.call_limit_s * 1000));
+  settings.web.may_move = app.count("--port") == 0;
+  try {
+    return serve(settings);
+  } catch (const CORBA::Exception& e) {
+    return fail({editor::describe(e)});
+  } catch (const std::exception& e) {
+    return fail({e.what()});
+  }
+}

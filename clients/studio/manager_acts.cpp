@@ -1,0 +1,227 @@
+// Acts through managers, and those on whole systems: done by rtse itself, which each of them starts.
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "acts.h"
+#include "base/text.h"
+#include "profile/rts_profile.h"
+#include "run/child_process.h"
+
+namespace studio {
+namespace {
+
+using base::Error;
+using base::Result;
+using Touches = Plan::Touches;
+
+constexpr std::chrono::seconds program_limit{30};
+
+std::vector<std::string> rtse_words(const ActContext& context, const std::vector<std::string>& words, bool json) {
+  std::vector<std::string> all{editor::own_program("rtse"), "--ns", context.name_server};
+  if (json) all.emplace_back("--json");
+  all.insert(all.end(), words.begin(), words.end());
+  return all;
+}
+
+std::string rtse_line(const ActContext& context, const std::vector<std::string>& words) {
+  std::vector<std::string> line{"rtse"};
+  if (context.name_server != "localhost:2809" && context.name_server != "localhost") line.insert(line.end(), {"--ns", context.name_server});
+  line.insert(line.end(), words.begin(), words.end());
+  return shell_line(line);
+}
+
+// What it wrote, or the last line that it wrote, without its own name before it.
+Result<std::string> rtse(const ActContext& context, const std::vector<std::string>& words, bool json = false) {
+  auto said = editor::output_of({rtse_words(context, words, json), {}, ""}, program_limit);
+  if (said) return said;
+  auto message = said.error().message;
+  if (const auto own = message.find("rtse: "); own != std::string::npos) message.erase(0, own + 6);
+  return Error{message};
+}
+
+Plan plan(const ActContext& context, const std::vector<std::string>& words, Touches touches = Touches::system) {
+  return {rtse_line(context, words),
+          [context, words]() -> Result<Json> {
+            const auto said = rtse(context, words);
+            if (!said) return said.error();
+            return Json::object();
+          },
+          touches};
+}
+
+Json names_of(const Json& list, std::initializer_list<const char*> keys) {
+  Json names = Json::array();
+  for (const Json& entry : list.is_array() ? list : Json::array()) {
+    for (const char* key : keys) {
+      if (entry.contains(key)) {
+        names.push_back(entry[key]);
+        break;
+      }
+    }
+  }
+  return names;
+}
+
+Result<Plan> manager(const ActContext& context, const Json& args) {
+  const auto path = text_of(args, "path");
+  if (!path) return path.error();
+  const std::vector<std::string> words{"mgr", "list", "-m", *path};
+  return Plan{rtse_line(context, words), [context, words]() -> Result<Json> {
+                const auto said = rtse(context, words, true);
+                if (!said) return said.error();
+                const Json list = Json::parse(*said, nullptr, false);
+                if (!list.is_object()) return Error{"manager: rtse has said what cannot be read"};
+                Json loadable = Json::array();
+                for (const Json& module : list.value("loadable_modules", Json::array())) {
+                  const auto file = module.value("module_file_path", module.value("module_file_name", ""));
+                  loadable.push_back({{"file", file}, {"type", module.value("implementation_id", "")}});
+                }
+                return Json{{"components", list.value("components", Json::array())},
+                            {"loaded", names_of(list.value("loaded_modules", Json::array()), {"file_path", "module_file_path"})},
+                            {"loadable", std::move(loadable)},
+                            {"factories", list.value("factories", Json::array())}};
+              }};
+}
+
+Result<Plan> load_module(const ActContext& context, const Json& args) {
+  const auto path = text_of(args, "manager"), file = text_of(args, "file");
+  if (!path) return path.error();
+  if (!file) return file.error();
+  if (file->starts_with('-')) return Error{"file " + base::in_quotes(*file) + ": expected the name of a module"};
+  return plan(context, {"mgr", "load", *file, "-m", *path});
+}
+
+// "Type?instance_name=...&key=value"
+Result<std::string> creation(const Json& args) {
+  const auto type = text_of(args, "type");
+  if (!type) return type.error();
+  auto values = values_of(args, "properties");
+  if (!values) return values.error();
+  if (const auto name = text_or(args, "name", ""); !name.empty()) values->emplace_back("instance_name", name);
+  std::string text = *type;
+  for (const auto& [key, value] : *values) {
+    if ((key + value).find_first_of("&?") != std::string::npos) return Error{"properties: expected texts without '&' and '?'"};
+    text += (text == *type ? "?" : "&") + key + "=" + value;
+  }
+  if (text.starts_with('-') || type->empty()) return Error{"type " + base::in_quotes(*type) + ": expected the type of a component"};
+  return text;
+}
+
+Result<Plan> create(const ActContext& context, const Json& args) {
+  const auto path = text_of(args, "manager");
+  if (!path) return path.error();
+  const auto text = creation(args);
+  if (!text) return text.error();
+  const std::vector<std::string> words{"mgr", "create", *text, "-m", *path};
+  return Plan{rtse_line(context, words),
+              [context, words]() -> Result<Json> {
+                const auto said = rtse(context, words);
+                if (!said) return said.error();
+                return Json{{"instance", std::string(base::trim(*said))}};
+              },
+              Touches::system};
+}
+
+Result<Plan> delete_component(const ActContext& context, const Json& args) {
+  const auto path = text_of(args, "manager"), instance = text_of(args, "instance");
+  if (!path) return path.error();
+  if (!instance) return instance.error();
+  if (instance->starts_with('-')) return Error{"instance " + base::in_quotes(*instance) + ": expected the name of a component"};
+  return plan(context, {"mgr", "delete", *instance, "-m", *path});
+}
+
+Result<Plan> forget(const ActContext& context, const Json& args) {
+  const auto path = text_of(args, "path");
+  if (!path) return path.error();
+  return plan(context, {"del", *path});
+}
+
+// ---- whole systems
+
+// A file of a profile that lasts as long as this object.
+class ScratchFile {
+ public:
+  static Result<ScratchFile> with(const std::string& text) {
+    std::error_code error;
+    auto name = (std::filesystem::temp_directory_path(error) / "rtm-studio-XXXXXX").string();
+    const int file = mkstemp(name.data());
+    if (file < 0) return Error{"temporary file " + name + ": cannot be made"};
+    ScratchFile scratch(name);
+    std::ofstream out(name, std::ios::binary);
+    out << text;
+    out.close();
+    ::close(file);
+    if (!out) return Error{"temporary file " + name + ": cannot be written"};
+    return scratch;
+  }
+  ScratchFile(ScratchFile&& other) noexcept : name_(std::exchange(other.name_, {})) {}
+  ScratchFile& operator=(ScratchFile&&) = delete;
+  ~ScratchFile() {
+    std::error_code ignored;  // a file in the folder for temporary ones
+    if (!name_.empty()) std::filesystem::remove(name_, ignored);
+  }
+  const std::string& name() const { return name_; }
+
+ private:
+  explicit ScratchFile(std::string name) : name_(std::move(name)) {}
+  std::string name_;
+};
+
+Result<Plan> save_profile(const ActContext& context, const Json& args) {
+  std::vector<std::string> words{"save", "-"};
+  const auto name = text_or(args, "name", "");
+  if (!name.empty()) words.insert(words.end(), {"--name=" + name});
+  return Plan{rtse_line(context, words), [context, words]() -> Result<Json> {
+                const auto said = rtse(context, words);
+                if (!said) return said.error();
+                return Json{{"xml", *said}};
+              }};
+}
+
+Result<Plan> with_profile(const ActContext& context, const Json& args, std::vector<std::string> words) {
+  const auto xml = text_of(args, "xml");
+  if (!xml) return xml.error();
+  auto line = words;
+  line.emplace_back("system.xml");
+  return Plan{rtse_line(context, line),
+              [context, words = std::move(words), xml = *xml]() mutable -> Result<Json> {
+                const auto file = ScratchFile::with(xml);
+                if (!file) return file.error();
+                words.push_back(file->name());
+                const auto said = rtse(context, words);
+                if (!said) return said.error();
+                return Json::object();
+              },
+              Touches::system};
+}
+
+Result<Plan> open_profile(const ActContext& context, const Json& args) {
+  std::vector<std::string> words{"load"};
+  if (flag_of(args, "states")) words.emplace_back("--states");
+  if (flag_of(args, "force")) words.emplace_back("--force");
+  return with_profile(context, args, words);
+}
+
+Result<Plan> teardown(const ActContext& context, const Json& args) { return with_profile(context, args, {"teardown"}); }
+Result<Plan> start_system(const ActContext& context, const Json& args) { return with_profile(context, args, {"start"}); }
+Result<Plan> stop_system(const ActContext& context, const Json& args) { return with_profile(context, args, {"stop"}); }
+
+}  // namespace
+
+std::vector<Act> manager_acts() {
+  return {{"manager", true, manager},
+          {"load_module", false, load_module},
+          {"create", false, create},
+          {"delete_component", false, delete_component},
+          {"forget", false, forget},
+          {"save_profile", true, save_profile},
+          {"open_profile", false, open_profile},
+          {"teardown", false, teardown},
+          {"start_system", false, start_system},
+          {"stop_system", false, stop_system}};
+}
+
+}  // namespace studio

@@ -1,0 +1,137 @@
+#include "pictures.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "foxglove.h"
+#include "shm/client.h"
+#include "views/jpeg.h"
+
+namespace studio {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto look_period = 20ms;
+constexpr auto return_period = 500ms;  // a camera that is away is looked for so often
+constexpr char picture_octet = static_cast<char>(0x83);
+
+}  // namespace
+
+// One camera, its newest frame encoded once.
+class Pictures::Camera {
+ public:
+  Camera(std::uint32_t server_id, std::string name) : server_id_(server_id), name_(std::move(name)) {}
+
+  void look() {
+    if (!iface_ && !open()) return;
+    if (iface_->status() != shm::Status::live) {
+      iface_.reset();
+      problem_ = "camera " + name_ + ": the simulator is gone, or has removed it";
+      return;
+    }
+    if (iface_->sequence() == sequence_) return;
+    const auto frame = iface_->hold();
+    if (!frame) return;
+    sequence_ = frame->sequence();
+    time_ = std::chrono::nanoseconds(frame->head().stamp.sim_time_ns);
+    if (!channels::Jpeg::takes(static_cast<shm::Format>(frame->head().format))) {
+      problem_ = "camera " + name_ + ": its pictures have a format that is not shown";
+      return;
+    }
+    const auto octets = jpeg_.encode(*frame);
+    problem_ = octets ? "" : "camera " + name_ + ": a frame is cut short";
+    if (octets) picture_.assign(octets->begin(), octets->end());
+  }
+
+  const std::string& problem() const { return problem_; }
+  std::uint64_t sequence() const { return picture_.empty() ? 0 : sequence_; }
+  std::string frame(std::uint32_t watch) const {
+    std::string frame{picture_octet, 0, 0, 0};
+    put_u32(frame, watch);
+    put_u64(frame, static_cast<std::uint64_t>(time_.count()));
+    return frame + picture_;
+  }
+
+ private:
+  bool open() {
+    if (Clock::now() < next_try_) return false;
+    next_try_ = Clock::now() + return_period;
+    auto found = shm::Iface::open(server_id_, shm::IfaceType::camera, name_);
+    if (!found) return problem_ = found.error().message, false;
+    if (const auto subscribed = found->subscribe(); !subscribed) return problem_ = subscribed.error().message, false;
+    problem_.clear();
+    sequence_ = 0;
+    iface_ = std::move(*found);
+    return true;
+  }
+
+  const std::uint32_t server_id_;
+  const std::string name_;
+  std::optional<shm::Iface> iface_;
+  channels::Jpeg jpeg_;
+  std::uint64_t sequence_ = 0;
+  std::chrono::nanoseconds time_{0};
+  std::string picture_, problem_;
+  Clock::time_point next_try_{};
+};
+
+Pictures::Pictures(std::uint32_t server_id, Tellers tell) : server_id_(server_id), tell_(std::move(tell)), thread_([this] { run(); }) {}
+
+Pictures::~Pictures() {
+  data_.lock()->is_ending = true;
+  changed_.notify_all();
+  thread_.join();
+}
+
+void Pictures::watch(const WatchKey& key, PictureOrder order) {
+  data_.lock()->orders[key] = std::move(order);
+  changed_.notify_all();
+}
+
+void Pictures::unwatch(const WatchKey& key) { data_.lock()->orders.erase(key); }
+
+void Pictures::unwatch_all(std::uint64_t viewer) {
+  auto data = data_.lock();
+  std::erase_if(data->orders, [&](const auto& entry) { return entry.first.viewer == viewer; });
+}
+
+void Pictures::run() {
+  for (auto next = Clock::now();; next = Clock::now() + look_period) {
+    std::map<WatchKey, PictureOrder> orders;
+    {
+      auto data = data_.lock();
+      data.wait(changed_, [&] { return data->is_ending || !data->orders.empty() || !cameras_.empty(); });
+      data.wait_until(changed_, next, [&] { return data->is_ending; });
+      if (data->is_ending) return;
+      orders = data->orders;
+    }
+    show(orders);
+  }
+}
+
+void Pictures::show(const std::map<WatchKey, PictureOrder>& orders) {
+  std::erase_if(shown_, [&](const auto& entry) { return !orders.contains(entry.first); });
+  std::erase_if(cameras_, [&](const auto& entry) {
+    return std::none_of(orders.begin(), orders.end(), [&](const auto& order) { return order.second.iface == entry.first; });
+  });
+  for (const auto& [key, order] : orders) {
+    auto& camera = cameras_[order.iface];
+    if (!camera) camera = std::make_unique<Camera>(server_id_, order.iface);
+  }
+  for (auto& [name, camera] : cameras_) camera->look();
+  for (const auto& [key, order] : orders) {
+    const Camera& camera = *cameras_[order.iface];
+    Shown& shown = shown_[key];
+    if (camera.problem() != shown.problem) {
+      shown.problem = camera.problem();
+      if (!shown.problem.empty()) tell_.problem(key, to_text({{"op", "values"}, {"watch", key.watch}, {"error", shown.problem}}));
+    }
+    if (camera.sequence() == shown.sequence || Clock::now() < shown.next) continue;
+    shown.sequence = camera.sequence();
+    shown.next = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / order.hz));
+    tell_.picture(key, camera.frame(key.watch));
+  }
+}
+
+}  // namespace studio

@@ -1,0 +1,149 @@
+#include "started_run.h"
+
+#include <omnithread.h>
+
+#include <condition_variable>
+#include <cstdlib>
+#include <optional>
+#include <thread>
+
+#include "base/guarded.h"
+#include "base/text.h"
+#include "run/child_process.h"
+#include "run/run_script.h"
+#include "shm/request_board.h"
+
+namespace studio {
+namespace {
+
+using base::Error;
+using base::Result;
+using namespace std::chrono_literals;
+
+// Stands before the first step of a run for as long as the studio wants it.
+class Standing final : public editor::RunScript {
+ public:
+  struct State {
+    std::string naming;
+    std::uint32_t server_id = 0;
+    bool is_there = false;
+    bool is_ending = false;
+    std::optional<Error> problem;  // it has ended, and why
+  };
+
+  const std::vector<editor::Expectation>& watched() const override { return nothing_; }
+  Result<void> begin(editor::RunScene& scene) override {
+    auto state = state_.lock();
+    state->naming = scene.naming;
+    state->server_id = static_cast<std::uint32_t>(base::parse_integer(scene.simulator.id()).value_or(0));
+    state->is_there = true;
+    changed_.notify_all();
+    state.wait(changed_, [&] { return state->is_ending; });
+    return Error{"the studio has ended"};
+  }
+  std::optional<std::int64_t> next_stop(std::int64_t) const override { return std::nullopt; }
+  Result<void> act(editor::RunScene&, std::int64_t) override { return {}; }
+  bool excuses(const std::string&) const override { return true; }
+  void end(editor::RunScene*, const editor::Seen&, editor::RunResult&) override {}
+
+  void has_ended(const std::string& problem) {
+    state_.lock()->problem = Error{problem};
+    changed_.notify_all();
+  }
+  Result<void> wait_until_there() {
+    auto state = state_.lock();
+    state.wait(changed_, [&] { return state->is_there || state->problem; });
+    if (state->is_there) return {};
+    return *state->problem;
+  }
+  void let_go() {
+    state_.lock()->is_ending = true;
+    changed_.notify_all();
+  }
+  State state() const { return state_.snapshot(); }
+
+ private:
+  const std::vector<editor::Expectation> nothing_;
+  base::Guarded<State, base::Rank::manager> state_;
+  std::condition_variable changed_;
+};
+
+class SystemRun final : public StartedRun {
+ public:
+  SystemRun(CORBA::ORB_ptr orb, const StartOptions& start) : thread_([this, orb, start] { run(orb, start); }) {}
+  ~SystemRun() override {
+    standing_.let_go();
+    thread_.join();
+  }
+  Result<void> wait() { return standing_.wait_until_there(); }
+  std::string name_server() const override { return standing_.state().naming; }
+  std::uint32_t server_id() const override { return standing_.state().server_id; }
+
+ private:
+  void run(CORBA::ORB_ptr orb, const StartOptions& start) {
+    const omni_thread::ensure_self known_to_the_orb;  // time-outs per thread need it
+    editor::RunOptions options;
+    options.system = start.system;
+    options.world = start.world;
+    options.in_real_time = true;
+    options.quiet = true;
+    options.script = &standing_;
+    std::string problem;
+    try {
+      problem = editor::run_system(orb, options).problem;
+    } catch (const std::exception& e) {
+      problem = e.what();
+    }
+    standing_.has_ended(problem);
+  }
+
+  Standing standing_;
+  std::thread thread_;  // last: it uses it
+};
+
+class WorldRun final : public StartedRun {
+ public:
+  WorldRun(editor::ChildProcess process, std::uint32_t server_id) : process_(std::move(process)), server_id_(server_id) {}
+  std::string name_server() const override { return {}; }
+  std::uint32_t server_id() const override { return server_id_; }
+
+  // The simulator answers; nobody announces that.
+  Result<void> wait() {
+    constexpr auto limit = 60s;
+    constexpr auto pause = 50ms;
+    const auto deadline = std::chrono::steady_clock::now() + limit;
+    while (std::chrono::steady_clock::now() < deadline) {
+      if (!process_.is_running()) {
+        const auto lines = base::split_list(process_.said(), '\n');
+        return Error{"sim-server " + process_.how_it_ended() + (lines.empty() ? "" : ": " + lines.back())};
+      }
+      if (auto simulator = shm::Requester::open(server_id_); simulator && simulator->ask(shm::StatsRequest{}, 1s)) return {};
+      std::this_thread::sleep_for(pause);
+    }
+    return Error{"sim-server: not ready after 60 s"};
+  }
+
+ private:
+  editor::ChildProcess process_;
+  const std::uint32_t server_id_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<StartedRun>> StartedRun::start(CORBA::ORB_ptr orb, const StartOptions& options, std::uint32_t server_id) {
+  if (!options.system.empty()) {
+    auto run = std::make_unique<SystemRun>(orb, options);
+    if (const auto there = run->wait(); !there) return there.error();
+    return std::unique_ptr<StartedRun>(std::move(run));
+  }
+  if (shm::Requester::open(server_id))
+    return Error{"simulator " + std::to_string(server_id) + ": runs already; leave --world out to attach to it, or choose another -s"};
+  auto process = editor::ChildProcess::start(
+      {{editor::own_program("sim-server"), options.world, "--paused", "--server-id", std::to_string(server_id)}, {}, ""});
+  if (!process) return process.error();
+  auto run = std::make_unique<WorldRun>(std::move(*process), server_id);
+  if (const auto there = run->wait(); !there) return there.error();
+  return std::unique_ptr<StartedRun>(std::move(run));
+}
+
+}  // namespace studio

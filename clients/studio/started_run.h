@@ -1,0 +1,29 @@
+// What rtm-studio has started itself: a saved system with its simulator and naming service, as `rtse run` starts it, paused; or a simulator
+// alone. Its end takes all of it down. One thread at a time.
+#pragma once
+
+#include <omniORB4/CORBA.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "base/result.h"
+
+namespace studio {
+
+struct StartOptions {
+  std::string system;  // RTSProfile; empty: the simulator alone
+  std::string world;   // SDFormat
+};
+
+class StartedRun {
+ public:
+  // Returns when everything is there, or says why it will not be. Without a system, the simulator gets this id.
+  static base::Result<std::unique_ptr<StartedRun>> start(CORBA::ORB_ptr orb, const StartOptions& options, std::uint32_t server_id);
+  virtual ~StartedRun() = default;
+  virtual std::string name_server() const = 0;  // empty: none of ours
+  virtual std::uint32_t server_id() const = 0;
+};
+
+}  // namespace studio

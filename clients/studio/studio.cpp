@@ -1,0 +1,404 @@
+#include "studio.h"
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+
+#include "base/id.h"
+#include "base/log.h"
+#include "base/text.h"
+#include "foxglove.h"
+#include "remote.h"
+#include "scene.h"
+
+namespace studio {
+namespace {
+
+using base::Error;
+using base::Result;
+
+constexpr std::size_t worker_threads = 8;
+constexpr std::size_t most_open_requests = 32;  // of a viewer
+constexpr std::size_t most_members = 256;       // of a watch
+constexpr std::chrono::milliseconds tend_period{100};
+constexpr unsigned tends_per_look = 10;  // for channels, whose simulator may have come back
+
+constexpr const char* poses_key = "poses";
+constexpr const char* clock_key = "clock";
+std::string channel_key(std::uint32_t subscription) { return "channel." + std::to_string(subscription); }
+std::string values_key(std::uint32_t watch) { return "values." + std::to_string(watch); }
+
+std::string advertise(channels::ChannelId id, const channels::Channel& channel) {
+  return to_text({{"op", "advertise"},
+                  {"channels", Json::array({{{"id", id},
+                                             {"topic", channel.topic},
+                                             {"encoding", channel.encoding},
+                                             {"schemaName", channel.schema.name},
+                                             {"schema", channel.schema.text},
+                                             {"schemaEncoding", channel.schema.encoding}}})}});
+}
+
+Error read_only() { return {"this studio is read-only"}; }
+
+}  // namespace
+
+Studio::Studio(boost::asio::io_context& loop, CORBA::ORB_ptr orb, const StudioOptions& options)
+    : loop_(loop),
+      options_(options),
+      context_{orb, options.name_server, options.server_id, options.call_limit},
+      session_(base::make_uuid()),
+      drives_(options.server_id),
+      timer_(loop) {
+  // Turns a member into something that any thread may call.
+  const auto on_loop = [this](auto member) {
+    return [this, member](auto... news) {
+      boost::asio::post(loop_, [this, member, ... news = std::move(news)]() mutable { (this->*member)(std::move(news)...); });
+    };
+  };
+  const SignalSettings settings{orb, options.name_server, options.server_id, options.call_limit};
+  system_ = std::make_unique<SystemWatch>(orb, options.name_server, options.call_limit, on_loop(&Studio::tell_system));
+  world_ = std::make_unique<WorldWatch>(options.server_id, WorldTellers{on_loop(&Studio::tell_world), on_loop(&Studio::tell_time),
+                                                                        on_loop(&Studio::tell_clock), on_loop(&Studio::tell_poses)});
+  workers_ = std::make_unique<Workers>(worker_threads);
+  signals_ = std::make_unique<Signals>(settings, *workers_, on_loop(&Studio::tell_values));
+  pictures_ =
+      std::make_unique<Pictures>(options.server_id, Pictures::Tellers{on_loop(&Studio::tell_picture), on_loop(&Studio::tell_values)});
+  channels_ = std::make_unique<ChannelBook>(
+      loop, settings, *workers_,
+      ChannelBook::Tellers{[this](channels::ChannelId id, const channels::Channel& channel) { tell_channel(id, channel); },
+                           [this](channels::ChannelId id) { tell_no_channel(id); },
+                           [this](const channels::Sample& sample) { tell_sample(sample); }});
+  tend();
+}
+
+// Those who give work to the workers end before them.
+Studio::~Studio() {
+  channels_.reset();
+  signals_.reset();
+}
+
+WebHandlers Studio::handlers() {
+  return {[this](std::shared_ptr<Viewer> viewer) { join(std::move(viewer)); },
+          [this](Viewer& viewer, std::string_view text) { hear(viewer, text); }, [this](Viewer& viewer) { leave(viewer); },
+          [this](const std::string& path, const std::string& query, const Answer& answer) { return fetch(path, query, answer); }};
+}
+
+void Studio::join(std::shared_ptr<Viewer> viewer) {
+  Guest& guest = guests_.try_emplace(viewer->id()).first->second;
+  guest.viewer = std::move(viewer);
+  guest.viewer->send(text_frame(server_info(session_)));
+  if (!guest.viewer->speaks_studio()) {
+    for (const auto& [id, channel] : channels_->open_channels()) guest.viewer->send(text_frame(advertise(id, channel)));
+    channels_->tend();
+  } else {
+    guest.viewer->send(text_frame(to_text({{"op", "hello"},
+                                           {"version", RTMSIM_VERSION},
+                                           {"read_only", options_.is_read_only},
+                                           {"name_server", options_.name_server},
+                                           {"server_id", options_.server_id}})));
+    for (const auto& [key, frame] : newest_) guest.viewer->send_newest(key, frame);
+    send_poses(guest);
+  }
+  system_->set_watched(true);
+  world_->set_watched(true);
+}
+
+void Studio::leave(Viewer& viewer) {
+  drives_.release_all(viewer.id());
+  signals_->unwatch_all(viewer.id());
+  pictures_->unwatch_all(viewer.id());
+  const auto guest = guests_.extract(viewer.id());
+  if (!guest.empty()) want_channels(guest.mapped().subscriptions);
+  system_->set_watched(!guests_.empty());
+  world_->set_watched(!guests_.empty());
+}
+
+void Studio::hear(Viewer& viewer, std::string_view text) {
+  const auto found = guests_.find(viewer.id());
+  if (found == guests_.end()) return;
+  const auto message = parse_message(text);
+  if (!message) return viewer.send(text_frame(status(2, message.error().message)));
+  if (const auto* request = std::get_if<Request>(&*message)) {
+    if (viewer.speaks_studio()) return handle(found->second, *request);
+    return viewer.send(text_frame(status(2, "requests need the subprotocol rtmsim.studio.v1")));
+  }
+  if (const auto* wish = std::get_if<Subscribe>(&*message)) return subscribe(found->second, *wish);
+  if (const auto* wish = std::get_if<Unsubscribe>(&*message)) return unsubscribe(found->second, *wish);
+  if (const auto* unused = std::get_if<Unused>(&*message))
+    viewer.send(text_frame(status(1, "op " + base::in_quotes(unused->op) + ": is not offered by this server")));
+}
+
+void Studio::handle(Guest& guest, const Request& request) {
+  Request asked = request;
+  if (request.name == "command_of") {
+    asked.name = text_or(request.args, "name", "");
+    asked.args = request.args.value("args", Json::object());
+    asked.is_dry = true;
+    if (!asked.args.is_object()) return answer(guest, request.id, Error{"args: expected an object"});
+  }
+  if (const Act* act = find_act(asked.name)) return start_act(guest, asked, *act);
+  handle_here(guest, asked);
+}
+
+// What needs no worker.
+void Studio::handle_here(Guest& guest, const Request& request) {
+  if (request.name == "drive") return handle_drive(guest, request);
+  if (request.name == "release") return handle_release(guest, request);
+  if (request.name == "watch") return answer(guest, request.id, start_watch(guest, request.args));
+  if (request.name == "watch_image") return answer(guest, request.id, start_pictures(guest, request.args));
+  if (request.name == "unwatch") return answer(guest, request.id, end_watch(guest, request.args));
+  answer(guest, request.id, Error{"request " + base::in_quotes(request.name) + ": is not known"});
+}
+
+void Studio::handle_drive(Guest& guest, const Request& request) {
+  const auto iface = text_of(request.args, "iface");
+  if (!iface) return answer(guest, request.id, iface.error());
+  const auto velocity = numbers_of(request.args, "velocity", 3, 6);
+  if (!velocity || (velocity->size() != 3 && velocity->size() != 6))
+    return answer(guest, request.id, Error{"velocity: expected 3 numbers (position2d) or 6 (position3d)"});
+  std::vector<std::string> words{"simctl", "velocity", *iface};
+  for (const double number : *velocity) words.push_back(base::format_number(number));
+  const auto command = shell_line(words);
+  if (request.is_dry) return answer(guest, request.id, Json::object(), command);
+  if (options_.is_read_only) return answer(guest, request.id, read_only(), command);
+  const auto done = drives_.drive(guest.viewer->id(), *iface, *velocity);
+  answer(guest, request.id, done ? Result<Json>(Json::object()) : Result<Json>(done.error()), command);
+}
+
+void Studio::handle_release(Guest& guest, const Request& request) {
+  const auto iface = text_of(request.args, "iface");
+  if (!iface) return answer(guest, request.id, iface.error());
+  if (options_.is_read_only) return answer(guest, request.id, read_only());
+  drives_.release(guest.viewer->id(), *iface);
+  answer(guest, request.id, Json::object());
+}
+
+Result<Json> Studio::start_watch(const Guest& guest, const Json& args) {
+  const auto watch = whole_number_of(args, "watch");
+  if (!watch) return watch.error();
+  WatchOrder order;
+  auto topic = text_of(args, "topic");
+  if (!topic) return topic.error();
+  order.topic = book_.source_of(*topic);
+  if (args.contains("members")) {
+    auto members = texts_of(args, "members", 1, most_members);
+    if (!members) return members.error();
+    order.members = std::move(*members);
+  }
+  order.hz = std::clamp(number_or(args, "hz", order.hz), 0.1, 60.0);
+  const auto done = signals_->watch({guest.viewer->id(), *watch}, std::move(order));
+  if (!done) return done.error();
+  return Json::object();
+}
+
+Result<Json> Studio::start_pictures(const Guest& guest, const Json& args) {
+  const auto watch = whole_number_of(args, "watch");
+  if (!watch) return watch.error();
+  auto iface = text_of(args, "iface");
+  if (!iface) return iface.error();
+  pictures_->watch({guest.viewer->id(), *watch}, {std::move(*iface), std::clamp(number_or(args, "hz", 10), 0.1, 60.0)});
+  return Json::object();
+}
+
+Result<Json> Studio::end_watch(const Guest& guest, const Json& args) {
+  const auto watch = whole_number_of(args, "watch");
+  if (!watch) return watch.error();
+  signals_->unwatch({guest.viewer->id(), *watch});
+  pictures_->unwatch({guest.viewer->id(), *watch});
+  guest.viewer->drop(values_key(*watch));
+  return Json::object();
+}
+
+void Studio::tell_picture(const WatchKey& key, std::string frame) {
+  const auto found = guests_.find(key.viewer);
+  if (found != guests_.end()) found->second.viewer->send_newest(values_key(key.watch), binary_frame(std::move(frame)));
+}
+
+// ---- foxglove.websocket.v1
+
+void Studio::subscribe(Guest& guest, const Subscribe& message) {
+  for (const auto& [id, channel] : message.subscriptions) {
+    const auto known = static_cast<channels::ChannelId>(channel);
+    if (channel != known || !channels_->open_channels().contains(known)) {
+      guest.viewer->send(text_frame(status(2, "channel " + std::to_string(channel) + ": is not there")));
+    } else if (guest.subscriptions.size() >= most_subscriptions) {
+      guest.viewer->send(text_frame(status(2, "1024 subscriptions are there already")));
+    } else {
+      guest.subscriptions[id] = known;
+      channels_->want(known, true);
+    }
+  }
+}
+
+void Studio::unsubscribe(Guest& guest, const Unsubscribe& message) {
+  std::map<std::uint32_t, channels::ChannelId> gone;
+  for (const auto id : message.ids) {
+    if (auto node = guest.subscriptions.extract(id)) gone.insert(std::move(node));
+    guest.viewer->drop(channel_key(id));
+  }
+  want_channels(gone);
+}
+
+// Those that nobody has subscribed to any more.
+void Studio::want_channels(const std::map<std::uint32_t, channels::ChannelId>& changed) {
+  for (const auto& [id, channel] : changed) {
+    const bool is_wanted = std::any_of(guests_.begin(), guests_.end(), [&, channel = channel](const auto& guest) {
+      const auto& all = guest.second.subscriptions;
+      return std::any_of(all.begin(), all.end(), [&](const auto& subscription) { return subscription.second == channel; });
+    });
+    if (!is_wanted) channels_->want(channel, false);
+  }
+}
+
+void Studio::tell_channel(channels::ChannelId id, const channels::Channel& channel) {
+  const Frame frame = text_frame(advertise(id, channel));
+  for (auto& [key, guest] : guests_) {
+    if (!guest.viewer->speaks_studio()) guest.viewer->send(frame);
+  }
+}
+
+void Studio::tell_no_channel(channels::ChannelId id) {
+  const Frame frame = text_frame(to_text({{"op", "unadvertise"}, {"channelIds", Json::array({id})}}));
+  for (auto& [key, guest] : guests_) {
+    std::erase_if(guest.subscriptions, [&](const auto& subscription) { return subscription.second == id; });
+    if (!guest.viewer->speaks_studio()) guest.viewer->send(frame);
+  }
+}
+
+void Studio::tell_sample(const channels::Sample& sample) {
+  for (auto& [key, guest] : guests_) {
+    for (const auto& [id, channel] : guest.subscriptions) {
+      if (channel == sample.channel)
+        guest.viewer->send_newest(channel_key(id), binary_frame(message_data(id, sample.log_time, sample.octets)));
+    }
+  }
+}
+
+void Studio::tell_values(const WatchKey& key, std::string event) {
+  const auto found = guests_.find(key.viewer);
+  if (found != guests_.end()) found->second.viewer->send_newest(values_key(key.watch), text_frame(std::move(event)));
+}
+
+void Studio::start_act(Guest& guest, const Request& request, const Act& act) {
+  auto plan = act.plan(context_, request.args);
+  if (!plan) return answer(guest, request.id, plan.error());
+  if (request.is_dry) return answer(guest, request.id, Json::object(), plan->command);
+  if (!act.is_reading && options_.is_read_only) return answer(guest, request.id, read_only(), plan->command);
+  if (guest.open_requests >= most_open_requests) return answer(guest, request.id, Error{"32 requests are not answered yet"}, plan->command);
+  const auto work = [this, viewer = guest.viewer->id(), id = request.id, plan = std::move(*plan)] {
+    Result<Json> result = Error{"it failed in a way that nobody has foreseen"};
+    try {
+      result = plan.run();
+    } catch (const CORBA::Exception& e) {
+      result = Error{std::string("a component: ") + editor::describe(e)};
+    } catch (const std::exception& e) {
+      result = Error{e.what()};
+    }
+    boost::asio::post(loop_, [this, viewer, id, command = plan.command, touches = plan.touches, result = std::move(result)] {
+      finish_act(viewer, id, command, touches, result);
+    });
+  };
+  if (!workers_->give(work)) return answer(guest, request.id, Error{"too much is being done already; try again"});
+  ++guest.open_requests;
+}
+
+void Studio::finish_act(std::uint64_t viewer, std::int64_t id, const std::string& command, Plan::Touches touches,
+                        const Result<Json>& result) {
+  if (touches == Plan::Touches::system) system_->look_now();
+  if (touches == Plan::Touches::world) world_->look_now();
+  const auto found = guests_.find(viewer);
+  if (found == guests_.end()) return;
+  --found->second.open_requests;
+  answer(found->second, id, result, command);
+}
+
+void Studio::answer(Guest& guest, std::int64_t id, const Result<Json>& result, const std::string& command) {
+  Json reply{{"op", "reply"}, {"id", id}};
+  if (result) {
+    reply["result"] = *result;
+  } else {
+    reply["error"] = result.error().message;
+  }
+  if (!command.empty()) reply["command"] = command;
+  guest.viewer->send(text_frame(to_text(reply)));
+}
+
+bool Studio::fetch(const std::string& path, const std::string& query, const Answer& answer) {
+  if (path != "/world.glb") return false;
+  const bool with_collisions = query_value(query, "collisions") == "1";
+  const auto work = [server_id = options_.server_id, with_collisions, answer] { answer(export_scene(server_id, with_collisions)); };
+  if (!workers_->give(work)) answer(refusal("too much is being done already; try again"));
+  return true;
+}
+
+void Studio::tell(const std::string& key, std::string text) {
+  const Frame frame = newest_[key] = text_frame(std::move(text));
+  for (auto& [id, guest] : guests_) {
+    if (guest.viewer->speaks_studio()) guest.viewer->send_newest(key, frame);
+  }
+}
+
+void Studio::tell_world(std::string text) {
+  const bool has_changed = book_.take_world(Json::parse(text, nullptr, false));
+  tell("world", std::move(text));
+  if (has_changed) tell("signals", to_text(book_.event()));
+}
+
+void Studio::tell_time(std::string text) { tell("time", std::move(text)); }
+
+// A viewer that comes later gets the structure, and then the states as they are now.
+void Studio::tell_system(SystemNews news) {
+  if (!news.structure.empty()) {
+    newest_.erase("system.states");
+    for (auto& [id, guest] : guests_) guest.viewer->drop("system.states");
+    const Json system = Json::parse(news.structure, nullptr, false);
+    const bool has_changed = book_.take_system(system);
+    channels_->take_system(system);
+    tell("system", std::move(news.structure));
+    if (has_changed) tell("signals", to_text(book_.event()));
+  } else {
+    tell("system.states", std::move(news.states));
+  }
+}
+
+void Studio::tell_poses(std::shared_ptr<const Poses> poses) {
+  if (!poses) return board_.clear();
+  if (!board_.update(poses->version, poses->time, poses->numbers)) return;
+  for (auto& [id, guest] : guests_) send_poses(guest);
+}
+
+// Made when its turn comes, of what is true then.
+void Studio::send_poses(Guest& guest) {
+  if (!guest.viewer->speaks_studio() || board_.links() == 0) return;
+  guest.viewer->send_newest(poses_key, [this, id = guest.viewer->id()]() -> std::optional<Frame> {
+    const auto found = guests_.find(id);
+    if (found == guests_.end()) return std::nullopt;
+    auto frame = board_.frame_since(found->second.seen_poses);
+    if (!frame) return std::nullopt;
+    return binary_frame(std::move(*frame));
+  });
+}
+
+void Studio::tell_clock(std::chrono::nanoseconds time) {
+  channels_->set_time(time);
+  std::optional<Frame> frame;
+  for (auto& [id, guest] : guests_) {
+    if (guest.viewer->speaks_studio()) continue;
+    if (!frame) frame = binary_frame(time_data(time));
+    guest.viewer->send_newest(clock_key, *frame);
+  }
+}
+
+void Studio::tend() {
+  drives_.tend();
+  if (++tended_ % tends_per_look == 0) {
+    const bool is_asked =
+        std::any_of(guests_.begin(), guests_.end(), [](const auto& guest) { return !guest.second.viewer->speaks_studio(); });
+    is_asked ? channels_->tend() : channels_->rest();
+  }
+  timer_.expires_after(tend_period);
+  timer_.async_wait([this](boost::system::error_code code) {
+    if (!code) tend();
+  });
+}
+
+}  // namespace studio

@@ -1,0 +1,100 @@
+// What stands between the viewers and the system: keeps the newest of everything, gives it to who comes, and has done what they ask for.
+// The loop's thread only; the watches and workers that it owns post to the loop.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "acts.h"
+#include "channel_book.h"
+#include "client_message.h"
+#include "drives.h"
+#include "pictures.h"
+#include "pose_board.h"
+#include "signal_book.h"
+#include "signals.h"
+#include "system_watch.h"
+#include "web.h"
+#include "workers.h"
+#include "world_watch.h"
+
+namespace studio {
+
+struct StudioOptions {
+  std::string name_server = "localhost:2809";
+  std::uint32_t server_id = 0;
+  std::chrono::milliseconds call_limit{1000};
+  bool is_read_only = false;
+};
+
+class Studio {
+ public:
+  Studio(boost::asio::io_context& loop, CORBA::ORB_ptr orb, const StudioOptions& options);
+  ~Studio();
+
+  // For the web server; used as long as the studio lives.
+  WebHandlers handlers();
+
+ private:
+  struct Guest {
+    std::shared_ptr<Viewer> viewer;
+    std::uint64_t seen_poses = 0;
+    std::size_t open_requests = 0;
+    std::map<std::uint32_t, channels::ChannelId> subscriptions;
+  };
+  void join(std::shared_ptr<Viewer> viewer);
+  void leave(Viewer& viewer);
+  void hear(Viewer& viewer, std::string_view text);
+  void handle(Guest& guest, const Request& request);
+  void handle_here(Guest& guest, const Request& request);
+  void handle_drive(Guest& guest, const Request& request);
+  void handle_release(Guest& guest, const Request& request);
+  base::Result<Json> start_watch(const Guest& guest, const Json& args);
+  base::Result<Json> start_pictures(const Guest& guest, const Json& args);
+  base::Result<Json> end_watch(const Guest& guest, const Json& args);
+  void start_act(Guest& guest, const Request& request, const Act& act);
+  void finish_act(std::uint64_t guest, std::int64_t id, const std::string& command, Plan::Touches touches,
+                  const base::Result<Json>& result);
+  void answer(Guest& guest, std::int64_t id, const base::Result<Json>& result, const std::string& command = "");
+  bool fetch(const std::string& path, const std::string& query, const Answer& answer);
+
+  void tell(const std::string& key, std::string text);  // to all who speak our protocol, and keeps it for those who come
+  void tell_world(std::string text);
+  void tell_time(std::string text);
+  void tell_system(SystemNews news);
+  void tell_poses(std::shared_ptr<const Poses> poses);
+  void subscribe(Guest& guest, const Subscribe& message);
+  void unsubscribe(Guest& guest, const Unsubscribe& message);
+  void want_channels(const std::map<std::uint32_t, channels::ChannelId>& changed);
+  void tell_channel(channels::ChannelId id, const channels::Channel& channel);
+  void tell_no_channel(channels::ChannelId id);
+  void tell_sample(const channels::Sample& sample);
+  void tell_picture(const WatchKey& key, std::string frame);
+  void tell_values(const WatchKey& key, std::string event);
+  void tell_clock(std::chrono::nanoseconds time);
+  void send_poses(Guest& guest);
+  void tend();
+
+  boost::asio::io_context& loop_;
+  const StudioOptions options_;
+  const ActContext context_;
+  std::string session_;
+  std::map<std::uint64_t, Guest> guests_;
+  std::map<std::string, Frame> newest_;  // events by key
+  PoseBoard board_;
+  SignalBook book_;
+  Drives drives_;
+  unsigned tended_ = 0;
+  boost::asio::steady_timer timer_;
+  std::unique_ptr<SystemWatch> system_;
+  std::unique_ptr<WorldWatch> world_;
+  std::unique_ptr<Workers> workers_;  // what they do uses the rest
+  std::unique_ptr<Signals> signals_;
+  std::unique_ptr<Pictures> pictures_;
+  std::unique_ptr<ChannelBook> channels_;
+};
+
+}  // namespace studio

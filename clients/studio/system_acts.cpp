@@ -1,0 +1,407 @@
+// Acts on components, their ports, contexts and configuration, by the same functions that rtse uses.
+#include <algorithm>
+#include <set>
+
+#include "acts.h"
+#include "base/id.h"
+#include "base/text.h"
+#include "commands/conf.h"
+#include "commands/connect.h"
+#include "commands/state.h"
+#include "editor.h"
+#include "system_json.h"
+
+namespace studio {
+namespace {
+
+using base::Error;
+using base::Result;
+using editor::ComponentView;
+using editor::Editor;
+using editor::Transition;
+using Touches = Plan::Touches;
+
+constexpr std::chrono::seconds exit_limit{10};
+constexpr std::size_t most_ports = 64;
+
+Editor editor_of(const ActContext& context) { return {context.orb, context.name_server, false, context.call_limit}; }
+
+std::string rtse_line(const ActContext& context, std::vector<std::string> words) {
+  std::vector<std::string> line{"rtse"};
+  if (context.name_server != "localhost:2809" && context.name_server != "localhost") line.insert(line.end(), {"--ns", context.name_server});
+  line.insert(line.end(), words.begin(), words.end());
+  return shell_line(line);
+}
+
+Result<Json> done(const Result<void>& result) {
+  if (!result) return result.error();
+  return Json::object();
+}
+
+Result<Plan> component(const ActContext& context, const Json& args) {
+  const auto path = text_of(args, "path");
+  if (!path) return path.error();
+  return Plan{rtse_line(context, {"cat", *path}), [context, path = *path]() -> Result<Json> {
+                const auto view =
+                    editor_of(context).component(path, {.contexts = true, .connectors = true, .configuration = true, .members = true});
+                if (!view) return view.error();
+                return details_json(*view);
+              }};
+}
+
+template <Transition transition>
+Result<Plan> change(const ActContext& context, const Json& args) {
+  const auto path = text_of(args, "path");
+  if (!path) return path.error();
+  const int index = static_cast<int>(std::clamp(number_or(args, "context", -1), -1.0, 1000.0));
+  const char* verb = transition == Transition::activate ? "act" : transition == Transition::deactivate ? "deact" : "reset";
+  std::vector<std::string> words{verb, *path};
+  if (index > 0) words.insert(words.end(), {"-e", std::to_string(index)});
+  return Plan{rtse_line(context, words),
+              [context, path = *path, index]() -> Result<Json> {
+                const auto view = editor_of(context).component(path, {.contexts = true});
+                if (!view) return view.error();
+                return done(editor::change_state(*view, transition, index));
+              },
+              Touches::system};
+}
+
+Result<Json> exit_component(const ActContext& context, const std::string& path) {
+  const auto view = editor_of(context).component(path, {});
+  if (!view) return view.error();
+  RTC::ReturnCode_t code = RTC::RTC_OK;
+  const editor::CallLimit limited(exit_limit);
+  const auto called = editor::remote("exit of " + view->path + ":", [&] { code = view->object->exit(); });
+  if (!called) return called.error();
+  return done(editor::check("exit of " + view->path, code));
+}
+
+Result<Plan> exit(const ActContext& context, const Json& args) {
+  const auto path = text_of(args, "path");
+  if (!path) return path.error();
+  return Plan{rtse_line(context, {"exit", *path}), [context, path = *path] { return exit_component(context, path); }, Touches::system};
+}
+
+// ---- connections
+
+struct Ends {
+  std::vector<Editor::Port> found;
+  std::vector<const editor::PortView*> ports;
+};
+
+Result<Ends> find_ends(const ActContext& context, const std::vector<std::string>& paths) {
+  Ends ends;
+  for (const auto& path : paths) {
+    auto port = editor_of(context).port(path);
+    if (!port) return port.error();
+    ends.found.push_back(std::move(*port));
+  }
+  for (const auto& port : ends.found) ends.ports.push_back(&port.port);
+  return ends;
+}
+
+Result<Plan> connect(const ActContext& context, const Json& args) {
+  const auto paths = texts_of(args, "ports", 2, most_ports);
+  if (!paths) return paths.error();
+  const auto values = values_of(args, "properties");
+  if (!values) return values.error();
+  const auto name = text_or(args, "name", "");
+  auto id = text_or(args, "id", "");
+  std::vector<std::string> words{"con"};
+  words.insert(words.end(), paths->begin(), paths->end());
+  if (!name.empty()) words.insert(words.end(), {"-n", name});
+  if (!id.empty()) words.insert(words.end(), {"-i", id});
+  editor::Properties properties;
+  for (const auto& [key, value] : *values) {
+    properties[key] = value;
+    words.insert(words.end(), {"-p", key + "=" + value});
+  }
+  if (id.empty()) id = base::make_uuid();
+  return Plan{rtse_line(context, words),
+              [context, paths = *paths, name, id, properties]() -> Result<Json> {
+                const auto ends = find_ends(context, paths);
+                if (!ends) return ends.error();
+                const auto connected = editor::connect_ports(ends->ports, id, name, properties);
+                if (!connected) return connected.error();
+                return Json{{"id", id}};
+              },
+              Touches::system};
+}
+
+// What `connect` needs to make it again.
+Json undo_of(const ActContext& context, const editor::ConnectorView& connector) {
+  Json properties = Json::object();
+  for (const auto& [key, value] : connector.properties) {
+    const bool is_of_this_run = value.starts_with("IOR:") || value.starts_with("corbaloc:") ||
+                                key.find("inport_ior") != std::string::npos || key.find("inport_ref") != std::string::npos ||
+                                key.find("outport_ior") != std::string::npos || key.find("outport_ref") != std::string::npos;
+    if (!is_of_this_run) properties[key] = value;
+  }
+  Json ports = Json::array();
+  const auto tree = editor_of(context).tree();
+  if (tree) {
+    const auto components = editor::read_components(*tree, {}, context.call_limit);
+    for (CORBA::ULong i = 0; i < connector.ports.length(); ++i) {
+      const auto owner = editor::owner_of(connector.ports[i], components);
+      if (owner.port) ports.push_back(owner.component->path + ":" + owner.port->name);
+    }
+  }
+  return {{"name", connector.name}, {"ports", ports}, {"properties", properties}};
+}
+
+Result<Json> disconnect_port(const ActContext& context, const std::string& path, const std::string& id) {
+  const auto port = editor_of(context).port(path, true);
+  if (!port) return port.error();
+  const auto& connectors = port->port.connectors;
+  const auto found = std::find_if(connectors.begin(), connectors.end(), [&](const auto& connector) { return connector.id == id; });
+  if (found == connectors.end()) return Error{"port " + path + ": has no connection " + base::in_quotes(id)};
+  Json undo = undo_of(context, *found);
+  const auto gone = editor::disconnect_connector(port->port, id);
+  if (!gone) return gone.error();
+  return undo;
+}
+
+Result<Plan> disconnect(const ActContext& context, const Json& args) {
+  const auto path = text_of(args, "port"), id = text_of(args, "id");
+  if (!path) return path.error();
+  if (!id) return id.error();
+  return Plan{rtse_line(context, {"dis", "-i", *id}), [context, path = *path, id = *id] { return disconnect_port(context, path, id); },
+              Touches::system};
+}
+
+// What both ports offer of a property; "any" offers everything that the other has.
+std::vector<std::string> common(const std::vector<const editor::PortView*>& ports, const std::string& key) {
+  std::vector<std::string> result;
+  bool is_first = true;
+  for (const auto* port : ports) {
+    auto offered = base::split_list(editor::property(port->properties, key));
+    const bool is_any = offered.empty() || std::any_of(offered.begin(), offered.end(),
+                                                       [](const std::string& one) { return base::equal_ignoring_case(one, "any"); });
+    if (is_any) continue;
+    if (is_first) {
+      result = std::move(offered);
+      is_first = false;
+      continue;
+    }
+    std::erase_if(result, [&](const std::string& one) {
+      return std::none_of(offered.begin(), offered.end(), [&](const std::string& other) { return base::equal_ignoring_case(one, other); });
+    });
+  }
+  return result;
+}
+
+struct Option {
+  const char* key;
+  std::vector<std::string> values;  // empty: any text
+  const char* otherwise;
+  const char* meaning;
+};
+
+Json option_json(const Option& option) {
+  Json json{{"key", option.key}, {"default", option.otherwise}, {"meaning", option.meaning}};
+  if (!option.values.empty()) json["values"] = option.values;
+  return json;
+}
+
+const std::vector<std::string> truth{"YES", "NO"};
+const std::vector<std::string> full_policies{"overwrite", "do_nothing", "block"}, empty_policies{"readback", "do_nothing", "block"};
+
+// The buffer of one end, e.g. "dataport.outport.buffer.length".
+void add_buffer(Json& list, const std::string& end) {
+  for (const Option& option : {Option{"length", {}, "8", "samples that it holds"},
+                               Option{"write.full_policy", full_policies, "overwrite", "what a write to a full one does"},
+                               Option{"write.timeout", {}, "1.0", "seconds that a write waits with block"},
+                               Option{"read.empty_policy", empty_policies, "readback", "what a read of an empty one does"},
+                               Option{"read.timeout", {}, "1.0", "seconds that a read waits with block"}}) {
+    Json json = option_json(option);
+    json["key"] = "dataport." + end + ".buffer." + option.key;
+    list.push_back(std::move(json));
+  }
+}
+
+Json data_options(const std::vector<const editor::PortView*>& ports) {
+  Json list = Json::array();
+  for (const Option& option :
+       {Option{"dataport.interface_type", common(ports, "dataport.interface_type"), "corba_cdr", "how samples travel"},
+        Option{"dataport.dataflow_type", common(ports, "dataport.dataflow_type"), "push",
+               "who moves them: the writer pushes or the reader pulls"},
+        Option{"dataport.subscription_type", common(ports, "dataport.subscription_type"), "flush",
+               "flush: write waits for the reader; new: a thread sends what is new; periodic: at a rate"},
+        Option{"dataport.publisher.push_policy",
+               {"new", "all", "fifo", "skip"},
+               "new",
+               "which samples of the buffer are sent (new, periodic)"},
+        Option{"dataport.publisher.push_rate", {}, "1000.0", "rate of periodic [Hz]"},
+        Option{"dataport.publisher.skip_count", {}, "0", "samples left out between two with skip"},
+        Option{"dataport.serializer.cdr.endian", {"little", "big", "little,big"}, "little,big", "byte order on the wire"},
+        Option{"dataport.timestamp_policy", {"on_send", "on_received", "N/A"}, "N/A", "who stamps the samples"},
+        Option{"dataport.marshaling_type", {}, "cdr", "encoding"}})
+    list.push_back(option_json(option));
+  add_buffer(list, "outport");
+  add_buffer(list, "inport");
+  return list;
+}
+
+Json service_options() {
+  return Json::array({option_json(
+      {"port.connection.strictness", {"best_effort", "strict"}, "best_effort", "whether interfaces without a partner are an error"})});
+}
+
+std::string misfit(const std::vector<const editor::PortView*>& ports) {
+  const auto& a = *ports.front();
+  for (const auto* port : ports) {
+    if (port->is_data_port() != a.is_data_port()) return "a data port and a service port cannot be connected";
+  }
+  if (!a.is_data_port()) return "";
+  const auto& b = *ports.back();
+  if (a.port_type() == b.port_type()) return "both are " + a.port_type() + ", expected an OutPort and an InPort";
+  if (!a.data_type().empty() && !b.data_type().empty() && a.data_type() != b.data_type())
+    return "they carry different types, " + a.data_type() + " and " + b.data_type();
+  return "";
+}
+
+Result<Plan> connection_options(const ActContext& context, const Json& args) {
+  const auto paths = texts_of(args, "ports", 2, most_ports);
+  if (!paths) return paths.error();
+  return Plan{"", [context, paths = *paths]() -> Result<Json> {
+                const auto ends = find_ends(context, paths);
+                if (!ends) return ends.error();
+                Json json{{"problem", misfit(ends->ports)}};
+                json["properties"] = ends->ports.front()->is_data_port() ? data_options(ends->ports) : service_options();
+                return json;
+              }};
+}
+
+// ---- configuration
+
+const editor::ConfigurationSetView* find_set(const ComponentView& component, const std::string& id) {
+  for (const auto& set : component.configuration_sets) {
+    if (set.id == id) return &set;
+  }
+  return nullptr;
+}
+
+using Values = std::vector<std::pair<std::string, std::string>>;
+
+Result<void> merge(const ComponentView& component, const std::string& set_id, const Values& values, Values& all) {
+  for (const auto& [name, value] : values) {
+    const auto problem = editor::value_problem(component, name, value);
+    if (!problem.empty())
+      return Error{"component " + component.path + ": parameter " + name + " cannot be " + base::in_quotes(value) + ", expected " +
+                   problem};
+    const auto known = std::find_if(all.begin(), all.end(), [&, name = name](const auto& pair) { return pair.first == name; });
+    if (known == all.end()) return Error{"component " + component.path + ": set " + set_id + " has no parameter " + base::in_quotes(name)};
+    known->second = value;
+  }
+  return {};
+}
+
+Result<Json> configure(const ActContext& context, const std::string& path, const std::string& set_id, const Values& values, bool is_used) {
+  const auto view = editor_of(context).component(path, {.configuration = true});
+  if (!view) return view.error();
+  const auto* set = find_set(*view, set_id);
+  if (!set || set->is_hidden()) return Error{"component " + view->path + ": has no configuration set " + base::in_quotes(set_id)};
+  auto all = set->values;
+  if (const auto merged = merge(*view, set_id, values, all); !merged) return merged.error();
+  const editor::CallLimit limited(context.call_limit);
+  if (const auto kept = editor::set_values(*view, set_id, all); !kept) return kept.error();
+  // Values reach the component when its active set is activated once more.
+  const auto active = is_used || view->active_set.empty() ? set_id : view->active_set;
+  return done(editor::use_set(*view, active));
+}
+
+Result<Plan> set_configuration(const ActContext& context, const Json& args) {
+  const auto path = text_of(args, "path"), set = text_of(args, "set");
+  if (!path) return path.error();
+  if (!set) return set.error();
+  const auto values = values_of(args, "values");
+  if (!values) return values.error();
+  if (values->empty()) return Error{"values: expected at least one"};
+  const bool is_used = flag_of(args, "use");
+  std::string command;
+  for (const auto& [name, value] : *values)
+    command += (command.empty() ? "" : " && ") + rtse_line(context, {"conf", *path, "-s", *set, "set", name, value});
+  if (is_used) command += " && " + rtse_line(context, {"conf", *path, "use", *set});
+  return Plan{command,
+              [context, path = *path, set = *set, values = *values, is_used] { return configure(context, path, set, values, is_used); },
+              Touches::system};
+}
+
+Result<Plan> use_set(const ActContext& context, const Json& args) {
+  const auto path = text_of(args, "path"), set = text_of(args, "set");
+  if (!path) return path.error();
+  if (!set) return set.error();
+  return Plan{rtse_line(context, {"conf", *path, "use", *set}),
+              [context, path = *path, set = *set]() -> Result<Json> {
+                const auto view = editor_of(context).component(path, {.configuration = true});
+                if (!view) return view.error();
+                const editor::CallLimit limited(context.call_limit);
+                return done(editor::use_set(*view, set));
+              },
+              Touches::system};
+}
+
+// ---- contexts
+
+using ContextCall = std::function<RTC::ReturnCode_t(RTC::ExecutionContext_ptr)>;
+
+Result<Json> call_context(const ActContext& context, const std::string& path, std::size_t index, const std::string& what,
+                          const ContextCall& call) {
+  const auto view = editor_of(context).component(path, {.contexts = true});
+  if (!view) return view.error();
+  if (index >= view->contexts.size())
+    return Error{"component " + view->path + ": has no execution context number " + std::to_string(index)};
+  RTC::ReturnCode_t code = RTC::RTC_ERROR;
+  const editor::CallLimit limited(context.call_limit);
+  const auto line = what + " of " + view->path;
+  const auto called = editor::remote(line + ":", [&] { code = call(view->contexts[index].object); });
+  if (!called) return called.error();
+  return done(editor::check(line, code));
+}
+
+Result<Plan> plan_context(const ActContext& context, const Json& args, const std::string& what, ContextCall call) {
+  const auto path = text_of(args, "path");
+  if (!path) return path.error();
+  const double index = number_or(args, "context", 0);
+  if (index < 0 || index > 1000) return Error{"context: expected its number, from 0"};
+  return Plan{"",
+              [context, path = *path, index = static_cast<std::size_t>(index), what, call = std::move(call)] {
+                return call_context(context, path, index, what, call);
+              },
+              Touches::system};
+}
+
+Result<Plan> set_rate(const ActContext& context, const Json& args) {
+  const auto rate = number_of(args, "rate");
+  if (!rate) return rate.error();
+  if (*rate <= 0 || *rate > 1e6) return Error{"rate: expected more than 0 and at most 1e6 Hz"};
+  return plan_context(context, args, "setting the rate", [rate = *rate](RTC::ExecutionContext_ptr one) { return one->set_rate(rate); });
+}
+
+Result<Plan> start_context(const ActContext& context, const Json& args) {
+  return plan_context(context, args, "starting a context", [](RTC::ExecutionContext_ptr one) { return one->start(); });
+}
+
+Result<Plan> stop_context(const ActContext& context, const Json& args) {
+  return plan_context(context, args, "stopping a context", [](RTC::ExecutionContext_ptr one) { return one->stop(); });
+}
+
+}  // namespace
+
+std::vector<Act> system_acts() {
+  return {{"component", true, component},
+          {"activate", false, change<Transition::activate>},
+          {"deactivate", false, change<Transition::deactivate>},
+          {"reset", false, change<Transition::reset>},
+          {"exit", false, exit},
+          {"connect", false, connect},
+          {"disconnect", false, disconnect},
+          {"connection_options", true, connection_options},
+          {"set_configuration", false, set_configuration},
+          {"use_set", false, use_set},
+          {"set_rate", false, set_rate},
+          {"start_context", false, start_context},
+          {"stop_context", false, stop_context}};
+}
+
+}  // namespace studio

@@ -1,0 +1,221 @@
+// Time: run, pause, step, speed; the line of the last minutes; under it plots, logs, pictures and where a step's time goes.
+import { button, h, icon, once_a_frame, put } from './dom';
+import { History } from './history';
+import { Plots } from './plots';
+import { keep, settings } from './settings';
+import { act, on, read_only, selected_model, store, wire } from './store';
+import { short_path } from './tree';
+import { watch_image } from './watches';
+import type { WorldView } from './world';
+
+export class Bottom {
+  readonly transport = h('div', { class: 'transport', role: 'toolbar', 'aria-label': 'Time' });
+  readonly element = h('div', { class: 'bottom' });
+  readonly plots: Plots;
+  private readonly clock = h('output', { class: 'clock', 'aria-label': 'Simulated time' }, '–');
+  private readonly rate = h('span', { class: 'rate' });
+  private readonly waits = h('span', { class: 'waits' });
+  private readonly run_button = button('Run', { icon: 'run', key: 'Space', id: 'run' }, () => this.run_or_pause());
+  private readonly speed = h('input', { id: 'speed', type: 'number', min: 0, step: 'any', value: 1, class: 'number', title: 'Simulated seconds a second; 0: as fast as possible' });
+  private readonly band = h('canvas', { class: 'band', role: 'img', 'aria-label': 'States of components over time' });
+  private readonly scrub = h('input', { type: 'range', class: 'scrub', min: 0, max: 1, step: 'any', value: 1, 'aria-label': 'Moment that is shown' });
+  private readonly live = button('Back to now', { label: 'Live', id: 'live', pressed: true }, () => this.look(null));
+  private readonly tabs = h('div', { class: 'tabs', role: 'tablist', 'aria-label': 'Below the time line' });
+  private readonly body = h('div', { class: 'tab-body', role: 'tabpanel' });
+  private readonly log_filter = h('input', { type: 'search', placeholder: 'Filter', 'aria-label': 'Filter logs' });
+  private readonly log_list = h('div', { class: 'log', role: 'log', tabindex: 0, 'aria-label': 'Logs' });
+  private readonly images = h('div', { class: 'images' });
+  private readonly parts = h('div', { class: 'parts', tabindex: 0, role: 'region', 'aria-label': 'Where time goes' });
+  private stops = new Map<string, () => void>();
+  private moment: number | null = null;
+
+  constructor(world: WorldView, private readonly history: History) {
+    this.plots = new Plots(() => this.moment ?? store.time?.sim_time ?? 0);
+    const can = () => !read_only() && wire.status === 'open' && store.world?.present;
+    const step_button = button('Step', { icon: 'step', key: '.', id: 'step' }, () => this.step());
+    const reset_button = button('Reset world and time', { icon: 'reset', key: 'Shift+R', id: 'reset' }, () => this.reset());
+    // Enter by itself too: a browser does not tell of a change to what stood there before somebody else had changed it.
+    const set_speed = () => {
+      const rtf = Number(this.speed.value);
+      if (this.speed.value !== '' && rtf >= 0 && rtf !== store.time?.rtf_wanted) act('Set the speed', 'speed', { rtf });
+    };
+    this.speed.addEventListener('change', set_speed);
+    this.speed.addEventListener('keydown', (event) => { if (event.key === 'Enter') set_speed(); });
+    const window_box = h('select', { 'aria-label': 'Length of the time line', onchange: () => { this.plots.window = Number(window_box.value); this.draw_band(); } }, [10, 30, 60, 300].map((sec) => h('option', { value: sec, selected: sec === 30 }, sec < 60 ? `${sec} s` : `${sec / 60} min`)));
+    this.transport.append(this.run_button, step_button, reset_button, this.clock, h('label', { class: 'speed', for: 'speed' }, '×'), this.speed, this.rate, this.waits, h('span', { class: 'spring' }), window_box, this.live);
+    this.element.append(this.transport, h('div', { class: 'line-of-time' }, this.band, this.scrub), this.tabs, this.body);
+    this.scrub.addEventListener('input', () => this.look(Number(this.scrub.value) >= Number(this.scrub.max) - 1e-6 ? null : Number(this.scrub.value)));
+    this.log_filter.addEventListener('input', () => this.show_logs());
+    on(['time', 'world', 'status', 'hello'], once_a_frame(() => {
+      this.show_time();
+      for (const b of [this.run_button, step_button, reset_button]) b.disabled = !can();
+      this.speed.disabled = !can();
+    }));
+    on('log', once_a_frame(() => { if (settings.tab === 'logs') this.show_logs(); }));
+    on('time', once_a_frame(() => { if (settings.tab === 'step') this.show_parts(); }));
+    on('world', () => this.offer_images(world));
+    on('selection', () => { if (settings.tab === 'logs') this.show_logs(); });
+    new ResizeObserver(() => this.draw_band()).observe(this.band);
+    this.show_tab(settings.tab);
+  }
+
+  run_or_pause(): void {
+    if (read_only()) return;
+    store.time?.paused === false ? act('Pause', 'pause', {}) : act('Run', 'run', {});
+    this.look(null);
+  }
+  step(): void {
+    if (!read_only()) act('Step', 'step', {});
+  }
+  reset(): void {
+    if (!read_only()) act('Reset the world', 'reset_world', {});
+  }
+
+  private look(moment: number | null): void {
+    this.moment = moment;
+    this.live.setAttribute('aria-pressed', String(moment === null));
+    this.element.classList.toggle('past', moment !== null);
+    this.history.show(moment);
+    this.show_time();
+    this.plots.draw();
+  }
+
+  private show_time(): void {
+    const { time } = store;
+    if (!time || !store.world?.present) {
+      this.clock.textContent = '–';
+      this.rate.textContent = '';
+      return;
+    }
+    const shown = this.moment ?? time.sim_time;
+    this.clock.textContent = `${shown.toFixed(3)} s`;
+    this.rate.textContent = time.paused ? 'paused' : `${time.rtf.toFixed(time.rtf < 10 ? 2 : 0)} × real time`;
+    const late = (time.participants ?? []).filter((p) => p.late).map((p) => p.name);
+    this.waits.textContent = time.waiting_for > 0 ? `waits for ${time.waiting_for} to join` : late.length > 0 ? `waits for ${late.join(', ')}` : (time.participants?.length ?? 0) > 0 ? `lock step, ${time.participants!.length} take part` : '';
+    this.waits.classList.toggle('late', late.length > 0 || time.waiting_for > 0);
+    put(this.run_button, icon(time.paused ? 'run' : 'pause'));
+    this.run_button.setAttribute('aria-label', time.paused ? 'Run' : 'Pause');
+    this.run_button.title = `${time.paused ? 'Run' : 'Pause'} (Space)`;
+    if (document.activeElement !== this.speed) this.speed.value = String(Number(time.rtf_wanted.toPrecision(4)));
+    this.scrub.min = String(this.history.first);
+    this.scrub.max = String(Math.max(time.sim_time, this.history.first + 0.001));
+    this.scrub.value = String(shown);
+    this.scrub.setAttribute('aria-valuetext', `${shown.toFixed(1)} s`);
+    this.draw_band();
+  }
+
+  // A row for each component: its states, in the colours of the diagram.
+  private draw_band(): void {
+    const { band } = this;
+    const draw = band.getContext('2d');
+    const width = band.clientWidth, height = band.clientHeight;
+    if (!draw || width < 10 || height < 4) return;
+    const ratio = devicePixelRatio || 1;
+    if (band.width !== Math.round(width * ratio)) band.width = Math.round(width * ratio);
+    if (band.height !== Math.round(height * ratio)) band.height = Math.round(height * ratio);
+    draw.setTransform(ratio, 0, 0, ratio, 0, 0);
+    draw.clearRect(0, 0, width, height);
+    const style = getComputedStyle(band);
+    const from = this.history.first, to = Math.max(this.history.last, from + 1);
+    const shown = [...this.history.states].filter(([path]) => store.system.components.some((c) => c.path === path)).slice(0, 8);
+    const row = height / Math.max(1, shown.length);
+    shown.forEach(([, changes], i) => {
+      changes.forEach(({ time, state }, k) => {
+        const x = (Math.max(time, from) - from) / (to - from), end = ((changes[k + 1]?.time ?? to) - from) / (to - from);
+        if (end <= 0) return;
+        draw.fillStyle = style.getPropertyValue(`--state-${state.toLowerCase()}`);
+        draw.fillRect(x * width, i * row + 0.5, Math.max(1, (end - x) * width), Math.max(1.5, row - 1));
+      });
+    });
+  }
+
+  // ---- tabs ----
+
+  show_tab(tab: typeof settings.tab): void {
+    settings.tab = tab;
+    const names: [typeof settings.tab, string, string][] = [['plots', 'Plots', 'plot'], ['logs', 'Logs', 'log'], ['images', 'Pictures', 'camera'], ['step', 'Step', 'step']];
+    put(this.tabs, names.map(([id, text, sign]) => h('button', {
+      type: 'button', role: 'tab', id: `tab-${id}`, 'aria-selected': String(tab === id), tabindex: tab === id ? 0 : -1, onclick: () => { this.show_tab(id); keep(); },
+      onkeydown: (event: KeyboardEvent) => {
+        const way = event.key === 'ArrowRight' ? 1 : event.key === 'ArrowLeft' ? -1 : 0;
+        if (way === 0) return;
+        const at = names.findIndex(([name]) => name === id);
+        const next = names[(at + way + names.length) % names.length][0];
+        this.show_tab(next);
+        document.getElementById(`tab-${next}`)?.focus();
+      },
+    }, icon(sign), text)));
+    this.body.setAttribute('aria-labelledby', `tab-${tab}`);
+    if (tab === 'logs') this.show_logs();
+    if (tab === 'step') this.show_parts();
+    put(this.body, tab === 'plots' ? this.plots.element : tab === 'logs' ? [h('div', { class: 'search' }, this.log_filter), this.log_list] : tab === 'images' ? this.images : this.parts);
+    if (tab === 'images' && this.stops.size === 0) this.offer_images();
+  }
+
+  private show_logs(): void {
+    const words = this.log_filter.value.trim().toLowerCase();
+    const now = store.selection;
+    const only = now?.kind === 'component' ? short_path(now.id) : '';
+    const lines = store.logs.filter((l) => (!words || `${l.level} ${l.source} ${l.text}`.toLowerCase().includes(words)) && (!only || l.source.includes(only))).slice(-400);
+    const at_end = this.log_list.scrollTop + this.log_list.clientHeight > this.log_list.scrollHeight - 8;
+    put(this.log_list, lines.length === 0 ? h('p', { class: 'hint' }, only ? `Nothing from ${only} yet.` : words ? 'Nothing fits the filter.' : 'Nothing has been logged yet.') : lines.map((l) => h('div', { class: `level-${l.level.toLowerCase()}` },
+      h('span', { class: 'when' }, l.time ? new Date(l.time * 1000).toTimeString().slice(0, 8) : ''), h('span', { class: 'level' }, l.level), h('span', { class: 'source' }, short_path(l.source)), h('span', { class: 'text' }, l.text))));
+    if (at_end) this.log_list.scrollTop = this.log_list.scrollHeight;
+  }
+
+  private show_parts(): void {
+    const { time } = store;
+    const parts = time?.parts ?? [];
+    const all = Math.max(1e-9, parts.reduce((sum, p) => sum + p.total_ms, 0));
+    put(this.parts, parts.length === 0 ? h('p', { class: 'hint' }, 'No simulator: nothing takes time.') : h('div', { class: 'columns' },
+      h('table', null, h('caption', null, 'Where a step\'s time goes'), h('thead', null, h('tr', null, ['part', 'calls', 'mean', 'worst', 'share'].map((t) => h('th', { scope: 'col' }, t)))), h('tbody', null, parts.map((p) => h('tr', null, h('th', { scope: 'row' }, p.name), h('td', null, p.calls), h('td', null, `${((p.total_ms * 1000) / Math.max(1, p.calls)).toFixed(1)} µs`), h('td', null, `${p.max_us.toFixed(0)} µs`), h('td', null, bar(p.total_ms / all), `${((100 * p.total_ms) / all).toFixed(0)} %`))))),
+      (time?.participants?.length ?? 0) > 0 ? h('table', null, h('caption', null, 'Who takes part in lock step'), h('thead', null, h('tr', null, ['name', 'phase', 'rate', 'ticks', 'missed', 'mean', 'worst', ''].map((t) => h('th', { scope: 'col' }, t)))), h('tbody', null, time!.participants!.map((p) => h('tr', { class: p.late ? 'late' : undefined }, h('th', { scope: 'row' }, p.name), h('td', null, p.phase), h('td', null, `${p.rate} Hz`), h('td', null, p.ticks), h('td', null, p.missed), h('td', null, `${p.mean_us.toFixed(0)} µs`), h('td', null, `${p.max_us.toFixed(0)} µs`),
+        h('td', null, p.late ? button(`Let time go on without ${p.name}`, { label: 'Drop' }, () => act(`Drop ${p.name}`, 'drop_participant', { name: p.name })) : null))))) : null));
+  }
+
+  // ---- pictures ----
+
+  private offer_images(_world?: WorldView): void {
+    const cameras = store.world?.ifaces.filter((i) => /camera|rgbd|depth/.test(i.type)) ?? [];
+    for (const [name, stop] of this.stops) {
+      if (cameras.some((c) => c.name === name)) continue;
+      stop();
+      this.stops.delete(name);
+    }
+    if (this.stops.size > 0) return;
+    put(this.images, cameras.length === 0 ? h('p', { class: 'hint' }, 'This world has no camera.') : h('div', { class: 'offers' }, cameras.map((c) => button(`Show the pictures of ${c.name}`, { icon: 'camera', label: c.name }, () => this.show_image(c.name)))));
+  }
+
+  show_image(iface: string): void {
+    if (settings.tab !== 'images') this.show_tab('images');
+    if (this.stops.has(iface)) return;
+    if (this.stops.size === 0) put(this.images);
+    const image = h('img', { alt: `What ${iface} sees` });
+    const when = h('span', { class: 'more' });
+    const end = () => {
+      this.stops.get(iface)?.();
+      this.stops.delete(iface);
+      figure.remove();
+      if (this.stops.size === 0) this.offer_images();
+    };
+    const figure = h('figure', null, image, h('figcaption', null, iface, ' ', when, button('Close', { icon: 'close', class: 'plain small' }, end)));
+    this.images.append(figure);
+    let url = '';
+    this.stops.set(iface, watch_image(iface, { hz: 10 }, (jpeg, time) => {
+      if (url) URL.revokeObjectURL(url);
+      url = URL.createObjectURL(jpeg);
+      image.src = url;
+      when.textContent = `${time.toFixed(2)} s`;
+    }));
+  }
+
+  selected(): string | undefined {
+    return selected_model();
+  }
+}
+
+function bar(share: number): HTMLElement {
+  const fill = h('i');
+  fill.style.width = `${(100 * share).toFixed(1)}%`;
+  return h('span', { class: 'share' }, fill);
+}

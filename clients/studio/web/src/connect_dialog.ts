@@ -1,0 +1,81 @@
+// Two ports, the properties that are valid for this pair, and the command that would do the same.
+import { h, put } from './dom';
+import { open_dialog } from './dialog';
+import { fits, short_type } from './diagram';
+import { act, component_of_port, name_of_port, port_of, store, wire } from './store';
+
+interface Option { key: string; values?: string[]; default?: string; meaning?: string }
+
+const label = (port: string) => `${component_of_port(port).split('/').pop()!.replace(/\.rtc$/, '')}:${name_of_port(port)}`;
+
+function partners(port: string): string[] {
+  const out: string[] = [];
+  for (const one of store.system.components) for (const { name } of one.ports) if (fits(port, `${one.path}:${name}`)) out.push(`${one.path}:${name}`);
+  return out;
+}
+
+export function connect_dialog(from: string, to?: string): void {
+  const others = to ? [to] : partners(from);
+  const body = h('div', { class: 'connect' });
+  const problem = h('p', { class: 'problem', role: 'alert' });
+  const command = h('code', { class: 'command' });
+  const choice = h('select', { id: 'connect-to' }, others.map((p) => h('option', { value: p }, label(p))));
+  const name = h('input', { id: 'connect-name', value: '' });
+  const fields = h('div', { class: 'fields' });
+  const values = (): { [key: string]: string } => {
+    const out: { [key: string]: string } = {};
+    for (const field of fields.querySelectorAll<HTMLInputElement | HTMLSelectElement>('[data-key]')) {
+      if (field.value !== field.dataset.default && field.value !== '') out[field.dataset.key!] = field.value;
+    }
+    return out;
+  };
+  const args = () => ({ ports: [from, choice.value], name: name.value, properties: values() });
+  const show_command = async () => {
+    try {
+      command.textContent = (await wire.request('connect', args(), true)).command ?? '';
+    } catch (error) {
+      command.textContent = (error as { command?: string }).command ?? '';
+    }
+  };
+  const field = (option: Option, i: number) => {
+    const id = `connect-p${i}`;
+    const usual = option.default ?? '';
+    const input = option.values?.length
+      ? h('select', { id, 'data-key': option.key, 'data-default': usual }, [...new Set([usual, ...option.values])].map((v) => h('option', { value: v }, v || '(as the ports say)')))
+      : h('input', { id, 'data-key': option.key, 'data-default': usual, value: usual });
+    input.addEventListener('change', show_command);
+    const key = option.key.replace(/^dataport\./, '');
+    return [h('label', { for: id, title: option.meaning }, key), input];
+  };
+  const refresh = async () => {
+    name.value = `${name_of_port(from)}_${name_of_port(choice.value || from)}`;
+    problem.textContent = '';
+    try {
+      const { result } = await wire.request('connection_options', { ports: [from, choice.value] });
+      problem.textContent = result.problem ?? '';
+      const options: Option[] = result.properties ?? [];
+      const main = options.filter((o) => usual_keys.includes(o.key)), rest = options.filter((o) => !usual_keys.includes(o.key));
+      put(fields, h('div', { class: 'grid' }, main.map(field)),
+        rest.length > 0 ? h('details', null, h('summary', null, `${rest.length} more properties`), h('div', { class: 'grid' }, rest.map((o, i) => field(o, i + main.length)))) : null);
+    } catch (error) {
+      problem.textContent = (error as Error).message;
+    }
+    show_command();
+  };
+  const type = port_of(from)?.data_type ?? '';
+  put(body,
+    h('div', { class: 'grid' }, h('span', null, 'From'), h('strong', null, label(from)), h('label', { for: 'connect-to' }, 'To'), choice, h('span', null, 'Type'), h('span', null, short_type(type) || 'service'),
+      h('label', { for: 'connect-name' }, 'Name'), name),
+    fields, problem, command);
+  choice.addEventListener('change', refresh);
+  name.addEventListener('change', show_command);
+  if (others.length === 0) problem.textContent = `No other port takes ${short_type(type) || 'this service'}: start a component that has one.`;
+  else refresh();
+  open_dialog('Connect', body, 'Connect', () => {
+    if (others.length === 0) return;
+    const ports = [from, choice.value];
+    act(`Connect ${label(from)} and ${label(choice.value)}`, 'connect', args(), (result) => ({ text: `Disconnect ${label(from)} and ${label(ports[1])}`, name: 'disconnect', args: { port: from, id: result.id } }));
+  });
+}
+
+const usual_keys = ['dataport.interface_type', 'dataport.dataflow_type', 'dataport.subscription_type', 'dataport.publisher.push_policy', 'dataport.publisher.push_rate', 'dataport.publisher.skip_count'];

@@ -1,0 +1,65 @@
+// The last minutes of a live run: where models were, and states of components. In simulated time; forgotten when time goes back.
+import { on, store } from './store';
+import type { State } from './wire';
+import type { WorldView } from './world';
+
+interface Moment { time: number; places: Float32Array }
+export interface Change { time: number; state: State }
+
+const period = 0.1, longest = 300; // [s]
+const most_octets = 48e6;
+
+export class History {
+  readonly states = new Map<string, Change[]>();
+  private moments: Moment[] = [];
+  private octets = 0;
+  private version = -1;
+
+  constructor(private readonly world: WorldView) {
+    on(['states', 'system'], () => this.note_states());
+    on('time', () => this.note_places());
+  }
+
+  get first(): number {
+    return Math.max(this.moments[0]?.time ?? 0, this.last - longest);
+  }
+  get last(): number {
+    return store.time?.sim_time ?? 0;
+  }
+
+  private note_states(): void {
+    for (const { path, state } of store.system.components) {
+      const changes = this.states.get(path) ?? [];
+      if (changes[changes.length - 1]?.state === state) continue;
+      changes.push({ time: this.last, state });
+      if (changes.length > 500) changes.shift();
+      this.states.set(path, changes);
+    }
+  }
+
+  private note_places(): void {
+    const scene = this.world.world;
+    if (!scene || this.world.is_past) return;
+    const newest = this.moments[this.moments.length - 1]?.time ?? -1;
+    if (scene.version !== this.version || this.last < newest) {
+      this.moments = [];
+      this.octets = 0;
+      this.version = scene.version;
+      for (const changes of this.states.values()) changes.splice(0, changes.length - 1).forEach(() => {});
+      for (const changes of this.states.values()) if (changes[0]) changes[0].time = 0;
+    } else if (this.last - newest < period) return;
+    const places = new Float32Array(scene.links.length * 7);
+    scene.links.forEach(({ position: p, quaternion: q }, i) => places.set([p.x, p.y, p.z, q.x, q.y, q.z, q.w], 7 * i));
+    this.moments.push({ time: this.last, places });
+    this.octets += places.byteLength;
+    while (this.octets > most_octets || (this.moments.length > 1 && this.moments[0].time < this.last - longest)) this.octets -= this.moments.shift()!.places.byteLength;
+  }
+
+  // Puts the world as it was, or back to now.
+  show(time: number | null): void {
+    if (time === null) return this.world.show_past(null);
+    let best = this.moments[0];
+    for (const moment of this.moments) if (moment.time <= time) best = moment;
+    this.world.show_past(best?.places ?? null);
+  }
+}

@@ -1,0 +1,433 @@
+// What is selected, in full, and what can be done with it.
+import { Euler, Quaternion } from 'three';
+import { button, h, put } from './dom';
+import { connect_dialog } from './connect_dialog';
+import { short_type } from './diagram';
+import { ask_text, open_dialog } from './dialog';
+import { state_class, state_mark, state_words } from './states';
+import {
+  Act, act, component, component_of_port, components_of, connection, connections_of, iface_id, is_selected, model_of, name_of_port, on, port_of, read_only, refresh_details, select, store, wire,
+} from './store';
+import { short_path, signal_name } from './tree';
+import type { ConfigValue, Values } from './wire';
+import { watch } from './watches';
+import type { WorldView } from './world';
+
+export interface Parts {
+  world: WorldView;
+  drive: (iface: string) => void;
+  plot: (topic: string, member: string) => void;
+  show_image: (iface: string) => void;
+}
+
+type Content = (HTMLElement | string | null | false | HTMLElement[])[];
+
+export class Inspector {
+  readonly element = h('div', { class: 'inspector', tabindex: 0, role: 'region', 'aria-label': 'What is selected' });
+  private shown = '';
+  private facts_shown = '';
+  private stop: (() => void) | null = null;
+  private live: (() => void) | null = null;
+
+  constructor(private readonly parts: Parts) {
+    on(['selection', 'system', 'details', 'world', 'signals', 'hello', 'status'], () => this.show());
+    on('states', () => this.show());
+    on('time', () => this.live?.());
+    wire.on('poses', () => this.live?.());
+    this.show();
+  }
+
+  private show(): void {
+    const now = store.selection;
+    const key = now ? `${now.kind}:${now.id}` : '';
+    // What somebody types in is not taken away.
+    const typing = this.element.contains(document.activeElement) && document.activeElement instanceof HTMLInputElement && document.activeElement.type !== 'checkbox';
+    if (typing && key === this.shown) return;
+    if (key !== this.shown) {
+      this.stop?.();
+      this.stop = null;
+      if (now?.kind === 'component') refresh_details(now.id);
+    }
+    const is_same = key === this.shown;
+    // Buttons that stay the same stay the same elements: one may be under a finger.
+    const facts = this.facts(now);
+    if (is_same && facts === this.facts_shown) return;
+    this.facts_shown = facts;
+    this.live = null;
+    this.shown = key;
+    const scroll = this.element.scrollTop;
+    const focused = is_same ? (document.activeElement as HTMLElement | null)?.id : '';
+    const show = { model: () => this.model(now!.id), component: () => this.component(now!.id), port: () => this.port(now!.id), connection: () => this.connection(now!.id), signal: () => this.signal(now!.id, is_same), manager: () => this.manager(now!.id, is_same), iface: () => this.iface(now!.id, is_same) };
+    const content = now ? show[now.kind]() : this.nothing();
+    if (content) put(this.element, content);
+    if (is_same) this.element.scrollTop = scroll;
+    if (focused) document.getElementById(focused)?.focus();
+  }
+
+  // Everything that the content is made of.
+  private facts(now: typeof store.selection): string {
+    const more = read_only() || wire.status !== 'open';
+    if (!now) return String(more);
+    const path = now.kind === 'port' ? component_of_port(now.id) : now.id;
+    const model = store.world?.models.find((m) => m.name === now.id);
+    return JSON.stringify([
+      more, component(path), store.details.get(path), connection(now.id), store.system.connections.filter((c) => c.ports.some((p) => component_of_port(p) === path)), model,
+      now.kind === 'model' || now.kind === 'iface' ? [store.world?.ifaces.filter((i) => i.model === now.id || iface_id(i) === now.id), components_of(now.id).map((p) => component(p)?.state), this.parts.world.world?.models.has(now.id)] : 0,
+      store.signals.find((s) => s.topic === now.id || s.component === path),
+    ]);
+  }
+
+  private nothing(): Content {
+    return [h('p', { class: 'hint' }, 'Select a robot in the world, a component or line in the system, or anything in the tree.'),
+      h('dl', { class: 'keys' }, [['Space', 'run or pause'], ['.', 'one step'], ['/', 'search'], ['T  F  O', 'top, follow, all'], ['G', 'drive the robot'], ['?', 'all keys']].map(([key, what]) => [h('dt', null, h('kbd', null, key)), h('dd', null, what)]))];
+  }
+
+  private title(text: string, kind: string, mark?: Element | null): HTMLElement {
+    return h('header', null, mark ?? null, h('h2', null, text), h('span', { class: 'kind' }, kind));
+  }
+
+  // ---- worlds ----
+
+  private model(name: string): Content {
+    const { world } = this.parts;
+    const model = world.world?.models.get(name);
+    const ifaces = store.world?.ifaces.filter((i) => i.model === name && i.type !== 'truth') ?? [];
+    const drive = ifaces.find((i) => i.type === 'position2d' || i.type === 'position3d');
+    const pose = h('dl', { class: 'values' });
+    const numbers = ['x', 'y', 'z', 'roll', 'pitch', 'yaw'].map((label) => {
+      const value = h('dd', null, '–');
+      pose.append(h('dt', null, label), value);
+      return value;
+    });
+    this.live = () => {
+      const link = world.world?.models.get(name)?.canonical;
+      if (!link) return;
+      const angles = new Euler().setFromQuaternion(new Quaternion().copy(link.quaternion), 'ZYX');
+      const values = [link.position.x, link.position.y, link.position.z, angles.x, angles.y, angles.z];
+      numbers.forEach((element, i) => { element.textContent = i < 3 ? `${fixed(values[i], 3)} m` : `${fixed((values[i] * 180) / Math.PI, 1)}°`; });
+    };
+    this.live();
+    const can = !read_only();
+    return [
+      this.title(name, model?.is_static ? 'thing' : ifaces.length > 0 ? 'robot' : 'model'),
+      h('div', { class: 'acts' },
+        button('Follow with the eye', { icon: 'follow', label: 'Follow', key: 'F' }, () => world.follow(name)),
+        drive && can ? button('Drive by keys or stick', { icon: 'drive', label: 'Drive', key: 'G' }, () => this.parts.drive(drive.name)) : null,
+        can && !model?.is_static ? button('Set the pose', { label: 'Put …' }, () => this.put_model(name)) : null,
+        can && !model?.is_static ? button('Push it', { label: 'Push …' }, () => this.push_model(name)) : null,
+        can ? button('Delete the model', { label: 'Delete', class: 'danger' }, () => act(`Delete ${name}`, 'delete_model', { model: name })) : null),
+      h('h3', null, 'Pose'), pose,
+      ifaces.length > 0 ? h('h3', null, 'Ifaces') : null,
+      h('ul', { class: 'list' }, ifaces.map((i) => h('li', null, link_to(i.name.replace(`${name}::`, ''), { kind: 'iface', id: iface_id(i) }), h('span', { class: 'more' }, i.type)))),
+      components_of(name).length > 0 ? h('h3', null, 'Components') : null,
+      h('ul', { class: 'list' }, components_of(name).map((path) => h('li', null, state_mark(component(path)?.state), link_to(component(path)?.instance ?? path, { kind: 'component', id: path })))),
+    ];
+  }
+
+  private put_model(name: string): void {
+    const link = this.parts.world.world?.models.get(name)?.canonical;
+    const yaw = link ? new Euler().setFromQuaternion(link.quaternion, 'ZYX').z : 0;
+    const start = link ? [link.position.x, link.position.y, yaw] : [0, 0, 0];
+    ask_text(`Put ${name}`, 'X Y YAW [m, m, rad]', start.map((v) => v.toFixed(3)).join(' '), 'Put', (text) => {
+      const planar = text.split(/[\s,]+/).map(Number);
+      if (planar.length === 3 && planar.every(Number.isFinite)) {
+        act(`Put ${name}`, 'set_pose', { model: name, planar }, () => ({ text: `Put ${name} back`, name: 'set_pose', args: { model: name, planar: start } }));
+      }
+    });
+  }
+
+  private push_model(name: string): void {
+    ask_text(`Push ${name}`, 'FX FY FZ [N] for 0.2 s', '50 0 0', 'Push', (text) => {
+      const force = text.split(/[\s,]+/).map(Number);
+      if (force.length === 3 && force.every(Number.isFinite)) act(`Push ${name}`, 'push', { name, force, seconds: 0.2 });
+    });
+  }
+
+  private iface(id: string, is_same: boolean): Content | null {
+    const iface = store.world?.ifaces.find((i) => iface_id(i) === id);
+    if (!iface) return [this.title(id.split(':').slice(1).join(':'), 'iface'), h('p', { class: 'hint' }, 'It is not there now.')];
+    if (is_same && this.stop) return null;
+    const has_picture = iface.type === 'camera' || iface.type === 'rgbd' || iface.type === 'depth';
+    const values = h('div');
+    const topic = store.signals.find((x) => (x.kind === 'iface' || x.kind === 'image') && x.topic.endsWith('/' + iface.name.replaceAll('::', '/')) && x.topic.includes(`/${iface.type}/`))?.topic;
+    if (topic && !has_picture) this.stop = watch({ topic, hz: 5 }, (sample) => this.sample(values, topic, sample));
+    return [
+      this.title(iface.name, iface.type),
+      iface.model ? h('p', null, 'of ', link_to(iface.model, { kind: 'model', id: iface.model })) : null,
+      h('div', { class: 'acts' },
+        has_picture ? button('Show its pictures', { icon: 'camera', label: 'Pictures' }, () => this.parts.show_image(iface.name)) : null,
+        has_picture ? button('Look through it', { icon: 'follow', label: 'Look through' }, () => this.parts.world.look_through(iface.name)) : null,
+        iface.type.startsWith('position') && !read_only() ? button('Drive by keys or stick', { icon: 'drive', label: 'Drive' }, () => this.parts.drive(iface.name)) : null),
+      values,
+      iface.info && Object.keys(iface.info).length > 0 ? h('h3', null, 'Constants') : null,
+      table(flatten(iface.info ?? {}).filter(([key]) => !['type', 'name', 'server', 'model'].includes(key)).map(([key, value]) => [key, format(value)])),
+    ];
+  }
+
+  private signal(topic: string, is_same: boolean): Content | null {
+    if (is_same && this.stop) return null;
+    const signal = store.signals.find((x) => x.topic === topic);
+    if (!signal) return [this.title(topic, 'signal'), h('p', { class: 'hint' }, 'It is not there now.')];
+    const values = h('div', null, h('p', { class: 'hint' }, 'Waiting for a sample …'));
+    if (signal.kind === 'image') put(values, button('Show its pictures', { icon: 'camera', label: 'Pictures' }, () => this.parts.show_image(image_iface(signal.topic) ?? signal.topic)));
+    else this.stop = watch({ topic, hz: 5 }, (sample) => this.sample(values, topic, sample));
+    return [
+      this.title(signal_name(signal), signal.kind === 'iface' ? signal.type : signal.kind),
+      h('p', { class: 'hint' }, topic, signal.kind === 'port' ? `, ${short_type(signal.type)}` : ''),
+      signal.model ? h('p', null, 'of ', link_to(signal.model, { kind: 'model', id: signal.model })) : null,
+      signal.component ? h('p', null, 'of ', link_to(short_path(signal.component), { kind: 'component', id: signal.component })) : null,
+      values,
+    ];
+  }
+
+  // The newest sample: each number can go into a plot; long arrays as polar plot.
+  private sample(into: HTMLElement, topic: string, sample: Values): void {
+    if (sample.error) return put(into, h('p', { class: 'problem' }, sample.error));
+    const all = flatten(sample.value ?? {});
+    const scan = (sample.value as { ranges?: number[] } | undefined)?.ranges;
+    // Values change in place: a button that is held must not go.
+    if (into.dataset.shape !== all.map(([key]) => key).join()) {
+      into.dataset.shape = all.map(([key]) => key).join();
+      put(into, h('h3', null, 'Values'), scan ? h('canvas', { width: 260, height: 170, class: 'polar', role: 'img', 'aria-label': 'The scan from above' }) : null,
+        h('dl', { class: 'values' }, all.slice(0, 60).map(([key, value]) => [
+          h('dt', null, typeof value === 'number' ? button(`Plot ${key}`, { icon: 'plot', class: 'plain small' }, () => this.parts.plot(topic, key)) : null, key), h('dd')])),
+        all.length > 60 ? h('p', { class: 'hint' }, `and ${all.length - 60} more`) : null);
+    }
+    const cells = into.querySelectorAll('dd');
+    all.slice(0, 60).forEach(([, value], i) => { if (cells[i]) cells[i].textContent = format(value); });
+    const canvas = into.querySelector('canvas');
+    if (scan && canvas) polar(canvas, scan, sample.value as { [key: string]: unknown });
+  }
+
+  // ---- systems ----
+
+  private component(path: string): Content {
+    const one = component(path);
+    if (!one) return [this.title(short_path(path), 'component'), h('p', { class: 'hint' }, 'It is not there now.')];
+    const detail = store.details.get(path);
+    const can = !read_only();
+    const does = (text: string, name: string, enabled: boolean, danger = false, undo?: () => Act['undo']) => button(`${text} ${one.instance}`, { label: text, disabled: !enabled, class: danger ? 'danger' : undefined, id: `act-${name}` }, () => act(`${text} ${one.instance}`, name, { path }, undo));
+    const model = model_of(path);
+    return [
+      this.title(one.instance, one.instance.replace(/\d+$/, '') === one.type ? '' : one.type, state_mark(one.state)),
+      h('p', { class: `state ${state_class(one.state)}` }, `is ${state_words[one.state] ?? one.state}`, model ? ', carries ' : '', model ? link_to(model, { kind: 'model', id: model }) : null),
+      one.problem ? h('p', { class: 'problem' }, one.problem) : null,
+      one.state === 'Error' ? h('p', { class: 'hint' }, 'Reset takes it from the error state to inactive; its log says what was wrong.') : null,
+      can ? h('div', { class: 'acts' },
+        does('Activate', 'activate', one.state === 'Inactive', false, () => ({ text: `Deactivate ${one.instance}`, name: 'deactivate', args: { path } })),
+        does('Deactivate', 'deactivate', one.state === 'Active', false, () => ({ text: `Activate ${one.instance}`, name: 'activate', args: { path } })),
+        does('Reset', 'reset', one.state === 'Error'), does('Exit', 'exit', true, true)) : null,
+      h('h3', null, 'Contexts'),
+      one.contexts.map((context) => this.context(path, context)),
+      h('h3', null, 'Ports'),
+      h('ul', { class: 'list' }, one.ports.map((port) => {
+        const id = `${path}:${port.name}`, wires = connections_of(id).length;
+        return h('li', null, link_to(port.name, { kind: 'port', id }), h('span', { class: 'more' }, `${port.kind} ${short_type(port.data_type).replace(/^RTC\//, '')}${wires > 0 ? `, ${wires} wired` : ''}`));
+      })),
+      ...this.sets(path),
+      h('h3', null, 'About'),
+      table([['category', one.category ?? ''], ['vendor', one.vendor ?? ''], ['version', one.version ?? ''], ['description', one.description ?? ''], ['path', path], ...(one.composite ? [['members', (one.members ?? []).join(', ')] as [string, string]] : [])].filter(([, value]) => value) as [string, string][]),
+      detail?.properties && Object.keys(detail.properties).length > 0 ? h('details', null, h('summary', null, 'Properties'), table(Object.entries(detail.properties))) : null,
+    ];
+  }
+
+  private context(path: string, context: { index: number; kind: string; rate: number; running: boolean; owned: boolean; type?: string }): HTMLElement {
+    const id = `rate-${context.index}`;
+    const rate = h('input', { id, type: 'number', min: 0.001, step: 'any', value: context.rate, class: 'number', disabled: read_only() });
+    rate.addEventListener('change', () => act(`Set the rate of ${short_path(path)}`, 'set_rate', { path, context: context.index, rate: Number(rate.value) },
+      () => ({ text: `Set the rate of ${short_path(path)} back`, name: 'set_rate', args: { path, context: context.index, rate: context.rate } })));
+    return h('div', { class: 'line' }, h('label', { for: id }, `${context.index}${context.owned ? '' : ' (joined)'}`), rate, h('span', null, 'Hz'), h('span', { class: 'more' }, context.running ? 'runs' : 'stopped'),
+      read_only() ? null : button(context.running ? `Stop context ${context.index}` : `Start context ${context.index}`, { label: context.running ? 'Stop' : 'Start', id: `context-${context.index}` },
+        () => act(`${context.running ? 'Stop' : 'Start'} a context of ${short_path(path)}`, context.running ? 'stop_context' : 'start_context', { path, context: context.index })));
+  }
+
+  private sets(path: string): Content {
+    const sets = store.details.get(path)?.sets ?? [];
+    if (sets.length === 0) return [];
+    const out: Content = [h('h3', null, 'Configuration')];
+    for (const set of sets) {
+      if (sets.length > 1) {
+        out.push(h('div', { class: 'line' }, h('label', null, h('input', { type: 'radio', name: 'set', checked: set.active, disabled: read_only(), onchange: () => act(`Use set ${set.id} of ${short_path(path)}`, 'use_set', { path, set: set.id }).then(() => refresh_details(path)) }), ` ${set.id}`)));
+      }
+      out.push(h('div', { class: 'grid' }, set.values.flatMap((value, i) => this.parameter(path, set.id, value, i))));
+    }
+    return out;
+  }
+
+  private parameter(path: string, set: string, value: ConfigValue, i: number): HTMLElement[] {
+    const id = `conf-${set}-${i}`;
+    const change = async (text: string) => {
+      if (text === value.value) return;
+      await act(`Set ${value.name} of ${short_path(path)}`, 'set_configuration', { path, set, values: { [value.name]: text } },
+        () => ({ text: `Set ${value.name} of ${short_path(path)} back`, name: 'set_configuration', args: { path, set, values: { [value.name]: value.value } } }));
+      await refresh_details(path);
+    };
+    const title = [value.type, value.constraint].filter(Boolean).join(', ');
+    return [h('label', { for: id, title }, value.name), control(value, id, change)];
+  }
+
+  private port(id: string): Content {
+    const port = port_of(id), path = component_of_port(id);
+    if (!port) return [this.title(name_of_port(id), 'port'), h('p', { class: 'hint' }, 'It is not there now.')];
+    const signal = store.signals.find((x) => x.kind === 'port' && (x.topic === id || (x.component === path && x.topic.endsWith(`/${port.name}`)) || x.topic.endsWith(`${component(path)?.instance}/${port.name}`)));
+    const detail = store.details.get(path)?.ports.find((p) => p.name === port.name);
+    return [
+      this.title(port.name, { in: 'InPort', out: 'OutPort', service: 'service port' }[port.kind]),
+      h('p', null, 'of ', link_to(component(path)?.instance ?? path, { kind: 'component', id: path }), port.data_type ? `, ${short_type(port.data_type)}` : ''),
+      h('div', { class: 'acts' }, read_only() ? null : button('Connect this port', { icon: 'link', label: 'Connect …', key: 'C', id: 'connect' }, () => connect_dialog(id)),
+        signal ? button('Show its values', { icon: 'plot', label: 'Values' }, () => select({ kind: 'signal', id: signal.topic })) : null),
+      connections_of(id).length > 0 ? h('h3', null, 'Connections') : null,
+      h('ul', { class: 'list' }, connections_of(id).map((c) => h('li', null, link_to(c.name || c.ports.map(name_of_port).join(' – '), { kind: 'connection', id: c.id }),
+        h('span', { class: 'more' }, c.ports.filter((p) => p !== id).map((p) => `${component(component_of_port(p))?.instance ?? short_path(component_of_port(p))}:${name_of_port(p)}`).join(', '))))),
+      port.interfaces?.length ? h('h3', null, 'Interfaces') : null,
+      table((port.interfaces ?? []).map((i) => [i.instance, `${i.type}, ${i.provided ? 'provided' : 'required'}`])),
+      detail?.properties ? h('details', null, h('summary', null, 'Properties'), table(Object.entries(detail.properties))) : null,
+    ];
+  }
+
+  private connection(id: string): Content {
+    const one = connection(id);
+    if (!one) return [this.title('Connection', ''), h('p', { class: 'hint' }, 'It is not there now.')];
+    return [
+      this.title(one.name || 'Connection', 'connection'),
+      h('ul', { class: 'list' }, one.ports.map((p) => h('li', null, link_to(`${component(component_of_port(p))?.instance ?? short_path(component_of_port(p))}:${name_of_port(p)}`, { kind: 'port', id: p }))),
+        (one.absent ?? []).map((text) => h('li', { class: 'more' }, text))),
+      h('div', { class: 'acts' }, read_only() ? null : button('Disconnect', { label: 'Disconnect', class: 'danger', key: 'Delete', id: 'disconnect' }, () => disconnect(id))),
+      h('h3', null, 'Properties'), table(Object.entries(one.properties).map(([key, value]) => [key.replace(/^dataport\./, ''), value])),
+    ];
+  }
+
+  private manager(path: string, is_same: boolean): Content | null {
+    if (is_same && this.stop) return null;
+    const body = h('div', null, h('p', { class: 'hint' }, 'Asking …'));
+    const refresh = async () => {
+      try {
+        put(body, this.manager_body(path, (await wire.request('manager', { path })).result, refresh));
+      } catch (error) {
+        put(body, h('p', { class: 'problem' }, (error as Error).message));
+      }
+    };
+    refresh();
+    this.stop = () => {};
+    return [this.title(short_path(path), 'manager'), body];
+  }
+
+  private manager_body(manager: string, info: any, refresh: () => void): Content {
+    const can = !read_only();
+    const types: string[] = (info.factories ?? []).map((f: any) => f.type);
+    return [
+      can ? h('div', { class: 'acts' },
+        button('Load a module', { label: 'Load …', id: 'manager-load' }, () => ask_text('Load a module', 'File', info.loadable?.[0]?.file ?? '', 'Load',
+          (file) => act(`Load ${file}`, 'load_module', { manager, file }).then(refresh), (info.loadable ?? []).map((l: any) => l.file))),
+        button('Create a component', { label: 'Create …', id: 'manager-create' }, () => ask_text('Create a component', 'Type', types[0] ?? '', 'Create',
+          (type) => act(`Create ${type}`, 'create', { manager, type }).then(refresh), [...types, ...(info.loadable ?? []).map((l: any) => l.type)]))) : null,
+      h('h3', null, 'Components'),
+      h('ul', { class: 'list' }, (info.components ?? []).map((c: any) => h('li', null, h('span', null, c.instance), h('span', { class: 'more' }, c.type),
+        can ? button(`Delete ${c.instance}`, { icon: 'close', class: 'plain small' }, () => act(`Delete ${c.instance}`, 'delete_component', { manager, instance: c.instance }).then(refresh)) : null))),
+      h('h3', null, 'Can create'), h('ul', { class: 'list' }, types.map((type) => h('li', null, h('span', null, type), can ? button(`Create ${type}`, { icon: 'plus', class: 'plain small' }, () => act(`Create ${type}`, 'create', { manager, type }).then(refresh)) : null))),
+      (info.loadable ?? []).length > 0 ? h('h3', null, 'Can load') : null,
+      h('ul', { class: 'list' }, (info.loadable ?? []).map((l: any) => h('li', null, h('span', null, l.type || l.file), can ? button(`Load ${l.file}`, { icon: 'plus', class: 'plain small' }, () => act(`Load ${l.file}`, 'load_module', { manager, file: l.file }).then(refresh)) : null))),
+    ];
+  }
+}
+
+export function disconnect(id: string): void {
+  const one = connection(id);
+  if (!one || read_only()) return;
+  const port = one.ports.find((p) => port_of(p)) ?? one.ports[0];
+  act(`Disconnect ${one.name || one.ports.map(name_of_port).join(' and ')}`, 'disconnect', { port, id }, (result) => ({
+    text: `Connect ${one.name} again`, name: 'connect', args: { ports: result.ports ?? one.ports, name: result.name ?? one.name, id, properties: result.properties ?? one.properties },
+  })).then(() => { if (is_selected('connection', id)) select(null); });
+}
+
+// What `__widget__` and `__constraints__` ask for.
+function control(value: ConfigValue, id: string, change: (text: string) => void): HTMLElement {
+  const disabled = read_only();
+  const [kind, step] = (value.widget ?? '').split('.');
+  const range = /^\s*([-+\d.e]+)\s*<=?\s*x\s*<=?\s*([-+\d.e]+)\s*$/i.exec(value.constraint ?? '');
+  const options = /^\s*\(?(.*?)\)?\s*$/.exec(value.constraint ?? '')?.[1].split(',').map((o) => o.trim()).filter(Boolean) ?? [];
+  if ((kind === 'slider' || kind === 'spin') && (range || kind === 'spin')) {
+    const number = h('input', { id, type: 'number', value: value.value, step: kind === 'slider' || !step ? 'any' : step, min: range?.[1], max: range?.[2], disabled, onchange: () => change(number.value) });
+    if (kind === 'spin') return number;
+    const [low, high] = [Number(range![1]), Number(range![2])];
+    const slider = h('input', { type: 'range', min: low, max: high, step: (high - low) / Math.max(1, Number(step) || 100), value: value.value, 'aria-label': value.name, disabled, oninput: () => { number.value = slider.value; }, onchange: () => change(slider.value) });
+    return h('span', { class: 'slider' }, slider, number);
+  }
+  if (kind === 'radio' && options.length > 0) {
+    const select_box = h('select', { id, disabled, onchange: () => change(select_box.value) }, [...new Set([value.value, ...options])].map((o) => h('option', { value: o, selected: o === value.value }, o)));
+    return select_box;
+  }
+  if ((kind === 'checkbox' || kind === 'ordered_list') && options.length > 0) {
+    const chosen = value.value.split(',').map((v) => v.trim()).filter(Boolean);
+    const boxes = options.map((o) => h('input', { type: 'checkbox', checked: chosen.includes(o), disabled, 'aria-label': `${value.name}: ${o}`, onchange: () => change(options.filter((_, i) => boxes[i].checked).join(',')) }));
+    return h('span', { class: 'choices', id }, options.map((o, i) => h('label', null, boxes[i], ` ${o}`)));
+  }
+  const input = h('input', { id, value: value.value, disabled, onchange: () => change(input.value) });
+  return input;
+}
+
+function link_to(text: string, selection: { kind: any; id: string }): HTMLElement {
+  return h('button', { type: 'button', class: 'link', onclick: () => select(selection) }, text);
+}
+
+function table(rows: [string, string][]): HTMLElement | null {
+  return rows.length === 0 ? null : h('dl', { class: 'values' }, rows.map(([key, value]) => [h('dt', null, key), h('dd', null, value)]));
+}
+
+// Without a minus before nothing.
+const fixed = (value: number, digits: number): string => value.toFixed(digits).replace(/^-(0\.?0*)$/, '$1');
+
+export function flatten(value: unknown, path = '', out: [string, unknown][] = []): [string, unknown][] {
+  if (out.length > 400) return out;
+  if (Array.isArray(value) && value.length > 8) out.push([path, `${value.length} values`]);
+  else if (value !== null && typeof value === 'object') {
+    for (const [key, inner] of Object.entries(value)) flatten(inner, Array.isArray(value) ? `${path}[${key}]` : path ? `${path}.${key}` : key, out);
+  } else out.push([path, value]);
+  return out;
+}
+
+function format(value: unknown): string {
+  if (typeof value !== 'number') return String(value);
+  if (Number.isInteger(value)) return String(value);
+  return Math.abs(value) < 1e-4 ? value.toExponential(1) : String(Number(value.toPrecision(6)));
+}
+
+export const image_iface = (topic: string): string | undefined => store.world?.ifaces.find((i) => topic.includes(`/${i.name.replaceAll('::', '/')}`) && /camera|rgbd|depth/.test(i.type))?.name;
+
+export function polar(canvas: HTMLCanvasElement, ranges: number[], info: { [key: string]: unknown }): void {
+  const draw = canvas.getContext('2d')!;
+  const style = getComputedStyle(canvas);
+  const { width, height } = canvas;
+  const from = (info.angle_min ?? -2.09) as number, to = (info.angle_max ?? 2.09) as number;
+  const most = (info.range_max as number | undefined) ?? Math.max(1, ...ranges.filter(Number.isFinite));
+  const scale = Math.min(width / 2, height * 0.6) / most, x0 = width / 2, y0 = height * 0.62;
+  draw.clearRect(0, 0, width, height);
+  draw.strokeStyle = style.getPropertyValue('--line');
+  for (const share of [0.5, 1]) {
+    draw.beginPath();
+    draw.arc(x0, y0, share * most * scale, 0, 2 * Math.PI);
+    draw.stroke();
+  }
+  draw.strokeStyle = style.getPropertyValue('--accent');
+  draw.beginPath();
+  draw.moveTo(x0, y0);
+  ranges.forEach((range, i) => {
+    const angle = from + ((to - from) * i) / Math.max(1, ranges.length - 1), r = Math.min(Number(range) || 0, most) * scale;
+    draw.lineTo(x0 - r * Math.sin(angle), y0 - r * Math.cos(angle));
+  });
+  draw.closePath();
+  draw.stroke();
+}
+
+export function spawn_dialog(): void {
+  const model = h('input', { id: 'spawn-model', list: 'spawn-models', autocomplete: 'off' }), name = h('input', { id: 'spawn-name' }), pose = h('input', { id: 'spawn-pose', value: '0 0 0' });
+  const hints = h('datalist', { id: 'spawn-models' });
+  wire.request('models').then(({ result }) => put(hints, (result.models ?? []).map((m: any) => h('option', { value: m.name }, m.description ?? '')))).catch(() => {});
+  open_dialog('Spawn a model', h('div', { class: 'grid' }, h('label', { for: 'spawn-model' }, 'Model'), model, h('label', { for: 'spawn-name' }, 'Name (or empty)'), name, h('label', { for: 'spawn-pose' }, 'X Y YAW [m, rad]'), pose, hints), 'Spawn', () => {
+    const [x, y, yaw] = pose.value.split(/[\s,]+/).map(Number);
+    const args: { [key: string]: unknown } = { model: model.value.trim(), pose: [x || 0, y || 0, 0, Math.cos((yaw || 0) / 2), 0, 0, Math.sin((yaw || 0) / 2)] };
+    if (name.value.trim()) args.name = name.value.trim();
+    if (args.model) act(`Spawn ${args.model}`, 'spawn', args, (result) => ({ text: `Delete ${result.name}`, name: 'delete_model', args: { model: result.name } })).then((result) => { if (result?.name) select({ kind: 'model', id: result.name }); });
+  });
+}
+

@@ -1,0 +1,325 @@
+// The page: panels round the world and the system, and the keys.
+import { Bottom } from './bottom';
+import { Diagram } from './diagram';
+import { open_dialog } from './dialog';
+import { button, h, once_a_frame, put } from './dom';
+import { Drive } from './drive';
+import { History } from './history';
+import { disconnect, Inspector, spawn_dialog } from './inspector';
+import { apply_theme, keep, linked, settings, to_link } from './settings';
+import { act, changed, component, on, read_only, select, selected_model, store, undo_last, wire } from './store';
+import { Tree } from './tree';
+import { WorldView } from './world';
+
+type Panel = keyof typeof settings.panels;
+
+const world = new WorldView();
+const diagram = new Diagram();
+const tree = new Tree();
+const drive = new Drive();
+const history_of_run = new History(world);
+const bottom = new Bottom(world, history_of_run);
+const inspector = new Inspector({
+  world,
+  drive: (iface) => drive.begin(iface),
+  plot: (topic, member) => {
+    show_panel('bottom', true);
+    bottom.show_tab('plots');
+    bottom.plots.add(topic, member);
+  },
+  show_image: (iface) => {
+    show_panel('bottom', true);
+    bottom.show_image(iface);
+  },
+});
+
+// ---- top ----
+
+const world_name = h('span', { class: 'what' });
+const link_state = h('span', { class: 'link-state', role: 'status' });
+const toggles = new Map<Panel, HTMLButtonElement>();
+const panel_names: [Panel, string, string][] = [['tree', 'Tree', 'tree'], ['world', 'World', 'world'], ['system', 'System', 'system'], ['inspector', 'Inspector', 'inspect'], ['bottom', 'Time and plots', 'plot']];
+
+const top_bar = h('header', { class: 'top' },
+  h('h1', null, 'rtm-studio'), world_name, link_state, h('span', { class: 'spring' }),
+  h('div', { class: 'toggles', role: 'toolbar', 'aria-label': 'Panels' }, panel_names.map(([panel, name, sign], i) => {
+    const toggle = button(`${name} panel`, { icon: sign, key: String(i + 1), pressed: true }, () => show_panel(panel, !settings.panels[panel]));
+    toggles.set(panel, toggle);
+    return toggle;
+  })),
+  button('Save the system as RTSProfile', { icon: 'save', id: 'save' }, () => save_profile()),
+  button('Open an RTSProfile', { icon: 'open', id: 'open' }, () => profile_input.click()),
+  button('Copy a link to this view', { icon: 'link', id: 'copy-link' }, () => copy(location.href)),
+  button('Light or dark', { icon: 'theme', id: 'theme' }, () => next_theme()),
+  button('Keys', { icon: 'help', key: '?', id: 'help' }, () => show_keys()));
+
+const profile_input = h('input', { type: 'file', accept: '.xml,.yaml,.yml', hidden: true, 'aria-label': 'RTSProfile' });
+profile_input.addEventListener('change', async () => {
+  const file = profile_input.files?.[0];
+  profile_input.value = '';
+  if (!file) return;
+  const result = await act(`Open ${file.name}`, 'open_profile', { xml: await file.text(), states: false });
+  if (result?.positions) diagram.place_all(result.positions);
+});
+
+async function save_profile(): Promise<void> {
+  const result = await act('Save the system', 'save_profile', { positions: diagram.positions() });
+  if (!result?.xml) return;
+  const url = URL.createObjectURL(new Blob([result.xml], { type: 'application/xml' }));
+  h('a', { href: url, download: `${store.world?.name || 'system'}.xml` }).click();
+  setTimeout(() => URL.revokeObjectURL(url), 10000);
+}
+
+function next_theme(): void {
+  const is_dark = settings.theme === 'dark' || (settings.theme === 'auto' && matchMedia('(prefers-color-scheme: dark)').matches);
+  settings.theme = is_dark ? 'light' : 'dark';
+  apply_theme();
+  keep();
+}
+
+// ---- the world's tools ----
+
+const tools: { [name: string]: HTMLButtonElement } = {
+  whole: button('All of the world', { icon: 'whole', key: 'O' }, () => world.whole()),
+  top: button('From above', { icon: 'top', key: 'T' }, () => (world.eye.mode === 'top' ? world.whole() : world.top())),
+  follow: button('Follow the selected robot', { icon: 'follow', key: 'F' }, () => follow()),
+  lasers: button('Laser fans', { icon: 'laser', key: 'L', pressed: settings.lasers }, () => toggle('lasers')),
+  sonars: button('Sonar cones', { icon: 'sonar', pressed: settings.sonars }, () => toggle('sonars')),
+  trails: button('Trails', { icon: 'trail', pressed: settings.trails }, () => toggle('trails')),
+  names: button('Names', { icon: 'names', key: 'N', pressed: settings.names }, () => toggle('names')),
+  collisions: button('Shapes that collide', { icon: 'shapes', pressed: settings.collisions }, () => toggle('collisions')),
+  move: button('Move models by dragging; with Ctrl they turn', { icon: 'move', key: 'M', pressed: false }, () => world.set_tool('move')),
+  push: button('Push models by dragging', { icon: 'push', key: 'P', pressed: false }, () => world.set_tool('push')),
+  spawn: button('Spawn a model', { icon: 'plus' }, () => spawn_dialog()),
+};
+
+const camera_box = h('select', { class: 'camera-box', 'aria-label': 'Look through a camera', hidden: true });
+camera_box.addEventListener('change', () => {
+  if (camera_box.value) world.look_through(camera_box.value);
+  else world.whole();
+});
+
+function toggle(name: 'lasers' | 'sonars' | 'trails' | 'names' | 'collisions'): void {
+  settings[name] = !settings[name];
+  keep();
+}
+
+function follow(): void {
+  if (world.eye.mode === 'follow') return world.whole();
+  const name = selected_model() ?? store.world?.ifaces.find((i) => i.type.startsWith('position'))?.model;
+  if (name) world.follow(name);
+}
+
+// ---- the last act ----
+
+const act_text = h('span', { class: 'act', role: 'status' });
+const act_command = h('code', { class: 'command' });
+const copy_button = button('Copy the command', { icon: 'copy', class: 'plain', id: 'copy-command' }, () => copy(act_command.textContent ?? ''));
+const undo_button = button('Undo', { icon: 'undo', class: 'plain', key: 'Ctrl+Z', id: 'undo' }, () => undo_last());
+const status_bar = h('footer', { class: 'status' }, undo_button, act_text, act_command, copy_button, h('span', { class: 'spring' }), h('span', { class: 'read-only' }));
+
+on('acts', () => {
+  const last = store.acts[store.acts.length - 1];
+  act_text.textContent = last?.error ? `${last.text}: ${last.error}` : last?.text ?? '';
+  status_bar.classList.toggle('failed', Boolean(last?.error));
+  act_command.textContent = last?.command ?? '';
+  act_command.title = last?.command ?? '';
+  copy_button.hidden = !last?.command;
+  const undo = [...store.acts].reverse().find((a) => a.undo)?.undo;
+  undo_button.disabled = !undo;
+  undo_button.title = undo ? `${undo.text} (Ctrl+Z)` : 'Nothing to undo';
+});
+
+async function copy(text: string): Promise<void> {
+  try {
+    await navigator.clipboard.writeText(text);
+    act_text.textContent = 'Copied';
+  } catch {
+    act_text.textContent = 'The browser does not let this page copy: select the text';
+  }
+}
+
+// ---- panels ----
+
+const world_panel = h('section', { class: 'panel world-panel', 'aria-label': 'World' },
+  h('div', { class: 'bar', role: 'toolbar', 'aria-label': 'World' }, h('h2', null, 'World'), tools.whole, tools.top, tools.follow, camera_box, h('span', { class: 'gap' }), tools.lasers, tools.sonars, tools.trails, tools.names, tools.collisions, h('span', { class: 'spring' }), tools.move, tools.push, tools.spawn),
+  world.element, drive.element);
+const system_panel = h('section', { class: 'panel system-panel', 'aria-label': 'System' },
+  h('div', { class: 'bar', role: 'toolbar', 'aria-label': 'System' }, h('h2', null, 'System'), h('span', { class: 'counts' }), h('span', { class: 'spring' }),
+    button('Activate every inactive component', { icon: 'run', label: 'All', id: 'activate-all' }, () => all_components('Inactive', 'activate', 'Activate')),
+    button('Deactivate every active component', { icon: 'stop', label: 'All', id: 'deactivate-all' }, () => all_components('Active', 'deactivate', 'Deactivate')), diagram.tools()),
+  diagram.element);
+const tree_panel = h('nav', { class: 'panel tree-panel', 'aria-label': 'Everything by name' }, tree.element);
+const inspector_panel = h('aside', { class: 'panel inspector-panel', 'aria-label': 'Inspector' }, inspector.element);
+const bottom_panel = h('section', { class: 'panel bottom-panel', 'aria-label': 'Time' }, bottom.element);
+const middle = h('main', { class: 'middle' }, world_panel, splitter('split', 'x'), system_panel);
+const tab_bar = h('div', { class: 'panel-tabs', role: 'toolbar', 'aria-label': 'Panels' }, panel_names.map(([panel, name]) => h('button', { type: 'button', 'data-panel': panel, onclick: () => show_only(panel) }, name.split(' ')[0])));
+const page = h('div', { class: 'page' }, top_bar, tree_panel, splitter('tree', 'x'), middle, splitter('inspector', 'x'), inspector_panel, splitter('bottom', 'y'), bottom_panel, tab_bar, status_bar);
+
+async function all_components(state: string, name: string, word: string): Promise<void> {
+  for (const one of store.system.components.filter((c) => c.state === state)) await act(`${word} ${one.instance}`, name, { path: one.path });
+}
+
+function splitter(what: keyof typeof settings.sizes, axis: 'x' | 'y'): HTMLElement {
+  const names = { split: 'World and system', tree: 'Tree', inspector: 'Inspector', bottom: 'Time and plots' };
+  const handle = h('div', { class: `splitter ${axis} of-${what}`, role: 'separator', tabindex: 0, 'aria-orientation': axis === 'x' ? 'vertical' : 'horizontal', 'aria-label': `Size: ${names[what]}`, 'aria-valuenow': 50, 'aria-valuemin': 0, 'aria-valuemax': 100 });
+  const change = (by: number) => {
+    const { sizes } = settings;
+    if (what === 'split') sizes.split = Math.min(0.9, Math.max(0.1, sizes.split + by / Math.max(1, middle.clientWidth)));
+    else sizes[what] = Math.min(axis === 'x' ? innerWidth * 0.45 : innerHeight * 0.7, Math.max(axis === 'x' ? 140 : 96, sizes[what] + (what === 'tree' ? by : -by)));
+    lay_out();
+    keep();
+  };
+  let last = 0;
+  handle.addEventListener('pointerdown', (event) => {
+    last = axis === 'x' ? event.clientX : event.clientY;
+    handle.setPointerCapture(event.pointerId);
+  });
+  handle.addEventListener('pointermove', (event) => {
+    if (!handle.hasPointerCapture(event.pointerId)) return;
+    const now = axis === 'x' ? event.clientX : event.clientY;
+    change(now - last);
+    last = now;
+  });
+  handle.addEventListener('keydown', (event) => {
+    const by = { ArrowLeft: -20, ArrowUp: -20, ArrowRight: 20, ArrowDown: 20 }[event.key];
+    if (by === undefined) return;
+    change(by);
+    event.preventDefault();
+    event.stopPropagation();
+  });
+  return handle;
+}
+
+function lay_out(): void {
+  const { panels, sizes } = settings;
+  page.style.setProperty('--tree', `${sizes.tree}px`);
+  page.style.setProperty('--inspector', `${sizes.inspector}px`);
+  page.style.setProperty('--bottom', `${sizes.bottom}px`);
+  page.style.setProperty('--split', String(sizes.split));
+  page.style.setProperty('--rest', String(1 - sizes.split));
+  for (const [panel] of panel_names) {
+    page.classList.toggle(`no-${panel}`, !panels[panel]);
+    toggles.get(panel)!.setAttribute('aria-pressed', String(panels[panel]));
+  }
+  page.querySelectorAll<HTMLElement>('.splitter').forEach((handle) => {
+    const what = ['tree', 'inspector', 'bottom', 'split'].find((w) => handle.classList.contains(`of-${w}`))!;
+    const share = what === 'split' ? sizes.split : what === 'bottom' ? sizes.bottom / innerHeight : sizes[what as 'tree'] / innerWidth;
+    handle.setAttribute('aria-valuenow', String(Math.round(100 * Math.min(1, share))));
+  });
+}
+
+function show_panel(panel: Panel, on_: boolean): void {
+  settings.panels[panel] = on_;
+  lay_out();
+  keep();
+}
+
+// On narrow screens one panel at a time.
+function show_only(panel: Panel): void {
+  page.dataset.only = panel;
+  for (const tab of tab_bar.querySelectorAll('button')) tab.setAttribute('aria-pressed', String(tab.dataset.panel === panel));
+}
+
+// ---- what the page says of itself ----
+
+function show_head(): void {
+  const { status } = wire;
+  world_name.textContent = store.world?.present ? store.world.name : '';
+  const text = status === 'forbidden' ? 'another token: open the new URL' : status === 'lost' ? 'rtm-studio is gone; waiting for it' : status === 'connecting' ? 'connecting' : store.system.problem ? 'no naming service' : store.world && !store.world.present ? 'no simulator' : '';
+  link_state.textContent = text;
+  link_state.classList.toggle('bad', text !== '');
+  status_bar.querySelector('.read-only')!.textContent = read_only() ? 'read-only: this page may look, not act' : '';
+  page.classList.toggle('read-only', read_only());
+  const counts = system_panel.querySelector('.counts')!;
+  const errors = store.system.components.filter((c) => c.state === 'Error').length;
+  counts.textContent = store.system.components.length > 0 ? `${errors > 0 ? `${errors} in error, ` : ''}${store.system.components.length} components` : '';
+  document.title = `${store.world?.present ? `${store.world.name} – ` : ''}rtm-studio`;
+  for (const id of ['save', 'open', 'activate-all', 'deactivate-all']) (document.getElementById(id) as HTMLButtonElement | null)?.toggleAttribute('disabled', status !== 'open' || (read_only() && id !== 'save'));
+  for (const tool of [tools.move, tools.push, tools.spawn]) tool.disabled = read_only() || !store.world?.present;
+}
+
+function show_tools(): void {
+  tools.top.setAttribute('aria-pressed', String(world.eye.mode === 'top'));
+  tools.follow.setAttribute('aria-pressed', String(world.eye.mode === 'follow'));
+  for (const name of ['lasers', 'sonars', 'trails', 'names', 'collisions'] as const) tools[name].setAttribute('aria-pressed', String(settings[name]));
+  for (const name of ['move', 'push'] as const) tools[name].setAttribute('aria-pressed', String(world.tool === name));
+  const cameras = world.cameras();
+  if (camera_box.options.length !== cameras.length + 1) put(camera_box, h('option', { value: '' }, 'own eye'), cameras.map((c) => h('option', { value: c }, c)));
+  camera_box.hidden = cameras.length === 0;
+  camera_box.value = world.eye.mode === 'sensor' ? world.eye.what : '';
+}
+
+const keys: [string, string][] = [
+  ['Space', 'run or pause'], ['.', 'one step'], ['Shift+R', 'reset world and time'], ['/', 'search'], ['1 – 5', 'panels'], ['O', 'all of the world'], ['T', 'from above'], ['F', 'follow the robot'],
+  ['L, N', 'laser fans, names'], ['M, P', 'move, push by dragging'], ['G', 'drive the robot (arrows or W A S D)'], ['A, D, E', 'activate, deactivate, reset the selected component'], ['C', 'connect the selected port'], ['Delete', 'disconnect'],
+  ['Ctrl+Z', 'undo'], ['Escape', 'select nothing'], ['Arrows', 'in the world: turn (with Shift: move); in the system: next component; in the tree: rows'], ['[  ]', 'in the system: next port'], ['+  –', 'zoom'], ['?', 'this list'],
+];
+
+function show_keys(): void {
+  open_dialog('Keys', h('dl', { class: 'keys' }, keys.map(([key, what]) => [h('dt', null, h('kbd', null, key)), h('dd', null, what)])), 'Close');
+}
+
+document.addEventListener('keydown', (event) => {
+  const target = event.target as HTMLElement;
+  if ((event.ctrlKey || event.metaKey) && event.key === 'z' && !target.matches('input,textarea')) {
+    undo_last();
+    return event.preventDefault();
+  }
+  if (event.ctrlKey || event.metaKey || event.altKey || target.matches('input,textarea,select')) {
+    if (event.key === 'Escape' && target === tree.search) tree.search.blur();
+    return;
+  }
+  const chosen = store.selection?.kind === 'component' ? component(store.selection.id) : undefined;
+  const on_chosen = (name: string, word: string, state: string) => () => { if (chosen?.state === state && !read_only()) act(`${word} ${chosen.instance}`, name, { path: chosen.path }); };
+  const table: { [key: string]: () => void } = {
+    ' ': () => bottom.run_or_pause(), '.': () => bottom.step(), R: () => bottom.reset(), '/': () => { show_panel('tree', true); tree.search.focus(); tree.search.select(); }, '?': show_keys,
+    o: () => world.whole(), t: () => tools.top.click(), f: follow, l: () => toggle('lasers'), n: () => toggle('names'), m: () => world.set_tool('move'), p: () => world.set_tool('push'), g: () => drive.toggle(),
+    a: on_chosen('activate', 'Activate', 'Inactive'), d: on_chosen('deactivate', 'Deactivate', 'Active'), e: on_chosen('reset', 'Reset', 'Error'),
+    c: () => document.getElementById('connect')?.click(), Delete: () => { if (store.selection?.kind === 'connection') disconnect(store.selection.id); }, Escape: () => select(null),
+  };
+  panel_names.forEach(([panel], i) => { table[String(i + 1)] = () => { show_only(panel); show_panel(panel, !settings.panels[panel]); }; });
+  // Space on a button presses it.
+  if (event.key === ' ' && target.matches('button,[role=treeitem],summary')) return;
+  const work = table[event.key];
+  if (!work) return;
+  work();
+  event.preventDefault();
+});
+
+// ---- the link ----
+
+const write_link = once_a_frame(() => {
+  const { panels, sizes, tab, plots, lasers, sonars, names, trails, collisions } = settings;
+  const link = to_link({ settings: { panels, sizes, tab, plots, lasers, sonars, names, trails, collisions }, eye: world.eye.state(), selection: store.selection });
+  history.replaceState(null, '', link);
+});
+let link_timer = 0;
+setInterval(() => {
+  if (Date.now() - link_timer < 900) return;
+  link_timer = Date.now();
+  write_link();
+}, 1000);
+
+on(['status', 'world', 'system', 'states', 'hello'], once_a_frame(show_head));
+on(['settings', 'world'], once_a_frame(show_tools));
+on('settings', lay_out);
+on('selection', () => {
+  if (store.selection?.kind === 'component') diagram.reveal(store.selection.id);
+});
+
+apply_theme();
+document.body.append(page, profile_input);
+lay_out();
+show_only('world');
+changed('acts');
+show_head();
+if (linked.eye) {
+  world.eye.restore(linked.eye);
+  world.mark_restored();
+}
+if (linked.selection) select(linked.selection);
+wire.connect();
+
+// For tests, and for whoever looks with the browser's console.
+Object.assign(window, { studio: { world, diagram, store, wire, settings, select, act } });

@@ -1,0 +1,202 @@
+// Signals over simulated time, a few lines a plot. Signals come by drag from the tree, by the inspector or by search.
+import uPlot from 'uplot';
+import { button, h, put } from './dom';
+import { flatten } from './inspector';
+import { keep, settings } from './settings';
+import { on, store, wire } from './store';
+import { signal_name } from './tree';
+import { watch } from './watches';
+import { palette } from './world';
+
+interface Line { topic: string; kind: string; member: string; times: number[]; values: (number | null)[]; stop: () => void; error: string }
+const most_points = 12000;
+
+class Plot {
+  readonly element = h('div', { class: 'plot' });
+  private readonly legend = h('div', { class: 'legend' });
+  private readonly body = h('div', { class: 'body' });
+  private lines: Line[] = [];
+  private plot: uPlot | null = null;
+
+  constructor(private readonly entry: { series: { topic: string; member: string }[] }, private readonly remove: () => void) {
+    this.element.append(this.legend, this.body);
+    for (const { topic, member } of entry.series) this.begin(topic, member);
+    this.element.addEventListener('dragover', (event) => event.preventDefault());
+    this.element.addEventListener('drop', (event) => {
+      event.preventDefault();
+      event.stopPropagation();
+      first_member(event.dataTransfer?.getData('text/plain') ?? '').then((line) => line && this.add(line.topic, line.member));
+    });
+    new ResizeObserver(() => this.make()).observe(this.body);
+  }
+
+  has(topic: string, member: string): boolean {
+    return this.lines.some((l) => l.topic === topic && l.member === member);
+  }
+
+  add(topic: string, member: string): void {
+    if (this.has(topic, member)) return;
+    this.entry.series.push({ topic, member });
+    keep();
+    this.begin(topic, member);
+    this.make();
+  }
+
+  private begin(topic: string, member: string): void {
+    const line: Line = { topic, kind: '', member, times: [], values: [], stop: () => {}, error: '' };
+    line.stop = watch({ topic, members: [member], hz: 30 }, (values) => {
+      line.error = values.error ?? '';
+      if (values.error || !values.t) return this.show_legend();
+      values.t.forEach((time, i) => {
+        const last = line.times[line.times.length - 1];
+        if (last !== undefined && time < last) line.times.length = line.values.length = 0; // reset
+        const value = values.v?.[i]?.[0];
+        line.times.push(time);
+        line.values.push(typeof value === 'number' ? value : typeof value === 'boolean' ? Number(value) : null);
+      });
+      if (line.times.length > most_points) {
+        line.times.splice(0, 2000);
+        line.values.splice(0, 2000);
+      }
+    });
+    this.lines.push(line);
+    this.show_legend();
+  }
+
+  private show_legend(): void {
+    put(this.legend, this.lines.map((line, i) => {
+      const sign = h('i');
+      sign.style.background = palette[i % palette.length];
+      return h('span', { title: `${line.topic} ${line.member}` }, sign, `${signal_name(line)} ${line.member}`, line.error ? h('em', null, ` ${line.error}`) : null,
+        button(`Remove ${line.member}`, { icon: 'close', class: 'plain small' }, () => this.drop(i)));
+    }));
+  }
+
+  private drop(i: number): void {
+    this.lines[i].stop();
+    this.lines.splice(i, 1);
+    this.entry.series.splice(i, 1);
+    keep();
+    if (this.lines.length === 0) return this.remove();
+    this.show_legend();
+    this.make();
+  }
+
+  end(): void {
+    for (const line of this.lines) line.stop();
+    this.plot?.destroy();
+  }
+
+  private data(from: number, to: number): uPlot.AlignedData {
+    const tables = this.lines.map((line) => {
+      const first = Math.max(0, line.times.findIndex((t) => t >= from) - 1);
+      let last = line.times.findIndex((t) => t > to);
+      if (last < 0) last = line.times.length;
+      return [line.times.slice(first, last), line.values.slice(first, last)] as [number[], (number | null)[]];
+    });
+    return tables.length === 1 ? tables[0] : uPlot.join(tables as never);
+  }
+
+  make(): void {
+    const { clientWidth: width, clientHeight: height } = this.body;
+    this.plot?.destroy();
+    this.plot = null;
+    if (width < 40 || height < 30 || this.lines.length === 0) return;
+    const style = getComputedStyle(this.element);
+    const [line, dim] = [style.getPropertyValue('--line'), style.getPropertyValue('--dim')];
+    const axis = { stroke: dim, grid: { stroke: line, width: 1 }, ticks: { stroke: line, size: 4 }, font: '11px system-ui' };
+    this.plot = new uPlot({
+      width, height, pxAlign: 0, legend: { show: false }, cursor: { sync: { key: 'studio' }, drag: { setScale: false } },
+      scales: { x: { time: false }, y: { range: (_, low, high) => around(low, high) } },
+      axes: [{ ...axis, size: 24, values: (_, ticks) => ticks.map((t) => `${t}`) }, { ...axis, size: 46 }],
+      series: [{}, ...this.lines.map((_, i) => ({ stroke: palette[i % palette.length], width: 1.5, spanGaps: true, points: { show: false } }))],
+    }, this.data(0, Infinity), this.body);
+  }
+
+  draw(from: number, to: number): void {
+    if (!this.plot || this.plot.series.length !== this.lines.length + 1) return;
+    this.plot.setData(this.data(from, to), false);
+    this.plot.batch(() => {
+      this.plot!.setScale('x', { min: from, max: Math.max(to, from + 0.01) });
+    });
+  }
+}
+
+export class Plots {
+  readonly element = h('div', { class: 'plots' });
+  private readonly hint = h('div', { class: 'notice' }, h('div', { class: 'card' }, h('p', null, 'Drag a signal here from the tree, or press the curve beside a value in the inspector.')));
+  private plots: Plot[] = [];
+  window = 30; // [s]
+
+  constructor(private readonly end: () => number) {
+    for (const entry of settings.plots) this.open(entry);
+    this.show();
+    this.element.addEventListener('dragover', (event) => event.preventDefault());
+    this.element.addEventListener('drop', (event) => {
+      event.preventDefault();
+      first_member(event.dataTransfer?.getData('text/plain') ?? '').then((line) => line && this.add(line.topic, line.member));
+    });
+    on('settings', () => this.plots.forEach((p) => p.make()));
+    setInterval(() => this.draw(), 66);
+  }
+
+  draw(): void {
+    if (this.element.offsetParent === null) return;
+    const to = this.end();
+    for (const plot of this.plots) plot.draw(to - this.window, to);
+  }
+
+  add(topic: string, member: string): void {
+    if (this.plots.some((p) => p.has(topic, member))) return;
+    const entry = { series: [{ topic, member }] };
+    settings.plots.push(entry);
+    this.open(entry);
+    this.show();
+    keep();
+  }
+
+  private open(entry: { series: { topic: string; member: string }[] }): void {
+    const plot: Plot = new Plot(entry, () => {
+      plot.end();
+      this.plots.splice(this.plots.indexOf(plot), 1);
+      settings.plots.splice(settings.plots.indexOf(entry), 1);
+      keep();
+      this.show();
+    });
+    this.plots.push(plot);
+  }
+
+  private show(): void {
+    put(this.element, this.plots.length > 0 ? this.plots.map((p) => p.element) : this.hint);
+  }
+}
+
+// Some room about the lines, and about one that is level.
+function around(low: number | null, high: number | null): [number, number] {
+  if (low === null || high === null) return [0, 1];
+  const room = high > low ? (high - low) * 0.08 : Math.abs(high) * 0.5 || 1;
+  return [low - room, high + room];
+}
+
+// The first number of a signal, for what was dropped: commands before stamps.
+export async function first_member(topic: string): Promise<{ topic: string; member: string } | undefined> {
+  if (!store.signals.some((s) => s.topic === topic)) return undefined;
+  try {
+    const { result } = await wire.request('members', { topic });
+    const members: { path: string; type: string }[] = result.members ?? [];
+    const one = members.find((m) => m.type === 'number' && !is_stamp(m.path)) ?? members.find((m) => m.type === 'number');
+    if (one) return { topic, member: one.path };
+  } catch { /* older servers: from a sample */ }
+  return new Promise((resolve) => {
+    const stop = watch({ topic, hz: 5 }, (values) => {
+      if (!values.value) return;
+      stop();
+      const numbers = flatten(values.value).filter(([, v]) => typeof v === 'number').map(([k]) => k);
+      const member = numbers.find((k) => !is_stamp(k)) ?? numbers[0];
+      resolve(member ? { topic, member } : undefined);
+    });
+    setTimeout(() => { stop(); resolve(undefined); }, 5000);
+  });
+}
+
+const is_stamp = (path: string): boolean => /(^|\.)(stamp|tm|header|sequence)(\.|$)/.test(path);

@@ -1,0 +1,188 @@
+// What the page knows and shows. Parts change it and hear of changes; nobody else keeps a copy.
+import { Wire } from './wire';
+import type { Component, ComponentDetail, Connection, Hello, LogLine, Signal, State, System, TimeEvent, WorldEvent } from './wire';
+
+export type Kind = 'model' | 'component' | 'port' | 'connection' | 'signal' | 'manager' | 'iface';
+export interface Selection { kind: Kind; id: string }
+
+export type Topic = 'status' | 'system' | 'states' | 'world' | 'time' | 'signals' | 'selection' | 'details' | 'log' | 'acts' | 'settings' | 'hello' | 'plots';
+
+export interface Act {
+  text: string;
+  command?: string;
+  error?: string;
+  undo?: { text: string; name: string; args: object };
+}
+
+export const wire = new Wire();
+
+export const store = {
+  hello: null as Hello | null,
+  system: { revision: 0, problem: '', components: [], connections: [], managers: [] } as System,
+  has_system: false,
+  world: null as WorldEvent | null,
+  time: null as TimeEvent | null,
+  signals: [] as Signal[],
+  details: new Map<string, ComponentDetail>(),
+  selection: null as Selection | null,
+  logs: [] as LogLine[],
+  acts: [] as Act[],
+};
+
+const listeners = new Map<Topic, (() => void)[]>();
+
+export function on(topics: Topic | Topic[], work: () => void): void {
+  for (const topic of Array.isArray(topics) ? topics : [topics]) {
+    if (!listeners.has(topic)) listeners.set(topic, []);
+    listeners.get(topic)!.push(work);
+  }
+}
+
+export function changed(topic: Topic): void {
+  for (const work of listeners.get(topic) ?? []) work();
+}
+
+export function select(selection: Selection | null): void {
+  const now = store.selection;
+  if (now?.kind === selection?.kind && now?.id === selection?.id) return;
+  store.selection = selection;
+  changed('selection');
+}
+
+// Why nothing comes, in words.
+export function link_problem(): string {
+  if (wire.status === 'forbidden') return 'rtm-studio was started anew and has another token. Open the URL that it printed.';
+  return wire.status === 'lost' ? 'rtm-studio is gone. This page waits and comes back with it.' : wire.status === 'connecting' ? 'Connecting …' : '';
+}
+
+export const is_selected = (kind: Kind, id: string): boolean => store.selection?.kind === kind && store.selection.id === id;
+
+export const component = (path: string): Component | undefined => store.system.components.find((c) => c.path === path);
+export const connection = (id: string): Connection | undefined => store.system.connections.find((c) => c.id === id);
+export const component_of_port = (port: string): string => port.slice(0, port.lastIndexOf(':'));
+export const name_of_port = (port: string): string => port.slice(port.lastIndexOf(':') + 1);
+export const connections_of = (port: string): Connection[] => store.system.connections.filter((c) => c.ports.includes(port));
+
+export function port_of(path: string) {
+  return component(component_of_port(path))?.ports.find((p) => p.name === name_of_port(path));
+}
+
+// The model whose ifaces a component carries: one of its parameters names one.
+export function model_of(path: string): string | undefined {
+  const models = new Set(store.world?.models.map((m) => m.name));
+  for (const set of store.details.get(path)?.sets ?? []) {
+    if (!set.active) continue;
+    for (const { value } of set.values) {
+      const model = value.split('::')[0];
+      if (models.has(value) || (value.includes('::') && models.has(model))) return model;
+    }
+  }
+  return undefined;
+}
+
+// Those that carry a model's ifaces, and those that are wired to nobody else's.
+export function components_of(model: string): string[] {
+  return store.system.components.filter((c) => model_of(c.path) === model).map((c) => c.path);
+}
+
+// The model that what is selected belongs to.
+export function selected_model(): string | undefined {
+  const now = store.selection;
+  if (!now) return undefined;
+  if (now.kind === 'model') return now.id;
+  if (now.kind === 'component') return model_of(now.id);
+  if (now.kind === 'port') return model_of(component_of_port(now.id));
+  if (now.kind === 'iface') return store.world?.ifaces.find((i) => iface_id(i) === now.id)?.model;
+  if (now.kind === 'signal') return store.signals.find((s) => s.topic === now.id)?.model;
+  return undefined;
+}
+
+export const iface_id = (iface: { type: string; name: string }): string => `${iface.type}:${iface.name}`;
+
+export const read_only = (): boolean => store.hello?.read_only ?? false;
+
+// Does something to the system or the world, and remembers it with the command that would have done the same.
+export async function act(text: string, name: string, args: object, undo?: (result: any) => Act['undo']): Promise<any> {
+  const done: Act = { text };
+  try {
+    const reply = await wire.request(name, args);
+    done.command = reply.command;
+    done.undo = undo?.(reply.result);
+    return reply.result;
+  } catch (error) {
+    done.error = (error as Error).message;
+    done.command = (error as { command?: string }).command;
+    return undefined;
+  } finally {
+    store.acts.push(done);
+    if (store.acts.length > 200) store.acts.shift();
+    changed('acts');
+  }
+}
+
+export async function undo_last(): Promise<void> {
+  for (let i = store.acts.length - 1; i >= 0; --i) {
+    const undo = store.acts[i].undo;
+    if (!undo) continue;
+    store.acts[i].undo = undefined;
+    await act(undo.text, undo.name, undo.args);
+    return;
+  }
+}
+
+function ask_details(): void {
+  const there = new Set(store.system.components.map((c) => c.path));
+  for (const path of store.details.keys()) if (!there.has(path)) store.details.delete(path);
+  const missing = store.system.components.filter((c) => !store.details.has(c.path) && !c.problem).slice(0, 300);
+  for (const { path } of missing) refresh_details(path);
+}
+
+export async function refresh_details(path: string): Promise<void> {
+  try {
+    store.details.set(path, (await wire.request('component', { path })).result);
+    changed('details');
+  } catch { /* it has gone meanwhile; the next event of the system says so */ }
+}
+
+wire.on('status', (status) => {
+  if (status === 'lost' || status === 'forbidden') {
+    store.has_system = false;
+    store.details.clear();
+  }
+  changed('status');
+});
+wire.on('hello', (hello) => {
+  store.hello = hello;
+  changed('hello');
+});
+wire.on('system', (system) => {
+  store.system = system;
+  store.has_system = true;
+  changed('system');
+  ask_details();
+});
+wire.on('states', ({ states, rates }) => {
+  for (const c of store.system.components) {
+    if (states?.[c.path]) c.state = states[c.path] as State;
+    const rate = rates?.[c.path];
+    if (rate && c.contexts[0]) [c.contexts[0].rate, c.contexts[0].running] = rate;
+  }
+  changed('states');
+});
+wire.on('world', (world) => {
+  store.world = world;
+  changed('world');
+});
+wire.on('time', (time) => {
+  store.time = time;
+  changed('time');
+});
+wire.on('signals', ({ signals }) => {
+  store.signals = signals;
+  changed('signals');
+});
+wire.on('log', (line) => {
+  store.logs.push(line);
+  if (store.logs.length > 2000) store.logs.splice(0, 500);
+  changed('log');
+});

@@ -1,0 +1,202 @@
+// One connection of HTTP: small requests without a body, answered from memory or by a fetch, or turned into a WebSocket.
+#include <boost/beast/core.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <optional>
+
+#include "base/text.h"
+#include "foxglove.h"
+#include "web_shared.h"
+
+namespace studio {
+namespace {
+
+namespace beast = boost::beast;
+namespace http = beast::http;
+using boost::asio::ip::tcp;
+using Code = boost::system::error_code;
+using Response = http::response<http::span_body<const char>>;
+
+constexpr std::chrono::seconds reading_limit{10}, idle_limit{60}, writing_limit{120};
+constexpr std::uint32_t most_header = 8192;
+constexpr std::size_t most_buffered = 16384;
+
+std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
+
+std::string content_policy(std::string_view host) {
+  return "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; font-src 'self'; worker-src 'self' blob:; "
+         "connect-src 'self' blob: data: ws://" +
+         std::string(host) + " wss://" + std::string(host) + "; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+}
+
+std::shared_ptr<const std::string> shared_text(std::string_view text) { return std::make_shared<const std::string>(text); }
+
+// The first of ours that the client speaks; empty: none.
+std::string_view agreed_protocol(std::string_view offered) {
+  const auto names = base::split_list(offered);
+  for (const std::string_view protocol : {studio_protocol, foxglove_protocol}) {
+    if (std::find(names.begin(), names.end(), protocol) != names.end()) return protocol;
+  }
+  return {};
+}
+
+class Connection final : public std::enable_shared_from_this<Connection> {
+ public:
+  Connection(std::shared_ptr<WebShared> shared, tcp::socket socket) : shared_(std::move(shared)), stream_(std::move(socket)) {
+    ++shared_->connections;
+  }
+  ~Connection() { --shared_->connections; }
+
+  void read() {
+    parser_.emplace();
+    parser_->header_limit(most_header);
+    parser_->body_limit(0);
+    stream_.expires_after(is_first_ ? reading_limit : idle_limit);
+    is_first_ = false;
+    http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](Code code, std::size_t) { self->have_read(code); });
+  }
+
+ private:
+  void have_read(Code code) {
+    if (code == http::error::header_limit || code == http::error::buffer_overflow) return refuse(431, "the header is longer than 8 KiB");
+    if (code == http::error::body_limit) return refuse(413, "a request has no body here");
+    if (code == http::error::end_of_stream || code == beast::error::timeout) return end();
+    if (code && code.category() == http::make_error_code(http::error::bad_method).category()) return refuse(400, "this is no HTTP request");
+    if (code) return;
+    request_ = parser_->release();
+    answer();
+  }
+
+  void answer() {
+    const auto target = view(request_.target());
+    const auto question = std::min(target.find('?'), target.size());
+    const std::string path(target.substr(0, question));
+    const std::string query(target.substr(std::min(question + 1, target.size())));
+    const Caller caller{view(request_[http::field::host]), view(request_[http::field::origin]), view(request_[http::field::cookie]),
+                        view(request_[http::field::authorization]), query};
+    const auto verdict = shared_->door.judge(caller);
+    if (verdict != Verdict::granted) return refuse(verdict == Verdict::no_token ? 401 : 403, to_text(verdict));
+    if (beast::websocket::is_upgrade(request_)) return upgrade(path);
+    if (request_.method() != http::verb::get && request_.method() != http::verb::head) return refuse(405, "only GET and HEAD are answered");
+    if (path == "/" && shared_->door.brings_token(caller)) return send_to_page();
+    if (const PageFile* file = shared_->page.find(path)) return send_file(*file, path != "/");
+    const bool is_fetched = shared_->handlers.fetch(path, query, [self = shared_from_this()](Content content) {
+      boost::asio::post(self->stream_.get_executor(), [self, content = std::move(content)] { self->send_content(content); });
+    });
+    if (!is_fetched) return refuse(404, "there is nothing of this name");
+    stream_.expires_never();  // a fetch ends in time
+  }
+
+  void upgrade(const std::string& path) {
+    const auto protocol = agreed_protocol(view(request_[http::field::sec_websocket_protocol]));
+    if (path != "/ws") return refuse(404, "the WebSocket is at /ws");
+    if (protocol.empty()) return refuse(400, "expected the WebSocket subprotocol rtmsim.studio.v1 or foxglove.websocket.v1");
+    if (shared_->viewers >= most_viewers) return refuse(503, "there are 32 viewers already");
+    stream_.expires_never();  // the WebSocket has its own
+    serve_viewer(shared_, std::move(stream_), std::move(request_), protocol);
+  }
+
+  Response response(unsigned status) {
+    Response response{http::int_to_status(status), request_.version() == 10 ? 10u : 11u};
+    response.set(http::field::server, "rtm-studio");
+    response.set("Content-Security-Policy", content_policy(view(request_[http::field::host])));
+    response.set("X-Content-Type-Options", "nosniff");
+    response.set("X-Frame-Options", "DENY");
+    response.set("Referrer-Policy", "no-referrer");
+    response.set("Cross-Origin-Opener-Policy", "same-origin");
+    response.set("Cross-Origin-Resource-Policy", "same-origin");
+    response.set(http::field::cache_control, "no-store");
+    response.keep_alive(request_.keep_alive());
+    return response;
+  }
+
+  // The token leaves the address bar; what stands behind a '#' stays there.
+  void send_to_page() {
+    auto answer = response(303);
+    answer.set(http::field::location, "/");
+    answer.set(http::field::set_cookie, shared_->door.cookie());
+    send(std::move(answer), shared_text(""));
+  }
+
+  // Files of assets/ have new names when they change.
+  void send_file(const PageFile& file, bool is_lasting) {
+    auto answer = response(200);
+    answer.set(http::field::content_type, file.type);
+    if (is_lasting) answer.set(http::field::cache_control, "private, max-age=31536000, immutable");
+    answer.set(http::field::vary, "Accept-Encoding");
+    const bool is_compressed =
+        !file.compressed.empty() && view(request_[http::field::accept_encoding]).find("gzip") != std::string_view::npos;
+    if (is_compressed) answer.set(http::field::content_encoding, "gzip");
+    const auto& octets = is_compressed ? file.compressed : file.octets;
+    send(std::move(answer), {std::shared_ptr<void>(), &octets});  // the page outlives us
+  }
+
+  void send_content(const Content& content) {
+    const auto tag = content.tag.empty() ? "" : "\"" + content.tag + "\"";
+    const bool is_known = content.status == 200 && !tag.empty() && view(request_[http::field::if_none_match]) == tag;
+    auto answer = response(is_known ? 304 : content.status);
+    if (!tag.empty()) {
+      answer.set(http::field::etag, tag);
+      answer.set(http::field::cache_control, "private, no-cache");
+    }
+    if (!is_known) answer.set(http::field::content_type, content.type);
+    send(std::move(answer), is_known ? shared_text("") : content.octets);
+  }
+
+  void refuse(unsigned status, std::string_view why) {
+    if (status == 400 || status == 413 || status == 431) request_ = HttpRequest();  // what came is not to be used
+    auto answer = response(status);
+    answer.set(http::field::content_type, "text/plain; charset=utf-8");
+    answer.keep_alive(status != 400 && status != 413 && status != 431 && answer.keep_alive());
+    if (status == 405) answer.set(http::field::allow, "GET, HEAD");
+    send(std::move(answer), shared_text("rtm-studio: " + std::string(why) + "\n"));
+  }
+
+  void send(Response answer, std::shared_ptr<const std::string> octets) {
+    octets_ = std::move(octets);
+    const bool has_body = answer.result() != http::status::not_modified;
+    if (has_body) answer.content_length(octets_->size());
+    is_last_ = !answer.keep_alive();
+    stream_.expires_after(writing_limit);
+    if (has_body && request_.method() != http::verb::head) answer.body() = beast::span<const char>(octets_->data(), octets_->size());
+    response_ = std::make_unique<Response>(std::move(answer));
+    serializer_.emplace(*response_);
+    const auto done = [self = shared_from_this()](Code code, std::size_t) { self->have_sent(code); };
+    if (request_.method() == http::verb::head) {
+      http::async_write_header(stream_, *serializer_, done);
+    } else {
+      http::async_write(stream_, *serializer_, done);
+    }
+  }
+
+  void have_sent(Code code) {
+    serializer_.reset();
+    response_.reset();
+    if (code) return;
+    if (is_last_) return end();
+    read();
+  }
+
+  void end() {
+    Code ignored;
+    stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+  }
+
+  std::shared_ptr<WebShared> shared_;
+  beast::tcp_stream stream_;
+  beast::flat_buffer buffer_{most_buffered};
+  std::optional<http::request_parser<http::empty_body>> parser_;
+  HttpRequest request_;
+  std::unique_ptr<Response> response_;
+  std::optional<http::serializer<false, http::span_body<const char>>> serializer_;
+  std::shared_ptr<const std::string> octets_;  // of the response
+  bool is_first_ = true;
+  bool is_last_ = false;
+};
+
+}  // namespace
+
+void serve_connection(std::shared_ptr<WebShared> shared, tcp::socket socket) {
+  std::make_shared<Connection>(std::move(shared), std::move(socket))->read();
+}
+
+}  // namespace studio

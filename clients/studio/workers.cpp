@@ -1,0 +1,53 @@
+#include "workers.h"
+
+#include <omnithread.h>
+
+#include <utility>
+
+namespace studio {
+namespace {
+
+constexpr std::size_t most_waiting = 256;
+
+}  // namespace
+
+Workers::Workers(std::size_t threads) {
+  for (std::size_t i = 0; i < threads; ++i) threads_.emplace_back([this] { run(); });
+}
+
+Workers::~Workers() {
+  {
+    auto data = data_.lock();
+    data->is_ending = true;
+    data->waiting.clear();
+  }
+  changed_.notify_all();
+  for (auto& thread : threads_) thread.join();
+}
+
+bool Workers::give(Work work) {
+  {
+    auto data = data_.lock();
+    if (data->is_ending || data->waiting.size() >= most_waiting) return false;
+    data->waiting.push_back(std::move(work));
+  }
+  changed_.notify_one();
+  return true;
+}
+
+void Workers::run() {
+  const omni_thread::ensure_self known_to_the_orb;  // time-outs per thread need it
+  for (;;) {
+    Work work;
+    {
+      auto data = data_.lock();
+      data.wait(changed_, [&] { return data->is_ending || !data->waiting.empty(); });
+      if (data->is_ending) return;
+      work = std::move(data->waiting.front());
+      data->waiting.pop_front();
+    }
+    work();
+  }
+}
+
+}  // namespace studio
