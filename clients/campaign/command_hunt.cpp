@@ -1,0 +1,110 @@
+// hunt: looks for what breaks a plan's expectations.
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "base/command_line.h"
+#include "base/text.h"
+#include "campaign_commands.h"
+#include "command.h"
+#include "hunt/hunt.h"
+#include "run/interrupt.h"
+
+namespace campaign {
+namespace {
+
+using editor::Editor;
+
+struct HuntCall {
+  std::string plan, folder, budget = "10m";
+  int jobs = 1;
+  std::size_t cases = 0, finds = 0;
+  std::int64_t seed = -1;
+};
+
+// "90", "90s", "10m", "2h".
+std::optional<double> seconds_of(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const char unit = text.back();
+  const double factor = unit == 'h' ? 3600 : unit == 'm' ? 60 : 1;
+  const auto number = base::parse_number(unit == 'h' || unit == 'm' || unit == 's' ? text.substr(0, text.size() - 1) : text);
+  return number && *number > 0 && *number * factor < 1e7 ? std::optional(*number * factor) : std::nullopt;
+}
+
+nlohmann::ordered_json to_json(const Find& find) {
+  return {{"problem", find.problem},
+          {"case", find.case_number},
+          {"after", find.after_s},
+          {"deeds", find.tried.deeds()},
+          {"what", text_of(find.tried)},
+          {"state", find.state_hash},
+          {"repeatable", find.is_repeatable},
+          {"plan", find.file}};
+}
+
+void tell(const Find& find, std::size_t number) {
+  std::printf("find %zu after %.0f s, case %zu: %s\n  %s\n  rtse sweep %s --row 1 --state %s%s\n", number, find.after_s, find.case_number,
+              find.problem.c_str(), text_of(find.tried).c_str(), find.file.c_str(), find.state_hash.empty() ? "-" : find.state_hash.c_str(),
+              find.is_repeatable ? "" : "\n  it was not the same when it was run again");
+  std::fflush(stdout);
+}
+
+void hunt_plan(Editor& editor, const HuntCall& call) {
+  auto plan = read_plan(call.plan);
+  if (!plan) return editor.fail(plan.error());
+  if (call.seed >= 0) plan->hunt.seed = static_cast<std::uint64_t>(call.seed);
+  const auto campaign = Campaign::prepare(std::move(*plan));
+  if (!campaign) return editor.fail(campaign.error());
+  editor::catch_interrupts();
+  HuntOptions options;
+  options.budget = std::chrono::seconds(static_cast<long>(*seconds_of(call.budget)));
+  options.jobs = call.jobs;
+  options.most_cases = call.cases;
+  options.most_finds = call.finds;
+  options.folder = call.folder.empty() ? std::filesystem::path(call.plan).replace_extension(".finds").string() : call.folder;
+  options.call_limit = editor.limit();
+  const bool shows = isatty(2) != 0 && !editor.json();
+  const auto result = hunt(editor.orb(), *campaign, options, [&](const HuntProgress& progress) {
+    if (shows) std::fprintf(stderr, "\r\033[K");
+    if (progress.find && !editor.json()) tell(*progress.find, progress.finds);
+    if (shows)
+      std::fprintf(stderr, "%zu cases  %zu finds  %zu states reached  %.0f of %ld s", progress.cases, progress.finds, progress.features,
+                   progress.wall_s, static_cast<long>(options.budget.count()));
+  });
+  if (shows) std::fprintf(stderr, "\r\033[K");
+  if (!result) return editor.fail(result.error());
+  if (editor.json()) {
+    nlohmann::ordered_json finds = nlohmann::ordered_json::array();
+    for (const auto& find : result->finds) finds.push_back(to_json(find));
+    std::cout << nlohmann::ordered_json{{"cases", result->cases}, {"states", result->features}, {"wall", result->wall_s}, {"finds", finds}}
+                     .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+              << '\n';
+  } else {
+    std::printf("%zu finds in %zu cases, %.0f s; %zu states reached\n", result->finds.size(), result->cases, result->wall_s,
+                result->features);
+  }
+  if (!result->finds.empty()) editor.set_failed();
+}
+
+}  // namespace
+
+void add_hunt(CLI::App& app, editor::Chosen& chosen) {
+  auto* command = app.add_subcommand("hunt", "Look for faults, events and parameters that break what a plan expects");
+  auto call = std::make_shared<HuntCall>();
+  command->add_option("PLAN", call->plan, "Plan, YAML (docs/campaigns.md)")->required()->check(CLI::ExistingFile);
+  command->add_option("--budget", call->budget, "How long: 90s, 10m, 2h")->capture_default_str()->check([](const std::string& text) {
+    return seconds_of(text) ? std::string() : "expected a time as 90s, 10m or 2h, got " + base::in_quotes(text);
+  });
+  command->add_option("-j,--jobs", call->jobs, "So many cases at a time")->check(CLI::Range(1, 64))->capture_default_str();
+  command->add_option("--cases", call->cases, "End after so many cases")->check(base::number_between(1, 1e9));
+  command->add_option("--finds", call->finds, "End after so many finds")->check(base::number_between(1, 1e6));
+  command->add_option("--seed", call->seed, "Of the hunt; default: the plan's")->check(base::number_between(0, 1e18));
+  command->add_option("-o,--folder", call->folder, "Folder for finds; default: the plan's name with .finds");
+  command->callback([&chosen, call] { chosen.work = [call](Editor& e) { hunt_plan(e, *call); }; });
+}
+
+}  // namespace campaign

@@ -1,0 +1,71 @@
+// results: what a campaign has shown, as tables, files and a page.
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "base/command_line.h"
+#include "base/text.h"
+#include "campaign_commands.h"
+#include "command.h"
+#include "results/report.h"
+
+namespace campaign {
+namespace {
+
+using editor::Editor;
+
+struct ResultsCall {
+  std::string file, junit, html;
+  std::vector<std::string> by;
+  bool csv = false;
+};
+
+void show_results(Editor& editor, const ResultsCall& call) {
+  const auto results = read_results(call.file);
+  if (!results) return editor.fail(results.error());
+  for (const auto& parameter : call.by) {
+    if (std::ranges::find(results->parameters, parameter) == results->parameters.end())
+      return editor.fail({"--by " + base::in_quotes(parameter) + ": nothing of that name varies; it has " +
+                          (results->parameters.empty() ? "nothing" : base::join(results->parameters, ", "))});
+  }
+  if (call.csv) {
+    print_csv(std::cout, *results);
+  } else if (editor.json()) {
+    const auto rate = wilson(results->passed_count(), results->run_count());
+    std::cout << nlohmann::ordered_json{{"rows", results->rows.size()},
+                                        {"run", results->run_count()},
+                                        {"passed", results->passed_count()},
+                                        {"rate", rate.rate},
+                                        {"low", rate.low},
+                                        {"high", rate.high}}
+                     .dump()
+              << '\n';
+  } else if (call.junit.empty() && call.html.empty()) {
+    print_tables(std::cout, *results, call.by);
+  }
+  if (!call.junit.empty()) {
+    if (const auto written = write_junit(*results, call.junit); !written) editor.fail(written.error());
+  }
+  if (!call.html.empty()) {
+    if (const auto written = write_html(*results, call.html); !written) editor.fail(written.error());
+  }
+}
+
+}  // namespace
+
+void add_results(CLI::App& app, editor::Chosen& chosen) {
+  auto* command = app.add_subcommand("results", "Show the results of a campaign");
+  auto call = std::make_shared<ResultsCall>();
+  command->add_option("FILE", call->file, "Results of rtse sweep")->required()->check(CLI::ExistingFile);
+  command->add_option("--by", call->by, "A table of pass rates by this parameter")->allow_extra_args(false);
+  command->add_flag("--csv", call->csv, "Print one line for each row");
+  command->add_option("--junit", call->junit, "Write a test case for each row, JUnit XML");
+  command->add_option("--html", call->html, "Write one page with plots and failed runs");
+  command->callback([&chosen, call] {
+    chosen.needs_orb = false;
+    chosen.work = [call](Editor& e) { show_results(e, *call); };
+  });
+}
+
+}  // namespace campaign

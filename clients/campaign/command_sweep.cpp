@@ -1,0 +1,226 @@
+// sweep: all rows of a plan, or one of them.
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "base/command_line.h"
+#include "base/text.h"
+#include "campaign_commands.h"
+#include "command.h"
+#include "plan/grammar.h"
+#include "results/statistics.h"
+#include "run/child_process.h"
+#include "run/interrupt.h"
+#include "run/sweep.h"
+
+namespace campaign {
+namespace fs = std::filesystem;
+namespace {
+
+using editor::Editor;
+
+struct SweepCall {
+  std::string plan, results, keep, audit = "0", state, rows, engine = "local";
+  std::size_t chunk = 10;
+  int jobs = 1;
+  std::size_t row = 0;
+  bool records = false, fails_fast = false, prints_schema = false;
+};
+
+std::string results_of(const SweepCall& call) {
+  if (!call.results.empty()) return call.results;
+  return fs::path(call.plan).replace_extension(".db").string();
+}
+
+std::string clock_text(double seconds) {
+  const auto whole = static_cast<long>(std::lround(seconds));
+  char text[32];
+  std::snprintf(text, sizeof text, whole >= 3600 ? "%ld:%02ld:%02ld" : "%ld:%02ld", whole >= 3600 ? whole / 3600 : whole / 60,
+                whole >= 3600 ? whole / 60 % 60 : whole % 60, whole % 60);
+  return text;
+}
+
+void show_progress(const Progress& progress) {
+  constexpr std::size_t width = 30;
+  const auto filled = progress.rows > 0 ? progress.done * width / progress.rows : width;
+  std::fprintf(stderr, "\r\033[K[%s%s] %zu of %zu  %zu passed  %zu failed  %s left", std::string(filled, '#').c_str(),
+               std::string(width - filled, '.').c_str(), progress.done, progress.rows, progress.passed, progress.failed,
+               progress.left_s > 0 ? clock_text(progress.left_s).c_str() : "?");
+}
+
+std::string values_text(const Row& row) {
+  std::string text = "seed " + std::to_string(row.seed);
+  for (const auto& [path, value] : row.values) text += "  " + path + " " + value;
+  return text;
+}
+
+// One row, with its files kept: what the command that repeats a row does.
+void run_one(Editor& editor, const Campaign& campaign, const SweepCall& call) {
+  if (call.row > campaign.rows())
+    return editor.fail({"row " + std::to_string(call.row) + ": the plan has " + std::to_string(campaign.rows()) + " rows"});
+  const auto row = campaign.row(call.row);
+  if (!row) return editor.fail(row.error());
+  const auto folder = call.keep.empty() ? "row-" + std::to_string(call.row) : call.keep;
+  if (!editor.json()) std::printf("row %zu  %s\n", row->number, values_text(*row).c_str());
+  std::fflush(stdout);
+  const auto outcome = run_row(editor.orb(), campaign, *row, {.folder = folder, .keeps_files = true, .records = call.records});
+  nlohmann::ordered_json json{{"row", row->number},
+                              {"seed", row->seed},
+                              {"key", campaign.key(*row)},
+                              {"passed", outcome.is_passed()},
+                              {"state", outcome.state_hash},
+                              {"problem", outcome.problem},
+                              {"simulated", outcome.simulated_s},
+                              {"wall", outcome.wall_s},
+                              {"folder", folder},
+                              {"measures", outcome.measures}};
+  if (editor.json()) {
+    std::cout << json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+  } else {
+    std::printf("%s  %.1f s simulated in %.1f s  state %s  files in %s\n", outcome.is_passed() ? "passed" : "FAILED", outcome.simulated_s,
+                outcome.wall_s, outcome.state_hash.empty() ? "-" : outcome.state_hash.c_str(), folder.c_str());
+    for (const auto& [name, value] : outcome.measures) std::printf("  %s  %.6g\n", name.c_str(), value);
+  }
+  std::fflush(stdout);
+  for (const auto& note : outcome.notes) std::fprintf(stderr, "rtse: %s\n", note.c_str());
+  if (!call.state.empty() && call.state != outcome.state_hash)
+    editor.fail({"row " + std::to_string(call.row) + ": state " + outcome.state_hash + ", expected " + call.state});
+  if (!outcome.problem.empty()) editor.fail({outcome.problem});
+  for (const auto& verdict : outcome.verdicts) {
+    if (!verdict.problem.empty()) editor.fail({verdict.expectation + ": " + verdict.problem});
+  }
+}
+
+void tell(Editor& editor, const SweepResult& result, const SweepCall& call) {
+  const auto& p = result.progress;
+  const auto results = results_of(call);
+  if (editor.json()) {
+    std::cout << nlohmann::ordered_json{{"rows", p.rows},     {"passed", p.passed},   {"failed", p.failed},
+                                        {"stored", p.stored}, {"audited", p.audited}, {"different", p.different},
+                                        {"wall", p.wall_s},   {"results", results},   {"interrupted", result.is_interrupted}}
+                     .dump()
+              << '\n';
+  } else {
+    const auto rate = wilson(p.passed, p.passed + p.failed);
+    std::printf(
+        "%zu rows: %zu passed, %zu failed, %zu were in the results; pass rate %.1f %% (95 %%: %.1f to %.1f %%); %.1f s; results in %s\n",
+        p.rows, p.passed, p.failed, p.stored, rate.rate * 100, rate.low * 100, rate.high * 100, p.wall_s, results.c_str());
+    if (p.audited > 0) std::printf("audit: %zu rows run again, %zu differ\n", p.audited, p.different);
+  }
+  std::fflush(stdout);
+  constexpr std::size_t enough = 10;
+  for (std::size_t i = 0; i < result.failed.size() && i < enough; ++i) {
+    std::fprintf(stderr, "rtse: row %zu: %s\nrtse:   again: rtse sweep %s --row %zu\n", result.failed[i].number,
+                 result.failed[i].problem.c_str(), call.plan.c_str(), result.failed[i].number);
+  }
+  if (p.failed > enough) std::fprintf(stderr, "rtse: and %zu more; rtse results %s\n", p.failed - enough, results.c_str());
+  if (p.failed > 0) editor.set_failed();
+  for (const auto number : result.different) editor.fail({"audit: row " + std::to_string(number) + " has another state than stored"});
+  if (result.is_interrupted)
+    editor.fail({"interrupted after " + std::to_string(p.done) + " of " + std::to_string(p.rows) + " rows; the same command goes on"});
+}
+
+// "3", "1..20".
+std::optional<std::pair<std::size_t, std::size_t>> parse_rows(const std::string& text) {
+  const auto dots = text.find("..");
+  const auto first = base::parse_integer(text.substr(0, dots));
+  const auto last = dots == std::string::npos ? first : base::parse_integer(text.substr(dots + 2));
+  if (!first || !last || *first < 1 || *last < *first) return std::nullopt;
+  return std::pair(static_cast<std::size_t>(*first), static_cast<std::size_t>(*last));
+}
+
+// A word of a shell's command line.
+std::string in_shell(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
+// For GNU parallel and its like: each line runs some rows and adds them to the same results.
+void print_commands(const Campaign& campaign, const SweepCall& call) {
+  for (std::size_t first = 1; first <= campaign.rows(); first += call.chunk) {
+    const auto last = std::min(campaign.rows(), first + call.chunk - 1);
+    std::printf("%s sweep %s --rows %zu..%zu -o %s\n", in_shell(editor::own_program("rtse")).c_str(),
+                in_shell(fs::absolute(call.plan).string()).c_str(), first, last, in_shell(fs::absolute(results_of(call)).string()).c_str());
+  }
+}
+
+void sweep_plan(Editor& editor, const SweepCall& call) {
+  if (call.prints_schema) {
+    std::cout << plan_schema().dump(2) << '\n';
+    return;
+  }
+  auto plan = read_plan(call.plan);
+  if (!plan) return editor.fail(plan.error());
+  const auto campaign = Campaign::prepare(std::move(*plan));
+  if (!campaign) return editor.fail(campaign.error());
+  editor::catch_interrupts();
+  if (call.engine == "parallel") return print_commands(*campaign, call);
+  if (call.row > 0) return run_one(editor, *campaign, call);
+  SweepOptions options;
+  options.results = results_of(call);
+  options.kept = call.keep.empty() ? fs::path(options.results).replace_extension(".runs").string() : call.keep;
+  options.jobs = call.jobs;
+  if (const auto rows = parse_rows(call.rows)) std::tie(options.first_row, options.last_row) = *rows;
+  options.records = call.records;
+  options.fails_fast = call.fails_fast;
+  options.call_limit = editor.limit();
+  const auto percent = base::parse_number(call.audit.ends_with("%") ? call.audit.substr(0, call.audit.size() - 1) : call.audit);
+  options.audit = percent.value_or(0) / (call.audit.ends_with("%") ? 100 : 1);
+  const bool shows = isatty(2) != 0 && !editor.json();
+  const auto result = sweep(editor.orb(), *campaign, options, [&](const Progress& progress) {
+    if (shows) show_progress(progress);
+  });
+  if (shows) std::fprintf(stderr, "\r\033[K");
+  if (!result) return editor.fail(result.error());
+  tell(editor, *result, call);
+}
+
+}  // namespace
+
+void add_sweep(CLI::App& app, editor::Chosen& chosen) {
+  auto* command = app.add_subcommand("sweep", "Run all rows of a plan and store their results");
+  auto call = std::make_shared<SweepCall>();
+  auto* plan = command->add_option("PLAN", call->plan, "Plan, YAML (docs/campaigns.md)")->check(CLI::ExistingFile);
+  command->add_option("-j,--jobs", call->jobs, "So many rows at a time")->check(CLI::Range(1, 256))->capture_default_str();
+  command->add_option("-o,--results", call->results, "SQLite file; default: the plan's name with .db");
+  command->add_option("--keep", call->keep, "Folder for files of rows that fail; default: the results' name with .runs");
+  auto* row = command->add_option("--row", call->row, "Run only this row, whatever is stored, and keep its files")
+                  ->check(base::number_between(1, 1e6));
+  command->add_option("--state", call->state, "With --row: fail when the state at the end is another")->needs(row);
+  command->add_option("--rows", call->rows, "Only the rows FIRST..LAST")->excludes(row)->check([](const std::string& text) {
+    return parse_rows(text) ? std::string() : "expected N or FIRST..LAST, got " + base::in_quotes(text);
+  });
+  command->add_option("--engine", call->engine, "local, or parallel: print command lines that run all rows, for GNU parallel")
+      ->check(CLI::IsMember({"local", "parallel"}))
+      ->capture_default_str();
+  command->add_option("--chunk", call->chunk, "Rows of each command line")->check(CLI::Range(1, 1000000))->capture_default_str();
+  command->add_option("--audit", call->audit, "Run this fraction of the stored rows again and compare, as 5% or 0.05")
+      ->excludes(row)
+      ->check([](const std::string& text) {
+        const bool is_percent = text.ends_with("%");
+        const auto number = base::parse_number(is_percent ? text.substr(0, text.size() - 1) : text);
+        return number && *number >= 0 && *number <= (is_percent ? 100 : 1)
+                   ? std::string()
+                   : "expected a fraction as 5% or 0.05, got " + base::in_quotes(text);
+      });
+  command->add_flag("--record", call->records, "Record what all ports send, of rows that fail");
+  command->add_flag("--fail-fast", call->fails_fast, "Begin no row after one that failed");
+  command->add_flag("--schema", call->prints_schema, "Print the JSON Schema of plans");
+  command->callback([&chosen, call, plan] {
+    editor::require(call->prints_schema || plan->count() > 0, "sweep", "expected a PLAN");
+    chosen.needs_orb = !call->prints_schema;
+    chosen.work = [call](Editor& e) { sweep_plan(e, *call); };
+  });
+}
+
+}  // namespace campaign

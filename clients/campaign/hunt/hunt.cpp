@@ -1,0 +1,193 @@
+#include "hunt/hunt.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "base/text.h"
+#include "remote.h"
+#include "run/interrupt.h"
+
+namespace campaign {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t generation = 8;  // cases that are tried before what they reached counts
+
+class Hunt {
+ public:
+  Hunt(CORBA::ORB_ptr orb, const Campaign& campaign, const HuntOptions& options, const std::function<void(const HuntProgress&)>& show)
+      : orb_(orb), campaign_(campaign), options_(options), show_(show), maker_(campaign), random_(campaign.plan().hunt.seed, "hunt") {}
+
+  HuntResult go() {
+    while (goes_on()) {
+      std::vector<HuntCase> cases;
+      for (std::size_t i = 0; i < generation; ++i) cases.push_back(next_case());
+      std::vector<Outcome> outcomes(cases.size());
+      editor::in_parallel(
+          cases.size(), options_.call_limit,
+          [&](std::size_t i) {
+            if (!editor::is_interrupted()) outcomes[i] = run(cases[i], "case-" + std::to_string(i));
+          },
+          static_cast<std::size_t>(options_.jobs));
+      if (editor::is_interrupted()) break;
+      for (std::size_t i = 0; i < cases.size() && goes_on(); ++i) take(cases[i], outcomes[i]);
+    }
+    result_.is_interrupted = editor::is_interrupted();
+    result_.corpus = corpus_.size();
+    result_.features = features_.size();
+    result_.wall_s = wall();
+    return result_;
+  }
+
+ private:
+  double wall() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
+  bool goes_on() const {
+    if (editor::is_interrupted() || Clock::now() - began_ > options_.budget) return false;
+    if (options_.most_finds > 0 && result_.finds.size() >= options_.most_finds) return false;
+    return options_.most_cases == 0 || result_.cases < options_.most_cases;
+  }
+
+  HuntCase next_case() {
+    const bool is_fresh = corpus_.empty() || random_.below(2) == 0;
+    return is_fresh ? maker_.fresh(random_) : maker_.changed(corpus_[random_.below(corpus_.size())], random_);
+  }
+
+  Outcome run(const HuntCase& tried, const std::string& name) const {
+    RowRunOptions options;
+    options.folder = options_.folder + "/" + name;
+    options.deeds = deeds_of(campaign_, tried);
+    options.duration_s = tried.duration_s;
+    options.checks_invariants = true;
+    options.draws = false;
+    auto outcome = run_row(orb_, campaign_, tried.row, options);
+    std::error_code ignored;
+    fs::remove_all(options.folder, ignored);
+    return outcome;
+  }
+
+  void take(const HuntCase& tried, const Outcome& outcome) {
+    ++result_.cases;
+    bool is_new = false;
+    for (const auto& feature : outcome.features) is_new |= features_.insert(feature).second;
+    if (is_new && outcome.is_passed()) corpus_.push_back(tried);
+    const auto kind = signature(outcome);
+    if (!outcome.is_passed() && signatures_.insert(kind).second) {
+      Find find;
+      find.case_number = result_.cases;
+      find.after_s = wall();
+      find.problem = outcome.first_problem();
+      find.tried = shrunk(tried, kind);
+      write(find, kind);
+      result_.finds.push_back(std::move(find));
+    }
+    const bool found = !result_.finds.empty() && result_.finds.back().case_number == result_.cases;
+    show_({result_.cases, result_.finds.size(), features_.size(), wall(), found ? &result_.finds.back() : nullptr});
+  }
+
+  bool still_breaks(const HuntCase& tried, const std::string& kind) {
+    return !editor::is_interrupted() && signature(run(tried, "shrinking")) == kind;
+  }
+
+  // Fewer deeds, then simpler numbers, then a shorter run.
+  HuntCase shrunk(HuntCase best, const std::string& kind) {
+    const auto try_it = [&](HuntCase simpler) {
+      if (!still_breaks(simpler, kind)) return false;
+      best = std::move(simpler);
+      return true;
+    };
+    for (std::size_t i = best.faults.size(); i-- > 0;) {
+      auto simpler = best;
+      simpler.faults.erase(simpler.faults.begin() + static_cast<long>(i));
+      try_it(std::move(simpler));
+    }
+    for (std::size_t i = best.events.size(); i-- > 0;) {
+      auto simpler = best;
+      simpler.events.erase(simpler.events.begin() + static_cast<long>(i));
+      try_it(std::move(simpler));
+    }
+    simplify_numbers(best, try_it);
+    for (double part : {0.25, 0.5, 0.75}) {
+      auto simpler = best;
+      simpler.duration_s = std::max(0.5, std::round(best.duration_s * part * 10) / 10);
+      if (simpler.duration_s < best.duration_s && try_it(std::move(simpler))) break;
+    }
+    return best;
+  }
+
+  template <class Try>
+  void simplify_numbers(HuntCase& best, Try try_it) {
+    if (best.row.seed != 1) {
+      auto simpler = best;
+      simpler.row.seed = 1;
+      try_it(std::move(simpler));
+    }
+    for (std::size_t i = 0; i < best.faults.size(); ++i) {
+      const auto change = [&](auto set) {
+        auto simpler = best;
+        set(simpler.faults[i]);
+        if (simpler.faults[i].text() != best.faults[i].text()) try_it(std::move(simpler));
+      };
+      change([](Fault& fault) { fault.for_s.reset(); });
+      change([](Fault& fault) { fault.at_s = 1; });
+      change([](Fault& fault) { fault.at_s = std::floor(fault.at_s); });
+      change([](Fault& fault) { fault.amount = usual_amount(fault.kind).value_or(0); });
+    }
+  }
+
+  // The plan that repeats it, and whether it does.
+  void write(Find& find, const std::string& kind) {
+    find.file = options_.folder + "/find-" + std::to_string(result_.finds.size() + 1) + ".yaml";
+    const auto first = run(find.tried, "again"), second = run(find.tried, "again");
+    find.state_hash = first.state_hash;
+    if (!first.first_problem().empty()) find.problem = first.first_problem();
+    find.is_repeatable = first.state_hash == second.state_hash && signature(first) == kind && signature(second) == kind;
+    std::ofstream(find.file) << "# " << find.problem << "\n# state " << find.state_hash << "\n" << plan_text(campaign_, find.tried);
+  }
+
+  CORBA::ORB_ptr orb_;
+  const Campaign& campaign_;
+  const HuntOptions& options_;
+  const std::function<void(const HuntProgress&)>& show_;
+  CaseMaker maker_;
+  Random random_;
+  std::vector<HuntCase> corpus_;
+  std::set<std::string> features_, signatures_;
+  HuntResult result_;
+  Clock::time_point began_ = Clock::now();
+};
+
+}  // namespace
+
+std::string signature(const Outcome& outcome) {
+  const auto without_numbers = [](const std::string& text) {
+    std::string words;
+    for (const char c : text) {
+      if (std::isdigit(static_cast<unsigned char>(c)) == 0) words += c;
+    }
+    return words;
+  };
+  if (!outcome.problem.empty()) return without_numbers(outcome.problem.substr(0, outcome.problem.find(" at ")));
+  std::string all;
+  for (const auto& verdict : outcome.verdicts) {
+    if (!verdict.problem.empty()) all += verdict.expectation + "; ";
+  }
+  return all;
+}
+
+Result<HuntResult> hunt(CORBA::ORB_ptr orb, const Campaign& campaign, const HuntOptions& options,
+                        const std::function<void(const HuntProgress&)>& show) {
+  std::error_code error;
+  fs::create_directories(options.folder, error);
+  if (error) return Error{"folder " + base::in_quotes(options.folder) + ": " + error.message()};
+  auto result = Hunt(orb, campaign, options, show).go();
+  fs::remove(options.folder, error);  // when it is empty
+  return result;
+}
+
+}  // namespace campaign

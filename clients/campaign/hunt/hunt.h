@@ -1,0 +1,56 @@
+// A search for faults, events, starts and parameters that break what a plan expects. Random cases, and changed ones of those that reached
+// something new; the cases of a seed are always the same, however many are tried at a time. Called from one thread.
+#pragma once
+
+#include <omniORB4/CORBA.h>
+
+#include <chrono>
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "hunt/hunt_case.h"
+#include "run/row_run.h"
+
+namespace campaign {
+
+struct HuntOptions {
+  std::chrono::seconds budget{600};
+  std::size_t most_cases = 0;  // 0: as many as the budget allows
+  std::size_t most_finds = 0;  // 0: any number
+  int jobs = 1;
+  std::string folder;  // for finds
+  std::chrono::milliseconds call_limit{1000};
+};
+
+struct Find {
+  std::string problem;
+  HuntCase tried;  // shrunk
+  std::size_t case_number = 0;
+  double after_s = 0;  // real time until it was found
+  std::string state_hash;
+  std::string file;  // the plan that repeats it
+  bool is_repeatable = false;
+};
+
+struct HuntResult {
+  std::vector<Find> finds;
+  std::size_t cases = 0, corpus = 0, features = 0;
+  double wall_s = 0;
+  bool is_interrupted = false;
+};
+
+struct HuntProgress {
+  std::size_t cases = 0, finds = 0, features = 0;
+  double wall_s = 0;
+  const Find* find = nullptr;  // just now
+};
+
+Result<HuntResult> hunt(CORBA::ORB_ptr orb, const Campaign& campaign, const HuntOptions& options,
+                        const std::function<void(const HuntProgress&)>& show);
+
+// What kind of problem it is: without numbers, so that the same one at another time is not a new one.
+std::string signature(const Outcome& outcome);
+
+}  // namespace campaign

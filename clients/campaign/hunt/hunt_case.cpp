@@ -1,0 +1,192 @@
+#include "hunt/hunt_case.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "base/text.h"
+#include "plan/grammar.h"
+
+namespace campaign {
+namespace {
+
+namespace fs = std::filesystem;
+using Object = Fault::Object;
+
+// A tenth of a second is exact enough to find things, and easy to read.
+double rounded(double seconds) { return std::round(seconds * 10) / 10; }
+
+std::string parameter(const editor::SavedComponent& component, const std::string& name) {
+  for (const auto& set : component.configuration_sets) {
+    for (const auto& [key, value] : set.values) {
+      if (!set.is_hidden() && key == name) return value;
+    }
+  }
+  return "";
+}
+
+// Our own components say which iface they stand for.
+std::vector<HuntTarget> targets_of(const editor::SavedSystem& system) {
+  std::vector<HuntTarget> targets;
+  for (const auto& connector : system.connectors) {
+    if (connector.is_data) targets.push_back({Object::connector, connector.id, {}});
+  }
+  for (const auto& component : system.components) {
+    const auto device = parameter(component, "device_id");
+    const bool is_drive = component.id.find(":RTCPosition2d:") != std::string::npos;
+    const bool is_camera = component.id.find("Camera:") != std::string::npos;
+    if (!device.empty() && is_drive) targets.push_back({Object::actuator, device, {}});
+    if (!device.empty() && !is_camera) targets.push_back({Object::sensor, device, {}});
+    targets.push_back({Object::component, component.instance, {Fault::Kind::error, Fault::Kind::exception}});
+  }
+  return targets;
+}
+
+double amount(Fault::Kind kind, Random& random) {
+  switch (kind) {
+    case Fault::Kind::bias:
+      return std::round((random.uniform() * 2 - 1) * 100) / 100;
+    case Fault::Kind::noise:
+      return std::round(random.uniform() * 100) / 100;
+    case Fault::Kind::latency:
+    case Fault::Kind::delay:
+      return static_cast<double>(1 + random.below(20));
+    case Fault::Kind::slow:
+      return 0.001;
+    case Fault::Kind::missing:
+    case Fault::Kind::dropout:
+    case Fault::Kind::drop:
+    case Fault::Kind::duplicate:
+    case Fault::Kind::reorder:
+      return random.below(4) == 0 ? 1 : std::round(random.uniform() * 20) / 20;
+    case Fault::Kind::weak:
+      return std::round(random.uniform() * 20) / 20;
+    default:
+      return usual_amount(kind).value_or(0);
+  }
+}
+
+}  // namespace
+
+CaseMaker::CaseMaker(const Campaign& campaign) : campaign_(campaign), targets_(campaign.plan().hunt.targets) {
+  if (targets_.empty() && campaign.plan().hunt.events.empty()) targets_ = targets_of(campaign.system());
+}
+
+double CaseMaker::time(Random& random, double duration_s) const { return rounded(random.uniform() * std::max(0.1, duration_s - 0.1)); }
+
+void CaseMaker::add_deed(HuntCase& to, Random& random) const {
+  const auto& events = campaign_.plan().hunt.events;
+  const auto choice = random.below(targets_.size() + events.size());
+  if (choice >= targets_.size()) {
+    Event event = events[choice - targets_.size()];
+    if (!event.at_s && !event.when) event.at_s = time(random, to.duration_s);
+    to.events.push_back(std::move(event));
+    return;
+  }
+  const auto& target = targets_[choice];
+  const auto kinds = target.kinds.empty() ? faults_of(target.object) : target.kinds;
+  Fault fault;
+  fault.object = target.object;
+  fault.target = target.name;
+  fault.kind = kinds[random.below(kinds.size())];
+  fault.at_s = time(random, to.duration_s);
+  if (random.below(2) == 0) fault.for_s = std::max(0.1, time(random, to.duration_s - fault.at_s));
+  fault.amount = amount(fault.kind, random);
+  to.faults.push_back(std::move(fault));
+}
+
+HuntCase CaseMaker::fresh(Random& random) const {
+  HuntCase made;
+  made.duration_s = campaign_.plan().duration_s;
+  const auto row = campaign_.row(1 + random.below(campaign_.rows()));
+  if (row) made.row = *row;
+  made.row.seed = 1 + random.below(1000);
+  const auto deeds = has_deeds() ? random.below(campaign_.plan().hunt.most + 1) : 0;
+  for (std::uint64_t i = 0; i < deeds; ++i) add_deed(made, random);
+  return made;
+}
+
+HuntCase CaseMaker::changed(const HuntCase& from, Random& random) const {
+  HuntCase made = from;
+  const auto way = random.below(4);
+  if (way == 0 || made.deeds() == 0) made.row.seed = 1 + random.below(1000);
+  if (way == 1 && !made.faults.empty()) {
+    auto& fault = made.faults[random.below(made.faults.size())];
+    fault.at_s = time(random, made.duration_s);
+    fault.amount = amount(fault.kind, random);
+  }
+  if (way == 2 && !made.faults.empty()) made.faults.erase(made.faults.begin() + static_cast<long>(random.below(made.faults.size())));
+  if (has_deeds() && made.deeds() < campaign_.plan().hunt.most) add_deed(made, random);
+  return made;
+}
+
+Deeds deeds_of(const Campaign& campaign, const HuntCase& tried) {
+  const auto& plan = campaign.plan();
+  Deeds deeds{plan.events, plan.faults, plan.never, plan.eventually};
+  deeds.events.insert(deeds.events.end(), tried.events.begin(), tried.events.end());
+  deeds.faults.insert(deeds.faults.end(), tried.faults.begin(), tried.faults.end());
+  return deeds;
+}
+
+namespace {
+
+// An event as it stands in the plan, at a time.
+std::string event_text(const Event& event) {
+  auto node = YAML::Load(event.text);
+  if (event.at_s) node["at"] = base::format_number(*event.at_s);
+  YAML::Emitter flow;
+  flow << YAML::Flow << node;
+  return flow.c_str();
+}
+
+}  // namespace
+
+std::string plan_text(const Campaign& campaign, const HuntCase& tried) {
+  const auto& plan = campaign.plan();
+  const auto quoted = [](const std::string& text) {
+    YAML::Emitter out;
+    out << YAML::DoubleQuoted << text;
+    return std::string(out.c_str());
+  };
+  const auto path = [&](const std::string& file) { return quoted(fs::absolute(file).lexically_normal().string()); };
+  std::string text = "system: " + path(plan.system) + "\nworld: " + path(plan.world) +
+                     "\nduration: " + base::format_number(tried.duration_s) + "\nseed: " + std::to_string(tried.row.seed) + "\n";
+  if (!plan.expectations.empty()) text += "expect: " + path(plan.expectations) + "\n";
+  if (!plan.expect_text.empty()) text += "expect:\n" + plan.expect_text + "\n";
+  if (!tried.row.values.empty()) text += "vary:\n";
+  for (const auto& [name, value] : tried.row.values) text += "  " + quoted(name) + ": [" + quoted(value) + "]\n";
+  const auto add_list = [&](const char* key, const std::vector<std::string>& items, bool are_quoted) {
+    if (!items.empty()) text += std::string(key) + ":\n";
+    for (const auto& item : items) text += "  - " + (are_quoted ? quoted(item) : item) + "\n";
+  };
+  const auto deeds = deeds_of(campaign, tried);
+  std::vector<std::string> events, faults, never, eventually;
+  for (const auto& event : deeds.events) events.push_back(event_text(event));
+  for (const auto& fault : deeds.faults) faults.push_back(fault.text());
+  for (const auto& condition : deeds.never) never.push_back(condition.text);
+  for (const auto& condition : deeds.eventually) eventually.push_back(condition.text);
+  add_list("events", events, false);
+  add_list("faults", faults, false);
+  add_list("never", never, false);
+  add_list("eventually", eventually, false);
+  add_list("properties", plan.properties, true);
+  std::vector<std::string> modules, resources;
+  for (const auto& folder : plan.module_paths) modules.push_back(fs::absolute(folder).string());
+  for (const auto& folder : plan.resource_paths) resources.push_back(fs::absolute(folder).string());
+  add_list("module_path", modules, true);
+  add_list("resource_path", resources, true);
+  if (plan.one_process_each) text += "one_process_each: true\n";
+  return text + "hang_timeout: " + base::format_number(plan.hang_timeout_s) + "\ninvariants: true\n";
+}
+
+std::string text_of(const HuntCase& tried) {
+  std::vector<std::string> words{"seed " + std::to_string(tried.row.seed)};
+  for (const auto& [name, value] : tried.row.values) words.push_back(name + " " + value);
+  for (const auto& event : tried.events) words.push_back(event_text(event));
+  for (const auto& fault : tried.faults) words.push_back(fault.text());
+  return base::join(words, "; ");
+}
+
+}  // namespace campaign

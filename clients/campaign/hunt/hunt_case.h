@@ -1,0 +1,49 @@
+// One thing that a hunt tries: a row of the plan with faults and events, and how such things are made, changed and written down. Values;
+// one thread at a time.
+#pragma once
+
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "rows/random.h"
+#include "run/campaign.h"
+#include "run/deeds_runner.h"
+
+namespace campaign {
+
+struct HuntCase {
+  Row row;
+  std::vector<Event> events;  // each at a time
+  std::vector<Fault> faults;
+  double duration_s = 0;
+
+  std::size_t deeds() const { return events.size() + faults.size(); }
+};
+
+class CaseMaker {
+ public:
+  // What the plan says may be broken; without a word of it, all that the system has.
+  explicit CaseMaker(const Campaign& campaign);
+
+  HuntCase fresh(Random& random) const;
+  // A case that differs a little.
+  HuntCase changed(const HuntCase& from, Random& random) const;
+  bool has_deeds() const { return !targets_.empty() || !campaign_.plan().hunt.events.empty(); }
+
+ private:
+  void add_deed(HuntCase& to, Random& random) const;
+  double time(Random& random, double duration_s) const;
+  const Campaign& campaign_;
+  std::vector<HuntTarget> targets_;
+};
+
+// All of a case, with what the plan always does.
+Deeds deeds_of(const Campaign& campaign, const HuntCase& tried);
+// A plan whose only row is the case.
+std::string plan_text(const Campaign& campaign, const HuntCase& tried);
+// The faults and events in one line.
+std::string text_of(const HuntCase& tried);
+
+}  // namespace campaign

@@ -1,0 +1,7 @@
+// rtse-campaign: the verbs of rtse that are about campaigns. rtse becomes this program when it meets one of them.
+#include "campaign_commands.h"
+#include "program.h"
+
+int main(int argc, char** argv) {
+  return editor::run_program({campaign::add_sweep, campaign::add_hunt, campaign::add_results}, argc, argv);
+}

@@ -1,0 +1,70 @@
+// What a plan does to a run: events, which anybody could do to a running system, and faults, which break something for a while. Values; any
+// thread.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "plan/condition.h"
+
+namespace campaign {
+
+struct Event {
+  enum class Kind { spawn, remove, push, pose, set, activate, deactivate, reset, connect, disconnect, command };
+  Kind kind = Kind::command;
+  std::string text;  // in one line, for reports
+  std::optional<double> at_s;
+  std::optional<Condition> when;
+  std::string target;                // model, component, connection, file to spawn, command line
+  std::string name;                  // of what is spawned; of the parameter
+  std::string value;                 // of the parameter
+  std::vector<std::string> numbers;  // pose, force
+  double duration_s = 0;             // of a push
+};
+
+struct Fault {
+  enum class Object { sensor, actuator, connector, component, naming };
+  enum class Kind {
+    off,
+    stuck,
+    bias,
+    noise,
+    missing,
+    latency,
+    dropout,
+    weak,
+    drop,
+    delay,
+    duplicate,
+    reorder,
+    error,
+    exception,
+    slow,
+    hang,
+    kill,
+    gone,
+  };
+  Object object = Object::component;
+  Kind kind = Kind::error;
+  std::string target;
+  double at_s = 0;
+  std::optional<double> for_s;
+  double amount = 0;
+
+  std::string text() const;  // as it stands in a plan, in one line
+};
+
+std::string_view to_text(Fault::Object object);
+std::string_view to_text(Fault::Kind kind);
+std::optional<Fault::Kind> fault_kind(std::string_view word);
+// Which faults an object can have.
+std::vector<Fault::Kind> faults_of(Fault::Object object);
+// What the amount is without one in the plan; nothing: it has none.
+std::optional<double> usual_amount(Fault::Kind kind);
+
+// Of nodes that fit the shapes. Throw PlanError.
+Event to_event(const YAML::Node& node);
+Fault to_fault(const YAML::Node& node);
+
+}  // namespace campaign

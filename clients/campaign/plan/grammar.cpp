@@ -1,0 +1,400 @@
+#include "plan/grammar.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <vector>
+
+#include "base/text.h"
+
+namespace campaign {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array plan_keys = {
+    Key{"system", Form::text, {}, true, "RTSProfile of the system, XML or YAML; files are relative to the plan's folder"},
+    Key{"world", Form::text, {}, true, "SDFormat world"},
+    Key{"duration", Form::positive, {}, true, "Simulated seconds of each run"},
+    Key{"expect", Form::any, {}, false, "A file with expectations as of rtse run, or the list itself"},
+    Key{"seed", Form::count, {}, false, "Seed of the world's noise and of faults in the first repetition; default: 1"},
+    Key{"repeat", Form::count, {}, false, "So many runs of each combination, each with the next seed; default: 1"},
+    Key{"vary", Form::named, "vary", false, "Parameter paths and the values they take"},
+    Key{"scatter", Form::maps, "scatter", false, "Models that are placed at random without touching anything"},
+    Key{"samples", Form::count, {}, false, "How many samples are drawn of the ranges (uniform, normal, log); default: 10"},
+    Key{"sampling", Form::words, "random latin sobol", false, "How samples are drawn; default: random"},
+    Key{"sampling_seed", Form::count, {}, false, "Seed of the sampling and of scatter; default: 1"},
+    Key{"measure", Form::list, "measure", false, "Numbers that are taken from each run"},
+    Key{"events", Form::maps, "event", false, "What happens at a simulated time or on a condition"},
+    Key{"faults", Form::maps, "fault", false, "What breaks, and when"},
+    Key{"never", Form::maps, "condition", false, "What must at no moment be true"},
+    Key{"eventually", Form::maps, "condition", false, "What must become true"},
+    Key{"hunt", Form::map, "hunt", false, "What a hunt may try"},
+    Key{"properties", Form::texts, {}, false, "INSTANCE:KEY=VALUE, properties that components are created with"},
+    Key{"module_path", Form::texts, {}, false, "Folders with modules of components"},
+    Key{"resource_path", Form::texts, {}, false, "Folders with models"},
+    Key{"one_process_each", Form::flag, {}, false, "A process for every component instead of one for all"},
+    Key{"hang_timeout", Form::positive, {}, false, "Seconds of real time that one tick may take; default: 30"},
+    Key{"invariants", Form::flag, {}, false, "Whether no port may send a NaN; default: false, and true in a hunt"},
+    Key{"pictures", Form::flag, {}, false, "Pictures of runs that fail; default: true"},
+};
+
+constexpr std::array vary_keys = {
+    Key{"list", Form::values, {}, false, "These values, one after the other"},
+    Key{"from", Form::number, {}, false, "First value of a grid"},
+    Key{"to", Form::number, {}, false, "Last value of a grid"},
+    Key{"step", Form::positive, {}, false, "Distance of the values of a grid; default: 1"},
+    Key{"steps", Form::count, {}, false, "Number of values of a grid, instead of step"},
+    Key{"uniform", Form::pair, {}, false, "Least and greatest value of a range"},
+    Key{"normal", Form::pair, {}, false, "Mean and standard deviation"},
+    Key{"log", Form::pair, {}, false, "Least and greatest value; the logarithm is uniform"},
+};
+
+constexpr std::array scatter_keys = {
+    Key{"models", Form::texts, {}, true, "Models of the world"},
+    Key{"region", Form::region, {}, true, "Where their middles may lie [m]"},
+    Key{"clearance", Form::number, {}, false, "Least distance between them and all other models [m]; default: 0.05"},
+    Key{"turn", Form::flag, {}, false, "Whether they get a random yaw too; default: true"},
+};
+
+constexpr std::array measure_keys = {
+    Key{"path_length", Form::map, "of_model", false, "Metres that a model has gone"},
+    Key{"time_to", Form::map, "time_to", false, "Seconds until a model is in a region"},
+    Key{"clearance", Form::map, "clearance", false,
+        "Smallest distance between a model and others [m], seen from above, ten times a second"},
+    Key{"contacts", Form::map, "of_model", false, "How often a model began to touch another one than the ground"},
+    Key{"value", Form::map, "value", false, "Of a member of what a port sends"},
+    Key{"wall_time", Form::map, "named_only", false, "Seconds of real time of the run"},
+};
+
+constexpr std::array of_model_keys = {
+    Key{"model", Form::text, {}, true, "Model of the world"},
+    Key{"as", Form::text, {}, false, "Name of the number in the results"},
+};
+constexpr std::array time_to_keys = {
+    Key{"model", Form::text, {}, true, "Model of the world"},
+    Key{"region", Form::region, {}, true, "Corners [m]"},
+    Key{"as", Form::text, {}, false, "Name of the number in the results"},
+};
+constexpr std::array clearance_keys = {
+    Key{"model", Form::text, {}, true, "Model of the world"},
+    Key{"to", Form::texts, {}, false, "Only to these models"},
+    Key{"as", Form::text, {}, false, "Name of the number in the results"},
+};
+constexpr std::array value_keys = {
+    Key{"port", Form::text, {}, true, "INSTANCE:PORT, an OutPort"},
+    Key{"member", Form::text, {}, true, "Path in the sample, like data.vx or ranges[0]"},
+    Key{"take", Form::words, "min max mean last count", true, "Which number of all samples"},
+    Key{"as", Form::text, {}, false, "Name of the number in the results"},
+};
+constexpr std::array named_only_keys = {Key{"as", Form::text, {}, false, "Name of the number in the results"}};
+
+constexpr std::array condition_keys = {
+    Key{"port", Form::text, {}, false, "INSTANCE:PORT, an OutPort; with member, and min or max"},
+    Key{"member", Form::text, {}, false, "Path in the sample"},
+    Key{"min", Form::number, {}, false, "The latest value is at least this"},
+    Key{"max", Form::number, {}, false, "The latest value is at most this"},
+    Key{"model", Form::text, {}, false, "Model of the world; with region, or touches"},
+    Key{"region", Form::region, {}, false, "The model is in there [m]"},
+    Key{"touches", Form::text, {}, false, "The model touches this one; any: another one than the ground"},
+    Key{"component", Form::text, {}, false, "Component of the system; with is"},
+    Key{"is", Form::words, "Created Inactive Active Error", false, "The component is in this state"},
+    Key{"after", Form::number, {}, false, "Counts only from this simulated time on [s]"},
+    Key{"within", Form::positive, {}, false, "eventually: until this simulated time [s]; default: the end"},
+};
+
+constexpr std::array event_keys = {
+    Key{"at", Form::number, {}, false, "Simulated time [s]"},
+    Key{"when", Form::map, "condition", false, "The first moment at which this is true, looked at ten times a second"},
+    Key{"spawn", Form::map, "spawn", false, "Adds a model"},
+    Key{"delete", Form::text, {}, false, "Removes a model"},
+    Key{"push", Form::map, "push", false, "Pushes a model"},
+    Key{"pose", Form::map, "pose", false, "Puts a model somewhere"},
+    Key{"set", Form::map, "set", false, "Sets a configuration parameter"},
+    Key{"activate", Form::text, {}, false, "Activates a component"},
+    Key{"deactivate", Form::text, {}, false, "Deactivates a component"},
+    Key{"reset", Form::text, {}, false, "Resets a component that is in its error state"},
+    Key{"connect", Form::text, {}, false, "Makes a connection of the system again, by its id or name"},
+    Key{"disconnect", Form::text, {}, false, "Ends a connection of the system, by its id or name"},
+    Key{"command", Form::text, {}, false, "Runs a command line"},
+};
+constexpr std::array spawn_keys = {
+    Key{"model", Form::text, {}, true, "SDF file, model folder or model://NAME"},
+    Key{"name", Form::text, {}, false, "Name in the world"},
+    Key{"pose", Form::values, {}, false, "X Y YAW, X Y Z YAW, or X Y Z ROLL PITCH YAW [m, rad]"},
+};
+constexpr std::array push_keys = {
+    Key{"model", Form::text, {}, true, "Model or MODEL::LINK"},
+    Key{"force", Form::values, {}, true, "FX FY FZ [N], and TX TY TZ [N m]"},
+    Key{"for", Form::positive, {}, false, "Simulated seconds; default: one step"},
+};
+constexpr std::array pose_keys = {
+    Key{"model", Form::text, {}, true, "Model of the world"},
+    Key{"to", Form::values, {}, true, "X Y YAW, X Y Z YAW, or X Y Z ROLL PITCH YAW [m, rad]"},
+};
+constexpr std::array set_keys = {
+    Key{"component", Form::text, {}, true, "Component of the system"},
+    Key{"parameter", Form::text, {}, true, "Of its active configuration set"},
+    Key{"value", Form::text, {}, true, "What it becomes"},
+};
+
+constexpr std::array fault_keys = {
+    Key{"at", Form::number, {}, true, "Simulated time [s]"},
+    Key{"for", Form::positive, {}, false, "Simulated seconds; default: to the end"},
+    Key{"sensor", Form::text, {}, false, "iface of a sensor; with is"},
+    Key{"actuator", Form::text, {}, false, "iface of a drive; with is"},
+    Key{"connector", Form::text, {}, false, "Id or name of a connection of the system; with is"},
+    Key{"component", Form::text, {}, false, "Component of the system; with is"},
+    Key{"naming", Form::words, "gone", false, "The naming service does not answer"},
+    Key{"is", Form::words, "off stuck bias noise missing latency dropout weak drop delay duplicate reorder error exception slow hang kill",
+        false, "What happens to it"},
+    Key{"amount",
+        Form::number,
+        {},
+        false,
+        "bias, noise: in the sensor's unit; missing, dropout, drop, duplicate, reorder: a fraction; latency, delay: ticks, samples; weak: "
+        "fraction of the strength that is left; slow: seconds of real time a tick"},
+};
+
+constexpr std::array hunt_keys = {
+    Key{"faults", Form::maps, "hunt_fault", false, "Faults that it may ask for; default: any that the system allows"},
+    Key{"events", Form::maps, "event", false, "Events that it may ask for, at any time"},
+    Key{"most", Form::count, {}, false, "Faults and events of one run; default: 3"},
+    Key{"seed", Form::count, {}, false, "Of the hunt itself; default: 1"},
+};
+constexpr std::array hunt_fault_keys = {
+    Key{"sensor", Form::text, {}, false, "iface of a sensor"},
+    Key{"actuator", Form::text, {}, false, "iface of a drive"},
+    Key{"connector", Form::text, {}, false, "Id or name of a connection of the system"},
+    Key{"component", Form::text, {}, false, "Component of the system"},
+    Key{"is", Form::texts, {}, false, "Only these; default: all that fit"},
+};
+
+constexpr std::array shapes = {
+    Shape{plan_shape, plan_keys},       Shape{"vary", vary_keys},         Shape{"scatter", scatter_keys},
+    Shape{"measure", measure_keys},     Shape{"of_model", of_model_keys}, Shape{"time_to", time_to_keys},
+    Shape{"clearance", clearance_keys}, Shape{"value", value_keys},       Shape{"named_only", named_only_keys},
+    Shape{"condition", condition_keys}, Shape{"event", event_keys},       Shape{"spawn", spawn_keys},
+    Shape{"push", push_keys},           Shape{"pose", pose_keys},         Shape{"set", set_keys},
+    Shape{"fault", fault_keys},         Shape{"hunt", hunt_keys},         Shape{"hunt_fault", hunt_fault_keys},
+};
+
+std::string names_of(const Shape& shape) {
+  std::vector<std::string> names;
+  for (const Key& key : shape.keys) names.emplace_back(key.name);
+  return base::join(names, ", ");
+}
+
+double number_at(const YAML::Node& node, const std::string& what) {
+  const auto value = node.IsScalar() ? base::parse_number(node.Scalar()) : std::nullopt;
+  if (!value) fail_at(node, what + " must be a finite number" + (node.IsScalar() ? ", got " + base::in_quotes(node.Scalar()) : ""));
+  return *value;
+}
+
+void check_numbers(const YAML::Node& node, const std::string& what, std::size_t count, const char* form) {
+  if (!node.IsSequence() || node.size() != count) fail_at(node, what + " must be " + form);
+  for (const auto& one : node) number_at(one, what);
+}
+
+void check_scalars(const YAML::Node& node, const std::string& what, bool may_be_one) {
+  if (may_be_one && node.IsScalar() && !node.Scalar().empty()) return;
+  if (!node.IsSequence() || node.size() == 0)
+    fail_at(node, what + (may_be_one ? " must be a word or a list of words" : " must be a list of values"));
+  for (const auto& one : node) {
+    if (!one.IsScalar() || one.Scalar().empty()) fail_at(one, what + " must hold plain values");
+  }
+}
+
+void check_scalar(const YAML::Node& node, const Key& key) {
+  const std::string what(key.name);
+  if (!node.IsScalar() || node.Scalar().empty()) fail_at(node, what + " must be a plain value");
+  const auto& text = node.Scalar();
+  const auto fail = [&](const std::string& expected) { fail_at(node, what + " must be " + expected + ", got " + base::in_quotes(text)); };
+  switch (key.form) {
+    case Form::number:
+      number_at(node, what);
+      break;
+    case Form::positive:
+      if (number_at(node, what) <= 0) fail("more than 0");
+      break;
+    case Form::fraction:
+      if (const double value = number_at(node, what); value < 0 || value > 1) fail("from 0 to 1");
+      break;
+    case Form::count:
+      if (const auto value = base::parse_integer(text); !value || *value < 0) fail("a whole number, 0 or more");
+      break;
+    case Form::flag:
+      if (text != "true" && text != "false") fail("true or false");
+      break;
+    case Form::words: {
+      const auto words = base::split_list(key.of, ' ');
+      if (std::ranges::find(words, text) == words.end()) fail(base::join(words, ", "));
+      break;
+    }
+    default:
+      break;
+  }
+}
+
+void check_list(const YAML::Node& node, const Key& key) {
+  if (!node.IsSequence()) fail_at(node, std::string(key.name) + " must be a list");
+  for (const auto& entry : node) {
+    if (key.form == Form::list && (!entry.IsMap() || entry.size() != 1))
+      fail_at(entry, "each entry of " + std::string(key.name) + " must be one NAME: {...}");
+    check_shape(entry, key.of, std::string(key.name));
+  }
+}
+
+void check_named(const YAML::Node& node, const Key& key) {
+  if (!node.IsMap()) fail_at(node, std::string(key.name) + " must be a map");
+  std::set<std::string> seen;
+  for (const auto& entry : node) {
+    if (!seen.insert(entry.first.Scalar()).second) fail_at(entry.first, std::string(key.name) + " has " + entry.first.Scalar() + " twice");
+    if (entry.second.IsSequence()) {
+      check_scalars(entry.second, entry.first.Scalar(), false);
+    } else if (entry.second.IsMap()) {
+      check_shape(entry.second, key.of, entry.first.Scalar());
+    } else {
+      fail_at(entry.second, entry.first.Scalar() + " must be a list of values, or a map with " + names_of(shape(key.of)));
+    }
+  }
+}
+
+Json reference(std::string_view name) { return {{"$ref", "#/$defs/" + std::string(name)}}; }
+
+Json numbers(std::size_t count) { return {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", count}, {"maxItems", count}}; }
+
+Json scalars() { return {{"type", "array"}, {"items", {{"type", {"string", "number", "boolean"}}}}, {"minItems", 1}}; }
+
+Json schema_of(const Key& key) {
+  switch (key.form) {
+    case Form::text:
+      return {{"type", {"string", "number", "boolean"}}};
+    case Form::number:
+      return {{"type", "number"}};
+    case Form::positive:
+      return {{"type", "number"}, {"exclusiveMinimum", 0}};
+    case Form::fraction:
+      return {{"type", "number"}, {"minimum", 0}, {"maximum", 1}};
+    case Form::count:
+      return {{"type", "integer"}, {"minimum", 0}};
+    case Form::flag:
+      return {{"type", "boolean"}};
+    case Form::pair:
+      return numbers(2);
+    case Form::region:
+      return numbers(4);
+    case Form::values:
+      return scalars();
+    case Form::texts:
+      return {{"anyOf", {Json{{"type", {"string", "number"}}}, scalars()}}};
+    case Form::words: {
+      return {{"enum", base::split_list(key.of, ' ')}};
+    }
+    case Form::any:
+      return Json::object();
+    case Form::map:
+      return reference(key.of);
+    case Form::one: {
+      auto json = reference(key.of);
+      json["minProperties"] = json["maxProperties"] = 1;
+      return json;
+    }
+    case Form::list: {
+      auto item = reference(key.of);
+      item["minProperties"] = item["maxProperties"] = 1;
+      return {{"type", "array"}, {"items", item}};
+    }
+    case Form::maps:
+      return {{"type", "array"}, {"items", reference(key.of)}};
+    case Form::named:
+      return {{"type", "object"}, {"additionalProperties", {{"anyOf", {scalars(), reference(key.of)}}}}};
+  }
+  return Json::object();
+}
+
+Json schema_of(const Shape& shape) {
+  Json properties = Json::object();
+  std::vector<std::string> needed;
+  for (const Key& key : shape.keys) {
+    auto json = schema_of(key);
+    json["description"] = std::string(key.meaning);
+    properties[std::string(key.name)] = json;
+    if (key.is_needed) needed.emplace_back(key.name);
+  }
+  Json json{{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
+  if (!needed.empty()) json["required"] = needed;
+  return json;
+}
+
+}  // namespace
+
+const Shape& shape(std::string_view name) {
+  const auto found = std::ranges::find_if(shapes, [&](const Shape& one) { return one.name == name; });
+  assert(found != shapes.end());
+  return *found;
+}
+
+void fail_at(const YAML::Node& node, const std::string& message) { throw PlanError{message, node.Mark().line + 1, node.Mark().column + 1}; }
+
+void check_form(const YAML::Node& node, const Key& key) {
+  const std::string what(key.name);
+  switch (key.form) {
+    case Form::any:
+      return;
+    case Form::pair:
+      return check_numbers(node, what, 2, "[NUMBER, NUMBER]");
+    case Form::region:
+      return check_numbers(node, what, 4, "[x1, y1, x2, y2]");
+    case Form::values:
+      return check_scalars(node, what, false);
+    case Form::texts:
+      return check_scalars(node, what, true);
+    case Form::map:
+    case Form::one:
+      return check_shape(node, key.of, what);
+    case Form::list:
+    case Form::maps:
+      return check_list(node, key);
+    case Form::named:
+      return check_named(node, key);
+    default:
+      return check_scalar(node, key);
+  }
+}
+
+void check_shape(const YAML::Node& node, std::string_view name, const std::string& what) {
+  const Shape& wanted = shape(name);
+  if (!node.IsMap()) {
+    if (node.IsNull() && std::ranges::none_of(wanted.keys, [](const Key& key) { return key.is_needed; })) return;
+    fail_at(node, what + " must be a map with " + names_of(wanted));
+  }
+  std::set<std::string> seen;
+  for (const auto& entry : node) {
+    if (!entry.first.IsScalar()) fail_at(entry.first, what + ": keys must be words");
+    const auto& given = entry.first.Scalar();
+    const auto key = std::ranges::find_if(wanted.keys, [&](const Key& one) { return one.name == given; });
+    if (key == wanted.keys.end()) fail_at(entry.first, what + " has no key " + base::in_quotes(given) + "; it has " + names_of(wanted));
+    if (!seen.insert(given).second) fail_at(entry.first, what + " has " + given + " twice");
+    check_form(entry.second, *key);
+  }
+  for (const Key& key : wanted.keys) {
+    if (key.is_needed && !seen.contains(std::string(key.name))) fail_at(node, what + " needs " + std::string(key.name));
+  }
+}
+
+Json plan_schema() {
+  Json json{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Plan of a campaign (rtse sweep, rtse hunt)"}};
+  json.update(schema_of(shape(plan_shape)));
+  auto& definitions = json["$defs"] = Json::object();
+  for (const Shape& one : shapes) {
+    if (one.name != plan_shape) definitions[std::string(one.name)] = schema_of(one);
+  }
+  return json;
+}
+
+}  // namespace campaign

@@ -1,0 +1,251 @@
+#include "plan/plan.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "base/text.h"
+#include "plan/grammar.h"
+
+namespace campaign {
+namespace {
+
+std::string word(const YAML::Node& node, const char* key, const std::string& usual = "") { return node[key] ? node[key].Scalar() : usual; }
+
+double number(const YAML::Node& node, const char* key, double usual) {
+  return node[key] ? base::parse_number(node[key].Scalar()).value_or(usual) : usual;
+}
+
+std::uint64_t count(const YAML::Node& node, const char* key, std::uint64_t usual) {
+  return node[key] ? static_cast<std::uint64_t>(base::parse_integer(node[key].Scalar()).value_or(0)) : usual;
+}
+
+bool flag(const YAML::Node& node, const char* key, bool usual) { return node[key] ? node[key].Scalar() == "true" : usual; }
+
+std::vector<std::string> words(const YAML::Node& node) {
+  std::vector<std::string> all;
+  if (!node) return all;
+  if (node.IsScalar()) return {node.Scalar()};
+  for (const auto& one : node) all.push_back(one.Scalar());
+  return all;
+}
+
+void read_region(const YAML::Node& node, double* region) {
+  for (std::size_t i = 0; node && i < 4; ++i) region[i] = *base::parse_number(node[i].Scalar());
+  if (region[0] > region[2]) std::swap(region[0], region[2]);
+  if (region[1] > region[3]) std::swap(region[1], region[3]);
+}
+
+std::vector<std::string> grid(const YAML::Node& node) {
+  const double from = number(node, "from", 0), to = number(node, "to", 0);
+  if (!node["from"] || !node["to"]) fail_at(node, "a grid needs from and to");
+  if (node["step"] && node["steps"]) fail_at(node, "a grid has step or steps, not both");
+  const auto steps = count(node, "steps", 0);
+  if (node["steps"] && steps < 1) fail_at(node["steps"], "steps must be at least 1");
+  double step = number(node, "step", 1);
+  if (steps > 1) step = (to - from) / static_cast<double>(steps - 1);
+  if (!node["steps"] && to < from) fail_at(node["to"], "to must not be less than from");
+  const double all = node["steps"] ? static_cast<double>(steps) : std::floor((to - from) / step + 1e-9) + 1;
+  if (all > static_cast<double>(most_rows)) fail_at(node, "a grid must have at most " + std::to_string(most_rows) + " values");
+  std::vector<std::string> values;
+  // A multiple of the step may carry a last bit that nobody has asked for.
+  for (int i = 0; i < static_cast<int>(all); ++i) values.push_back(base::format_number(std::round((from + i * step) * 1e12) / 1e12));
+  return values;
+}
+
+Axis to_axis(const YAML::Node& name, const YAML::Node& node) {
+  Axis axis;
+  axis.path = name.Scalar();
+  if (node.IsSequence()) {
+    axis.values = words(node);
+    return axis;
+  }
+  const std::map<std::string, Range::Kind> kinds = {
+      {"uniform", Range::Kind::uniform}, {"normal", Range::Kind::normal}, {"log", Range::Kind::log}};
+  int ways = (node["list"] ? 1 : 0) + (node["from"] || node["to"] ? 1 : 0);
+  for (const auto& [key, kind] : kinds) {
+    if (!node[key]) continue;
+    ++ways;
+    axis.range = Range{kind, *base::parse_number(node[key][0].Scalar()), *base::parse_number(node[key][1].Scalar())};
+    if (kind == Range::Kind::normal ? axis.range->b < 0 : axis.range->b < axis.range->a)
+      fail_at(node[key], key + (kind == Range::Kind::normal ? ": the deviation must not be negative"
+                                                            : ": the first must not be more than the second"));
+    if (kind == Range::Kind::log && axis.range->a <= 0) fail_at(node[key], "log: both must be more than 0");
+  }
+  if (ways != 1) fail_at(node, axis.path + " needs one of list, from and to, uniform, normal, log");
+  if (node["list"]) axis.values = words(node["list"]);
+  if (node["from"]) axis.values = grid(node);
+  return axis;
+}
+
+void read_measure(const std::string& kind, const YAML::Node& node, Measure& measure) {
+  static const std::map<std::string, Measure::Kind> kinds = {
+      {"path_length", Measure::Kind::path_length}, {"time_to", Measure::Kind::time_to}, {"clearance", Measure::Kind::clearance},
+      {"contacts", Measure::Kind::contacts},       {"value", Measure::Kind::value},     {"wall_time", Measure::Kind::wall_time}};
+  static const std::map<std::string, Measure::Take> takes = {{"min", Measure::Take::min},
+                                                             {"max", Measure::Take::max},
+                                                             {"mean", Measure::Take::mean},
+                                                             {"last", Measure::Take::last},
+                                                             {"count", Measure::Take::count}};
+  measure.kind = kinds.at(kind);
+  measure.name = kind;
+  if (!node.IsMap()) return;
+  measure.model = word(node, "model");
+  measure.to = words(node["to"]);
+  measure.port = word(node, "port");
+  measure.member = word(node, "member");
+  read_region(node["region"], measure.region);
+  if (node["take"]) measure.take = takes.at(node["take"].Scalar());
+  if (measure.kind == Measure::Kind::value) measure.name = measure.port + " " + measure.member + " " + word(node, "take");
+  measure.name = word(node, "as", measure.name);
+}
+
+std::vector<Measure> to_measures(const YAML::Node& node) {
+  std::vector<Measure> measures;
+  std::set<std::string> names;
+  for (const auto& entry : node) {
+    Measure measure;
+    read_measure(entry.begin()->first.Scalar(), entry.begin()->second, measure);
+    if (!names.insert(measure.name).second)
+      fail_at(entry, "there are two measures " + base::in_quotes(measure.name) + "; name one with as");
+    measures.push_back(measure);
+  }
+  return measures;
+}
+
+HuntSpace to_hunt(const YAML::Node& node) {
+  HuntSpace hunt;
+  if (!node || !node.IsMap()) return hunt;
+  hunt.most = count(node, "most", 3);
+  if (hunt.most < 1 || hunt.most > 100) fail_at(node["most"], "most must be from 1 to 100");
+  hunt.seed = count(node, "seed", 1);
+  for (const auto& entry : node["events"]) hunt.events.push_back(to_event(entry));
+  for (const auto& entry : node["faults"]) {
+    HuntTarget target;
+    int objects = 0;
+    for (const auto object : {Fault::Object::sensor, Fault::Object::actuator, Fault::Object::connector, Fault::Object::component}) {
+      const auto named = entry[std::string(to_text(object))];
+      if (!named) continue;
+      ++objects;
+      target.object = object;
+      target.name = named.Scalar();
+    }
+    if (objects != 1) fail_at(entry, "must have one of sensor, actuator, connector, component");
+    const auto possible = faults_of(target.object);
+    for (const auto& name : words(entry["is"])) {
+      const auto kind = fault_kind(name);
+      if (!kind || std::ranges::find(possible, *kind) == possible.end())
+        fail_at(entry["is"], base::in_quotes(name) + " is no fault of a " + std::string(to_text(target.object)));
+      target.kinds.push_back(*kind);
+    }
+    hunt.targets.push_back(target);
+  }
+  return hunt;
+}
+
+// Relative paths are relative to the plan; model:// and the like stay.
+std::string in_folder(const Plan& plan, const std::string& path) {
+  return path.empty() ? path : (std::filesystem::path(plan.folder()) / path).lexically_normal().string();
+}
+
+void read_expect(const YAML::Node& node, Plan& plan) {
+  if (!node) return;
+  if (node.IsScalar()) {
+    plan.expectations = in_folder(plan, node.Scalar());
+  } else if (node.IsSequence()) {
+    YAML::Emitter block;
+    block << node;
+    plan.expect_text = block.c_str();
+  } else {
+    fail_at(node, "expect must be a file or a list of expectations");
+  }
+}
+
+void read_variation(const YAML::Node& root, Plan& plan) {
+  plan.seed = count(root, "seed", 1);
+  plan.repeat = count(root, "repeat", 1);
+  if (plan.repeat < 1) fail_at(root["repeat"], "repeat must be at least 1");
+  plan.samples = count(root, "samples", 10);
+  if (plan.samples < 1) fail_at(root["samples"], "samples must be at least 1");
+  plan.sampling_seed = count(root, "sampling_seed", 1);
+  const auto sampling = word(root, "sampling", "random");
+  plan.sampling = sampling == "latin" ? Plan::Sampling::latin : sampling == "sobol" ? Plan::Sampling::sobol : Plan::Sampling::random;
+  for (const auto& entry : root["vary"]) {
+    plan.axes.push_back(to_axis(entry.first, entry.second));
+    if (plan.axes.back().path == "seed" && plan.repeat > 1) fail_at(entry.first, "seed varies already by repeat; expected one of the two");
+  }
+  for (const auto& entry : root["scatter"]) {
+    Scatter scatter;
+    scatter.models = words(entry["models"]);
+    read_region(entry["region"], scatter.region);
+    scatter.clearance = number(entry, "clearance", 0.05);
+    scatter.turns = flag(entry, "turn", true);
+    plan.scatters.push_back(scatter);
+  }
+}
+
+Plan to_plan(const YAML::Node& root, const std::string& file) {
+  check_shape(root, plan_shape, "plan");
+  Plan plan;
+  plan.file = file;
+  plan.system = in_folder(plan, word(root, "system"));
+  plan.world = in_folder(plan, word(root, "world"));
+  plan.duration_s = number(root, "duration", 60);
+  if (plan.duration_s > 1e7) fail_at(root["duration"], "duration must be at most 1e7 s");
+  read_expect(root["expect"], plan);
+  read_variation(root, plan);
+  plan.measures = to_measures(root["measure"]);
+  for (const auto& entry : root["events"]) {
+    plan.events.push_back(to_event(entry));
+    if (!plan.events.back().at_s && !plan.events.back().when) fail_at(entry, "an event needs at or when");
+  }
+  for (const auto& entry : root["faults"]) plan.faults.push_back(to_fault(entry));
+  for (const auto& entry : root["never"]) plan.never.push_back(to_condition(entry));
+  for (const auto& entry : root["eventually"]) plan.eventually.push_back(to_condition(entry));
+  plan.hunt = to_hunt(root["hunt"]);
+  plan.properties = words(root["properties"]);
+  for (const auto& path : words(root["module_path"])) plan.module_paths.push_back(in_folder(plan, path));
+  for (const auto& path : words(root["resource_path"])) plan.resource_paths.push_back(in_folder(plan, path));
+  plan.one_process_each = flag(root, "one_process_each", false);
+  plan.hang_timeout_s = number(root, "hang_timeout", 30);
+  plan.has_pictures = flag(root, "pictures", true);
+  plan.checks_invariants = flag(root, "invariants", false);
+  return plan;
+}
+
+}  // namespace
+
+std::string Plan::folder() const {
+  const auto parent = std::filesystem::path(file).parent_path();
+  return parent.empty() ? "." : parent.string();
+}
+
+Result<Plan> read_plan(const std::string& file) {
+  const auto fail = [&](int line, int column, const std::string& what) {
+    const std::string place = line > 0 ? ":" + std::to_string(line) + ":" + std::to_string(column) : "";
+    return Error{"plan " + base::in_quotes(file) + place + ": " + what};
+  };
+  std::ifstream in(file);
+  std::ostringstream text;
+  if (!in || !(text << in.rdbuf())) return fail(0, 0, "cannot be read");
+  if (text.str().size() > (16U << 20U)) return fail(0, 0, "is larger than 16 MiB");
+  try {
+    const auto documents = YAML::LoadAll(text.str());
+    if (documents.size() != 1) return fail(0, 0, "must hold one YAML document");
+    auto plan = to_plan(documents.front(), file);
+    plan.text = text.str();
+    return plan;
+  } catch (const PlanError& error) {
+    return fail(error.line, error.column, error.message);
+  } catch (const YAML::Exception& error) {
+    return fail(error.mark.line + 1, error.mark.column + 1, "is no YAML: " + error.msg);
+  }
+}
+
+}  // namespace campaign

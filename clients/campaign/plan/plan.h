@@ -1,0 +1,98 @@
+// A plan of a campaign: what is run, what varies, what is measured, what happens and what breaks. docs/campaigns.md has the format. Values;
+// any thread.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "plan/condition.h"
+#include "plan/deeds.h"
+
+namespace campaign {
+
+using base::Error;
+using base::Result;
+
+struct Range {
+  enum class Kind { uniform, normal, log };
+  Kind kind = Kind::uniform;
+  double a = 0, b = 1;
+};
+
+// A parameter and what it takes: values of a grid, or a range that samples are drawn from.
+struct Axis {
+  std::string path;
+  std::vector<std::string> values;
+  std::optional<Range> range;
+};
+
+struct Scatter {
+  std::vector<std::string> models;
+  double region[4] = {};
+  double clearance = 0.05;  // [m]
+  bool turns = true;
+};
+
+struct Measure {
+  enum class Kind { path_length, time_to, clearance, contacts, value, wall_time };
+  enum class Take { min, max, mean, last, count };
+  Kind kind = Kind::wall_time;
+  std::string name;  // in the results
+  std::string model;
+  double region[4] = {};
+  std::vector<std::string> to;
+  std::string port, member;
+  Take take = Take::last;
+};
+
+// What a hunt may break: the object, and how; none given: all ways that fit.
+struct HuntTarget {
+  Fault::Object object = Fault::Object::component;
+  std::string name;
+  std::vector<Fault::Kind> kinds;
+};
+
+struct HuntSpace {
+  std::vector<HuntTarget> targets;  // empty: all that the system allows
+  std::vector<Event> events;
+  std::size_t most = 3;
+  std::uint64_t seed = 1;
+};
+
+struct Plan {
+  enum class Sampling { random, latin, sobol };
+  std::string file;
+  std::string text;
+  std::string system, world, expectations;  // paths of files; the last may be empty
+  std::string expect_text;                  // YAML, when the expectations stand in the plan itself
+  double duration_s = 60;
+  std::uint64_t seed = 1;
+  std::size_t repeat = 1;
+  std::vector<Axis> axes;
+  std::vector<Scatter> scatters;
+  std::size_t samples = 10;
+  Sampling sampling = Sampling::random;
+  std::uint64_t sampling_seed = 1;
+  std::vector<Measure> measures;
+  std::vector<Event> events;
+  std::vector<Fault> faults;
+  std::vector<Condition> never, eventually;
+  HuntSpace hunt;
+  std::vector<std::string> properties, module_paths, resource_paths;
+  bool one_process_each = false;
+  double hang_timeout_s = 30;
+  bool has_pictures = true;
+  bool checks_invariants = false;  // no port sends a NaN
+
+  std::string folder() const;
+};
+
+// Errors are one line: plan "FILE":LINE:COLUMN: what is wrong.
+Result<Plan> read_plan(const std::string& file);
+
+inline constexpr std::uint64_t most_rows = 1'000'000;
+
+}  // namespace campaign

@@ -1,0 +1,68 @@
+// SQLite behind one door: a file, statements, values. Not for several threads at a time.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.h"
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace campaign {
+
+using base::Error;
+using base::Result;
+
+class Statement {
+ public:
+  // Numbers from 1, in the order of the question marks.
+  Statement& bind(int number, std::string_view text);
+  Statement& bind(int number, std::int64_t value);
+  Statement& bind(int number, double value);
+  // True: there is a row. Fails as Database::execute does.
+  Result<bool> next();
+  // Runs it to its end, and makes it ready for the next values.
+  Result<void> run();
+
+  std::string text(int column) const;
+  std::int64_t integer(int column) const;
+  double number(int column) const;
+  bool is_null(int column) const;
+
+ private:
+  friend class Database;
+  struct Finalize {
+    void operator()(sqlite3_stmt* statement) const;
+  };
+  Statement(sqlite3* database, sqlite3_stmt* statement, std::string file)
+      : database_(database), statement_(statement), file_(std::move(file)) {}
+  sqlite3* database_;
+  std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+  std::string file_;
+};
+
+class Database {
+ public:
+  enum class Access { read, write };
+  // Writing makes the file when there is none.
+  static Result<Database> open(const std::string& file, Access access);
+  // Several statements, without values.
+  Result<void> execute(const std::string& sql);
+  Result<Statement> prepare(const std::string& sql) const;
+  const std::string& file() const { return file_; }
+
+ private:
+  struct Close {
+    void operator()(sqlite3* database) const;
+  };
+  Database(sqlite3* database, std::string file) : database_(database), file_(std::move(file)) {}
+  std::unique_ptr<sqlite3, Close> database_;
+  std::string file_;
+};
+
+}  // namespace campaign

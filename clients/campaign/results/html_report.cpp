@@ -1,0 +1,131 @@
+// The page of a campaign's results: data as JSON in a page whose script draws it. It needs no other file and no network.
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "base/text.h"
+#include "results/report.h"
+#include "results/report_page.h"
+
+namespace campaign {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t most_points = 20'000;  // rows that are drawn
+constexpr std::size_t most_failed = 200;     // that are listed
+constexpr std::size_t most_pictures = 24;
+
+std::string base64(const std::string& octets) {
+  constexpr const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < octets.size(); i += 3) {
+    unsigned word = 0;
+    for (std::size_t k = 0; k < 3; ++k) word = word << 8U | (i + k < octets.size() ? static_cast<unsigned char>(octets[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k) text += i + k <= octets.size() ? letters[(word >> (18 - 6 * k)) & 63U] : '=';
+  }
+  return text;
+}
+
+std::string picture_of(const ResultRow& row) {
+  std::ifstream in(row.run->folder + "/picture.png", std::ios::binary);
+  if (row.run->folder.empty() || !in) return "";
+  const std::string octets((std::istreambuf_iterator<char>(in)), {});
+  return "data:image/png;base64," + base64(octets);
+}
+
+Json value_json(const std::string& text) {
+  const auto number = base::parse_number(text);
+  return number ? Json(*number) : Json(text);
+}
+
+Json rows_json(const Results& results) {
+  const auto every = std::max<std::size_t>(1, (results.rows.size() + most_points - 1) / most_points);
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < results.rows.size(); i += every) {
+    const auto& row = results.rows[i];
+    if (!row.run) continue;
+    Json json = {row.number, row.run->is_passed ? 1 : 0};
+    for (const auto& name : results.parameters) json.push_back(value_json(value_of(row, name)));
+    for (const auto& name : results.measures) {
+      const auto found = row.measures.find(name);
+      json.push_back(found == row.measures.end() ? Json() : Json(found->second));
+    }
+    rows.push_back(std::move(json));
+  }
+  return rows;
+}
+
+Json failed_json(const Results& results) {
+  Json failed = Json::array();
+  std::size_t pictures = 0;
+  for (const auto& row : results.rows) {
+    if (!row.run || row.run->is_passed) continue;
+    if (failed.size() == most_failed) break;
+    Json json{{"row", row.number},           {"seed", row.seed},
+              {"problem", row.run->problem}, {"state", row.run->state_hash},
+              {"folder", row.run->folder},   {"again", command_again(results, row)},
+              {"values", row.values}};
+    if (pictures < most_pictures) {
+      if (auto picture = picture_of(row); !picture.empty()) {
+        json["picture"] = std::move(picture);
+        ++pictures;
+      }
+    }
+    failed.push_back(std::move(json));
+  }
+  return failed;
+}
+
+Json groups_json(const Results& results) {
+  Json all = Json::array();
+  for (const auto& parameter : results.parameters) {
+    if (parameter == "seed") continue;
+    Json json{{"name", parameter}, {"groups", Json::array()}};
+    for (const auto& group : groups(results, parameter)) {
+      json["groups"].push_back({{"name", group.name},
+                                {"passed", group.passed},
+                                {"all", group.rows.size()},
+                                {"rate", group.rate.rate},
+                                {"low", group.rate.low},
+                                {"high", group.rate.high}});
+    }
+    all.push_back(std::move(json));
+  }
+  return all;
+}
+
+}  // namespace
+
+Result<void> write_html(const Results& results, const std::string& file) {
+  const auto passed = results.passed_count(), all = results.run_count();
+  const auto rate = wilson(passed, all);
+  Json data{{"plan", results.plan_file},
+            {"system", results.system},
+            {"world", results.world},
+            {"duration", results.duration},
+            {"rows", results.rows.size()},
+            {"run", all},
+            {"passed", passed},
+            {"rate", {rate.rate, rate.low, rate.high}},
+            {"parameters", results.parameters},
+            {"measures", results.measures},
+            {"points", rows_json(results)},
+            {"failed", failed_json(results)},
+            {"groups", groups_json(results)},
+            {"unmet", Json::array()}};
+  for (const auto& unmet : results.unmet) data["unmet"].push_back({{"expectation", unmet.expectation}, {"rows", unmet.rows}});
+  auto text = data.dump(-1, ' ', false, Json::error_handler_t::replace);
+  // Nothing in the data may end the script that it stands in.
+  for (std::size_t at = text.find("<"); at != std::string::npos; at = text.find("<", at)) text.replace(at, 1, "\\u003c");
+  std::string page = report_page;
+  const std::string mark = "/*DATA*/null";
+  page.replace(page.find(mark), mark.size(), text);
+  std::ofstream out(file, std::ios::binary);
+  out << page;
+  if (!out.flush()) return Error{"file " + base::in_quotes(file) + ": cannot be written"};
+  return {};
+}
+
+}  // namespace campaign

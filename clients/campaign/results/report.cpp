@@ -1,0 +1,147 @@
+#include "results/report.h"
+
+#include <algorithm>
+#include <iomanip>
+#include <pugixml.hpp>
+
+#include "base/text.h"
+#include "run/run_files.h"
+
+namespace campaign {
+namespace {
+
+std::string percent(double fraction) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f %%", fraction * 100);
+  return text;
+}
+
+std::string six_digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+std::string in_csv(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+void print_rate(std::ostream& out, const std::string& name, std::size_t width, std::size_t passed, std::size_t all) {
+  const auto rate = wilson(passed, all);
+  out << std::left << std::setw(static_cast<int>(width)) << name << "  " << std::right << std::setw(7) << passed << " of " << std::setw(7)
+      << all << "  " << std::setw(8) << percent(rate.rate) << "  " << percent(rate.low) << " to " << percent(rate.high) << '\n';
+}
+
+void print_measures(std::ostream& out, const Results& results) {
+  if (results.measures.empty()) return;
+  std::size_t width = 7;
+  for (const auto& name : results.measures) width = std::max(width, name.size());
+  out << '\n' << std::left << std::setw(static_cast<int>(width)) << "measure" << std::right;
+  for (const char* head : {"rows", "least", "median", "mean", "greatest", "deviation"}) out << "  " << std::setw(10) << head;
+  out << '\n';
+  for (const auto& name : results.measures) {
+    std::vector<double> values;
+    for (const auto& row : results.rows) {
+      if (const auto found = row.measures.find(name); found != row.measures.end()) values.push_back(found->second);
+    }
+    const auto s = summary(std::move(values));
+    out << std::left << std::setw(static_cast<int>(width)) << name << std::right << "  " << std::setw(10) << s.count;
+    for (const double value : {s.least, s.median, s.mean, s.greatest, s.deviation}) out << "  " << std::setw(10) << six_digits(value);
+    out << '\n';
+  }
+}
+
+void print_groups(std::ostream& out, const Results& results, const std::string& parameter) {
+  const auto all = groups(results, parameter);
+  std::size_t width = parameter.size();
+  for (const auto& group : all) width = std::max(width, group.name.size());
+  out << '\n' << parameter << '\n';
+  for (const auto& group : all) print_rate(out, group.name, width, group.passed, group.rows.size());
+}
+
+}  // namespace
+
+std::string command_again(const Results& results, const ResultRow& row) {
+  return "rtse sweep " + results.plan_file + " --row " + std::to_string(row.number);
+}
+
+void print_tables(std::ostream& out, const Results& results, const std::vector<std::string>& by) {
+  const auto all = results.run_count();
+  out << results.plan_file << ": " << results.system << " in " << results.world << ", " << results.duration << " s\n";
+  print_rate(out, "passed", 6, results.passed_count(), all);
+  if (all < results.rows.size()) out << results.rows.size() - all << " of " << results.rows.size() << " rows have not been run\n";
+  if (results.audits > 0) out << "audits: " << results.audits << ", of which " << results.different << " differ\n";
+  if (!results.unmet.empty()) out << "\nnot met in rows\n";
+  for (const auto& unmet : results.unmet) out << std::setw(15) << unmet.rows << "  " << unmet.expectation << '\n';
+  const auto broken = std::ranges::count_if(results.rows, [](const ResultRow& row) { return row.run && row.run->state_hash.empty(); });
+  if (broken > 0) out << std::setw(15) << broken << "  (did not run to the end)\n";
+  print_measures(out, results);
+  for (const auto& parameter : by) print_groups(out, results, parameter);
+  constexpr std::size_t enough = 10;
+  std::size_t told = 0;
+  for (const auto& row : results.rows) {
+    if (!row.run || row.run->is_passed) continue;
+    if (told == 0) out << "\nfailed\n";
+    if (++told > enough) continue;
+    out << "row " << row.number << ": " << row.run->problem << "\n  " << command_again(results, row) << '\n';
+  }
+  if (told > enough) out << "and " << told - enough << " more\n";
+}
+
+void print_csv(std::ostream& out, const Results& results) {
+  out << "row,seed";
+  for (const auto& name : results.parameters) {
+    if (name != "seed") out << ',' << in_csv(name);
+  }
+  out << ",passed,problem,state,simulated_s,wall_s";
+  for (const auto& name : results.measures) out << ',' << in_csv(name);
+  out << "\r\n";
+  for (const auto& row : results.rows) {
+    if (!row.run) continue;
+    out << row.number << ',' << row.seed;
+    for (const auto& name : results.parameters) {
+      if (name != "seed") out << ',' << in_csv(value_of(row, name));
+    }
+    out << ',' << (row.run->is_passed ? 1 : 0) << ',' << in_csv(row.run->problem) << ',' << row.run->state_hash << ','
+        << base::format_number(row.run->simulated_s) << ',' << base::format_number(row.run->wall_s);
+    for (const auto& name : results.measures) {
+      const auto found = row.measures.find(name);
+      out << ',' << (found == row.measures.end() ? "" : base::format_number(found->second));
+    }
+    out << "\r\n";
+  }
+}
+
+Result<void> write_junit(const Results& results, const std::string& file) {
+  pugi::xml_document document;
+  auto suite = document.append_child("testsuite");
+  suite.append_attribute("name") = editor::printable(results.plan_file).c_str();
+  double seconds = 0;
+  for (const auto& row : results.rows) {
+    if (!row.run) continue;
+    auto test = suite.append_child("testcase");
+    std::string name = "row " + std::to_string(row.number) + " seed " + std::to_string(row.seed);
+    for (const auto& [path, value] : row.values) name += " " + path + "=" + value;
+    test.append_attribute("classname") = editor::printable(results.plan_file).c_str();
+    test.append_attribute("name") = editor::printable(name).c_str();
+    test.append_attribute("time") = base::format_number(row.run->wall_s).c_str();
+    seconds += row.run->wall_s;
+    if (row.run->is_passed) continue;
+    auto failure = test.append_child(row.run->state_hash.empty() ? "error" : "failure");
+    failure.append_attribute("message") = editor::printable(row.run->problem).c_str();
+    failure.text().set(editor::printable(command_again(results, row)).c_str());
+  }
+  const auto errors = std::ranges::count_if(
+      results.rows, [](const ResultRow& row) { return row.run && !row.run->is_passed && row.run->state_hash.empty(); });
+  suite.append_attribute("tests") = static_cast<unsigned long long>(results.run_count());
+  suite.append_attribute("failures") = static_cast<long long>(results.run_count() - results.passed_count()) - errors;
+  suite.append_attribute("errors") = static_cast<long long>(errors);
+  suite.append_attribute("time") = base::format_number(seconds).c_str();
+  if (!document.save_file(file.c_str(), "  ")) return Error{"file " + base::in_quotes(file) + ": cannot be written"};
+  return {};
+}
+
+}  // namespace campaign

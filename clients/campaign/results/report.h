@@ -1,0 +1,22 @@
+// Results of a campaign for people and for programs. Any thread.
+#pragma once
+
+#include <ostream>
+#include <string>
+
+#include "results/reader.h"
+
+namespace campaign {
+
+// Rates, expectations that were not met, measures; a table for each parameter in `by`.
+void print_tables(std::ostream& out, const Results& results, const std::vector<std::string>& by);
+// One line for each row, with all parameters and measures. RFC 4180.
+void print_csv(std::ostream& out, const Results& results);
+Result<void> write_junit(const Results& results, const std::string& file);
+// One page that needs no other file.
+Result<void> write_html(const Results& results, const std::string& file);
+
+// What runs a row again.
+std::string command_again(const Results& results, const ResultRow& row);
+
+}  // namespace campaign

@@ -1,0 +1,133 @@
+#include "results/store.h"
+
+#include "base/text.h"
+
+namespace campaign {
+namespace {
+
+constexpr const char* schema = R"(
+CREATE TABLE IF NOT EXISTS campaign (name TEXT PRIMARY KEY, value TEXT) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS rows (number INTEGER PRIMARY KEY, key TEXT NOT NULL, seed INTEGER NOT NULL);
+CREATE TABLE IF NOT EXISTS parameters (number INTEGER, name TEXT, value TEXT, PRIMARY KEY (number, name)) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS runs (key TEXT PRIMARY KEY, passed INTEGER NOT NULL, problem TEXT NOT NULL, state TEXT NOT NULL,
+  folder TEXT NOT NULL, simulated REAL NOT NULL, wall REAL NOT NULL, logs TEXT NOT NULL, ended TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS measures (key TEXT, name TEXT, value REAL, PRIMARY KEY (key, name)) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS verdicts (key TEXT, place INTEGER, expectation TEXT, problem TEXT, details TEXT, PRIMARY KEY (key, place)) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS audits (key TEXT, at TEXT, state TEXT, same INTEGER);
+CREATE INDEX IF NOT EXISTS rows_by_key ON rows (key);
+)";
+
+enum StatementNumber {
+  insert_row,
+  insert_parameter,
+  select_run,
+  insert_run,
+  insert_measure,
+  insert_verdict,
+  insert_audit,
+  set_fact,
+  drop_measures,
+  drop_verdicts
+};
+
+}  // namespace
+
+Result<Store> Store::open(const std::string& file) {
+  auto database = Database::open(file, Database::Access::write);
+  if (!database) return database.error();
+  for (const char* sql : {"PRAGMA journal_mode=WAL", "PRAGMA synchronous=NORMAL", "PRAGMA wal_autocheckpoint=1000", schema}) {
+    if (const auto done = database->execute(sql); !done) return done.error();
+  }
+  auto asked = database->prepare("SELECT value FROM campaign WHERE name = 'version'");
+  if (!asked) return asked.error();
+  const auto has = asked->next();
+  if (!has) return has.error();
+  if (*has && asked->text(0) != std::to_string(version))
+    return Error{"results " + base::in_quotes(file) + ": are of version " + asked->text(0) + ", expected " + std::to_string(version)};
+  Store store(std::move(*database));
+  if (const auto made = store.make_statements(); !made) return made.error();
+  return store;
+}
+
+Result<void> Store::make_statements() {
+  for (const char* sql :
+       {"INSERT INTO rows VALUES (?, ?, ?)", "INSERT INTO parameters VALUES (?, ?, ?)",
+        "SELECT passed, problem, state, folder, simulated, wall FROM runs WHERE key = ?",
+        "INSERT OR REPLACE INTO runs VALUES (?, ?, ?, ?, ?, ?, ?, ?, datetime('now'))", "INSERT OR REPLACE INTO measures VALUES (?, ?, ?)",
+        "INSERT OR REPLACE INTO verdicts VALUES (?, ?, ?, ?, ?)", "INSERT INTO audits VALUES (?, datetime('now'), ?, ?)",
+        "INSERT OR REPLACE INTO campaign VALUES (?, ?)", "DELETE FROM measures WHERE key = ?", "DELETE FROM verdicts WHERE key = ?"}) {
+    auto statement = database_.prepare(sql);
+    if (!statement) return statement.error();
+    statements_.push_back(std::move(*statement));
+  }
+  return statements_[set_fact].bind(1, std::string_view("version")).bind(2, std::to_string(version)).run();
+}
+
+Result<void> Store::begin_rows(const Plan& plan) {
+  if (const auto begun = database_.execute("BEGIN IMMEDIATE; DELETE FROM rows; DELETE FROM parameters;"); !begun) return begun;
+  for (const auto& [name, value] : {std::pair<std::string, std::string>("plan", plan.text),
+                                    {"plan_file", plan.file},
+                                    {"system", plan.system},
+                                    {"world", plan.world},
+                                    {"duration", base::format_number(plan.duration_s)}}) {
+    if (const auto set = statements_[set_fact].bind(1, name).bind(2, value).run(); !set) return set;
+  }
+  return {};
+}
+
+Result<void> Store::add_row(const Row& row, const std::string& key) {
+  const auto number = static_cast<std::int64_t>(row.number);
+  if (const auto added = statements_[insert_row].bind(1, number).bind(2, key).bind(3, static_cast<std::int64_t>(row.seed)).run(); !added)
+    return added;
+  for (const auto& [name, value] : row.values) {
+    if (const auto added = statements_[insert_parameter].bind(1, number).bind(2, name).bind(3, value).run(); !added) return added;
+  }
+  return {};
+}
+
+Result<void> Store::end_rows() { return database_.execute("COMMIT"); }
+
+Result<std::optional<StoredRun>> Store::run(const std::string& key) {
+  auto& select = statements_[select_run];
+  const auto found = select.bind(1, key).next();
+  if (!found) return found.error();
+  std::optional<StoredRun> run;
+  if (*found) run = StoredRun{select.integer(0) != 0, select.text(1), select.text(2), select.text(3), select.number(4), select.number(5)};
+  static_cast<void>(select.run());
+  return run;
+}
+
+Result<void> Store::add_run(const std::string& key, const Outcome& outcome, const std::string& folder) {
+  if (const auto begun = database_.execute("BEGIN IMMEDIATE"); !begun) return begun;
+  const auto add = [&]() -> Result<void> {
+    const auto problem = outcome.first_problem();
+    auto& run = statements_[insert_run];
+    run.bind(1, key).bind(2, std::int64_t{problem.empty()}).bind(3, problem).bind(4, outcome.state_hash).bind(5, folder);
+    run.bind(6, outcome.simulated_s).bind(7, outcome.wall_s).bind(8, outcome.logs);
+    if (const auto added = run.run(); !added) return added;
+    for (const auto number : {drop_measures, drop_verdicts}) {
+      if (const auto dropped = statements_[number].bind(1, key).run(); !dropped) return dropped;
+    }
+    for (const auto& [name, value] : outcome.measures) {
+      if (const auto added = statements_[insert_measure].bind(1, key).bind(2, name).bind(3, value).run(); !added) return added;
+    }
+    std::int64_t place = 0;
+    for (const auto& verdict : outcome.verdicts) {
+      auto& insert = statements_[insert_verdict];
+      insert.bind(1, key).bind(2, place++).bind(3, verdict.expectation).bind(4, verdict.problem).bind(5, verdict.details);
+      if (const auto added = insert.run(); !added) return added;
+    }
+    return {};
+  };
+  if (const auto added = add(); !added) {
+    static_cast<void>(database_.execute("ROLLBACK"));
+    return added;
+  }
+  return database_.execute("COMMIT");
+}
+
+Result<void> Store::add_audit(const std::string& key, const std::string& state_hash, bool is_same) {
+  return statements_[insert_audit].bind(1, key).bind(2, state_hash).bind(3, std::int64_t{is_same}).run();
+}
+
+}  // namespace campaign

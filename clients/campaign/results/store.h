@@ -1,0 +1,50 @@
+// The results of a campaign: one SQLite file. Its schema is written down in docs/campaigns.md; what has been stored survives the end of the
+// process at any moment, also by SIGKILL. One thread at a time.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "results/database.h"
+#include "rows/rows.h"
+#include "run/row_run.h"
+
+namespace campaign {
+
+// What is kept of a run.
+struct StoredRun {
+  bool is_passed = false;
+  std::string problem;  // of the first that was not as expected
+  std::string state_hash;
+  std::string folder;  // of its files; empty: there are none
+  double simulated_s = 0, wall_s = 0;
+};
+
+class Store {
+ public:
+  static constexpr int version = 1;
+
+  // Makes the file, or goes on with one of the same version.
+  static Result<Store> open(const std::string& file);
+
+  // Begins a list of rows, and forgets the one before; the runs stay.
+  Result<void> begin_rows(const Plan& plan);
+  Result<void> add_row(const Row& row, const std::string& key);
+  Result<void> end_rows();
+
+  Result<std::optional<StoredRun>> run(const std::string& key);
+  // At once and whole.
+  Result<void> add_run(const std::string& key, const Outcome& outcome, const std::string& folder);
+  Result<void> add_audit(const std::string& key, const std::string& state_hash, bool is_same);
+
+ private:
+  explicit Store(Database database) : database_(std::move(database)) {}
+  Result<void> make_statements();
+
+  Database database_;
+  std::vector<Statement> statements_;
+};
+
+}  // namespace campaign

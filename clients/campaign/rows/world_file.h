@@ -1,0 +1,63 @@
+// A world as its files say it, of which single values can be changed by path. Only what a plan may vary is understood here; what the world
+// means is the simulator's business. Models that a world includes are changed in copies, so the files of others stay as they are. One
+// thread at a time; reading is const.
+//
+//   model/NAME/pose          x y z roll pitch yaw; also .../pose/x, y, z, roll, pitch, yaw   [m, rad]
+//   model/NAME/mass          of all links together [kg]; the inertia goes with it
+//   model/NAME/friction      of all that collides (mu, mu2)
+//   model/NAME/sensor/SENSOR/noise   standard deviation, in the sensor's unit
+//   model/NAME/sensor/SENSOR/rate    [Hz]
+//   light/NAME/intensity, light/NAME/diffuse, light/NAME/direction
+//   world/gravity, world/step
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/result.h"
+#include "rows/footprint.h"
+
+namespace campaign {
+
+using base::Error;
+using base::Result;
+
+struct StandingModel {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  Outline outline;  // empty: nothing of it collides, or nothing with an end (a plane, a mesh)
+  bool is_static = false;
+};
+
+class WorldFile {
+ public:
+  static Result<WorldFile> read(const std::string& file, const std::vector<std::string>& resource_paths);
+  WorldFile(WorldFile&&) noexcept;
+  WorldFile& operator=(WorldFile&&) noexcept;
+  ~WorldFile();
+
+  // An error when the world has no such value, or it cannot be this.
+  Result<void> set(const std::string& path, const std::string& value);
+  // Writes what has been set as FOLDER/world.sdf, with changed models in FOLDER/models.
+  Result<void> write(const std::string& folder) const;
+  // The folder of the world itself, in which the simulator must look for models of a changed one.
+  std::string folder() const;
+
+  std::map<std::string, StandingModel> models() const;
+  // All files that the world is made of, as far as they were found.
+  std::set<std::string> files() const;
+
+ private:
+  struct State;
+  explicit WorldFile(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+// Whether a parameter path of a plan is about the world.
+bool is_world_path(const std::string& path);
+
+}  // namespace campaign

@@ -1,0 +1,311 @@
+#include "run/campaign.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "base/text.h"
+#include "rows/content_hash.h"
+#include "run/child_process.h"
+#include "run/expectations.h"
+#include "run/run_system.h"
+
+namespace campaign {
+namespace fs = std::filesystem;
+namespace {
+
+using editor::SavedComponent;
+using editor::SavedConnector;
+using editor::SavedSystem;
+
+template <class Items, class Name>
+std::string names_in(const Items& items, Name name) {
+  std::vector<std::string> names;
+  for (const auto& item : items) names.push_back(name(item));
+  return names.empty() ? "none" : base::join(names, ", ");
+}
+
+std::string component_names(const SavedSystem& system) {
+  return names_in(system.components, [](const SavedComponent& component) { return component.instance; });
+}
+
+SavedComponent* find_component(SavedSystem& system, const std::string& name) {
+  const auto found = std::ranges::find_if(system.components, [&](const auto& component) { return component.instance == name; });
+  return found == system.components.end() ? nullptr : &*found;
+}
+
+Result<void> set_component(SavedSystem& system, const std::string& path, const std::vector<std::string>& words, const std::string& value) {
+  if (words.size() != 3) return Error{path + ": expected component/INSTANCE/PARAMETER"};
+  auto* component = find_component(system, words[1]);
+  if (!component)
+    return Error{path + ": the system has no component " + base::in_quotes(words[1]) + "; components: " + component_names(system)};
+  if (words[2] == "rate") {
+    const auto rate = base::parse_number(value);
+    if (!rate || *rate <= 0 || *rate > 1e9) return Error{path + ": must be more than 0 and at most 1e9 Hz, got " + base::in_quotes(value)};
+    if (component->contexts.empty()) return Error{path + ": the component has no execution context in the profile"};
+    component->contexts.front().rate = value;
+    return {};
+  }
+  std::vector<std::string> known{"rate"};
+  bool found = false;
+  for (auto& set : component->configuration_sets) {
+    const bool is_active = set.id == component->active_set || component->configuration_sets.size() == 1;
+    if (!is_active || set.is_hidden()) continue;
+    for (auto& [key, old] : set.values) {
+      known.push_back(key);
+      if (key != words[2]) continue;
+      old = value;
+      found = true;
+    }
+  }
+  if (!found)
+    return Error{path + ": component " + words[1] + " has no parameter " + base::in_quotes(words[2]) +
+                 " in the profile's active set; parameters: " + base::join(known, ", ")};
+  return {};
+}
+
+Result<void> set_connector(SavedSystem& system, const std::string& path, const std::vector<std::string>& words, const std::string& value) {
+  if (words.size() != 3) return Error{path + ": expected connector/ID/KEY"};
+  const auto found = std::ranges::find_if(system.connectors, [&](const auto& one) { return one.id == words[1] || one.name == words[1]; });
+  if (found == system.connectors.end())
+    return Error{path + ": the system has no connection " + base::in_quotes(words[1]) +
+                 "; connections: " + names_in(system.connectors, [](const SavedConnector& connector) { return connector.id; })};
+  const std::string key = words[2].starts_with("dataport.") ? words[2] : "dataport." + words[2];
+  auto& values = found->properties;
+  const auto old = std::ranges::find_if(values, [&](const auto& one) { return one.first == key; });
+  if (old != values.end()) old->second = value;
+  if (old == values.end()) values.emplace_back(key, value);
+  if (key == "dataport.subscription_type") found->subscription_type = value;
+  if (key == "dataport.dataflow_type") found->dataflow_type = value;
+  if (key == "dataport.interface_type") found->interface_type = value;
+  return {};
+}
+
+Result<void> check_property(const SavedSystem& system, const std::string& path, const std::vector<std::string>& words) {
+  if (words.size() != 3) return Error{path + ": expected property/INSTANCE/KEY"};
+  if (!system.component(words[1]))
+    return Error{path + ": the system has no component " + base::in_quotes(words[1]) + "; components: " + component_names(system)};
+  return {};
+}
+
+Result<void> set_in_system(SavedSystem& system, const std::string& path, const std::string& value) {
+  const auto words = base::split_list(path, '/');
+  if (words.front() == "component") return set_component(system, path, words, value);
+  if (words.front() == "connector") return set_connector(system, path, words, value);
+  if (words.front() == "property") return check_property(system, path, words);
+  return Error{path + ": is no parameter; expected seed, component/..., property/..., connector/..., model/..., light/... or world/..."};
+}
+
+bool can_be_started(const std::string& name) {
+  const auto program = editor::own_program(name);
+  if (program.find('/') != std::string::npos) return access(program.c_str(), X_OK) == 0;
+  const char* path = std::getenv("PATH");
+  return std::ranges::any_of(base::split_list(path != nullptr ? path : "", ':'),
+                             [&](const std::string& folder) { return access((folder + "/" + program).c_str(), X_OK) == 0; });
+}
+
+// What a run loads: our programs and libraries, and every module of the plan.
+Result<void> hash_programs(const Plan& plan, ContentHash& hash) {
+  std::vector<std::string> files;
+  for (const char* name : {"sim-server", "rtcd", "simctl", "rtse-campaign"}) files.push_back(editor::own_program(name));
+  const auto libraries = fs::path(editor::own_program("rtcd")).parent_path().parent_path() / "lib";
+  auto folders = plan.module_paths;
+  folders.push_back(libraries.string());
+  folders.push_back((libraries / "rtm-sim").string());
+  for (const auto& folder : folders) {
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+      if (entry.path().filename().string().find(".so") != std::string::npos && entry.is_regular_file(error))
+        files.push_back(entry.path().string());
+    }
+  }
+  std::ranges::sort(files);
+  for (const auto& file : files) {
+    hash.add(fs::path(file).filename().string());
+    if (const auto added = hash.add_file(file); !added) return added;
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Campaign> Campaign::prepare(Plan plan) {
+  Campaign campaign(std::move(plan));
+  if (const auto good = campaign.check_files(); !good) return good.error();
+  auto system = editor::read_system(campaign.plan().system);
+  if (!system) return system.error();
+  campaign.system_ = std::move(*system);
+  const auto world = WorldFile::read(campaign.plan().world, campaign.plan().resource_paths);
+  if (!world) return world.error();
+  campaign.models_ = world->models();
+  if (const auto good = campaign.check_axes(); !good) return good.error();
+  if (const auto good = campaign.check_subjects(); !good) return good.error();
+  auto rows = RowMaker::make(campaign.plan(), *world);
+  if (!rows) return rows.error();
+  campaign.rows_ = std::make_unique<RowMaker>(std::move(*rows));
+  const auto first = campaign.row(1);
+  if (!first) return Error{"plan " + base::in_quotes(campaign.plan().file) + ": " + first.error().message};
+  if (const auto hashed = campaign.hash_everything(); !hashed) return hashed.error();
+  return campaign;
+}
+
+Result<void> Campaign::check_files() const {
+  for (const char* program : {"sim-server", "simctl", "rtcd", "omniNames"}) {
+    if (!can_be_started(program))
+      return Error{std::string("program ") + program + ": cannot be started; expected it beside rtse or in PATH"};
+  }
+  for (const auto& [kind, file] :
+       {std::pair("system", &plan_->system), std::pair("world", &plan_->world), std::pair("expect", &plan_->expectations)}) {
+    std::error_code error;
+    if (!file->empty() && !fs::is_regular_file(*file, error))
+      return Error{"plan " + base::in_quotes(plan_->file) + ": " + kind + ": there is no file " + base::in_quotes(*file)};
+  }
+  for (const auto* paths : {&plan_->module_paths, &plan_->resource_paths}) {
+    for (const auto& path : *paths) {
+      std::error_code error;
+      if (!fs::is_directory(path, error))
+        return Error{"plan " + base::in_quotes(plan_->file) + ": there is no folder " + base::in_quotes(path)};
+    }
+  }
+  for (const auto& text : plan_->properties) {
+    if (const auto property = editor::parse_property(text); !property) return property.error();
+  }
+  if (!plan_->expectations.empty()) {
+    if (const auto good = editor::read_expectations(plan_->expectations); !good) return good.error();
+  }
+  return {};
+}
+
+// Every value of every list is tried, the ends of every range.
+Result<void> Campaign::check_axes() const {
+  const auto fail = [&](const Error& error) { return Error{"plan " + base::in_quotes(plan_->file) + ": vary: " + error.message}; };
+  for (const auto& axis : plan_->axes) {
+    auto values = axis.values;
+    if (axis.range && axis.range->kind == Range::Kind::normal) values = {base::format_number(axis.range->a)};
+    if (axis.range && axis.range->kind != Range::Kind::normal)
+      values = {base::format_number(axis.range->a), base::format_number(axis.range->b)};
+    std::optional<WorldFile> world;
+    if (is_world_path(axis.path)) {
+      auto read = WorldFile::read(plan_->world, plan_->resource_paths);
+      if (!read) return read.error();
+      world.emplace(std::move(*read));
+    }
+    for (const auto& value : values) {
+      if (axis.path == "seed") {
+        const auto seed = base::parse_number(value);
+        if (!seed || *seed < 0 || *seed > 1e18) return fail({"seed: must be a whole number from 0 to 1e18, got " + base::in_quotes(value)});
+        continue;
+      }
+      auto system = system_;
+      if (const auto set = world ? world->set(axis.path, value) : set_in_system(system, axis.path, value); !set) return fail(set.error());
+    }
+  }
+  return {};
+}
+
+// Models, components and ports that measures and conditions are about.
+Result<void> Campaign::check_subjects() const {
+  const auto fail = [&](const std::string& what) { return Error{"plan " + base::in_quotes(plan_->file) + ": " + what}; };
+  const auto check_model = [&](const std::string& where, const std::string& model) -> Result<void> {
+    if (model.empty() || model == "any" || models_.contains(model)) return {};
+    return fail(where + ": the world has no model " + base::in_quotes(model) +
+                "; models: " + names_in(models_, [](const auto& one) { return one.first; }));
+  };
+  const auto check_port = [&](const std::string& where, const std::string& port) -> Result<void> {
+    if (port.empty() || system_.component(port.substr(0, port.find(':')))) return {};
+    return fail(where + ": port " + base::in_quotes(port) + ": the system has no such component; components: " + component_names(system_));
+  };
+  for (const auto& measure : plan_->measures) {
+    auto models = measure.to;
+    models.push_back(measure.model);
+    for (const auto& model : models) {
+      if (const auto good = check_model("measure", model); !good) return good;
+    }
+    if (const auto good = check_port("measure", measure.port); !good) return good;
+    if (measure.kind == Measure::Kind::value) {
+      if (const auto path = editor::member_path(measure.member); !path) return fail("measure: " + path.error().message);
+    }
+  }
+  for (const auto* conditions : {&plan_->never, &plan_->eventually}) {
+    for (const auto& condition : *conditions) {
+      const std::string where = conditions == &plan_->never ? "never" : "eventually";
+      if (const auto good = check_port(where, condition.port); !good) return good;
+      if (const auto good = check_model(where, condition.model); !good) return good;
+    }
+  }
+  return {};
+}
+
+Result<void> Campaign::hash_everything() {
+  ContentHash hash;
+  hash.add("rows of a campaign, 1");
+  if (const auto added = hash_programs(*plan_, hash); !added) return added;
+  const auto world = WorldFile::read(plan_->world, plan_->resource_paths);
+  if (!world) return world.error();
+  auto files = world->files();
+  files.insert(plan_->system);
+  if (!plan_->expectations.empty()) files.insert(plan_->expectations);
+  for (const auto& file : files) {
+    if (const auto added = hash.add_file(file); !added) return added;
+  }
+  // What the plan asks of every run; not how many there are.
+  hash.add(plan_->expect_text);
+  hash.add(base::format_number(plan_->duration_s) + (plan_->one_process_each ? " each" : "") +
+           (plan_->checks_invariants ? " invariants" : ""));
+  for (const auto& property : plan_->properties) hash.add(property);
+  for (const auto& measure : plan_->measures) {
+    hash.add(measure.name + "|" + measure.model + "|" + measure.port + "|" + measure.member + "|" + base::join(measure.to, ",") + "|" +
+             std::to_string(static_cast<int>(measure.kind)) + "|" + std::to_string(static_cast<int>(measure.take)));
+    for (const double corner : measure.region) hash.add(base::format_number(corner));
+  }
+  for (const auto& event : plan_->events) hash.add(event.text);
+  for (const auto& fault : plan_->faults) hash.add(fault.text());
+  for (const auto& condition : plan_->never) hash.add("never " + condition.text);
+  for (const auto& condition : plan_->eventually) hash.add("eventually " + condition.text);
+  base_key_ = hash.text();
+  return {};
+}
+
+std::string Campaign::key(const Row& row) const {
+  ContentHash hash;
+  hash.add(base_key_);
+  hash.add(std::to_string(row.seed));
+  for (const auto& [path, value] : row.values) {
+    hash.add(path);
+    hash.add(value);
+  }
+  return hash.text();
+}
+
+Result<std::optional<WorldFile>> Campaign::world_of(const Row& row) const {
+  if (std::ranges::none_of(row.values, [](const auto& one) { return is_world_path(one.first); })) return std::optional<WorldFile>();
+  auto world = WorldFile::read(plan_->world, plan_->resource_paths);
+  if (!world) return world.error();
+  for (const auto& [path, value] : row.values) {
+    if (!is_world_path(path)) continue;
+    if (const auto set = world->set(path, value); !set) return set.error();
+  }
+  return std::optional<WorldFile>(std::move(*world));
+}
+
+Result<void> Campaign::alter(editor::SavedSystem& system, const Row& row) const {
+  for (const auto& [path, value] : row.values) {
+    if (is_world_path(path)) continue;
+    if (const auto set = set_in_system(system, path, value); !set) return set;
+  }
+  return {};
+}
+
+std::vector<std::string> Campaign::properties_of(const Row& row) const {
+  auto properties = plan_->properties;
+  for (const auto& [path, value] : row.values) {
+    const auto words = base::split_list(path, '/');
+    if (words.front() == "property") properties.push_back(words[1] + ":" + words[2] + "=" + value);
+  }
+  return properties;
+}
+
+}  // namespace campaign

@@ -1,0 +1,50 @@
+// A plan with all that it speaks of, read and found good: every file is there, every path leads to a parameter, every program can be
+// started. So what is wrong with a plan is said before the first run. Constant after prepare(); any thread.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "plan/plan.h"
+#include "profile/rts_profile.h"
+#include "rows/rows.h"
+#include "rows/world_file.h"
+
+namespace campaign {
+
+class Campaign {
+ public:
+  static Result<Campaign> prepare(Plan plan);
+  Campaign(Campaign&&) noexcept = default;
+
+  const Plan& plan() const { return *plan_; }
+  const editor::SavedSystem& system() const { return system_; }
+  std::size_t rows() const { return rows_->count(); }
+  Result<Row> row(std::size_t number) const { return rows_->row(number); }
+  // Rows with the same key give the same result: it stands for the programs, modules, world, system and plan as far as they matter, and for
+  // the values and the seed.
+  std::string key(const Row& row) const;
+
+  // The world of a row; nothing when it is the plan's own.
+  Result<std::optional<WorldFile>> world_of(const Row& row) const;
+  // Sets the row's values in the system.
+  Result<void> alter(editor::SavedSystem& system, const Row& row) const;
+  // "INSTANCE:KEY=VALUE", those of the plan and of the row.
+  std::vector<std::string> properties_of(const Row& row) const;
+  const std::map<std::string, StandingModel>& models() const { return models_; }
+
+ private:
+  explicit Campaign(Plan plan) : plan_(std::make_unique<const Plan>(std::move(plan))) {}
+  Result<void> check_files() const;
+  Result<void> check_axes() const;
+  Result<void> check_subjects() const;
+  Result<void> hash_everything();
+
+  std::unique_ptr<const Plan> plan_;
+  editor::SavedSystem system_;
+  std::map<std::string, StandingModel> models_;
+  std::unique_ptr<RowMaker> rows_;
+  std::string base_key_;
+};
+
+}  // namespace campaign

@@ -1,0 +1,240 @@
+#include "run/deeds_runner.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/text.h"
+#include "remote.h"
+#include "rows/random.h"
+
+namespace campaign {
+namespace {
+
+using Json = nlohmann::json;
+using Object = Fault::Object;
+using Kind = Fault::Kind;
+using namespace std::chrono_literals;
+
+constexpr double look_period_s = 0.1;
+constexpr auto call_limit = 10s;
+constexpr const char* usually_touched = "ground_plane";
+
+// "kind:from:for:amount:seed", as core/fault.h reads it.
+std::string fault_text(const Fault& fault, std::uint64_t seed) {
+  const auto own_seed = Random(seed, fault.text()).next() >> 2U;
+  return std::string(to_text(fault.kind)) + ":" + base::format_number(fault.at_s) + ":" + base::format_number(fault.for_s.value_or(0)) +
+         ":" + base::format_number(fault.amount) + ":" + std::to_string(own_seed);
+}
+
+bool is_by_property(Kind kind) { return kind == Kind::error || kind == Kind::exception || kind == Kind::slow || kind == Kind::hang; }
+
+std::map<std::string, std::string> texts_of(const std::vector<Fault>& faults, Object object, std::uint64_t seed) {
+  std::map<std::string, std::string> texts;
+  for (const auto& fault : faults) {
+    if (fault.object != object || (object == Object::component && !is_by_property(fault.kind))) continue;
+    auto& text = texts[fault.target];
+    text += (text.empty() ? "" : " ") + fault_text(fault, seed);
+  }
+  return texts;
+}
+
+}  // namespace
+
+DeedsRunner::DeedsRunner(Deeds deeds, std::uint64_t seed, double duration_s)
+    : deeds_(std::move(deeds)), seed_(seed), duration_s_(duration_s) {}
+
+Result<void> DeedsRunner::alter(editor::SavedSystem& system) const {
+  for (const auto& [target, text] : texts_of(deeds_.faults, Object::connector, seed_)) {
+    const auto found = std::ranges::find_if(system.connectors, [&](const auto& one) { return one.id == target || one.name == target; });
+    if (found == system.connectors.end()) return Error{"fault: the system has no connection " + base::in_quotes(target)};
+    found->properties.emplace_back("dataport.fault", text);
+  }
+  return {};
+}
+
+std::vector<std::string> DeedsRunner::properties() const {
+  std::vector<std::string> properties;
+  for (const auto& [target, text] : texts_of(deeds_.faults, Object::component, seed_))
+    properties.push_back(target + ":fault.on_execute=" + text);
+  return properties;
+}
+
+std::vector<std::string> DeedsRunner::simulator_options() const {
+  std::vector<std::string> options;
+  for (const auto& fault : deeds_.faults) {
+    if (fault.object != Object::sensor && fault.object != Object::actuator) continue;
+    const bool is_halted = fault.object == Object::actuator && fault.kind == Kind::stuck;
+    options.insert(options.end(), {"--fault", (is_halted ? "halted" : std::string(to_text(fault.kind))) + ":" +
+                                                  base::format_number(fault.at_s) + ":" + base::format_number(fault.for_s.value_or(0)) +
+                                                  ":" + base::format_number(fault.amount) + ":" + fault.target});
+  }
+  return options;
+}
+
+std::vector<editor::Expectation> DeedsRunner::watched() const {
+  std::vector<editor::Expectation> watched;
+  const auto add = [&](const Condition& condition) {
+    if (condition.kind != Condition::Kind::value) return;
+    editor::Expectation expectation;
+    expectation.kind = editor::Expectation::Kind::value;
+    expectation.port = condition.port;
+    expectation.member = condition.member;
+    watched.push_back(std::move(expectation));
+  };
+  for (const auto& condition : deeds_.never) add(condition);
+  for (const auto& condition : deeds_.eventually) add(condition);
+  for (const auto& event : deeds_.events) {
+    if (event.when) add(*event.when);
+  }
+  return watched;
+}
+
+bool DeedsRunner::polls() const {
+  const bool waits = std::ranges::any_of(deeds_.events, [](const Event& event) { return event.when.has_value(); });
+  return waits || !deeds_.never.empty() || !deeds_.eventually.empty();
+}
+
+Result<void> DeedsRunner::begin(editor::RunScene& scene) {
+  step_s_ = scene.simulator.step();
+  look_every_ = std::max<std::int64_t>(1, std::llround(look_period_s / step_s_));
+  const auto step_of = [&](double time) { return static_cast<std::int64_t>(std::llround(time / step_s_)); };
+  for (std::size_t i = 0; i < deeds_.events.size(); ++i) {
+    if (deeds_.events[i].at_s) timed_.push_back({step_of(*deeds_.events[i].at_s), Timed::What::event, i});
+  }
+  for (std::size_t i = 0; i < deeds_.faults.size(); ++i) {
+    const auto& fault = deeds_.faults[i];
+    const bool is_ours = fault.object == Object::naming || (fault.object == Object::component && !is_by_property(fault.kind));
+    if (!is_ours) continue;  // who has it times it
+    timed_.push_back({step_of(fault.at_s), Timed::What::fault, i});
+    if (fault.for_s) timed_.push_back({step_of(fault.at_s + *fault.for_s), Timed::What::end_of_fault, i});
+  }
+  std::ranges::stable_sort(timed_, {}, &Timed::step);
+  return act(scene, 0);
+}
+
+std::optional<std::int64_t> DeedsRunner::next_stop(std::int64_t done) const {
+  std::optional<std::int64_t> next;
+  if (next_ < timed_.size()) next = std::max(timed_[next_].step, done + 1);
+  if (polls()) {
+    const auto look = (done / look_every_ + 1) * look_every_;
+    next = next ? std::min(*next, look) : look;
+  }
+  return next;
+}
+
+Result<void> DeedsRunner::act(editor::RunScene& scene, std::int64_t done) {
+  while (next_ < timed_.size() && timed_[next_].step <= done) {
+    if (const auto carried = carry_out(scene, timed_[next_++]); !carried) return carried;
+  }
+  if (done == 0 || !polls() || done % look_every_ != 0) return {};
+  return look(scene, static_cast<double>(done) * step_s_);
+}
+
+Result<void> DeedsRunner::carry_out(editor::RunScene& scene, const Timed& timed) {
+  if (timed.what == Timed::What::event) {
+    const auto& event = deeds_.events[timed.place];
+    if (const auto done = carry_out_event(scene, event); !done) return Error{"event " + event.text + ": " + done.error().message};
+    return {};
+  }
+  const auto& fault = deeds_.faults[timed.place];
+  const auto done = timed.what == Timed::What::fault ? start_fault(scene, fault) : end_fault(scene, fault);
+  if (!done) return Error{"fault " + fault.text() + ": " + done.error().message};
+  return {};
+}
+
+Result<void> DeedsRunner::start_fault(editor::RunScene& scene, const Fault& fault) {
+  if (fault.object == Object::naming) {
+    scene.set_naming(false);
+    return {};
+  }
+  return scene.kill_host(fault.target);
+}
+
+Result<void> DeedsRunner::end_fault(editor::RunScene& scene, const Fault& fault) {
+  if (fault.object == Object::component) return scene.restart_host(fault.target);
+  scene.set_naming(true);
+  return {};
+}
+
+Result<void> DeedsRunner::look(editor::RunScene& scene, double now_s) {
+  for (std::size_t i = 0; i < deeds_.events.size(); ++i) {
+    const auto& event = deeds_.events[i];
+    if (!event.when || happened_.contains(i)) continue;
+    const auto is_now = is_true(scene, *event.when, now_s);
+    if (!is_now) return is_now.error();
+    if (!*is_now) continue;
+    happened_.insert(i);
+    if (const auto done = carry_out_event(scene, event); !done) return Error{"event " + event.text + ": " + done.error().message};
+  }
+  for (auto [conditions, moments] : {std::pair(&deeds_.never, &broken_), std::pair(&deeds_.eventually, &fulfilled_)}) {
+    for (std::size_t i = 0; i < conditions->size(); ++i) {
+      if (moments->contains(i)) continue;
+      const auto is_now = is_true(scene, (*conditions)[i], now_s);
+      if (!is_now) return is_now.error();
+      if (*is_now) (*moments)[i] = now_s;
+    }
+  }
+  return {};
+}
+
+Result<bool> DeedsRunner::is_true(editor::RunScene& scene, const Condition& condition, double now_s) {
+  if (now_s < condition.after_s) return false;
+  if (condition.kind == Condition::Kind::value) {
+    const auto value = scene.values.so_far(condition.port, condition.member);
+    if (!value || !value->mean()) return false;
+    return (!condition.min || value->last >= *condition.min) && (!condition.max || value->last <= *condition.max);
+  }
+  if (condition.kind == Condition::Kind::state) {
+    const auto view = scene.editor.component(condition.component + ".rtc", {.contexts = true});
+    const std::string state = view ? editor::state_text(view->state()) : "gone";
+    return base::equal_ignoring_case(state, condition.state);
+  }
+  const bool is_region = condition.kind == Condition::Kind::region;
+  const auto said = scene.simulator.simctl({"--json", is_region ? "pose" : "contacts", condition.model}, call_limit);
+  if (!said) return said.error();
+  const auto json = Json::parse(*said, nullptr, false);
+  if (!json.is_object()) return Error{"simctl: did not answer as expected"};
+  if (is_region) {
+    const auto position = json.value("position", std::vector<double>(3));
+    const double x = position.at(0), y = position.at(1);
+    return x >= condition.region[0] && y >= condition.region[1] && x <= condition.region[2] && y <= condition.region[3];
+  }
+  const auto contacts = json.value("contacts", Json::array());
+  return std::ranges::any_of(contacts, [&](const Json& contact) {
+    const auto other = contact.value("other", "");
+    const auto model = other.substr(0, other.find("::"));
+    return condition.touched == "any" ? model != usually_touched : model == condition.touched;
+  });
+}
+
+bool DeedsRunner::excuses(const std::string& instance) const {
+  return std::ranges::any_of(deeds_.faults, [&](const Fault& fault) {
+    return fault.object == Object::component && fault.target == instance && fault.kind != Kind::slow &&
+           !(fault.kind == Kind::kill && fault.for_s);
+  });
+}
+
+std::vector<editor::Verdict> DeedsRunner::verdicts() const {
+  std::vector<editor::Verdict> verdicts;
+  for (std::size_t i = 0; i < deeds_.never.size(); ++i) {
+    const auto broken = broken_.find(i);
+    verdicts.push_back(
+        {"never: " + deeds_.never[i].text,
+         broken == broken_.end() ? "" : "it was so at " + base::format_number(std::round(broken->second * 1e6) / 1e6) + " s"});
+  }
+  for (std::size_t i = 0; i < deeds_.eventually.size(); ++i) {
+    const auto& condition = deeds_.eventually[i];
+    const auto done = fulfilled_.find(i);
+    const double limit = condition.within_s.value_or(duration_s_);
+    std::string problem;
+    if (done == fulfilled_.end()) problem = "it never was";
+    if (done != fulfilled_.end() && done->second > limit + step_s_ / 2)
+      problem = "it was so only at " + base::format_number(std::round(done->second * 1e6) / 1e6) + " s";
+    verdicts.push_back({"eventually: " + condition.text, problem});
+  }
+  return verdicts;
+}
+
+}  // namespace campaign

@@ -1,0 +1,71 @@
+// Carries out the events and faults of a run at their steps, and looks whether conditions are true. One thread at a time; see run_script.h
+// of the system editor.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "plan/plan.h"
+#include "run/run_script.h"
+
+namespace campaign {
+
+struct Deeds {
+  std::vector<Event> events;
+  std::vector<Fault> faults;
+  std::vector<Condition> never, eventually;
+};
+
+class DeedsRunner {
+ public:
+  // `seed`: of the run; random faults draw from it.
+  DeedsRunner(Deeds deeds, std::uint64_t seed, double duration_s);
+
+  // Faults of components and connections that are properties of what is created.
+  Result<void> alter(editor::SavedSystem& system) const;
+  std::vector<std::string> properties() const;
+  // For sim-server: faults of sensors and drives, which it times itself.
+  std::vector<std::string> simulator_options() const;
+  // Ports that conditions are about.
+  std::vector<editor::Expectation> watched() const;
+
+  Result<void> begin(editor::RunScene& scene);
+  std::optional<std::int64_t> next_stop(std::int64_t done) const;
+  Result<void> act(editor::RunScene& scene, std::int64_t done);
+  bool excuses(const std::string& instance) const;
+  // Of never and eventually.
+  std::vector<editor::Verdict> verdicts() const;
+
+ private:
+  struct Timed {
+    std::int64_t step = 0;
+    enum class What { event, fault, end_of_fault } what = What::event;
+    std::size_t place = 0;
+  };
+  Result<void> carry_out(editor::RunScene& scene, const Timed& timed);
+  Result<void> start_fault(editor::RunScene& scene, const Fault& fault);
+  Result<void> end_fault(editor::RunScene& scene, const Fault& fault);
+  Result<void> look(editor::RunScene& scene, double now_s);
+  Result<bool> is_true(editor::RunScene& scene, const Condition& condition, double now_s);
+  bool polls() const;
+
+  Deeds deeds_;
+  std::uint64_t seed_;
+  double duration_s_;
+  double step_s_ = 0.001;
+  std::int64_t look_every_ = 100;  // steps
+  std::vector<Timed> timed_;       // by step
+  std::size_t next_ = 0;
+  std::set<std::size_t> happened_;           // events on a condition
+  std::map<std::size_t, double> broken_;     // never -> when [s]
+  std::map<std::size_t, double> fulfilled_;  // eventually -> when [s]
+};
+
+// One event, now.
+Result<void> carry_out_event(editor::RunScene& scene, const Event& event);
+
+}  // namespace campaign

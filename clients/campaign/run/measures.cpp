@@ -1,0 +1,140 @@
+#include "run/measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+
+#include "base/text.h"
+
+namespace campaign {
+namespace {
+
+constexpr const char* usually_touched = "ground_plane";
+
+// Calls visit(time, poses of all moving models) for each moment of a record.
+template <class Visit>
+void for_moments(const std::string& file, double last, Visit visit) {
+  std::ifstream in(file);
+  std::map<std::string, Eigen::Isometry3d> poses;
+  std::optional<double> now;
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("#") || line.starts_with("contact")) continue;
+    std::istringstream words(line);
+    double time = 0, x = 0, y = 0, z = 0, qw = 1, qx = 0, qy = 0, qz = 0;
+    std::string model;
+    words >> time >> std::quoted(model) >> x >> y >> z >> qw >> qx >> qy >> qz;
+    if (!words || time > last) break;
+    if (now && time != *now) visit(*now, poses);
+    now = time;
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translation() = Eigen::Vector3d(x, y, z);
+    pose.linear() = Eigen::Quaterniond(qw, qx, qy, qz).normalized().toRotationMatrix();
+    poses[model] = pose;
+  }
+  if (now) visit(*now, poses);
+}
+
+std::optional<double> clearance(const Measure& measure, const std::map<std::string, StandingModel>& models, const std::string& file,
+                                double last) {
+  const auto mine = models.find(measure.model);
+  if (mine == models.end() || mine->second.outline.parts.empty()) return std::nullopt;
+  std::vector<std::pair<std::string, std::vector<Polygon>>> standing;
+  for (const auto& [name, model] : models) {
+    const bool is_meant = measure.to.empty() ? name != measure.model : std::ranges::find(measure.to, name) != measure.to.end();
+    if (is_meant && !model.outline.parts.empty()) standing.emplace_back(name, footprint(model.outline, model.pose));
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for_moments(file, last, [&](double, const std::map<std::string, Eigen::Isometry3d>& poses) {
+    const auto at = poses.find(measure.model);
+    const auto shape = footprint(mine->second.outline, at == poses.end() ? mine->second.pose : at->second);
+    for (const auto& [name, polygons] : standing) {
+      const auto moved = poses.find(name);
+      least = std::min(least, distance(shape, moved == poses.end() ? polygons : footprint(models.at(name).outline, moved->second)));
+    }
+  });
+  return std::isfinite(least) ? std::optional(least) : std::nullopt;
+}
+
+std::optional<double> time_to(const Measure& measure, const editor::Seen& seen) {
+  const auto poses = seen.record.poses.find(measure.model);
+  if (poses == seen.record.poses.end()) return std::nullopt;
+  const double* r = measure.region;
+  const auto in = std::ranges::find_if(
+      poses->second, [&](const auto& pose) { return pose.x >= r[0] && pose.y >= r[1] && pose.x <= r[2] && pose.y <= r[3]; });
+  return in == poses->second.end() ? std::nullopt : std::optional(in->time);
+}
+
+std::optional<double> value(const Measure& measure, const editor::Seen& seen) {
+  const auto found = seen.values.find(measure.port + " " + measure.member);
+  if (measure.take == Measure::Take::count) return found == seen.values.end() ? 0.0 : static_cast<double>(found->second.samples);
+  if (found == seen.values.end() || !found->second.mean()) return std::nullopt;
+  switch (measure.take) {
+    case Measure::Take::min:
+      return found->second.lowest;
+    case Measure::Take::max:
+      return found->second.highest;
+    case Measure::Take::mean:
+      return found->second.mean();
+    default:
+      return found->second.last;
+  }
+}
+
+double contacts(const Measure& measure, const editor::Seen& seen) {
+  return static_cast<double>(std::ranges::count_if(seen.record.contacts, [&](const auto& contact) {
+    return (contact.model == measure.model && contact.other != usually_touched) ||
+           (contact.other == measure.model && contact.model != usually_touched);
+  }));
+}
+
+}  // namespace
+
+std::vector<editor::Expectation> watched_values(const std::vector<Measure>& measures) {
+  std::vector<editor::Expectation> watched;
+  for (const auto& measure : measures) {
+    if (measure.kind != Measure::Kind::value) continue;
+    editor::Expectation expectation;
+    expectation.kind = editor::Expectation::Kind::value;
+    expectation.text = measure.name;
+    expectation.port = measure.port;
+    expectation.member = measure.member;
+    watched.push_back(std::move(expectation));
+  }
+  return watched;
+}
+
+std::map<std::string, double> take_measures(const std::vector<Measure>& measures, const editor::Seen& seen,
+                                            const std::map<std::string, StandingModel>& models, const std::string& record_file,
+                                            double wall_s) {
+  std::map<std::string, double> numbers;
+  for (const auto& measure : measures) {
+    std::optional<double> number;
+    const auto poses = seen.record.poses.find(measure.model);
+    switch (measure.kind) {
+      case Measure::Kind::path_length:
+        if (poses != seen.record.poses.end()) number = editor::path_length(poses->second);
+        break;
+      case Measure::Kind::time_to:
+        number = time_to(measure, seen);
+        break;
+      case Measure::Kind::clearance:
+        number = clearance(measure, models, record_file, seen.record.last);
+        break;
+      case Measure::Kind::contacts:
+        number = contacts(measure, seen);
+        break;
+      case Measure::Kind::value:
+        number = value(measure, seen);
+        break;
+      case Measure::Kind::wall_time:
+        number = wall_s;
+        break;
+    }
+    if (number && std::isfinite(*number)) numbers[measure.name] = *number;
+  }
+  return numbers;
+}
+
+}  // namespace campaign

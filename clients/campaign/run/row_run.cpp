@@ -1,0 +1,104 @@
+#include "run/row_run.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "base/text.h"
+#include "run/row_script.h"
+
+namespace campaign {
+namespace fs = std::filesystem;
+namespace {
+
+editor::RunOptions options_of(const Campaign& campaign, const Row& row, const RowRunOptions& options) {
+  const auto& plan = campaign.plan();
+  editor::RunOptions run;
+  run.system = plan.system;
+  run.world = plan.world;
+  run.duration_s = options.duration_s.value_or(plan.duration_s);
+  run.expectations = plan.expectations;
+  run.seed = row.seed;
+  run.one_process_each = plan.one_process_each;
+  run.hang_timeout_s = plan.hang_timeout_s;
+  run.properties = campaign.properties_of(row);
+  run.module_paths = plan.module_paths;
+  run.resource_paths = plan.resource_paths;
+  run.keep = options.folder;
+  run.quiet = true;
+  if (options.records) run.record = options.folder + "/run.mcap";
+  return run;
+}
+
+// The files of the row: the world, when it is another one, and the expectations, when they stand in the plan.
+Result<void> write_files(const Plan& plan, const std::optional<WorldFile>& world, editor::RunOptions& run) {
+  std::error_code error;
+  fs::create_directories(run.keep, error);
+  if (error) return Error{"folder " + base::in_quotes(run.keep) + ": " + error.message()};
+  if (world) {
+    const auto folder = run.keep + "/world";
+    if (const auto written = world->write(folder); !written) return written;
+    run.world = folder + "/world.sdf";
+    run.resource_paths.push_back(world->folder());
+    if (fs::is_directory(world->folder() + "/models", error)) run.resource_paths.push_back(world->folder() + "/models");
+  }
+  if (!plan.expect_text.empty()) {
+    run.expectations = run.keep + "/expect.yaml";
+    std::ofstream out(run.expectations);
+    out << plan.expect_text << '\n';
+    if (!out.flush()) return Error{"file " + base::in_quotes(run.expectations) + ": cannot be written"};
+  }
+  return {};
+}
+
+}  // namespace
+
+bool Outcome::is_passed() const { return first_problem().empty(); }
+
+std::string Outcome::first_problem() const {
+  if (!problem.empty()) return problem;
+  const auto unmet = std::ranges::find_if(verdicts, [](const auto& verdict) { return !verdict.problem.empty(); });
+  return unmet == verdicts.end() ? "" : unmet->expectation + ": " + unmet->problem;
+}
+
+Outcome run_row(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, const RowRunOptions& options) {
+  Outcome outcome;
+  const auto world = campaign.world_of(row);
+  if (!world) {
+    outcome.problem = world.error().message;
+    return outcome;
+  }
+  auto run = options_of(campaign, row, options);
+  if (const auto written = write_files(campaign.plan(), *world, run); !written) {
+    outcome.problem = written.error().message;
+    return outcome;
+  }
+  RowScript script(campaign, row, *world,
+                   {.folder = fs::absolute(options.folder).string(),
+                    .deeds = options.deeds.value_or(
+                        Deeds{campaign.plan().events, campaign.plan().faults, campaign.plan().never, campaign.plan().eventually}),
+                    .duration_s = run.duration_s,
+                    .checks_invariants = options.checks_invariants || campaign.plan().checks_invariants,
+                    .draws = options.draws && campaign.plan().has_pictures});
+  for (const auto& property : script.properties()) run.properties.push_back(property);
+  run.simulator_options = script.simulator_options();
+  run.script = &script;
+  const auto result = editor::run_system(orb, run);
+  outcome.problem = result.problem;
+  outcome.logs = result.logs;
+  outcome.verdicts = result.verdicts;
+  outcome.notes = result.notes;
+  outcome.state_hash = result.state_hash;
+  outcome.simulated_s = result.simulated_s;
+  outcome.wall_s = result.wall_s;
+  outcome.measures = script.measures();
+  outcome.features = script.features();
+  for (const auto& measure : campaign.plan().measures) {
+    if (measure.kind == Measure::Kind::wall_time && outcome.problem.empty()) outcome.measures[measure.name] = result.wall_s;
+  }
+  std::error_code ignored;  // files that stay do no harm
+  if (outcome.is_passed() && !options.keeps_files) fs::remove_all(options.folder, ignored);
+  return outcome;
+}
+
+}  // namespace campaign

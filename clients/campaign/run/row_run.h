@@ -1,0 +1,45 @@
+// One row, run: a system of its own, as rtse run starts it. Any thread; each run belongs to one.
+#pragma once
+
+#include <omniORB4/CORBA.h>
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "run/campaign.h"
+#include "run/deeds_runner.h"
+#include "run/run_system.h"
+
+namespace campaign {
+
+struct RowRunOptions {
+  std::string folder;                  // of its files: logs, record, pictures; made if need be
+  bool keeps_files = false;            // when it passes, too
+  std::optional<Deeds> deeds{};        // in place of those of the plan
+  std::optional<double> duration_s{};  // in place of the plan's
+  bool checks_invariants = false;      // also when the plan does not ask for it
+  bool draws = true;                   // a picture of a run that fails, if the plan has pictures
+  bool records = false;                // run.mcap in the folder
+};
+
+struct Outcome {
+  std::string problem;  // why it did not run to its end
+  std::string logs;     // then: last lines of all processes
+  std::vector<editor::Verdict> verdicts;
+  std::vector<std::string> notes;
+  std::string state_hash;
+  std::map<std::string, double> measures;
+  std::set<std::string> features;  // states, places and values that it has reached, coarsely
+  double simulated_s = 0, wall_s = 0;
+
+  bool is_passed() const;
+  // The first thing that was not as expected; empty: nothing.
+  std::string first_problem() const;
+};
+
+Outcome run_row(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, const RowRunOptions& options);
+
+}  // namespace campaign

@@ -1,0 +1,74 @@
+#include "run/row_script.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "run/measures.h"
+
+namespace campaign {
+
+using namespace std::chrono_literals;
+
+RowScript::RowScript(const Campaign& campaign, const Row& row, const std::optional<WorldFile>& world, RowScriptOptions options)
+    : campaign_(campaign),
+      row_(row),
+      world_(world),
+      options_(std::move(options)),
+      deeds_(options_.deeds, row.seed, options_.duration_s),
+      watched_(watched_values(campaign.plan().measures)) {
+  for (auto& watched : deeds_.watched()) watched_.push_back(std::move(watched));
+  if (!options_.checks_invariants) return;
+  for (const auto& connector : campaign.system().connectors) {
+    if (!connector.is_data) continue;
+    const auto& name = connector.source.port_name;
+    const auto port = connector.source.instance + ":" + name.substr(name.find('.') + 1);
+    if (std::ranges::find(invariant_ports_, port) != invariant_ports_.end()) continue;
+    invariant_ports_.push_back(port);
+    editor::Expectation all;  // an empty member: every number
+    all.kind = editor::Expectation::Kind::value;
+    all.port = port;
+    watched_.push_back(std::move(all));
+  }
+}
+
+editor::Result<void> RowScript::alter(editor::SavedSystem& system) {
+  if (const auto altered = campaign_.alter(system, row_); !altered) return altered;
+  return deeds_.alter(system);
+}
+
+void RowScript::end(editor::RunScene* scene, const editor::Seen& seen, editor::RunResult& result) {
+  if (scene && result.problem.empty()) {
+    for (auto& verdict : deeds_.verdicts()) result.verdicts.push_back(std::move(verdict));
+    for (const auto& port : invariant_ports_) {
+      const auto value = seen.values.find(port + " ");
+      const auto count = value == seen.values.end() ? 0 : value->second.not_numbers;
+      result.verdicts.push_back({"no NaN from " + port, count == 0 ? "" : std::to_string(count) + " numbers were NaN"});
+    }
+    measures_ =
+        take_measures(campaign_.plan().measures, seen, world_ ? world_->models() : campaign_.models(), scene->place.file("record.txt"), 0);
+  }
+  add_features(seen);
+  if (!scene || !options_.draws || result.is_passed()) return;
+  // A picture that cannot be drawn takes nothing from the verdict.
+  static_cast<void>(
+      scene->simulator.simctl({"screenshot", options_.folder + "/picture.png", "--top", "--scans", "--size", "480x480"}, 60s));
+}
+
+void RowScript::add_features(const editor::Seen& seen) {
+  constexpr double cell = 0.5;  // [m]
+  for (const auto& [component, state] : seen.states) features_.insert(component + " " + state);
+  for (const auto& [model, poses] : seen.record.poses) {
+    for (const auto& pose : poses)
+      features_.insert(model + " " + std::to_string(std::lround(pose.x / cell)) + " " + std::to_string(std::lround(pose.y / cell)));
+  }
+  const auto bucket = [](double value) {
+    if (std::isnan(value) || value == 0) return std::string("0");
+    return std::string(value < 0 ? "-" : "+") +
+           std::to_string(std::isinf(value) ? 999 : static_cast<int>(std::floor(std::log2(std::abs(value)))));
+  };
+  for (const auto& [name, value] : seen.values)
+    features_.insert(name + " " + bucket(value.lowest) + " " + bucket(value.highest) + " " + bucket(static_cast<double>(value.samples)));
+}
+
+}  // namespace campaign

@@ -1,0 +1,59 @@
+// What a row does to its run, and takes from it. One thread at a time; see run_script.h of the system editor.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "run/campaign.h"
+#include "run/deeds_runner.h"
+#include "run/run_script.h"
+
+namespace campaign {
+
+struct RowScriptOptions {
+  std::string folder;  // for the picture
+  Deeds deeds;
+  double duration_s = 0;
+  bool checks_invariants = false;
+  bool draws = true;
+};
+
+class RowScript final : public editor::RunScript {
+ public:
+  // `world` is the row's, nothing when it is the plan's own. All must live as long.
+  RowScript(const Campaign& campaign, const Row& row, const std::optional<WorldFile>& world, RowScriptOptions options);
+
+  // That components are created with because of faults.
+  std::vector<std::string> properties() const { return deeds_.properties(); }
+  // For sim-server.
+  std::vector<std::string> simulator_options() const { return deeds_.simulator_options(); }
+
+  editor::Result<void> alter(editor::SavedSystem& system) override;
+  const std::vector<editor::Expectation>& watched() const override { return watched_; }
+  editor::Result<void> begin(editor::RunScene& scene) override { return deeds_.begin(scene); }
+  std::optional<std::int64_t> next_stop(std::int64_t done) const override { return deeds_.next_stop(done); }
+  editor::Result<void> act(editor::RunScene& scene, std::int64_t done) override { return deeds_.act(scene, done); }
+  bool excuses(const std::string& instance) const override { return deeds_.excuses(instance); }
+  void end(editor::RunScene* scene, const editor::Seen& seen, editor::RunResult& result) override;
+
+  const std::map<std::string, double>& measures() const { return measures_; }
+  const std::set<std::string>& features() const { return features_; }
+
+ private:
+  void add_features(const editor::Seen& seen);
+
+  const Campaign& campaign_;
+  const Row& row_;
+  const std::optional<WorldFile>& world_;
+  RowScriptOptions options_;
+  DeedsRunner deeds_;
+  std::vector<std::string> invariant_ports_;
+  std::vector<editor::Expectation> watched_;
+  std::map<std::string, double> measures_;
+  std::set<std::string> features_;
+};
+
+}  // namespace campaign

@@ -1,0 +1,51 @@
+// All rows of a campaign, run by so many workers at a time, their results stored. Called from one thread.
+#pragma once
+
+#include <omniORB4/CORBA.h>
+
+#include <chrono>
+#include <functional>
+#include <string>
+
+#include "results/store.h"
+#include "run/campaign.h"
+
+namespace campaign {
+
+struct SweepOptions {
+  std::string results;  // SQLite file
+  std::string kept;     // folder for the files of rows that fail
+  int jobs = 1;
+  double audit = 0;                         // the fraction of stored rows that is run again
+  std::size_t first_row = 1, last_row = 0;  // only these; 0: to the end
+  bool records = false;
+  bool fails_fast = false;  // no new row after one that failed
+  std::chrono::milliseconds call_limit{1000};
+};
+
+struct Progress {
+  std::size_t rows = 0, done = 0;  // of this call: those in the results already count as done
+  std::size_t passed = 0, failed = 0;
+  std::size_t stored = 0;  // of these: not run again
+  std::size_t audited = 0, different = 0;
+  double wall_s = 0;
+  double left_s = 0;  // an estimate; 0: not known yet
+};
+
+struct FailedRow {
+  std::size_t number = 0;
+  std::string problem;
+};
+
+struct SweepResult {
+  Progress progress;
+  std::vector<FailedRow> failed;       // the first hundred
+  std::vector<std::size_t> different;  // audited rows with another state
+  bool is_interrupted = false;
+};
+
+// `show` is called after every row, one call at a time.
+Result<SweepResult> sweep(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepOptions& options,
+                          const std::function<void(const Progress&)>& show);
+
+}  // namespace campaign
