@@ -28,8 +28,8 @@ function(rtmsim_component name)
   endforeach()
 
   if(arg_INSTALL)
-    set_target_properties(${name} PROPERTIES INSTALL_RPATH "$ORIGIN/..")
-    install(TARGETS ${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/rtm-sim)
+    set_target_properties(${name} PROPERTIES INSTALL_RPATH "$ORIGIN/../../${CMAKE_INSTALL_LIBDIR}")
+    install(TARGETS ${name} LIBRARY DESTINATION lib/rtm-sim)  # the same on every system: programs find it beside themselves
     install(TARGETS ${name}Comp RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
     set_property(GLOBAL APPEND PROPERTY RTMSIM_COMPONENT_PROGRAMS ${name}Comp)
   endif()

@@ -28,7 +28,7 @@ set(PACKAGE_CMAKE_DIR "\${CMAKE_CURRENT_LIST_DIR}")
 set(PACKAGE_INCLUDE_DIRS
   "\${_openrtm_root}/${package_include} \${_openrtm_root}/${package_include}/rtm/idl \${_openrtm_root}/${package_include}/rtm/ext")
 set(PACKAGE_LIBRARY_DIR "\${_openrtm_root}/${CMAKE_INSTALL_LIBDIR}")
-set(PACKAGE_MODULE_DIR "\${_openrtm_root}/${CMAKE_INSTALL_LIBDIR}/rtm-sim")
+set(PACKAGE_MODULE_DIR "\${_openrtm_root}/lib/rtm-sim")
 set(PACKAGE_IDL_DIRS "\${_openrtm_root}/${package_include}/rtm/idl \${_openrtm_root}/${package_include}/rtm/ext")
 configure_file(cmake/package/OpenRTMConfig.cmake.in ${PROJECT_BINARY_DIR}/package/OpenRTMConfig.cmake @ONLY)
 
@@ -40,7 +40,7 @@ configure_file(cmake/package/openrtm.pc.in ${PROJECT_BINARY_DIR}/package/openrtm
 install(FILES ${PROJECT_BINARY_DIR}/package/OpenRTMConfig.cmake ${PROJECT_BINARY_DIR}/OpenRTMConfigVersion.cmake
   cmake/omniorb.cmake cmake/idl.cmake cmake/component.cmake cmake/throw_specifications.cmake cmake/component_main.cpp.in
   DESTINATION ${package_cmake})
-foreach(name openrtm-aist openrtm2 libcoil)
+foreach(name rtm-core openrtm-aist openrtm2 libcoil)
   install(FILES ${PROJECT_BINARY_DIR}/package/openrtm.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig RENAME ${name}.pc)
 endforeach()
 foreach(name rtm rtm2)
@@ -74,13 +74,21 @@ install(DIRECTORY ${PROJECT_BINARY_DIR}/include/ DESTINATION ${package_include} 
 install(DIRECTORY idl/ DESTINATION ${package_include}/rtm/idl FILES_MATCHING PATTERN "*.idl" PATTERN ext EXCLUDE)
 install(DIRECTORY idl/ext/ DESTINATION ${package_include}/rtm/ext FILES_MATCHING PATTERN "*.idl")
 
-install(TARGETS base own_account_door rt_core rt_corba openrtm coil rtm_idl LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+set(package_shared_libraries base rt_core rt_corba openrtm coil rtm_idl)
+set_target_properties(${package_shared_libraries} PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${RTMSIM_SOVERSION} INSTALL_RPATH "$ORIGIN")
+install(TARGETS ${package_shared_libraries} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+set_target_properties(own_account_door PROPERTIES INSTALL_RPATH "$ORIGIN/..")
+install(TARGETS own_account_door LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/rtm-sim)
 install(TARGETS rtcprof RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 # Manual page and completion of each program, printed by the program itself.
 set(package_share ${PROJECT_BINARY_DIR}/share)
 set(package_pages)
 get_property(package_component_programs GLOBAL PROPERTY RTMSIM_COMPONENT_PROGRAMS)
-foreach(program rtcd rtse sim-server simctl player-gateway follow ${package_component_programs})
+set(package_programs rtcd rtse sim-server simctl player-gateway follow)
+if(TARGET rtm-studio)
+  list(APPEND package_programs rtm-studio)
+endif()
+foreach(program ${package_programs} ${package_component_programs})
   if(NOT program IN_LIST package_component_programs)
     install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   endif()
