@@ -80,6 +80,7 @@ Every device of a simulated world is an *iface*: a segment of POSIX shared memor
 
 with the type in words (`laser`, `position2d`, ...) and the iface name as model names joined by `::`, then the sensor or plugin name. The file
 `sim-server/shm/rtmsim_layout.h` (C11 and C++) is the authority; the tables below are made from it by `docs/make_shared_memory.py`. `simctl dump IFACE` shows a living one.
+When another user has made a file of that name, which he alone can remove, the segment is in the folder `rtmsim-<uid>.<random letters>` of the user who is meant.
 For C there are functions in `sim-server/shm/rtmsim_iface.h`, for C++ in `sim-server/shm/client.h`.
 
 All numbers are little endian; areas start at multiples of 64. Units: m, rad, s, kg, N; times are int64 nanoseconds; x forward, y left, z up,
