@@ -7,3 +7,18 @@ foreach(case chain_forward chain_backward chain_mixed_at_a_rate_that_is_no_multi
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/lockstep.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(lockstep.${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
+
+# Components of another make, and what becomes of a run when one of them is slow, wrong or dead.
+foreach(case join_and_leave started same_state faulty wrong_start ticked clock together one_context host_dies)
+  add_test(NAME lockstep.foreign_${case}
+    COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/scenario/foreign_members.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+  set_tests_properties(lockstep.foreign_${case} PROPERTIES LABELS integration TIMEOUT 300)
+endforeach()
+
+# Runs that depend on nothing, and planted races that are found.
+rtmsim_component(Chance scenario/chance.cpp)
+foreach(case links_of_one_phase twice first_difference race_of_a_thread race_of_the_clock race_of_an_address)
+  add_test(NAME chance.${case}
+    COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/scenario/chance.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+  set_tests_properties(chance.${case} PROPERTIES LABELS integration TIMEOUT 300)
+endforeach()

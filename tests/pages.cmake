@@ -4,10 +4,20 @@ foreach(page new-device new-component new-data-type new-rtse-command)
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/follow_page.py list ${page} ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR})
   set_tests_properties(docs.${page} PROPERTIES LABELS docs TIMEOUT 600)
 endforeach()
+foreach(mode pages promises)
+  add_test(NAME docs.${mode} COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/docs.py ${mode} ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR})
+  set_tests_properties(docs.${mode} PROPERTIES LABELS docs)
+endforeach()
+add_test(NAME docs.commands
+  COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/scenario/docs_commands.py ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR})
+set_tests_properties(docs.commands PROPERTIES LABELS docs TIMEOUT 600)
 # The whole simulator of the copy, with the new device in it: minutes of building.
 option(RTMSIM_SLOW_TESTS "tests that build much" OFF)
 if(RTMSIM_SLOW_TESTS)
   add_test(NAME docs.new-device_runs
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/follow_page.py build new-device ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR})
   set_tests_properties(docs.new-device_runs PROPERTIES LABELS docs TIMEOUT 7200)
+  add_test(NAME docs.commands_slow
+    COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/scenario/docs_commands.py ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR} docs/campaigns.md)
+  set_tests_properties(docs.commands_slow PROPERTIES LABELS docs TIMEOUT 1200)
 endif()

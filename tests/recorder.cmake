@@ -1,6 +1,8 @@
 # Recordings: the file format.
 rtmsim_test(mcap_test unit/mcap_test.cpp LIBRARIES mcap)
-foreach(case whole_run same_run killed compared played of_a_run bad_input)
+rtmsim_test(ros_messages_test unit/ros_messages_test.cpp LIBRARIES recorder)
+rtmsim_test(expression_test unit/expression_test.cpp LIBRARIES recorder)
+foreach(case views whole_run same_run killed compared played kept of_a_run replayed replayed_without_inputs gone_to like bad_input)
   add_test(NAME recordings.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/recordings.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(recordings.${case} PROPERTIES LABELS integration TIMEOUT 300)

@@ -5,3 +5,7 @@ target_include_directories(sim_bench PRIVATE ${PROJECT_SOURCE_DIR}/tests)
 target_link_libraries(sim_bench PRIVATE simserver embree ${ODE_LIBRARY} rtmsim_settings)
 target_compile_definitions(sim_bench PRIVATE RTMSIM_SOURCE_DIR="${PROJECT_SOURCE_DIR}" RTMSIM_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
 add_dependencies(sim_bench sim-server)
+
+add_executable(physics_bench physics_bench.cpp)
+target_include_directories(physics_bench PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+target_link_libraries(physics_bench PRIVATE simphysics rtmsim_settings)

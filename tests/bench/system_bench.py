@@ -73,6 +73,36 @@ def with_components(world, robots, steps, apart):
         return seconds
 
 
+# Three components that send to each other, each in a process of its own, at 10 Hz. kind: ours (on simulated time by themselves), joined (the same
+# components on contexts of their own, as if of another make), python (of another make indeed).
+def three_processes(world, steps, kind):
+    with System(bin_dir, lib_dir) as s:
+        s.naming()
+        s.server(world, "--paused", "--rtf", "0", "--lockstep")
+        names = ["First", "Second", "Third"]
+        for phase, name in enumerate(names):
+            relay = f"Relay?instance_name={name}&exec_cxt.periodic.rate=10&exec_cxt.sim_time.phase={phase}&conf.default.source={int(phase == 0)}"
+            if kind == "ours":
+                s.host(relay)
+            elif kind == "joined":
+                s.rtcd(relay)
+            else:
+                s.start(sys.executable, "-B", f"{source}/tests/scenario/foreign_component.py", name, "--names", s.names, *(["--source"] if phase == 0 else []))
+        s.rtse("wait", *names, "--state", "any", "--timeout", "60")
+        for a, b in zip(names, names[1:]):
+            s.rtse("con", f"{a}:out", f"{b}:in", "-p", "dataport.subscription_type=flush")
+        for phase, name in enumerate(names if kind != "ours" else []):
+            s.rtse("join", name, "--rate", "10", "--phase", str(phase), "--server-id", s.server_id)
+        s.rtse("act", *names)
+        s.until("participants", lambda: len(s.participants()) == len(names))
+        timed_steps(s, 1000)
+        seconds = timed_steps(s, steps)
+        print(f"  {kind}, tick of each component: " + ", ".join(f"{p['name']} {p['mean_us']:.0f} us" for p in s.participants()), flush=True)
+        for name in names if kind != "ours" else []:
+            s.rtse("leave", name)
+        return seconds
+
+
 def compare(world, robots, steps, apart):
     pairs = [(bare(world, robots, steps), with_components(world, robots, steps, apart)) for _ in range(rounds)]
     return min(a for a, _ in pairs), min(b for _, b in pairs)
@@ -88,6 +118,12 @@ with tempfile.TemporaryDirectory() as work:
     row("one Pioneer, 181 beams at 10 Hz, 3 components in 3 processes, 1 ms: speed / bare", alone / together, "", ">= 0.90")
     row("  times real time", steps * 0.001 / together, "x", ">= 100")
     row("  times real time without components", steps * 0.001 / alone, "x", "")
+    steps = 20000
+    alone = min(bare(one, ["pioneer2dx"], steps) for _ in range(rounds))
+    for kind, what, limit in (("ours", "of our own", ""), ("joined", "of others (C++), joined", ">= 50"), ("python", "of others (Python), joined", ">= 50")):
+        seconds = min(three_processes(one, steps, kind) for _ in range(rounds))
+        row(f"three processes {what}, 10 Hz, 1 ms: times real time", steps * 0.001 / seconds, "x", limit)
+        row("  speed / bare, whose robot drives and scans as well", alone / seconds, "", "")
     ten = f"{work}/ten.sdf"
     subprocess.run([sys.executable, str(source / "worlds/make_arena.py"), "10", ten], check=True)
     steps = 6000

@@ -3,3 +3,9 @@ add_executable(mcap_fuzz mcap_fuzz.cpp)
 target_link_libraries(mcap_fuzz PRIVATE mcap rtmsim_settings)
 add_test(NAME fuzz.mcap COMMAND mcap_fuzz --runs 20000)
 set_tests_properties(fuzz.mcap PROPERTIES LABELS fuzz TIMEOUT 300)
+
+# Definitions and samples of ROS 2, and conditions.
+add_executable(ros_fuzz ros_fuzz.cpp)
+target_link_libraries(ros_fuzz PRIVATE recorder rtmsim_settings)
+add_test(NAME fuzz.ros COMMAND ros_fuzz --runs 20000)
+set_tests_properties(fuzz.ros PROPERTIES LABELS fuzz TIMEOUT 300)

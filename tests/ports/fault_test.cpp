@@ -312,7 +312,7 @@ TEST_F(Faults, a_peer_that_was_dropped_while_it_hung_is_told_and_can_be_connecte
     RTC::TimedOctetSeq value{};
     RTC::OutPort<RTC::TimedOctetSeq> octets("A0.octets", value);
     const RTC::PortService_var far = peer.port("in");
-    auto plan = profile({octets.getPortRef(), far}, {{"call_timeout", "0.2"}, {"subscription_type", subscription}});
+    auto plan = profile({octets.getPortRef(), far}, {{"call_timeout", "1"}, {"subscription_type", subscription}});
     plan.connector_id = "the same";
     ASSERT_EQ(octets.connect(plan), RTC::RTC_OK);
     stop_process(peer);

@@ -3,6 +3,7 @@
 Enough for ports of another make. Any thread; a thread for each connection that comes in.
 """
 
+import contextlib
 import itertools
 import socket
 import struct
@@ -232,20 +233,21 @@ def send_message(stream, kind, version, order, out):
 
 
 class Orb:
-    """Serves objects: key -> (interfaces, call(operation, In, Out))."""
+    """Serves objects: key -> (ids of its interfaces, call(operation, In, Out))."""
 
     def __init__(self, version=2, order='>'):
         self.version, self.order = version, order
         self.objects = {}
         self.numbers = itertools.count(1)
         self.close_after_request = 0  # so many requests are dropped together with their connection
+        self.kept = None  # a threading.local(): calls of a thread to one address share a connection; None: each has its own
         self.listener = socket.create_server(('127.0.0.1', 0))
         self.streams = []
         threading.Thread(target=self.accept, args=(self.listener,), daemon=True).start()
 
-    def add(self, interface, call):
+    def add(self, interface, call, bases=()):
         key = b'foreign\x00%d' % next(self.numbers)
-        self.objects[key] = (interface, call)
+        self.objects[key] = ({interface, 'IDL:omg.org/CORBA/Object:1.0', *bases}, call)
         return Ior.make(interface, '127.0.0.1', self.listener.getsockname()[1], key, self.version)
 
     def stop(self):
@@ -341,9 +343,9 @@ class Orb:
         try:
             if known is None:
                 raise SystemException('OBJECT_NOT_EXIST')
-            interface, call = known
+            interfaces, call = known
             if operation == '_is_a':
-                result.octet(message.string() in (interface, 'IDL:omg.org/CORBA/Object:1.0'))
+                result.octet(message.string() in interfaces)
             elif operation == '_non_existent':
                 result.octet(0)
             else:
@@ -356,11 +358,27 @@ class Orb:
             result.ulong(1)
             return True
 
+    @contextlib.contextmanager
+    def connection(self, host, port, timeout):
+        streams = {} if self.kept is None else self.kept.__dict__
+        stream = streams.pop((host, port), None)
+        if stream is None:
+            stream = socket.create_connection((host, port), timeout)
+            stream.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        try:
+            yield stream
+        except BaseException:
+            stream.close()
+            raise
+        if self.kept is None:
+            stream.close()
+        else:
+            streams[host, port] = stream
+
     def invoke(self, target, operation, write=lambda out: None, timeout=60.0):
         """The body of the answer. Raises SystemException with the name of the exception."""
         host, port, key = target.address()
-        with socket.create_connection((host, port), timeout) as stream:
-            stream.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        with self.connection(host, port, timeout) as stream:
             request = Out(self.order, bytes(12))
             if self.version < 2:
                 request.ulong(0)

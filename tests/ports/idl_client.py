@@ -5,6 +5,8 @@ import os
 import subprocess
 import types
 
+from giop import SystemException
+
 here = os.path.dirname(os.path.abspath(__file__))
 
 
@@ -125,3 +127,21 @@ class Remote:
             return results[0] if len(results) == 1 else tuple(results) or None
 
         return call
+
+
+class Servant:
+    """An object whose operations are the methods of `behaviour` with their names; what it has not is answered with NO_IMPLEMENT."""
+
+    def __init__(self, idl, orb, interface, behaviour):
+        self.idl, self.orb, self.interface, self.behaviour = idl, orb, interface, behaviour
+        self.ior = orb.add(idl.interface(interface)['id'], self.call, idl.all_ids(interface))
+
+    def call(self, operation, data, out):
+        declared = self.idl.operation(self.interface, operation)
+        method = getattr(self.behaviour, operation, None)
+        if declared is None or method is None:
+            raise SystemException('NO_IMPLEMENT')
+        given = [self.idl.read(data, kind, self.orb) for direction, kind in declared['parameters'] if direction != 'out']
+        result = method(*given)
+        if declared['result'] != 'void':
+            self.idl.write(out, declared['result'], result)

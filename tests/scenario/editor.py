@@ -47,7 +47,8 @@ def closed_pipe():
             rig.rtse("deact", "SourceAll0")
         process.stdout.close()
         process.wait(60)
-        assert process.stderr.read() == "", "a closed pipe is nothing to complain of"
+        said = process.stderr.read()
+        assert said == "", f"a closed pipe is nothing to complain of: {said}"
     with open("/dev/full", "w") as full:
         done = subprocess.run([f"{rig.bin_dir}/rtse", "--ns", rig.names, "ls", "-R"], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
     assert done.returncode == 1 and "cannot be written" in done.stderr, done

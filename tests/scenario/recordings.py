@@ -1,5 +1,7 @@
 # Recordings of a system in lock step, one case per run: recordings.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
+import base64
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -66,8 +68,7 @@ def whole_run():
     assert all(abs(s["time"] - (s["value"]["tm"]["sec"] + s["value"]["tm"]["nsec"] * 1e-9)) < 1e-9 for s in scans), scans[0]
     assert [c["missing"] for c in info["channels"]] == [0, 0, 0], info["channels"]
     ours = lines("cat", file)
-    done = subprocess.run(["node", f"{rig.source}/tests/foreign/read.mjs", file], stdout=subprocess.PIPE, check=True, timeout=120, text=True)
-    *theirs, tail = [json.loads(line) for line in done.stdout.splitlines()]
+    *theirs, tail = foreign(file)
     assert tail == {"attachments": ["world.sdf"], "statistics": len(ours)}, tail
     assert len(theirs) == len(ours)
     for a, b in zip(ours, theirs):
@@ -75,8 +76,16 @@ def whole_run():
         assert same(a["value"], b["value"]), (a, b)
 
 
-# JSON has no infinities; a reader that has them says null.
+# What the readers of others find: a line for each message, and one for the rest.
+def foreign(name):
+    done = subprocess.run(["node", f"{rig.source}/tests/foreign/read.mjs", name], stdout=subprocess.PIPE, check=True, timeout=120, text=True)
+    return [json.loads(line) for line in done.stdout.splitlines()]
+
+
+# JSON has no infinities; a reader that has them says null. We write octets as base64.
 def same(a, b):
+    if isinstance(a, str) and isinstance(b, list):
+        return list(base64.b64decode(a)) == b
     if isinstance(a, dict):
         return a.keys() == b.keys() and all(same(a[key], b[key]) for key in a)
     if isinstance(a, list):
@@ -143,6 +152,39 @@ def played():
     sent = len(lines("cat", file))
     done = rig.try_rtse("play", file, "LaserObstacleAvoid0:velocity=RTCPosition2d0:velocity", "--rate", "1000")
     assert done.returncode == 0 and f"sent {sent} samples" in done.stdout, done
+    # The same by simulated time: it takes part, and ends when time has come to its last sample.
+    player = subprocess.Popen([f"{rig.bin_dir}/rtse", "--ns", rig.names, "play", file, "LaserObstacleAvoid0:velocity=RTCPosition2d0:velocity",
+                               "--sim-time", "-s", str(rig.server_id)], stdout=subprocess.PIPE, text=True)
+    await_("the player takes part", lambda: "play " in rig.simctl("participants"))
+    seconds(2)
+    assert player.poll() is None
+    seconds(2)
+    assert f"sent {sent} samples" in player.communicate(timeout=60)[0] and player.returncode == 0
+
+
+# Files one behind the other, fewer samples, and the last ones.
+def kept():
+    up()
+    processes = []
+    for name, *words in (("split.mcap", "--split", "1s"), ("few.mcap", "--rate", "2"), ("last.mcap", "--last", "1")):
+        processes.append(subprocess.Popen([f"{rig.bin_dir}/rtse", "--ns", rig.names, "record", "-s", str(rig.server_id), "-o", rig.path(name),
+                                           "RTCLaser0:range", *words], stderr=subprocess.PIPE, text=True))
+        assert processes[-1].stderr.readline().startswith("recording ")
+    seconds(3.5)
+    for process in processes:
+        ended(process)
+    def times(name):
+        return [round(s["time"], 3) for s in lines("cat", rig.path(name))]
+    parts = [times(f"split-00{n}.mcap") for n in range(1, 5)]
+    assert [len(part) for part in parts[1:3]] == [10, 10] and all(part[-1] - part[0] < 1 for part in parts), parts
+    whole = sum(parts, [])
+    assert abs(len(whole) - 35) <= 1 and whole == sorted(set(whole)), whole
+    info = [json.loads(rig.rtse("--json", "recording", "info", rig.path(f"split-00{n}.mcap"))) for n in range(1, 5)]
+    assert all([a["name"] for a in one["attachments"]] == ["world.sdf"] and one["run"]["lockstep"] == "yes" for one in info), info
+    few = times("few.mcap")
+    assert len(few) == len({int(t * 2 + 1e-9) for t in whole}) and all(b - a > 0.39 for a, b in zip(few, few[1:])), few
+    last = times("last.mcap")
+    assert last == [t for t in whole if t >= whole[-1] - 1 - 1e-9], last
 
 
 # `rtse run` records from before the first step on; two runs are equal, and equal to the run without.
@@ -159,6 +201,98 @@ def of_a_run():
     assert velocity["missing"] == 0 and velocity["first"] <= 0.2 and velocity["last"] >= 4.8, velocity
     done = rig.try_rtse(*call, "--record", "/no/such/folder/a.mcap")
     assert done.returncode == 1 and "/no/such/folder" in done.stderr, done
+
+
+# What the simulator shows, in messages that other people's readers know: one of each kind of device, field for field.
+def views():
+    rig.server("--lockstep", "--rtf", "0", "--paused", world=f"{rig.source}/tests/worlds/every_device.sdf")
+    process = recording("--views", "--raw-pictures")
+    seconds(0.5)
+    ended(process)
+    info = json.loads(rig.rtse("--json", "recording", "info", file))
+    kinds = {c["type"].split("/")[-1] for c in info["channels"]}
+    assert kinds == {"TFMessage", "Clock", "LaserScan", "Range", "Image", "CameraInfo", "PointCloud2", "MarkerArray", "Imu", "NavSatFix", "Float64",
+                     "MagneticField", "FluidPressure", "WrenchStamped", "Odometry"}, kinds
+    assert all(c["samples"] > 0 and c["missing"] == 0 for c in info["channels"]), info["channels"]
+    ours, theirs = lines("cat", file), foreign(file)[:-1]
+    assert len(ours) == len(theirs)
+    for a, b in zip(ours, theirs):
+        assert a["topic"] == b["topic"] and same(a["value"], b["value"]), (a, b)
+    scan = json.loads(rig.simctl("--json", "echo", "rig::laser", "-n", "1"))
+    last = [s for s in ours if s["topic"] == "/sim/laser/rig/laser"][-1]
+    assert last["value"]["header"]["frame_id"] == "rig::laser" and len(last["value"]["ranges"]) == len(scan["ranges"]), last
+    pictures = sum(s["topic"] == "/sim/camera/rig/eyes/image" for s in ours)
+    assert f"{pictures} pictures" in rig.rtse("recording", "export", file, "/sim/camera/rig/eyes/image", "--png", "-o", rig.path("png"))
+    drawn = sorted(os.listdir(rig.path("png/sim.camera.rig.eyes.image")))
+    assert len(drawn) == pictures > 10, drawn
+    assert open(rig.path(f"png/sim.camera.rig.eyes.image/{drawn[-1]}"), "rb").read(24)[-8:] == bytes([0, 0, 0, 16, 0, 0, 0, 12]), drawn
+    moving = {t["child_frame_id"] for s in ours if s["topic"] == "/tf" for t in s["value"]["transforms"]}
+    assert {"rover", "flyer"} <= moving, moving
+
+
+def recorded_run(name, duration):
+    path = rig.path(name)
+    done = json.loads(rig.rtse("--json", "run", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "--world", f"{rig.source}/worlds/obstacle_course.sdf",
+                               "--duration", str(duration), "--record", path).splitlines()[-1])
+    return path, done["state_hash"]
+
+
+# A component alone answers its recorded inputs as in the run, to the bit; with another constant the first tick and member are named.
+def replayed():
+    path, _ = recorded_run("run.mcap", 10)
+    call = ["replay", path, "--into", "LaserObstacleAvoid0", "--compare"]
+    done = json.loads(rig.rtse("--json", *call, "--junit", rig.path("good.xml")))
+    assert done["outputs"] == [{"topic": "/LaserObstacleAvoid0/velocity", "samples": 101, "recorded": 101, "different": 0, "first": ""}], done
+    assert done["ticks"] == 101 and done["inputs"] == 101, done
+    assert 'failures="0"' in open(rig.path("good.xml")).read()
+    changed = rig.try_rtse(*call, "--set", "speed_gain=0.0011", "--junit", rig.path("bad.xml"))
+    assert changed.returncode == 1 and "first difference at tick 0 (0 s): data.vx: 0.2 and 0.22" in changed.stderr, changed
+    assert 'failures="1"' in open(rig.path("bad.xml")).read()
+    near = rig.try_rtse(*call, "--set", "speed_gain=0.0010000001", "--tolerance", "data.vx=1e-3", "--tolerance", "data.va=1e-3")
+    assert near.returncode == 0, near
+    refused("replay", path, "--into", "Nobody0", says="components: RTCLaser0, LaserObstacleAvoid0, RTCPosition2d0")
+
+
+# A component whose inputs were not recorded: it is said which.
+def replayed_without_inputs():
+    up()
+    process = recording("LaserObstacleAvoid0:velocity", "--attach", f"system.xml={rig.source}/worlds/systems/obstacle_avoidance.xml")
+    seconds(2)
+    ended(process)
+    done = rig.try_rtse("replay", file, "--into", "LaserObstacleAvoid0")
+    assert done.returncode == 0, done
+    assert "input LaserObstacleAvoid0:range: missing, the recording has no /RTCLaser0/range" in done.stderr, done
+    refused("replay", rig.path("nothing.mcap"), "--into", "A", says="No such file")
+
+
+# The run is made again up to a moment, and is the same there; a condition is found in the tick in which the recording has it.
+def gone_to():
+    path, whole = recorded_run("run.mcap", 6)
+    state = f"{rig.bin_dir}/simctl --json stats"
+    there = rig.rtse("--json", "goto", path, "6", "--then", state).split("\n", 1)
+    assert json.loads(there[0])["time"] == 6 and len(json.loads(there[0])["processes"]) == 3, there
+    stats = json.loads(there[1])
+    assert stats["hash"] == whole and stats["sim_time"] == 6, (stats["hash"], whole)
+    fast = next(s for s in lines("cat", path, "LaserObstacleAvoid0:velocity") if s["value"]["data"]["va"] < -0.1)
+    call = ["--json", "goto", path, "--break", "LaserObstacleAvoid0:velocity.data.va < -0.1", "--then", state]
+    stands = json.loads(rig.rtse(*call).split("\n", 1)[0])
+    assert abs(stands["time"] - fast["time"]) < 1e-9, (stands, fast)
+    before = json.loads(rig.rtse(*call, "--back", "2").split("\n", 1)[0])
+    assert abs(before["time"] - (fast["time"] - 0.2)) < 1e-9, (before, fast)
+    refused("goto", path, "--break", "LaserObstacleAvoid0:velocity.data.vx >", says="expected a value")
+    refused("goto", path, "1", "--break", "time > 7", says="does not hold up to 1 s")
+    done = subprocess.run([f"{rig.bin_dir}/rtse", "--json", "goto", path, "1"], input="n\nb 2\nt 0.5\nq\n", stdout=subprocess.PIPE, timeout=120, text=True)
+    times = [json.loads(line)["time"] for line in done.stdout.splitlines()]
+    assert times == [1, 1.1, 0.9, 0.5] and done.returncode == 0, done
+
+
+# The run of a recording, again.
+def like():
+    path, whole = recorded_run("run.mcap", 3)
+    again = json.loads(rig.rtse("--json", "run", "--like", path).splitlines()[-1])
+    assert again["state_hash"] == whole and again["simulated"] == 3, again
+    other = json.loads(rig.rtse("--json", "run", "--like", path, "--seed", "5", "--duration", "2").splitlines()[-1])
+    assert other["seed"] == 5 and other["simulated"] == 2, other
 
 
 def refused(*words, says):

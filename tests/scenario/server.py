@@ -5,6 +5,7 @@ import os
 import random
 import re
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -315,6 +316,52 @@ def shows_every_type():
     stop(process)
 
 
+# The world as glTF: a node for each model and link, in their places, whose shapes are in the file; the same again after a spawn, one more.
+def exports():
+    process = started("-u")
+
+    def exported(*options):
+        file = f"{work.name}/world.glb"
+        ok("export", file, *options)
+        with open(file, "rb") as stream:
+            octets = stream.read()
+        magic, version, length, json_length, kind = struct.unpack("<4sIII4s", octets[:20])
+        assert (magic, version, length, kind) == (b"glTF", 2, len(octets), b"JSON"), octets[:20]
+        world = json.loads(octets[20 : 20 + json_length])
+        binary = octets[28 + json_length :]
+        assert world["buffers"][0]["byteLength"] <= len(binary)
+        for view in world["bufferViews"]:
+            assert view["byteOffset"] + view["byteLength"] <= len(binary), view
+        return world
+
+    def links(world):
+        return [world["nodes"][i] for i in world["scenes"][0]["extras"]["links"]]
+
+    world = exported()
+    tree = {model["name"]: model for model in read("tree")["models"]}
+    models = [n for n in world["nodes"] if n.get("extras", {}).get("model")]
+    assert {m["name"] for m in models} == set(tree), tree.keys()
+    assert [n["name"] for n in links(world)] == [f"{m}::{l['name']}" for m in (n["name"] for n in models) for l in tree[m]["links"]]
+    place = next(n for n in links(world) if n["name"] == f"{robot}::chassis")["translation"]
+    near(place, read("pose", f"{robot}::chassis")["position"], 1e-6)
+    laser = next(n for n in world["nodes"] if n.get("name") == f"{robot}::laser")
+    assert laser["extras"]["iface"] == f"{robot}::laser" and laser["extras"]["kind"] == "ray", laser
+    shapes = [n for n in world["nodes"] if "mesh" in n]
+    assert len(shapes) > 10 and all(n["mesh"] < len(world["meshes"]) for n in shapes)
+    assert world["extensions"]["KHR_lights_punctual"]["lights"][0]["type"] == "directional"
+    before = state()
+    version = world["scenes"][0]["extras"]["version"]
+    assert exported("--show", "collisions")["scenes"][0]["extras"]["version"] == version
+    assert state() == before
+    ok("spawn", "model://pioneer2dx", "--name", "another", "--pose", "3 3 0")
+    more = exported()
+    assert more["scenes"][0]["extras"]["version"] != version
+    assert len(links(more)) > len(links(world)) and any(n["name"] == "another::chassis" for n in links(more))
+    refused("export", f"{work.name}/world.obj", code=2, says=".glb")
+    refused("export", f"{work.name}/nowhere/world.glb", says="cannot be written")
+    stop(process)
+
+
 # In a name space of its own with a /dev/shm and a disk of a few pages.
 def no_room():
     small = f"{work.name}/small"
@@ -559,6 +606,70 @@ def rate():
     stop(process)
 
 
+# The same as another account sees it, which may use the segments.
+def as_stranger(*words):
+    def become():
+        os.setgroups([])
+        os.setgid(65534)
+        os.setuid(65534)
+
+    return subprocess.run(words, capture_output=True, text=True, timeout=watchdog, preexec_fn=become, cwd="/")
+
+
+# A server that others may use lends nobody its rights: it writes no file, and opens none outside of its model path.
+def shared():
+    with open(f"{work.name}/secret.sdf", "w") as file:
+        file.write("<sdf version='1.9'><model name='secret'><link name='l'/></model></sdf>")
+    inside = f"{work.name}/inside"
+    os.makedirs(f"{inside}/open")
+    os.symlink(f"{work.name}/secret.sdf", f"{inside}/link.sdf")
+    with open(f"{inside}/open/model.config", "w") as file:
+        file.write("<model><name>open</name><sdf>model.sdf</sdf></model>")
+    with open(f"{inside}/open/model.sdf", "w") as file:
+        file.write("<sdf version='1.9'><model name='open'><link name='l'/></model></sdf>")
+    picture = f"{work.name}/picture.png"
+
+    def asks(what, text):
+        return subprocess.run([f"{bin_dir}/shm_helper", "ask-once", server_id, what, text], capture_output=True, text=True, timeout=watchdog).stdout
+
+    process = started("-u", "--resource-path", inside)
+    answer = asks("screenshot", picture)
+    assert answer.startswith("0 ") and os.path.exists(picture), answer
+    os.remove(picture)
+    assert asks("spawn-path", f"{work.name}/secret.sdf").startswith("0 secret")
+    stop(process)
+
+    process = started("-u", "--resource-path", inside, "--shm-mode", "0666")
+    answer = asks("screenshot", picture)
+    assert answer.startswith("4 ") and "writes no files" in answer and not os.path.exists(picture), answer
+    assert asks("screenshot", "").split() == ["0", "PNG"]
+    for other in (f"{work.name}/secret.sdf", f"file://{work.name}/secret.sdf", "model://../secret.sdf", "model://open/../../secret.sdf", "model://link.sdf"):
+        answer = asks("spawn-path", other)
+        assert answer.startswith("1 ") and "is not found" in answer, (other, answer)
+        answer = asks("spawn-text", f"<sdf version='1.9'><model name='m'><include><uri>{other}</uri></include></model></sdf>")
+        assert "secret" not in ok("tree"), (other, answer)
+        for name in ("m", "m_1", "m_2", "m_3", "m_4"):
+            simctl("delete", name)
+    assert asks("spawn-path", "model://open").startswith("0 open")
+    # Our own tool hands over what its user may read, and writes what he may write.
+    assert ok("spawn", f"{work.name}/secret.sdf").strip() == "secret"
+    ok("screenshot", picture, "--size", "64x48")
+    assert open(picture, "rb").read(4) == b"\x89PNG"
+    refused("screenshot", f"{work.name}/no/such/x.png", says="no/such")
+    if os.geteuid() == 0:
+        with tempfile.TemporaryDirectory(dir="/tmp") as theirs:
+            os.chown(theirs, 65534, 65534)
+            done = as_stranger(f"{bin_dir}/simctl", "-s", server_id, "screenshot", f"{theirs}/x.png", "--size", "64x48")
+            assert done.returncode == 0 and os.stat(f"{theirs}/x.png").st_uid == 65534, done.stderr
+            os.chmod(work.name, 0o755)
+            os.chmod(f"{work.name}/secret.sdf", 0o600)
+            done = as_stranger(f"{bin_dir}/simctl", "-s", server_id, "spawn", f"{work.name}/secret.sdf")
+            assert done.returncode == 1 and "cannot be read" in done.stderr, done
+            done = as_stranger(f"{bin_dir}/simctl", "-s", server_id, "screenshot", f"{work.name}/x.png")
+            assert done.returncode == 1 and "Permission denied" in done.stderr, done
+    stop(process)
+
+
 # A paused server does nothing at all but give a sign of life once a second.
 def paused_is_idle():
     process = started("-u")
@@ -575,9 +686,9 @@ def paused_is_idle():
     stop(process)
 
 
-cases = {f.__name__: f for f in (ends_while_it_loads, cut_short, names, requests, motion, bad_requests, same_state, killed, living_server_is_refused, ends, check, paused_is_idle,
+cases = {f.__name__: f for f in (ends_while_it_loads, cut_short, names, shared, requests, motion, bad_requests, same_state, killed, living_server_is_refused, ends, check, paused_is_idle,
                                   no_room, scribbled_over,
-                                  looked_at_while_paused, looked_at_each_device, shows_every_type, rate)}
+                                  looked_at_while_paused, looked_at_each_device, shows_every_type, exports, rate)}
 try:
     cases[case]()
 finally:

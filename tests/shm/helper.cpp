@@ -111,6 +111,26 @@ int participate(std::uint32_t id, const char* name, std::uint32_t phase, std::ch
   }
 }
 
+// One request as a foreign client may write it, whatever our own tools would do: screenshot PATH, spawn-path PATH, spawn-text SDF. Says
+// the status and the message or, of a picture, its first octets.
+int ask_once(std::uint32_t id, const std::string& what, const std::string& text) {
+  auto requester = Requester::open(id);
+  if (!requester) return 1;
+  Request request = PauseRequest{};
+  if (what == "screenshot") {
+    ScreenshotRequest screenshot;
+    screenshot.path = text;
+    request = screenshot;
+  } else {
+    request = SpawnRequest{text, what == "spawn-path", "", false, identity_pose};
+  }
+  const auto reply = requester->ask(request, 60s);
+  if (!reply) return 1;
+  std::printf("%u %s %s\n", static_cast<unsigned>(reply->status), reply->message.c_str(),
+              reply->text.substr(std::min<std::size_t>(1, reply->text.size()), 3).c_str());
+  return 0;
+}
+
 // Writes random words all over the segments of a server, except for the words that hold the layout.
 int scribble(std::uint32_t id) {
   std::uint64_t random = static_cast<std::uint64_t>(getpid());
@@ -146,6 +166,7 @@ int main(int argc, char** argv) {
   if (part == "hold") return hold(id);
   if (part == "command") return command(id);
   if (part == "ask") return ask(id);
+  if (part == "ask-once" && argc == 5) return ask_once(id, argv[3], argv[4]);
   if (part == "scribble") return scribble(id);
   if (part == "participate" && argc == 6) {
     return participate(id, argv[3], static_cast<std::uint32_t>(std::atoi(argv[4])), std::chrono::microseconds(std::atoi(argv[5])));

@@ -45,6 +45,8 @@ TEST(Requests, all_kinds_survive_the_way_to_bytes_and_back) {
   EXPECT_EQ(there_and_back(ResetOdometryRequest{"base", 1, 2, 3, false, identity_pose}).a, 3);
   EXPECT_FALSE(there_and_back(SetMotorsRequest{"base", false}).are_enabled);
   EXPECT_EQ(there_and_back(SetRtfRequest{2.5}).rtf, 2.5);
+  EXPECT_TRUE(there_and_back(ExportRequest{true}).with_collisions);
+  there_and_back(PosesRequest{});
 }
 
 TEST(Requests, nonsense_is_refused_with_a_message) {

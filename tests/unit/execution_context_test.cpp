@@ -3,11 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <future>
+#include <latch>
 #include <limits>
 #include <thread>
 
+#include "base/guarded.h"
 #include "base/log.h"
 #include "base/waiting.h"
 #include "core/workers.h"
@@ -499,6 +502,73 @@ TEST(Turns, a_thread_does_not_get_a_second_turn_inside_its_first) {
   int inner = 0;
   EXPECT_TRUE(turns.take([&] { EXPECT_FALSE(turns.take([&] { ++inner; })); }));
   EXPECT_EQ(inner, 0);
+}
+
+// A participant of another place; everybody writes into one list whom it has heard of and when it had done.
+struct Elsewhere final : Participant {
+  Elsewhere(std::string own_name, std::string own_place, std::function<void(Action)> work)
+      : name_(std::move(own_name)), place_(std::move(own_place)), work_(std::move(work)) {}
+  std::string name() const override { return name_; }
+  std::string place() const override { return place_; }
+  ReturnCode call(Action action) override { return work_(action), ReturnCode::ok; }
+
+  const std::string name_, place_;
+  const std::function<void(Action)> work_;
+};
+
+TEST(ExecutionContextPlaces, members_side_by_side_of_different_places_are_called_at_the_same_time_and_others_in_their_order) {
+  ExecutionContext context;
+  base::Guarded<std::vector<std::string>, base::Rank::buffer> heard;
+  std::latch both{2};
+  const auto add = [&](const std::string& name, const std::string& place, bool meets) {
+    const auto work = [&, name, meets](Action action) {
+      if (action != Action::execute) return;
+      if (meets) both.arrive_and_wait();
+      heard.lock()->push_back(name);
+    };
+    context.request(context.add(std::make_shared<Elsewhere>(name, place, work)), Event::activate);
+  };
+  add("here", "", false);
+  add("first of a", "a", false);
+  add("of b", "b", true);
+  add("second of a", "a", true);
+  add("here again", "", false);
+  add("late of b", "b", false);
+  context.start();
+  context.step();
+  const auto all = heard.snapshot();
+  ASSERT_EQ(all.size(), 6U);
+  EXPECT_EQ(all.front(), "here");
+  EXPECT_EQ(all[1], "first of a");
+  EXPECT_THAT(std::vector(all.begin() + 2, all.begin() + 4), testing::UnorderedElementsAre("of b", "second of a"));
+  EXPECT_THAT(std::vector(all.begin() + 4, all.end()), ElementsAre("here again", "late of b"));
+}
+
+TEST(ExecutionContextPlaces, members_come_and_go_while_others_of_other_places_are_called) {
+  ExecutionContext context;
+  std::atomic<int> calls{0};
+  std::vector<MemberId> members;
+  const auto add = [&](const std::string& place) {
+    const auto work = [&](Action action) {
+      if (action == Action::execute) ++calls, calls.notify_all();
+    };
+    members.push_back(context.add(std::make_shared<Elsewhere>("one", place, work)));
+    context.request(members.back(), Event::activate);
+  };
+  add("a");
+  add("b");
+  context.start();
+  std::jthread stepping([&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) context.step();
+  });
+  for (int n = 0; n < 100; ++n) {
+    add(n % 2 ? "a" : "c");
+    EXPECT_EQ(context.remove(members[static_cast<std::size_t>(n)]), ExecutionContext::Removal::left_alone);
+  }
+  calls.wait(0);
+  stepping.request_stop();
+  stepping.join();
+  EXPECT_EQ(context.members().size(), 2U);
 }
 
 }  // namespace

@@ -1,0 +1,87 @@
+// What heavy worlds cost physics, in processor time of one thread: simulated seconds for each, each number beside its limit. Prints a
+// table.
+#include <sys/resource.h>
+
+#include <cstdio>
+#include <vector>
+
+#include "support/heavy_worlds.h"
+#include "support/physics_fixture.h"
+
+namespace sim::bench {
+namespace {
+
+using namespace test;
+
+double processor_time() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+double most_megabytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+// Simulated seconds for each second of processor time.
+double speed(PhysicsFixture& f, double seconds) {
+  const double before = processor_time();
+  f.run(seconds);
+  return seconds / std::max(processor_time() - before, 1e-9);
+}
+
+void print(const char* what, double value, const char* unit, double at_least) {
+  std::printf("%-70s %10.2f %-6s >= %6.2f  %s\n", what, value, unit, at_least, value >= at_least ? "ok" : "MISSED");
+  std::fflush(stdout);
+}
+
+void bench_robot(PhysicsDef::Solver solver, const char* row, double at_least) {
+  WorldDef world = world_of({ground(), ManyLinks("robot", at(0, 0, 0)).model()});
+  world.physics.solver = solver;
+  for (auto& model : world.models) model.allow_auto_disable = false;
+  PhysicsFixture f(std::move(world));
+  for (std::uint32_t j = 0; j < f.physics.def(1).joints.size(); ++j) {
+    if (f.physics.def(1).joints[j].name.find("caster") == std::string::npos) f.physics.set_motor({1, j}, 0, 0, 3000);
+  }
+  if (!f.physics.set_model_twist(1, {{0.3, 0, 0}, {0, 0, 0}})) std::abort();
+  print(row, speed(f, 1), "times", at_least);
+}
+
+void bench_resting() {
+  PhysicsFixture f(resting_shapes(3003));
+  print("3003 boxes, balls and cans on the ground, the first second", speed(f, 1), "times", 0.3);
+  print("the same, later", speed(f, 2), "times", 5);
+}
+
+void bench_overlapping(int count, double at_least) {
+  std::vector<ModelDef> models{ground()};
+  for (int i = 0; i < count; ++i) models.push_back(body("box" + std::to_string(i), BoxShape{{0.3, 0.3, 0.3}}, at(0, 0, 0.15), 2));
+  PhysicsFixture f(world_of(std::move(models)));
+  char line[100];
+  std::snprintf(line, sizeof line, "%d boxes in one place, 0.2 s (%.0f MiB of memory so far)", count, most_megabytes());
+  print(line, speed(f, 0.2), "times", at_least);
+}
+
+void bench_many() {
+  const double before = processor_time();
+  PhysicsFixture f(resting_shapes(20000));
+  const double built = processor_time() - before;
+  print("20000 moving models: made in a second of processor time", 20000 / built, "", 20000);
+}
+
+}  // namespace
+}  // namespace sim::bench
+
+int main() {
+  using Solver = sim::PhysicsDef::Solver;
+  sim::bench::bench_robot(Solver::automatic, "a robot of 49 links rolls", 0.4);
+  sim::bench::bench_robot(Solver::iterative, "the same with the iterative solver", 2);
+  sim::bench::bench_resting();
+  sim::bench::bench_overlapping(300, 0.04);
+  sim::bench::bench_overlapping(3000, 0.002);
+  sim::bench::bench_many();
+  std::printf("most memory: %.0f MiB\n", sim::bench::most_megabytes());
+}

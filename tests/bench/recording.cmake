@@ -1,0 +1,5 @@
+# What recordings cost; run by hand: cmake --build --preset release --target recording_bench
+add_custom_target(recording_bench
+  COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/recording_bench.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR}
+  USES_TERMINAL)
+add_dependencies(recording_bench rtse rtse-recorder rtcd sim-server simctl)

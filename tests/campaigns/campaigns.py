@@ -1,0 +1,214 @@
+# Campaigns as users run them, one case per run: campaigns.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
+import csv
+import io
+import json
+import os
+import pathlib
+import signal
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import time
+
+case, bin_dir, lib_dir, source = sys.argv[1:]
+folder = pathlib.Path(tempfile.mkdtemp(prefix="campaigns-"))
+START = f"""system: {source}/worlds/systems/obstacle_avoidance.xml
+world: {source}/worlds/obstacle_course.sdf
+duration: 1
+"""
+
+
+def plan(text, name="plan.yaml"):
+    (folder / name).write_text(START + text)
+    return str(folder / name)
+
+
+def call(*words):
+    return subprocess.run([f"{bin_dir}/rtse", *map(str, words)], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=200)
+
+
+def rtse(*words, code=0):
+    done = call(*words)
+    assert done.returncode == code, (words, done.returncode, done.stdout, done.stderr)
+    return done
+
+
+def rows(file="plan.db"):
+    return list(csv.DictReader(io.StringIO(rtse("results", folder / file, "--csv").stdout)))
+
+
+def states(file="plan.db"):
+    return {row["row"]: row["state"] for row in rows(file)}
+
+
+# Rows differ by what varies, a row alone gives what it gave among others, and nothing runs twice.
+def sweep():
+    p = plan("""vary:
+  model/pioneer2dx/pose/yaw: [0, 0.785]
+  component/LaserObstacleAvoid0/turn_gain: [1, 3]
+measure:
+  - path_length: {model: pioneer2dx}
+  - clearance: {model: pioneer2dx}
+  - value: {port: "LaserObstacleAvoid0:velocity", member: data.vx, take: mean, as: speed}
+""")
+    first = json.loads(rtse("--json", "sweep", p, "-j", 2).stdout)
+    assert (first["rows"], first["passed"], first["stored"]) == (4, 4, 0), first
+    found = states()
+    assert len({found["1"], found["3"]}) == 2, found
+    again = json.loads(rtse("--json", "sweep", p).stdout)
+    assert (again["passed"], again["stored"]) == (4, 4), again
+    alone = json.loads(rtse("--json", "sweep", p, "--row", 3, "--keep", folder / "alone").stdout)
+    assert alone["state"] == found["3"] and (folder / "alone/record.txt").exists(), alone
+    assert all(0 < float(row["clearance"]) < 2 and float(row["speed"]) > 0 for row in rows()), rows()
+    audited = json.loads(rtse("--json", "sweep", p, "--audit", "100%", "-j", 2).stdout)
+    assert (audited["audited"], audited["different"]) == (4, 0), audited
+    assert not list(folder.glob("plan.runs/*"))
+
+
+# What fails keeps its files and is shown in every form.
+def reports():
+    p = plan("""vary: {seed: [1, 2]}
+expect:
+  - path_length: {model: pioneer2dx, min: 100}
+measure:
+  - wall_time: {}
+""")
+    done = rtse("sweep", p, code=1)
+    assert "2 rows: 0 passed, 2 failed" in done.stdout and f"rtse sweep {p} --row 1" in done.stderr, done
+    kept = sorted(path.name[:5] for path in folder.glob("plan.runs/*"))
+    assert kept == ["row-1", "row-2"], kept
+    assert all((path / "picture.png").exists() for path in folder.glob("plan.runs/*"))
+    text = rtse("results", folder / "plan.db", "--by", "seed").stdout
+    assert "path_length: {model: pioneer2dx, min: 100}" in text and "0 of       2" in text, text
+    rtse("results", folder / "plan.db", "--html", folder / "page.html", "--junit", folder / "junit.xml")
+    page = (folder / "page.html").read_text()
+    assert "data:image/png;base64," in page and "http://" not in page.replace("http://www.w3.org", ""), len(page)
+    assert (folder / "junit.xml").read_text().count("<failure") == 2
+    assert "--by \"nobody\"" in rtse("results", folder / "plan.db", "--by", "nobody", code=1).stderr
+
+
+# A killed sweep goes on where it was: nothing that has ended is lost, nothing is done twice.
+def killed():
+    p = plan("repeat: 6\n")
+    for _ in range(2):
+        process = subprocess.Popen([f"{bin_dir}/rtse", "sweep", p], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        before = ended()
+        deadline = time.monotonic() + 100
+        while ended() < before + 1 and time.monotonic() < deadline and process.poll() is None:
+            time.sleep(0.02)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        assert ended() > before
+    had = ended()
+    then = times()
+    last = json.loads(rtse("--json", "sweep", p).stdout)
+    assert (last["rows"], last["passed"], last["stored"]) == (6, 6, had), (last, had)
+    assert {key: times()[key] for key in then} == then
+    assert len(set(states().values())) == 6
+
+
+def ended():
+    return len(times())
+
+
+def times():
+    if not (folder / "plan.db").exists():
+        return {}
+    try:
+        with sqlite3.connect(folder / "plan.db") as database:
+            return dict(database.execute("SELECT key, wall FROM runs"))
+    except sqlite3.OperationalError:
+        return {}
+
+
+# One line before the first run, whatever is wrong.
+def refused():
+    for text, expected in [
+        ("vary: {component/Nobody0/gain: [1]}", 'component/Nobody0/gain: the system has no component "Nobody0"; components: RTCLaser0'),
+        ("vary: {component/LaserObstacleAvoid0/gain: [1]}", 'has no parameter "gain" in the profile\'s active set; parameters: rate, distance_gain'),
+        ("vary: {model/pioneer2dx/sensor/nose/noise: [1]}", 'has no sensor "nose"'),
+        ("vary: {connector/nobody/buffer.length: [1]}", 'the system has no connection "nobody"; connections: range-to-avoidance'),
+        ("vary: {weather: [1]}", "weather: is no parameter; expected seed, component/..."),
+        ("measure: [{path_length: {model: nobody}}]", 'measure: the world has no model "nobody"'),
+        ("expect: nowhere.yaml", "there is no file"),
+        ("unknown: 1", ':4:1: plan has no key "unknown"'),
+        ("repeat: 2000000", "has 2e+06 rows, expected at most 1000000"),
+    ]:
+        done = rtse("sweep", plan(text + "\n"), code=1)
+        assert expected in done.stderr and len(done.stderr.splitlines()) == 1, (text, done.stderr)
+    assert not (folder / "plan.db").exists()
+    done = rtse("results", plan(""), code=1)
+    assert "file is not a database" in done.stderr, done.stderr
+
+
+# Of a plan with one row: its report, the same in two runs.
+def twice(text, name, code=0):
+    one, two = (json.loads(rtse("--json", "sweep", plan(text, name), "--row", 1, "--keep", folder / name[:-5], code=code).stdout) for _ in range(2))
+    assert one["state"] == two["state"], (text, one, two)
+    return one
+
+
+# What happens at a time or on a condition happens at the same step in every run.
+def events():
+    quiet = twice("", "quiet.yaml")
+    measured = "measure: [{contacts: {model: pioneer2dx}}, {path_length: {model: pioneer2dx}}]\n"
+    busy = twice(measured + """events:
+  - {at: 0.2, push: {model: pioneer2dx, force: [0, 40, 0], for: 0.1}}
+  - {at: 0.3, spawn: {model: "model://cow", name: cow, pose: [3, 3, 0]}}
+  - {at: 0.5, set: {component: LaserObstacleAvoid0, parameter: stop_distance, value: 0.9}}
+  - {when: {model: pioneer2dx, region: [-10, -10, 10, 10], after: 0.6}, delete: cow}
+never:
+  - {model: pioneer2dx, region: [0, 0, 6, 6]}
+eventually:
+  - {port: "LaserObstacleAvoid0:velocity", member: data.vx, min: -1, within: 0.5}
+""", "busy.yaml")
+    assert busy["state"] != quiet["state"] and busy["passed"], busy
+    done = rtse("sweep", plan("""events: [{at: 0.3, deactivate: LaserObstacleAvoid0}]
+never: [{component: LaserObstacleAvoid0, is: Inactive}]
+eventually: [{model: pioneer2dx, region: [5, 5, 6, 6]}]
+""", "never.yaml"), "--row", 1, code=1)
+    assert "never: {component: LaserObstacleAvoid0, is: Inactive}: it was so at 0." in done.stderr, done.stderr
+    assert "eventually: {model: pioneer2dx, region: [5, 5, 6, 6]}: it never was" in done.stderr, done.stderr
+
+
+# Each fault changes the run, and changes it in the same way each time.
+def faults():
+    quiet = twice("", "quiet.yaml")
+    laser, drive = "pioneer2dx::laser", "pioneer2dx::position2d"
+    for number, fault in enumerate([
+        f'sensor: "{laser}", is: "off"', f'sensor: "{laser}", is: noise, amount: 0.4', f'sensor: "{laser}", is: bias, amount: -1',
+        f'actuator: "{drive}", is: weak', "connector: velocity-to-robot, is: drop, amount: 1",
+        "component: LaserObstacleAvoid0, is: exception",
+    ]):
+        seen = twice(f"faults: [{{at: 0, {fault}}}]\n", f"fault{number}.yaml")
+        assert seen["state"] != quiet["state"] and seen["passed"], (fault, seen)
+    # A host that is killed comes back; the run with it is the same each time.
+    twice("one_process_each: true\nfaults: [{at: 0.3, for: 0.3, component: LaserObstacleAvoid0, is: kill}]\n", "kill.yaml")
+    done = rtse("sweep", plan("hang_timeout: 1\nfaults: [{at: 0.3, component: LaserObstacleAvoid0, is: hang}]\n"), "--row", 1, code=1)
+    assert "LaserObstacleAvoid0: has not ended its tick" in done.stderr, done.stderr
+    done = rtse("sweep", plan('faults: [{at: 0, sensor: "pioneer2dx::nose", is: "off"}]\n'), "--row", 1, code=1)
+    assert "the world has no iface pioneer2dx::nose" in done.stderr, done.stderr
+
+
+# A small component that divides by zero when its laser goes on without news is found, with one fault, by one command.
+def hunts():
+    p = pathlib.Path(plan(f"""properties: ["HuntSubject0:kind=same_scan_twice", "HuntSubject0:faulty=YES"]
+module_path: {lib_dir}
+hunt:
+  faults: [{{sensor: "pioneer2dx::laser", is: [stuck, dropout]}}]
+""", "hunt.yaml"))
+    p.write_text(p.read_text().replace(f"{source}/worlds/systems/obstacle_avoidance.xml", f"{source}/tests/hunt/hunt_subject.xml"))
+    first, second = (json.loads(rtse("--json", "hunt", p, "--finds", 1, "--cases", 40, "-j", 2, code=1).stdout) for _ in range(2))
+    find = first["finds"][0]
+    assert find["repeatable"] and find["deeds"] == 1 and "NaN" in find["problem"] and "stuck" in find["what"], first
+    assert [one["what"] for one in second["finds"]] == [find["what"]], (first, second)
+    assert "NaN" in rtse("sweep", find["plan"], "--row", 1, "--state", find["state"], code=1).stderr
+    p.write_text(p.read_text().replace("faulty=YES", "faulty=NO"))
+    assert json.loads(rtse("--json", "hunt", p, "--cases", 8, "-j", 2).stdout)["finds"] == []
+
+
+try:
+    {"sweep": sweep, "reports": reports, "killed": killed, "refused": refused, "events": events, "faults": faults, "hunts": hunts}[case]()
+finally:
+    subprocess.run(["rm", "-rf", str(folder)], check=False)

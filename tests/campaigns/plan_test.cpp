@@ -1,0 +1,81 @@
+#include "plan/plan.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "plan/grammar.h"
+#include "support/paths.h"
+
+namespace campaign {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Plans : public testing::Test {
+ protected:
+  Plans() : folder_(fs::path(testing::TempDir()) / ("plans_" + std::to_string(getpid()))) { fs::create_directories(folder_); }
+  ~Plans() override { fs::remove_all(folder_); }
+
+  Result<Plan> read(const std::string& text) {
+    std::ofstream(folder_ / "p.yaml") << text;
+    return read_plan((folder_ / "p.yaml").string());
+  }
+  // The message without the file's name.
+  std::string error(const std::string& text) {
+    const auto plan = read(text);
+    if (plan) return "none";
+    const auto& message = plan.error().message;
+    return message.substr(message.find("p.yaml\"") + 7);
+  }
+  const std::string start_ = "system: s.xml\nworld: w.sdf\nduration: 5\n";
+  fs::path folder_;
+};
+
+TEST_F(Plans, hold_what_is_written_in_them) {
+  const auto plan = read(start_ +
+                         "expect: e.yaml\nrepeat: 3\nvary:\n  component/A0/gain: [1, 2.5]\n  model/robot/pose/yaw: {uniform: [0, 1]}\n"
+                         "  light/sun/intensity: {from: 0.5, to: 1, steps: 3}\nsampling: sobol\nsamples: 4\n"
+                         "measure:\n  - value: {port: 'A0:out', member: data, take: mean, as: m}\n"
+                         "faults:\n  - {at: 2, for: 1, sensor: robot::laser, is: bias, amount: 0.25}\n"
+                         "events:\n  - {at: 1, push: {model: robot, force: [1, 0, 0], for: 0.5}}\n");
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_EQ(plan->system, (folder_ / "s.xml").string());
+  EXPECT_EQ(plan->repeat, 3U);
+  ASSERT_EQ(plan->axes.size(), 3U);
+  EXPECT_EQ(plan->axes[0].values, (std::vector<std::string>{"1", "2.5"}));
+  EXPECT_TRUE(plan->axes[1].range);
+  EXPECT_EQ(plan->axes[2].values, (std::vector<std::string>{"0.5", "0.75", "1"}));
+  ASSERT_EQ(plan->measures.size(), 1U);
+  EXPECT_EQ(plan->measures[0].name, "m");
+  ASSERT_EQ(plan->faults.size(), 1U);
+  EXPECT_EQ(plan->faults[0].text(), "{at: 2, for: 1, sensor: \"robot::laser\", is: bias, amount: 0.25}");
+  ASSERT_EQ(plan->events.size(), 1U);
+  EXPECT_EQ(plan->events[0].numbers, (std::vector<std::string>{"1", "0", "0"}));
+}
+
+TEST_F(Plans, say_line_and_column_of_what_is_wrong) {
+  EXPECT_EQ(error(start_ + "repaet: 3\n").substr(0, 45), ":4:1: plan has no key \"repaet\"; it has system");
+  EXPECT_EQ(error(start_ + "repeat: many\n"), ":4:9: repeat must be a whole number, 0 or more, got \"many\"");
+  EXPECT_EQ(error("system: s.xml\nworld: w.sdf\n"), ":1:1: plan needs duration");
+  EXPECT_EQ(error(start_ + "vary:\n  seed: {uniform: [3, 1]}\n"), ":5:19: uniform: the first must not be more than the second");
+  EXPECT_EQ(error(start_ + "faults:\n  - {at: 1, sensor: x, is: weak}\n"),
+            ":5:28: a fault of a sensor must be off, stuck, bias, noise, missing, latency, dropout");
+  EXPECT_EQ(error(start_ + "faults:\n  - {at: 1, connector: x, is: drop, amount: 2}\n"),
+            ":5:45: amount of drop must be from 0 to 1, got 2");
+  EXPECT_EQ(error(start_ + "vary:\n  seed: [1]\nrepeat: 2\n"), ":5:3: seed varies already by repeat; expected one of the two");
+  EXPECT_EQ(error("{"), ":1:1: is no YAML: end of map flow not found");
+  EXPECT_EQ(error(start_ + "duration: 6\n"), ":4:1: plan has duration twice");
+}
+
+TEST(PlanSchema, is_the_one_that_is_published) {
+  std::ifstream in(std::string(paths::source_dir) + "/clients/campaign/campaign-plan.schema.json");
+  EXPECT_EQ(nlohmann::ordered_json::parse(in, nullptr, false), plan_schema())
+      << "rtse sweep --schema > clients/campaign/campaign-plan.schema.json";
+}
+
+}  // namespace
+}  // namespace campaign

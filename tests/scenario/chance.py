@@ -1,0 +1,105 @@
+# Runs that depend on nothing: delivery by the clock between components of one phase, hash logs, `rtse diff`, `--twice` and `--strict`; and that a
+# planted race is found.
+#
+# usage: chance.py CASE BIN_DIR LIB_DIR SOURCE_DIR
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import chance_system
+
+case, bin_dir, lib_dir, source = sys.argv[1:]
+watchdog = 200  # [s]; a bound on hanging, not on speed
+rtse = f"{bin_dir}/rtse"
+avoidance = f"{source}/worlds/systems/obstacle_avoidance.xml"
+course = f"{source}/worlds/obstacle_course.sdf"
+empty = f"{source}/worlds/empty.sdf"
+folder = tempfile.TemporaryDirectory()
+place = pathlib.Path(folder.name)
+(place / "tmp").mkdir()
+environment = {**{key: value for key, value in os.environ.items() if key != "CI"}, "TMPDIR": str(place / "tmp")}
+
+
+def call(*words, **more):
+    done = subprocess.run([rtse, *map(str, words)], text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=watchdog, cwd=place,
+                          env={**environment, **more.get("env", {})})
+    return done.returncode, done.stdout, done.stderr
+
+
+def run(text, *options, world=empty, **more):
+    (place / "system.xml").write_text(text)
+    return call("run", "system.xml", "--world", world, "--module-path", lib_dir, *options, **more)
+
+
+# Every subscription type and pull, all links of one phase: in one process and in four the same, and the same again.
+def links_of_one_phase():
+    for interface in ("corba_cdr", "shared_memory"):
+        for processes in ([], ["--one-process-each"]):
+            code, out, err = run(chance_system.ring(interface), "--duration", "2", "--hash-log", f"{interface}{len(processes)}.log", "--strict", *processes)
+            assert code == 0, (interface, processes, out, err)
+        code, out, err = call("diff", f"{interface}0.log", f"{interface}1.log")
+        assert code == 0, (interface, out, err)
+        assert out.startswith("the same in "), out
+    code, out, err = call("diff", "corba_cdr0.log", "shared_memory0.log")
+    assert code == 0, (out, err)  # how data travels is no part of what it is
+
+
+def twice():
+    code, out, err = run(chance_system.ring(), "--duration", "2", "--twice", "--one-process-each", "--strict")
+    assert code == 0 and "  run " in out, (out, err)
+
+
+# The log of a run with other noise differs, and the line names where, when, and the member with both values.
+def first_difference():
+    for seed in (1, 2):
+        code, out, err = call("run", avoidance, "--world", course, "--duration", "5", "--seed", seed, "--hash-log", f"{seed}.log")
+        assert code == 0, (out, err)
+    code, out, err = call("diff", "1.log", "1.log")
+    assert code == 0, (out, err)
+    code, out, err = call("diff", "1.log", "2.log")
+    assert code == 1 and "first difference at 0" in err, (code, out, err)
+    code, out, _ = call("--json", "diff", "1.log", "2.log")
+    found = json.loads(out)
+    assert code == 1 and found["same"] is False and found["first"]["where"] and found["also"], out
+    (place / "no.log").write_text("no log")
+    code, out, err = call("diff", "1.log", "no.log")
+    assert code == 1 and 'file "no.log": is no hash log' in err, err
+    cut = (place / "1.log").read_bytes()
+    (place / "cut.log").write_bytes(cut[: len(cut) * 2 // 3])
+    code, out, err = call("diff", "1.log", "cut.log")
+    assert code == 1 and ("first difference at" in err or "not come to the end" in err), err
+
+
+def is_found(race, *options):
+    for _ in range(20):
+        code, out, err = run(chance_system.ring(A=race), "--duration", "1", *options)
+        if code == 1:
+            return err
+        assert code == 0, (code, out, err)
+    raise AssertionError(f"{race}: 20 runs, and nobody has noticed")
+
+
+def race_of_a_thread():
+    err = is_found("thread", "--strict")
+    assert "A:loose" in err and "thread" in err, err
+    code, out, err = run(chance_system.ring(A="thread"), "--duration", "1", env={"CI": "true"})
+    assert code == 0 and "A:loose" in err, (code, out, err)  # a warning
+    code, out, err = run(chance_system.ring(A="thread"), "--duration", "1")
+    assert code == 0 and "A:loose" not in err, (code, out, err)
+
+
+def race_of_the_clock():
+    err = is_found("clock", "--twice")
+    assert "first difference at 0" in err and "(out): data is " in err, err
+
+
+def race_of_an_address():
+    err = is_found("address", "--twice")
+    assert "port A:out (out)" in err, err
+
+
+globals()[case]()
+folder.cleanup()

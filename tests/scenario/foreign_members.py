@@ -1,0 +1,338 @@
+# Components of other processes and of another make (foreign_component.py) in lock step: foreign_members.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+
+from system import System
+
+sys.path.append(f"{sys.argv[4]}/tests/ports")
+from giop import Ior, Orb, SystemException  # noqa: E402
+from idl_client import Idl, Remote  # noqa: E402
+
+case, bin_dir, lib_dir, source = sys.argv[1:]
+empty = f"{source}/worlds/empty.sdf"
+
+
+def relay(name, **options):
+    words = {"exec_cxt.periodic.rate": 100, "instance_name": name, **options}
+    return "Relay?" + "&".join(f"{key}={value}" for key, value in words.items())
+
+
+class Mixed(System):
+    def foreign(self, name, *options):
+        process = self.start(sys.executable, "-B", f"{source}/tests/scenario/foreign_component.py", name, "--names", self.names,
+                             "--journal", f"{self.work}/{name}.journal", *options)
+        self.until(f"component {name}", lambda: process.poll() is None and "ready" in self.log(process))
+        return process
+
+    # With the hosts that `rtse join` has left running.
+    def end(self):
+        for pid in filter(str.isdigit, os.listdir("/proc")):
+            try:
+                words = open(f"/proc/{pid}/cmdline").read().split("\0")
+            except OSError:
+                continue  # it has ended meanwhile
+            if f"corba.nameservers:{self.names}" in words and any(word.startswith("SimTimeProxy?") for word in words):
+                os.kill(int(pid), signal.SIGKILL)
+        return super().end()
+
+    # The values that a relay of ours has written: "time value".
+    def values(self, name):
+        return [(float(a), int(b)) for a, b in (line.split() for line in open(f"{self.work}/{name}.txt"))]
+
+    def calls(self, name):
+        return [line.split()[:2] for line in open(f"{self.work}/{name}.journal")]
+
+    def state(self, component):
+        return json.loads(self.rtse("--json", "cat", component))["state"]
+
+    # From, To: relays of ours around a foreign one; each a tick later than the one before, as its phase is higher.
+    def chain(self, *options):
+        self.naming()
+        self.server(empty, "--lockstep", "--paused", "--rtf", "0")
+        self.host(relay("From", **{"exec_cxt.sim_time.phase": 0, "conf.default.source": 1}),
+                  relay("To", **{"exec_cxt.sim_time.phase": 2, "conf.default.journal": f"{self.work}/To.txt"}))
+        process = self.foreign("Alien", *options)
+        self.rtse("wait", "From", "To", "Alien", "--state", "any", "--timeout", "60")
+        self.rtse("con", "From:out", "Alien:in", "-p", "dataport.subscription_type=flush")
+        self.rtse("con", "Alien:out", "To:in", "-p", "dataport.subscription_type=flush")
+        self.until("participants", lambda: len(self.participants()) == 2)
+        return process
+
+
+def join_and_leave():
+    # A component that runs already joins, is called in our tick and phase, and runs in its own context again after it has left.
+    with Mixed(bin_dir, lib_dir) as s:
+        s.chain()
+        s.rtse("act", "Alien")
+        s.until("calls in its own context", lambda: ["on_execute", "0"] in s.calls("Alien"))
+        said = s.rtse("join", "Alien", "--phase", "1", "--rate", "100", "--server-id", s.server_id)
+        assert "takes part" in said and "phase 1" in said and "once that runs" not in said, said
+        assert {p["name"] for p in s.participants()} == {"From", "To", "Alien"}
+        s.rtse("act", "From", "To")
+        assert s.state("Alien") == "Active"
+        before = len(s.calls("Alien"))
+        s.simctl("step", "1000")
+        calls = s.calls("Alien")[before:]
+        assert [callback for callback, _ in calls] == ["on_execute"] * 101 and {handle for _, handle in calls} == {"1000"}, calls
+        seen = s.values("To")
+        assert [value for _, value in seen] == list(range(2, 103)), seen
+        assert [at for at, _ in seen] == [round(n / 100, 9) for n in range(101)], seen
+        s.rtse("leave", "Alien")
+        assert s.state("Alien") == "Active"
+        s.until("two participants", lambda: {p["name"] for p in s.participants()} == {"From", "To"})
+        before = len(s.calls("Alien"))
+        s.until("calls in its own context", lambda: s.calls("Alien")[before:].count(["on_execute", "0"]) > 2)
+        refused = s.try_rtse("leave", "Alien")
+        assert refused.returncode == 1 and "takes no part" in refused.stderr, refused
+        s.until("the end of the host", lambda: "Alien_time" not in s.rtse("ls", "-R"))
+
+
+# A system for `rtse run`: instances with their types, links "From.out" -> "Alien.in".
+def profile(path, components, links):
+    head = ('<?xml version="1.0" encoding="UTF-8"?><rts:RtsProfile xmlns:rts="http://www.openrtp.org/namespaces/rts" xmlns:rtsExt="http://www.openrtp.org/namespaces/rts_ext" '
+            'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" rts:id="RTSystem:rtm-sim:Mixed:1" rts:version="0.2">')
+    text = head
+    for name, (kind, values) in components.items():
+        data = "".join(f'<rts:ConfigurationData rts:name="{key}" rts:data="{value}"/>' for key, value in values.items())
+        sets = f'<rts:ConfigurationSets rts:id="default">{data}</rts:ConfigurationSets>' if values else ""
+        text += (f'<rts:Components xsi:type="rtsExt:component_ext" rts:id="RTC:any:test:{kind}:1.0.0" rts:pathUri="localhost/{name}.rtc" rts:instanceName="{name}" '
+                 f'rts:activeConfigurationSet="{"default" if values else ""}" rts:compositeType="None" rts:isRequired="true">{sets}'
+                 f'<rts:ExecutionContexts xsi:type="rtsExt:execution_context_ext" rts:id="0" rts:kind="PERIODIC" rts:rate="10.0"/></rts:Components>')
+    for n, (a, b) in enumerate(links):
+        def end(tag, port):
+            name = port.split(".")[0]
+            return (f'<rts:{tag} xsi:type="rtsExt:target_port_ext" rts:componentId="RTC:any:test:{components[name][0]}:1.0.0" rts:instanceName="{name}" rts:portName="{port}">'
+                    f'<rtsExt:Properties rtsExt:name="COMPONENT_PATH_ID" rtsExt:value="localhost/{name}.rtc"/></rts:{tag}>')
+        text += (f'<rts:DataPortConnectors xsi:type="rtsExt:dataport_connector_ext" rts:connectorId="link{n}" rts:name="link{n}" rts:dataType="IDL:RTC/TimedLong:1.0" '
+                 f'rts:interfaceType="corba_cdr" rts:dataflowType="push" rts:subscriptionType="flush">{end("sourceDataPort", a)}{end("targetDataPort", b)}</rts:DataPortConnectors>')
+    with open(path, "w") as file:
+        file.write(text + "</rts:RtsProfile>")
+    return path
+
+
+# `rtse run` of From -> Alien -> To with a foreign one in the middle.
+class Run:
+    def __enter__(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.path = self.folder.name
+        self.count = 0
+        return self
+
+    def __exit__(self, *_):
+        self.folder.cleanup()
+
+    def command(self, *options, name="Alien"):
+        return f"{sys.executable} -B {source}/tests/scenario/foreign_component.py {name} --journal {self.path}/{name}-{self.count}.journal {' '.join(options)}"
+
+    def system(self, **aliens):
+        self.count += 1
+        components = {"From": ("Relay", {"source": 1}), "To": ("Relay", {"journal": f"{self.path}/To-{self.count}.txt", "stamp": 0}),
+                      **(aliens or {"Alien": ("Foreign", {})})}
+        first = next(iter(aliens or ["Alien"]))
+        return profile(f"{self.path}/system.xml", components, [("From.out", f"{first}.in"), (f"{first}.out", "To.in")])
+
+    # Exit code, standard error, what To has read, and what the foreign one was called.
+    def run(self, *options, start=(), duration="1"):
+        system = self.system()
+        starts = [word for one in start for word in ("--start", one)]
+        done = subprocess.run([f"{bin_dir}/rtse", "run", system, "--world", empty, "--module-path", lib_dir, "--duration", duration, "--property", "From:exec_cxt.sim_time.phase=0",
+                               "--property", "To:exec_cxt.sim_time.phase=2", *starts, *options], text=True, capture_output=True, timeout=120)
+        return done.returncode, done.stderr, self.read(f"To-{self.count}.txt"), self.read(f"Alien-{self.count}.journal")
+
+    def read(self, name):
+        try:
+            return open(f"{self.path}/{name}").read()
+        except FileNotFoundError:
+            return ""
+
+    def start(self, *options):
+        self.count += 1
+        command = self.command(*options)
+        self.count -= 1
+        return [command]
+
+
+def started():
+    # A run starts the process, waits for its component, wires it, calls it in its phase, stamps what it sends, and takes everything down.
+    with Run() as r:
+        seen = []
+        for fault in ("", "--fault 300@*", "--fault 1500@3"):
+            code, err, read, calls = r.run(start=r.start(fault), duration="0.5")
+            assert code == 0 and "stamped with simulated time" in err and "Alien.out to To.in" in err, (code, err)
+            assert ("it is waited for" in err) == ("1500" in fault), err
+            seen.append((read, calls))
+        assert len(set(seen)) == 1, seen
+        read, calls = seen[0]
+        assert [line.split()[1] for line in read.splitlines()] == ["2", "3", "4", "5", "6", "7"], read
+        assert [float(line.split()[0]) for line in read.splitlines()] == [0, 0.1, 0.2, 0.3, 0.4, 0.5], read
+        assert calls.split("\n")[0] == "on_activated 1000 0" and calls.count("on_execute 1000") == 6, calls
+
+
+def same_state():
+    # A real robot with one of its components as a program that knows nothing of simulated time: the same run as with all of them in our hosts.
+    def state(*words):
+        done = subprocess.run([f"{bin_dir}/rtse", "--json", "run", f"{source}/worlds/systems/obstacle_avoidance.xml", "--world", f"{source}/worlds/obstacle_course.sdf", "--duration", "20", *words],
+                              text=True, capture_output=True, timeout=120, env={**os.environ, "PATH": f"{bin_dir}:{os.environ['PATH']}"})
+        assert done.returncode == 0, done
+        return json.loads(done.stdout)["state_hash"]
+
+    # Also what goes through the ports, though the program stamps with the clock of the machine: nothing in it depends on chance.
+    assert state() == state("--run-file", f"{source}/worlds/systems/obstacle_avoidance.run.yaml", "--twice", "--strict")
+
+
+def faulty():
+    # What a component of others does wrong is told by its name, and the run fails.
+    with Run() as r:
+        for fault, why in (("fail@3", "Alien is Error"), ("throw@3", "Alien is Error"), ("die@3", "process of Alien"), ("hang@3", "Alien: has not ended its tick")):
+            code, err, read, calls = r.run("--hang-timeout", "1", start=r.start("--fault", fault))
+            assert code == 1 and why in err, (fault, code, err)
+            if fault in ("fail@3", "throw@3"):
+                # The others go on, and the component is told as by its own context.
+                assert "on_aborting 1000" in calls and calls.count("on_error 1000") > 5, (fault, calls)
+            if fault == "die@3":
+                assert "killed by signal 9" in err, err
+
+
+def wrong_start():
+    with Run() as r:
+        file = f"{r.path}/run.yaml"
+
+        def refused(system, why, *words):
+            done = subprocess.run([f"{bin_dir}/rtse", "run", system, "--world", empty, "--module-path", lib_dir, *words], text=True, capture_output=True, timeout=120)
+            assert done.returncode == 1 and why in done.stderr, (words, done)
+            return done.stderr
+
+        for command, why in (("exit 3", "ended with exit code 3"), ("echo that is why >&2; sleep 100", "Alien: is not there after 0.5 s (echo that is why >&2; sleep 100): that is why")):
+            with open(file, "w") as out:
+                out.write(f"processes:\n  - {{command: '{command}', wait: 0.5, components: [Alien]}}\n")
+            assert "process of Alien" in refused(r.system(), why, "--run-file", file) or "sleep" in command
+        refused(r.system(Alien=("Relay", {})), "there is a module for each component", "--start", "sleep 100")
+        refused(r.system(), "only its exec_cxt.sim_time.phase", "--start", "sleep 100", "--property", "Alien:conf.default.x=1")
+        system = r.system()
+        for text, why in (("processes: []", "needs a list"), ("process: 1", "has no key"), ("processes: [{command: x, components: [Nobody]}]", "no component Nobody"),
+                          ("processes: [{command: x, components: [{name: Alien, phase: 99}]}]", "phase must be"), ("processes: [{command: x, components: [Alien, Alien]}]", "twice"),
+                          ("processes: [{command: x, wait: nan, components: [Alien]}]", "wait must be"), ("processes: [{command: x, folder: nowhere, components: [Alien]}]", "no such folder"),
+                          ("processes: [{command: x, components: [{name: Alien, join: up}]}]", "join must be"), ("][", "run.yaml:1")):
+            with open(file, "w") as out:
+                out.write(text)
+            assert len(refused(system, why, "--run-file", file).splitlines()) == 1, text
+
+
+def ticked():
+    # Contexts that are ticked from outside: by the proxy, with the time where they take one, and by OpenHRP's clock, to which they subscribe.
+    with Run() as r:
+        for how, options in (("tick", "--context triggered --active"), ("tick", "--context logical --active"), ("clock", "--context triggered --active --clock 0.1")):
+            system = r.system()
+            with open(f"{r.path}/run.yaml", "w") as out:
+                out.write(f"processes:\n  - command: {r.command(options)}\n    components:\n      - {{name: Alien, join: {how}}}\n")
+            done = subprocess.run([f"{bin_dir}/rtse", "run", system, "--world", empty, "--module-path", lib_dir, "--duration", "0.5", "--property", "From:exec_cxt.sim_time.phase=0",
+                                   "--property", "To:exec_cxt.sim_time.phase=2", "--run-file", f"{r.path}/run.yaml"], text=True, capture_output=True, timeout=120)
+            assert done.returncode == 0, done
+            values = [line.split()[1] for line in r.read(f"To-{r.count}.txt").splitlines()]
+            assert values == ["2", "3", "4", "5", "6", "7"], (how, values)
+            journal = [line.split() for line in r.read(f"Alien-{r.count}.journal").splitlines()]
+            ticks = [float(line[1]) for line in journal if line[0] == "tick"]
+            assert ticks == ([0, 0.1, 0.2, 0.3, 0.4, 0.5] if "logical" in options else [-1] * 6), ticks
+            assert [line[1] for line in journal if line[0] == "on_execute"] == ["0"] * 6, journal
+
+
+def together():
+    # Members of one phase in two processes are called at the same time: each waits in its callback for the other.
+    with Run() as r:
+        system = r.system(Alien=("Foreign", {}), Other=("Foreign", {}))
+        starts = [word for name in ("Alien", "Other") for word in ("--start", r.command(f"--fault meet{r.path}@2", name=name))]
+        done = subprocess.run([f"{bin_dir}/rtse", "run", system, "--world", empty, "--module-path", lib_dir, "--duration", "0.5", *starts], text=True, capture_output=True, timeout=120)
+        assert done.returncode == 0, done
+        for name in ("Alien", "Other"):
+            assert r.read(f"{name}-{r.count}.journal").count("on_execute 1000") == 6
+
+
+# What a name server holds, by an ORB of its own.
+def resolver(s):
+    idl = Idl(f"{source}/idl", "ClockGenerator.idl", f"{source}/tests/ports/naming.idl")
+    orb = Orb(2, "<")
+    host, port = s.names.split(":")
+    root = Remote(idl, orb, Ior.make("IDL:omg.org/CosNaming/NamingContext:1.0", host, int(port), b"NameService", 2), "CosNaming::NamingContext")
+    return lambda *path, interface="RTC::RTObject": root.resolve([idl.struct("CosNaming::NameComponent", id=name, kind=kind) for name, kind in path]).narrow(interface)
+
+
+def clock():
+    # OpenHRP's clock: a tick at the first step at or after each multiple of the period; who subscribes again has the new period, who has died holds nobody up.
+    with Mixed(bin_dir, lib_dir) as s:
+        s.naming()
+        s.server(empty, "--lockstep", "--paused", "--rtf", "0")
+        s.host("ClockGenerator?conf.default.server_id=" + s.server_id)
+        process = s.foreign("Alien", "--context", "triggered")
+        resolve = resolver(s)
+        clock = s.until("the clock", lambda: "ClockGenerator" in s.rtse("ls", "-R") and resolve(("ClockGenerator", ""), interface="OpenHRP::ClockGenerator"))
+        context = resolve(("Alien", "rtc")).get_owned_contexts()[0]
+        ticks = lambda: s.calls("Alien").count(["tick", "-1.000000"])
+        for period in (0, -1, float("nan"), 1e9):
+            try:
+                clock.subscribe(context.ior, period)
+                raise AssertionError(f"a period of {period} s is taken")
+            except SystemException as problem:
+                assert "BAD_PARAM" in str(problem), problem
+        clock.subscribe(context.ior, 5.0)
+        clock.subscribe(context.ior, 0.0015)
+        s.until("the second subscription", lambda: len(s.participants()) == 1 and "Alien_clock2" in s.rtse("ls", "-R") and "Alien_clock1" not in s.rtse("ls", "-R"))
+        s.simctl("step", "30")
+        assert ticks() == 21, ticks()
+        clock.unsubscribe(context.ior)
+        s.until("nobody", lambda: not s.participants())
+        s.simctl("step", "30")
+        assert ticks() == 21, ticks()
+        clock.subscribe(context.ior, 0.001)
+        s.until("a participant", lambda: s.participants())
+        s.kill(process)
+        s.simctl("step", "30")
+        assert s.state("Alien_clock3") == "Error" and "is gone" in "".join(s.log(one) for one in s.running), s.state("Alien_clock3")
+
+
+def one_context():
+    # By the calls of the standard alone: two components of two processes become members of one context, are called at the same time, and leave.
+    with Mixed(bin_dir, lib_dir) as s:
+        s.naming()
+        s.server(empty, "--lockstep", "--paused", "--rtf", "0")
+        s.host(relay("Host"))
+        for name in ("Alien", "Other"):
+            s.foreign(name, "--fault", f"meet{s.work}@2")
+        s.rtse("wait", "Host", "Alien", "Other", "--state", "any", "--timeout", "60")
+        resolve = resolver(s)
+        context = resolve((os.uname().nodename, "host_cxt"), ("Host", "rtc")).get_owned_contexts()[0]
+        members = [resolve((name, "rtc")) for name in ("Alien", "Other")]
+        assert [context.add_component(member.ior) for member in members] == ["RTC_OK"] * 2
+        assert context.add_component(members[0].ior) == "PRECONDITION_NOT_MET"
+        assert [context.activate_component(member.ior) for member in members] == ["RTC_OK"] * 2
+        s.until("a participant", lambda: len(s.participants()) == 1)
+        s.simctl("step", "500")
+        assert s.calls("Alien") == s.calls("Other") and s.calls("Alien").count(["on_execute", "1000"]) == 51, (s.calls("Alien"), s.calls("Other"))
+        assert [context.deactivate_component(member.ior) for member in members] == ["RTC_OK"] * 2
+        assert [context.remove_component(member.ior) for member in members] == ["RTC_OK"] * 2
+        assert s.calls("Alien")[-1] == ["on_deactivated", "1000"], s.calls("Alien")
+
+
+def host_dies():
+    # Who has lost the host of its context is told so, and leaves all the same.
+    with Mixed(bin_dir, lib_dir) as s:
+        s.chain()
+        s.rtse("join", "Alien", "--rate", "100", "--server-id", s.server_id)
+        again = s.try_rtse("join", "Alien", "--rate", "100", "--server-id", s.server_id)
+        assert again.returncode == 1 and "already" in again.stderr, again
+        pid = next(p["pid"] for p in s.participants() if p["name"] == "Alien")
+        os.kill(pid, signal.SIGKILL)
+        s.until("its end", lambda: len(s.participants()) == 2)
+        s.simctl("step", "10")
+        s.rtse("leave", "Alien")
+        assert s.try_rtse("leave", "Alien").returncode == 1
+        s.rtse("join", "Alien", "--rate", "100", "--server-id", s.server_id)
+        assert len(s.participants()) == 3
+        s.rtse("leave", "Alien")
+
+
+if __name__ == "__main__":
+    globals()[case]()

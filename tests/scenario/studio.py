@@ -1,0 +1,407 @@
+# rtm-studio before viewers of all kinds, one case per run: studio.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
+import json
+import os
+import random
+import struct
+import sys
+import time
+
+from rig import Rig, await_
+from web_peer import Closed, Socket, request
+
+case, *folders = sys.argv[1:]
+rig = Rig(*folders)
+
+
+class Studio:
+    def __init__(self, *options):
+        self.process = rig.start(f"{rig.bin_dir}/rtm-studio", "--ns", rig.names, "-s", rig.server_id, "--port", "0", *options)
+        url = await_("the URL", lambda: next(line for line in rig.log(self.process).splitlines() if line.startswith("http")) if rig.log(self.process) else "no")
+        await_("the URL", lambda: rig.log(self.process).startswith("http"))
+        url = rig.log(self.process).splitlines()[0]
+        self.token = url.split("token=")[1]
+        self.port = int(url.split(":")[2].split("/")[0])
+
+    def viewer(self, **more):
+        socket = Socket(self.port, self.token, **more)
+        assert socket.status == 101, socket.head
+        return socket
+
+    def get(self, target="/", **more):
+        return request(self.port, target, **more)
+
+    def lives(self):
+        assert self.process.poll() is None, self.process.returncode
+        viewer = self.viewer()
+        viewer.event("hello")
+        viewer.close()
+
+
+def poses_in(frame):
+    count = struct.unpack_from("<I", frame, 16)[0]
+    return {struct.unpack_from("<I", frame, 24 + 24 * i)[0]: struct.unpack_from("<fff", frame, 28 + 24 * i) for i in range(count)}
+
+
+def is_poses(message):
+    return isinstance(message, bytes) and message[0] == 0x81
+
+
+# Without the token nothing is read and nothing is done, whoever asks and however.
+def doors():
+    rig.naming()
+    rig.server("-u")
+    studio = Studio()
+    good = f"token={studio.token}"
+    for target in ("/", "/world.glb", "/assets/x.js", "/no", "/ws", "//", "/../etc/passwd"):
+        for query in ("", "?token=", "?token=" + "0" * 32, "?token=" + studio.token[:-1]):
+            status, _, body = studio.get(target + query)
+            assert status in (401, 403), (target, query, status)
+            assert b"token" in body and studio.token.encode() not in body, body
+    for host in ("evil.example", f"evil.example:{studio.port}", "", None):
+        status, _, _ = studio.get(f"/?{good}", headers={"Host": host})
+        assert status in (400, 403), (host, status)
+    for origin in ("http://evil.example", "null", f"http://127.0.0.1:{studio.port + 1}"):
+        assert studio.get(f"/?{good}", headers={"Origin": origin})[0] == 403
+        assert Socket(studio.port, studio.token, headers={"Origin": origin}).status == 403
+    assert Socket(studio.port, "").status == 401
+    assert Socket(studio.port, "wrong").status == 403
+    assert Socket(studio.port, studio.token, protocol="other").status == 400
+    for method in ("POST", "PUT", "DELETE", "OPTIONS", "TRACE"):
+        assert studio.get(f"/?{good}", method=method)[0] == 405
+    status, headers, _ = studio.get(f"/?{good}")
+    assert status == 303 and headers["location"] == "/", (status, headers)
+    cookie = headers["set-cookie"]
+    assert "HttpOnly" in cookie and "SameSite=Strict" in cookie and studio.token not in cookie, cookie
+    status, headers, body = studio.get("/", headers={"Cookie": cookie.split(";")[0]})
+    assert status == 200 and b"rtm-studio" in body, status
+    assert "default-src 'none'" in headers["content-security-policy"] and "unsafe" not in headers["content-security-policy"], headers
+    for name, value in {"x-content-type-options": "nosniff", "referrer-policy": "no-referrer", "cache-control": "no-store"}.items():
+        assert headers[name] == value, headers
+    status, headers, body = studio.get("/world.glb", headers={"Cookie": cookie.split(";")[0]})
+    assert status == 200 and body[:4] == b"glTF", status
+    again = {"Cookie": cookie.split(";")[0], "If-None-Match": headers["etag"]}
+    assert studio.get("/world.glb", headers=again)[0] == 304
+    assert Socket(studio.port, headers={"Cookie": cookie.split(";")[0], "Origin": f"http://127.0.0.1:{studio.port}"}).status == 101
+    other = Studio("--allow-origin", "https://viewer.example", "--host", "robots.example")
+    assert Socket(other.port, other.token, headers={"Origin": "https://viewer.example"}).status == 101
+    assert Socket(other.port, other.token, headers={"Host": "robots.example"}).status == 101
+    studio.lives()
+
+
+# Requests and frames that are too long, no requests, no frames.
+def garbage():
+    rig.naming()
+    rig.server("-u")
+    studio = Studio()
+    good = f"?token={studio.token}"
+    assert studio.get("/" + good, headers={"X": "x" * 9000})[0] == 431
+    assert studio.get("/" + good, headers={"Content-Length": "5"}, method="GET")[0] in (413, 303)
+    for raw in (b"\r\n\r\n", b"\0" * 100, b"GET\r\n\r\n", b"GET / HTTP/9.9\r\n\r\n", b"x" * 20000, b"GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n",
+                b"GET / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\nffffffffff\r\n", b"\x16\x03\x01\x02\x00\x01\x00"):
+        status, _, _ = studio.get(raw=raw, limit=1)
+        assert status in (0, 400, 401, 403, 413, 431), (raw[:30], status)
+    seed = random.randrange(1 << 30)
+    print("seed", seed)
+    dice = random.Random(seed)
+    mutations = int(os.environ.get("RTMSIM_STUDIO_MUTATIONS", "3000"))
+    seeds = [{"op": "request", "id": 1, "name": name, "args": args} for name, args in (
+        ("tree", {}), ("set_pose", {"model": "pioneer2dx", "planar": [0, 0, 0]}), ("watch", {"watch": 1, "topic": "/sim/laser/pioneer2dx/laser"}),
+        ("component", {"path": "/a/b.rtc"}), ("drive", {"iface": "pioneer2dx::position2d", "velocity": [0, 0, 0]}), ("connection_options", {"ports": ["a:b", "c:d"]}))]
+    seeds += [{"op": "subscribe", "subscriptions": [{"id": 1, "channelId": 1}]}, {"op": "unsubscribe", "subscriptionIds": [1]}]
+    texts = [json.dumps(one).encode() for one in seeds]
+    viewer, opened = None, 0
+    for i in range(mutations):
+        if viewer is None:
+            viewer, opened = studio.viewer(), opened + 1
+            viewer.line.setblocking(False)
+        octets = bytearray(dice.choice(texts))
+        for _ in range(dice.randrange(6)):
+            at = dice.randrange(len(octets))
+            octets[at:at + dice.randrange(3)] = bytes(dice.randrange(256) for _ in range(dice.randrange(4)))
+            octets = octets or bytearray(b" ")
+        opcode = dice.choice((1, 1, 1, 1, 1, 1, 2, 0, 8, 9, 10, 3, 15))
+        head = dice.choice((None,) * 30 + (dice.randrange(256),))
+        try:
+            viewer.line.settimeout(5)
+            viewer.send(bytes(octets), opcode, mask=dice.random() < 0.98, head=head)
+            viewer.line.setblocking(False)
+            while viewer.line.recv(1 << 16):
+                pass
+            raise Closed()
+        except BlockingIOError:
+            pass
+        except (Closed, OSError):
+            viewer.close()
+            viewer = None
+    print(mutations, "frames,", opened, "connections")
+    viewer = studio.viewer()
+    try:
+        viewer.send(b" " * (2 << 20))
+        while True:
+            viewer.message()
+    except (Closed, OSError):
+        pass
+    studio.lives()
+
+
+# A world is seen, moved, driven, stepped and reset.
+def world():
+    rig.naming()
+    rig.server("-u")
+    studio = Studio()
+    viewer = studio.viewer()
+    assert viewer.event("hello")["read_only"] is False
+    seen = viewer.event("world", lambda m: m["present"])
+    names = [model["name"] for model in seen["models"]]
+    assert "pioneer2dx" in names and any(i["type"] == "laser" and i["model"] == "pioneer2dx" and i["info"]["beams"] > 1 for i in seen["ifaces"]), seen
+    assert viewer.do("step", steps=10)["steps"] == 10
+    first = viewer.wait_for(is_poses)
+    assert first[1] == 1 and len(poses_in(first)) > 10
+    reply = viewer.ask("set_pose", model="pioneer2dx", planar=[2, 1, 0.5])
+    assert reply["command"] == f"simctl -s {rig.server_id} pose pioneer2dx 2 1 0.5", reply
+    moved = viewer.wait_for(lambda m: is_poses(m) and any(abs(p[0] - 2) < 0.01 and abs(p[1] - 1) < 0.01 for p in poses_in(m).values()))
+    assert len(poses_in(moved)) < len(poses_in(first)), "only what has moved is sent"
+    assert viewer.ask("step", dry=True, steps=7)["command"] == f"simctl -s {rig.server_id} step 7"
+    assert rig.stats()["steps"] == 10
+    assert "no model or link nobody" in viewer.ask("set_pose", model="nobody", planar=[0, 0, 0])["error"]
+    viewer.do("watch", watch=3, topic="/sim/position2d/pioneer2dx/position2d", members=["velocity[0]", "odometry[0]"])
+    viewer.do("run")
+    end = time.monotonic() + 20
+    speed = 0
+    while speed < 0.15:
+        assert time.monotonic() < end, speed
+        viewer.do("drive", iface="pioneer2dx::position2d", velocity=[0.2, 0, 0])
+        speed = viewer.event("values", lambda m: "v" in m)["v"][-1][0]
+    await_("a drive that nobody renews ends", lambda: rig.robot()["commanded"] is False)
+    other = studio.viewer()
+    other.do("drive", iface="pioneer2dx::position2d", velocity=[0.2, 0, 0])
+    other.close()
+    await_("a drive ends with its viewer", lambda: rig.robot()["commanded"] is False)
+    viewer.do("pause")
+    sdf = "<sdf version='1.6'><model name='box'><static>true</static><link name='l'><collision name='c'><geometry><box><size>1 1 1</size></box></geometry></collision></link></model></sdf>"
+    before = viewer.event("world", lambda m: True) if False else seen
+    assert viewer.do("spawn", sdf=sdf, name="crate", pose=[5, 5, 0.5, 1, 0, 0, 0])["name"] == "crate"
+    grown = viewer.event("world", lambda m: any(model["name"] == "crate" for model in m["models"]))
+    assert grown["version"] != before["version"]
+    viewer.do("delete_model", model="crate")
+    viewer.event("world", lambda m: all(model["name"] != "crate" for model in m["models"]))
+    viewer.do("reset_world")
+    viewer.event("time", lambda m: m["sim_time"] == 0 and m["paused"])
+    assert viewer.do("tree", model="pioneer2dx")["models"][0]["name"] == "pioneer2dx"
+
+
+# The system of the demo from nothing: created, connected, configured, activated, saved, taken down, opened.
+def system():
+    rig.naming()
+    rig.server("-u")
+    rig.host()
+    studio = Studio()
+    viewer = studio.viewer()
+    manager = viewer.event("system", lambda m: m["managers"])["managers"][0]["path"]
+    assert "loadable" in viewer.do("manager", path=manager)
+    for name in ("RTCLaser", "LaserObstacleAvoid", "RTCPosition2d"):
+        properties = {} if name == "LaserObstacleAvoid" else {"conf.default.server_id": rig.server_id}
+        assert viewer.do("create", manager=manager, type=name, properties=properties)["instance"] == f"{name}0"
+    seen = viewer.event("system", lambda m: len(m["components"]) == 3)
+    paths = {component["instance"]: component["path"] for component in seen["components"]}
+    pair = [f"{paths['RTCLaser0']}:range", f"{paths['LaserObstacleAvoid0']}:range"]
+    options = viewer.do("connection_options", ports=pair)
+    assert options["problem"] == "" and "flush" in next(o for o in options["properties"] if o["key"] == "dataport.subscription_type")["values"], options
+    assert "expected an OutPort and an InPort" in viewer.do("connection_options", ports=[pair[1], f"{paths['RTCPosition2d0']}:velocity"])["problem"]
+    connected = viewer.ask("connect", ports=pair, properties={"dataport.subscription_type": "new"})
+    assert connected["command"].startswith(f"rtse --ns {rig.names} con {pair[0]} {pair[1]}"), connected
+    viewer.event("system", lambda m: any(c["ports"] == pair for c in m["connections"]))
+    undo = viewer.do("disconnect", port=pair[0], id=connected["result"]["id"])
+    assert sorted(undo["ports"]) == sorted(pair) and undo["properties"]["dataport.subscription_type"] == "new", undo
+    viewer.event("system", lambda m: not m["connections"])
+    viewer.do("connect", **undo)
+    viewer.do("connect", ports=[f"{paths['LaserObstacleAvoid0']}:velocity", f"{paths['RTCPosition2d0']}:velocity"])
+    details = viewer.do("component", path=paths["LaserObstacleAvoid0"])
+    parameter = next(value for one in details["sets"] if one["active"] for value in one["values"])
+    assert {"name", "value", "type", "widget", "constraint"} <= parameter.keys()
+    viewer.do("set_configuration", path=paths["LaserObstacleAvoid0"], set="default", values={parameter["name"]: parameter["value"]})
+    assert "cannot be" in viewer.ask("set_configuration", path=paths["RTCLaser0"], set="default", values={"server_id": "none"})["error"]
+    for path in paths.values():
+        viewer.do("activate", path=path)
+    await_("states", lambda: all(rig.state(name) == "Active" for name in paths))
+    xml = viewer.do("save_profile", name="saved")["xml"]
+    assert "RTCLaser0" in xml and "saved" in xml
+    viewer.do("teardown", xml=xml)
+    assert not json.loads(rig.rtse("--json", "cat", "RTCLaser0:range")).get("connectors", [])
+    viewer.do("open_profile", xml=xml)
+    for path in paths.values():
+        viewer.do("deactivate", path=path)
+    viewer.event("states", lambda m: set(m["states"].values()) == {"Inactive"})
+    assert "must be" in viewer.ask("reset", path=paths["RTCLaser0"])["error"]
+    viewer.do("exit", path=paths["RTCPosition2d0"])
+    viewer.event("system", lambda m: len(m["components"]) == 2)
+
+
+# Nothing is done for those who may only look.
+def read_only():
+    rig.naming()
+    rig.server("-u")
+    studio = Studio("--read-only")
+    viewer = studio.viewer()
+    assert viewer.event("hello")["read_only"] is True
+    for name, args in {"run": {}, "step": {"steps": 5}, "set_pose": {"model": "pioneer2dx", "planar": [0, 0, 0]}, "spawn": {"model": "x"}, "delete_model": {"model": "pioneer2dx"},
+                       "drive": {"iface": "pioneer2dx::position2d", "velocity": [1, 0, 0]}, "activate": {"path": "/a/b.rtc"}, "create": {"manager": "m", "type": "t"},
+                       "open_profile": {"xml": "<x/>"}, "connect": {"ports": ["a:b", "c:d"]}, "disconnect": {"port": "a", "id": "b"}, "exit": {"path": "p"}, "speed": {"rtf": 2},
+                       "reset_world": {}, "load_module": {"manager": "m", "file": "f"}, "release": {"iface": "i"}, "push": {"name": "a", "force": [1, 2, 3]}}.items():
+        assert viewer.ask(name, **args)["error"] == "this studio is read-only", name
+    assert viewer.ask("run", dry=True)["command"].endswith("run")
+    assert viewer.do("tree")["models"]
+    assert rig.stats()["steps"] == 0 and rig.stats()["paused"]
+
+
+# Simulator, naming service and components go and come back; the page is told, and the server stays.
+def comes_back():
+    studio = Studio()
+    viewer = studio.viewer()
+    assert viewer.event("world")["present"] is False
+    assert viewer.event("system")["problem"]
+    simulator = rig.server("-u")
+    viewer.event("world", lambda m: m["present"])
+    viewer.wait_for(is_poses)
+    rig.kill(simulator)
+    assert "gone" in viewer.event("world", lambda m: not m["present"])["problem"]
+    assert "error" in viewer.ask("run")
+    rig.server("-u")
+    viewer.event("world", lambda m: m["present"])
+    viewer.wait_for(is_poses)
+    naming = rig.naming()
+    host = rig.host("LaserObstacleAvoid")
+    viewer.event("system", lambda m: m["problem"] == "" and any(c["instance"] == "LaserObstacleAvoid0" and not c["problem"] for c in m["components"]))
+    rig.kill(naming)
+    viewer.event("system", lambda m: m["problem"] != "")
+    rig.naming()
+    viewer.event("system", lambda m: any(c["instance"] == "LaserObstacleAvoid0" and not c["problem"] for c in m["components"]))
+    rig.kill(host)
+    dead = viewer.event("system", lambda m: any(c["problem"] for c in m["components"]))
+    assert all(c["state"] == "Unknown" for c in dead["components"] if c["problem"])
+    viewer.do("run")
+    studio.lives()
+
+
+# One who does not read holds up nobody, costs no memory, and sees the present when it reads on.
+def slow_viewer():
+    rig.naming()
+    rig.server()
+    studio = Studio()
+    slow = studio.viewer(receive_buffer=4096)
+    quick = studio.viewer()
+    quick.do("watch", watch=1, topic="/sim/position2d/pioneer2dx/position2d")
+    slow.do("watch", watch=1, topic="/sim/laser/pioneer2dx/laser", hz=60)
+    begin = quick.event("time")["sim_time"]
+    last = begin
+    while last < begin + 6:
+        last = quick.event("time")["sim_time"]
+    quick.do("pause")
+    paused_at = quick.event("time", lambda m: m["paused"])["sim_time"]
+    received = slow.received
+    # What was on the way, at most the buffers of two systems, and then the present.
+    now = slow.event("time", lambda m: m["paused"])["sim_time"]
+    assert now == paused_at, (now, paused_at)
+    print("to the slow one after its sleep:", slow.received - received, "octets")
+    assert slow.received - received < 1 << 20
+
+
+# The run of lock step is the same to the bit with three viewers that look at everything and with none.
+def same_hash():
+    runs = int(os.environ.get("RTMSIM_STUDIO_RUNS", "1"))
+
+    def run(viewers):
+        with_viewers = []
+        simulator = rig.server("--lockstep", "--rtf", "0", "-u", "--wait-for", "3", "--seed", "5")
+        host = rig.host(rig.device("RTCLaser"), "LaserObstacleAvoid", rig.device("RTCPosition2d"), options=(
+            "-o", "manager.modules.preload:SimTimeContext.so", "-o", "exec_cxt.periodic.type:SimTimeContext"))
+        rig.there("RTCLaser0", "LaserObstacleAvoid0", "RTCPosition2d0")
+        rig.rtse("con", "RTCLaser0:range", "LaserObstacleAvoid0:range")
+        rig.rtse("con", "LaserObstacleAvoid0:velocity", "RTCPosition2d0:velocity")
+        rig.rtse("act", "RTCLaser0", "LaserObstacleAvoid0", "RTCPosition2d0")
+        await_("participants", lambda: len(rig.participants()) == 3)
+        for _ in range(viewers):
+            viewer = studio.viewer()
+            viewer.event("world", lambda m: m["present"])
+            viewer.event("system", lambda m: len(m["components"]) == 3)
+            for i, topic in enumerate(("/sim/laser/pioneer2dx/laser", "/sim/position2d/pioneer2dx/position2d", "/RTCLaser0/range", "/LaserObstacleAvoid0/velocity")):
+                viewer.do("watch", watch=i, topic=topic)
+            with_viewers.append(viewer)
+        for viewer in with_viewers:
+            for i in range(2):
+                viewer.event("values", lambda m: m["watch"] == i)
+        rig.simctl("step", "5000")
+        stats = rig.stats()
+        for viewer in with_viewers:
+            viewer.close()
+        for process in (host, simulator):
+            process.terminate()
+            process.wait(20)
+        return stats["hash"]
+
+    rig.naming()
+    studio = Studio()
+    hashes = [run(viewers) for _ in range(runs) for viewers in (0, 3)]
+    print(hashes)
+    assert len(set(hashes)) == 1 and hashes[0] != "0" * 16, hashes
+
+
+# A client of another make (npm) reads what the simulator shows and what a port sends.
+def foreign():
+    rig.naming()
+    rig.server("--rtf", "1")
+    rig.host(rig.device("RTCLaser"))
+    rig.there("RTCLaser0")
+    rig.rtse("act", "RTCLaser0")
+    studio = Studio()
+    topics = ("/tf", "/sim/laser/pioneer2dx/laser", "/RTCLaser0/range")
+    script = f"{rig.source}/tests/foreign/watch.mjs"
+    lines = [json.loads(line) for line in rig.call("node", script, f"ws://127.0.0.1:{studio.port}/ws?token={studio.token}", *topics).splitlines()]
+    assert "time" in lines[0]["info"]["capabilities"], lines[0]
+    seen = {line["topic"]: line for line in lines[1:]}
+    assert set(seen) == set(topics), seen.keys()
+    assert seen["/tf"]["schema"] == "tf2_msgs/msg/TFMessage"
+    assert any(one["child_frame_id"] == "pioneer2dx" for one in seen["/tf"]["message"]["transforms"])
+    assert len(seen["/sim/laser/pioneer2dx/laser"]["message"]["ranges"]) == len(seen["/RTCLaser0/range"]["message"]["ranges"])
+    viewer = studio.viewer(protocol="foxglove.websocket.v1")
+    viewer.send({"op": "subscribe", "subscriptions": [{"id": 1, "channelId": 60000}]})
+    assert "is not there" in viewer.event("status")["message"]
+    viewer.send({"op": "request", "id": 1, "name": "run"})
+    assert "rtmsim.studio.v1" in viewer.event("status")["message"]
+
+
+# Pictures of a camera as JPEG, and a line when there is none.
+def pictures():
+    rig.naming()
+    rig.server(world=f"{rig.source}/worlds/farm.sdf")
+    studio = Studio()
+    viewer = studio.viewer()
+    world = viewer.event("world", lambda m: m["present"])
+    camera = next(iface["name"] for iface in world["ifaces"] if iface["type"] == "camera")
+    viewer.do("watch_image", watch=5, iface=camera)
+    picture = viewer.wait_for(lambda m: isinstance(m, bytes) and m[0] == 0x83)
+    assert struct.unpack_from("<I", picture, 4)[0] == 5 and picture[16:18] == b"\xff\xd8" and picture[-2:] == b"\xff\xd9", picture[:20]
+    viewer.do("watch_image", watch=6, iface="nobody")
+    assert "nobody" in viewer.event("values", lambda m: m["watch"] == 6)["error"]
+    viewer.do("unwatch", watch=5)
+
+
+# A saved system with its world, started paused, and gone with the studio.
+def started():
+    studio = Studio(f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "--world", f"{rig.source}/worlds/obstacle_course.sdf")
+    viewer = studio.viewer()
+    hello = viewer.event("hello")
+    rig.servers.add(str(hello["server_id"]))
+    assert viewer.event("time")["paused"]
+    viewer.event("system", lambda m: len(m["components"]) == 3 and len(m["connections"]) == 2 and all(c["state"] == "Active" for c in m["components"]))
+    viewer.do("run")
+    viewer.event("time", lambda m: m["sim_time"] > 0.5)
+    studio.process.terminate()
+    assert studio.process.wait(30) == 0
+    alone = Studio("--world", f"{rig.source}/worlds/empty.sdf")
+    assert alone.viewer().event("world", lambda m: m["present"])["server_id"] == int(rig.server_id)
+
+
+with rig:
+    globals()[case]()
+print("ok")

@@ -1,0 +1,423 @@
+// The page alone, in front of a stand-in of the server: page_flows.mjs BIN_DIR SOURCE_DIR. One browser, one page, flow after flow.
+import { readFileSync, readdirSync, statSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { join } from 'node:path';
+import { gzipSync } from 'node:zlib';
+import { component, demo_system, hello, many_components, Mock, scan, time, world_of } from './mock.mjs';
+import { check, has_world, is_ready, open, run, same, until } from './rig.mjs';
+
+const [bin, source] = process.argv.slice(2);
+const built = process.env.STUDIO_PAGE ?? join(bin, '../share/rtm-sim/studio');
+const glb = join(source, 'tests/studio/course.glb');
+const axe = createRequire(import.meta.url).resolve('axe-core/axe.min.js');
+const host = '/localhost:2809/demo.host_cxt';
+const laser = `${host}/RTCLaser0.rtc`, avoid = `${host}/LaserObstacleAvoid0.rtc`;
+
+const options = { problem: '', properties: [{ key: 'dataport.dataflow_type', values: ['push', 'pull'], default: 'push', meaning: 'who fetches' }, { key: 'dataport.subscription_type', values: ['flush', 'new', 'periodic'], default: 'flush', meaning: 'when' }, { key: 'dataport.publisher.push_rate', default: '', meaning: 'Hz' }] };
+const detail = (path) => ({
+  ...demo_system().components.find((c) => c.path === path), properties: {},
+  sets: [{ id: 'default', active: true, values: [
+    { name: 'device_id', value: path === laser ? 'pioneer2dx::laser' : '', type: 'string', widget: 'text' }, { name: 'max_turn', value: '60', type: 'double', widget: 'slider.10', constraint: '0<=x<=180' },
+    { name: 'mode', value: 'left', type: 'string', widget: 'radio', constraint: '(left,right)' }, { name: 'days', value: 'mon', type: 'string', widget: 'checkbox', constraint: '(mon,tue,wed)' }, { name: 'count', value: '3', type: 'int', widget: 'spin', constraint: '0<=x<=9' }] }],
+});
+
+function answer(mock) {
+  return ({ name, args, dry }) => {
+    if (dry) return { command: `rtse con ${args.ports?.map((p) => p.split('/').pop()).join(' ')}` };
+    if (name === 'component') return { result: detail(args.path) };
+    if (name === 'connection_options') return { result: options };
+    if (name === 'watch' && args.topic.includes('laser')) setTimeout(() => mock.say(scan(args.watch)), 20);
+    if (name === 'connect') return { result: { id: 'new' }, command: 'rtse con A B' };
+    if (name === 'disconnect') return { result: { name: 'range', ports: demo_system().connections[0].ports, properties: {} }, command: 'rtse dis A B' };
+    if (name === 'manager') return { result: { components: [{ instance: 'RTCLaser0', type: 'RTCLaser' }], loaded: [], loadable: [{ file: 'RTCCamera.so', type: 'RTCCamera' }], factories: [{ type: 'RTCLaser' }] } };
+    if (name === 'create') return { error: 'no component of type Nonsense' };
+    if (name === 'save_profile') return { result: { xml: '<rts/>' } };
+    return {};
+  };
+}
+
+const asked = (mock, name) => mock.asked.filter((m) => m.name === name && !m.dry);
+const choose = (page, kind, id) => page.evaluate(([k, i]) => window.studio.select({ kind: k, id: i }), [kind, id]);
+
+async function set_up(browser) {
+  const mock = new Mock({ page: built, glb });
+  mock.answer = answer(mock);
+  const world = await world_of(glb);
+  for (const event of [hello(), demo_system(), world, time(), { op: 'signals', signals: [
+    { topic: '/demo/RTCLaser0/range', kind: 'port', type: 'IDL:RTC/RangeData:1.0', component: laser }, { topic: '/sim/laser/pioneer2dx/laser', kind: 'iface', type: 'laser', model: 'pioneer2dx' }] }]) mock.say(event);
+  const url = await mock.start();
+  const page = await open(browser, url);
+  await is_ready(page);
+  await has_world(page);
+  return { browser, mock, url, page, world };
+}
+
+const flows = [
+  ['the page is small', async () => {
+    const files = [join(built, 'index.html'), ...readdirSync(join(built, 'assets')).map((f) => join(built, 'assets', f))];
+    const size = files.reduce((sum, f) => sum + gzipSync(readFileSync(f)).length, 0);
+    check(size <= 300000, `${size} bytes compressed`);
+    console.log(`      ${size} bytes compressed, ${files.reduce((sum, f) => sum + statSync(f).size, 0)} plain`);
+  }],
+  ['no request leaves the machine', async ({ page, url }) => {
+    const hosts = await page.evaluate(() => performance.getEntriesByType('resource').map((e) => e.name));
+    check(hosts.every((h) => h.startsWith(url) || h.startsWith('data:') || h.startsWith('blob:')), hosts.join(' '));
+  }],
+  ['the world is seen with its laser fan and names', async ({ page }) => {
+    await until('a scan', () => page.evaluate(() => [...window.studio.world.world.links].some((l) => { let n = 0; l.traverse((p) => { n += p.userData.overlay && p.geometry.getAttribute('position')?.count > 50 ? 1 : 0; }); return n > 0; })));
+    same(await page.locator('.labels span').allTextContents(), ['pioneer2dx'], 'names');
+  }],
+  ['poses move the robot', async ({ page, mock, world }) => {
+    const frame = Buffer.alloc(24 + 24);
+    frame[0] = 0x81;
+    frame.writeUInt32LE(world.version, 4);
+    frame.writeBigUInt64LE(13000000000n, 8);
+    frame.writeUInt32LE(1, 16);
+    const index = await page.evaluate(() => window.studio.world.world.links.findIndex((l) => l.name === 'pioneer2dx::chassis'));
+    frame.writeUInt32LE(index, 24);
+    [1, 2, 0.1].forEach((v, i) => frame.writeFloatLE(v, 28 + 4 * i));
+    frame.writeInt16LE(32767, 46);
+    const before = await page.evaluate(() => window.studio.world.frames);
+    mock.say(frame);
+    await until('the robot is there', () => page.evaluate(([i, f]) => { const p = window.studio.world.world.links[i].position; return Math.abs(p.x - 1) < 1e-3 && Math.abs(p.y - 2) < 1e-3 && window.studio.world.frames > f; }, [index, before]));
+  }],
+  ['a click on the robot selects it everywhere', async ({ page }) => {
+    await page.evaluate(() => window.studio.world.follow('pioneer2dx'));
+    await page.waitForTimeout(100);
+    await page.evaluate(() => window.studio.world.draw());
+    const box = await page.locator('.world canvas').boundingBox();
+    await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
+    await until('selection', () => page.evaluate(() => window.studio.store.selection?.id === 'pioneer2dx'));
+    await until('its component is marked in the system', async () => (await page.locator(`.box.related[data-path="${laser}"]`).count()) === 1);
+    check((await page.locator('.tree li.chosen').textContent()).includes('pioneer2dx'), 'the tree marks it');
+    check((await page.locator('.inspector h2').textContent()) === 'pioneer2dx', 'the inspector shows it');
+    check((await page.locator('.tree li.related').count()) >= 1, 'its signals are marked');
+  }],
+  ['eyes: from above, follow, all', async ({ page }) => {
+    await page.locator('.world canvas').focus();
+    await page.keyboard.press('t');
+    same(await page.evaluate(() => window.studio.world.eye.mode), 'top', 'mode');
+    await page.keyboard.press('o');
+    same(await page.evaluate(() => window.studio.world.eye.mode), 'orbit', 'mode');
+    const before = await page.evaluate(() => window.studio.world.eye.azimuth);
+    await page.keyboard.press('ArrowLeft');
+    check((await page.evaluate(() => window.studio.world.eye.azimuth)) !== before, 'arrows turn');
+    const box = await page.locator('.world canvas').boundingBox();
+    await page.mouse.move(box.x + 200, box.y + 60);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 260, box.y + 90, { steps: 3 });
+    await page.mouse.up();
+    const distance = await page.evaluate(() => window.studio.world.eye.distance);
+    await page.mouse.wheel(0, -300);
+    await until('wheel zooms', () => page.evaluate((d) => window.studio.world.eye.distance < d, distance));
+  }],
+  ['a robot is moved by dragging it', async ({ page, mock }) => {
+    await page.evaluate(() => { window.studio.world.follow('pioneer2dx'); window.studio.world.set_tool('move'); window.studio.world.draw(); });
+    const box = await page.locator('.world canvas').boundingBox();
+    const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 60, y + 20, { steps: 4 });
+    await page.mouse.up();
+    await until('set_pose', () => asked(mock, 'set_pose').length > 0);
+    check(asked(mock, 'set_pose').at(-1).args.planar.every(Number.isFinite), 'numbers');
+    await page.evaluate(() => window.studio.world.set_tool('push'));
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 60, y, { steps: 4 });
+    await page.mouse.up();
+    await until('push', () => asked(mock, 'push').length > 0);
+    await page.evaluate(() => { window.studio.world.set_tool('push'); window.studio.world.whole(); });
+  }],
+  ['keys drive the robot, and stop it when they are let go', async ({ page, mock }) => {
+    await choose(page, 'model', 'pioneer2dx');
+    await page.locator('.world canvas').focus();
+    await page.keyboard.press('g');
+    await page.keyboard.down('w');
+    await until('forward', () => asked(mock, 'drive').some((m) => m.args.velocity[0] > 0.2));
+    await page.keyboard.up('w');
+    const count = asked(mock, 'drive').length;
+    await until('stop', () => asked(mock, 'drive').slice(count).some((m) => m.args.velocity[0] === 0));
+    const stick = await page.locator('.stick').boundingBox();
+    await page.mouse.move(stick.x + 56, stick.y + 56);
+    await page.mouse.down();
+    await page.mouse.move(stick.x + 100, stick.y + 56);
+    await until('the stick turns', () => asked(mock, 'drive').at(-1).args.velocity[2] < -0.3);
+    await page.mouse.up();
+    await page.locator('.stick').focus();
+    await page.keyboard.press('Escape');
+    await until('released', () => asked(mock, 'release').length === 1);
+  }],
+  ['components are boxes with states, ports and lines', async ({ page }) => {
+    same(await page.locator('.diagram .box .name').allTextContents(), ['RTCLaser0', 'LaserObstacleAvoid0', 'RTCPosition2d0'], 'boxes');
+    same(await page.locator('.diagram .edge').count(), 2, 'lines');
+    same(await page.locator('.diagram .port.wired').count(), 4, 'wired ports');
+    same(await page.locator('.diagram .box.state-active').count(), 3, 'active');
+  }],
+  ['a state changes its colour and shape', async ({ page, mock }) => {
+    const shape = await page.locator(`[data-path="${laser}"] .shape`).getAttribute('d');
+    mock.say({ op: 'states', revision: 1, states: { [laser]: 'Error' }, rates: {} });
+    await until('error', async () => (await page.locator(`.box.state-error[data-path="${laser}"]`).count()) === 1);
+    check((await page.locator(`[data-path="${laser}"] .shape`).getAttribute('d')) !== shape, 'the shape is another one');
+    await until('the head says it', async () => (await page.locator('.counts').textContent()).includes('1 in error'));
+    await choose(page, 'component', laser);
+    await page.locator('#act-reset').click();
+    await until('reset', () => asked(mock, 'reset').length === 1);
+    mock.say({ op: 'states', revision: 1, states: { [laser]: 'Inactive' }, rates: {} });
+    await page.locator('#act-activate').click();
+    await until('activate', () => asked(mock, 'activate').at(-1)?.args.path === laser);
+    mock.say({ op: 'states', revision: 1, states: { [laser]: 'Active' }, rates: {} });
+  }],
+  ['a drag from port to port opens the dialog and connects', async ({ page, mock }) => {
+    const from = await page.locator(`[data-port="${laser}:range"] > path`).boundingBox(), to = await page.locator(`[data-port="${avoid}:range"] > path`).boundingBox();
+    await page.mouse.move(from.x + 4, from.y + 4);
+    await page.mouse.down();
+    await page.mouse.move(to.x - 30, to.y + 30, { steps: 4 });
+    check((await page.locator('.port.fits').count()) >= 1, 'what fits is shown');
+    await page.mouse.move(to.x + 4, to.y + 4, { steps: 3 });
+    await page.mouse.up();
+    await page.locator('dialog[open]').waitFor();
+    await page.locator('dialog[open] select[data-key="dataport.subscription_type"]').selectOption('new');
+    await until('the command', async () => (await page.locator('dialog[open] .command').textContent()).startsWith('rtse con'));
+    await page.locator('dialog[open] button.main').click();
+    await until('connect', () => asked(mock, 'connect').length === 1);
+    same(asked(mock, 'connect')[0].args.properties, { 'dataport.subscription_type': 'new' }, 'only what is not usual');
+    await until('command below', async () => (await page.locator('footer .command').textContent()) === 'rtse con A B');
+    await page.keyboard.press('Control+z');
+    await until('undo', () => asked(mock, 'disconnect').some((m) => m.args.id === 'new'));
+  }],
+  ['a connection by keyboard alone', async ({ page, mock }) => {
+    const count = asked(mock, 'connect').length;
+    await page.keyboard.press('/');
+    await page.keyboard.type('RTCLaser0');
+    await page.keyboard.press('ArrowDown');
+    await until('the tree has the focus', () => page.evaluate(() => document.activeElement.getAttribute('role') === 'treeitem'));
+    await page.evaluate(() => { window.studio.select(null); });
+    await page.locator('.diagram svg').focus();
+    await page.keyboard.press('ArrowRight');
+    await until('first box', () => page.evaluate(() => window.studio.store.selection?.kind === 'component'));
+    await page.keyboard.press(']');
+    await until('port', () => page.evaluate(() => window.studio.store.selection?.kind === 'port'));
+    await page.keyboard.press('c');
+    await page.locator('dialog[open]').waitFor();
+    await page.locator('#connect-to').focus();
+    await page.keyboard.press('Enter');
+    await page.locator('dialog[open] button.main').focus();
+    await page.keyboard.press('Enter');
+    await until('connected', () => asked(mock, 'connect').length === count + 1);
+    await page.locator('.tree input').fill('');
+  }],
+  ['a line is selected and deleted, and comes back by undo', async ({ page, mock }) => {
+    const count = asked(mock, 'connect').length;
+    await choose(page, 'connection', 'a');
+    await page.locator('.diagram svg').focus();
+    await page.keyboard.press('Delete');
+    await until('disconnect', () => asked(mock, 'disconnect').some((m) => m.args.id === 'a'));
+    await until('undo is offered', () => page.locator('#undo').isEnabled());
+    await page.locator('#undo').click();
+    await until('again', () => asked(mock, 'connect').length === count + 1);
+  }],
+  ['parameters have the widgets that they ask for', async ({ page, mock }) => {
+    await choose(page, 'component', laser);
+    await until('sets', async () => (await page.locator('.inspector .slider input[type=range]').count()) === 1);
+    same(await page.locator('.inspector .choices input').count(), 3, 'checkboxes');
+    same(await page.locator('.inspector select option').allTextContents(), ['left', 'right'], 'choice');
+    await page.locator('.inspector .slider input[type=number]').fill('75');
+    await page.keyboard.press('Tab');
+    await until('set', () => asked(mock, 'set_configuration').some((m) => m.args.values.max_turn === '75'));
+    await page.locator('.inspector .choices input').nth(1).check();
+    await until('both days', () => asked(mock, 'set_configuration').some((m) => m.args.values.days === 'mon,tue'));
+  }],
+  ['a refusal is one line that stays', async ({ page }) => {
+    await choose(page, 'manager', `${host}/rtcd.mgr`);
+    await page.locator('#manager-create').click();
+    await page.locator('#ask-text').fill('Nonsense');
+    await page.keyboard.press('Enter');
+    await until('refusal', async () => (await page.locator('footer .act').textContent()).includes('no component of type Nonsense'));
+  }],
+  ['boxes are placed by hand and stay there', async ({ page, url, browser }) => {
+    const box = await page.locator(`[data-path="${laser}"] .band`).boundingBox();
+    await page.mouse.move(box.x + 30, box.y + 10);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 30, box.y + 110, { steps: 4 });
+    await page.mouse.up();
+    const place = await until('remembered', () => page.evaluate((path) => window.studio.settings.positions[path], laser));
+    await until('stored', () => page.evaluate(() => (localStorage.getItem('rtm-studio') ?? '').includes('positions":{"/')));
+    const other = await page.context().newPage();
+    await other.goto(url);
+    await is_ready(other);
+    same(await until('there', () => other.evaluate((path) => window.studio.settings.positions[path], laser)), place, 'place');
+    await other.close();
+    await page.locator('button[aria-label="Arrange automatically"]').click();
+    void browser;
+  }],
+  ['a signal is dragged into the plots', async ({ page, mock }) => {
+    await page.evaluate(() => window.studio.select({ kind: 'signal', id: '/demo/RTCLaser0/range' }));
+    const watch_id = await until('watch', () => asked(mock, 'watch').find((m) => m.args.topic === '/demo/RTCLaser0/range')?.args.watch);
+    mock.say({ op: 'values', watch: watch_id, t: [12], value: { tm: { sec: 1, nsec: 2 }, config: { minAngle: -2 }, ranges: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10] } });
+    await page.locator('.inspector canvas.polar').waitFor();
+    await page.locator('.inspector button[aria-label="Plot config.minAngle"]').click();
+    await page.locator('.plot .legend').waitFor();
+    const plotted = await until('plot watch', () => asked(mock, 'watch').find((m) => m.args.members?.[0] === 'config.minAngle')?.args.watch);
+    mock.say({ op: 'values', watch: plotted, t: [12.0, 12.1, 12.2], v: [[1], [2], [3]] });
+    await page.locator('.plot canvas').waitFor();
+    await page.locator('.plot .legend button').click();
+    await until('gone', async () => (await page.locator('.plot').count()) === 0);
+  }],
+  ['logs are filtered', async ({ page, mock }) => {
+    await choose(page, 'model', 'pioneer2dx');
+    for (const [level, text] of [['warn', 'the laser is slow'], ['info', 'all is well']]) mock.say({ op: 'log', level, source: 'RTCLaser0', time: 1e9, text });
+    await page.locator('#tab-logs').click();
+    await until('both', async () => (await page.locator('.log > div').count()) === 2);
+    await page.locator('input[aria-label="Filter logs"]').fill('slow');
+    await until('one', async () => (await page.locator('.log > div').count()) === 1);
+    await page.locator('input[aria-label="Filter logs"]').fill('');
+    await page.locator('#tab-plots').click();
+  }],
+  ['time: run, step, reset, speed', async ({ page, mock }) => {
+    await page.locator('.world canvas').focus();
+    for (const [key, name] of [[' ', 'run'], ['.', 'step'], ['Shift+R', 'reset_world']]) {
+      await page.keyboard.press(key === ' ' ? 'Space' : key);
+      await until(name, () => asked(mock, name).length === 1);
+    }
+    mock.say(time({ paused: false }));
+    await until('pause is offered', () => page.locator('#run[aria-label=Pause]').count());
+    await page.locator('#run').click();
+    await until('pause', () => asked(mock, 'pause').length === 1);
+    await page.locator('#speed').fill('4');
+    await page.keyboard.press('Enter');
+    await until('speed', () => asked(mock, 'speed').at(-1)?.args.rtf === 4);
+    mock.say(time({ participants: [{ name: 'RTCLaser0', pid: 1, phase: 0, rate: 100, ticks: 5, missed: 0, mean_us: 3, max_us: 9, active: true, late: true }] }));
+    await until('who is waited for', async () => (await page.locator('.waits').textContent()).includes('RTCLaser0'));
+    mock.say(time());
+  }],
+  ['panels are hidden by keys and sized by keys', async ({ page }) => {
+    await page.locator('.world canvas').focus();
+    await page.keyboard.press('1');
+    check(!(await page.locator('.tree-panel').isVisible()), 'hidden');
+    await page.keyboard.press('1');
+    check(await page.locator('.tree-panel').isVisible(), 'there again');
+    const before = (await page.locator('.tree-panel').boundingBox()).width;
+    await page.locator('.of-tree').focus();
+    await page.keyboard.press('ArrowRight');
+    check((await page.locator('.tree-panel').boundingBox()).width > before, 'wider');
+  }],
+  ['a link holds the view', async ({ page, browser }) => {
+    await page.evaluate(() => { window.studio.world.top(); window.studio.select({ kind: 'model', id: 'pioneer2dx' }); });
+    const link = await until('link', () => page.evaluate(() => { const m = /v=([\w-]+)/.exec(location.hash); return m && atob(m[1].replaceAll('-', '+').replaceAll('_', '/')).includes('"mode":"top"') && location.href; }));
+    const other = await open(browser, link);
+    await has_world(other);
+    same(await other.evaluate(() => [window.studio.world.eye.mode, window.studio.store.selection.id]), ['top', 'pioneer2dx'], 'view');
+    await other.context().close();
+    await page.evaluate(() => window.studio.world.whole());
+  }],
+  ['everything has a name for those who do not see it', async ({ page }) => {
+    for (const theme of ['light', 'dark']) {
+      await page.emulateMedia({ colorScheme: theme });
+      for (const [kind, id] of [['model', 'pioneer2dx'], ['component', laser], ['connection', 'a']]) {
+        await choose(page, kind, id);
+        await page.waitForTimeout(60);
+        if (!(await page.evaluate(() => Boolean(window.axe)))) await page.addScriptTag({ path: axe });
+        const result = await page.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
+        const bad = result.violations.filter((v) => v.impact === 'serious' || v.impact === 'critical');
+        check(bad.length === 0, `${theme} ${kind}: ${bad.map((v) => `${v.id}: ${v.nodes.slice(0, 3).map((n) => n.html.slice(0, 140) + ' ' + (n.any[0]?.message ?? '')).join(' | ')}`).join('; ')}`);
+      }
+    }
+    await page.emulateMedia({ colorScheme: 'light' });
+  }],
+  ['narrow and wide screens show everything', async ({ browser, url }) => {
+    const page = await open(browser, url, { width: 360, height: 700 });
+    await has_world(page);
+    for (const panel of ['tree', 'world', 'system', 'inspector', 'bottom']) {
+      await page.locator(`.panel-tabs [data-panel=${panel}]`).click();
+      check(await page.locator(`.${panel}-panel`).isVisible(), panel);
+      check(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${panel} is too wide`);
+    }
+    await page.setViewportSize({ width: 3840, height: 2160 });
+    for (const panel of ['tree', 'world', 'system', 'inspector', 'bottom']) check(await page.locator(`.${panel}-panel`).isVisible(), `${panel} on a wall`);
+    await page.context().close();
+  }],
+  ['read-only: it may look, not act', async ({ browser }) => {
+    const mock = new Mock({ page: built, glb });
+    mock.answer = answer(mock);
+    for (const event of [hello({ read_only: true }), demo_system(), await world_of(glb), time()]) mock.say(event);
+    const page = await open(browser, await mock.start());
+    await has_world(page);
+    check(await page.locator('#run').isDisabled(), 'run');
+    check(await page.locator('#activate-all').isDisabled(), 'activate all');
+    await choose(page, 'component', laser);
+    same(await page.locator('#act-deactivate').count(), 0, 'buttons');
+    check((await page.locator('footer').textContent()).includes('read-only'), 'says so');
+    await page.keyboard.press('Space');
+    same(asked(mock, 'run').length, 0, 'nothing was asked');
+    await page.context().close();
+    mock.stop();
+  }],
+  ['empty and broken states say what to do', async ({ browser }) => {
+    const mock = new Mock({ page: built, glb });
+    mock.answer = answer(mock);
+    for (const event of [hello({ name_server: 'localhost:2999' }), { op: 'system', revision: 1, problem: 'no naming service at localhost:2999', components: [], connections: [], managers: [] }, { op: 'world', present: false, problem: 'no simulator of number 0 runs', models: [], ifaces: [], version: 0, links: 0 }]) mock.say(event);
+    const url = await mock.start();
+    const page = await open(browser, url);
+    await until('world says', async () => (await page.locator('.world .card').textContent()).includes('sim-server worlds/'));
+    check((await page.locator('.diagram .card').textContent()).includes('localhost:2999'), 'the system says where it looks');
+    mock.say(demo_system());
+    await until('system comes', async () => (await page.locator('.diagram .box').count()) === 3);
+    mock.say(await world_of(glb));
+    await has_world(page);
+    mock.stop();
+    await until('gone', async () => (await page.locator('.world .card').textContent()).includes('waits'));
+    await page.context().close();
+  }],
+  ['it comes back after the server was gone', async ({ browser }) => {
+    const mock = new Mock({ page: built, glb });
+    mock.answer = answer(mock);
+    for (const event of [hello(), demo_system(), await world_of(glb), time()]) mock.say(event);
+    const url = await mock.start();
+    const page = await open(browser, url);
+    await has_world(page);
+    mock.stop();
+    await until('lost', () => page.evaluate(() => window.studio.wire.status === 'lost'));
+    const again = new Mock({ page: built, glb });
+    again.answer = answer(again);
+    again.first = mock.first;
+    await again.start(Number(new URL(url).port));
+    await until('back', () => page.evaluate(() => window.studio.wire.status === 'open'));
+    await until('its scans are asked for again', () => asked(again, 'watch').length > 0);
+    await until('no notice', async () => (await page.locator('.world .card').count()) === 0);
+    await page.context().close();
+    again.stop();
+  }],
+  ['a thousand components can be panned', async ({ browser }) => {
+    const mock = new Mock({ page: built, glb });
+    for (const event of [hello(), many_components(1000), time()]) mock.say(event);
+    const page = await open(browser, await mock.start());
+    await until('boxes', async () => (await page.locator('.diagram .box').count()) === 1000);
+    const box = await page.locator('.diagram svg').boundingBox();
+    const before = await page.evaluate(() => window.studio.diagram.frames);
+    await page.mouse.move(box.x + 8, box.y + 8);
+    await page.mouse.down();
+    for (let i = 0; i < 10; ++i) await page.mouse.move(box.x + 8 + 9 * i, box.y + 8 + 3 * i);
+    await page.mouse.up();
+    check((await page.evaluate(() => window.studio.diagram.frames)) > before, 'it moved');
+    await page.locator('.tree input').fill('Part777');
+    await until('found', async () => (await page.locator('.tree li[data-key$="Part777.rtc"]').count()) === 1);
+    await page.context().close();
+    mock.stop();
+  }],
+  ['names that mean mischief are only text', async ({ browser }) => {
+    const mock = new Mock({ page: built, glb });
+    const bad = '<img src=x onerror="window.hurt=1">"\'&';
+    for (const event of [hello(), { op: 'system', revision: 1, problem: '', managers: [], connections: [], components: [component(bad, bad, 'Active', [[bad, 'in', bad]])] }, { op: 'signals', signals: [{ topic: bad, kind: 'port', type: bad }] }, { op: 'log', level: bad, source: bad, text: bad }]) mock.say(event);
+    const page = await open(browser, await mock.start());
+    await until('box', async () => (await page.locator('.diagram .box').count()) === 1);
+    await choose(page, 'component', `${host}/${bad}.rtc`);
+    await page.locator('#tab-logs').click();
+    await page.waitForTimeout(100);
+    same(await page.evaluate(() => window.hurt), undefined, 'mischief');
+    await page.context().close();
+    mock.stop();
+  }],
+];
+
+run(flows, set_up, async (shared) => shared?.mock.stop());

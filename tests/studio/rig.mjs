@@ -1,0 +1,210 @@
+// What all flows share: a browser, processes with ports and ids of their own, and waiting for conditions. Everything that was started has
+// ended when a run is over.
+import { spawn, execFile } from 'node:child_process';
+import { createSocket } from 'node:dgram';
+import { existsSync, mkdtempSync, openSync, readdirSync, readFileSync, rmSync } from 'node:fs';
+import { createServer } from 'node:net';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { promisify } from 'node:util';
+
+export const watchdog = 60000; // [ms]; a bound on hanging, not on speed
+
+// The first true answer; one that throws is none.
+export async function until(what, ready, limit = watchdog) {
+  const end = Date.now() + limit;
+  for (;;) {
+    let why = '';
+    try {
+      const answer = await ready();
+      if (answer) return answer;
+    } catch (error) {
+      why = error.message;
+    }
+    if (Date.now() > end) throw new Error(`${what}: not within ${limit / 1000} s; ${why}`);
+    await new Promise((resolve) => setTimeout(resolve, 30));
+  }
+}
+
+export function check(is_so, what) {
+  if (!is_so) throw new Error(what);
+}
+
+export function same(got, wanted, what) {
+  const [a, b] = [JSON.stringify(got), JSON.stringify(wanted)];
+  if (a !== b) throw new Error(`${what}: got ${a}, wanted ${b}`);
+}
+
+export async function free_port() {
+  const server = createServer();
+  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
+  const { port } = server.address();
+  await new Promise((resolve) => server.close(resolve));
+  return port;
+}
+
+// As tests/scenario/server_ids.py: a socket that stays bound says that an id is taken.
+const claims = [];
+async function claim_server_id() {
+  const begin = 1000 + ((process.pid * 3) % 3900);
+  for (let i = 0; i < 3990; ++i) {
+    const id = 1000 + ((begin - 1000 + i) % 3990);
+    const socket = createSocket('udp4');
+    const is_mine = await new Promise((resolve) => {
+      socket.once('error', () => resolve(false));
+      socket.bind({ port: 10000 + id, address: '127.0.0.1', exclusive: true }, () => resolve(true));
+    });
+    if (is_mine) {
+      socket.unref();
+      claims.push(socket);
+      return id;
+    }
+    socket.close();
+  }
+  throw new Error('no server id is free');
+}
+
+export class Rig {
+  constructor(bin, source, lib = join(bin, '../lib')) {
+    Object.assign(this, { bin, source, lib, running: [], work: mkdtempSync(join(tmpdir(), 'studio-')) });
+  }
+
+  async claim() {
+    this.server_id = await claim_server_id();
+    this.names_port = await free_port();
+    this.names = `127.0.0.1:${this.names_port}`;
+  }
+
+  start(name, words) {
+    const log = join(this.work, `${this.running.length}.log`);
+    const file = openSync(log, 'w');
+    const program = name === 'rtm-studio' && process.env.STUDIO_SERVER ? process.env.STUDIO_SERVER : existsSync(join(this.bin, name)) ? join(this.bin, name) : name;
+    const child = spawn(program, words, { stdio: ['ignore', file, file], cwd: this.work, env: { ...process.env, RTMSIM_SERVER_ID: String(this.server_id) } });
+    child.log = () => readFileSync(log, 'utf8');
+    child.words = [name, ...words];
+    child.ended = new Promise((resolve) => child.once('exit', resolve));
+    this.running.push(child);
+    return child;
+  }
+
+  async end(child, signal = 'SIGTERM') {
+    if (child.exitCode !== null || child.signalCode !== null) return;
+    child.kill(signal);
+    const timer = setTimeout(() => child.kill('SIGKILL'), 20000);
+    await child.ended;
+    clearTimeout(timer);
+  }
+
+  async end_all() {
+    for (const child of [...this.running].reverse()) await this.end(child);
+    rmSync(this.work, { recursive: true, force: true });
+    const left = readdirSync('/dev/shm').filter((name) => name.startsWith(`rtmsim-${process.getuid()}-${this.server_id}.`));
+    check(left.length === 0, `left in /dev/shm: ${left}`);
+  }
+
+  logs() {
+    return this.running.map((child) => `--- ${child.words.join(' ')} (${child.exitCode ?? child.signalCode ?? 'runs'})\n${child.log().slice(-2000)}`).join('\n');
+  }
+
+  async call(name, ...words) {
+    const env = { ...process.env, RTMSIM_SERVER_ID: String(this.server_id) };
+    return (await promisify(execFile)(join(this.bin, name), words, { timeout: watchdog, env, cwd: this.work })).stdout;
+  }
+  simctl(...words) { return this.call('simctl', '-s', String(this.server_id), ...words); }
+  rtse(...words) { return this.call('rtse', '--ns', this.names, ...words); }
+
+  async naming() {
+    const data = mkdtempSync(join(this.work, 'names-'));
+    const child = this.start('omniNames', ['-start', String(this.names_port), '-datadir', data, '-ORBendPoint', `giop:tcp:${this.names}`]);
+    await until('naming service', async () => (await this.rtse('ls')) !== undefined);
+    return child;
+  }
+
+  async server(world, ...options) {
+    const child = this.start('sim-server', [join(this.source, world), '-s', String(this.server_id), ...options]);
+    await until('simulator', async () => child.exitCode === null && (await this.simctl('stats')));
+    return child;
+  }
+
+  host(...components) {
+    return this.start('rtcd', ['-o', `corba.nameservers:${this.names}`, '-o', `manager.modules.load_path:${this.lib}`, '-o', 'manager.shutdown_auto:NO', '-o', 'naming.update.interval:1', ...components]);
+  }
+  device(component) { return `${component}?conf.default.server_id=${this.server_id}`; }
+
+  async studio(...options) {
+    const child = this.start('rtm-studio', ['--ns', this.names, '-s', String(this.server_id), ...(options.includes('-p') ? [] : ['-p', '0']), ...(process.env.STUDIO_PAGE ? ['--page', process.env.STUDIO_PAGE] : []), ...options]);
+    child.url = await until('rtm-studio', () => /http:\/\/\S+/.exec(child.log())?.[0]);
+    return child;
+  }
+
+  async speed(iface = 'pioneer2dx::position2d') {
+    return JSON.parse(await this.simctl('--json', 'echo', iface, '-n', '1')).velocity[0];
+  }
+}
+
+export async function launch() {
+  const { chromium } = await import('playwright-core');
+  const executablePath = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'].find(existsSync);
+  if (!executablePath) return null;
+  return chromium.launch({ executablePath, args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist', '--disable-dev-shm-usage'] });
+}
+
+// A page of its own, without anything remembered. Errors of the page fail the flow that runs.
+export async function open(browser, url, { width = 1280, height = 800, scheme = 'light', ...more } = {}) {
+  const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, reducedMotion: 'reduce', ...more });
+  const page = await context.newPage();
+  page.setDefaultTimeout(watchdog);
+  page.problems = [];
+  page.on('pageerror', (error) => page.problems.push(error.message));
+  page.on('console', (message) => { if (message.type() === 'error' && !/WebSocket connection|Failed to load resource|net::ERR/.test(message.text())) page.problems.push(message.text()); });
+  if (url) await page.goto(url);
+  return page;
+}
+
+export const is_ready = (page) => page.waitForFunction(() => window.studio && window.studio.wire.status === 'open' && window.studio.store.hello);
+export const has_world = (page) => page.waitForFunction(() => window.studio && window.studio.world.frames > 0);
+
+// Runs flows one after the other in one browser: [name, work]. Exit status 77 without a browser.
+export async function run(flows, set_up, take_down) {
+  const browser = await launch();
+  if (!browser) {
+    console.log('skipped: no chromium (scripts/setup installs it)');
+    process.exit(77);
+  }
+  const only = process.env.STUDIO_FLOW;
+  let failed = 0;
+  let shared;
+  try {
+    shared = await set_up(browser);
+    for (const [name, work] of flows) {
+      if (only && !only.split('|').some((o) => name.includes(o))) continue;
+      const began = Date.now();
+      try {
+        await work(shared);
+        const problems = shared.page?.problems.splice(0) ?? [];
+        check(problems.length === 0, `the page says: ${problems.join('; ')}`);
+        console.log(`ok    ${name} (${Date.now() - began} ms)`);
+      } catch (error) {
+        failed += 1;
+        console.log(`FAIL  ${name}: ${error.stack}`);
+        if (process.env.STUDIO_PICTURES) await shared.page?.screenshot({ path: join(process.env.STUDIO_PICTURES, `${name.replaceAll(' ', '_')}.png`) }).catch(() => {});
+        console.log('      open requests:', await shared.page?.evaluate(() => JSON.stringify([...window.studio.wire.open.values()].map((w) => w.text))).catch(() => '?'));
+        if (shared.rig && process.env.STUDIO_LOGS) console.log(shared.rig.logs());
+      }
+    }
+  } catch (error) {
+    failed += 1;
+    console.log(`FAIL  set-up: ${error.stack}`);
+    if (shared?.rig) console.log(shared.rig.logs());
+  } finally {
+    await browser.close();
+    try {
+      await take_down?.(shared);
+    } catch (error) {
+      failed += 1;
+      console.log(`FAIL  the end: ${error.message}`);
+    }
+  }
+  console.log(failed === 0 ? 'all is well' : `${failed} failed`);
+  process.exit(failed === 0 ? 0 : 1);
+}

@@ -1,0 +1,271 @@
+// The page in front of the real programs: naming service, simulator, components, rtm-studio. system_flows.mjs BIN_DIR SOURCE_DIR LIB_DIR
+// Flows follow each other in one system: each begins with what the one before has left.
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { check, has_world, is_ready, open, Rig, run, same, until } from './rig.mjs';
+
+const [bin, source, lib] = process.argv.slice(2);
+const robot = 'pioneer2dx';
+
+async function set_up(browser) {
+  const rig = new Rig(bin, source, lib);
+  const shared = { browser, rig };
+  await rig.claim();
+  shared.names = await rig.naming();
+  shared.world = await rig.server('worlds/obstacle_course.sdf');
+  shared.host = rig.host(rig.device('RTCLaser'), rig.device('RTCPosition2d'), 'LaserObstacleAvoid');
+  await rig.rtse('wait', 'RTCLaser0', 'RTCPosition2d0', 'LaserObstacleAvoid0', '--state', 'any', '--timeout', '60');
+  shared.studio = await rig.studio();
+  shared.page = await open(browser, shared.studio.url);
+  await is_ready(shared.page);
+  await has_world(shared.page);
+  await boxes(shared.page, 3);
+  return shared;
+}
+
+const boxes = (page, count) => until(`${count} boxes`, async () => (await page.locator('.diagram .box').count()) === count);
+const edges = (page, count) => until(`${count} connections`, async () => (await page.locator('.diagram .edge').count()) === count);
+const in_state = (page, state, count) => until(`${count} ${state}`, async () => (await page.locator(`.diagram .box.state-${state}`).count()) === count);
+const path_of = (page, instance) => page.evaluate((name) => window.studio.store.system.components.find((c) => c.instance === name)?.path, instance);
+const choose = async (page, instance) => {
+  const path = await until(instance, () => path_of(page, instance));
+  await page.evaluate((id) => window.studio.select({ kind: 'component', id }), path);
+  return path;
+};
+
+async function drag(page, from, to) {
+  const at = async (port) => {
+    const [instance, name] = port.split(':');
+    const box = await page.locator(`[data-port="${await path_of(page, instance)}:${name}"] > path`).boundingBox();
+    return [box.x + box.width / 2, box.y + box.height / 2];
+  };
+  const [a, b] = [await at(from), await at(to)];
+  await page.mouse.move(...a);
+  await page.mouse.down();
+  await page.mouse.move((a[0] + b[0]) / 2, a[1] + 20, { steps: 3 });
+  await page.mouse.move(...b, { steps: 3 });
+  await page.mouse.up();
+  await page.locator('dialog[open] button.main').click();
+}
+
+const drives = (rig) => until('the robot drives', async () => (await rig.speed()) > 0.05);
+const stands = (rig) => until('the robot stands', async () => Math.abs(await rig.speed()) < 0.01);
+
+const flows = [
+  ['a token that is wrong shows and does nothing', async ({ rig, studio }) => {
+    const url = new URL(studio.url);
+    for (const [path, wanted] of [['/', [401, 403]], ['/?token=wrong', [401, 403]], ['/world.glb', [401, 403]]]) {
+      const reply = await fetch(`${url.origin}${path}`, { redirect: 'manual' });
+      check(wanted.includes(reply.status), `${path}: ${reply.status}`);
+      check(!(await reply.text()).includes('glTF'), 'no world');
+    }
+    void rig;
+  }],
+  ['the world and the system are there', async ({ page }) => {
+    same((await page.locator('.diagram .box .name').allTextContents()).sort(), ['LaserObstacleAvoid0', 'RTCLaser0', 'RTCPosition2d0'], 'boxes');
+    await in_state(page, 'inactive', 3);
+    check((await page.locator('.top .what').textContent()) === 'obstacle_course', 'name of the world');
+    check((await page.locator('.tree li[data-key="model:pioneer2dx"]').count()) === 1, 'robot in the tree');
+  }],
+  ['wired by mouse from nothing, the robot moves', async ({ page, rig }) => {
+    await drag(page, 'RTCLaser0:range', 'LaserObstacleAvoid0:range');
+    await edges(page, 1);
+    await drag(page, 'LaserObstacleAvoid0:velocity', 'RTCPosition2d0:velocity');
+    await edges(page, 2);
+    await page.locator('#activate-all').click();
+    await in_state(page, 'active', 3);
+    await drives(rig);
+    const x = () => page.evaluate((name) => window.studio.world.world.models.get(name).canonical.position.toArray(), robot);
+    const before = await x();
+    await until('it moves in the page', async () => { const now = await x(); return Math.hypot(now[0] - before[0], now[1] - before[1]) > 0.05; });
+  }],
+  ['the page shows where the robot is', async ({ page, rig }) => {
+    await page.locator('#run').click();
+    await until('paused', () => page.evaluate(() => window.studio.store.time.paused));
+    const pose = JSON.parse(await rig.simctl('--json', 'pose', `${robot}::chassis`));
+    await until('the same place', () => page.evaluate(([name, p, q]) => {
+      const { position, quaternion } = window.studio.world.world.models.get(name).canonical;
+      return Math.hypot(position.x - p[0], position.y - p[1], position.z - p[2]) < 2e-3 && Math.abs(quaternion.w * q[0] + quaternion.x * q[1] + quaternion.y * q[2] + quaternion.z * q[3]) > 0.9999;
+    }, [robot, pose.position, pose.orientation]));
+  }],
+  ['step, run and speed', async ({ page, rig }) => {
+    const steps = async () => JSON.parse(await rig.simctl('--json', 'stats')).steps;
+    const before = await steps();
+    await page.locator('.world canvas').focus();
+    await page.keyboard.press('.');
+    await until('a step', async () => (await steps()) > before);
+    check(await page.evaluate(() => window.studio.store.time.paused), 'still paused');
+    await page.locator('#speed').fill('3');
+    await page.keyboard.press('Enter');
+    await page.locator('.world canvas').focus();
+    await page.keyboard.press('Space');
+    await until('runs', () => page.evaluate(() => !window.studio.store.time.paused && window.studio.store.time.rtf_wanted === 3));
+    await page.locator('#speed').fill('1');
+    await page.keyboard.press('Enter');
+    await until('real time again', () => page.evaluate(() => window.studio.store.time.rtf_wanted === 1));
+  }],
+  ['the command of an act does the same', async ({ page, rig }) => {
+    await page.locator('#deactivate-all').click();
+    await in_state(page, 'inactive', 3);
+    await choose(page, 'RTCLaser0');
+    await page.locator('#act-activate').click();
+    await in_state(page, 'active', 1);
+    const command = await until('command', async () => { const text = await page.locator('footer .command').textContent(); return /^rtse .* act /.test(text) && text; });
+    await rig.rtse('deact', 'RTCLaser0');
+    await in_state(page, 'inactive', 3);
+    await rig.call('rtse', ...command.split(' ').slice(1));
+    await in_state(page, 'active', 1);
+  }],
+  ['a connection is cut and comes back by undo', async ({ page, rig }) => {
+    const id = await page.evaluate(() => window.studio.store.system.connections[0].id);
+    await page.evaluate((c) => window.studio.select({ kind: 'connection', id: c }), id);
+    await page.locator('#disconnect').click();
+    await edges(page, 1);
+    await page.keyboard.press('Control+z');
+    await edges(page, 2);
+    void rig;
+  }],
+  ['a parameter is set, a wrong one refused', async ({ page, rig }) => {
+    await choose(page, 'LaserObstacleAvoid0');
+    const field = page.locator('.inspector label:has-text("max_turn") + *').first();
+    await field.waitFor();
+    await field.fill('55');
+    await page.keyboard.press('Tab');
+    await until('set', async () => (await rig.rtse('conf', 'LaserObstacleAvoid0', 'get', 'max_turn')).trim() === '55');
+    await field.fill('many');
+    await page.keyboard.press('Tab');
+    await until('refused', async () => (await page.locator('footer.failed').count()) === 1);
+  }],
+  ['the error state is seen, and reset', async ({ page, rig }) => {
+    await page.locator('#deactivate-all').click();
+    await in_state(page, 'inactive', 3);
+    await rig.rtse('conf', 'RTCLaser0', 'set', 'device_id', 'pioneer2dx::lazer');
+    await choose(page, 'RTCLaser0');
+    await page.locator('#act-activate').click();
+    await in_state(page, 'error', 1);
+    await rig.rtse('conf', 'RTCLaser0', 'set', 'device_id', 'pioneer2dx::laser');
+    await page.locator('#act-reset').click();
+    await in_state(page, 'inactive', 3);
+  }],
+  ['selecting the robot marks its components', async ({ page }) => {
+    await page.evaluate((id) => window.studio.select({ kind: 'model', id }), robot);
+    await until('RTCPosition2d0 is marked', async () => (await page.locator('.diagram .box.related').count()) >= 1);
+  }],
+  ['a robot is put somewhere else by dragging, and pushed', async ({ page, rig }) => {
+    const place = async () => JSON.parse(await rig.simctl('--json', 'pose', robot)).position;
+    await page.evaluate((name) => { window.studio.world.follow(name); window.studio.world.set_tool('move'); }, robot);
+    await page.evaluate(() => window.studio.world.draw());
+    const before = await place();
+    const box = await page.locator('.world canvas').boundingBox();
+    const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 70, y, { steps: 5 });
+    await page.mouse.up();
+    await until('it was put', async () => { const now = await place(); return Math.hypot(now[0] - before[0], now[1] - before[1]) > 0.05; });
+    await page.evaluate(() => { window.studio.world.set_tool('move'); window.studio.world.whole(); });
+  }],
+  ['keys drive the robot, and it stops without them', async ({ page, rig }) => {
+    await page.locator('.world canvas').focus();
+    await page.keyboard.press('g');
+    await page.keyboard.down('w');
+    await drives(rig);
+    await page.keyboard.up('w');
+    await stands(rig);
+    await page.locator('.stick').focus();
+    await page.keyboard.press('Escape');
+  }],
+  ['models are spawned and deleted', async ({ page, rig }) => {
+    await page.evaluate(() => window.studio.world.whole());
+    await page.locator('button[aria-label="Spawn a model"]').click();
+    await page.locator('#spawn-model').fill('pioneer2dx');
+    await page.locator('#spawn-name').fill('second');
+    await page.locator('#spawn-pose').fill('3 3 0');
+    await page.locator('dialog[open] button.main').click();
+    await until('in the world', () => page.evaluate(() => window.studio.world.world.models.has('second')));
+    await page.evaluate(() => window.studio.select({ kind: 'model', id: 'second' }));
+    await page.locator('.inspector button:has-text("Delete")').click();
+    await until('gone', () => page.evaluate(() => !window.studio.world.world.models.has('second')));
+    void rig;
+  }],
+  ['a manager creates a component and deletes it', async ({ page }) => {
+    const manager = await until('manager', () => page.evaluate(() => window.studio.store.system.managers[0]?.path));
+    await page.evaluate((id) => window.studio.select({ kind: 'manager', id }), manager);
+    await page.locator('#manager-create').click();
+    await page.locator('#ask-text').fill('LaserObstacleAvoid');
+    await page.keyboard.press('Enter');
+    await boxes(page, 4);
+    await choose(page, 'LaserObstacleAvoid1');
+    await page.locator('#act-exit').click();
+    await boxes(page, 3);
+  }],
+  ['saved, torn down and opened again', async ({ page, rig }) => {
+    const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#save').click()]);
+    const file = join(rig.work, 'saved.xml');
+    writeFileSync(file, readFileSync(await download.path()));
+    await rig.rtse('check', file);
+    await rig.rtse('teardown', file);
+    await edges(page, 0);
+    await page.locator('input[type=file]').setInputFiles(file);
+    await edges(page, 2);
+    await page.locator('#activate-all').click();
+    await in_state(page, 'active', 3);
+    await drives(rig);
+  }],
+  ['two viewers see the same', async ({ browser, page, studio }) => {
+    const other = await open(browser, studio.url);
+    await is_ready(other);
+    await boxes(other, 3);
+    await in_state(other, 'active', 3);
+    await page.locator('#deactivate-all').click();
+    await in_state(other, 'inactive', 3);
+    await other.locator('#activate-all').click();
+    await in_state(page, 'active', 3);
+    await other.context().close();
+  }],
+  ['a component dies and comes back', async ({ page, rig, ...shared }) => {
+    await rig.end(shared.host, 'SIGKILL');
+    await until('the page tells', async () => (await page.locator('.diagram .box').count()) === 0 || (await page.locator('.diagram .box.state-unknown').count()) === 3);
+    shared.host = rig.host(rig.device('RTCLaser'), rig.device('RTCPosition2d'), 'LaserObstacleAvoid');
+    await in_state(page, 'inactive', 3);
+    await boxes(page, 3);
+  }],
+  ['the simulator dies and comes back', async (shared) => {
+    const { page, rig } = shared;
+    await rig.end(shared.world, 'SIGKILL');
+    await until('the page tells', async () => (await page.locator('.world .card').textContent()).includes('sim-server'));
+    shared.world = await rig.server('worlds/obstacle_course.sdf', '-u');
+    await until('the page shows it', async () => (await page.locator('.world .card').count()) === 0);
+    await until('its time', () => page.evaluate(() => window.studio.store.time.sim_time < 1 && window.studio.store.time.paused));
+  }],
+  ['the naming service dies and comes back', async (shared) => {
+    const { page, rig } = shared;
+    await rig.end(shared.names, 'SIGKILL');
+    await until('the page tells', async () => (await page.locator('.diagram .card').textContent()).includes(rig.names));
+    shared.names = await rig.naming();
+    await boxes(page, 3);
+  }],
+  ['rtm-studio dies and comes back', async (shared) => {
+    const { page, rig } = shared;
+    const url = new URL(shared.studio.url);
+    await rig.end(shared.studio, 'SIGKILL');
+    await until('the page tells', () => page.evaluate(() => window.studio.wire.status === 'lost'));
+    await until('says so', async () => (await page.locator('.link-state').textContent()).includes('gone'));
+    // With the same port and the token that this page has.
+    shared.studio = await rig.studio('-p', url.port);
+    await until('another token: it asks for the new URL', () => page.evaluate(() => window.studio.wire.status !== 'open'));
+  }],
+  ['read-only: it may look, not act', async ({ browser, rig }) => {
+    const studio = await rig.studio('--read-only');
+    const page = await open(browser, studio.url);
+    await is_ready(page);
+    await has_world(page);
+    check(await page.locator('#run').isDisabled(), 'run is off');
+    const error = await page.evaluate(() => window.studio.wire.request('run').then(() => 'done', (e) => e.message));
+    check(error.includes('read-only'), error);
+    await page.context().close();
+    await rig.end(studio);
+  }],
+];
+
+run(flows, set_up, async (shared) => shared?.rig.end_all());

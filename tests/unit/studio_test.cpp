@@ -1,0 +1,313 @@
+// The parts of rtm-studio that need neither a socket nor a system.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+
+#include "acts.h"
+#include "client_message.h"
+#include "door.h"
+#include "foxglove.h"
+#include "outbox.h"
+#include "pose_board.h"
+#include "signal_book.h"
+#include "signals.h"
+
+namespace {
+
+using studio::Caller;
+using studio::Door;
+using studio::Json;
+using studio::Verdict;
+
+Door door() { return {"0123456789abcdef0123456789abcdef", "c00c1e", "rtm-studio-8700", {"robots.example"}, {"https://viewer.example"}}; }
+
+Verdict judge(Caller caller) {
+  if (caller.host.empty()) caller.host = "127.0.0.1:8700";
+  return door().judge(caller);
+}
+
+constexpr const char* good_query = "token=0123456789abcdef0123456789abcdef";
+
+TEST(Door, lets_in_by_url_by_header_and_by_cookie) {
+  EXPECT_EQ(judge({.query = good_query}), Verdict::granted);
+  EXPECT_EQ(judge({.authorization = "Bearer 0123456789abcdef0123456789abcdef"}), Verdict::granted);
+  EXPECT_EQ(judge({.cookie = "a=b; rtm-studio-8700=c00c1e"}), Verdict::granted);
+}
+
+TEST(Door, keeps_out_without_a_token_and_with_a_wrong_one) {
+  EXPECT_EQ(judge({}), Verdict::no_token);
+  EXPECT_EQ(judge({.cookie = "rtm-studio-8701=c00c1e"}), Verdict::no_token);
+  EXPECT_EQ(judge({.cookie = "rtm-studio-8700=c00c1f"}), Verdict::no_token);
+  EXPECT_EQ(judge({.query = "token=0123456789abcdef0123456789abcdee"}), Verdict::wrong_token);
+  EXPECT_EQ(judge({.query = "token=0123"}), Verdict::wrong_token);
+  EXPECT_EQ(judge({.cookie = "rtm-studio-8700=c00c1e", .query = "token=old"}), Verdict::wrong_token);
+}
+
+TEST(Door, knows_numbers_localhost_and_the_names_it_was_told) {
+  for (const char* host : {"127.0.0.1:8700", "127.0.0.1", "[::1]:8700", "localhost:9000", "LOCALHOST", "10.0.0.7:1", "robots.example:8700"})
+    EXPECT_EQ(judge({.host = host, .query = good_query}), Verdict::granted) << host;
+  for (const char* host : {"evil.example", "evil.example:8700", "localhost.evil.example", "127.0.0.1.evil.example", "127.0.0.1:8700:1",
+                           "[::1", "[evil]:1", "localhost:80x", "1.2.3.4@evil.example"})
+    EXPECT_EQ(judge({.host = host, .query = good_query}), Verdict::wrong_host) << host;
+  EXPECT_EQ(door().judge({.query = good_query}), Verdict::wrong_host);
+}
+
+TEST(Door, refuses_pages_of_other_origins_even_with_the_token) {
+  EXPECT_EQ(judge({.origin = "http://127.0.0.1:8700", .query = good_query}), Verdict::granted);
+  EXPECT_EQ(judge({.origin = "https://viewer.example", .query = good_query}), Verdict::granted);
+  for (const char* origin : {"http://evil.example", "null", "http://127.0.0.1:8701", "http://127.0.0.1:8700.evil.example", "file://"})
+    EXPECT_EQ(judge({.origin = origin, .query = good_query}), Verdict::wrong_origin) << origin;
+}
+
+TEST(Door, makes_secrets_of_128_bits_that_differ) {
+  const auto one = Door::make_secret(), other = Door::make_secret();
+  ASSERT_TRUE(one && other);
+  EXPECT_EQ(one->size(), 32u);
+  EXPECT_NE(*one, *other);
+}
+
+TEST(Query, values_are_found_and_decoded) {
+  EXPECT_EQ(studio::query_value("a=1&b=two%20words+more&c=", "b"), "two words more");
+  EXPECT_EQ(studio::query_value("ab=1&b=2", "b"), "2");
+  EXPECT_EQ(studio::query_value("a=%zz%4", "a"), "%zz%4");
+  EXPECT_EQ(studio::query_value("a", "a"), "");
+}
+
+std::string text_of(std::optional<studio::Frame> frame) { return frame ? *frame->octets : "-"; }
+
+TEST(Outbox, keeps_answers_in_order_and_of_everything_else_the_newest) {
+  studio::Outbox box(100);
+  box.put(studio::text_frame("first"));
+  box.put_newest("poses", studio::text_frame("old"));
+  box.put(studio::text_frame("second"));
+  box.put_newest("poses", studio::text_frame("new"));
+  box.put_newest("time", studio::text_frame("now"));
+  box.drop("time");
+  EXPECT_EQ(text_of(box.next()), "first");
+  EXPECT_EQ(text_of(box.next()), "new");
+  EXPECT_EQ(text_of(box.next()), "second");
+  EXPECT_EQ(text_of(box.next()), "-");
+}
+
+TEST(Outbox, makes_a_frame_when_its_turn_comes_and_skips_one_that_is_empty) {
+  studio::Outbox box(100);
+  int made = 0;
+  box.put_newest("a", [&]() -> std::optional<studio::Frame> { return ++made, std::nullopt; });
+  box.put_newest("b", [&]() -> std::optional<studio::Frame> { return studio::text_frame("made"); });
+  EXPECT_EQ(made, 0);
+  EXPECT_EQ(text_of(box.next()), "made");
+  EXPECT_EQ(made, 1);
+}
+
+TEST(Outbox, is_overfull_by_answers_alone) {
+  studio::Outbox box(10);
+  box.put_newest("large", studio::text_frame(std::string(1000, 'x')));
+  EXPECT_FALSE(box.is_overfull());
+  box.put(studio::text_frame(std::string(11, 'x')));
+  EXPECT_TRUE(box.is_overfull());
+  (void)box.next();
+  (void)box.next();
+  EXPECT_FALSE(box.is_overfull());
+}
+
+TEST(ClientMessage, reads_what_viewers_say) {
+  auto message = studio::parse_message(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":7}]})");
+  ASSERT_TRUE(message);
+  EXPECT_EQ(std::get<studio::Subscribe>(*message).subscriptions.front(), std::pair(1u, 7u));
+  message = studio::parse_message(R"({"op":"request","id":-3,"name":"run","dry":true})");
+  ASSERT_TRUE(message);
+  EXPECT_EQ(std::get<studio::Request>(*message).id, -3);
+  EXPECT_TRUE(std::get<studio::Request>(*message).is_dry);
+  message = studio::parse_message(R"({"op":"getParameters"})");
+  ASSERT_TRUE(message);
+  EXPECT_EQ(std::get<studio::Unused>(*message).op, "getParameters");
+}
+
+TEST(ClientMessage, says_in_one_line_what_is_wrong) {
+  const std::string deep = R"({"op":"request","id":1,"name":"run","args":{"a":)" + std::string(30, '[') + std::string(30, ']') + "}}";
+  for (const std::string& text :
+       {std::string(), std::string("[]"), std::string("{"), std::string(R"({"op":3})"),
+        std::string(R"({"op":"request","id":"1","name":"run"})"), std::string(R"({"op":"request","id":1.5,"name":"run"})"),
+        std::string(R"({"op":"request","id":1,"name":7})"), std::string(R"({"op":"request","id":1,"name":"run","args":[]})"),
+        std::string(R"({"op":"subscribe"})"), std::string(R"({"op":"subscribe","subscriptions":[{"id":-1,"channelId":1}]})"),
+        std::string(R"({"op":"subscribe","subscriptions":[1]})"), std::string(R"({"op":"unsubscribe","subscriptionIds":[4294967296]})"),
+        deep, std::string(studio::most_message + 1, ' ')}) {
+    const auto message = studio::parse_message(text);
+    ASSERT_FALSE(message) << text.substr(0, 100);
+    EXPECT_EQ(message.error().message.find('\n'), std::string::npos);
+  }
+}
+
+TEST(ClientMessage, brackets_in_texts_do_not_count) {
+  EXPECT_TRUE(studio::parse_message(R"({"op":"request","id":1,"name":"run","args":{"a":"\"[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[["}})"));
+}
+
+// Whatever comes: an answer or a refusal.
+TEST(ClientMessage, mutated_messages_do_no_harm) {
+  const std::vector<std::string> seeds = {
+      R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":7}]})",
+      R"({"op":"request","id":1,"name":"set_pose","args":{"model":"a","pose":[0,0,0,1,0,0,0]},"dry":true})",
+      R"({"op":"request","id":2,"name":"connect","args":{"ports":["a:b","c:d"],"properties":{"k":"v"}}})",
+      R"({"op":"unsubscribe","subscriptionIds":[1,2,3]})"};
+  const char* from_outside = std::getenv("RTMSIM_STUDIO_MUTATIONS");
+  const long count = from_outside != nullptr ? std::atol(from_outside) : 20000;
+  std::mt19937 random(7);
+  const studio::ActContext context;
+  long understood = 0;
+  for (long i = 0; i < count; ++i) {
+    std::string text = seeds[random() % seeds.size()];
+    for (auto changes = random() % 6; changes > 0; --changes) {
+      const auto at = random() % text.size();
+      switch (random() % 4) {
+        case 0:
+          text[at] = static_cast<char>(random());
+          break;
+        case 1:
+          text.insert(at, text.substr(random() % text.size(), random() % 16));
+          break;
+        case 2:
+          text.erase(at, 1 + random() % 8);
+          break;
+        default:
+          text[at] = "{}[]\",:0-9e"[random() % 11];
+          break;
+      }
+      if (text.empty()) text = " ";
+    }
+    const auto message = studio::parse_message(text);
+    if (!message) continue;
+    ++understood;
+    const auto* request = std::get_if<studio::Request>(&*message);
+    const studio::Act* act = request != nullptr ? studio::find_act(request->name) : nullptr;
+    if (act != nullptr) (void)act->plan(context, request->args);
+    if (request != nullptr) (void)studio::to_text(request->args);
+  }
+  EXPECT_GT(understood, count / 20);
+}
+
+TEST(Arguments, are_named_when_they_are_wrong) {
+  const Json args = Json::parse(R"({"t":"a\u0000b","list":[1,"2"],"values":{"k":1},"good":[1,2,3]})", nullptr, false);
+  EXPECT_EQ(studio::number_of(args, "absent").error().message, "absent: expected a number");
+  EXPECT_FALSE(studio::text_of(args, "t"));
+  EXPECT_FALSE(studio::numbers_of(args, "list", 2, 2));
+  EXPECT_FALSE(studio::values_of(args, "values"));
+}
+
+std::vector<float> poses(std::initializer_list<float> xs) {
+  std::vector<float> numbers;
+  for (const float x : xs) numbers.insert(numbers.end(), {x, 0, 0, 1, 0, 0, 0});
+  return numbers;
+}
+
+std::uint32_t count_in(const std::string& frame) {
+  std::uint32_t count = 0;
+  std::memcpy(&count, frame.data() + 16, sizeof count);
+  return count;
+}
+
+TEST(PoseBoard, sends_all_links_first_and_then_what_has_moved) {
+  studio::PoseBoard board;
+  EXPECT_TRUE(board.update(1, std::chrono::seconds(1), poses({1, 2, 3})));
+  std::uint64_t seen = 0;
+  auto frame = board.frame_since(seen);
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(count_in(*frame), 3u);
+  EXPECT_EQ(frame->size(), 24u + 3 * 24);
+  EXPECT_EQ((*frame)[1], 1);
+  EXPECT_FALSE(board.frame_since(seen));
+  EXPECT_FALSE(board.update(1, std::chrono::seconds(2), poses({1, 2, 3})));
+  EXPECT_TRUE(board.update(1, std::chrono::seconds(3), poses({1, 2.5, 3})));
+  frame = board.frame_since(seen);
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(count_in(*frame), 1u);
+  std::uint64_t other = 0;
+  EXPECT_EQ(count_in(*board.frame_since(other)), 3u);
+}
+
+TEST(PoseBoard, a_slow_viewer_gets_each_link_once_as_it_is_now) {
+  studio::PoseBoard board;
+  std::uint64_t seen = 0;
+  (void)board.update(1, {}, poses({0, 0}));
+  (void)board.frame_since(seen);
+  for (int i = 1; i < 50; ++i) (void)board.update(1, {}, poses({static_cast<float>(i), 0}));
+  const auto frame = board.frame_since(seen);
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(count_in(*frame), 1u);
+  float x = 0;
+  std::memcpy(&x, frame->data() + 28, sizeof x);
+  EXPECT_EQ(x, 49.0F);
+}
+
+TEST(PoseBoard, a_new_scene_is_sent_whole_and_numbers_that_are_none_do_no_harm) {
+  studio::PoseBoard board;
+  std::uint64_t seen = 0;
+  (void)board.update(1, {}, poses({0, 0}));
+  (void)board.frame_since(seen);
+  (void)board.update(2, {}, poses({std::nanf(""), 1e30F, 3}));
+  EXPECT_EQ(count_in(*board.frame_since(seen)), 3u);
+}
+
+TEST(PoseBoard, creeping_links_are_sent_when_they_have_come_far_enough) {
+  studio::PoseBoard board;
+  std::uint64_t seen = 0;
+  (void)board.update(1, {}, poses({0}));
+  (void)board.frame_since(seen);
+  int sent = 0;
+  for (int i = 1; i <= 100; ++i) {
+    (void)board.update(1, {}, poses({static_cast<float>(i) * 2e-5F}));
+    if (board.frame_since(seen)) ++sent;
+  }
+  EXPECT_GT(sent, 10);
+  EXPECT_LT(sent, 30);
+}
+
+TEST(Foxglove, message_data_has_the_layout_of_the_protocol) {
+  const std::string payload = "abc";
+  const auto frame = studio::message_data(0x01020304, std::chrono::nanoseconds(0x0102030405), payload);
+  EXPECT_EQ(frame, std::string("\x01\x04\x03\x02\x01\x05\x04\x03\x02\x01\0\0\0abc", 16));
+}
+
+TEST(ShellLine, can_be_pasted) {
+  EXPECT_EQ(studio::shell_line({"rtse", "act", "/localhost/a.host_cxt/B0.rtc"}), "rtse act /localhost/a.host_cxt/B0.rtc");
+  EXPECT_EQ(studio::shell_line({"rtse", "conf", "it's", "", "a b;$(x)"}), "rtse conf 'it'\\''s' '' 'a b;$(x)'");
+}
+
+TEST(MemberAt, follows_members_and_indices) {
+  const Json value = Json::parse(R"({"a":{"b":[1,{"c":2}]},"d":[3]})");
+  EXPECT_EQ(studio::member_at(value, "a.b[1].c"), 2);
+  EXPECT_EQ(studio::member_at(value, "d[0]"), 3);
+  for (const char* path : {"x", "a.b[2]", "a.b[-1]", "a.b[", "a..b", "d[0].x", ".", "[0]", "d[99999999999999999999]"})
+    EXPECT_TRUE(studio::member_at(value, path).is_null()) << path;
+}
+
+TEST(SignalBook, names_signals_as_recordings_do) {
+  studio::SignalBook book;
+  EXPECT_TRUE(book.take_world(Json::parse(R"({"ifaces":[{"type":"laser","name":"robot::laser","model":"robot"}]})")));
+  const Json system = Json::parse(R"({"components":[
+    {"path":"/n/a.host_cxt/C0.rtc","instance":"C0","ports":[{"name":"out","kind":"out","data_type":"T"},{"name":"in","kind":"in"}]},
+    {"path":"/n/b.host_cxt/C0.rtc","instance":"C0","ports":[{"name":"out","kind":"out","data_type":"T"}]}]})");
+  EXPECT_TRUE(book.take_system(system));
+  EXPECT_FALSE(book.take_system(system));
+  EXPECT_EQ(book.source_of("/sim/laser/robot/laser"), "laser:robot::laser");
+  EXPECT_EQ(book.source_of("/C0/out"), "/n/a.host_cxt/C0.rtc:out");
+  EXPECT_EQ(book.source_of("/n/b.host_cxt/C0.rtc:out"), "/n/b.host_cxt/C0.rtc:out");
+  EXPECT_EQ(book.event()["signals"].size(), 3u);
+}
+
+TEST(Acts, of_a_simulator_say_what_one_would_type) {
+  const studio::ActContext context{.server_id = 7};
+  const auto command = [&](const char* name, const char* args) {
+    const auto plan = studio::find_act(name)->plan(context, Json::parse(args));
+    return plan ? plan->command : "error: " + plan.error().message;
+  };
+  EXPECT_EQ(command("run", "{}"), "simctl -s 7 run");
+  EXPECT_EQ(command("step", R"({"steps":5,"paced":true})"), "simctl -s 7 step 5 --paced");
+  EXPECT_EQ(command("step", R"({"steps":0})"), "error: steps: expected 1 to 1e9");
+  EXPECT_EQ(command("set_pose", R"({"model":"a b","planar":[1,2,0.5]})"), "simctl -s 7 pose 'a b' 1 2 0.5");
+  EXPECT_EQ(command("push", R"({"name":"r","force":[1,0,0],"seconds":2})"), "simctl -s 7 wrench r 1 0 0 --for 2");
+  EXPECT_EQ(command("spawn", R"({"model":"../../etc"})"), "error: model \"../../etc\": expected the name of a model on the model path");
+  EXPECT_EQ(command("spawn", R"({"model":"/tmp/x.sdf"})"), "error: model \"/tmp/x.sdf\": expected the name of a model on the model path");
+}
+
+}  // namespace
