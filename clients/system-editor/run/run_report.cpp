@@ -1,4 +1,5 @@
-// What a run has shown as JUnit XML.
+// What a run has shown, and the same as JUnit XML.
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <pugixml.hpp>
@@ -57,6 +58,10 @@ class Suite {
 };
 
 }  // namespace
+
+bool RunResult::is_passed() const {
+  return problem.empty() && std::all_of(verdicts.begin(), verdicts.end(), [](const Verdict& verdict) { return verdict.problem.empty(); });
+}
 
 Result<void> write_junit(const std::string& file, const RunOptions& options, const std::vector<RunResult>& results) {
   Suite suite(std::filesystem::path(options.system).stem().string());

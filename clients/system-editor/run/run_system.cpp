@@ -1,20 +1,14 @@
 #include "run/run_system.h"
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <signal.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "base/own_account.h"
 #include "base/text.h"
 #include "commands/system.h"
 #include "run/chance_report.h"
@@ -24,6 +18,9 @@
 #include "run/port_values.h"
 #include "run/run_files.h"
 #include "run/run_hashes.h"
+#include "run/run_hosts.h"
+#include "run/run_naming.h"
+#include "run/run_options.h"
 #include "run/run_recorder.h"
 #include "run/run_script.h"
 #include "run/run_simulator.h"
@@ -39,21 +36,6 @@ constexpr auto start_limit = 30s;
 constexpr auto call_limit = 5s;
 constexpr auto command_limit = 60s;  // of a command of the user's
 
-// A port of the loopback that nobody listens on just now.
-int free_port() {
-  const int listener = socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  int port = 0;
-  if (bind(listener, reinterpret_cast<sockaddr*>(&address), size) == 0 &&
-      getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size) == 0)
-    port = ntohs(address.sin_port);
-  close(listener);
-  return port;
-}
-
 // Everything of one run. Its end takes the processes down, the components before the simulator before the naming service.
 class Run final : public RunningSystem {
  public:
@@ -61,8 +43,10 @@ class Run final : public RunningSystem {
       : orb_(CORBA::ORB::_duplicate(orb)),
         options_(options),
         place_(options.keep),
+        naming_(place_),
         hashes_(options.hash_log, place_),
         simulator_(options_, place_, hashes_),
+        hosts_(options_, place_, hashes_, simulator_),
         foreign_(place_) {}
 
   RunResult go() {
@@ -75,7 +59,8 @@ class Run final : public RunningSystem {
     ports_.end();
     if (const auto recorded = recorder_.end(); !recorded)
       result_.verdicts.push_back({"recording " + options_.record, recorded.error().message});
-    take_warnings();
+    const auto warnings = hosts_.warnings();
+    result_.notes.insert(result_.notes.end(), warnings.begin(), warnings.end());
     if (options_.script) options_.script->end(scene_ ? &*scene_ : nullptr, seen_, result_);
     stop();
     keep_hashes();
@@ -83,13 +68,14 @@ class Run final : public RunningSystem {
     return result_;
   }
 
-  const std::string& naming() const override { return server_; }
+  const std::string& naming() const override { return naming_.address(); }
   const std::string& simulator() const override { return simulator_.id(); }
   double step() const override { return simulator_.step(); }
   std::vector<Process> processes() const override {
     std::vector<Process> all = {{"sim-server", simulator_.pid()}};
-    for (const auto& host : hosts_) all.push_back({"rtcd of " + host.components, host.process.pid()});
-    if (naming_) all.push_back({"omniNames", naming_->pid()});
+    const auto hosts = hosts_.processes();
+    all.insert(all.end(), hosts.begin(), hosts.end());
+    all.push_back({"omniNames", naming_.pid()});
     return all;
   }
   Result<void> make_steps(std::int64_t steps) override {
@@ -97,13 +83,6 @@ class Run final : public RunningSystem {
   }
 
  private:
-  struct Host {
-    ChildProcess process;
-    std::vector<const SavedComponent*> members;
-    std::string components;
-    std::string log;
-  };
-
   Result<void> run() {
     for (auto step : {&Run::read, &Run::start_naming, &Run::start_simulator, &Run::start_foreign, &Run::start_hosts, &Run::wire,
                       &Run::listen, &Run::record, &Run::begin_script, &Run::drive, &Run::look, &Run::run_commands, &Run::judge_all}) {
@@ -116,25 +95,9 @@ class Run final : public RunningSystem {
     auto system = read_system(options_.system);
     if (!system) return system.error();
     system_ = std::move(*system);
-    for (const auto& component : system_.components) {
-      if (component.contexts.empty() || component.contexts.front().rate.empty()) continue;
-      const auto& rate = component.contexts.front().rate;
-      const auto number = base::parse_number(rate);
-      if (!number || *number <= 0 || *number > 1e9)
-        return fail("component " + component.instance + ": its rate must be more than 0 and at most 1e9 Hz, got " + base::in_quotes(rate));
-    }
-    for (const auto& [kind, paths] : {std::pair("module", &options_.module_paths), std::pair("resource", &options_.resource_paths)}) {
-      for (const auto& path : *paths) {
-        if (!std::filesystem::is_directory(path)) return fail(std::string(kind) + " path " + base::in_quotes(path) + ": no such folder");
-      }
-    }
-    for (const auto& text : options_.properties) {
-      auto property = parse_property(text);
-      if (!property) return property.error();
-      if (std::ranges::none_of(system_.components, [&](const auto& component) { return component.instance == property->instance; }))
-        return fail("property " + base::in_quotes(text) + ": the system has no component " + property->instance);
-      properties_.push_back(std::move(*property));
-    }
+    auto properties = read_wishes(options_, system_);
+    if (!properties) return properties.error();
+    properties_ = std::move(*properties);
     if (options_.script) {
       if (const auto altered = options_.script->alter(system_); !altered) return altered;
     }
@@ -176,38 +139,27 @@ class Run final : public RunningSystem {
   }
 
   Result<void> check_children() {
-    if (naming_ && !naming_->is_running())
-      return fail("omniNames " + naming_->how_it_ended() + ": " + telling_line(place_.file("omninames.log")));
+    if (const auto alive = naming_.check(); !alive) return alive;
     if (const auto alive = simulator_.check(); !alive) return alive;
     if (const auto alive = foreign_.check(); !alive) {
       const auto time = simulator_.time();
       return fail(alive.error().message + (time && *time > 0 ? ", at " + base::format_number(*time) + " s" : ""));
     }
-    for (auto& host : hosts_) {
-      if (host.process.is_running()) continue;
-      const auto time = simulator_.time();
-      return fail("host of " + host.components + " " + host.process.how_it_ended() +
-                  (time && *time > 0 ? " at " + base::format_number(*time) + " s" : "") +
-                  (host.process.exit_code() < 128 ? ": " + telling_line(host.log) : complaint(host.log)));
-    }
-    return {};
+    return hosts_.check();
+  }
+
+  RunSimulator::Wait wait() {
+    return [this](const auto& what, const auto& ready) { return wait_until(what, ready); };
   }
 
   Result<void> start_naming() {
-    const int port = free_port();
-    if (port == 0) return fail("no free port on 127.0.0.1");
-    server_ = "127.0.0.1:" + std::to_string(port);
-    auto started = ChildProcess::start({{"omniNames", "-start", std::to_string(port), "-datadir", place_.scratch("names"), "-errlog",
-                                         place_.new_file("omninames.err"), "-ORBendPoint", "giop:tcp:127.0.0.1:" + std::to_string(port)},
-                                        {{"LD_PRELOAD", base::own_account_door()}},
-                                        place_.new_file("omninames.log")});
-    if (!started) return started.error();
-    naming_.emplace(std::move(*started));
-    return wait_until("naming service", [&] { return NamingTree::read(orb_, server_, 1000ms).ok(); });
+    const auto started = naming_.start(orb_, wait());
+    hosts_.use(naming_.address(), properties_);
+    return started;
   }
 
   Result<void> start_simulator() {
-    const auto started = simulator_.start([this](const auto& what, const auto& ready) { return wait_until(what, ready); });
+    const auto started = simulator_.start(wait());
     if (started) result_.notes = simulator_.notes();
     return started;
   }
@@ -223,84 +175,25 @@ class Run final : public RunningSystem {
     }
   }
 
-  // What the components have to say that should not be missed.
-  void take_warnings() {
-    constexpr std::size_t enough = 5;
-    for (const auto& host : hosts_) {
-      std::size_t count = 0;
-      for (const auto& line : lines_of(host.log)) {
-        const auto level = level_of(line);
-        if (level != LogLevel::warning && level != LogLevel::error) continue;
-        if (++count <= enough) result_.notes.push_back(line);
-      }
-      if (count > enough)
-        result_.notes.push_back("host of " + host.components + ": and " + std::to_string(count - enough) + " more such lines (--keep)");
-    }
-  }
-
-  // "Type?instance_name=...&..." as managers create components.
-  std::string creation(const SavedComponent& component) const {
-    const auto parts = base::split_list(component.id, ':');
-    const auto type = parts.size() >= 4 ? parts[3] : component.instance;
-    auto text = type + "?instance_name=" + component.instance;
-    if (!component.contexts.empty() && !component.contexts.front().rate.empty())
-      text += "&exec_cxt.periodic.rate=" + component.contexts.front().rate;
-    for (const auto& property : properties_) {
-      if (property.instance == component.instance) text += "&" + property.key + "=" + property.value;
-    }
-    return text;
-  }
-
-  Result<void> start_host(const std::vector<const SavedComponent*>& components) {
-    std::vector<std::string> creations;
-    std::vector<std::string> names;
-    for (const auto* component : components) {
-      creations.push_back(creation(*component));
-      names.push_back(component->instance);
-    }
-    return start_host(creations, components, base::join(names, ", "));
-  }
-
-  Result<void> start_host(const std::vector<std::string>& creations, const std::vector<const SavedComponent*>& components,
-                          const std::string& names) {
-    // What stands in an rtc.conf of the folder or of the user is none of this run's business.
-    const auto configuration = place_.scratch("rtc.conf");
-    std::ofstream(configuration) << "# empty\n";
-    const auto log = place_.new_file("rtcd-" + std::to_string(hosts_started_) + ".log");
-    std::vector<std::string> more = {"manager.shutdown_auto:NO", "manager.shutdown_on_nortcs:NO"};
-    if (hashes_.is_wanted()) more.push_back("exec_cxt.sim_time.hash_log:" + hashes_.folder());
-    const HostSettings settings{.naming = server_,
-                                .name = "host" + std::to_string(hosts_started_++),
-                                .module_paths = options_.module_paths,
-                                .empty_file = configuration,
-                                .options = more,
-                                .creations = creations};
-    auto started =
-        ChildProcess::start({host_words(settings), {{"RTMSIM_SERVER_ID", simulator_.id()}, {"TMPDIR", place_.scratch("tmp")}}, log});
-    if (!started) return started.error();
-    hosts_.push_back({std::move(*started), components, names, log});
-    return {};
-  }
-
-  Result<void> start_foreign() { return foreign_.start(server_, simulator_.id()); }
+  Result<void> start_foreign() { return foreign_.start(naming_.address(), simulator_.id()); }
 
   // The contexts in which components of others are called.
   Result<void> start_time_host() {
-    return foreign_.empty() ? Result<void>() : start_host(foreign_.creations(simulator_.id()), {}, "the contexts of components of others");
+    return foreign_.empty() ? Result<void>() : hosts_.start(foreign_.creations(simulator_.id()), "the contexts of components of others");
   }
 
   Result<void> start_hosts() {
-    std::vector<const SavedComponent*> all;
+    RunHosts::Members all;
     for (const auto& component : system_.components) {
       if (!foreign_.has(component.instance)) all.push_back(&component);
     }
     if (system_.components.empty()) return fail("system " + options_.system + ": has no components");
     if (const auto started = start_time_host(); !started) return started;
     if (!options_.one_process_each) {
-      if (const auto started = all.empty() ? Result<void>() : start_host(all); !started) return started;
+      if (const auto started = all.empty() ? Result<void>() : hosts_.start(all); !started) return started;
     } else {
       for (const auto* component : all) {
-        if (const auto started = start_host({component}); !started) return started;
+        if (const auto started = hosts_.start(RunHosts::Members{component}); !started) return started;
       }
     }
     std::vector<std::string> expected = foreign_.proxies();
@@ -314,7 +207,7 @@ class Run final : public RunningSystem {
   Result<void> await_components(const std::vector<std::string>& expected, std::chrono::duration<double> limit) {
     std::string missing;
     const auto are_there = [&] {
-      const auto names = NamingTree::read(orb_, server_, 1000ms);
+      const auto names = NamingTree::read(orb_, naming_.address(), 1000ms);
       if (!names) return false;
       missing.clear();
       for (const auto& name : expected) {
@@ -325,11 +218,9 @@ class Run final : public RunningSystem {
     const auto waited = wait_until("components", are_there, limit);
     // A host that has ended has been named already.
     if (waited || missing.empty() || is_interrupted() || !check_children()) return waited;
-    std::string why = foreign_.about(missing);
-    for (const auto& host : hosts_) {
-      if (host.components.find(missing) != std::string::npos) why = ": " + telling_line(host.log);
-    }
-    return fail("component " + missing + ": is not there after " + base::format_number(limit.count()) + " s" + why);
+    const auto why = hosts_.about(missing);
+    return fail("component " + missing + ": is not there after " + base::format_number(limit.count()) + " s" +
+                (why.empty() ? foreign_.about(missing) : why));
   }
 
   // The profile as it is for this run: the simulator has an id of its own.
@@ -346,7 +237,7 @@ class Run final : public RunningSystem {
     const auto stamps = foreign_.set_stamps(system_);
     result_.notes.insert(result_.notes.end(), stamps.begin(), stamps.end());
     if (const auto written = write_system(system_, file); !written) return written;
-    editor_.emplace(orb_, server_, false, std::chrono::milliseconds(call_limit));
+    editor_.emplace(orb_, naming_.address(), false, std::chrono::milliseconds(call_limit));
     load(*editor_, {.file = file});
     if (!editor_->failed() && !foreign_.empty()) {
       if (const auto joined = foreign_.join(*editor_, system_); !joined) return joined;
@@ -360,47 +251,31 @@ class Run final : public RunningSystem {
     return {};
   }
 
-  std::vector<Host>::iterator host_of(const std::string& instance) {
-    return std::ranges::find_if(hosts_, [&](const Host& host) {
-      return std::ranges::any_of(host.members, [&](const auto* member) { return member->instance == instance; });
-    });
-  }
-
   // Returns when lock step does not wait for its contexts any more.
   Result<void> kill_host(const std::string& instance) {
-    const auto host = host_of(instance);
-    if (host == hosts_.end()) return fail("component " + instance + ": its host does not run");
-    kill(host->process.pid(), SIGKILL);
-    host->process.wait(call_limit);
-    const auto members = host->members;
-    killed_.push_back(std::move(*host));
-    hosts_.erase(host);
-    return wait_until("end of the host of " + killed_.back().components, [&] {
+    const auto members = hosts_.kill(instance);
+    if (!members) return members.error();
+    return wait_until("end of the host of " + names_of(*members), [&] {
       const auto there = simulator_.participants();
-      return std::ranges::none_of(members, [&](const auto* member) { return there.contains(member->instance); });
+      return std::ranges::none_of(*members, [&](const auto* member) { return there.contains(member->instance); });
     });
   }
 
   Result<void> restart_host(const std::string& instance) {
-    const auto killed = std::ranges::find_if(killed_, [&](const Host& host) {
-      return std::ranges::any_of(host.members, [&](const auto* member) { return member->instance == instance; });
-    });
-    if (killed == killed_.end()) return fail("component " + instance + ": its host was not killed");
-    const auto members = killed->members;
-    killed_.erase(killed);
-    if (const auto started = start_host(members); !started) return started;
+    const auto members = hosts_.restart(instance);
+    if (!members) return members.error();
     const auto back = wait_until("components of the host of " + instance, [&] {
-      return std::ranges::all_of(members, [&](const auto* member) {
+      return std::ranges::all_of(*members, [&](const auto* member) {
         const auto view = editor_->component(member->instance + ".rtc", {.contexts = true});
         return view.ok() && view->problem.empty();
       });
     });
     if (!back) return back;
-    return wire_again(members);
+    return wire_again(*members);
   }
 
   // Connections that a dead process has left behind are made again, the others stand.
-  Result<void> wire_again(const std::vector<const SavedComponent*>& members) {
+  Result<void> wire_again(const RunHosts::Members& members) {
     const auto is_member = [&](const SavedComponent& component) { return std::ranges::find(members, &component) != members.end(); };
     auto all = system_;
     auto started = system_;
@@ -427,7 +302,7 @@ class Run final : public RunningSystem {
     std::vector<std::string> expected;
     for (const auto& member : foreign_.members()) expected.push_back(member.instance);
     for (const auto& component : system_.components) {
-      if (host_of(component.instance) == hosts_.end()) continue;  // killed by a script
+      if (!hosts_.has(component.instance)) continue;  // killed by a script
       const auto view = editor_->component(component.instance + ".rtc", {.contexts = true});
       if (!view) return view.error();
       for (const auto& context : view->contexts) {
@@ -451,30 +326,13 @@ class Run final : public RunningSystem {
   }
 
   // The ends of all logs, for a report.
-  std::string last_words() const {
-    std::string text = last_lines(place_.file("sim-server.log"));
-    for (const auto& host : hosts_) text += last_lines(host.log);
-    return text + foreign_.last_words();
-  }
-
-  // What makes this run again, beside the profile and the world.
-  std::vector<std::pair<std::string, std::string>> notes() const {
-    const auto absolute = [](std::vector<std::string> paths) {
-      for (auto& path : paths) path = std::filesystem::absolute(path).string();
-      return base::join(paths, "\n");
-    };
-    return {{"duration", base::format_number(options_.duration_s)},
-            {"one_process_each", options_.one_process_each ? "yes" : "no"},
-            {"properties", base::join(options_.properties, "\n")},
-            {"module_paths", absolute(options_.module_paths)},
-            {"resource_paths", absolute(options_.resource_paths)}};
-  }
+  std::string last_words() const { return last_lines(place_.file("sim-server.log")) + hosts_.last_words() + foreign_.last_words(); }
 
   Result<void> record() {
     if (options_.record.empty()) return {};
-    return recorder_.start(
-        {server_, simulator_.id(), place_.file("system.xml"), std::filesystem::absolute(options_.record).string(), notes()},
-        [this](const auto& what, const auto& ready) { return wait_until(what, ready); });
+    return recorder_.start({naming_.address(), simulator_.id(), place_.file("system.xml"),
+                            std::filesystem::absolute(options_.record).string(), notes_on(options_)},
+                           wait());
   }
 
   Result<void> listen() {
@@ -484,10 +342,10 @@ class Run final : public RunningSystem {
 
   Result<void> begin_script() {
     if (!options_.script) return {};
-    scene_.emplace(RunScene{orb_, *editor_, simulator_, place_, server_, system_, ports_,
+    scene_.emplace(RunScene{orb_, *editor_, simulator_, place_, naming_.address(), system_, ports_,
                             [this](const auto& instance) { return kill_host(instance); },
                             [this](const auto& instance) { return restart_host(instance); },
-                            [this](bool is_there) { kill(naming_->pid(), is_there ? SIGCONT : SIGSTOP); }});
+                            [this](bool is_there) { naming_.set_running(is_there); }});
     return options_.script->begin(*scene_);
   }
 
@@ -539,9 +397,7 @@ class Run final : public RunningSystem {
 
   // What a next run may do otherwise: a failure when the run is to be strict, a note for each in a CI job.
   void check_chances() {
-    std::vector<std::string> logs;
-    for (const auto& host : hosts_) logs.push_back(host.log);
-    const auto chances = chances_in(logs);
+    const auto chances = chances_in(hosts_.logs());
     if (options_.strict) {
       result_.verdicts.push_back({"nothing depends on chance", base::join(chances, "; ")});
     } else if (std::getenv("CI")) {
@@ -567,10 +423,11 @@ class Run final : public RunningSystem {
     for (const auto& expectation : expectations_) {
       if (expectation.kind != Expectation::Kind::command) continue;
       auto& seen = seen_.commands[expectation.command];
-      auto started = ChildProcess::start(
-          {{"sh", "-c", expectation.command},
-           {{"RTMSIM_RECORD", place_.file("record.txt")}, {"RTMSIM_SERVER_ID", simulator_.id()}, {"RTCTREE_NAMESERVERS", server_}},
-           ""});
+      auto started = ChildProcess::start({{"sh", "-c", expectation.command},
+                                          {{"RTMSIM_RECORD", place_.file("record.txt")},
+                                           {"RTMSIM_SERVER_ID", simulator_.id()},
+                                           {"RTCTREE_NAMESERVERS", naming_.address()}},
+                                          ""});
       if (!started) return started.error();
       const auto ending = started->wait_or_interrupt(command_limit);
       if (ending == Ending::interrupted) return fail("run: interrupted");
@@ -589,27 +446,25 @@ class Run final : public RunningSystem {
   // Ends components first, so that they can say good-bye to the naming service.
   void stop() {
     foreign_.terminate();
-    for (auto& host : hosts_) host.process.terminate();
-    hosts_.clear();
+    hosts_.terminate();
+    hosts_.end();
     foreign_.end();
     simulator_.end();
-    naming_.reset();
+    naming_.end();
   }
 
   CORBA::ORB_var orb_;
   const RunOptions& options_;
   Workplace place_;
+  RunNaming naming_;
   SavedSystem system_;
   std::vector<Expectation> expectations_;
   std::vector<ComponentProperty> properties_;
-  std::string server_;
   Seen seen_;
   RunResult result_;
-  std::optional<ChildProcess> naming_;
   RunHashes hashes_;
   RunSimulator simulator_;
-  std::vector<Host> hosts_, killed_;
-  int hosts_started_ = 0;
+  RunHosts hosts_;
   ForeignProcesses foreign_;
   RunRecorder recorder_{place_};
   std::optional<Editor> editor_;
@@ -618,10 +473,6 @@ class Run final : public RunningSystem {
 };
 
 }  // namespace
-
-bool RunResult::is_passed() const {
-  return problem.empty() && std::all_of(verdicts.begin(), verdicts.end(), [](const Verdict& verdict) { return verdict.problem.empty(); });
-}
 
 RunResult run_system(CORBA::ORB_ptr orb, const RunOptions& options) {
   try {
@@ -633,18 +484,6 @@ RunResult run_system(CORBA::ORB_ptr orb, const RunOptions& options) {
     result.problem = "folder " + base::in_quotes(path.string()) + ": " + error.code().message();
     return result;
   }
-}
-
-Result<ComponentProperty> parse_property(const std::string& text) {
-  const auto colon = text.find(':');
-  const auto equals = text.find('=', colon == std::string::npos ? 0 : colon);
-  if (colon == 0 || colon == std::string::npos || equals == std::string::npos || equals == colon + 1 || text.find('&') != std::string::npos)
-    return Error{"property " + base::in_quotes(text) + ": expected INSTANCE:KEY=VALUE"};
-  const auto value = text.substr(equals + 1);
-  const auto phase = base::parse_integer(value);
-  if (text.substr(colon + 1, equals - colon - 1) == "exec_cxt.sim_time.phase" && (!phase || *phase < 0 || *phase > 15))
-    return Error{"property " + base::in_quotes(text) + ": a phase must be a number from 0 to 15"};
-  return ComponentProperty{text.substr(0, colon), text.substr(colon + 1, equals - colon - 1), text.substr(equals + 1)};
 }
 
 }  // namespace editor

@@ -1,0 +1,155 @@
+#include "run/run_hosts.h"
+
+#include <signal.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "base/text.h"
+#include "run/time_members.h"
+
+namespace editor {
+namespace {
+
+constexpr std::chrono::seconds kill_limit{5};
+
+bool is_among(const RunHosts::Members& members, const std::string& instance) {
+  return std::ranges::any_of(members, [&](const auto* member) { return member->instance == instance; });
+}
+
+template <class Hosts>
+auto host_of(Hosts& hosts, const std::string& instance) {
+  return std::ranges::find_if(hosts, [&](const auto& host) { return is_among(host.members, instance); });
+}
+
+}  // namespace
+
+std::string names_of(const RunHosts::Members& members) {
+  std::vector<std::string> names;
+  for (const auto* member : members) names.push_back(member->instance);
+  return base::join(names, ", ");
+}
+
+void RunHosts::use(std::string naming, std::vector<ComponentProperty> properties) {
+  naming_ = std::move(naming);
+  properties_ = std::move(properties);
+}
+
+// "Type?instance_name=...&..." as managers create components.
+std::string RunHosts::creation(const SavedComponent& component) const {
+  const auto parts = base::split_list(component.id, ':');
+  const auto type = parts.size() >= 4 ? parts[3] : component.instance;
+  auto text = type + "?instance_name=" + component.instance;
+  if (!component.contexts.empty() && !component.contexts.front().rate.empty())
+    text += "&exec_cxt.periodic.rate=" + component.contexts.front().rate;
+  for (const auto& property : properties_) {
+    if (property.instance == component.instance) text += "&" + property.key + "=" + property.value;
+  }
+  return text;
+}
+
+Result<void> RunHosts::start(const Members& members) {
+  std::vector<std::string> creations;
+  for (const auto* member : members) creations.push_back(creation(*member));
+  return start(creations, members, names_of(members));
+}
+
+Result<void> RunHosts::start(const std::vector<std::string>& creations, const std::string& names) { return start(creations, {}, names); }
+
+Result<void> RunHosts::start(const std::vector<std::string>& creations, const Members& members, const std::string& names) {
+  // What stands in an rtc.conf of the folder or of the user is none of this run's business.
+  const auto configuration = place_.scratch("rtc.conf");
+  std::ofstream(configuration) << "# empty\n";
+  const auto log = place_.new_file("rtcd-" + std::to_string(started_) + ".log");
+  std::vector<std::string> more = {"manager.shutdown_auto:NO", "manager.shutdown_on_nortcs:NO"};
+  if (hashes_.is_wanted()) more.push_back("exec_cxt.sim_time.hash_log:" + hashes_.folder());
+  const HostSettings settings{.naming = naming_,
+                              .name = "host" + std::to_string(started_++),
+                              .module_paths = options_.module_paths,
+                              .empty_file = configuration,
+                              .options = more,
+                              .creations = creations};
+  auto started =
+      ChildProcess::start({host_words(settings), {{"RTMSIM_SERVER_ID", simulator_.id()}, {"TMPDIR", place_.scratch("tmp")}}, log});
+  if (!started) return started.error();
+  hosts_.push_back({std::move(*started), members, names, log});
+  return {};
+}
+
+Result<RunHosts::Members> RunHosts::kill(const std::string& instance) {
+  const auto host = host_of(hosts_, instance);
+  if (host == hosts_.end()) return Error{"component " + instance + ": its host does not run"};
+  ::kill(host->process.pid(), SIGKILL);
+  host->process.wait(kill_limit);
+  const auto members = host->members;
+  killed_.push_back(std::move(*host));
+  hosts_.erase(host);
+  return members;
+}
+
+Result<RunHosts::Members> RunHosts::restart(const std::string& instance) {
+  const auto killed = host_of(killed_, instance);
+  if (killed == killed_.end()) return Error{"component " + instance + ": its host was not killed"};
+  const auto members = killed->members;
+  killed_.erase(killed);
+  if (const auto started = start(members); !started) return started.error();
+  return members;
+}
+
+Result<void> RunHosts::check() {
+  for (auto& host : hosts_) {
+    if (host.process.is_running()) continue;
+    const auto time = simulator_.time();
+    return Error{"host of " + host.components + " " + host.process.how_it_ended() +
+                 (time && *time > 0 ? " at " + base::format_number(*time) + " s" : "") +
+                 (host.process.exit_code() < 128 ? ": " + telling_line(host.log) : complaint(host.log))};
+  }
+  return {};
+}
+
+bool RunHosts::has(const std::string& instance) const { return host_of(hosts_, instance) != hosts_.end(); }
+
+std::vector<RunningSystem::Process> RunHosts::processes() const {
+  std::vector<RunningSystem::Process> all;
+  for (const auto& host : hosts_) all.push_back({"rtcd of " + host.components, host.process.pid()});
+  return all;
+}
+
+std::vector<std::string> RunHosts::logs() const {
+  std::vector<std::string> logs;
+  for (const auto& host : hosts_) logs.push_back(host.log);
+  return logs;
+}
+
+std::string RunHosts::about(const std::string& instance) const {
+  const auto host = std::ranges::find_if(hosts_, [&](const Host& one) { return one.components.find(instance) != std::string::npos; });
+  return host == hosts_.end() ? "" : ": " + telling_line(host->log);
+}
+
+std::vector<std::string> RunHosts::warnings() const {
+  constexpr std::size_t enough = 5;
+  std::vector<std::string> warnings;
+  for (const auto& host : hosts_) {
+    std::size_t count = 0;
+    for (const auto& line : lines_of(host.log)) {
+      const auto level = level_of(line);
+      if (level != LogLevel::warning && level != LogLevel::error) continue;
+      if (++count <= enough) warnings.push_back(line);
+    }
+    if (count > enough)
+      warnings.push_back("host of " + host.components + ": and " + std::to_string(count - enough) + " more such lines (--keep)");
+  }
+  return warnings;
+}
+
+std::string RunHosts::last_words() const {
+  std::string text;
+  for (const auto& host : hosts_) text += last_lines(host.log);
+  return text;
+}
+
+void RunHosts::terminate() {
+  for (auto& host : hosts_) host.process.terminate();
+}
+
+}  // namespace editor

@@ -1,0 +1,72 @@
+// The processes of a run that host our components: each an rtcd with a configuration of its own, on simulated time. One thread at a time.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "profile/rts_profile.h"
+#include "run/child_process.h"
+#include "run/run_files.h"
+#include "run/run_hashes.h"
+#include "run/run_simulator.h"
+#include "run/run_system.h"
+
+namespace editor {
+
+class RunHosts {
+ public:
+  using Members = std::vector<const SavedComponent*>;  // of one process; they must live as long
+
+  // All must live as long.
+  RunHosts(const RunOptions& options, const Workplace& place, const RunHashes& hashes, const RunSimulator& simulator)
+      : options_(options), place_(place), hashes_(hashes), simulator_(simulator) {}
+
+  // What all of them have: the naming service, HOST:PORT, and what the user asks of single components.
+  void use(std::string naming, std::vector<ComponentProperty> properties);
+
+  // Returns before the components are there.
+  Result<void> start(const Members& members);
+  // A host of what is none of the system's components. `names`: what is in it, for messages.
+  Result<void> start(const std::vector<std::string>& creations, const std::string& names);
+  // With SIGKILL. What was in it.
+  Result<Members> kill(const std::string& instance);
+  // A new host of what was killed with this component.
+  Result<Members> restart(const std::string& instance);
+
+  // An error that names the components of one that has ended, how, and when.
+  Result<void> check();
+  bool has(const std::string& instance) const;
+  std::vector<RunningSystem::Process> processes() const;
+  std::vector<std::string> logs() const;
+  // ": " and what the log of a component's host tells.
+  std::string about(const std::string& instance) const;
+  // What the components have to say that should not be missed.
+  std::vector<std::string> warnings() const;
+  std::string last_words() const;
+  void terminate();
+  void end() { hosts_.clear(); }
+
+ private:
+  struct Host {
+    ChildProcess process;
+    Members members;
+    std::string components;  // their names
+    std::string log;
+  };
+  Result<void> start(const std::vector<std::string>& creations, const Members& members, const std::string& names);
+  std::string creation(const SavedComponent& component) const;
+
+  const RunOptions& options_;
+  const Workplace& place_;
+  const RunHashes& hashes_;
+  const RunSimulator& simulator_;
+  std::string naming_;
+  std::vector<ComponentProperty> properties_;
+  std::vector<Host> hosts_, killed_;
+  int started_ = 0;
+};
+
+std::string names_of(const RunHosts::Members& members);
+
+}  // namespace editor
