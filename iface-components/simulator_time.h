@@ -1,7 +1,7 @@
 // What time it is in a simulator now, for threads that no tick runs: those that receive data. Any thread.
 #pragma once
 
-#include <base/clock.h>
+#include <base/chance.h>
 #include <base/guarded.h>
 #include <shm/client.h>
 
@@ -9,7 +9,7 @@
 
 namespace iface {
 
-class SimulatorTime final : public base::Clock {
+class SimulatorTime final : public base::LockStepClock {
  public:
   // The time stays where it was when the simulator goes; 0 before the first one.
   void follow(std::optional<shm::Iface> simulation);
@@ -19,7 +19,7 @@ class SimulatorTime final : public base::Clock {
   // Of the phases of its lock step.
   std::uint64_t moment() const override;
   // Time does not pass: paused, waiting for participants, or there is no simulator.
-  bool stands_still() const;
+  bool stands_still() const override;
 
  private:
   struct State {

@@ -3,7 +3,6 @@
 #include <set>
 #include <string>
 
-#include "base/clock.h"
 #include "base/guarded.h"
 #include "base/log.h"
 #include "base/text.h"
@@ -11,16 +10,16 @@
 namespace base {
 namespace {
 
-Guarded<std::weak_ptr<const Clock>, Rank::registry>& clock_of_lock_step() {
+Guarded<std::weak_ptr<const LockStepClock>, Rank::registry>& clock_of_lock_step() {
   // Never destroyed: calls may come at the very end.
-  static auto& clock = *new Guarded<std::weak_ptr<const Clock>, Rank::registry>;
+  static auto& clock = *new Guarded<std::weak_ptr<const LockStepClock>, Rank::registry>;
   return clock;
 }
 
 }  // namespace
 
-void set_lock_step_clock(const std::shared_ptr<const Clock>& clock) { *clock_of_lock_step().lock() = clock; }
-std::shared_ptr<const Clock> lock_step_clock() { return clock_of_lock_step().snapshot().lock(); }
+void set_lock_step_clock(const std::shared_ptr<const LockStepClock>& clock) { *clock_of_lock_step().lock() = clock; }
+std::shared_ptr<const LockStepClock> lock_step_clock() { return clock_of_lock_step().snapshot().lock(); }
 
 void tell_of_chance(std::string_view where, std::string_view what, std::chrono::nanoseconds simulated) {
   static auto& told = *new Guarded<std::set<std::string>, Rank::registry>;  // never destroyed, likewise

@@ -6,9 +6,16 @@
 #include <memory>
 #include <string_view>
 
+#include "base/clock.h"
+
 namespace base {
 
-class Clock;
+// The time of a lock step, for whoever it concerns. Any thread.
+class LockStepClock : public Clock {
+ public:
+  // Time does not pass: it has been stopped, or has not begun. What is done from outside then comes at the same time in each run.
+  virtual bool stands_still() const = 0;
+};
 
 // What such a message begins with.
 inline constexpr std::string_view chance_mark = "depends on chance: ";
@@ -17,7 +24,7 @@ inline constexpr std::string_view chance_mark = "depends on chance: ";
 void tell_of_chance(std::string_view where, std::string_view what, std::chrono::nanoseconds simulated);
 
 // Of the lock step that this process takes part in; the one that was told last. nullptr: there is none.
-void set_lock_step_clock(const std::shared_ptr<const Clock>& clock);
-std::shared_ptr<const Clock> lock_step_clock();
+void set_lock_step_clock(const std::shared_ptr<const LockStepClock>& clock);
+std::shared_ptr<const LockStepClock> lock_step_clock();
 
 }  // namespace base

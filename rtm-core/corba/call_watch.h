@@ -1,5 +1,6 @@
-// Tells (base/chance.h) of calls from other processes that change something while a lock step runs: when they come is chance. Reading
-// calls, samples and the callbacks of contexts in other processes are no such calls. Any thread.
+// Tells (base/chance.h) of calls from other processes that change something while the time of a lock step passes: when they come is chance.
+// What comes while time stands still (before the first step, where the script of a run stops, after the last) is not. Reading calls,
+// samples and the callbacks of contexts in other processes are no such calls. Any thread.
 #pragma once
 
 #include <cstdint>

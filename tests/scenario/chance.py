@@ -10,6 +10,7 @@ import sys
 import tempfile
 
 import chance_system
+from system import System
 
 case, bin_dir, lib_dir, source = sys.argv[1:]
 watchdog = 200  # [s]; a bound on hanging, not on speed
@@ -71,6 +72,32 @@ def first_difference():
     (place / "cut.log").write_bytes(cut[: len(cut) * 2 // 3])
     code, out, err = call("diff", "1.log", "cut.log")
     assert code == 1 and ("first difference at" in err or "not come to the end" in err), err
+
+
+# A change from outside is told while time passes, once, and not while it stands still: that is where the script of a run makes its changes, and
+# where whoever looks on says good-bye.
+def changed_from_outside():
+    told = "depends on chance: this process had the parameters of a component changed by another process (set_configuration_set_values)"
+    with System(bin_dir, lib_dir) as s:
+        s.naming()
+        s.server(empty, "--lockstep", "--paused", "--rtf", "0")
+        host = s.host("Relay?instance_name=Relay0&conf.default.source=1")
+        s.rtse("wait", "Relay0", "--state", "any", "--timeout", "60")
+        s.rtse("act", "Relay0")
+        s.until("a participant", lambda: s.participants())
+        s.simctl("step", "10")
+        s.rtse("conf", "Relay0", "set", "stamp", "0")
+        s.rtse("deact", "Relay0")
+        s.rtse("act", "Relay0")
+        s.simctl("step", "10")
+        assert "depends on chance" not in s.log(host), s.log(host)
+        stepping = s.start(f"{bin_dir}/simctl", "-s", s.server_id, "step", "1000000000")
+        s.until("time that passes", lambda: s.seconds() > 0.03)
+        for value in ("1", "0"):
+            s.rtse("conf", "Relay0", "set", "stamp", value)
+        s.until("what is told", lambda: told in s.log(host))
+        assert s.log(host).count(told) == 1, s.log(host)
+        s.kill(stepping)
 
 
 def is_found(race, *options):
