@@ -26,6 +26,9 @@ struct Channel {
   std::string encoding;  // of the samples: "cdr" (four octets say the byte order, then plain CDR), "json"
   Schema schema;
   std::map<std::string, std::string> metadata;
+
+  // Its latest sample holds until there is another one (the metadata have `latched`): a sink that keeps a part keeps that one, too.
+  bool is_latched() const { return metadata.contains("latched"); }
 };
 
 using ChannelId = std::uint16_t;

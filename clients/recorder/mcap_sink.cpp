@@ -49,11 +49,12 @@ base::Result<Split> parse_split(const std::string& text) {
 
 base::Result<std::shared_ptr<McapSink>> McapSink::create(const std::string& path, const Split& split, NewFile make) {
   std::shared_ptr<McapSink> sink(new McapSink(path, split, std::move(make)));
-  if (const auto begun = sink->begin_file(); !begun) return begun.error();
+  if (const auto begun = sink->begin_file({}); !begun) return begun.error();
   return sink;
 }
 
-base::Result<void> McapSink::begin_file() {
+// What holds already stands in it, too: it can be read alone.
+base::Result<void> McapSink::begin_file(channels::Time begun) {
   if (writer_) {
     samples_ += writer_->statistics().messages;
     if (const auto closed = writer_->close(); !closed) return closed;
@@ -68,6 +69,10 @@ base::Result<void> McapSink::begin_file() {
   first_.reset();
   for (const auto& [id, channel] : channels_) {
     if (const auto added = add(id, channel); !added) return added;
+  }
+  for (auto& [id, sample] : latched_) {
+    sample.log_time = std::max(sample.log_time, begun);
+    if (const auto written = write(sample); !written) return written;
   }
   return {};
 }
@@ -98,16 +103,22 @@ base::Result<void> McapSink::open(channels::ChannelId id, const channels::Channe
 
 base::Result<void> McapSink::take(const channels::Sample& sample) {
   if (is_full(sample)) {
-    if (const auto begun = begin_file(); !begun) return begun;
+    if (const auto begun = begin_file(sample.log_time); !begun) return begun;
   }
   if (!first_) first_ = sample.log_time;
-  const auto time = [](channels::Time one) { return mcap::Time(static_cast<std::uint64_t>(std::max<std::int64_t>(one.count(), 0))); };
-  const auto done = writer_->write({ids_[sample.channel],
-                                    sample.sequence,
-                                    time(sample.log_time),
-                                    time(sample.publish_time),
-                                    {sample.octets.data(), sample.octets.size()}});
+  if (const auto channel = channels_.find(sample.channel); channel != channels_.end() && channel->second.is_latched())
+    latched_.insert_or_assign(sample.channel, sample);
+  const auto done = write(sample);
   return done ? rest() : done;
+}
+
+base::Result<void> McapSink::write(const channels::Sample& sample) {
+  const auto time = [](channels::Time one) { return mcap::Time(static_cast<std::uint64_t>(std::max<std::int64_t>(one.count(), 0))); };
+  return writer_->write({ids_[sample.channel],
+                         sample.sequence,
+                         time(sample.log_time),
+                         time(sample.publish_time),
+                         {sample.octets.data(), sample.octets.size()}});
 }
 
 base::Result<void> McapSink::rest() {

@@ -40,7 +40,8 @@ class McapSink final : public channels::Sink {
 
  private:
   McapSink(std::string path, const Split& split, NewFile make) : path_(std::move(path)), split_(split), make_(std::move(make)) {}
-  base::Result<void> begin_file();
+  base::Result<void> begin_file(channels::Time begun);
+  base::Result<void> write(const channels::Sample& sample);
   base::Result<void> add(channels::ChannelId id, const channels::Channel& channel);
   bool is_full(const channels::Sample& sample) const;
 
@@ -52,6 +53,7 @@ class McapSink final : public channels::Sink {
   std::uint64_t samples_ = 0;  // in the files before
   std::optional<channels::Time> first_;
   std::map<channels::ChannelId, channels::Channel> channels_;             // those that every file gets
+  std::map<channels::ChannelId, channels::Sample> latched_;               // the latest of those, of channels that hold
   std::map<channels::ChannelId, std::uint16_t> ids_;                      // in the file
   std::map<std::pair<std::string, std::string>, std::uint16_t> schemas_;  // by name and text
   std::chrono::steady_clock::time_point flushed_ = std::chrono::steady_clock::now();

@@ -17,8 +17,14 @@ std::size_t size_of(const channels::Sample& sample) { return sample.octets.size(
 RateSink::RateSink(std::shared_ptr<channels::Sink> to, double rate)
     : to_(std::move(to)), period_(std::max<std::int64_t>(1, std::llround(1e9 / rate))) {}
 
+base::Result<void> RateSink::open(channels::ChannelId id, const channels::Channel& channel) {
+  if (channel.is_latched()) latched_.insert(id);
+  return to_->open(id, channel);
+}
+
 // The first one in each period; those that are left out are not missing.
 base::Result<void> RateSink::take(const channels::Sample& sample) {
+  if (latched_.contains(sample.channel)) return to_->take(sample);
   const std::int64_t period = sample.log_time / period_;
   const auto last = last_.find(sample.channel);
   if (last != last_.end() && last->second == period) return {};
@@ -29,7 +35,7 @@ base::Result<void> RateSink::take(const channels::Sample& sample) {
 }
 
 base::Result<void> LastSink::open(channels::ChannelId id, const channels::Channel& channel) {
-  if (channel.topic == "/tf_static") static_frames_ = id;
+  if (channel.is_latched()) latched_.try_emplace(id);
   return to_->open(id, channel);
 }
 
@@ -39,8 +45,8 @@ void LastSink::drop_front() {
 }
 
 base::Result<void> LastSink::take(const channels::Sample& sample) {
-  if (sample.channel == static_frames_) {
-    static_sample_ = sample;
+  if (const auto held = latched_.find(sample.channel); held != latched_.end()) {
+    held->second = sample;
     return {};
   }
   octets_ += size_of(sample);
@@ -50,9 +56,10 @@ base::Result<void> LastSink::take(const channels::Sample& sample) {
 }
 
 base::Result<void> LastSink::hand_on() {
-  if (static_sample_ && !samples_.empty()) {
-    static_sample_->log_time = samples_.front().log_time;
-    if (const auto done = to_->take(*static_sample_); !done) return done;
+  for (auto& [id, held] : latched_) {
+    if (!held || samples_.empty()) continue;
+    held->log_time = samples_.front().log_time;
+    if (const auto done = to_->take(*held); !done) return done;
   }
   for (const auto& sample : samples_) {
     if (const auto done = to_->take(sample); !done) return done;

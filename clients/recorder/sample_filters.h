@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "exchange.h"
 
@@ -15,7 +16,7 @@ namespace recorder {
 class RateSink final : public channels::Sink {
  public:
   RateSink(std::shared_ptr<channels::Sink> to, double rate);
-  base::Result<void> open(channels::ChannelId id, const channels::Channel& channel) override { return to_->open(id, channel); }
+  base::Result<void> open(channels::ChannelId id, const channels::Channel& channel) override;
   base::Result<void> take(const channels::Sample& sample) override;
   base::Result<void> close(channels::ChannelId id) override { return to_->close(id); }
   base::Result<void> rest() override { return to_->rest(); }
@@ -25,9 +26,10 @@ class RateSink final : public channels::Sink {
   const std::chrono::nanoseconds period_;
   std::map<channels::ChannelId, std::int64_t> last_;  // the period in which the last one was
   std::map<channels::ChannelId, std::uint32_t> sequences_;
+  std::set<channels::ChannelId> latched_;  // of which all are handed on
 };
 
-// Keeps the last seconds of all channels, and hands them on when it is told to. Of what is said once and for all (/tf_static) the newest
+// Keeps the last seconds of all channels, and hands them on when it is told to. Of latched channels the newest
 // sample stays. At most 512 MiB: of more than that the oldest go.
 class LastSink final : public channels::Sink {
  public:
@@ -44,8 +46,7 @@ class LastSink final : public channels::Sink {
   const std::chrono::nanoseconds span_;
   std::deque<channels::Sample> samples_;
   std::size_t octets_ = 0;
-  channels::ChannelId static_frames_ = 0;
-  std::optional<channels::Sample> static_sample_;
+  std::map<channels::ChannelId, std::optional<channels::Sample>> latched_;
 };
 
 }  // namespace recorder

@@ -179,7 +179,8 @@ void WorldWatch::look_at_poses(bool is_hurried) {
   auto poses = std::make_shared<Poses>();
   poses->version = static_cast<std::uint32_t>(reply->values[0]);
   poses->time = std::chrono::nanoseconds(reply->sim_time_ns);
-  poses->numbers.resize(reply->text.size() / sizeof(float));
+  poses->numbers.resize(
+      std::min(reply->text.size() / sizeof(float), static_cast<std::size_t>(std::max<std::int64_t>(reply->count, 0)) * 7));
   std::memcpy(poses->numbers.data(), reply->text.data(), poses->numbers.size() * sizeof(float));
   if (std::exchange(version_, poses->version) != poses->version) world_at_ = {};
   tell_.poses(std::move(poses));

@@ -29,6 +29,20 @@ Eigen::Isometry3d place_of(const SensorDef& sensor) {
   return set != nullptr && !set->cameras.empty() ? sensor.pose * set->cameras.front().pose : sensor.pose;
 }
 
+// Positions and velocities, two axes each; 0 where a joint has none.
+void add_joints(const Physics& physics, const std::vector<ModelId>& models, shm::Reply& reply) {
+  std::size_t count = 0;
+  for (const ModelId id : models) {
+    for (std::uint32_t j = 0; j < physics.def(id).joints.size(); ++j, ++count) {
+      const JointState first = physics.joint_state({id, j}, 0), second = physics.joint_state({id, j}, 1);
+      const std::array<float, 4> values = {static_cast<float>(first.position), static_cast<float>(second.position),
+                                           static_cast<float>(first.velocity), static_cast<float>(second.velocity)};
+      reply.text.append(reinterpret_cast<const char*>(values.data()), sizeof values);
+    }
+  }
+  reply.values[1] = static_cast<double>(count);
+}
+
 }  // namespace
 
 ExportPlan plan_export(Simulation& simulation, const shm::ExportRequest& request) {
@@ -65,6 +79,7 @@ shm::Reply poses_reply(Simulation& simulation) {
     const std::array<float, 7> values = {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()};
     reply.text.append(reinterpret_cast<const char*>(values.data()), sizeof values);
   }
+  add_joints(simulation.physics(), world.models, reply);
   return reply;
 }
 

@@ -434,7 +434,7 @@ enum {
   RTMSIM_REQUEST_EXPORT = 21, /* flags 1 = shapes that collide; reply text: the world as glTF 2.0 binary (render/gltf.h); reply count = its
                                  links, values 0 = version of the scene, another one after models have come or gone */
   RTMSIM_REQUEST_POSES = 22 /* reply count = links, values 0 = version of the scene; text: count x 7 floats x y z qw qx qy qz in the world,
-                               in the order of an export of that version */
+                               in the order of an export; then values 1 x 4: two positions, two velocities of each joint of TREE */
 };
 
 /* Views of a screenshot. Without TOP and FOLLOW the camera's pose is in values; none given: one that shows the whole world. */

@@ -212,7 +212,7 @@ def views():
     info = json.loads(rig.rtse("--json", "recording", "info", file))
     kinds = {c["type"].split("/")[-1] for c in info["channels"]}
     assert kinds == {"TFMessage", "Clock", "LaserScan", "Range", "Image", "CameraInfo", "PointCloud2", "MarkerArray", "Imu", "NavSatFix", "Float64",
-                     "MagneticField", "FluidPressure", "WrenchStamped", "Odometry"}, kinds
+                     "MagneticField", "FluidPressure", "WrenchStamped", "Odometry", "JointState"}, kinds
     assert all(c["samples"] > 0 and c["missing"] == 0 for c in info["channels"]), info["channels"]
     ours, theirs = lines("cat", file), foreign(file)[:-1]
     assert len(ours) == len(theirs)
@@ -228,6 +228,26 @@ def views():
     assert open(rig.path(f"png/sim.camera.rig.eyes.image/{drawn[-1]}"), "rb").read(24)[-8:] == bytes([0, 0, 0, 16, 0, 0, 0, 12]), drawn
     moving = {t["child_frame_id"] for s in ours if s["topic"] == "/tf" for t in s["value"]["transforms"]}
     assert {"rover", "flyer"} <= moving, moving
+    looks_like_the_world(ours, moving)
+
+
+# Every link has a frame, and a marker for each shape; joints are where the simulator says.
+def looks_like_the_world(samples, moving):
+    fixed = {t["child_frame_id"] for s in samples if s["topic"] == "/tf_static" for t in s["value"]["transforms"]}
+    first, *shapes = next(s for s in samples if s["topic"] == "/sim/shapes")["value"]["markers"]
+    assert first["action"] == 3 and shapes, first
+    models = json.loads(rig.simctl("--json", "tree"))["models"]
+    links = {f"{m['name']}::{link['name']}" for m in models for link in m["links"]}
+    assert links <= fixed | moving and not (links & fixed & moving), (links, fixed, moving)
+    assert {s["header"]["frame_id"] for s in shapes} <= links, shapes
+    assert all(s["type"] == 11 and s["points"] and len(s["points"]) % 3 == 0 and s["color"]["a"] > 0 for s in shapes)
+    assert len({(s["ns"], s["id"]) for s in shapes}) == len(shapes)
+    jointed = [m for m in models if not m["static"] and any(j["type"] not in ("fixed", "ball", "gearbox") for j in m["joints"])]
+    for model in jointed:
+        state = [s for s in samples if s["topic"] == f"/sim/joints/{model['name']}"][-1]["value"]
+        places = dict(zip(state["name"], state["position"]))
+        assert all(abs(places[j["name"]] - j["position"]) < 1e-5 for j in model["joints"] if j["name"] in places), (state, model["joints"])
+    assert jointed
 
 
 def recorded_run(name, duration):

@@ -148,20 +148,6 @@ IfaceView sonar_view(const shm::Iface& iface) {
 
 // ---- drives ----
 
-shm::Pose inverse(const shm::Pose& p) {
-  const double w = p.qw, x = -p.qx, y = -p.qy, z = -p.qz;
-  const double tx = 2 * (y * p.z - z * p.y), ty = 2 * (z * p.x - x * p.z), tz = 2 * (x * p.y - y * p.x);
-  return {-(p.x + w * tx + (y * tz - z * ty)), -(p.y + w * ty + (z * tx - x * tz)), -(p.z + w * tz + (x * ty - y * tx)), w, x, y, z};
-}
-
-shm::Pose product(const shm::Pose& a, const shm::Pose& b) {
-  const double tx = 2 * (a.qy * b.z - a.qz * b.y), ty = 2 * (a.qz * b.x - a.qx * b.z), tz = 2 * (a.qx * b.y - a.qy * b.x);
-  return {a.x + b.x + a.qw * tx + (a.qy * tz - a.qz * ty),       a.y + b.y + a.qw * ty + (a.qz * tx - a.qx * tz),
-          a.z + b.z + a.qw * tz + (a.qx * ty - a.qy * tx),       a.qw * b.qw - a.qx * b.qx - a.qy * b.qy - a.qz * b.qz,
-          a.qw * b.qx + a.qx * b.qw + a.qy * b.qz - a.qz * b.qy, a.qw * b.qy - a.qx * b.qz + a.qy * b.qw + a.qz * b.qx,
-          a.qw * b.qz + a.qx * b.qy - a.qy * b.qx + a.qz * b.qw};
-}
-
 // The odometry, and where its origin is in the world: so that what drifts is seen beside what is true.
 template <class Info, class Sample, class Pose, class Velocity>
 IfaceView drive_view(const shm::Iface& iface, Pose pose_by_wheels, Velocity velocity) {
@@ -436,6 +422,20 @@ std::unique_ptr<IfaceView> view_of(const shm::Iface& iface, Pictures pictures) {
 
 ros::Header header_of(const shm::Stamp& stamp, const std::string& frame) {
   return {ros::to_time(std::chrono::nanoseconds(stamp.sim_time_ns)), frame};
+}
+
+shm::Pose inverse(const shm::Pose& p) {
+  const double w = p.qw, x = -p.qx, y = -p.qy, z = -p.qz;
+  const double tx = 2 * (y * p.z - z * p.y), ty = 2 * (z * p.x - x * p.z), tz = 2 * (x * p.y - y * p.x);
+  return {-(p.x + w * tx + (y * tz - z * ty)), -(p.y + w * ty + (z * tx - x * tz)), -(p.z + w * tz + (x * ty - y * tx)), w, x, y, z};
+}
+
+shm::Pose product(const shm::Pose& a, const shm::Pose& b) {
+  const double tx = 2 * (a.qy * b.z - a.qz * b.y), ty = 2 * (a.qz * b.x - a.qx * b.z), tz = 2 * (a.qx * b.y - a.qy * b.x);
+  return {a.x + b.x + a.qw * tx + (a.qy * tz - a.qz * ty),       a.y + b.y + a.qw * ty + (a.qz * tx - a.qx * tz),
+          a.z + b.z + a.qw * tz + (a.qx * ty - a.qy * tx),       a.qw * b.qw - a.qx * b.qx - a.qy * b.qy - a.qz * b.qz,
+          a.qw * b.qx + a.qx * b.qw + a.qy * b.qz - a.qz * b.qy, a.qw * b.qy - a.qx * b.qz + a.qy * b.qw + a.qz * b.qx,
+          a.qw * b.qz + a.qx * b.qy - a.qy * b.qx + a.qz * b.qw};
 }
 
 ros::Pose pose_of(const shm::Pose& pose) { return {{pose.x, pose.y, pose.z}, {pose.qx, pose.qy, pose.qz, pose.qw}}; }

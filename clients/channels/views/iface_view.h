@@ -43,6 +43,9 @@ inline constexpr const char* world_frame = "world";
 
 ros::Header header_of(const shm::Stamp& stamp, const std::string& frame);
 ros::Pose pose_of(const shm::Pose& pose);
+// `second` is in the frame that `first` puts somewhere.
+shm::Pose product(const shm::Pose& first, const shm::Pose& second);
+shm::Pose inverse(const shm::Pose& pose);
 ros::TransformStamped transform_of(const shm::Stamp& stamp, const std::string& parent, const std::string& child, const shm::Pose& pose);
 // Of a fixed field of a segment, which need not end.
 template <std::size_t size>

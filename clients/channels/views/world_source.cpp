@@ -7,6 +7,7 @@
 #include <cmath>
 #include <condition_variable>
 #include <cstring>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -16,7 +17,8 @@
 #include "base/guarded.h"
 #include "shm/lockstep.h"
 #include "shm/words.h"
-#include "views/static_models.h"
+#include "views/model_frames.h"
+#include "views/shapes.h"
 
 namespace channels {
 
@@ -66,11 +68,18 @@ struct Truth {
   std::string model;
 };
 
+// The joints of a model.
+struct Joints {
+  ChannelId id = 0;
+  bool is_wanted = false;
+  std::size_t model = 0;  // its place in Limbs::models
+};
+
 }  // namespace
 
 struct WorldSource::State {
   State(Exchange& to, const WorldSourceOptions& chosen, shm::Iface opened)
-      : exchange(to), options(chosen), simulation(std::move(opened)), pose_due(period_of(chosen.pose_rate)) {}
+      : exchange(to), options(chosen), simulation(std::move(opened)), limbs(chosen.server_id), pose_due(period_of(chosen.pose_rate)) {}
 
   // ---- shared ----
   struct Shared {
@@ -90,10 +99,11 @@ struct WorldSource::State {
   const WorldSourceOptions options;
   shm::Iface simulation;
   std::map<std::pair<shm::IfaceType, std::string>, Shown> shown;
-  std::map<std::string, Truth> truths;  // by name of the iface
-  std::vector<ros::TransformStamped> static_models;
+  std::map<std::string, Truth> truths;   // by name of the iface
+  std::map<std::string, Joints> joints;  // by model
+  Limbs limbs;
   std::pair<std::uint32_t, std::uint32_t> listed{};
-  ChannelId clock = 0, tf = 0, tf_static = 0;
+  ChannelId clock = 0, tf = 0, tf_static = 0, shapes = 0;
   bool says_clock = false, says_tf = false;
   Due pose_due;
   std::uint64_t clock_seen = 0;
@@ -123,11 +133,17 @@ struct WorldSource::State {
   void look();
   void show(const shm::SegmentName& name);
   bool drop_gone();
+  void show_joints();
   void take_wishes();
   void subscribe();
   void choose_period();
+  bool says_joints() const {
+    return std::ranges::any_of(joints, [](const auto& one) { return one.second.is_wanted; });
+  }
   void say_static();
+  void say_shapes();
   void say_poses(const shm::Stamp& now);
+  void say_limbs(const shm::Stamp& now, const std::map<std::string, shm::Pose>& places, ros::TFMessage& message);
   void say_samples();
   void collect();
   bool is_ending() const { return shared.lock()->is_ending; }
@@ -140,7 +156,8 @@ struct WorldSource::State {
 void WorldSource::State::open_common() {
   clock = open_channel({"/clock", "cdr", ros::schema<ros::Clock>(), {}});
   tf = open_channel({"/tf", "cdr", ros::schema<ros::TFMessage>(), {}});
-  tf_static = open_channel({"/tf_static", "cdr", ros::schema<ros::TFMessage>(), {}});
+  tf_static = open_channel({"/tf_static", "cdr", ros::schema<ros::TFMessage>(), {{"latched", "yes"}}});
+  shapes = open_channel({"/sim/shapes", "cdr", ros::schema<ros::MarkerArray>(), {{"latched", "yes"}}});
 }
 
 // ---- what there is ----
@@ -174,6 +191,22 @@ bool WorldSource::State::drop_gone() {
   return count > 0;
 }
 
+void WorldSource::State::show_joints() {
+  const auto& models = limbs.models();
+  std::erase_if(joints, [&](const auto& entry) {
+    const bool is_there = std::ranges::any_of(models, [&](const ModelFrames& model) { return model.name == entry.first; });
+    if (!is_there) exchange.close(entry.second.id);
+    return !is_there;
+  });
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    if (models[i].is_rigid || models[i].axes.empty()) continue;
+    const auto [one, is_new] = joints.try_emplace(models[i].name);
+    one->second.model = i;
+    if (is_new)
+      one->second.id = open_channel({"/sim/joints/" + models[i].name, "cdr", ros::schema<ros::JointState>(), {{"model", models[i].name}}});
+  }
+}
+
 // Opens what has come and closes what has gone. Asks the simulator: not within a tick.
 void WorldSource::State::look() {
   if (!simulation.read()) return;
@@ -185,32 +218,36 @@ void WorldSource::State::look() {
   for (const auto& found : shm::find_segments(options.server_id)) {
     if (found.is_readable && found.is_alive && found.name.type != shm::IfaceType::simulation) show(found.name);
   }
-  if (auto models = static_models_of(options.server_id)) static_models = std::move(*models);
+  if (limbs.learn()) show_joints();  // a simulator that does not answer is going
   auto data = shared.lock();
   data->is_changed = true;
-  data->repeated.insert(tf_static);
+  data->repeated.insert({tf_static, shapes});
 }
 
 // ---- what is wanted ----
 
 void WorldSource::State::take_wishes() {
   std::set<ChannelId> wanted;
-  bool is_static_due = false;
+  bool is_static_due = false, are_shapes_due = false;
   {
     auto data = shared.lock();
     if (!data->is_changed) return;
     data->is_changed = false;
     wanted = data->wanted;
-    is_static_due = std::exchange(data->repeated, {}).contains(tf_static) && wanted.contains(tf_static);
+    const auto repeated = std::exchange(data->repeated, {});
+    is_static_due = repeated.contains(tf_static) && wanted.contains(tf_static);
+    are_shapes_due = repeated.contains(shapes) && wanted.contains(shapes);
   }
   for (auto& [key, one] : shown) {
     for (std::size_t i = 0; i < one.ids.size(); ++i) one.wanted[i] = wanted.contains(one.ids[i]);
   }
+  for (auto& [model, one] : joints) one.is_wanted = wanted.contains(one.id);
   says_clock = wanted.contains(clock);
   says_tf = wanted.contains(tf);
   subscribe();
   choose_period();
   if (is_static_due) say_static();
+  if (are_shapes_due) say_shapes();
 }
 
 void WorldSource::State::subscribe() {
@@ -227,7 +264,7 @@ void WorldSource::State::subscribe() {
 }
 
 void WorldSource::State::choose_period() {
-  double rate = says_tf || says_clock ? options.pose_rate : 0;
+  double rate = says_tf || says_clock || says_joints() ? options.pose_rate : 0;
   for (const auto& [key, one] : shown) {
     if (one.is_wanted()) rate = std::max(rate, one.view->rate > 0 ? one.view->rate : options.pose_rate);
   }
@@ -241,7 +278,12 @@ void WorldSource::State::choose_period() {
 // ---- what is said ----
 
 void WorldSource::State::say_static() {
-  ros::TFMessage message{static_models};
+  ros::TFMessage message;
+  for (const auto& model : limbs.models()) {
+    if (model.is_static) message.transforms.push_back(transform_of({}, world_frame, model.name, model.pose));
+    if (!model.is_rigid) continue;
+    for (const auto& link : model.links) message.transforms.push_back(transform_of({}, model.name, link.frame, link.pose));
+  }
   for (const auto& [key, one] : shown)
     message.transforms.insert(message.transforms.end(), one.view->frames.begin(), one.view->frames.end());
   const nanoseconds now(simulation.read() ? simulation.sample<shm::SimulationSample>().stamp.sim_time_ns : 0);
@@ -249,16 +291,43 @@ void WorldSource::State::say_static() {
   exchange.put(tf_static, now, ros::encode(message));
 }
 
+// All of them, in the place of those before.
+void WorldSource::State::say_shapes() {
+  auto found = shapes_of(options.server_id);
+  if (!found) return;  // a simulator of another version, or one that is going
+  ros::MarkerArray message;
+  message.markers.push_back({.header = {{}, world_frame}, .action = ros::Marker::remove_all});
+  std::ranges::move(*found, std::back_inserter(message.markers));
+  const nanoseconds now(simulation.read() ? simulation.sample<shm::SimulationSample>().stamp.sim_time_ns : 0);
+  for (auto& marker : message.markers) marker.header.stamp = ros::to_time(now);
+  exchange.put(shapes, now, ros::encode(message));
+}
+
+void WorldSource::State::say_limbs(const shm::Stamp& now, const std::map<std::string, shm::Pose>& places, ros::TFMessage& message) {
+  if (!limbs.has_moving() || !(says_tf || says_joints())) return;
+  if (!limbs.read()) {
+    listed = {};  // models have come or gone
+    return;
+  }
+  limbs.add_transforms(now, places, message.transforms);
+  for (const auto& [model, one] : joints) {
+    if (one.is_wanted) exchange.put(one.id, nanoseconds(now.sim_time_ns), ros::encode(limbs.joints_of(one.model, now)));
+  }
+}
+
 void WorldSource::State::say_poses(const shm::Stamp& now) {
   const nanoseconds time(now.sim_time_ns);
   if (says_clock) exchange.put(clock, time, ros::encode(ros::Clock{ros::to_time(time)}));
-  if (!says_tf) return;
   ros::TFMessage message;
+  std::map<std::string, shm::Pose> places;
   for (auto& [name, truth] : truths) {
-    if (!truth.iface.read()) continue;
+    if (!says_tf || !truth.iface.read()) continue;
     const auto& sample = truth.iface.sample<shm::TruthSample>();
-    if (sample.stamp.valid != 0) message.transforms.push_back(transform_of(sample.stamp, world_frame, truth.model, sample.pose));
+    if (sample.stamp.valid == 0) continue;
+    message.transforms.push_back(transform_of(sample.stamp, world_frame, truth.model, sample.pose));
+    places.emplace(truth.model, sample.pose);
   }
+  say_limbs(now, places, message);
   if (!message.transforms.empty()) exchange.put(tf, time, ros::encode(message));
 }
 

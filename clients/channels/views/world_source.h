@@ -3,7 +3,9 @@
 // its channel is wanted.
 //
 //   /clock                                      rosgraph_msgs/msg/Clock
-//   /tf, /tf_static                             tf2_msgs/msg/TFMessage: models in `world`, sensors on their models
+//   /tf, /tf_static                             tf2_msgs/msg/TFMessage: models in `world`, links and sensors on their models
+//   /sim/shapes                                 visualization_msgs/msg/MarkerArray: what the links look like
+//   /sim/joints/MODEL                           sensor_msgs/msg/JointState
 //   /sim/TYPE/NAME, "::" in names as "/"        LaserScan, Odometry, Imu, ... (docs/recordings.md has the table)
 //
 // With takes_part it is a participant of the last phase: in lock step nothing is lost and time waits until all sinks have room, else it is
@@ -37,7 +39,7 @@ class WorldSource {
   static base::Result<std::unique_ptr<WorldSource>> open(Exchange& exchange, const WorldSourceOptions& options);
   ~WorldSource();
 
-  // What is the same for long (/tf_static) is said anew with each call for it.
+  // What is the same for long (latched channels) is said anew with each call for it.
   void want(ChannelId channel, bool is_wanted);
   // False when the simulator has gone; the source says nothing more then.
   bool is_live() const;
