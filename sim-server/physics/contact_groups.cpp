@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "physics/tree_solver.h"
+
 namespace sim {
 namespace {
 
@@ -18,6 +20,8 @@ void ContactGroups::add(ModelInstance& model) {
   Member member;
   member.model = &model;
   member.parent = place;
+  member.has_many_joints = model.tree().places.size() >= TreeSolver::least_bodies;
+  member.has_trees_only = model.tree().is_one;
   members_.push_back(member);
 }
 
@@ -46,21 +50,21 @@ void ContactGroups::touch(ModelInstance& a, ModelInstance* b, bool has_mesh, dou
   kept.has_mesh = kept.has_mesh || joined.has_mesh;
   kept.is_exempt = kept.is_exempt || joined.is_exempt;
   kept.is_deep = kept.is_deep || joined.is_deep;
+  kept.has_many_joints = kept.has_many_joints || joined.has_many_joints;
+  kept.has_trees_only = kept.has_trees_only && joined.has_trees_only;
   kept.contacts += joined.contacts;
   kept.moving_contacts += joined.moving_contacts;
 }
 
-ContactGroups::Shares ContactGroups::share_out() {
-  Shares shares;
+void ContactGroups::share_out() {
   for (std::uint32_t i = 0; i < members_.size(); ++i) {
     const Member& group = members_[root(i)];
     const bool is_large = group.contacts > exact_contacts || group.moving_contacts >= stacked_contacts;
-    const bool is_iterative =
-        physics_.solver == PhysicsDef::Solver::iterative || (physics_.solver == PhysicsDef::Solver::automatic && is_large);
-    members_[i].model->is_iterative = is_iterative;
-    ++(is_iterative ? shares.iterative : shares.exact);
+    const bool is_asked = physics_.solver == PhysicsDef::Solver::iterative;
+    ModelInstance& model = *members_[i].model;
+    model.is_iterative = is_asked || (physics_.solver == PhysicsDef::Solver::automatic && is_large);
+    model.is_tree_solved = !is_asked && group.has_many_joints && group.has_trees_only && group.contacts <= TreeSolver::most_contacts;
   }
-  return shares;
 }
 
 void ContactGroups::keep_energies() {

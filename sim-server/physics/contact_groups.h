@@ -22,11 +22,11 @@ class ContactGroups {
   // A contact with a force; `b` is null for what does not move. Both have been added. `depth` [m] is what is to be pushed back.
   void touch(ModelInstance& a, ModelInstance* b, bool has_mesh, double depth, const dSurfaceParameters& surface);
 
-  // After the contacts: which models go to the iterative solver (ModelInstance::is_iterative), and how many do and do not.
-  struct Shares {
-    std::size_t iterative = 0, exact = 0;
-  };
-  Shares share_out();
+  // After the contacts: which models go to the iterative solver (ModelInstance::is_iterative), and which are tried with TreeSolver first
+  // (is_tree_solved).
+  void share_out();
+  // The same number for models that touch.
+  std::uint32_t group_of(const ModelInstance& model) { return root(model.group_place); }
   std::uint32_t contacts() const { return contacts_; }
 
   // Between them the world makes its step. Forces of the step are on the bodies before.
@@ -43,6 +43,7 @@ class ContactGroups {
     double energy = 0;  // [J] before the step
     // Of the whole group, at its root.
     bool has_mesh = false, is_exempt = false, is_deep = false, may_sleep = true;
+    bool has_many_joints = false, has_trees_only = true;
     std::uint32_t contacts = 0, moving_contacts = 0;
     double gained = 0, motion = 0;  // [J] by the step; that it moves with now
   };

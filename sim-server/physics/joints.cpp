@@ -42,6 +42,12 @@ bool has_suspension(const JointDef& def) {
   return def.axes.size() == 2 && std::abs(def.axes[0].xyz.dot(def.axes[1].xyz)) > 1e-3;  // or axes that no cross has
 }
 
+JointSeat seat_on(dBodyID body, const Eigen::Isometry3d& frame, const Eigen::Vector3d& axis) {
+  const Eigen::Quaterniond turn(frame.linear());
+  return {point_in(body, frame.translation()), direction_in(body, axis),
+          body == nullptr ? turn : ode::quaternion(dBodyGetQuaternion(body)).conjugate() * turn};
+}
+
 Eigen::Vector3d across(const Eigen::Vector3d& axis) {
   const Eigen::Vector3d other = std::abs(axis.x()) < 0.6 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
   return axis.cross(other).normalized();
@@ -102,6 +108,8 @@ JointInstance::JointInstance(dWorldID world, const PhysicsDef& physics, const Jo
                              const Eigen::Isometry3d& frame, dBodyID parent, dBodyID child)
     : def_(&def), index_(index), world_(world), parent_(parent), child_(child) {
   make(world, frame);
+  const Eigen::Vector3d axis = frame.linear() * (def.axes.empty() ? Eigen::Vector3d(0, 0, 1) : def.axes[0].xyz);
+  seat_on_parent_ = seat_on(parent, frame, axis), seat_on_child_ = seat_on(child, frame, axis);
   if (joint_.id() == nullptr) return;
   if (def.provide_feedback || !def.sensors.empty()) {
     feedback_ = std::make_unique<dJointFeedback>();

@@ -23,6 +23,12 @@ struct Coupling {
   bool is_screw = false;
 };
 
+// Where a joint sits on a body: in the body's frame, or in the world's where there is no body.
+struct JointSeat {
+  Eigen::Vector3d place{0, 0, 0}, axis{0, 0, 1};
+  Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
+};
+
 class JointInstance {
  public:
   // Makes the joint between bodies at their places of the start. `frame` is the joint's in the world; either body may be null: the world.
@@ -45,6 +51,12 @@ class JointInstance {
   };
   const Drive& drive(int axis) const { return drives_[static_cast<std::size_t>(axis)]; }
   void set_drive(int axis, double velocity, double effort);
+
+  // For joint_tree and tree_solver. Empty id: a gearbox.
+  dJointID id() const { return joint_.id(); }
+  bool has_coupling() const { return coupling_.has_value(); }
+  const JointSeat& seat_on_parent() const { return seat_on_parent_; }
+  const JointSeat& seat_on_child() const { return seat_on_child_; }
 
   bool has_stand_in() const { return stand_in_.id() != nullptr; }
   bool has_forces() const { return has_forces_ || coupling_; }
@@ -76,6 +88,7 @@ class JointInstance {
   ode::Body stand_in_;  // for the world, where ODE needs a body
   ode::Joint joint_;    // empty for a gearbox
   double sign_ = 1;     // of ODE's positions and rates against SDFormat's
+  JointSeat seat_on_parent_, seat_on_child_;
   std::array<Drive, 2> drives_;
   std::array<double, 2> damping_{0, 0};  // that is not ODE's
   bool has_forces_ = false;

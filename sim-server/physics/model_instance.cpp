@@ -145,6 +145,7 @@ void ModelInstance::enter(dWorldID world, const PhysicsDef& physics) {
       std::any_of(blueprint_->assemblies.begin(), blueprint_->assemblies.end(), [](const Assembly& a) { return a.wind_mass > 0; });
   has_forces_ = has_forces_ || is_carried_by(physics.fluid, blueprint_->model->name);
   for (const auto j : blueprint_->joints) make_joint(world, physics, j);
+  tree_ = joint_tree(bodies_, joints_);
   take_initial_positions();
   for (const auto& order : orders) {
     if (auto* restored = this->joint(order.joint)) set_drive(*restored, order.axis, order.velocity, order.effort);

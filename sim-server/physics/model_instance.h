@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "physics/blueprint.h"
+#include "physics/joint_tree.h"
 #include "physics/joints.h"
 #include "physics/ode.h"
 #include "physics/physics.h"
@@ -59,6 +60,7 @@ class ModelInstance {
   std::vector<JointInstance>& joints() { return joints_; }
   const std::vector<JointInstance>& joints() const { return joints_; }
   JointInstance* joint(std::uint32_t index);
+  const JointTree& tree() const { return tree_; }
 
   // Springs, couplings and wind; before each step. Joints that hold for this step alone go into the group.
   void apply_forces(dJointGroupID step_joints, const PhysicsDef& physics);
@@ -86,6 +88,7 @@ class ModelInstance {
   bool may_be_awake = true;                // false: certainly not
   std::uint32_t group_place = 0;           // among those that take part
   bool is_iterative = false;               // the solver of this step
+  bool is_tree_solved = false;             // of those that are exact: by tree_solver
   std::vector<ModelInstance*> neighbours;  // whose neighbourhoods meet its own, ascending by id
   Aabb neighbourhood;
   bool left_neighbourhood = true;
@@ -109,6 +112,7 @@ class ModelInstance {
   Eigen::Isometry3d base_;
   std::vector<ode::Body> bodies_;  // one per assembly; empty handles for anchored ones
   std::vector<JointInstance> joints_;
+  JointTree tree_;
   std::vector<int> joint_places_;  // in joints_, by index into ModelDef::joints; -1: it has none
   std::vector<ShapeInstance> shapes_;
   std::vector<Eigen::Isometry3d> shape_in_body_;

@@ -69,7 +69,8 @@ Shard::Shard(const PhysicsDef& physics)
       gravity_(physics.gravity.norm()),
       erp_(physics.erp.value_or(0.2)),
       contact_joints_(dJointGroupCreate(0)),
-      groups_(physics) {
+      groups_(physics),
+      tree_solver_(world_.id(), physics) {
   const dWorldID w = world_.id();
   dWorldSetGravity(w, physics.gravity.x(), physics.gravity.y(), physics.gravity.z());
   dWorldSetERP(w, erp_);
@@ -106,7 +107,9 @@ void Shard::step(const std::vector<ShapeInstance*>& statics, std::uint64_t step_
   has_left = is_insane = false;
   find_active();
   if (active_.empty()) return;
+  has_many_joints_ = false;
   for (auto* model : active_) {
+    has_many_joints_ = has_many_joints_ || model->tree().places.size() >= TreeSolver::least_bodies;
     std::swap(model->contacts, model->previous_contacts);
     model->contacts.clear();
     for (auto& shape : model->shapes()) shape.partners = 0;
@@ -116,6 +119,8 @@ void Shard::step(const std::vector<ShapeInstance*>& statics, std::uint64_t step_
   for (auto* model : active_) model->apply_forces(contact_joints_.id(), physics_);
   groups_.keep_energies();
   solve(step_count);
+  tree_solver_.let_go();
+  made_contacts_.clear();
   groups_.limit_energies();
   groups_.settle();
   groups_.clear();
@@ -147,12 +152,47 @@ void Shard::solve_iteratively(std::uint64_t step_count) {
   dWorldQuickStep(world_.id(), physics_.step);
 }
 
+// Each group with many joints.
+void Shard::solve_trees() {
+  std::vector<std::pair<std::uint32_t, ModelInstance*>> members;
+  for (auto* model : active_) {
+    if (model->is_tree_solved) members.emplace_back(groups_.group_of(*model), model);
+  }
+  std::stable_sort(members.begin(), members.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (auto first = members.begin(); first != members.end();) {
+    const auto last = std::find_if(first, members.end(), [&](const auto& member) { return member.first != first->first; });
+    std::vector<ModelInstance*> group;
+    for (auto member = first; member != last; ++member) group.push_back(member->second);
+    const bool is_solved = solve_tree(group);
+    for (auto* model : group) model->is_tree_solved = is_solved, model->is_iterative = model->is_iterative && !is_solved;
+    first = last;
+  }
+}
+
+bool Shard::solve_tree(const std::vector<ModelInstance*>& group) {
+  if (std::none_of(group.begin(), group.end(), [](const ModelInstance* model) { return model->is_awake(); })) return false;
+  std::vector<const MadeContact*> contacts;
+  const auto number = groups_.group_of(*group.front());
+  for (const auto& made : made_contacts_) {
+    if (groups_.group_of(*made.model) == number) contacts.push_back(&made);
+  }
+  // As ODE does with what awake bodies are tied to.
+  for (auto* model : group) {
+    for (std::uint32_t i = 0; i < model->body_count(); ++i) {
+      if (model->body(i) != nullptr && dBodyIsEnabled(model->body(i)) == 0) dBodyEnable(model->body(i));
+    }
+  }
+  return tree_solver_.solve(group, contacts);
+}
+
 // Each group by its solver: the others sleep meanwhile.
 void Shard::solve(std::uint64_t step_count) {
-  const auto shares = groups_.share_out();
-  if (shares.iterative == 0) return solve_exactly();
+  groups_.share_out();
+  if (has_many_joints_) solve_trees();
+  const auto count = std::count_if(active_.begin(), active_.end(), [](const ModelInstance* model) { return model->is_iterative; });
+  if (count == 0) return solve_exactly();
   const auto is_held = [](const ModelInstance* model) { return model->has_stand_ins(); };
-  if (shares.exact == 0 || std::any_of(active_.begin(), active_.end(), is_held)) return solve_iteratively(step_count);
+  if (count == std::ssize(active_) || std::any_of(active_.begin(), active_.end(), is_held)) return solve_iteratively(step_count);
   const auto lay_down = [&](bool iterative) {
     for (auto* model : active_) {
       for (std::uint32_t i = 0; i < model->body_count() && model->is_iterative == iterative; ++i) {
@@ -295,10 +335,12 @@ void Shard::add_contact(ModelInstance& model_a, ShapeInstance& a, ModelInstance*
   resist_sliding(joint_contact, dGeomGetBody(a.geom.id()), dGeomGetBody(b.geom.id()), lighter / usual_contacts);
   const dJointID joint = dJointCreateContact(world_.id(), contact_joints_.id(), &joint_contact);
   dJointAttach(joint, dGeomGetBody(a.geom.id()), dGeomGetBody(b.geom.id()));
+  if (has_many_joints_) made_contacts_.push_back({joint, joint_contact, dGeomGetBody(a.geom.id()), dGeomGetBody(b.geom.id()), &model_a});
   if (model_a.records_forces || (model_b != nullptr && model_b->records_forces)) {
     feedback_.push_back({{}, &model_a, model_b, model_a.contacts.size() - 1, model_b != nullptr ? model_b->contacts.size() - 1 : 0});
     if (model_b == &model_a) --feedback_.back().contact_a;
     dJointSetFeedback(joint, &feedback_.back().joint);
+    if (has_many_joints_) made_contacts_.back().feedback = &feedback_.back().joint;
   }
 }
 

@@ -2,8 +2,8 @@
 // stepped by different threads at the same time; they share static shapes, which nobody changes meanwhile.
 //
 // Moving models are found near each other by boxes of their own instead of ODE's quad-tree space, and models that can meet share a shard.
-// Each group of models that touch is solved exactly, or by ODE's quick step where many moving bodies lie on each other. What sleeps costs
-// nothing.
+// Each group of models that touch is solved exactly, or by ODE's quick step where many moving bodies lie on each other; exactly means by
+// ODE, or by TreeSolver where one of them has many joints. What sleeps costs nothing.
 #pragma once
 
 #include <deque>
@@ -12,6 +12,7 @@
 #include "physics/contact_groups.h"
 #include "physics/model_instance.h"
 #include "physics/ode.h"
+#include "physics/tree_solver.h"
 
 namespace sim {
 
@@ -33,6 +34,8 @@ class Shard {
   void find_active();
   void find_contacts(const std::vector<ShapeInstance*>& statics);
   void solve(std::uint64_t step_count);
+  void solve_trees();
+  bool solve_tree(const std::vector<ModelInstance*>& group);
   void solve_exactly();
   void solve_iteratively(std::uint64_t step_count);
   void finish();
@@ -55,8 +58,11 @@ class Shard {
   ode::JointGroup contact_joints_;
   std::deque<Feedback> feedback_;
   ContactGroups groups_;
-  std::vector<dBodyID> lying_;          // those of the other solver
-  std::vector<ModelInstance*> active_;  // models that take part in a step, during it, ascending by id
+  TreeSolver tree_solver_;
+  bool has_many_joints_ = false;            // one of the active models
+  std::vector<MadeContact> made_contacts_;  // of the step, while it has
+  std::vector<dBodyID> lying_;              // those of the other solver
+  std::vector<ModelInstance*> active_;      // models that take part in a step, during it, ascending by id
 };
 
 }  // namespace sim

@@ -77,7 +77,7 @@ void bench_many() {
 
 int main() {
   using Solver = sim::PhysicsDef::Solver;
-  sim::bench::bench_robot(Solver::automatic, "a robot of 49 links rolls", 0.4);
+  sim::bench::bench_robot(Solver::automatic, "a robot of 49 links rolls", 2);
   sim::bench::bench_robot(Solver::iterative, "the same with the iterative solver", 2);
   sim::bench::bench_resting();
   sim::bench::bench_overlapping(300, 0.04);

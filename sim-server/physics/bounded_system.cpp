@@ -1,0 +1,72 @@
+#include "physics/bounded_system.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+namespace sim {
+
+void BoundedSystem::resize(Eigen::Index size) {
+  a.setZero(size, size);
+  b.setZero(size);
+  low.setZero(size);
+  high.setZero(size);
+  x.setZero(size);
+  bounds.assign(static_cast<std::size_t>(size), Bound::free);
+}
+
+Bound better_bound(Bound bound, double x, double left_over, double low, double high, double tolerance) {
+  if (bound == Bound::free) {
+    const double slack = 1e-9 * std::abs(x);
+    return x < low - slack ? Bound::low : x > high + slack ? Bound::high : Bound::free;
+  }
+  if (low == high) return bound;
+  return (bound == Bound::low ? left_over < -tolerance : left_over > tolerance) ? Bound::free : bound;
+}
+
+void BoundedSystem::solve_free() {
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const Bound bound = bounds[static_cast<std::size_t>(i)];
+    if (bound == Bound::free) free.push_back(i);
+    if (bound != Bound::free) x[i] = bound == Bound::low ? low[i] : high[i];
+  }
+  const auto count = static_cast<Eigen::Index>(free.size());
+  Eigen::MatrixXd part(count, count);
+  Eigen::VectorXd wanted(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Index row = free[static_cast<std::size_t>(i)];
+    wanted[i] = b[row];
+    for (Eigen::Index k = 0; k < x.size(); ++k) {
+      if (bounds[static_cast<std::size_t>(k)] != Bound::free && x[k] != 0) wanted[i] -= a(row, k) * x[k];
+    }
+    for (Eigen::Index k = 0; k <= i; ++k) part(i, k) = a(row, free[static_cast<std::size_t>(k)]);
+  }
+  const Eigen::VectorXd found = part.llt().solve(wanted);  // which looks at the lower half alone
+  for (Eigen::Index i = 0; i < count; ++i) x[free[static_cast<std::size_t>(i)]] = found[i];
+}
+
+// Returns how many are wrong.
+std::size_t BoundedSystem::turn_wrong(bool one_at_a_time) {
+  std::size_t wrong = 0;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    Bound& bound = bounds[static_cast<std::size_t>(i)];
+    const double left_over = bound == Bound::free ? 0 : a.row(i).dot(x) - b[i];
+    const Bound better = better_bound(bound, x[i], left_over, low[i], high[i], 1e-12 + 1e-9 * std::abs(b[i]));
+    if (better == bound) continue;
+    ++wrong;
+    if (!one_at_a_time || wrong == 1) bound = better;
+  }
+  return wrong;
+}
+
+bool BoundedSystem::solve() {
+  constexpr int at_once = 20;
+  const int most = at_once + 10 * static_cast<int>(x.size());
+  for (int round = 0; round < most; ++round) {
+    solve_free();
+    if (turn_wrong(round >= at_once) == 0) return true;
+  }
+  return false;
+}
+
+}  // namespace sim
