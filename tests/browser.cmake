@@ -1,7 +1,4 @@
 # rtm-studio in a real browser. Needs chromium and the libraries of tests/studio (scripts/setup); without a browser they are skipped.
-if(NOT TARGET studio_page OR NOT TARGET rtm-studio)
-  return()
-endif()
 foreach(flows page system picture)
   add_test(NAME studio.${flows}_flows
     COMMAND ${NODE_PROGRAM} ${CMAKE_CURRENT_SOURCE_DIR}/studio/${flows}_flows.mjs ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY})

@@ -1,8 +1,8 @@
-rtmsim_test(avoidance_test unit/avoidance_test.cpp LIBRARIES avoidance)
-rtmsim_test(iface_components_test unit/conversions_test.cpp LIBRARIES iface_link)
+rtmsim_test(avoidance_test clients/avoidance_test.cpp LIBRARIES avoidance)
+rtmsim_test(iface_components_test iface-components/conversions_test.cpp LIBRARIES iface_link)
 find_package(SDL2 REQUIRED)
-rtmsim_test(camera_image_test unit/camera_image_test.cpp LIBRARIES camera_image turbojpeg)
-rtmsim_test(video_test unit/picture_test.cpp unit/window_test.cpp LIBRARIES video SDL2::SDL2)
+rtmsim_test(camera_image_test iface-components/camera_image_test.cpp LIBRARIES camera_image turbojpeg)
+rtmsim_test(video_test clients/picture_test.cpp clients/window_test.cpp LIBRARIES video SDL2::SDL2)
 
 # Every interface component against a living simulator, in real processes.
 rtmsim_component(SimulationProbe scenario/simulation_probe.cpp)

@@ -1,5 +1,5 @@
-rtmsim_test(devices_test unit/devices_test.cpp unit/sensor_test.cpp unit/meter_test.cpp unit/sensor_elements_test.cpp unit/car_drive_test.cpp unit/joint_hold_test.cpp unit/real_robots_test.cpp LIBRARIES simserver LABELS sim)
-rtmsim_test(follower_test unit/follower_test.cpp unit/path_test.cpp LIBRARIES simserver LABELS sim)
-rtmsim_test(camera_device_test unit/camera_device_test.cpp LIBRARIES simserver LABELS sim render)
-rtmsim_test(actor_test unit/actor_test.cpp LIBRARIES simserver LABELS sim render)
-rtmsim_test(mesh_collision_test unit/mesh_collision_test.cpp LIBRARIES simserver png LABELS sim)
+rtmsim_test(devices_test devices/devices_test.cpp devices/sensor_test.cpp devices/meter_test.cpp devices/sensor_elements_test.cpp devices/car_drive_test.cpp devices/joint_hold_test.cpp devices/real_robots_test.cpp LIBRARIES simserver LABELS sim)
+rtmsim_test(follower_test devices/follower_test.cpp devices/path_test.cpp LIBRARIES simserver LABELS sim)
+rtmsim_test(camera_device_test devices/camera_device_test.cpp LIBRARIES simserver LABELS sim render)
+rtmsim_test(actor_test devices/actor_test.cpp LIBRARIES simserver LABELS sim render)
+

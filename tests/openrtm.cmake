@@ -1,5 +1,3 @@
-include(${PROJECT_SOURCE_DIR}/cmake/headers_alone.cmake)
-
 rtmsim_headers_alone(openrtm_headers_alone ROOT ${PROJECT_SOURCE_DIR}/rtm-core/openrtm/include FOLDER rtm LIBRARIES openrtm)
 foreach(room component manager openrtm)
   rtmsim_headers_alone(${room}_room_headers_alone ROOT ${PROJECT_SOURCE_DIR}/rtm-core FOLDER ${room} LIBRARIES openrtm)
@@ -20,8 +18,8 @@ rtmsim_test(classic_context_test classic-api/context_test.cpp LIBRARIES openrtm)
 # Component sources in the style of every version of the API; that they compile is the test. LINKED: also as module and program.
 add_subdirectory(classic-api)
 
-rtmsim_test(include_rules_test unit/include_rules_test.cpp unit/lock_rules_test.cpp)
-rtmsim_test(include_closure_test unit/include_closure_test.cpp)
+rtmsim_test(include_rules_test rules/include_rules_test.cpp rules/lock_rules_test.cpp rules/test_lists_test.cpp)
+rtmsim_test(include_closure_test rules/include_closure_test.cpp)
 
 # A program and a module of another project, against the build tree and against an installation.
 foreach(mode build install)

@@ -1,10 +1,10 @@
 # The protocol of Player, player-gateway before a peer of another make, and the follower.
-rtmsim_test(player_protocol_test unit/player_protocol_test.cpp LIBRARIES player_protocol)
-rtmsim_test(player_gateway_test unit/player_gateway_test.cpp LIBRARIES player_gateway)
-rtmsim_test(player_devices_test unit/player_devices_test.cpp unit/new_player_interface_test.cpp LIBRARIES player_gateway)
-rtmsim_test(pose_control_test unit/pose_control_test.cpp LIBRARIES player_gateway)
-rtmsim_test(door_test unit/door_test.cpp LIBRARIES player_gateway)
-rtmsim_test(alarm_test unit/alarm_test.cpp LIBRARIES player_gateway)
+rtmsim_test(player_protocol_test player/player_protocol_test.cpp LIBRARIES player_protocol)
+rtmsim_test(player_gateway_test player/player_gateway_test.cpp LIBRARIES player_gateway)
+rtmsim_test(player_devices_test player/player_devices_test.cpp player/new_player_interface_test.cpp LIBRARIES player_gateway)
+rtmsim_test(pose_control_test player/pose_control_test.cpp LIBRARIES player_gateway)
+rtmsim_test(door_test player/door_test.cpp LIBRARIES player_gateway)
+rtmsim_test(alarm_test player/alarm_test.cpp LIBRARIES player_gateway)
 foreach(case listing drive properties flow rate two_clients gateway_ends restart hung late_and_changing simulation rangers sensors config bad_input stuck)
   add_test(NAME player.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/player.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
@@ -28,7 +28,7 @@ foreach(case accounts key silent exhausted few_descriptors)
   set_tests_properties(player.${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
 
-rtmsim_test(leader_follower_test unit/leader_follower_test.cpp LIBRARIES leader_follower)
+rtmsim_test(leader_follower_test player/leader_follower_test.cpp LIBRARIES leader_follower)
 foreach(case leader losses late_gateway wrong_servers)
   add_test(NAME follow.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/follow.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})

@@ -9,5 +9,5 @@ add_test(NAME server.by_the_page COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/sce
 set_tests_properties(server.by_the_page PROPERTIES LABELS sim TIMEOUT 300)
 add_test(NAME worlds.are_what_their_scripts_write COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/generated_worlds.py ${PROJECT_SOURCE_DIR})
 set_tests_properties(worlds.are_what_their_scripts_write PROPERTIES LABELS world TIMEOUT 300)
-rtmsim_test(pace_test unit/pace_test.cpp LIBRARIES simserver LABELS sim)
-rtmsim_test(wild_run_test unit/wild_run_test.cpp LIBRARIES simserver LABELS sim world)
+rtmsim_test(pace_test server/pace_test.cpp LIBRARIES simserver LABELS sim)
+rtmsim_test(wild_run_test server/wild_run_test.cpp LIBRARIES simserver LABELS sim world)

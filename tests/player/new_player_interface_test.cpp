@@ -56,7 +56,7 @@ TEST(NewPlayerInterface, what_one_interface_needs_stands_in_the_files_of_the_pag
     }
   }
   // How devices are numbered is tested with all of them.
-  unlisted.erase("tests/unit/player_gateway_test.cpp");
+  unlisted.erase("tests/player/player_gateway_test.cpp");
   EXPECT_EQ(unlisted, std::set<std::string>());
 }
 
