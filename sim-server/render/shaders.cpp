@@ -326,7 +326,11 @@ void main() {
 #endif
   }
 #endif
+#if TEXTURE
   vec3 light = base.rgb * diffuse;
+#else
+  vec3 light = base.rgb * min(diffuse, 1.2 - 0.2 / max(diffuse, vec3(1.0)));
+#endif
 #else
   vec3 light = base.rgb;
 #endif

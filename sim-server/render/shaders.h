@@ -6,7 +6,9 @@
 //
 //   diffuse  = ambient * (1 + 0.25 n.z) + sum over lights of  L * max(0, n.l)
 //   specular = sum over lights of  L.specular * material.specular * max(0, n.h)^shininess    with h = (l + v) / |l + v|, where n.l > 0
-//   linear   = emissive + material diffuse * diffuse + specular       materials without lighting: emissive + material diffuse
+//   linear   = emissive + material diffuse * toned + specular         materials without lighting: emissive + material diffuse
+//   toned    = min(diffuse, 1.2 - 0.2 / max(diffuse, 1)), for each colour: light above 1 counts little, so that paint under many lamps
+//              keeps its colour and what shade it has
 //              with a texture: min(1, emissive + material diffuse * diffuse) * texture + specular, so that no light makes a picture
 //              brighter than it is; an emissive map stays outside of that
 //   L        = light diffuse * intensity * reach * shade
