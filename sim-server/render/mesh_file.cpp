@@ -307,7 +307,7 @@ base::Result<MeshFile> read_file(const MeshShape& shape, Skin* skin, const Model
                                                              aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_FlipUVs |
                                                              aiProcess_ImproveCacheLocality | aiProcess_TransformUVCoords);
     if (scene == nullptr || scene->mRootNode == nullptr)
-      return base::Error{fmt::format("mesh {}: {}", shape.path, base::in_quotes(importer.GetErrorString()))};
+      return base::Error{fmt::format("mesh {}: {}", shape.path, import_fault(importer.GetErrorString()))};
     MeshFile file = Reader(*scene, shape, skin, model_path).read();
     if (file.mesh.indices.empty() && !shape.submesh.empty() && !by_id) return read_file(shape, skin, model_path, true);
     if (file.mesh.indices.empty())

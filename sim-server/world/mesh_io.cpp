@@ -52,6 +52,10 @@ std::string with_named_images(const std::string& collada) {
   return copied == 0 ? collada : out.append(collada, copied);
 }
 
+std::string import_fault(std::string_view said) {
+  return said.find("bad_alloc") != std::string_view::npos ? "is too large for the memory" : base::in_quotes(said);
+}
+
 bool MeshIo::Exists(const char* file) const {
   std::error_code problem;
   return std::filesystem::is_regular_file(file, problem);

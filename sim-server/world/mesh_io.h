@@ -14,6 +14,9 @@ namespace sim {
 inline constexpr std::string_view no_image = "no_image";
 std::string with_named_images(const std::string& collada);
 
+// What to say of an importer that gave nothing: Assimp passes on the name of the exception when memory runs out.
+std::string import_fault(std::string_view said);
+
 class MeshIo : public Assimp::DefaultIOSystem {
  public:
   bool Exists(const char* file) const override;

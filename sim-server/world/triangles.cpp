@@ -81,7 +81,7 @@ base::Result<TriangleMesh> read_mesh(const MeshShape& shape, bool by_id = false)
         importer.ReadFile(shape.path, aiProcess_Triangulate | aiProcess_RemoveComponent | aiProcess_JoinIdenticalVertices |
                                           aiProcess_SortByPType | aiProcess_FindDegenerates);
     if (scene == nullptr || scene->mRootNode == nullptr) {
-      return base::Error{fmt::format("mesh {}: {}", shape.path, base::in_quotes(importer.GetErrorString()))};
+      return base::Error{fmt::format("mesh {}: {}", shape.path, import_fault(importer.GetErrorString()))};
     }
     TriangleMesh mesh;
     collect(*scene, *scene->mRootNode, aiMatrix4x4(), shape, false, mesh);

@@ -159,6 +159,7 @@ base::Result<pugi::xml_document> parse_xml(const std::string& text, const std::s
   pugi::xml_document document;
   pugi::xml_parse_result parsed =
       document.load_buffer(text.data(), text.size(), pugi::parse_default, is_bytes ? pugi::encoding_utf8 : pugi::encoding_auto);
+  if (parsed.status == pugi::status_out_of_memory) return base::Error{file_name + ": is too large for the memory"};
   LineTable lines(text);
   if (!parsed && is_bytes) {
     const MendedText mended = mend_xml_text(text);

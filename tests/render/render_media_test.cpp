@@ -2,8 +2,11 @@
 // nothing, light of their own, DirectDraw surfaces.
 #include <gmock/gmock.h>
 
+#include <cstring>
+
 #include "render/dds.h"
 #include "support/material_table.h"
+#include "support/memory_limit.h"
 #include "world/materials.h"
 
 namespace sim {
@@ -184,6 +187,25 @@ TEST(RenderMedia, shapes_of_too_many_corners_are_refused_and_large_height_maps_t
   EXPECT_EQ((*grid)->columns, 2049);
   EXPECT_NEAR((*grid)->heights.front(), 0, 1e-3);
   EXPECT_NEAR((*grid)->heights.back(), 255, 1e-3) << "the corners stay where they are";
+}
+
+// A binary STL that claims two million triangles, of which the disk holds none.
+TEST(RenderMedia, meshes_that_the_memory_does_not_hold_are_named) {
+  if (!test::MemoryLimit::is_kept) GTEST_SKIP() << "sanitizers need the memory";
+  const WorldFiles files;
+  std::string head(84, ' ');
+  const std::uint32_t count = 2000000;
+  std::memcpy(head.data() + 80, &count, 4);
+  const std::string path = files.write("large.stl", head);
+  std::filesystem::resize_file(path, 84 + 50ULL * count);
+  const MeshShape shape{path, "", false, Eigen::Vector3d::Ones()};
+  const test::MemoryLimit limit(16U << 20U);
+  const auto seen = read_mesh_file(shape);
+  const auto met = TriangleCache().triangles(shape);
+  ASSERT_FALSE(seen);
+  ASSERT_FALSE(met);
+  EXPECT_EQ(seen.error().message, "mesh " + path + ": is too large for the memory");
+  EXPECT_EQ(met.error().message, "mesh " + path + ": is too large for the memory");
 }
 
 // --- DirectDraw surfaces

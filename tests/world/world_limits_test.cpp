@@ -2,6 +2,7 @@
 // is quadratic these tests reach their watchdog.
 #include <gmock/gmock.h>
 
+#include "support/memory_limit.h"
 #include "support/world_files.h"
 
 namespace sim {
@@ -73,6 +74,17 @@ TEST(LargeFiles, with_a_long_road_are_loaded) {
                         repeated(50000, [](int i) { return "<point>" + std::to_string(i) + " 0 0</point>"; }) + "</road>");
   ASSERT_EQ(result.world.models.size(), 1U);
   EXPECT_EQ(result.world.models[0].links.at(0).visuals.size(), 99999U);
+}
+
+TEST(LargeFiles, that_the_memory_does_not_hold_are_named) {
+  if (!test::MemoryLimit::is_kept) GTEST_SKIP() << "sanitizers need the memory";
+  const WorldFiles files;
+  const std::string text = "<sdf version='1.9'><world name='w'><!--" + std::string(48U << 20U, 'x') + "--></world></sdf>";
+  const test::MemoryLimit limit(16U << 20U);
+  const auto result = files.load_text(text);
+  ASSERT_FALSE(result);
+  EXPECT_THAT(result.error().message, testing::StartsWith("w.sdf: "));
+  EXPECT_THAT(result.error().message, HasSubstr("memory"));
 }
 
 }  // namespace
