@@ -1,6 +1,7 @@
 #include "shm/attention.h"
 
 #include "shm/futex.h"
+#include "shm/participant_slots.h"
 #include "shm/words.h"
 
 namespace shm {
@@ -9,6 +10,7 @@ void call_attention(const Segment& simulation) {
   auto& control = simulation.as<Control>(AreaIndex::control);
   word(control.attention).fetch_add(1, std::memory_order_seq_cst);
   ring(control.attention, control.attention_waiting);
+  wake_server(control);  // who may be waiting for participants
 }
 
 void call_server_of(const SegmentName& iface) {

@@ -58,6 +58,7 @@ struct Barrier::State {
   std::vector<Member> members;  // by phase, then in the order of joining
   std::uint32_t seen_epoch = 0;
   std::uint64_t seen_deaths = 0;
+  std::uint32_t seen_attention = 0;  // of requests and the like, which are served while a tick waits
   bool has_scanned = false;
   const bool has_processors = std::thread::hardware_concurrency() > 1;
   bool is_ticking = false, has_gone = false;  // gone: members with owner 0 are to be removed after the tick
@@ -254,6 +255,10 @@ bool Barrier::State::wait_for(std::span<Member*> group) {
       let_go();
     }
     if (all_done()) break;
+    if (const auto called = load(shared.attention, std::memory_order_seq_cst); called != seen_attention) {
+      seen_attention = called;
+      if (options.on_waiting && !options.on_waiting()) return false;
+    }
     // The clock is read only when one sleep was not enough.
     if (++sleeps == 2) {
       start = last_look = steady_clock::now();
