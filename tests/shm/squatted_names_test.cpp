@@ -1,6 +1,7 @@
 // Another account makes files in /dev/shm under the names that a server needs, before the server starts.
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 
 #include <filesystem>
@@ -38,9 +39,13 @@ class SquattedNames : public ::testing::TestWithParam<mode_t> {
  protected:
   void SetUp() override {
     if (::geteuid() != 0) GTEST_SKIP() << "only root can be two others";
+    // All servers of one account share a refuge: the other tests of this program, each in a process of its own, wait here.
+    turn_ = ::open("/proc/self/exe", O_RDONLY | O_CLOEXEC);
+    ASSERT_EQ(::flock(turn_, LOCK_EX), 0) << errno;
   }
   void TearDown() override {
     for (const auto& path : taken_) ::unlink(path.c_str());
+    if (turn_ >= 0) ::close(turn_);
   }
   void take(std::uint32_t id, IfaceType type, const std::string& name, mode_t mode) {
     taken_.push_back(usual_path(user, id, type, name));
@@ -50,6 +55,7 @@ class SquattedNames : public ::testing::TestWithParam<mode_t> {
 
  private:
   std::vector<std::string> taken_;
+  int turn_ = -1;
 };
 
 TEST_P(SquattedNames, do_not_keep_a_server_from_its_id) {
