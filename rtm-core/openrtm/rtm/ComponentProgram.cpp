@@ -6,6 +6,8 @@
 #include <iostream>
 #include <string_view>
 
+#include "rtm/Manager.h"
+
 namespace RTC {
 namespace {
 
@@ -110,6 +112,42 @@ std::optional<int> answerForItself(int argc, char** argv, const std::string& com
     return EXIT_SUCCESS;
   }
   return std::nullopt;
+}
+
+namespace {
+
+// The manager calls back with itself only.
+struct Program {
+  std::string component;
+  void (*init)(Manager*) = nullptr;
+  bool is_made = false;
+};
+
+Program& program() {
+  static Program one;
+  return one;
+}
+
+void make_component(Manager* manager) {
+  program().init(manager);
+  program().is_made = manager->createComponent(program().component.c_str()) != nullptr;
+}
+
+}  // namespace
+
+int runComponentProgram(int argc, char** argv, const std::string& component, const std::string& version, void (*init)(Manager*)) {
+  if (const auto answered = answerForItself(argc, argv, component, version)) return *answered;
+  program() = {component, init};
+  Manager* manager = Manager::init(argc, argv);
+  manager->setModuleInitProc(make_component);
+  manager->activateManager();
+  if (!program().is_made) {
+    std::cerr << component << "Comp: the component could not be created" << std::endl;
+    manager->shutdown();
+    return EXIT_FAILURE;
+  }
+  manager->runManager();
+  return EXIT_SUCCESS;
 }
 
 }  // namespace RTC
