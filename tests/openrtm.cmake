@@ -1,6 +1,6 @@
-rtmsim_headers_alone(openrtm_headers_alone ROOT ${PROJECT_SOURCE_DIR}/rtm-core/openrtm/include FOLDER rtm LIBRARIES openrtm)
+rtmsim_headers_alone(openrtm_headers_alone ROOT ${PROJECT_SOURCE_DIR}/rtm-core/openrtm/include FOLDER rtm SOURCES ${PROJECT_SOURCE_DIR}/rtm-core/openrtm/rtm LIBRARIES openrtm)
 foreach(room component manager openrtm)
-  rtmsim_headers_alone(${room}_room_headers_alone ROOT ${PROJECT_SOURCE_DIR}/rtm-core FOLDER ${room} LIBRARIES openrtm)
+  rtmsim_headers_alone(${room}_room_headers_alone ROOT ${PROJECT_SOURCE_DIR}/rtm-core FOLDER ${room} SOURCES ${PROJECT_SOURCE_DIR}/rtm-core/${room} LIBRARIES openrtm)
 endforeach()
 
 # Users copy the examples: they keep to what OpenRTM-aist has as well. Compiled, never linked.

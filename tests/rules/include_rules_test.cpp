@@ -45,21 +45,21 @@ const std::vector<Layer> layers = {
     {"sim-server/render", {"render", "world", "base"}, {"OpenGL", "Assimp", "PNG", "JPEG", "Eigen", "spdlog"}},
     {"sim-server",
      {"devices", "server", "simctl", "shm", "world", "physics", "rays", "render", "base"},
-     {"Eigen", "JSON", "PNG", "spdlog", "CLI11"}},
+     {"Eigen", "JSON", "PNG", "spdlog"}},
     {"iface-components", {"rtm", "coil", "shm", "base", "stubs"}, {"JPEG"}},
     {"clients/examples", {"rtm", "coil", "base", "stubs"}},
     {"clients/obstacle-avoidance", {"rtm", "coil", "base", "stubs"}},
     {"clients/video-player", {"rtm", "coil", "base", "stubs"}, {"SDL2", "X11", "JPEG", "PNG"}},
-    {"clients/system-editor", {"corba", "base", "stubs"}, {"omniORB", "pugixml", "JSON", "YAML", "CLI11", "spdlog", "ncurses"}},
+    {"clients/system-editor", {"corba", "base", "stubs"}, {"omniORB", "pugixml", "JSON", "YAML", "spdlog", "ncurses"}},
     {"clients/channels/views", {"views", "ros", "shm", "base"}, {"JSON", "JPEG"}},
     {"clients/channels", {"ros", "base", "stubs"}},
     {"clients/recorder/mcap", {"mcap", "base"}, {"zstd", "lz4", "deflate"}},
-    {"clients/recorder", {"mcap", "ros", "views", "shm", "base", "stubs"}, {"omniORB", "JSON", "CLI11", "PNG", "JPEG"}},
-    {"clients/campaign", {"base", "stubs"}, {"omniORB", "pugixml", "JSON", "YAML", "Eigen", "SQLite", "CLI11"}},
-    {"clients/studio", {"views", "simctl", "shm", "base", "stubs"}, {"omniORB", "Boost", "JSON", "CLI11", "deflate", "JPEG"}},
+    {"clients/recorder", {"mcap", "ros", "views", "shm", "base", "stubs"}, {"omniORB", "JSON", "PNG", "JPEG"}},
+    {"clients/campaign", {"base", "stubs"}, {"omniORB", "pugixml", "JSON", "YAML", "Eigen", "SQLite"}},
+    {"clients/studio", {"views", "simctl", "shm", "base", "stubs"}, {"omniORB", "Boost", "JSON", "deflate", "JPEG"}},
     {"clients/player-gateway/protocol", {"protocol", "base"}},
-    {"clients/player-gateway", {"protocol", "shm", "base"}, {"JSON", "YAML", "CLI11", "spdlog"}},
-    {"clients/follow", {"protocol", "base"}, {"CLI11"}},
+    {"clients/player-gateway", {"protocol", "shm", "base"}, {"JSON", "YAML", "spdlog"}},
+    {"clients/follow", {"protocol", "base"}},
 };
 
 // Whose header this is: a part of the project, a library, or "" for one of neither.
@@ -198,6 +198,29 @@ Names offences(const fs::path& root) {
   return found;
 }
 
+// Headers with a source of their own are compiled alone by that (cmake/headers_alone.cmake): it must include them before anything else.
+Names not_own_first(const fs::path& root) {
+  Names found;
+  for (const char* folder :
+       {"rtm-core/openrtm/rtm", "rtm-core/openrtm/coil", "rtm-core/component", "rtm-core/manager", "rtm-core/openrtm"}) {
+    if (!fs::exists(root / folder)) continue;
+    for (const auto& entry : fs::directory_iterator(root / folder)) {
+      if (entry.path().extension() != ".cpp") continue;
+      const std::string name = entry.path().stem().string() + ".h";
+      const std::string part = entry.path().parent_path().filename().string();
+      const bool has_header = fs::exists(entry.path().parent_path() / name) || fs::exists(root / "rtm-core/openrtm/include" / part / name);
+      const std::string text = source_text(entry.path());
+      const auto line = text.substr(std::min(text.find("#include"), text.size()), 200);
+      const auto first = line.substr(0, line.find('\n'));
+      const bool is_own = first.find("/" + name) != std::string::npos || first.find("\"" + name) != std::string::npos;
+      if (has_header && !is_own)
+        found.push_back(std::string(folder) + "/" + entry.path().filename().string() + ": does not begin with " + name);
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
 class PlantedTree : public testing::Test {
  protected:
   PlantedTree() : root_(fs::path(testing::TempDir()) / ("include_rules_" + std::to_string(getpid()))) {}
@@ -212,6 +235,17 @@ class PlantedTree : public testing::Test {
 };
 
 TEST(IncludeRules, hold_in_the_whole_project) { EXPECT_EQ(offences(paths::source_dir), Names{}); }
+
+TEST(IncludeRules, a_source_begins_with_its_own_header) { EXPECT_EQ(not_own_first(paths::source_dir), Names{}); }
+
+TEST_F(PlantedTree, a_source_that_does_not_begin_with_its_own_header_is_found) {
+  plant("rtm-core/openrtm/include/rtm/a.h", "");
+  plant("rtm-core/openrtm/rtm/a.cpp", "#include <rtm/b.h>\n#include <rtm/a.h>\n");
+  plant("rtm-core/component/c.h", "");
+  plant("rtm-core/component/c.cpp", "// text\n#include \"component/c.h\"\n");
+  plant("rtm-core/component/d.cpp", "#include <string>\n");
+  EXPECT_EQ(not_own_first(root_), Names{"rtm-core/openrtm/rtm/a.cpp: does not begin with a.h"});
+}
 
 TEST_F(PlantedTree, every_kind_of_offence_is_found) {
   plant("rtm-core/core/a.h", "#pragma once\n#include <omniORB4/CORBA.h>\n#include \"corba/orb.h\"\n#include <vector>\n");

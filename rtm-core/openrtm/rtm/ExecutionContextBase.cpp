@@ -1,3 +1,5 @@
+#include "rtm/ExecutionContextBase.h"
+
 #include <coil/stringutil.h>
 #include <rtm/NVUtil.h>
 #include "component/context_impl.h"

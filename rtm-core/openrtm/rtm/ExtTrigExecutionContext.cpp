@@ -1,5 +1,6 @@
+#include "rtm/ExtTrigExecutionContext.h"
+
 #include <rtm/ECFactory.h>
-#include <rtm/ExtTrigExecutionContext.h>
 
 #include "core/workers.h"
 

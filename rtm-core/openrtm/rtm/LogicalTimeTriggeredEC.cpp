@@ -1,5 +1,6 @@
+#include "rtm/LogicalTimeTriggeredEC.h"
+
 #include <rtm/ECFactory.h>
-#include <rtm/LogicalTimeTriggeredEC.h>
 
 #include "base/clock.h"
 #include "core/workers.h"

@@ -1,5 +1,6 @@
+#include "rtm/MultilayerCompositeEC.h"
+
 #include <rtm/ECFactory.h>
-#include <rtm/MultilayerCompositeEC.h>
 #include <rtm/RTObject.h>
 
 #include "base/text.h"

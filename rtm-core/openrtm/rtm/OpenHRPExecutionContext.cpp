@@ -1,5 +1,6 @@
+#include "rtm/OpenHRPExecutionContext.h"
+
 #include <rtm/ECFactory.h>
-#include <rtm/OpenHRPExecutionContext.h>
 
 #include "core/workers.h"
 

@@ -1,9 +1,10 @@
+#include "rtm/PeriodicECSharedComposite.h"
+
 #include <coil/stringutil.h>
 #include <rtm/Factory.h>
 #include <rtm/Manager.h>
 #include <rtm/NamingManager.h>
 #include <rtm/PeriodicECOrganization.h>
-#include <rtm/PeriodicECSharedComposite.h>
 
 #include "base/text.h"
 

@@ -1,5 +1,6 @@
+#include "rtm/PeriodicExecutionContext.h"
+
 #include <rtm/ECFactory.h>
-#include <rtm/PeriodicExecutionContext.h>
 
 #include <pthread.h>
 

@@ -1,3 +1,5 @@
+#include "rtm/RTObject.h"
+
 #include <coil/stringutil.h>
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/Manager.h>

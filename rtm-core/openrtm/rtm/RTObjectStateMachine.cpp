@@ -1,5 +1,6 @@
+#include "rtm/RTObjectStateMachine.h"
+
 #include <rtm/ExecutionContextBase.h>
-#include <rtm/RTObjectStateMachine.h>
 
 #include "base/clock.h"
 #include "core/execution_context.h"

@@ -1,7 +1,8 @@
+#include "rtm/SdoConfiguration.h"
+
 #include <rtm/ConfigAdmin.h>
 #include <rtm/NVUtil.h>
 #include <rtm/RTObject.h>
-#include <rtm/SdoConfiguration.h>
 #include <rtm/SdoServiceAdmin.h>
 
 #include "base/text.h"

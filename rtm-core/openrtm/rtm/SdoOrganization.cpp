@@ -1,5 +1,6 @@
+#include "rtm/SdoOrganization.h"
+
 #include <rtm/NVUtil.h>
-#include <rtm/SdoOrganization.h>
 
 #include <algorithm>
 

@@ -1,5 +1,6 @@
+#include "rtm/SdoServiceAdmin.h"
+
 #include <coil/stringutil.h>
-#include <rtm/SdoServiceAdmin.h>
 #include "component/log_consumer.h"
 #include "component/observer.h"
 

@@ -1,5 +1,6 @@
+#include "rtm/SimulatorExecutionContext.h"
+
 #include <rtm/ECFactory.h>
-#include <rtm/SimulatorExecutionContext.h>
 
 namespace RTC {
 
