@@ -1,8 +1,8 @@
 // The verbs of rtse that are about campaigns. Each adds its part of the command line; see command.h of the system editor.
 #pragma once
 
-namespace CLI {
-class App;
+namespace base {
+class Command;
 }
 namespace editor {
 struct Chosen;
@@ -10,8 +10,8 @@ struct Chosen;
 
 namespace campaign {
 
-void add_sweep(CLI::App& app, editor::Chosen& chosen);
-void add_hunt(CLI::App& app, editor::Chosen& chosen);
-void add_results(CLI::App& app, editor::Chosen& chosen);
+void add_sweep(base::Command& app, editor::Chosen& chosen);
+void add_hunt(base::Command& app, editor::Chosen& chosen);
+void add_results(base::Command& app, editor::Chosen& chosen);
 
 }  // namespace campaign

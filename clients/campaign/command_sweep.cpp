@@ -187,11 +187,11 @@ void sweep_plan(Editor& editor, const SweepCall& call) {
 
 }  // namespace
 
-void add_sweep(CLI::App& app, editor::Chosen& chosen) {
+void add_sweep(base::Command& app, editor::Chosen& chosen) {
   auto* command = app.add_subcommand("sweep", "Run all rows of a plan and store their results");
   auto call = std::make_shared<SweepCall>();
-  auto* plan = command->add_option("PLAN", call->plan, "Plan, YAML (docs/campaigns.md)")->check(CLI::ExistingFile);
-  command->add_option("-j,--jobs", call->jobs, "So many rows at a time")->check(CLI::Range(1, 256))->capture_default_str();
+  auto* plan = command->add_option("PLAN", call->plan, "Plan, YAML (docs/campaigns.md)")->check(base::existing_file());
+  command->add_option("-j,--jobs", call->jobs, "So many rows at a time")->check(base::integer_between(1, 256))->capture_default_str();
   command->add_option("-o,--results", call->results, "SQLite file; default: the plan's name with .db");
   command->add_option("--keep", call->keep, "Folder for files of rows that fail; default: the results' name with .runs");
   auto* row = command->add_option("--row", call->row, "Run only this row, whatever is stored, and keep its files")
@@ -201,9 +201,9 @@ void add_sweep(CLI::App& app, editor::Chosen& chosen) {
     return parse_rows(text) ? std::string() : "expected N or FIRST..LAST, got " + base::in_quotes(text);
   });
   command->add_option("--engine", call->engine, "local, or parallel: print command lines that run all rows, for GNU parallel")
-      ->check(CLI::IsMember({"local", "parallel"}))
+      ->check(base::one_of({"local", "parallel"}))
       ->capture_default_str();
-  command->add_option("--chunk", call->chunk, "Rows of each command line")->check(CLI::Range(1, 1000000))->capture_default_str();
+  command->add_option("--chunk", call->chunk, "Rows of each command line")->check(base::integer_between(1, 1000000))->capture_default_str();
   command->add_option("--audit", call->audit, "Run this fraction of the stored rows again and compare, as 5% or 0.05")
       ->excludes(row)
       ->check([](const std::string& text) {

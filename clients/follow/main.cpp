@@ -167,16 +167,16 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{
+  base::Command app{
       "follow: a client of Player that drives a robot after another one\nThe leader is the thing of fitting width nearest ahead when it "
       "starts; from then on it is "
       "known by where it was before."};
   base::add_standard_options(app, "follow", RTMSIM_VERSION);
   Options options;
   app.add_option("--host", options.host, "Where player-gateway, or another server of Player, runs")->capture_default_str();
-  app.add_option("-p,--port", options.port, "Its port for this robot")->check(CLI::Range(1, 65535))->capture_default_str();
-  app.add_option("--position2d", options.drive, "Index of the drive")->check(CLI::Range(0, 65535))->capture_default_str();
-  app.add_option("--laser", options.laser, "Index of the scanner")->check(CLI::Range(0, 65535))->capture_default_str();
+  app.add_option("-p,--port", options.port, "Its port for this robot")->check(base::integer_between(1, 65535))->capture_default_str();
+  app.add_option("--position2d", options.drive, "Index of the drive")->check(base::integer_between(0, 65535))->capture_default_str();
+  app.add_option("--laser", options.laser, "Index of the scanner")->check(base::integer_between(0, 65535))->capture_default_str();
   app.add_option("--distance", options.steering.distance, "To keep from the leader [m]")
       ->check(base::number_between(0.4, 10))
       ->capture_default_str();

@@ -19,13 +19,12 @@ void block_signals() {
   sigprocmask(SIG_BLOCK, &signals, nullptr);
 }
 
-const CLI::Validator is_key(
-    [](const std::string& text) {
-      return text.empty() || text.size() > gateway::Door::max_key
-                 ? "key must have 1 to " + std::to_string(gateway::Door::max_key) + " characters"
-                 : std::string();
-    },
-    "KEY");
+const base::Check is_key{[](const std::string& text) {
+                           return text.empty() || text.size() > gateway::Door::max_key
+                                      ? "key must have 1 to " + std::to_string(gateway::Door::max_key) + " characters"
+                                      : std::string();
+                         },
+                         "KEY"};
 
 int fail(const base::Error& error) {
   std::cerr << "player-gateway: " << error.message << '\n';
@@ -35,7 +34,7 @@ int fail(const base::Error& error) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{
+  base::Command app{
       "player-gateway: let clients of Player drive the robots of a simulation\nServes the TCP protocol of Player 3.1: each robot of the "
       "world on "
       "a port of its own, or what a mapping file says. Prints a line for each port."};
@@ -44,11 +43,11 @@ int main(int argc, char** argv) {
   std::string config;
   bool is_quiet = false;
   app.add_option("-s,--server-id", options.server_id, "Which simulator")
-      ->check(CLI::Range(0, 9999))
+      ->check(base::integer_between(0, 9999))
       ->envname("RTMSIM_SERVER_ID")
       ->capture_default_str();
   auto* port = app.add_option("-p,--port", options.first_port, "Port of the first robot, the others follow; 0: any free ports")
-                   ->check(CLI::Range(0, 65535))
+                   ->check(base::integer_between(0, 65535))
                    ->capture_default_str();
   app.add_option("--address", options.address, "Address to listen on; 0.0.0.0: all")->capture_default_str();
   app.add_option("--auth", options.door.key,

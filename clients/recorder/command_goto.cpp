@@ -227,20 +227,20 @@ void go(Editor& editor, const Options& options) {
 
 }  // namespace
 
-void add_goto(CLI::App& app, editor::Chosen& chosen) {
+void add_goto(base::Command& app, editor::Chosen& chosen) {
   auto* command =
       app.add_subcommand("goto", "Make a recorded run again, as fast as it can, and stand at a moment of it with all processes alive");
   auto options = std::make_shared<Options>();
   command->add_option("RUN", options->what, "A recording of rtse run --record, or an RTSProfile with --world")
       ->required()
-      ->check(CLI::ExistingFile);
+      ->check(base::existing_file());
   auto* time = command->add_option("TIME", options->time_s, "Simulated seconds")->check(base::number_between(0.0, 1e7));
   command->add_option("--until", options->time_s, "The same")->check(base::number_between(0.0, 1e7))->excludes(time);
   command->add_option(
       "--break", options->condition,
       "Stand at the first tick in which this holds, e.g. 'pose(pioneer2dx).x > 2 && A0:out.data < 0.1'; TIME ends the search");
-  command->add_option("--back", options->back, "So many ticks before that")->check(CLI::Range(0, 1000000));
-  command->add_option("-w,--world", options->world, "With a profile: SDFormat world")->check(CLI::ExistingFile);
+  command->add_option("--back", options->back, "So many ticks before that")->check(base::integer_between(0, 1000000));
+  command->add_option("-w,--world", options->world, "With a profile: SDFormat world")->check(base::existing_file());
   command->add_option("--then", options->then, "Run this shell command there and end, instead of reading commands");
   command->add_option("--seed", options->seed, "Seed of the world's noise, if not the recorded one")->check(base::number_between(0, 1e18));
   command->add_option("--module-path", options->module_paths, "Folder with modules of components")->allow_extra_args(false);

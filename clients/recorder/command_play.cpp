@@ -202,7 +202,7 @@ void play(Editor& editor, const PlayOptions& options) {
 
 }  // namespace
 
-void add_play(CLI::App& app, editor::Chosen& chosen) {
+void add_play(base::Command& app, editor::Chosen& chosen) {
   auto* command = app.add_subcommand("play", "Send a recording into InPorts of a running system, as fast as it was recorded");
   auto options = std::make_shared<PlayOptions>();
   command->add_option("FILE", options->file, "The recording")->required();

@@ -268,7 +268,7 @@ void record(Editor& editor, const RecordOptions& options) {
 
 }  // namespace
 
-void add_record(CLI::App& app, editor::Chosen& chosen) {
+void add_record(base::Command& app, editor::Chosen& chosen) {
   auto* command = app.add_subcommand("record", "Record what ports send into an MCAP file");
   auto options = std::make_shared<RecordOptions>();
   command->add_option("PORT", options->ports, "OutPorts");
@@ -296,7 +296,7 @@ void add_record(CLI::App& app, editor::Chosen& chosen) {
       ->check(base::number_between(1e-3, 1e6));
   command->add_option("--last", options->last_s, "Keep only so many seconds before the end")->check(base::number_between(0.1, 1e6));
   command->add_option("--compression", options->compression, "zstd, lz4 or none")
-      ->check(CLI::IsMember({"zstd", "lz4", "none"}))
+      ->check(base::one_of({"zstd", "lz4", "none"}))
       ->capture_default_str();
   command->add_option("-s,--server-id", options->server_id, "The simulator whose time counts; default: $RTMSIM_SERVER_ID, else 0")
       ->check(base::number_between(0, 9999));

@@ -310,7 +310,7 @@ void repair(Editor& editor, const std::string& file, const std::string& output) 
   if (done->damage) std::cout << *done->damage << '\n';
 }
 
-void add_selection(CLI::App& command, Selection& selection) {
+void add_selection(base::Command& command, Selection& selection) {
   command.add_option("FILE", selection.file, "The recording")->required();
   command.add_option("CHANNEL", selection.topics, "Topics or COMPONENT:PORT, patterns too; default: all");
   command.add_option("--from", selection.from_s, "From this time on [s]")->check(base::number_between(0.0, 1e10));
@@ -319,10 +319,10 @@ void add_selection(CLI::App& command, Selection& selection) {
 
 }  // namespace
 
-void add_recording(CLI::App& app, editor::Chosen& chosen) {
+void add_recording(base::Command& app, editor::Chosen& chosen) {
   auto* recording = app.add_subcommand("recording", "Look into recordings");
   recording->require_subcommand(1);
-  const auto choose = [&chosen](CLI::App* command, std::function<void(Editor&)> work) {
+  const auto choose = [&chosen](base::Command* command, std::function<void(Editor&)> work) {
     command->callback([&chosen, work = std::move(work)] {
       chosen.needs_orb = false;
       chosen.work = work;

@@ -222,7 +222,7 @@ void replay_file(Editor& editor, const Options& options) {
 
 }  // namespace
 
-void add_replay(CLI::App& app, editor::Chosen& chosen) {
+void add_replay(base::Command& app, editor::Chosen& chosen) {
   auto* command = app.add_subcommand("replay", "Send a component its recorded inputs again, in lock step, and compare what it answers");
   auto options = std::make_shared<Options>();
   command->add_option("FILE", options->file, "The recording, of rtse run --record")->required();

@@ -70,10 +70,10 @@ void run_like(Editor& editor, const Options& options) {
 
 }  // namespace
 
-void add_run_like(CLI::App& app, editor::Chosen& chosen) {
+void add_run_like(base::Command& app, editor::Chosen& chosen) {
   auto* command = app.add_subcommand("run", "Make a recorded run again; all options of rtse run besides");
   auto options = std::make_shared<Options>();
-  command->add_option("--like", options->file, "A recording of rtse run --record")->required()->check(CLI::ExistingFile);
+  command->add_option("--like", options->file, "A recording of rtse run --record")->required()->check(base::existing_file());
   command->allow_extras();
   command->fallthrough(false);
   command->callback([&chosen, options, command] {

@@ -1,8 +1,8 @@
 // The verbs of rtse that are about recordings. Each adds its part of the command line; see command.h of the system editor.
 #pragma once
 
-namespace CLI {
-class App;
+namespace base {
+class Command;
 }
 namespace editor {
 struct Chosen;
@@ -10,11 +10,11 @@ struct Chosen;
 
 namespace recorder {
 
-void add_record(CLI::App& app, editor::Chosen& chosen);
-void add_play(CLI::App& app, editor::Chosen& chosen);
-void add_replay(CLI::App& app, editor::Chosen& chosen);
-void add_run_like(CLI::App& app, editor::Chosen& chosen);
-void add_goto(CLI::App& app, editor::Chosen& chosen);
-void add_recording(CLI::App& app, editor::Chosen& chosen);  // info, ls, cat, export, compare, repair
+void add_record(base::Command& app, editor::Chosen& chosen);
+void add_play(base::Command& app, editor::Chosen& chosen);
+void add_replay(base::Command& app, editor::Chosen& chosen);
+void add_run_like(base::Command& app, editor::Chosen& chosen);
+void add_goto(base::Command& app, editor::Chosen& chosen);
+void add_recording(base::Command& app, editor::Chosen& chosen);  // info, ls, cat, export, compare, repair
 
 }  // namespace recorder

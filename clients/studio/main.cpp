@@ -19,19 +19,21 @@ struct Settings {
   studio::StartOptions start;
 };
 
-void add_options(CLI::App& app, Settings& settings) {
+void add_options(base::Command& app, Settings& settings) {
   auto* world =
-      app.add_option("-w,--world", settings.start.world, "SDFormat world: start a simulator of it, paused")->check(CLI::ExistingFile);
+      app.add_option("-w,--world", settings.start.world, "SDFormat world: start a simulator of it, paused")->check(base::existing_file());
   app.add_option("SYSTEM", settings.start.system, "RTSProfile: start its components and a simulator, as rtse run does, paused")
-      ->check(CLI::ExistingFile)
+      ->check(base::existing_file())
       ->needs(world);
   app.add_option("--ns", settings.studio.name_server,
                  "Name server HOST[:PORT]; default: the first of $RTCTREE_NAMESERVERS, else localhost:2809");
   app.add_option("-s,--server-id", settings.studio.server_id, "Which simulator")
-      ->check(CLI::Range(0, 9999))
+      ->check(base::integer_between(0, 9999))
       ->envname("RTMSIM_SERVER_ID")
       ->capture_default_str();
-  app.add_option("-p,--port", settings.web.port, "Port to listen on; 0: any free one")->check(CLI::Range(0, 65535))->capture_default_str();
+  app.add_option("-p,--port", settings.web.port, "Port to listen on; 0: any free one")
+      ->check(base::integer_between(0, 65535))
+      ->capture_default_str();
   app.add_option("--bind", settings.web.address, "Address to listen on; 0.0.0.0: all")->capture_default_str();
   app.add_flag("--read-only", settings.studio.is_read_only, "Show everything, do nothing");
   app.add_option("--host", settings.web.hosts, "A host name that browsers may use for this machine")->allow_extra_args(false);
@@ -83,7 +85,7 @@ int serve(Settings settings) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{
+  base::Command app{
       "rtm-studio: a simulated world, a system of RT components and its signals in a browser\nPrints a URL with a token; without it "
       "nothing is "
       "shown or done."};

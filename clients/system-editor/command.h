@@ -2,10 +2,10 @@
 // file of commands/ has one or more; commands/commands.h lists them. One thread at a time.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 
+#include "base/command.h"
 #include "editor.h"
 
 namespace editor {
@@ -16,9 +16,9 @@ struct Chosen {
   bool needs_orb = true;  // without it the editor has no ORB, and asks no name server
 };
 
-// For what CLI11 cannot say of a command line: exit code 2 and a line.
+// For what the declarations cannot say of a command line: exit code 2 and a line.
 inline void require(bool is_right, const std::string& command, const std::string& expectation) {
-  if (!is_right) throw CLI::ValidationError(command, expectation);
+  if (!is_right) base::reject_command_line(command, expectation);
 }
 
 }  // namespace editor

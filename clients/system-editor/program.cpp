@@ -19,7 +19,7 @@ struct Settings {
   double limit_s = 1;
 };
 
-// CLI11 takes a word in brackets apart at its commas; with a blank before it stays one value, which JSON does not mind.
+// The command line takes a word in brackets apart at its commas; with a blank before it stays one value, which JSON does not mind.
 std::vector<std::string> words_of(int argc, char** argv) {
   std::vector<std::string> words(argv, argv + argc);
   for (auto& word : words) {
@@ -31,7 +31,7 @@ std::vector<std::string> words_of(int argc, char** argv) {
 }  // namespace
 
 int run_program(const std::vector<AddCommand>& commands, int argc, char** argv) {
-  CLI::App app{
+  base::Command app{
       "rtse: list, wire, configure, start and save systems of RT components\n"
       "Paths: /HOST[:PORT]/CONTEXT.KIND/NAME.rtc:PORT, relative to $RTCSH_CWD, or any tail that names one thing (NAME:PORT)."};
   base::add_standard_options(app, "rtse", RTMSIM_VERSION);

@@ -4,15 +4,15 @@
 
 #include <vector>
 
-namespace CLI {
-class App;
+namespace base {
+class Command;
 }
 
 namespace editor {
 
 struct Chosen;
 
-using AddCommand = void (*)(CLI::App& app, Chosen& chosen);
+using AddCommand = void (*)(base::Command& app, Chosen& chosen);
 
 // The exit code: 0 done, 1 failed, 2 wrong command line.
 int run_program(const std::vector<AddCommand>& commands, int argc, char** argv);

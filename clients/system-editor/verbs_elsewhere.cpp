@@ -72,7 +72,7 @@ void become_program_of_verb(int argc, char** argv) {
   if (const Verb* verb = verb_of(argc, argv)) ::execv(path_of(*verb).c_str(), argv);
 }
 
-void add_verbs_elsewhere(CLI::App& app, Chosen& chosen) {
+void add_verbs_elsewhere(base::Command& app, Chosen& chosen) {
   for (const Verb& verb : verbs) {
     auto* command = app.add_subcommand(std::string(verb.name), std::string(verb.description));
     command->prefix_command();

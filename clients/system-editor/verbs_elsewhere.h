@@ -1,8 +1,8 @@
 // Verbs of rtse whose code needs what rtse itself does not load (shared memory, recordings): programs beside it carry them out. One thread.
 #pragma once
 
-namespace CLI {
-class App;
+namespace base {
+class Command;
 }
 
 namespace editor {
@@ -14,6 +14,6 @@ struct Chosen;
 void become_program_of_verb(int argc, char** argv);
 
 // For --help and completion.
-void add_verbs_elsewhere(CLI::App& app, Chosen& chosen);
+void add_verbs_elsewhere(base::Command& app, Chosen& chosen);
 
 }  // namespace editor

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -57,7 +58,8 @@ std::string summary(const CLI::App& app, const std::string& name) {
 
 }  // namespace
 
-std::string manual_page(const CLI::App& app, const std::string& name, const std::string& version) {
+std::string manual_page(const Command& program, const std::string& name, const std::string& version) {
+  const CLI::App& app = program.inner();
   std::string page = ".TH " + name + " 1 \"\" \"rtm-sim " + version + "\"\n.SH NAME\n" + troff(name) + " \\- " + troff(summary(app, name)) +
                      "\n.SH DESCRIPTION\n" + troff(app.get_description()) + "\n";
   page += ".SH OPTIONS\n";
@@ -71,7 +73,8 @@ std::string manual_page(const CLI::App& app, const std::string& name, const std:
   return page + ".SH EXIT STATUS\n0: done; 1: failed, the reason is on standard error; 2: the command line was wrong.\n";
 }
 
-void add_standard_options(CLI::App& app, const std::string& name, const std::string& version) {
+void add_standard_options(Command& program, const std::string& name, const std::string& version) {
+  CLI::App& app = program.inner();
   static const bool is_checked = on_exit(&check_output, nullptr) == 0;
   (void)is_checked;
   app.set_version_flag("--version", name + " " + version);
@@ -86,42 +89,32 @@ void add_standard_options(CLI::App& app, const std::string& name, const std::str
       ->trigger_on_parse();
   app.add_flag_callback(
          "--man",
-         [&app, name, version] {
-           std::cout << manual_page(app, name, version);
+         [&program, name, version] {
+           std::cout << manual_page(program, name, version);
            throw Printed();
          },
          "Print the manual page (view it with: man -l)")
       ->trigger_on_parse();
 }
 
-CLI::Validator number_between(double low, double high) {
-  const auto range = format_number(low) + " - " + format_number(high);
-  return CLI::Validator(
-      [=](const std::string& text) {
-        const auto value = parse_number(text);
-        return value && *value >= low && *value <= high ? std::string() : "must be a number in [" + range + "], got " + text;
-      },
-      "FLOAT in [" + range + "]");
-}
-
-std::optional<int> parse_command_line(CLI::App& app, const std::string& name, int argc, const char* const* argv, const Offers& offers) {
+std::optional<int> parse_command_line(Command& program, const std::string& name, int argc, const char* const* argv, const Offers& offers) {
   if (argc > 1 && std::string_view(argv[1]) == "--complete") {
-    const auto completion = complete(app, {argv + 2, argv + argc}, offers);
+    const auto completion = complete(program, {argv + 2, argv + argc}, offers);
     if (completion.files) std::cout << ":files\n";
     for (const auto& offer : completion.offers) std::cout << offer.text << '\t' << offer.description << '\n';
     return 0;
   }
-  if (const auto word = unknown_command(app, {argv + 1, argv + argc}); !word.empty()) {
+  if (const auto word = unknown_command(program, {argv + 1, argv + argc}); !word.empty()) {
     std::cerr << name << ": unknown command " << in_quotes(word) << "; see " << name << " --help\n";
     return 2;
   }
   try {
-    app.parse(argc, argv);
+    program.inner().parse(argc, argv);
     return std::nullopt;
   } catch (const Printed&) {
     return 0;
   } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return app.exit(e);
+    if (e.get_exit_code() == 0) return program.inner().exit(e);
     std::cerr << name << ": " << e.what() << "; see " << name << " --help\n";
     return 2;
   }

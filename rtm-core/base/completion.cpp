@@ -1,5 +1,6 @@
 #include "base/completion.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <utility>
 
@@ -113,7 +114,8 @@ void offer_options(const CLI::App& app, Completion& completion) {
 
 }  // namespace
 
-std::string unknown_command(const CLI::App& app, const std::vector<std::string>& words) {
+std::string unknown_command(const Command& program, const std::vector<std::string>& words) {
+  const CLI::App& app = program.inner();
   const auto commands = commands_of(app);
   bool is_value = false;
   for (const auto& word : words) {
@@ -130,7 +132,8 @@ std::string unknown_command(const CLI::App& app, const std::vector<std::string>&
   return "";
 }
 
-Completion complete(const CLI::App& app, const std::vector<std::string>& words, const Offers& offers) {
+Completion complete(const Command& program, const std::vector<std::string>& words, const Offers& offers) {
+  const CLI::App& app = program.inner();
   Completion completion;
   if (words.empty()) return completion;
   const auto place = walk(app, words);

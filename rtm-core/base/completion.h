@@ -1,13 +1,14 @@
 // What a shell is told when the user presses the tab key: `PROGRAM --complete WORD...` prints what may stand for the last word, a line
-// each. The scripts that
-// --completion prints ask that way, so that names of the running system are offered too. One thread at a time.
+// each. The scripts that --completion
+// prints ask that way, so that names of the running system are offered too. One thread at a time.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "base/command.h"
 
 namespace base {
 
@@ -28,13 +29,13 @@ struct Completion {
 };
 
 // Words without the program's name; the last is the one at the cursor, as far as it is there.
-Completion complete(const CLI::App& app, const std::vector<std::string>& words, const Offers& offers = {});
+Completion complete(const Command& app, const std::vector<std::string>& words, const Offers& offers = {});
 
 // The subcommands that --help shows.
 std::vector<const CLI::App*> commands_of(const CLI::App& app);
 
 // The word that stands where a command of the program is expected, and is none; empty when there is no such.
-std::string unknown_command(const CLI::App& app, const std::vector<std::string>& words);
+std::string unknown_command(const Command& app, const std::vector<std::string>& words);
 
 // The script for bash or zsh.
 std::string completion_script(const std::string& name, const std::string& shell);

@@ -22,7 +22,7 @@ namespace {
 
 // The options for --help, --completion and --man; they are read by the manager, as those of every component program.
 struct Description {
-  CLI::App app{"rtcd: hosts RT components"};
+  base::Command app{"rtcd: hosts RT components"};
   Description() {
     base::add_standard_options(app, "rtcd", RTMSIM_VERSION);
     app.add_option("MODULE")->description(

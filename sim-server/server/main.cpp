@@ -198,17 +198,18 @@ int run(const Options& options, Signals& signals) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("Loads an SDFormat world and runs it. Every device is an iface in shared memory; simctl shows and controls all of it.",
-               "sim-server");
+  base::Command app("Loads an SDFormat world and runs it. Every device is an iface in shared memory; simctl shows and controls all of it.",
+                    "sim-server");
   base::add_standard_options(app, "sim-server", RTMSIM_VERSION);
   app.add_option("WORLD", options.world, "SDFormat world file")->required();
   app.add_option("-s,--server-id", options.server_id, "number that clients name this server by (0)")
-      ->check(CLI::Range(0, 9999))
+      ->check(base::integer_between(0, 9999))
       ->envname("RTMSIM_SERVER_ID");
   app.add_flag("-u,--paused", options.is_paused, "start paused");
   app.add_option("--rtf", options.rtf, "simulated seconds per second (1); 0: as fast as possible")->check(base::number_between(0.0, 1e6));
   app.add_flag("--lockstep", options.is_lockstep, "time passes only when all participants have finished their tick");
-  app.add_option("--wait-for", options.wait_for, "participants that must join before time starts (0)")->check(CLI::Range(0, 256));
+  app.add_option("--wait-for", options.wait_for, "participants that must join before time starts (0)")
+      ->check(base::integer_between(0, 256));
   app.add_option("--participant-timeout", options.participant_timeout, "seconds after which a hanging participant is dropped (0: never)")
       ->check(base::number_between(0.0, 1e6));
   app.add_option("--duration", options.duration, "end after so many simulated seconds")->check(base::number_between(0.0, 1e9));
@@ -236,12 +237,12 @@ int main(int argc, char** argv) {
   app.add_option("--record", options.record,
                  "write the poses of moving models, ten times a simulated second, as text: time model x y z qw qx qy qz");
   app.add_option("--threads", options.threads, "threads for physics and sensors (0: one per core); no influence on results")
-      ->check(CLI::Range(0, 64));
+      ->check(base::integer_between(0, 64));
   app.add_option("--shm-mode", options.shm_mode, "access mode of the ifaces (0600)");
   app.add_option("--shm-group", options.shm_group, "group of the ifaces");
   app.add_option("--shm-limit", options.shm_limit, "most shared memory that the ifaces may take together, in MiB (1536)")
-      ->check(CLI::Range(1, 1 << 20));
-  app.add_option("-v", options.verbosity, "0 errors, 1 normal, 2 notes, 3 debug (1)")->check(CLI::Range(0, 3));
+      ->check(base::integer_between(1, 1 << 20));
+  app.add_option("-v", options.verbosity, "0 errors, 1 normal, 2 notes, 3 debug (1)")->check(base::integer_between(0, 3));
   if (const auto end = base::parse_command_line(app, "sim-server", argc, argv)) return *end;
   const base::Level levels[] = {base::Level::error, base::Level::info, base::Level::info, base::Level::debug};
   base::set_log_level(levels[options.verbosity]);

@@ -19,11 +19,11 @@ std::shared_ptr<T> option_value(T value = {}) {
   return std::make_shared<T>(std::move(value));
 }
 
-void add_simple(CLI::App& app, Work& work, const char* name, const char* help, Work what) {
+void add_simple(base::Command& app, Work& work, const char* name, const char* help, Work what) {
   app.add_subcommand(name, help)->callback([&work, what] { work = what; });
 }
 
-void add_looks(CLI::App& app, Work& work) {
+void add_looks(base::Command& app, Work& work) {
   auto* list = app.add_subcommand("list", "List the ifaces of the server");
   auto all = option_value(false);
   list->add_flag("-a,--all", *all, "Of all servers");
@@ -55,12 +55,12 @@ void add_looks(CLI::App& app, Work& work) {
 
   auto* clean = app.add_subcommand("clean", "Remove what crashed servers have left in shared memory; with -s, what that one has");
   clean->callback([&app, &work] {
-    const bool is_named = app.get_option("--server-id")->count() > 0;
+    const bool is_named = app.option("--server-id")->count() > 0;
     work = [is_named](Control& c) { simctl::clean(c, is_named); };
   });
 }
 
-void add_control(CLI::App& app, Work& work) {
+void add_control(base::Command& app, Work& work) {
   add_simple(app, work, "pause", "Stop simulated time", [](Control& c) { c.ask(shm::PauseRequest{}); });
   add_simple(app, work, "run", "Let simulated time go on", [](Control& c) { c.ask(shm::RunRequest{}); });
   auto* reset = app.add_subcommand("reset", "World and time as at the start");
@@ -75,7 +75,7 @@ void add_control(CLI::App& app, Work& work) {
 
   auto* step = app.add_subcommand("step", "Make physics steps and pause; returns when they are done");
   auto steps = option_value<std::int64_t>(1);
-  step->add_option("N", *steps, "How many")->check(CLI::Range(1, 1000000000))->capture_default_str();
+  step->add_option("N", *steps, "How many")->check(base::integer_between(1, 1000000000))->capture_default_str();
   auto* paced = step->add_flag("--paced")->description("At the server's real-time factor, instead of as fast as possible");
   step->callback([&work, steps, paced] { work = [steps, paced](Control& c) { simctl::step(c, *steps, paced->count() > 0); }; });
 
@@ -86,7 +86,7 @@ void add_control(CLI::App& app, Work& work) {
   pose->add_option("NUMBERS", *values, "X Y YAW, X Y Z YAW, or X Y Z ROLL PITCH YAW [m, rad]")->expected(0, 6);
   pose->callback([&work, model, values] {
     if (values->size() == 1 || values->size() == 2 || values->size() == 5)
-      throw CLI::ValidationError("pose", "expected X Y YAW, X Y Z YAW or X Y Z ROLL PITCH YAW");
+      base::reject_command_line("pose", "expected X Y YAW, X Y Z YAW or X Y Z ROLL PITCH YAW");
     work = [model, values](Control& c) { simctl::pose(c, *model, *values); };
   });
 
@@ -103,7 +103,7 @@ void add_control(CLI::App& app, Work& work) {
   velocity->add_option("--for", *seconds, "Simulated seconds; default: until interrupted")->check(base::number_between(0.0, 1e9));
   velocity->callback([&work, robot, speeds, seconds] {
     if (const auto n = speeds->size(); n == 1 || n == 2 || n == 5)
-      throw CLI::ValidationError("velocity", "expected 3, 4 or 6 numbers, got " + std::to_string(n));
+      base::reject_command_line("velocity", "expected 3, 4 or 6 numbers, got " + std::to_string(n));
     work = [=](Control& c) {
       if (simctl::is_position_iface(c.server_id(), *robot)) return simctl::velocity(c, *robot, *speeds, *seconds);
       simctl::model_velocity(c, *robot, *speeds);
@@ -119,7 +119,7 @@ void add_control(CLI::App& app, Work& work) {
   wrench->add_option("--for", *duration, "Simulated seconds; default: one step")->check(base::number_between(0.0, 1e6));
   wrench->callback([&work, pushed, forces, duration] {
     if (forces->size() != 3 && forces->size() != 6)
-      throw CLI::ValidationError("wrench", "expected FX FY FZ or FX FY FZ TX TY TZ, got " + std::to_string(forces->size()) + " numbers");
+      base::reject_command_line("wrench", "expected FX FY FZ or FX FY FZ TX TY TZ, got " + std::to_string(forces->size()) + " numbers");
     work = [=](Control& c) { simctl::wrench(c, *pushed, *forces, *duration); };
   });
 
@@ -129,7 +129,7 @@ void add_control(CLI::App& app, Work& work) {
   odometry->add_option("IFACE", *counted, "position2d or position3d iface")->required();
   odometry->add_option("NUMBERS", *origin, "X Y A [m, rad]; default: 0 0 0")->expected(0, 3);
   odometry->callback([&work, counted, origin] {
-    if (origin->size() == 1 || origin->size() == 2) throw CLI::ValidationError("odometry", "expected X Y A or nothing");
+    if (origin->size() == 1 || origin->size() == 2) base::reject_command_line("odometry", "expected X Y A or nothing");
     work = [=](Control& c) { simctl::reset_odometry(c, *counted, *origin); };
   });
 
@@ -137,7 +137,7 @@ void add_control(CLI::App& app, Work& work) {
   auto driven = option_value<std::string>();
   auto how = option_value<std::string>();
   motors->add_option("IFACE", *driven, "position2d or position3d iface")->required();
-  motors->add_option("HOW", *how, "on or off")->required()->check(CLI::IsMember({"on", "off"}));
+  motors->add_option("HOW", *how, "on or off")->required()->check(base::one_of({"on", "off"}));
   motors->callback([&work, driven, how] { work = [=](Control& c) { c.ask(shm::SetMotorsRequest{*driven, *how == "on"}); }; });
 
   auto* spawn = app.add_subcommand("spawn", "Add a model");
@@ -147,8 +147,8 @@ void add_control(CLI::App& app, Work& work) {
   spawn->add_option("--pose", options->pose, "X Y YAW, X Y Z YAW, or X Y Z ROLL PITCH YAW; words or one")->expected(1, 6)->delimiter(' ');
   spawn->callback([&work, options] {
     if (const auto n = options->pose.size(); n == 1 || n == 2 || n == 5 || n > 6) {
-      throw CLI::ValidationError("--pose",
-                                 "expected X Y YAW, X Y Z YAW or X Y Z ROLL PITCH YAW [m, rad], got " + std::to_string(n) + " numbers");
+      base::reject_command_line("--pose",
+                                "expected X Y YAW, X Y Z YAW or X Y Z ROLL PITCH YAW [m, rad], got " + std::to_string(n) + " numbers");
     }
     work = [options](Control& c) { simctl::spawn(c, *options); };
   });
@@ -169,7 +169,7 @@ void add_control(CLI::App& app, Work& work) {
   contacts->callback([&work, touched] { work = [touched](Control& c) { simctl::contacts(c, *touched); }; });
 }
 
-void add_pictures(CLI::App& app, Work& work) {
+void add_pictures(base::Command& app, Work& work) {
   auto* screenshot = app.add_subcommand("screenshot", "Write a picture of the world");
   auto options = option_value<simctl::ScreenshotOptions>();
   screenshot->add_option("FILE", options->file, "PNG")->required()->check([](const std::string& file) {
@@ -189,21 +189,21 @@ void add_pictures(CLI::App& app, Work& work) {
   }
   screenshot->add_option("--size", options->size, "WIDTHxHEIGHT")->capture_default_str();
   screenshot->add_flag("--scans", options->with_scans, "With laser fans, trails and names");
-  screenshot->add_option("--show", "visuals or collisions")
-      ->check(CLI::IsMember({"visuals", "collisions"}))
+  screenshot->add_option("--show")
+      ->description("visuals or collisions")
+      ->check(base::one_of({"visuals", "collisions"}))
       ->each([options](const std::string& what) { options->with_collisions = what == "collisions"; });
   auto* span = screenshot->add_option("--span", options->span, "Metres across (--top) or field of view in rad (--from, --follow)")
                    ->check(base::number_between(1e-3, 1e6));
   span->excludes(camera);
   screenshot->callback([&work, options, from, top, follow, span] {
     if (span->count() > 0 && from->count() + top->count() + follow->count() == 0)
-      throw CLI::ValidationError("--span", "goes with --top, --from or --follow");
+      base::reject_command_line("--span", "goes with --top, --from or --follow");
     if (!std::all_of(options->from.begin(), options->from.end(), [](double v) { return std::isfinite(v); }))
-      throw CLI::ValidationError("--from", "expected finite numbers");
-    if (!simctl::parse_size(options->size)) throw CLI::ValidationError("--size", "expected WIDTHxHEIGHT, each from 1 to 8192");
+      base::reject_command_line("--from", "expected finite numbers");
+    if (!simctl::parse_size(options->size)) base::reject_command_line("--size", "expected WIDTHxHEIGHT, each from 1 to 8192");
     if (from->count() > 0 && options->from.size() != 6) {
-      throw CLI::ValidationError("--from",
-                                 "expected 6 numbers, X Y Z ROLL PITCH YAW [m, rad], got " + std::to_string(options->from.size()));
+      base::reject_command_line("--from", "expected 6 numbers, X Y Z ROLL PITCH YAW [m, rad], got " + std::to_string(options->from.size()));
     }
     work = [options](Control& c) { simctl::screenshot(c, *options); };
   });
@@ -216,7 +216,7 @@ void add_pictures(CLI::App& app, Work& work) {
                ? std::string()
                : "worlds are glTF binaries; expected a name that ends in .glb, got " + base::in_quotes(file);
   });
-  exported->add_option("--show", *show, "visuals or collisions")->check(CLI::IsMember({"visuals", "collisions"}))->capture_default_str();
+  exported->add_option("--show", *show, "visuals or collisions")->check(base::one_of({"visuals", "collisions"}))->capture_default_str();
   exported->callback([&work, world_file, show] {
     work = [world_file, show](Control& c) { simctl::export_world(c, *world_file, *show == "collisions"); };
   });
@@ -238,14 +238,14 @@ void add_pictures(CLI::App& app, Work& work) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"simctl: show and control a running simulation"};
+  base::Command app{"simctl: show and control a running simulation"};
   base::add_standard_options(app, "simctl", RTMSIM_VERSION);
   app.require_subcommand(1);
   app.fallthrough();
   std::uint32_t server_id = 0;
   bool json = false;
   app.add_option("-s,--server-id", server_id, "Which server")
-      ->check(CLI::Range(0, 9999))
+      ->check(base::integer_between(0, 9999))
       ->envname("RTMSIM_SERVER_ID")
       ->capture_default_str();
   app.add_flag("--json", json, "Print JSON");

@@ -14,17 +14,17 @@ std::vector<std::string> texts(const Completion& completion) {
 // A program with two commands.
 struct Program {
   Program() {
-    app.set_help_flag();
+    app.without_help();
     app.add_flag("--json")->description("print JSON");
     app.add_option("-s,--server", server);
     auto* list = app.add_subcommand("list", "list all");
-    list->set_help_flag();
+    list->without_help();
     list->add_option("PATH", paths)->expected(0, 2);
-    list->add_option("--state", state)->check(CLI::IsMember({"on", "off"}));
+    list->add_option("--state", state)->check(one_of({"on", "off"}));
     list->add_option("FILE", file);
-    app.add_subcommand("load", "load one")->set_help_flag();
+    app.add_subcommand("load", "load one")->without_help();
   }
-  CLI::App app;
+  Command app;
   std::string server, state, file;
   std::vector<std::string> paths;
 };

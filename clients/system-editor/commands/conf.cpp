@@ -167,11 +167,11 @@ void configure(Editor& editor, const ConfigurationOptions& options) {
 
 }  // namespace
 
-void add_conf(CLI::App& app, Chosen& chosen) {
+void add_conf(base::Command& app, Chosen& chosen) {
   auto* conf = app.add_subcommand("conf", "Show and change configuration sets: conf PATH [list | get NAME | set NAME VALUE | use SET]");
   auto options = std::make_shared<ConfigurationOptions>();
   conf->add_option("PATH", options->path, "Component")->required();
-  conf->add_option("ACTION", options->action, "list, get, set or use")->check(CLI::IsMember({"list", "get", "set", "use", "act"}));
+  conf->add_option("ACTION", options->action, "list, get, set or use")->check(base::one_of({"list", "get", "set", "use", "act"}));
   conf->add_option("ARGUMENT", options->arguments, "Parameter, value or set");
   conf->add_option("-s,--set", options->set, "The set to read or change; default: the active one");
   conf->add_flag("-a,--all", options->all, "Hidden sets too");

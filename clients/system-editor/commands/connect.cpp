@@ -278,7 +278,7 @@ void disconnect(Editor& editor, const std::vector<std::string>& paths, const std
 
 }  // namespace
 
-void add_connect(CLI::App& app, Chosen& chosen) {
+void add_connect(base::Command& app, Chosen& chosen) {
   auto* con = app.add_subcommand("con", "Connect ports");
   auto options = std::make_shared<ConnectOptions>();
   con->add_option("PORT", options->ports, "COMPONENT:PORT, two or more")->required()->expected(2, 64);

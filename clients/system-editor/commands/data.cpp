@@ -174,7 +174,7 @@ void inject(Editor& editor, const InjectOptions& options) {
 
 }  // namespace
 
-void add_data(CLI::App& app, Chosen& chosen) {
+void add_data(base::Command& app, Chosen& chosen) {
   auto* print = app.add_subcommand("print", "Print what OutPorts send");
   auto options = std::make_shared<PrintOptions>();
   print->add_option("PORT", options->ports, "OutPorts")->required();

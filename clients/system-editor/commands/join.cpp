@@ -187,17 +187,19 @@ std::string usual_server() {
 
 }  // namespace
 
-void add_join(CLI::App& app, Chosen& chosen) {
+void add_join(base::Command& app, Chosen& chosen) {
   auto* join = app.add_subcommand("join", "Let running components, of any maker, take part in the simulated time of a simulator");
   auto options = std::make_shared<JoinOptions>();
   options->server_id = usual_server();
   join->add_option("COMPONENT", options->components, "Components; they join in this order")->required();
   join->add_option("-p,--phase", options->phase, "Order inside a tick: 0 sensors, 1 clients, 2 actuators")
-      ->check(CLI::Range(0, highest_phase))
+      ->check(base::integer_between(0, highest_phase))
       ->capture_default_str();
   join->add_option("-r,--rate", options->rate, "Ticks per simulated second; default: the rate of the component's own context")
       ->check(base::number_between(1e-6, 1e6));
-  join->add_option("-s,--server-id", options->server_id, "Which simulator")->check(CLI::Range(0, highest_server))->capture_default_str();
+  join->add_option("-s,--server-id", options->server_id, "Which simulator")
+      ->check(base::integer_between(0, highest_server))
+      ->capture_default_str();
   join->add_flag("--tick", options->ticks, "Tick the component's own context, which must be one that is ticked from outside");
   join->add_option("--log", options->log, "File for what the host of the contexts says");
   join->add_option("-o,--option", options->options, "KEY:VALUE of rtc.conf for that host, such as corba.endpoints")

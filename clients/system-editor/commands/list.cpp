@@ -322,7 +322,7 @@ void cat(Editor& editor, const std::string& path, bool is_long) {
 
 }  // namespace
 
-void add_list(CLI::App& app, Chosen& chosen) {
+void add_list(base::Command& app, Chosen& chosen) {
   auto* ls = app.add_subcommand("ls", "List components, managers and contexts");
   auto list = std::make_shared<ListOptions>();
   ls->add_option("PATH", list->path, "Where to look; default: the whole name server");

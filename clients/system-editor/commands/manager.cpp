@@ -157,13 +157,13 @@ void manage(Editor& editor, const ManagerOptions& options) {
 
 }  // namespace
 
-void add_manager(CLI::App& app, Chosen& chosen) {
+void add_manager(base::Command& app, Chosen& chosen) {
   auto* mgr = app.add_subcommand(
       "mgr", "Talk to a manager: mgr list | create TYPE[?key=value&...] | delete INSTANCE | load FILE [INIT] | unload FILE");
   auto options = std::make_shared<ManagerOptions>();
   mgr->add_option("ACTION", options->action, "list, create, delete, load, unload")
       ->required()
-      ->check(CLI::IsMember({"list", "create", "delete", "load", "unload"}));
+      ->check(base::one_of({"list", "create", "delete", "load", "unload"}));
   mgr->add_option("ARGUMENT", options->arguments, "Types, instances or files");
   mgr->add_option("-m,--manager", options->manager, "Path or corbaloc::HOST[:PORT][/ID]; default: the only one of the name server");
   mgr->callback([&chosen, options] {

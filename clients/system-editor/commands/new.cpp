@@ -97,7 +97,7 @@ void make_component(Editor& editor, const Options& options) {
 
 }  // namespace
 
-void add_new(CLI::App& app, Chosen& chosen) {
+void add_new(base::Command& app, Chosen& chosen) {
   auto* command = app.add_subcommand("new", "Write the sources of a new component: CMake project, module, program, test");
   auto options = std::make_shared<Options>();
   command->add_option("NAME", options->name, "Name of the component; a C++ identifier");
@@ -118,7 +118,7 @@ void add_new(CLI::App& app, Chosen& chosen) {
   command->add_option("--action", options->actions, "A further callback: " + base::join(further_actions(), ", "))->allow_extra_args(false);
   command->add_option("-C,--directory", options->folder, "Where to; default: a folder of the component's name");
   command->callback([&chosen, options] {
-    if (options->name.empty() && options->specification.empty()) throw CLI::RequiredError("NAME or --spec");
+    if (options->name.empty() && options->specification.empty()) base::require_on_command_line("NAME or --spec");
     chosen = {[options](Editor& e) { make_component(e, *options); }, /*needs_orb*/ false};
   });
 }

@@ -251,29 +251,29 @@ void run(Editor& editor, const RunOptions& options, const std::optional<std::str
 
 }  // namespace
 
-void add_run(CLI::App& app, Chosen& chosen) {
+void add_run(base::Command& app, Chosen& chosen) {
   auto* run = app.add_subcommand("run", "Run a saved system against a simulated world in lock step, and judge it");
   auto options = std::make_shared<RunOptions>();
   auto seeds = std::make_shared<std::optional<std::string>>();
   auto jobs = std::make_shared<int>(1);
-  run->add_option("SYSTEM", options->system, "RTSProfile, XML or YAML")->required()->check(CLI::ExistingFile);
-  run->add_option("-w,--world", options->world, "SDFormat world")->required()->check(CLI::ExistingFile);
+  run->add_option("SYSTEM", options->system, "RTSProfile, XML or YAML")->required()->check(base::existing_file());
+  run->add_option("-w,--world", options->world, "SDFormat world")->required()->check(base::existing_file());
   run->add_option("-d,--duration", options->duration_s, "Simulated seconds")
       ->check(base::number_between(0.001, 1e7))
       ->capture_default_str();
-  run->add_option("-x,--expect", options->expectations, "Expectations, YAML")->check(CLI::ExistingFile);
+  run->add_option("-x,--expect", options->expectations, "Expectations, YAML")->check(base::existing_file());
   auto* seed =
       run->add_option("--seed", options->seed, "Seed of the world's noise")->capture_default_str()->check(base::number_between(0, 1e18));
   run->add_option("--seeds", *seeds, "A run for each seed FIRST..LAST")->excludes(seed)->check([](const std::string& text) {
     const auto parsed = parse_seeds(text);
     return parsed ? std::string() : parsed.error().message;
   });
-  run->add_option("-j,--jobs", *jobs, "So many seeds at a time")->check(CLI::Range(1, 64))->capture_default_str();
+  run->add_option("-j,--jobs", *jobs, "So many seeds at a time")->check(base::integer_between(1, 64))->capture_default_str();
   run->add_flag("--one-process-each", options->one_process_each, "A process for every component instead of one for all");
   run->add_flag("--realtime", options->in_real_time, "No faster than real time");
   run->add_option("--start", options->start, "Command that starts components of others, those that have no module")
       ->allow_extra_args(false);
-  run->add_option("--run-file", options->run_file, "Processes of others and their components, YAML")->check(CLI::ExistingFile);
+  run->add_option("--run-file", options->run_file, "Processes of others and their components, YAML")->check(base::existing_file());
   run->add_option("--module-path", options->module_paths, "Folder with modules of components")->allow_extra_args(false);
   run->add_option("--resource-path", options->resource_paths, "Folder with models")->allow_extra_args(false);
   run->add_option("--property", options->properties, "INSTANCE:KEY=VALUE, a property that a component is created with")

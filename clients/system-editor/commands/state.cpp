@@ -185,7 +185,7 @@ void wait_for_state(Editor& editor, const std::vector<std::string>& paths, const
 
 }  // namespace
 
-void add_state(CLI::App& app, Chosen& chosen) {
+void add_state(base::Command& app, Chosen& chosen) {
   const auto add = [&](const char* name, const char* help, Transition transition) {
     auto* command = app.add_subcommand(name, help);
     auto paths = std::make_shared<std::vector<std::string>>();
@@ -224,7 +224,7 @@ void add_state(CLI::App& app, Chosen& chosen) {
   wait->add_option("PATH", *wait_paths, "Components")->required();
   wait->add_option("--state", *state, "Inactive, Active, Error, any (is there), gone")
       ->capture_default_str()
-      ->check(CLI::IsMember({"created", "inactive", "active", "error", "any", "gone"}, CLI::ignore_case));
+      ->check(base::one_of({"created", "inactive", "active", "error", "any", "gone"}, base::Case::does_not_matter));
   wait->add_option("--timeout", *timeout, "Seconds")->capture_default_str()->check(base::number_between(0.0, 1e6));
   wait->callback(
       [&chosen, wait_paths, state, timeout] { chosen.work = [=](Editor& e) { wait_for_state(e, *wait_paths, *state, *timeout); }; });

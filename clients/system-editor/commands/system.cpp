@@ -388,7 +388,7 @@ void load(Editor& editor, const LoadOptions& options) {
 
 void start(Editor& editor, const std::string& file, bool dry_run) { move_all(editor, file, dry_run, Transition::activate); }
 
-void add_system(CLI::App& app, Chosen& chosen) {
+void add_system(base::Command& app, Chosen& chosen) {
   auto* save = app.add_subcommand("save", "Save the running system as RTSProfile (XML; YAML by the file's ending)");
   auto options = std::make_shared<SaveOptions>();
   save->add_option("FILE", options->file, "Where to; default: standard output");

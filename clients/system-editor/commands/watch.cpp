@@ -168,7 +168,7 @@ void watch(Editor& editor, const std::string& path) {
 
 }  // namespace
 
-void add_watch(CLI::App& app, Chosen& chosen) {
+void add_watch(base::Command& app, Chosen& chosen) {
   auto* watch = app.add_subcommand("watch", "Full-screen view of components, states, ports and connections");
   auto watch_path = std::make_shared<std::string>();
   watch->add_option("PATH", *watch_path, "A name server, as /HOST:PORT");

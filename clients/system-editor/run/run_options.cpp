@@ -1,9 +1,9 @@
 #include "run/run_options.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 
+#include "base/command.h"
 #include "base/text.h"
 #include "run/run_system.h"
 
@@ -30,7 +30,7 @@ Result<void> check_folders(const std::string& kind, const std::vector<std::strin
 
 }  // namespace
 
-void add_repeatability_options(CLI::App& run, RunOptions& options) {
+void add_repeatability_options(base::Command& run, RunOptions& options) {
   const auto* group = "Repeatability";
   run.add_option("--hash-log", options.hash_log, "Write hashes of the world, the components and what went through each port, for rtse diff")
       ->group(group);

@@ -8,8 +8,8 @@
 
 #include "base/result.h"
 
-namespace CLI {
-class App;
+namespace base {
+class Command;
 }
 
 namespace editor {
@@ -19,7 +19,7 @@ struct RunOptions;
 struct SavedSystem;
 
 // --hash-log, --twice, --strict. `options` must live as long as the command.
-void add_repeatability_options(CLI::App& run, RunOptions& options);
+void add_repeatability_options(base::Command& run, RunOptions& options);
 
 // Rates, folders and properties, held against the system. The properties.
 base::Result<std::vector<ComponentProperty>> read_wishes(const RunOptions& options, const SavedSystem& system);
