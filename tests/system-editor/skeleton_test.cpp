@@ -102,6 +102,21 @@ interface Global { };
   EXPECT_EQ(found, (std::vector<std::string>{"A::First", "A::B::Second", "Global"}));
 }
 
+TEST(Skeleton, a_specification_of_rtc_builder_may_leave_the_rate_open) {
+  const auto file = std::filesystem::path(testing::TempDir()) / "skeleton_test_rate.xml";
+  const auto rate = [&](const std::string& attribute) {
+    std::ofstream(file)
+        << R"(<rtc:RtcProfile rtc:version="0.2" xmlns:rtc="http://www.openrtp.org/namespaces/rtc"><rtc:BasicInfo rtc:name="Open")"
+        << attribute << "/></rtc:RtcProfile>";
+    const auto component = read_specification(file.string());
+    EXPECT_TRUE(component.ok()) << component.error().message;
+    return component.ok() ? component->rate : -1;
+  };
+  for (const char* open : {"", R"( rtc:executionRate="")", R"( rtc:executionRate="0.0")"}) EXPECT_EQ(rate(open), 100) << open;
+  EXPECT_EQ(rate(R"( rtc:executionRate="1000.0")"), 1000);
+  std::filesystem::remove(file);
+}
+
 // As RTCBuilder wrote them on another system: a device template.
 TEST(Skeleton, a_template_of_rtc_builder_may_leave_out_modules_and_instances) {
   const auto folder = std::filesystem::path(testing::TempDir()) / "skeleton_test_template";

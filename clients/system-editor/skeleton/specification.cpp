@@ -111,7 +111,10 @@ Result<NewComponent> read_rtc_xml(const std::string& file) {
       component.version = attribute(node, "version", component.version);
       component.vendor = attribute(node, "vendor", component.vendor);
       component.category = attribute(node, "category", component.category);
-      component.rate = base::parse_number(attribute(node, "executionRate", "100")).value_or(0);
+      // 0 and nothing mean "the usual one" to RTCBuilder.
+      const std::string rate = attribute(node, "executionRate", "0");
+      const auto number = base::parse_number(rate.empty() ? "0" : rate);
+      component.rate = !number ? 0 : *number == 0 ? NewComponent().rate : *number;
     } else if (kind == "Actions") {
       add_actions(component, node);
     } else if (kind == "DataPorts") {
