@@ -49,6 +49,8 @@ set_tests_properties(package.debian PROPERTIES LABELS package TIMEOUT 600 SKIP_R
 if(RTMSIM_SANITIZE)
   set_tests_properties(package.debian PROPERTIES DISABLED TRUE)  # sanitized libraries are for no package
 endif()
+add_test(NAME package.repository COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/repository ${PROJECT_SOURCE_DIR})
+set_tests_properties(package.repository PROPERTIES LABELS package TIMEOUT 300 SKIP_RETURN_CODE 77)
 foreach(mode "" --try)
   add_test(NAME package.symbols${mode} COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/symbols ${PROJECT_BINARY_DIR} ${PROJECT_SOURCE_DIR} ${mode})
   set_tests_properties(package.symbols${mode} PROPERTIES LABELS package)
