@@ -10,3 +10,18 @@ endforeach()
 
 # The format as others read and write it: libraries from npm.
 rtmsim_test(mcap_foreign_test recorder/mcap_foreign_test.cpp LIBRARIES mcap LABELS foreign)
+
+# A component with one constant changed, under the name of the good one in a folder of its own: a replay tells them apart.
+set(changed_sources)
+foreach(source avoidance.cpp laser_obstacle_avoid.cpp)
+  file(READ ${PROJECT_SOURCE_DIR}/clients/obstacle-avoidance/${source} text)
+  string(REPLACE "std::numbers::pi / 180" "std::numbers::pi / 181" text "${text}")
+  file(CONFIGURE OUTPUT changed/${source} CONTENT "${text}" @ONLY)
+  set_property(DIRECTORY ${PROJECT_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS clients/obstacle-avoidance/${source})
+  list(APPEND changed_sources ${CMAKE_CURRENT_BINARY_DIR}/changed/${source})
+endforeach()
+add_library(LaserObstacleAvoidChanged MODULE ${changed_sources})
+set_target_properties(LaserObstacleAvoidChanged PROPERTIES PREFIX "" OUTPUT_NAME LaserObstacleAvoid
+  LIBRARY_OUTPUT_DIRECTORY ${CMAKE_LIBRARY_OUTPUT_DIRECTORY}/changed)
+target_include_directories(LaserObstacleAvoidChanged PRIVATE ${PROJECT_SOURCE_DIR}/clients/obstacle-avoidance)
+target_link_libraries(LaserObstacleAvoidChanged PRIVATE openrtm base rtmsim_settings)

@@ -270,6 +270,10 @@ def replayed():
     assert 'failures="1"' in open(rig.path("bad.xml")).read()
     near = rig.try_rtse(*call, "--set", "speed_gain=0.0010000001", "--tolerance", "data.vx=1e-3", "--tolerance", "data.va=1e-3")
     assert near.returncode == 0, near
+    other = rig.try_rtse(*call, "--module-path", f"{rig.lib_dir}/changed")
+    turned = next(s for s in lines("cat", path, "LaserObstacleAvoid0:velocity") if s["value"]["data"]["va"] != 0)
+    place = f"first difference at tick {round(turned['time'] * 10)} ({turned['time']:g} s): data.va: "
+    assert other.returncode == 1 and place in other.stderr, (place, other)
     refused("replay", path, "--into", "Nobody0", says="components: RTCLaser0, LaserObstacleAvoid0, RTCPosition2d0")
 
 
