@@ -3,6 +3,7 @@ rtmsim_test(component_test component/component_test.cpp component/component_cont
 add_executable(component_peer component/component_peer.cpp)
 target_link_libraries(component_peer PRIVATE openrtm GTest::gtest rtmsim_settings)
 target_include_directories(component_peer PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+rtmsim_test(watch_test component/watch_test.cpp LIBRARIES openrtm LABELS corba)
 rtmsim_test(component_process_test component/component_process_test.cpp LIBRARIES openrtm LABELS process)
 add_dependencies(component_process_test component_peer)
 add_executable(hanging_program component/hanging_program.cpp)

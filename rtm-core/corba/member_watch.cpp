@@ -47,7 +47,7 @@ bool MemberWatch::look(std::uint64_t& seen) {
     if (data->sleeps) {
       data.wait(changed_, [&] { return data->stopping || !data->sleeps; });
     } else {
-      data.wait_for(changed_, long_time / 4, [&] { return data->stopping; });
+      data.wait_for(changed_, std::chrono::milliseconds(long_time) / 4, [&] { return data->stopping; });
     }
     if (data->stopping) return false;
     for (Running& call : data->running) {

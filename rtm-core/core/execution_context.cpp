@@ -355,6 +355,8 @@ std::shared_ptr<ExecutionContext::Member> ExecutionContext::hold(MemberId id) co
 
 void ExecutionContext::transit(std::size_t lane) {
   const Members members = begin_cycle(lane);
+  const auto is_pending = [](const auto& member) { return member->pending.has_value(); };
+  if (auto data = shared_.lock(); std::ranges::none_of(data->members, is_pending)) return;  // the rule, and nobody has to be woken for it
   for_all(*members, [this](Member& member) { transit(member); });
 }
 

@@ -1,0 +1,66 @@
+// Those who look on while calls go in and out: what of a call in lock step depends on chance, and that looking costs nothing.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <string>
+#include <thread>
+
+#include "corba/call_watch.h"
+#include "corba/member_watch.h"
+
+namespace {
+
+using namespace std::chrono_literals;
+using corba::chance_of_call;
+
+constexpr std::uint64_t between = 8, in_phase = 9;
+
+TEST(CallWatch, changes_from_outside_are_told_in_and_between_phases) {
+  for (const std::uint64_t moment : {between, in_phase}) {
+    EXPECT_EQ(chance_of_call("set_configuration_set_values", moment),
+              "had the parameters of a component changed by another process (set_configuration_set_values)");
+    EXPECT_EQ(chance_of_call("activate_component", moment),
+              "had the state of a component or context changed by another process (activate_component)");
+    EXPECT_EQ(chance_of_call("notify_disconnect", moment), "had a connection made or ended by another process (notify_disconnect)");
+  }
+}
+
+TEST(CallWatch, a_service_is_told_while_a_phase_runs) {
+  EXPECT_EQ(chance_of_call("grasp", in_phase), "had a service called while a phase ran by another process (grasp)");
+  EXPECT_EQ(chance_of_call("grasp", between), "");
+}
+
+TEST(CallWatch, samples_callbacks_and_questions_are_not_told) {
+  for (const char* operation :
+       {"put", "push", "get", "on_execute", "on_state_update", "get_profile", "is_alive", "_is_a", "tick", "update_status"}) {
+    EXPECT_EQ(chance_of_call(operation, in_phase), "") << operation;
+    EXPECT_EQ(chance_of_call(operation, between), "") << operation;
+  }
+}
+
+TEST(CallWatch, nothing_is_told_where_nothing_runs_in_lock_step) {
+  for (const char* operation : {"set_configuration_set_values", "activate_component", "notify_connect", "grasp"})
+    EXPECT_EQ(chance_of_call(operation, 0), "") << operation;
+}
+
+std::chrono::nanoseconds processor_time() {
+  rusage use{};
+  getrusage(RUSAGE_SELF, &use);
+  const auto of = [](const timeval& time) { return std::chrono::seconds(time.tv_sec) + std::chrono::microseconds(time.tv_usec); };
+  return of(use.ru_utime) + of(use.ru_stime);
+}
+
+// A watch that looked without a pause would take as much of a processor as it gets.
+TEST(MemberWatch, a_call_that_lasts_costs_no_processor) {
+  corba::MemberWatch watch;
+  const std::string name = "Arm0";
+  const auto before = processor_time();
+  {
+    const corba::MemberWatch::Call call(watch, name, rt::Action::execute);
+    std::this_thread::sleep_for(800ms);
+  }
+  EXPECT_LT(processor_time() - before, 30ms);
+}
+
+}  // namespace
