@@ -2,12 +2,12 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <thread>
 #include <utility>
 
 #include "base/text.h"
 #include "shm/lockstep.h"
 #include "shm/participant_slots.h"
+#include "shm/spinning.h"
 
 namespace shm {
 namespace {
@@ -15,17 +15,7 @@ namespace {
 using std::chrono::nanoseconds;
 using std::chrono::steady_clock;
 
-constexpr nanoseconds spin_limit = std::chrono::microseconds(50);
 constexpr nanoseconds server_slice = std::chrono::milliseconds(10);
-
-// Between two looks of a thread that spins.
-void relax() {
-#if defined(__x86_64__)
-  __builtin_ia32_pause();
-#else
-  std::atomic_signal_fence(std::memory_order_seq_cst);
-#endif
-}
 
 // First multiple of period at or after `time`.
 std::int64_t multiple_from(std::int64_t time, std::int64_t period) {
@@ -60,7 +50,11 @@ struct Barrier::State {
   std::uint64_t seen_deaths = 0;
   std::uint32_t seen_attention = 0;  // of requests and the like, which are served while a tick waits
   bool has_scanned = false;
-  const bool has_processors = std::thread::hardware_concurrency() > 1;
+  std::array<SpinLimit, max_phase + 1> spins;  // by phase
+  FreeProcessors free;
+  WakeAhead ahead;
+  std::optional<steady_clock::time_point> woken_ahead;  // those of the first phase of the next tick
+  bool has_looked_ahead = false;
   bool is_ticking = false, has_gone = false;  // gone: members with owner 0 are to be removed after the tick
   std::int64_t last_now = -1;
   std::int64_t earliest_due = 0;
@@ -83,6 +77,12 @@ struct Barrier::State {
   void wake(std::span<Member* const> group);
   bool run_phase(std::span<Member*> group, std::int64_t now, std::uint64_t steps);
   bool wait_for(std::span<Member*> group);
+  bool look_for_end(std::span<Member*> group, nanoseconds limit) const;
+  bool all_done(std::span<Member*> group) const {
+    return std::all_of(group.begin(), group.end(), [this](const Member* m) { return m->owner == 0 || is_done(*m); });
+  }
+  void wake_ahead(std::int64_t step);
+  void learn_ahead(std::span<Member* const> group);
   void look_for_hangs(std::span<Member*> group, nanoseconds waited);
 };
 
@@ -230,31 +230,23 @@ bool Barrier::State::wait_for(std::span<Member*> group) {
   steady_clock::time_point start, last_look;
   int sleeps = 0;
   std::uint64_t deaths = seen_deaths;
+  // Several need the processors themselves.
+  SpinLimit& spin = spins[group.front()->phase];
+  const bool may_spin = free.are_there_for(group.size());
+  const auto began = may_spin ? steady_clock::now() : steady_clock::time_point();
+  if (may_spin && look_for_end(group, spin.next())) return spin.took(steady_clock::now() - began), true;
   const auto let_go = [&] {
     for (Member* member : group) {
       if (member->owner != 0 && !is_done(*member) && remove_if_gone(*member)) member->owner = 0;
     }
   };
-  const auto all_done = [&] {
-    return std::all_of(group.begin(), group.end(), [this](const Member* m) { return m->owner == 0 || is_done(*m); });
-  };
-  // The tick of one is often over before a sleep and the waking from it would be. Several need the processors themselves.
-  if (group.size() == 1 && has_processors) {
-    for (const auto end = steady_clock::now() + spin_limit; steady_clock::now() < end;) {
-      if (all_done()) {
-        for (Member* member : group) member->is_hanging = false;
-        return true;
-      }
-      for (int i = 0; i < 16; ++i) relax();
-    }
-  }
   while (true) {
     const std::uint32_t seen = load(shared.server_word, std::memory_order_seq_cst);
     if (const std::uint64_t deaths_now = server.watch().deaths(); deaths_now != deaths) {
       deaths = deaths_now;
       let_go();
     }
-    if (all_done()) break;
+    if (all_done(group)) break;
     if (const auto called = load(shared.attention, std::memory_order_seq_cst); called != seen_attention) {
       seen_attention = called;
       if (options.on_waiting && !options.on_waiting()) return false;
@@ -274,7 +266,45 @@ bool Barrier::State::wait_for(std::span<Member*> group) {
     futex_wait(shared.server_word, seen, server_slice);
   }
   for (Member* member : group) member->is_hanging = member->is_hanging && member->owner != 0 && !is_done(*member);
+  if (may_spin) spin.took(steady_clock::now() - began);
+  store(shared.server_waiting, 0U, std::memory_order_relaxed);
   return true;
+}
+
+// The ends of ticks that are over before a sleep and the waking from it would be. False: it takes longer, or somebody asks for something.
+bool Barrier::State::look_for_end(std::span<Member*> group, nanoseconds limit) const {
+  for (const auto end = steady_clock::now() + limit; !all_done(group);) {
+    if (steady_clock::now() >= end || load(control().attention) != seen_attention) return false;
+    give_way();
+  }
+  for (Member* member : group) member->is_hanging = false;
+  return true;
+}
+
+// Those who are due first are woken while the last steps before are still made, and are there when their tick begins.
+void Barrier::State::wake_ahead(std::int64_t step) {
+  if (std::exchange(has_looked_ahead, true)) return;
+  std::array<Member*, 256> due;
+  std::size_t count = 0;
+  for (Member& member : members) {
+    if (count > 0 && member.phase != due[0]->phase) break;
+    if (member.next_due < earliest_due + step && count < due.size()) due[count++] = &member;
+  }
+  free.look(steady_clock::now());
+  if (count == 0 || !free.are_there_for(count)) return;
+  wake({due.data(), count});
+  woken_ahead = steady_clock::now();
+}
+
+void Barrier::State::learn_ahead(std::span<Member* const> group) {
+  has_looked_ahead = false;
+  const auto woken = std::exchange(woken_ahead, std::nullopt);
+  if (!woken) {
+    free.look(steady_clock::now());
+    return ahead.began();
+  }
+  ahead.began(steady_clock::now() - *woken,
+              std::all_of(group.begin(), group.end(), [this](const Member* m) { return load(slot(*m).sleeping) == 0; }));
 }
 
 bool Barrier::State::run_phase(std::span<Member*> group, std::int64_t now, std::uint64_t steps) {
@@ -292,13 +322,11 @@ bool Barrier::State::run_phase(std::span<Member*> group, std::int64_t now, std::
   }
   // Whoever counts down to one or below wakes the server, which then looks at all `done` words itself: the count is only a hint, so
   // that a participant that died between the two costs nothing but an extra look.
-  store(control().server_waiting, 1U, std::memory_order_relaxed);
   pass_moment();  // odd
   store(control().pending, static_cast<std::int32_t>(group.size()), std::memory_order_seq_cst);
   for (Member* member : group) release(*member, now, steps);
   wake(group);
   const bool is_over = wait_for(group);
-  store(control().server_waiting, 0U, std::memory_order_relaxed);
   pass_moment();
   return is_over;
 }
@@ -306,11 +334,14 @@ bool Barrier::State::run_phase(std::span<Member*> group, std::int64_t now, std::
 bool Barrier::tick(nanoseconds now, std::uint64_t steps) {
   State& state = *state_;
   refresh();
-  state.last_now = now.count();
-  if (now.count() < state.earliest_due) return true;
+  const std::int64_t step = now.count() - std::exchange(state.last_now, now.count());
+  if (now.count() < state.earliest_due) {
+    if (state.options.is_lockstep && now.count() + step * state.ahead.steps() >= state.earliest_due) state.wake_ahead(step);
+    return true;
+  }
   std::array<State::Member*, 256> due;  // no allocation in the loop; there are no more slots than that
   std::size_t begin = 0;
-  bool is_complete = true;
+  bool is_complete = true, has_begun = false;
   state.is_ticking = true;
   while (begin < state.members.size() && is_complete) {
     const std::uint32_t phase = state.members[begin].phase;
@@ -320,6 +351,7 @@ bool Barrier::tick(nanoseconds now, std::uint64_t steps) {
         due[count++] = &state.members[end];
     }
     const std::span<State::Member*> group(due.data(), count);
+    if (count > 0 && !std::exchange(has_begun, true)) state.learn_ahead(group);
     if (count > 0) is_complete = state.run_phase(group, now.count(), steps);
     for (const auto* member : group) state.has_gone = state.has_gone || member->owner == 0;
     begin = end;

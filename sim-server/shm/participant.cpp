@@ -1,12 +1,12 @@
 // The clients' side of the lock step, and what anybody may read of it.
 #include <algorithm>
 #include <atomic>
-#include <thread>
 #include <utility>
 
 #include "base/text.h"
 #include "shm/lockstep.h"
 #include "shm/participant_slots.h"
+#include "shm/spinning.h"
 
 namespace shm {
 namespace {
@@ -59,6 +59,7 @@ struct Participant::Impl {
   std::uint32_t last_go = 0;
   bool is_in_tick = false;
   steady_clock::time_point tick_start, check_at;  // check_at: when to look next whether the server lives
+  std::uint64_t moment = 0;                       // of the last tick
   std::uint64_t ticks = 0;
   std::int64_t total = 0, max = 0;
   std::atomic<bool> is_interrupted{false};
@@ -66,7 +67,10 @@ struct Participant::Impl {
   ParticipantSlot& slot() const { return slot_at(simulation.segment(), index); }
   bool is_ours() const { return load(slot().owner) == owner; }
   base::Result<void> take_slot(const ParticipantOptions& options);
-  void finish(steady_clock::time_point now);
+  bool finish(steady_clock::time_point now);
+  bool has_tick() const { return load(slot().go) != last_go; }
+  void linger() const;
+  void look_for_tick(nanoseconds limit) const;
   void leave();
 };
 
@@ -144,10 +148,11 @@ base::Result<Participant> Participant::join(std::uint32_t server_id, const Parti
   return Participant(std::move(impl));
 }
 
-void Participant::Impl::finish(steady_clock::time_point now) {
-  if (!is_in_tick) return;
+// True: it was the last one of its phase, and the server is awake.
+bool Participant::Impl::finish(steady_clock::time_point now) {
+  if (!is_in_tick) return false;
   is_in_tick = false;
-  if (!is_ours()) return;
+  if (!is_ours()) return false;
   ParticipantSlot& mine = slot();
   const std::int64_t took = std::chrono::duration_cast<nanoseconds>(now - tick_start).count();
   total += took;
@@ -157,7 +162,31 @@ void Participant::Impl::finish(steady_clock::time_point now) {
   store(mine.max_ns, max, std::memory_order_relaxed);
   store(mine.done, last_go, std::memory_order_seq_cst);  // pairs with Barrier's is_done
   Control& control = control_of(simulation.segment());
-  if (word(control.pending).fetch_sub(1, std::memory_order_seq_cst) <= 1) wake_server(control);
+  if (word(control.pending).fetch_sub(1, std::memory_order_seq_cst) > 1) return false;
+  return !wake_server(control);
+}
+
+// Until the server has passed to the next phase, and a moment longer: who takes part there is woken meanwhile and goes on on this
+// processor, which has not gone to sleep. When no phase follows at once there is nobody to wait for.
+void Participant::Impl::linger() const {
+  constexpr nanoseconds most = std::chrono::microseconds(20), pause = std::chrono::microseconds(3);
+  if (moment == 0) return;
+  const auto begin = steady_clock::now();
+  std::optional<steady_clock::time_point> over;
+  std::uint64_t seen = moment;
+  for (auto now = begin; now - begin < most && !has_tick(); now = steady_clock::now()) {
+    if (const auto at = moment_of(simulation.segment()); at != std::exchange(seen, at)) over = now;
+    if (over && now - *over > pause) return;
+    give_way();
+  }
+}
+
+// For one that has been woken before its tick.
+void Participant::Impl::look_for_tick(nanoseconds limit) const {
+  for (const auto end = steady_clock::now() + limit; !has_tick() && !is_interrupted.load(std::memory_order_relaxed);) {
+    if (steady_clock::now() >= end) return;
+    give_way();
+  }
 }
 
 void Participant::finish() { impl_->finish(steady_clock::now()); }
@@ -168,8 +197,11 @@ Participant::State Participant::wait(Tick& tick, nanoseconds timeout) {
   ParticipantSlot& mine = impl.slot();
   const std::uint32_t& shared = tick_word(control_of(segment), impl.index);
   auto now = steady_clock::now();  // read once per sleep
-  impl.finish(now);
   const auto deadline = now + timeout;
+  if (impl.is_in_tick && impl.finish(now)) {
+    impl.linger();
+    now = steady_clock::now();
+  }
   while (true) {
     if (load(segment.header().state) != RTMSIM_STATE_LIVE) return State::closed;
     if (!impl.is_ours() || load(mine.state) == RTMSIM_PARTICIPANT_DROPPED) {
@@ -186,6 +218,7 @@ Participant::State Participant::wait(Tick& tick, nanoseconds timeout) {
       tick = {nanoseconds(load(mine.now_ns, relaxed)), nanoseconds(load(mine.due_ns, relaxed)), load(mine.steps, relaxed),
               load(mine.resets, relaxed), moment_of(segment)};
       impl.last_go = go;
+      impl.moment = tick.moment;
       impl.is_in_tick = true;
       impl.tick_start = now;
       return State::tick;
@@ -200,6 +233,9 @@ Participant::State Participant::wait(Tick& tick, nanoseconds timeout) {
     }
     futex_wait_bits(shared, seen, tick_bit(impl.index), std::min(deadline, impl.check_at));
     store(mine.sleeping, 0U, std::memory_order_relaxed);
+    now = steady_clock::now();
+    if (impl.has_tick() || now >= deadline || now >= impl.check_at) continue;
+    impl.look_for_tick(WakeAhead::longest);
     now = steady_clock::now();
   }
 }

@@ -47,9 +47,12 @@ inline void free_slot(ParticipantSlot& slot, std::uint64_t owner) {
   word(slot.owner).compare_exchange_strong(owner, 0, std::memory_order_acq_rel);
 }
 
-inline void wake_server(Control& control) {
+// False: it did not sleep.
+inline bool wake_server(Control& control) {
   word(control.server_word).fetch_add(1, std::memory_order_seq_cst);
-  if (load(control.server_waiting, std::memory_order_seq_cst) != 0) futex_wake(control.server_word, 1);  // pairs with Barrier's wait
+  if (load(control.server_waiting, std::memory_order_seq_cst) == 0) return false;  // pairs with Barrier's wait
+  futex_wake(control.server_word, 1);
+  return true;
 }
 
 inline std::uint32_t& tick_word(Control& control, std::size_t index) { return control.tick_words[index / 32 % RTMSIM_TICK_WORDS]; }

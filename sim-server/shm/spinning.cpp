@@ -1,0 +1,72 @@
+#include "shm/spinning.h"
+
+#include <fcntl.h>
+#include <sched.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <thread>
+
+namespace shm {
+
+using std::chrono::nanoseconds;
+
+void give_way() { sched_yield(); }
+
+std::size_t processors() {
+  static const std::size_t count = std::max(1U, std::thread::hardware_concurrency());
+  return count;
+}
+
+FreeProcessors::FreeProcessors(const char* file, std::size_t all)
+    : file_(open(file, O_RDONLY | O_CLOEXEC)), all_(static_cast<double>(all)), wanted_(all_) {}
+
+FreeProcessors::~FreeProcessors() {
+  if (file_ >= 0) close(file_);
+}
+
+void FreeProcessors::look(std::chrono::steady_clock::time_point now) {
+  if (now < next_look_ || file_ < 0) return;
+  next_look_ = now + pause;
+  std::array<char, 128> text{};
+  unsigned running = 0;  // after three averages: "0.15 0.22 0.30 2/345 6789"
+  if (pread(file_, text.data(), text.size() - 1, 0) <= 0 || std::sscanf(text.data(), "%*s %*s %*s %u/", &running) != 1) return;
+  constexpr double weight = 0.25;
+  wanted_ += weight * (std::max(running, 1U) - 1 - wanted_);
+}
+
+bool FreeProcessors::are_there_for(std::size_t others) const {
+  constexpr double now_and_then = 0.4;  // somebody wants one now and then, and is no reason
+  return wanted_ + static_cast<double>(others) + 1 <= all_ + now_and_then;
+}
+
+nanoseconds SpinLimit::next() const {
+  constexpr nanoseconds margin = std::chrono::microseconds(20);
+  const nanoseconds limit = 2 * usual_ + margin;
+  return usual_ + margin > longest ? nanoseconds(0) : std::min(limit, longest);
+}
+
+void SpinLimit::took(nanoseconds wait) {
+  constexpr int weight = 8;
+  usual_ += (std::min(wait, 4 * longest) - usual_) / weight;  // one that took for ever is forgotten as soon as others
+}
+
+void WakeAhead::began(nanoseconds since, bool is_awake) {
+  constexpr std::uint32_t patience = 32;  // ticks before it is tried whether later is early enough
+  if (since > longest) {
+    --steps_;
+  } else if (!is_awake) {
+    steps_ = std::min(steps_ + 1, most_steps);
+  } else if (++count_ % patience == 0) {
+    steps_ = std::max<std::int64_t>(steps_ - 1, 1);
+  }
+}
+
+void WakeAhead::began() {
+  constexpr std::uint32_t pause = 64;
+  if (++count_ % pause == 0) steps_ = 1;
+}
+
+}  // namespace shm

@@ -1,0 +1,102 @@
+#include "shm/spinning.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <string>
+
+namespace shm::test {
+namespace {
+
+using namespace std::chrono_literals;
+using std::chrono::nanoseconds;
+
+void took(SpinLimit& limit, nanoseconds wait, int times) {
+  for (int i = 0; i < times; ++i) limit.took(wait);
+}
+
+TEST(SpinLimit, looks_longer_than_the_news_usually_take) {
+  SpinLimit limit;
+  EXPECT_GT(limit.next(), 0ns);
+  took(limit, 80us, 100);
+  EXPECT_GT(limit.next(), 80us);
+  EXPECT_LE(limit.next(), SpinLimit::longest);
+}
+
+TEST(SpinLimit, does_not_look_at_all_while_the_news_take_long_and_looks_again_when_they_do_not) {
+  SpinLimit limit;
+  took(limit, 5ms, 100);
+  EXPECT_EQ(limit.next(), 0ns);
+  took(limit, 30us, 100);
+  EXPECT_GT(limit.next(), 30us);
+}
+
+TEST(SpinLimit, one_that_took_for_ever_is_soon_forgotten) {
+  SpinLimit limit;
+  took(limit, 50us, 100);
+  limit.took(10s);
+  took(limit, 50us, 16);
+  EXPECT_GT(limit.next(), 50us);
+}
+
+TEST(WakeAhead, wakes_earlier_until_the_sleeper_is_there_and_then_not_much_earlier_than_needed) {
+  WakeAhead ahead;
+  constexpr auto step = 7us, needed = 60us;
+  for (int tick = 0; tick < 500; ++tick) ahead.began(ahead.steps() * step, ahead.steps() * step > needed);
+  EXPECT_GE(ahead.steps(), 8);
+  EXPECT_LE(ahead.steps(), 11);
+}
+
+TEST(WakeAhead, steps_that_last_long_are_not_woken_before_but_now_and_then) {
+  WakeAhead ahead;
+  ahead.began(1ms, false);
+  EXPECT_EQ(ahead.steps(), 0);
+  int tried = 0;
+  for (int tick = 0; tick < 640; ++tick) {
+    if (ahead.steps() == 0) {
+      ahead.began();
+    } else {
+      ++tried;
+      ahead.began(1ms, false);
+    }
+  }
+  EXPECT_GT(tried, 0);
+  EXPECT_LE(tried, 10);
+}
+
+// As the kernel writes it.
+struct LoadFile {
+  std::string path = testing::TempDir() + "rtmsim-load-" + std::to_string(getpid());
+  ~LoadFile() { unlink(path.c_str()); }
+  void write(int running) const { std::ofstream(path) << "0.01 0.02 0.03 " << running << "/345 6789\n"; }
+};
+
+TEST(FreeProcessors, are_there_when_nobody_else_wants_to_run) {
+  const LoadFile file;
+  file.write(1);
+  FreeProcessors free(file.path.c_str(), 2);
+  auto now = std::chrono::steady_clock::now();
+  const auto look = [&](int times) {
+    for (int i = 0; i < times; ++i) free.look(now += FreeProcessors::pause);
+  };
+  EXPECT_FALSE(free.are_there_for(1)) << "nobody has looked yet";
+  look(20);
+  EXPECT_TRUE(free.are_there_for(1));
+  EXPECT_FALSE(free.are_there_for(2));
+  file.write(2);
+  look(20);
+  EXPECT_FALSE(free.are_there_for(1));
+  file.write(1);
+  look(20);
+  EXPECT_TRUE(free.are_there_for(1));
+}
+
+TEST(FreeProcessors, are_not_there_when_the_kernel_does_not_say) {
+  FreeProcessors free("/nonexistent", 2);
+  free.look(std::chrono::steady_clock::now());
+  EXPECT_FALSE(free.are_there_for(1));
+}
+
+}  // namespace
+}  // namespace shm::test
