@@ -1,0 +1,88 @@
+#!/usr/bin/env python3
+"""What the whole tree of hashes (docs/hash-logs.md) costs: 100 robots, 84 of them driven by 252 components in nine processes, in lock step, with hash logs and without, in turns.
+Processor time of all processes together, which other work on the machine does not change much; prints the ratio with its limit beside it.
+
+usage: hash_bench.py [BUILD_DIR] [--robots N] [--steps N] [--rounds N]      (default: build/release, 100 robots, 1000 steps of 5 ms, 3 rounds)
+"""
+import argparse
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+source = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(source / "tests/scenario"))
+import chance_system as parts
+from system import System
+
+parser = argparse.ArgumentParser()
+parser.add_argument("build", nargs="?", default=str(source / "build/release"))
+parser.add_argument("--robots", type=int, default=100)
+parser.add_argument("--steps", type=int, default=1000)
+parser.add_argument("--rounds", type=int, default=3)
+options = parser.parse_args()
+build = pathlib.Path(options.build).resolve()
+robots_per_host = 10
+driven = min(options.robots, 84)  # 252 components: a simulator has 256 places in its lock step. The others stand.
+
+LASER, AVOID, DRIVE = "RTC:rtm-sim:simulation:RTCLaser:1.0.0", "RTC:rtm-sim:navigation:LaserObstacleAvoid:1.0.0", "RTC:rtm-sim:simulation:RTCPosition2d:1.0.0"
+
+
+def the_system():
+    text = []
+    for i in range(driven):
+        text += [parts.component(f"Laser{i}", 10, LASER), parts.component(f"Avoid{i}", 10, AVOID), parts.component(f"Drive{i}", 10, DRIVE),
+                 parts.link(f"Laser{i}.range", f"Avoid{i}.range", "IDL:RTC/RangeData:1.0", source_id=LASER, target_id=AVOID),
+                 parts.link(f"Avoid{i}.velocity", f"Drive{i}.velocity", "IDL:RTC/TimedVelocity2D:1.0", source_id=AVOID, target_id=DRIVE)]
+    return parts.system(*text)
+
+
+# [s] of all threads of these processes.
+def processor_time(processes):
+    total = 0
+    for process in processes:
+        for task in pathlib.Path(f"/proc/{process.pid}/task").iterdir():
+            total += int((task / "schedstat").read_text().split()[0])
+    return total * 1e-9
+
+
+def measure(world, system, folder, with_hashes):
+    with System(str(build / "bin"), str(build / "lib")) as s:
+        s.naming()
+        s.server(world, "--paused", "--rtf", "0", "--lockstep", *(["--hash-log", f"{folder}/world.hashlog"] if with_hashes else []))
+        names = []
+        for first in range(0, driven, robots_per_host):
+            words = []
+            for i in range(first, min(first + robots_per_host, driven)):
+                device = f"exec_cxt.periodic.rate=10&conf.default.server_id={s.server_id}&conf.default.device_id=pioneer_{i}"
+                words += [f"RTCLaser?instance_name=Laser{i}&{device}::laser&exec_cxt.sim_time.phase=0", f"LaserObstacleAvoid?instance_name=Avoid{i}&exec_cxt.periodic.rate=10",
+                          f"RTCPosition2d?instance_name=Drive{i}&{device}::position2d&exec_cxt.sim_time.phase=2"]
+                names += [f"Laser{i}", f"Avoid{i}", f"Drive{i}"]
+            s.host(*(["-o", f"exec_cxt.sim_time.hash_log:{folder}"] if with_hashes else []), *words)
+        s.rtse("wait", *names, "--state", "any", "--timeout", "60")
+        s.rtse("load", system)
+        s.rtse("act", *names)
+        s.until("participants", lambda: len(s.participants()) == len(names))
+        s.simctl("step", "200")
+        before = processor_time(s.running)
+        s.simctl("step", str(options.steps))
+        return processor_time(s.running) - before
+
+
+with tempfile.TemporaryDirectory() as work:
+    world, system = f"{work}/world.sdf", f"{work}/system.xml"
+    subprocess.run([sys.executable, str(source / "worlds/make_arena.py"), str(options.robots), world], check=True)
+    os.environ["RTMSIM_RESOURCE_PATH"] = str(source / "worlds")
+    pathlib.Path(system).write_text(the_system())
+    times = {False: [], True: []}
+    for _ in range(options.rounds):
+        for with_hashes in (False, True):
+            with tempfile.TemporaryDirectory(dir=work) as folder:
+                times[with_hashes].append(measure(world, system, folder, with_hashes))
+                octets = sum(file.stat().st_size for file in pathlib.Path(folder).iterdir())
+    ratio = min(times[True]) / min(times[False])
+    seconds = options.steps * 0.005
+    print(f"{options.robots} robots, {3 * driven} components: processor time for each simulated second {min(times[False]) / seconds:.3f} s, with hashes {min(times[True]) / seconds:.3f} s; "
+          f"{octets / seconds / 1e6:.2f} MB of hash logs")
+    print(f"{'  with hashes / without':<78} {ratio:>9.3f}            limit < 1.03")
