@@ -100,6 +100,31 @@ def changed_from_outside():
         s.kill(stepping)
 
 
+# The same run on other processors, as far as one can be made to look like others: the C library without AVX2 and AVX-512, the ray tracer with fewer
+# instructions (up to AVX they give the same),
+# the renderer with narrower vectors and more threads. Each pose, each scan, a picture a second.
+def same_on_every_processor():
+    laser, camera, drive = (f"RTC:rtm-sim:simulation:{name}:1.0.0" for name in ("RTCLaser", "RTCCamera", "RTCPosition2d"))
+    avoid = "RTC:rtm-sim:navigation:LaserObstacleAvoid:1.0.0"
+    text = chance_system.system(
+        chance_system.component("RTCLaser0", 10, laser, device_id="pioneer2dx::laser"), chance_system.component("Avoid0", 10, avoid),
+        chance_system.component("RTCPosition2d0", 10, drive, device_id="pioneer2dx::position2d"),
+        chance_system.component("RTCCamera0", 1, camera, device_id="helicopter::camera"), chance_system.component("A", 1),
+        chance_system.link("RTCLaser0.range", "Avoid0.range", "IDL:RTC/RangeData:1.0", source_id=laser, target_id=avoid),
+        chance_system.link("Avoid0.velocity", "RTCPosition2d0.velocity", "IDL:RTC/TimedVelocity2D:1.0", source_id=avoid, target_id=drive),
+        chance_system.link("RTCCamera0.image", "A.picture", "IDL:RTC/CameraImage:1.0", source_id=camera))
+    world = place / "world.sdf"
+    world.write_text(pathlib.Path(course).read_text().replace("</world>", "<include><uri>model://helicopter</uri><pose>0 0 3 0 0 0</pose></include></world>"))
+    machines = {"this": {}, "libm": {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-AVX512F,-AVX512VL,-AVX512BW"}, "embree": {"RTMSIM_RAYS_ISA": "sse2"},
+                "llvmpipe": {"LP_NATIVE_VECTOR_WIDTH": "128", "LP_NUM_THREADS": "8"}}
+    for name, settings in machines.items():
+        code, out, err = run(text, "--duration", "6", "--seed", "5", "--hash-log", f"{name}.log", "--resource-path", f"{source}/worlds", world=world,
+                             env={"RTMSIM_RAYS_ISA": "avx", **settings})
+        assert code == 0, (name, out, err)
+        code, out, err = call("diff", "this.log", f"{name}.log")
+        assert code == 0, (name, out, err)
+
+
 def is_found(race, *options):
     for _ in range(20):
         code, out, err = run(chance_system.ring(A=race), "--duration", "1", *options)

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "base/text.h"
+#include "run/same_math.h"
 
 namespace editor {
 namespace {
@@ -113,9 +114,13 @@ Result<void> ForeignProcesses::start(const std::string& naming, const std::strin
   std::ofstream(configuration) << "corba.nameservers: " << naming
                                << "\nlogger.enable: YES\nlogger.file_name: stdout\nlogger.log_level: INFO\n"
                                << "manager.shutdown_auto: NO\n";
-  const std::map<std::string, std::string> usual = {
-      {"RTCTREE_NAMESERVERS", naming},       {"RTMSIM_NAMING", naming},       {"ORBInitRef", "NameService=corbaname::" + naming},
-      {"RTC_MANAGER_CONFIG", configuration}, {"RTMSIM_SERVER_ID", server_id}, {"PYTHONUNBUFFERED", "1"}};
+  const std::map<std::string, std::string> usual = {{"RTCTREE_NAMESERVERS", naming},
+                                                    {"RTMSIM_NAMING", naming},
+                                                    {"ORBInitRef", "NameService=corbaname::" + naming},
+                                                    {"RTC_MANAGER_CONFIG", configuration},
+                                                    {"RTMSIM_SERVER_ID", server_id},
+                                                    {"PYTHONUNBUFFERED", "1"},
+                                                    same_math()};
   for (const auto& process : processes_) {
     const auto components = base::join(components_of(process), ", ");
     const auto log = place_.new_file("foreign-" + std::to_string(running_.size()) + ".log");

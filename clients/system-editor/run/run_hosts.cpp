@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "base/text.h"
+#include "run/same_math.h"
 #include "run/time_members.h"
 
 namespace editor {
@@ -69,8 +70,8 @@ Result<void> RunHosts::start(const std::vector<std::string>& creations, const Me
                               .empty_file = configuration,
                               .options = more,
                               .creations = creations};
-  auto started =
-      ChildProcess::start({host_words(settings), {{"RTMSIM_SERVER_ID", simulator_.id()}, {"TMPDIR", place_.scratch("tmp")}}, log});
+  auto started = ChildProcess::start(
+      {host_words(settings), {{"RTMSIM_SERVER_ID", simulator_.id()}, {"TMPDIR", place_.scratch("tmp")}, same_math()}, log});
   if (!started) return started.error();
   hosts_.push_back({std::move(*started), members, names, log});
   return {};

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "run/same_math.h"
 
 namespace editor {
 namespace {
@@ -42,7 +43,7 @@ Result<void> RunSimulator::start(const Wait& wait_until) {
 Result<void> RunSimulator::try_start(const Wait& wait_until) {
   ProgramCall call{{own_program("sim-server"), options_.world, "--server-id", id_, "--paused", "--lockstep", "--rtf",
                     options_.in_real_time ? "1" : "0", "--seed", std::to_string(options_.seed), "--record", place_.new_file("record.txt")},
-                   {},
+                   {same_math()},
                    place_.new_file(log_name)};
   if (hashes_.is_wanted()) call.words.insert(call.words.end(), {"--hash-log", hashes_.world_part()});
   for (const auto& path : options_.resource_paths) call.words.insert(call.words.end(), {"--resource-path", path});
