@@ -24,6 +24,14 @@ def link(source, target, type="IDL:RTC/TimedLong:1.0", dataflow="push", subscrip
             f'{end("sourceDataPort", source, source_id)}{end("targetDataPort", target, target_id)}{properties}</rts:DataPortConnectors>')
 
 
+# A service between two ports "A.port".
+def service(one, other, id=CHANCE, other_id=CHANCE):
+    end = lambda tag, port, id: (f'<rts:{tag} xsi:type="rtsExt:target_port_ext" rts:componentId="{id}" rts:instanceName="{port.split(".")[0]}" rts:portName="{port}">'
+                                 f'<rtsExt:Properties rtsExt:name="COMPONENT_PATH_ID" rtsExt:value="localhost/{port.split(".")[0]}.rtc"/></rts:{tag}>')
+    return (f'<rts:ServicePortConnectors xsi:type="rtsExt:serviceport_connector_ext" rts:connectorId="{one}-{other}" rts:name="{one}_{other}">'
+            f'{end("sourceServicePort", one, id)}{end("targetServicePort", other, other_id)}</rts:ServicePortConnectors>')
+
+
 def system(*parts):
     return HEAD + "".join(parts) + "</rts:RtsProfile>"
 

@@ -109,6 +109,14 @@ std::set<std::string> RunSimulator::participants() const {
   return names;
 }
 
+std::map<std::string, std::int64_t> RunSimulator::phases() const {
+  std::map<std::string, std::int64_t> phases;
+  const auto json = parsed(simctl({"--json", "participants"}, call_limit));
+  for (const auto& participant : json.is_array() ? json : Json::array())
+    phases[participant.value("name", "")] = participant.value("phase", std::int64_t{0});
+  return phases;
+}
+
 std::vector<std::string> RunSimulator::models() const {
   std::vector<std::string> names;
   const auto json = parsed(simctl({"--json", "tree"}, call_limit));

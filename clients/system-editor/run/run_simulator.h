@@ -4,7 +4,9 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <set>
@@ -45,6 +47,7 @@ class RunSimulator {
   nlohmann::json statistics(std::chrono::milliseconds limit) const;
   std::optional<double> time() const;  // [s], simulated
   std::set<std::string> participants() const;
+  std::map<std::string, std::int64_t> phases() const;  // of the participants
   std::vector<std::string> models() const;
 
   // So many steps; given up when `alive` has something to say, or when time stands still for longer than a tick may take.
