@@ -1,7 +1,7 @@
 # Cameras and what becomes of their frames, in real processes.
 add_executable(camera_reader scenario/camera_reader.cpp)
 target_link_libraries(camera_reader PRIVATE simshm rtmsim_settings)
-foreach(case slow_reader only_for_readers restarted_server stopped_player killed_player_and_server recorded_formats recorded_end)
+foreach(case slow_reader only_for_readers restarted_server stopped_player killed_player_and_server large_frames recorded_formats recorded_end)
   add_test(NAME cameras.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/cameras.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY})
   set_tests_properties(cameras.${case} PROPERTIES LABELS integration TIMEOUT 300)

@@ -45,8 +45,8 @@ bool GiopGate::parse(std::span<const std::byte> octets, Header& header) {
   return header.minor <= 2 && header.type <= fragment;
 }
 
-// The operation of a request is put or push; false when that cannot be said.
-bool GiopGate::is_sample(std::span<const std::byte> message, const Header& header) {
+// The operation of a request is put or push, and for which object; false when that cannot be said.
+bool GiopGate::is_sample(std::span<const std::byte> message, const Header& header, std::span<const std::byte>& object_key) {
   if (header.type != request) return false;
   std::size_t at = header_size;
   const auto number = [&](std::uint32_t& value) {
@@ -62,10 +62,15 @@ bool GiopGate::is_sample(std::span<const std::byte> message, const Header& heade
     return true;
   };
   std::uint32_t length = 0;
+  const auto take_key = [&] {
+    if (!number(length) || !skip(length)) return false;
+    object_key = message.subspan(at - length, length);
+    return true;
+  };
   if (header.minor == 2) {
     std::uint32_t addressing = 0;
     at += 8;  // request id, flags
-    if (!number(addressing) || !number(length) || !skip(length)) return false;
+    if (!number(addressing) || !take_key()) return false;
     const bool is_by_key = (header.is_little ? addressing & 0xffff : addressing >> 16) == 0;
     if (!is_by_key) return false;
   } else {
@@ -74,12 +79,19 @@ bool GiopGate::is_sample(std::span<const std::byte> message, const Header& heade
     for (; contexts > 0; --contexts) {
       if (!number(id) || !number(length) || !skip(length)) return false;
     }
-    if (!number(id) || !skip(1)) return false;
-    if (!number(length) || !skip(length)) return false;
+    if (!number(id) || !skip(1) || !take_key()) return false;
   }
   if (!number(length) || length > message.size() - at) return false;
   const std::string_view operation(reinterpret_cast<const char*>(message.data()) + at, length);
   return operation == std::string_view("put", 4) || operation == std::string_view("push", 5);
+}
+
+// Of the message in held_, of which enough has come to know its operation.
+GiopGate::Room GiopGate::room_for(const Header& header) const {
+  std::span<const std::byte> key;
+  if (!is_sample(held_, header, key)) return {limits_.request, false};
+  const std::size_t wanted = limits_.room == nullptr ? limits_.sample : limits_.room(key);
+  return {std::max(limits_.request, std::min(wanted, limits_.sample)), wanted > 0};
 }
 
 int GiopGate::receive(std::byte* to, std::size_t size, const Read& read) {
@@ -142,13 +154,13 @@ int GiopGate::collect(const Read& read) {
   if (may_be_long) {
     if (const int result = fill(read, header_size + std::min(header.size, head_of_sample)); result <= 0) return result;
   }
-  const bool sample = may_be_long && is_sample(held_, header);
-  const std::size_t limit = sample || header.has_more ? limits_.sample : limits_.request;
-  if (header.size > limit) {
-    return refuse("a message of " + std::to_string(header.size) + " octets, expected at most " + std::to_string(limit));
+  const Room room = may_be_long ? room_for(header) : Room{header.has_more ? small : limits_.request, false};
+  if (header.size > room.limit) {
+    return refuse("a message of " + std::to_string(header.size) + " octets, expected at most " + std::to_string(room.limit) +
+                  (room.is_port ? " for this port" : " (corba.max_request_size)"));
   }
   ++messages_;
-  if (sample && !header.has_more && header.size <= limits_.direct && claim(header.size)) {
+  if (room.is_port && !header.has_more && header.size <= limits_.direct && claim(header.size)) {
     whole_ = held_.size();
     direct_left_ = header_size + header.size - held_.size();
     return 1;
@@ -158,7 +170,7 @@ int GiopGate::collect(const Read& read) {
     whole_ = header_size + header.size;
     return 1;
   }
-  return collect_fragments(read, header, is_sample(held_, header) ? limits_.sample : limits_.request);
+  return collect_fragments(read, header, room_for(header).limit);
 }
 
 // The rest of a message that comes in pieces; nothing but its pieces may come before it is whole.
@@ -204,8 +216,10 @@ int GiopGate::fill(const Read& read, std::size_t size) {
   while (held_.size() < size) {
     const std::size_t have = held_.size();
     const std::size_t wanted = std::min(size - have, std::max(step, have));
-    if (have + wanted > small && !claim(wanted)) return refuse("too much is in progress on all connections together");
-    held_.resize(have + wanted);
+    const std::size_t needed = have + wanted;  // reads bring as little as they like: what was claimed for one counts for the next
+    if (needed > small && needed > claimed_ && !claim(needed - claimed_))
+      return refuse("too much is in progress on all connections together");
+    held_.resize(needed);
     const int got = read_on(read, held_.data() + have, wanted);
     held_.resize(have + static_cast<std::size_t>(std::max(got, 0)));
     if (got <= 0) return got;

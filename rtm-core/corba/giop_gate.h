@@ -16,10 +16,12 @@ namespace corba {
 
 // [octets], without the header of 12.
 struct GiopLimits {
-  std::size_t sample = std::size_t{128} << 20;  // a message of a data port (put, push)
+  std::size_t sample = std::size_t{128} << 20;  // a message of a data port (put, push), when `room` does not say less
   std::size_t request = std::size_t{2} << 20;   // any other message
   std::size_t direct = std::size_t{4} << 20;    // a sample up to this passes while it comes; a longer one is collected first
   std::size_t total = std::size_t{512} << 20;   // collected and claimed by all connections of the process together
+  // [octets] of samples that the object with that key needs (corba/sample_room.h); never less than a request may have. Null: `sample`.
+  std::size_t (*room)(std::span<const std::byte> object_key) = nullptr;
 };
 
 class GiopGate {
@@ -47,8 +49,13 @@ class GiopGate {
 
  private:
   struct Header;
+  struct Room {
+    std::size_t limit = 0;  // [octets] of the message
+    bool is_port = false;   // it goes to a data port
+  };
   static bool parse(std::span<const std::byte> octets, Header& header);
-  static bool is_sample(std::span<const std::byte> message, const Header& header);
+  static bool is_sample(std::span<const std::byte> message, const Header& header, std::span<const std::byte>& object_key);
+  Room room_for(const Header& header) const;
   static std::uint32_t number_at(std::span<const std::byte> octets, std::size_t at, bool is_little);
 
   std::size_t whole_messages(std::span<const std::byte> octets);

@@ -1,6 +1,7 @@
 #include "corba/in_engine.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "base/chance.h"
@@ -40,6 +41,13 @@ bool is_same_sample(const rt::Sample& a, const rt::Sample& b) {
 std::uint64_t moment_of_reader() {
   const base::Tick* tick = base::current_tick();
   return tick ? tick->moment() : 0;
+}
+
+// [octets] of a message with a sample: without end for types that are, as pictures, as long as their user likes.
+std::size_t room_of(const TypeOps& ops) {
+  constexpr std::uint64_t around_it = 64 * 1024;  // the head of the message
+  const auto most = ops.codec ? std::nullopt : ops.shape.most_octets();
+  return static_cast<std::size_t>(most ? *most + around_it : std::numeric_limits<std::size_t>::max());
 }
 
 // What was read in a tick is part of what the run did.
@@ -227,6 +235,7 @@ rt::Refusal InEngine::provide(ConnectionPlan plan, RTC::ConnectorProfile& profil
     case rt::Interface::corba_cdr:
     case rt::Interface::data_service:
       connection->provider_ = make_cdr_in_provider(settings.interface, connection, line);
+      connection->room_ = std::make_unique<SampleRoom>(connection->provider_->reference(), room_of(connection->ops()));
       break;
     case rt::Interface::shared_memory:
       connection->provider_ = make_shared_memory_in_provider(connection, line);

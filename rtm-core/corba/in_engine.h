@@ -10,6 +10,7 @@
 
 #include "base/guarded.h"
 #include "corba/data_port.h"
+#include "corba/sample_room.h"
 #include "core/mailbox.h"
 #include "rtm/idl/RTCStub.h"
 
@@ -58,6 +59,7 @@ class InConnection final : public Receiver, public Waiting {
   const rt::Channel channel_;
   const std::shared_ptr<rt::BlockPool> pool_ = rt::BlockPool::make();
   std::unique_ptr<Provider> provider_;  // push
+  std::unique_ptr<SampleRoom> room_;    // for what comes to it
   std::unique_ptr<Fetcher> fetcher_;    // pull
   std::shared_ptr<void> served_;        // push by a foreign interface
   base::Guarded<rt::Sample, base::Rank::connector> last_fetched_;

@@ -19,6 +19,7 @@
 #include "corba/call_watch.h"
 #include "corba/farewell.h"
 #include "corba/peer_watch.h"
+#include "corba/sample_room.h"
 
 namespace corba {
 namespace {
@@ -181,7 +182,10 @@ bool has_argument(const std::vector<std::string>& arguments, std::string_view na
 base::Result<std::vector<std::string>> to_arguments(const OrbSettings& settings, const std::string& unix_folder) {
   std::vector<std::string> result{"rtm", "-ORBgiopMaxMsgSize", std::to_string(settings.max_message_size),
                                   // Connections from other processes stay open however seldom they are used.
-                                  "-ORBinConScanPeriod", "0", "-ORBclientCallTimeOutPeriod", std::to_string(settings.call_timeout.count())};
+                                  "-ORBinConScanPeriod", "0",
+                                  // Ours to processes that are gone are found only when they have been idle for so long [s].
+                                  "-ORBoutConScanPeriod", "30", "-ORBclientCallTimeOutPeriod",
+                                  std::to_string(settings.call_timeout.count())};
   std::vector<std::string> endpoints;
   for (const auto& endpoint : settings.endpoints) {
     if (base::trim(endpoint) != "all") {
@@ -242,6 +246,7 @@ DoorSettings doors_of(const OrbSettings& settings, const std::vector<std::string
   const bool is_said = has_argument(settings.arguments, "-ORBgiopMaxMsgSize");
   doors.limits.request = is_said ? doors.limits.sample : std::min(settings.max_request_size, doors.limits.sample);
   doors.limits.total = std::max(doors.limits.total, 2 * doors.limits.sample);
+  if (!is_said) doors.limits.room = &room_for_samples;
   return doors;
 }
 

@@ -147,6 +147,36 @@ Shape::Node Shape::compile(CORBA::TypeCode_ptr code, int depth) {
   }
 }
 
+// With the most octets that may be needed before each part to align it.
+std::optional<std::uint64_t> Shape::most_octets(const Node& node) {
+  constexpr std::uint64_t number = 4 + 3;  // a length, an enumerator
+  constexpr std::uint64_t too_many = std::uint64_t{1} << 31;
+  std::uint64_t sum = 0;
+  switch (node.kind) {
+    case Kind::enumeration:
+      return number;
+    case Kind::text:
+      return node.count ? std::optional(number + node.count + 1) : std::nullopt;
+    case Kind::number:
+      return 2 * std::uint64_t{node.size};
+    case Kind::array:
+    case Kind::sequence:
+    case Kind::structure:
+      break;
+    case Kind::unknown:
+      return std::nullopt;
+  }
+  if (node.kind == Kind::sequence && node.count == 0) return std::nullopt;
+  for (const Node& member : node.members) {
+    const auto most = most_octets(member);
+    if (!most || *most > too_many) return std::nullopt;
+    sum += *most;
+  }
+  if (node.kind == Kind::structure) return sum;
+  if (node.size) return node.size * (node.count + 1);
+  return node.count < too_many ? std::optional(number + sum * node.count) : std::nullopt;
+}
+
 Shape::Shape(CORBA::TypeCode_ptr code) : root_(compile(code, 0)) {}
 
 bool Shape::fits(std::span<const std::byte> octets, rt::ByteOrder order) const {

@@ -7,6 +7,7 @@
 #include <omniORB4/CORBA.h>
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,6 +26,10 @@ class Shape {
   // looked at. Never throws; takes time with the number of elements, but not for arrays of numbers.
   bool fits(std::span<const std::byte> octets, rt::ByteOrder order) const;
 
+  // No value is longer [octets]. Nothing when there is no such number: the type has a sequence or a text of any length, or more than can be
+  // said of it.
+  std::optional<std::uint64_t> most_octets() const { return most_octets(root_); }
+
  private:
   enum class Kind : std::uint8_t { unknown, number, enumeration, text, sequence, array, structure };
   struct Node {
@@ -36,6 +41,7 @@ class Shape {
   class Walk;
 
   static Node compile(CORBA::TypeCode_ptr code, int depth);
+  static std::optional<std::uint64_t> most_octets(const Node& node);
 
   Node root_;
 };

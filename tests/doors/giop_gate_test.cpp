@@ -34,13 +34,14 @@ Octets message(int type, const Octets& body, bool has_more = false, int minor = 
 }
 
 // The head of a request of GIOP 1.2 for that operation, a multiple of 8 long with the header of the message.
-Octets request_head(std::uint32_t id, const std::string& operation) {
+Octets request_head(std::uint32_t id, const std::string& operation, const std::string& key = "KEY!") {
   Octets body;
   append_number(body, id);
   append_number(body, 3);
   append_number(body, 0);  // by key
-  append_number(body, 4);
-  body = body + bytes("KEY!");
+  append_number(body, static_cast<std::uint32_t>(key.size()));
+  body = body + bytes(key);
+  body.resize((body.size() + 3) / 4 * 4);
   append_number(body, static_cast<std::uint32_t>(operation.size() + 1));
   body = body + bytes(operation);
   body.push_back(std::byte{0});
@@ -203,6 +204,50 @@ TEST(GiopGate, messages_longer_than_allowed_are_refused_at_their_header) {
   }
 }
 
+// Ports of images are told apart from others by the key of their object.
+std::size_t room_of_test(std::span<const std::byte> key) {
+  const std::string_view text(reinterpret_cast<const char*>(key.data()), key.size());
+  return text == "pictures" ? ~std::size_t{0} : text == "numbers" ? 150'000 : text == "bits" ? 100 : 0;
+}
+
+TEST(GiopGate, a_sample_may_be_as_long_as_its_port_needs) {
+  corba::GiopLimits limits;
+  limits.request = 100'000;
+  limits.sample = 1'000'000;
+  limits.room = &room_of_test;
+  const auto is_through = [&](const std::string& key, std::size_t size, bool in_fragments) {
+    Octets body = request_head(1, "put", key);
+    const Octets head = message(request, body, true);
+    body.resize(size);
+    Gate f(limits);
+    Peer peer{in_fragments ? head + message(fragment, numbered(1, size)) : message(request, body)};
+    return !f.drain(peer).empty();
+  };
+  for (const bool in_fragments : {false, true}) {
+    EXPECT_TRUE(is_through("pictures", 990'000, in_fragments));
+    EXPECT_FALSE(is_through("pictures", 1'001'000, in_fragments)) << "never more than the process takes";
+    EXPECT_TRUE(is_through("numbers", 149'000, in_fragments));
+    EXPECT_FALSE(is_through("numbers", 151'000, in_fragments));
+    EXPECT_TRUE(is_through("bits", 99'000, in_fragments)) << "never less than any request may have";
+    EXPECT_FALSE(is_through("bits", 101'000, in_fragments));
+    EXPECT_FALSE(is_through("no such port", 101'000, in_fragments));
+  }
+}
+
+TEST(GiopGate, what_no_port_has_asked_for_is_collected_whatever_its_operation_is_called) {
+  corba::GiopLimits limits;
+  limits.room = &room_of_test;
+  for (const auto& [key, is_collected] : {std::pair("pictures", false), std::pair("a service", true)}) {
+    Octets body = request_head(1, "put", key);
+    body.resize(1'000'000);
+    Gate f(limits);
+    Peer peer{message(request, body), 8192};
+    Octets buffer(8192);
+    ASSERT_GT(f.gate.receive(buffer.data(), buffer.size(), peer.reader()), 0);
+    EXPECT_EQ(peer.at == peer.sent.size(), is_collected) << key;
+  }
+}
+
 TEST(GiopGate, samples_pass_while_they_come) {
   Octets body = request_head(1, "put");
   body.resize(3'000'000, std::byte{'y'});
@@ -217,6 +262,19 @@ TEST(GiopGate, samples_pass_while_they_come) {
   all.insert(all.end(), buffer.begin(), buffer.begin() + first);
   EXPECT_TRUE(f.gate.is_in_message());
   EXPECT_EQ(all + f.drain(peer), sample + small_ones);
+}
+
+TEST(GiopGate, a_long_message_counts_once_however_small_the_pieces_are_that_it_comes_in) {
+  corba::GiopLimits limits;
+  limits.direct = 100'000;
+  limits.total = 6'000'000;
+  Octets body = request_head(1, "put");
+  body.resize(5'000'000, std::byte{'y'});
+  const Octets sample = message(request, body);
+  Gate f(limits);
+  Peer peer{sample + small_ones, 4096};
+  EXPECT_EQ(f.drain(peer), sample + small_ones) << f.gate.problem();
+  EXPECT_EQ(f.in_progress, 0u);
 }
 
 TEST(GiopGate, all_connections_together_hold_no_more_than_allowed) {

@@ -1,6 +1,9 @@
 // Peers that mean harm: deep names, chains of ports that never answer, segments that are cut short, fifos in the place of segments. None of
 // them ends the process or holds it longer than its time-outs.
 #include <gtest/gtest.h>
+#include <omniORB4/CORBA.h>
+#include <omniORB4/omniIOR.h>
+#include <rtm/idl/InterfaceDataTypesSkel.h>
 #include <rtm/idl/SharedMemorySkel.h>
 
 #include <fcntl.h>
@@ -10,9 +13,13 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstddef>
 #include <cstring>
+#include <span>
+#include <vector>
 
 #include "corba/call_timeout.h"
+#include "corba/sample_room.h"
 #include "ports/support.h"
 #include "support/hanging.h"
 
@@ -68,6 +75,34 @@ TEST_F(Hostile, names_too_deep_or_too_many_are_refused_at_every_door) {
   EXPECT_TRUE(out.connectors().empty());
   auto good = profile({out.getPortRef(), in.getPortRef()}, {{"a.b.c.d.e.f.g.h", "x"}});
   EXPECT_EQ(out.connect(good), RTC::RTC_OK);
+}
+
+// The key of the object at the InPort's end, which the guard of an end point knows it by (corba/giop_gate.h).
+std::vector<std::byte> key_of(corba::Orb& orb, const RTC::ConnectorProfile& connection) {
+  const auto ior_text = NVUtil::toString(connection.properties, "dataport.corba_cdr.inport_ior");
+  const CORBA::Object_var object = orb.orb()->string_to_object(ior_text.c_str());
+  const omniIOR_var ior = object->_PR_getobj()->_getIOR();
+  IIOP::ProfileBody body;
+  IIOP::unmarshalProfile(ior->iopProfiles()[0], body);
+  const auto octets = std::as_bytes(std::span(body.object_key.get_buffer(), body.object_key.length()));
+  return {octets.begin(), octets.end()};
+}
+
+TEST_F(Hostile, a_port_lets_samples_in_as_long_as_its_type_may_need_while_it_is_connected) {
+  auto plan = profile({out.getPortRef(), in.getPortRef()}, {{"interface_type", "corba_cdr"}});
+  ASSERT_EQ(out.connect(plan), RTC::RTC_OK);
+  const std::size_t numbers = corba::room_for_samples(key_of(*orb, plan));
+  EXPECT_GT(numbers, 12u);
+  EXPECT_LT(numbers, 100'000u) << "no value of a TimedLong is longer";
+  RTC::CameraImage seen{}, shown{};
+  RTC::OutPort<RTC::CameraImage> eye{"A0.eye", seen};
+  RTC::InPort<RTC::CameraImage> screen{"B0.screen", shown};
+  auto view = profile({eye.getPortRef(), screen.getPortRef()}, {{"interface_type", "corba_cdr"}});
+  ASSERT_EQ(eye.connect(view), RTC::RTC_OK);
+  const auto key = key_of(*orb, view);
+  EXPECT_GT(corba::room_for_samples(key), std::size_t{1} << 30) << "the process has the last word";
+  ASSERT_EQ(eye.disconnect(view.connector_id), RTC::RTC_OK);
+  EXPECT_EQ(corba::room_for_samples(key), 0u) << "a connection that has ended needs nothing";
 }
 
 TEST_F(Hostile, a_connection_of_too_many_ports_is_refused) {

@@ -3,6 +3,7 @@
 import json
 import os
 import signal
+import struct
 import subprocess
 import sys
 import zlib
@@ -250,6 +251,27 @@ def killed_player_and_server():
     assert numbers()[-1] == 0, f"refused frames: {numbers()}"
 
 
+# Pictures as long as the largest cameras take, from one host to another without any setting: a port that takes images lets them in.
+def large_frames():
+    sizes = {"hd": (1920, 1080), "uhd": (3840, 2160)}
+    eyes = "".join(f"<sensor name='{name}' type='camera'><update_rate>5</update_rate><camera><image><width>{w}</width><height>{h}</height></image></camera></sensor>"
+                   for name, (w, h) in sizes.items())
+    with open(world, "w") as file:
+        file.write(f"<sdf version='1.9'><world name='w'><model name='robot'><static>true</static><link name='l'>{eyes}</link></model></world></sdf>")
+    system.server(world)
+    system.naming()
+    system.rtcd(*(f"RTCCamera?instance_name={name}&conf.default.server_id={system.server_id}&conf.default.device_id=robot::{name}" for name in sizes))
+    system.rtcd(*(f"VideoPlayer?instance_name=of_{name}&conf.default.window=0&conf.default.record_dir={system.work}/of_{name}" for name in sizes))
+    system.rtse("wait", *sizes, *(f"of_{name}" for name in sizes), "--state", "any", "--timeout", "60")
+    for name, size in sizes.items():
+        system.rtse("con", f"{name}:image", f"of_{name}:image", "-p", "dataport.interface_type=corba_cdr", "-p", "dataport.subscription_type=flush")
+        system.rtse("act", name, f"of_{name}")
+        more_recorded(f"of_{name}", 2)
+        system.rtse("deact", name)
+        with open(f"{system.work}/of_{name}/times.txt") as times, open(f"{system.work}/of_{name}/" + times.readline().split()[0], "rb") as picture:
+            assert struct.unpack(">II", picture.read(24)[16:]) == size, name
+
+
 # simctl record writes every format as a PNG that anybody can look at.
 def recorded_formats():
     names = ("R8G8B8", "B8G8R8", "RGBA_INT8", "BGRA_INT8", "L8", "L16", "BAYER_RGGB8", "BAYER_BGGR8", "BAYER_GBRG8", "BAYER_GRBG8")
@@ -290,7 +312,7 @@ def recorded_end():
     system.simctl("clean")
 
 
-cases = {f.__name__: f for f in (slow_reader, only_for_readers, restarted_server, stopped_player, killed_player_and_server, recorded_formats, recorded_end)}
+cases = {f.__name__: f for f in (slow_reader, only_for_readers, restarted_server, stopped_player, killed_player_and_server, large_frames, recorded_formats, recorded_end)}
 with system:
     cases[case]()
 print("ok")

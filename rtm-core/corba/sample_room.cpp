@@ -1,0 +1,53 @@
+#include "corba/sample_room.h"
+
+#include <omniORB4/omniIOR.h>
+
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "base/guarded.h"
+
+namespace corba {
+namespace {
+
+using Rooms = std::map<std::string, std::size_t, std::less<>>;
+
+// Of the process, as its end points are; never destroyed, since connections may go after it otherwise.
+base::Guarded<Rooms, base::Rank::registry>& rooms() {
+  static auto& all = *new base::Guarded<Rooms, base::Rank::registry>;
+  return all;
+}
+
+std::string key_of(CORBA::Object_ptr object) {
+  const omniIOR_var ior = object->_PR_getobj()->_getIOR();
+  for (CORBA::ULong i = 0; i < ior->iopProfiles().length(); ++i) {
+    const auto& profile = ior->iopProfiles()[i];
+    if (profile.tag != IOP::TAG_INTERNET_IOP) continue;
+    IIOP::ProfileBody body;
+    IIOP::unmarshalProfile(profile, body);
+    return {reinterpret_cast<const char*>(body.object_key.get_buffer()), body.object_key.length()};
+  }
+  return {};
+}
+
+}  // namespace
+
+struct SampleRoom::Key {
+  std::string octets;
+};
+
+SampleRoom::SampleRoom(CORBA::Object_ptr object, std::size_t octets) : key_(std::make_unique<Key>(key_of(object))) {
+  rooms().lock()->insert_or_assign(key_->octets, octets);
+}
+
+SampleRoom::~SampleRoom() { rooms().lock()->erase(key_->octets); }
+
+std::size_t room_for_samples(std::span<const std::byte> object_key) {
+  const std::string_view key(reinterpret_cast<const char*>(object_key.data()), object_key.size());
+  auto known = rooms().lock();
+  const auto found = known->find(key);
+  return found != known->end() ? found->second : 0;
+}
+
+}  // namespace corba
