@@ -1,11 +1,14 @@
 #include "orb.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdlib>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "base/text.h"
+#include "corba/guarded_transport.h"
 #include "corba/tls.h"
 
 namespace editor {
@@ -19,17 +22,39 @@ std::string default_server() {
   return "localhost:2809";
 }
 
+namespace {
+
+constexpr std::size_t longest_sample = std::size_t{256} << 20;  // [octets]
+
+// Tools read no rtc.conf.
+corba::OpenTo open_to_of_environment() {
+  const char* said = std::getenv("RTMSIM_OPEN_TO");
+  const std::string text = said != nullptr ? said : "";
+  if (text.empty() || text == "account") return corba::OpenTo::account;
+  if (text == "host") return corba::OpenTo::host;
+  throw std::runtime_error("RTMSIM_OPEN_TO: expected account or host, got " + base::in_quotes(text));
+}
+
+}  // namespace
+
+// What ports send to a tool comes in by end points that are guarded as those of any host of components.
 Orb::Orb() {
   const auto tls = corba::prepare_tls(corba::tls_of_environment());
   if (!tls) throw std::runtime_error(tls.error().message);
+  corba::DoorSettings doors{open_to_of_environment(), !tls->empty(), {}};
+  doors.limits.sample = longest_sample;
+  doors.limits.total = 2 * longest_sample;
+  corba::set_doors(doors);
+  const auto here = corba::guarded("giop:tcp:127.0.0.1:"), over_tls = corba::guarded("giop:ssl::");
+  const auto longest = std::to_string(longest_sample);
   std::vector<std::array<const char*, 2>> options{
-      {"endPoint", "giop:tcp:127.0.0.1:"},
-      {"giopMaxMsgSize", "268435456"},
+      {"endPoint", here.c_str()},
+      {"giopMaxMsgSize", longest.c_str()},
       {"supportPerThreadTimeOut", "1"},
       // No limit of its own for new connections: it would replace the limit of the first call over each.
       {"clientCallTimeOutPeriod", "30000"}};
   for (const auto& [name, value] : *tls) options.push_back({name.c_str(), value.c_str()});
-  if (!tls->empty()) options.push_back({"endPoint", "giop:ssl::"});  // what ports of other hosts send comes here
+  if (!tls->empty()) options.push_back({"endPoint", over_tls.c_str()});  // what ports of other hosts send comes here
   options.push_back({nullptr, nullptr});
   int argc = 0;
   orb_ = CORBA::ORB_init(argc, nullptr, "omniORB4", reinterpret_cast<const char*(*)[2]>(options.data()));

@@ -10,7 +10,8 @@ namespace editor {
 // The first of $RTCTREE_NAMESERVERS, else localhost:2809.
 std::string default_server();
 
-// The ORB of a tool: it listens on loopback only, for the ports that print and inject make.
+// The ORB of a tool: it listens on loopback only, for the ports that print and inject make, and lets in only the own account, or with
+// RTMSIM_OPEN_TO=host all of this machine. Throws std::runtime_error when the environment says what cannot be.
 class Orb {
  public:
   Orb();

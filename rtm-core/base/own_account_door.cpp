@@ -1,24 +1,87 @@
 // A library to be loaded before others (LD_PRELOAD) into a server that is not ours, as omniNames: connections over TCP from other accounts
-// end before the server has read anything. base/own_account.h says where it is.
+// end before the server has read anything, and when there are too many the one that has been silent longest ends. base/own_account.h says
+// where it is.
 #include <dlfcn.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstddef>
 
+#include "base/descriptors.h"
 #include "base/peer_account.h"
 
 namespace {
 
-// The server sees a connection that its peer has closed at once: it knows how to deal with that.
-void close_to_others(int connection) {
-  const int error = errno;
+constexpr std::size_t most_threads = 2000;  // each connection has one
+constexpr std::size_t reserved_files = 64;  // for what is no connection, and for those that are leaving
+
+// So many at a time.
+int most_connections() {
+  static const int most = [] {
+    const std::size_t allowed = base::raise_descriptor_limit();
+    return static_cast<int>(
+        std::clamp<std::size_t>(allowed > 2 * reserved_files ? allowed - reserved_files : allowed / 2, 8, most_threads));
+  }();
+  return most;
+}
+
+// The port of this end in network order; 0 for what is no TCP connection.
+in_port_t own_port(int file) {
   sockaddr_storage own{};
   socklen_t size = sizeof own;
-  const bool is_tcp =
-      getsockname(connection, reinterpret_cast<sockaddr*>(&own), &size) == 0 && (own.ss_family == AF_INET || own.ss_family == AF_INET6);
-  if (is_tcp && !base::is_own_account(base::peer_account(connection))) shutdown(connection, SHUT_RDWR);
-  errno = error;
+  if (getsockname(file, reinterpret_cast<sockaddr*>(&own), &size) != 0) return 0;
+  if (own.ss_family == AF_INET) return reinterpret_cast<const sockaddr_in&>(own).sin_port;
+  return own.ss_family == AF_INET6 ? reinterpret_cast<const sockaddr_in6&>(own).sin6_port : in_port_t{0};
 }
+
+// When there are too many connections to the port that `latest` has come to. Callers that still want something connect again. One thread at
+// a time: the one that accepts.
+void end_most_silent(int latest) {
+  static int highest = 0;  // of all files that were connections; new files have the lowest number that is free
+  highest = std::max(highest, latest);
+  if (highest < most_connections()) return;
+  const in_port_t port = own_port(latest);
+  int count = 0, silent = -1;
+  unsigned longest = 0;  // [ms]
+  for (int file = 3; file <= highest; ++file) {
+    tcp_info info{};
+    socklen_t size = sizeof info;
+    if (getsockopt(file, IPPROTO_TCP, TCP_INFO, &info, &size) != 0 || info.tcpi_state != TCP_ESTABLISHED || own_port(file) != port)
+      continue;
+    ++count;
+    if (file == latest || (silent >= 0 && info.tcpi_last_data_recv <= longest)) continue;
+    silent = file;
+    longest = info.tcpi_last_data_recv;
+  }
+  if (silent < 0 || count <= most_connections()) return;
+  shutdown(silent, SHUT_RDWR);
+  // Its thread closes it, which nobody announces. Without the wait new ones would come faster than old ones go, until there are no files
+  // left.
+  for (int waited = 0; waited < 200 && fcntl(silent, F_GETFD) != -1; ++waited) usleep(1000);
+}
+
+// What the server gets of a connection that has come: nothing of one from another account, as if nobody had come after all.
+int let_in(int connection) {
+  const int error = errno;
+  if (connection < 0) return connection;
+  if (own_port(connection) != 0) {
+    if (!base::is_own_account(base::peer_account(connection))) {
+      close(connection);
+      errno = EAGAIN;
+      return -1;
+    }
+    end_most_silent(connection);
+  }
+  errno = error;
+  return connection;
+}
+
+[[gnu::constructor]] void raise_limit() { (void)most_connections(); }
 
 template <class Function>
 Function next(const char* name) {
@@ -29,14 +92,10 @@ Function next(const char* name) {
 
 extern "C" __attribute__((visibility("default"))) int accept(int socket, sockaddr* address, socklen_t* size) {
   static const auto original = next<int (*)(int, sockaddr*, socklen_t*)>("accept");
-  const int connection = original(socket, address, size);
-  if (connection >= 0) close_to_others(connection);
-  return connection;
+  return let_in(original(socket, address, size));
 }
 
 extern "C" __attribute__((visibility("default"))) int accept4(int socket, sockaddr* address, socklen_t* size, int flags) {
   static const auto original = next<int (*)(int, sockaddr*, socklen_t*, int)>("accept4");
-  const int connection = original(socket, address, size, flags);
-  if (connection >= 0) close_to_others(connection);
-  return connection;
+  return let_in(original(socket, address, size, flags));
 }

@@ -34,6 +34,19 @@ def locate(identity, key=b"manager"):
     return message(3, struct.pack("<IHxxI", identity, 0, len(key)) + key)
 
 
+def listening_ports(pid):
+    """Of 127.0.0.1, where that process listens."""
+    sockets = set()
+    for entry in os.listdir(f"/proc/{pid}/fd"):
+        try:
+            sockets.add(os.readlink(f"/proc/{pid}/fd/{entry}"))
+        except OSError:
+            continue
+    with open(f"/proc/{pid}/net/tcp") as table:
+        rows = [row.split() for row in table.readlines()[1:]]
+    return [int(row[1].split(":")[1], 16) for row in rows if row[3] == "0A" and f"socket:[{row[9]}]" in sockets]
+
+
 class Host:
     """An rtcd; with `wrapper` a program before it, as valgrind. Ended by pid."""
 

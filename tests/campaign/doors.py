@@ -9,7 +9,10 @@ import tempfile
 import time
 import unittest
 
-from attacker import Host, head, locate, message
+from attacker import Host, head, listening_ports, locate, message
+
+sys.path.append(os.path.join(os.path.dirname(__file__), "../scenario"))
+from system import System
 
 bin_dir, lib_dir = sys.argv[1:3]
 del sys.argv[1:3]
@@ -71,6 +74,20 @@ class Doors(unittest.TestCase):
         self.assertEqual(ask_as(0, port, root), "GIOP")
         self.assertEqual(ask_as(65534, port, root), "")
 
+    @unittest.skipUnless(os.geteuid() == 0, "needs a second account, so root")
+    def test_a_tool_that_listens_is_as_closed(self):
+        with System(bin_dir, lib_dir) as s:
+            s.naming()
+            s.rtcd("LaserObstacleAvoid")
+            s.until("a component", lambda: s.try_rtse("cat", "LaserObstacleAvoid0").returncode == 0, 0.1)
+            tool = s.start(f"{bin_dir}/rtse", "--ns", s.names, "print", "LaserObstacleAvoid0:velocity")
+            s.until("a connection to the tool", lambda: s.rtse("--json", "cat", "-l", "LaserObstacleAvoid0").count("rtse") > 0, 0.1)
+            ports = listening_ports(tool.pid)
+            self.assertTrue(ports)
+            for port in ports:
+                self.assertEqual(ask_as(0, port), "GIOP")
+                self.assertEqual(ask_as(65534, port), "")
+
     def test_what_48_octets_claim_takes_no_memory(self):
         host = self.host()
         before = host.memory()
@@ -96,6 +113,19 @@ class Doors(unittest.TestCase):
         for stream in idle:
             stream.close()
         self.assertTrue(host.answers())
+
+    def test_idle_connections_lock_nobody_out_of_the_naming_service(self):
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            port = probe.getsockname()[1]
+        self.host("--with-naming", "-o", f"corba.nameservers:127.0.0.1:{port}", files=256)
+        root = locate(1, b"NameService")
+        self.assertEqual(ask_as(0, port, root), "GIOP")
+        idle = [socket.create_connection(("127.0.0.1", port), timeout=10) for _ in range(400)]
+        self.assertEqual(ask_as(0, port, root), "GIOP", "the owner's tool was locked out")
+        for stream in idle:
+            stream.close()
+        self.assertEqual(ask_as(0, port, root), "GIOP")
 
     def test_who_sends_no_whole_request_is_sent_away(self):
         host = self.host()
