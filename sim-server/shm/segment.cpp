@@ -93,7 +93,11 @@ base::Result<std::string> make_refuge() {
   if (::mkdtemp(path.data()) == nullptr || ::chmod(path.c_str(), 0755) != 0) {
     return base::Error{"folder " + path + " can't be made: " + reason()};
   }
-  return path;
+  // Somebody else of this account may have made one at the same time: one is enough.
+  const auto known = refuges_of(::geteuid());
+  if (known.empty() || known.front() == path) return path;
+  ::rmdir(path.c_str());
+  return known.front();
 }
 
 // Where a segment of this name is: the usual path, unless another user has that name.
@@ -104,6 +108,19 @@ std::string path_of(const SegmentName& name) {
     if (std::string path = refuge + "/" + name.text(); is_owned_by(path, name.uid)) return path;
   }
   return usual;
+}
+
+void remove_name(const SegmentName& name, const std::string& path) {
+  ::unlink(path.c_str());
+  if (path != usual_path(name)) ::rmdir(path.substr(0, path.rfind('/')).c_str());  // does so when nothing is left in it
+}
+
+// Another file of the same owner has the same name in another place: two have made it at the same time, each where the other did not look.
+bool is_elsewhere_too(const SegmentName& name, const std::string& path) {
+  const auto is_other = [&](const std::string& place) { return place != path && is_owned_by(place, name.uid); };
+  const auto refuges = refuges_of(name.uid);
+  return is_other(usual_path(name)) ||
+         std::any_of(refuges.begin(), refuges.end(), [&](const std::string& refuge) { return is_other(refuge + "/" + name.text()); });
 }
 
 template <class Number>
@@ -376,7 +393,12 @@ base::Result<void> Segment::take_name(int file) {
   const std::string from = "/proc/self/fd/" + std::to_string(file);
   std::string path = path_of(name_);
   for (int attempt = 0; attempt < 20; ++attempt) {
-    if (::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0) return {};
+    if (::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0) {
+      if (!is_elsewhere_too(name_, path)) return {};
+      remove_name(name_, path);  // whoever named it last sees the other: both meet in one place then
+      path = path_of(name_);
+      continue;
+    }
     const int error = errno;
     if (error != EEXIST && error != ENOENT) {
       return base::Error{"shared memory " + name_.text() + " can't be named: " + std::strerror(error)};
@@ -437,9 +459,7 @@ void Segment::close() {
   if (!base_) return;
   tell_readers(header());
   if (!is_current()) return;
-  const std::string path = path_of(name_);
-  ::unlink(path.c_str());
-  if (path != usual_path(name_)) ::rmdir(path.substr(0, path.rfind('/')).c_str());  // does so when nothing is left in it
+  remove_name(name_, path_of(name_));
 }
 
 namespace {

@@ -3,16 +3,21 @@
 #include <gtest/gtest.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include <barrier>
 #include <filesystem>
 #include <fstream>
+#include <optional>
+#include <thread>
 
 #include "shm/shm_support.h"
 
 namespace shm::test {
 namespace {
 
-constexpr uid_t user = 65533, squatter = 65534;
+// Accounts of this test process alone: others run at the same time, and look for what is left behind.
+const uid_t user = 20'000 + 2 * static_cast<uid_t>(::getpid() % 20'000), squatter = user + 1;
 
 std::string usual_path(uid_t uid, std::uint32_t id, IfaceType type, const std::string& name) {
   return "/dev/shm/" + SegmentName{uid, id, type, name}.text();
@@ -96,6 +101,34 @@ TEST_P(SquattedNames, of_a_server_that_was_killed_are_found_by_the_next_one) {
   EXPECT_TRUE(has_refuge(user));
   EXPECT_EQ(start(false), 0);
   EXPECT_FALSE(has_refuge(user)) << "the folder stays behind";
+}
+
+// Each may find no folder for taken names and make one of its own.
+TEST_P(SquattedNames, give_the_id_to_one_of_two_who_start_at_the_same_time) {
+  const std::uint32_t id = fresh_server_id();
+  take(id, IfaceType::simulation, "world", GetParam());
+  constexpr int rounds = 200;
+  const auto race = [&] {
+    const IfaceSpec spec = iface_spec(IfaceType::simulation, "world", simulation_info());
+    for (int round = 0; round < rounds; ++round) {
+      std::barrier start(2);
+      std::optional<base::Result<Segment>> made[2];
+      const auto make = [&](int which) {
+        start.arrive_and_wait();
+        made[which].emplace(Segment::create({::geteuid(), id, IfaceType::simulation, "world"}, spec.geometry, spec.info, {}));
+        start.arrive_and_wait();
+      };
+      std::thread other(make, 1);
+      make(0);
+      other.join();
+      EXPECT_EQ(made[0]->ok() + made[1]->ok(), 1) << "round " << round;
+      for (auto& one : made) {
+        if (one->ok()) (*one)->close();
+      }
+    }
+    EXPECT_FALSE(has_refuge(user)) << "a folder stays behind";
+  };
+  EXPECT_EQ(as(user, race), 0);
 }
 
 TEST_P(SquattedNames, lead_no_client_to_what_another_account_wrote) {
