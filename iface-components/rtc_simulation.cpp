@@ -1,5 +1,6 @@
 #include "rtc_simulation.h"
 
+#include <base/text.h>
 #include <shm/request_board.h>
 
 #include "conversions.h"
@@ -78,6 +79,7 @@ char* SimulationServiceImpl::spawn(const char* sdf, const char* name, const rtms
   request.name = name;
   request.has_pose = true;
   request.pose = from_wire(target);
+  request.is_confined = !opens_all_files_;
   return CORBA::string_dup(ask_or_throw(server_id_, request).message.c_str());
 }
 
@@ -99,6 +101,8 @@ RTCSimulation::RTCSimulation(RTC::Manager* manager)
 
 RTC::ReturnCode_t RTCSimulation::onInitialize() {
   addOutPort("time", time_out_);
+  const std::string rights = RTC::Manager::instance().getConfig().getProperty("manager.remote_rights");
+  if (base::to_lower(base::trim(rights)) == "everything") service_.open_all_files();
   simulation_port_.registerProvider("simulation", "rtmsim::SimulationService", service_);
   addPort(simulation_port_);
   bindParameter("server_id", server_id_, std::to_string(iface::default_server()).c_str());

@@ -1,6 +1,8 @@
 // RTCSimulation: the simulation as a component. Activate runs it, deactivate pauses it, reset (from the error state) resets it; the OutPort
 // `time` (RTC::TimedDouble) carries simulated time [s], and the service port `simulation` provides rtmsim::SimulationService.
-// Configuration: server_id. It belongs into an ordinary context: one of simulated time stands still while the simulation is paused.
+// Configuration: server_id. Models are spawned from texts and from what is in the simulator's model path; from any file when rtc.conf sets
+// manager.remote_rights to everything. It belongs into an ordinary context: one of simulated time stands still while the simulation is
+// paused.
 #pragma once
 
 #include <rtm/idl/BasicDataTypeSkel.h>
@@ -20,6 +22,8 @@
 class SimulationServiceImpl : public virtual POA_rtmsim::SimulationService, public virtual PortableServer::RefCountServantBase {
  public:
   void set_server(int server_id) { server_id_.store(server_id, std::memory_order_relaxed); }
+  // Callers may have models spawned from any file that the simulator may read, not only from those of its model path.
+  void open_all_files() { opens_all_files_ = true; }
 
   void run() override;
   void pause() override;
@@ -33,6 +37,7 @@ class SimulationServiceImpl : public virtual POA_rtmsim::SimulationService, publ
 
  private:
   std::atomic<int> server_id_{0};
+  bool opens_all_files_ = false;  // from before the first call
 };
 
 class RTCSimulation : public RTC::DataFlowComponentBase {

@@ -148,9 +148,10 @@ Result<Plan> set_velocity(const ActContext& context, const Json& args) {
   return plan(context, request, with_numbers(with_numbers({"velocity", *model}, *linear), *angular));
 }
 
-// A model of the model path, or SDF as text; never a file of the server's.
+// A model of the model path, or SDF as text; never a file of the server's, not in an address in the text either.
 Result<Plan> spawn(const ActContext& context, const Json& args) {
   shm::SpawnRequest request;
+  request.is_confined = true;
   if (args.contains("sdf")) {
     auto sdf = text_of(args, "sdf");
     if (!sdf) return sdf.error();

@@ -136,9 +136,9 @@ struct ServerLoop::Handler {
       return refused(shm::RequestStatus::bad_request,
                      "name of a model must have at most " + std::to_string(shm::max_name_length) + " bytes");
     }
-    // What others ask for is made of what the model path offers to everybody.
+    // What is asked for others is made of what the model path offers to everybody.
     const ModelPath& path = loop.model_path_;
-    auto loaded = load_model(request.sdf, request.name, pose, loop.is_shared() ? path.confined() : path);
+    auto loaded = load_model(request.sdf, request.name, pose, loop.is_shared() || request.is_confined ? path.confined() : path);
     if (!loaded) return failed(loaded.error());
     // A name that nobody asked for gives way.
     if (request.name.empty()) loaded->model.name = unused_name(loaded->model.name);

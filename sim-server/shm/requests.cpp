@@ -12,7 +12,7 @@
 namespace shm {
 namespace {
 
-constexpr std::uint32_t flag_1 = 1, flag_2 = 2;
+constexpr std::uint32_t flag_1 = 1, flag_2 = 2, flag_3 = 4;
 constexpr std::int64_t max_steps = 1'000'000'000;
 constexpr std::uint32_t max_pixels = 8192;
 
@@ -67,7 +67,7 @@ struct Encoder {
   void operator()(const SpawnRequest& r) {
     raw.text = r.sdf;
     name(r.name);
-    raw.body.flags = (r.is_path ? flag_1 : 0) | (r.has_pose ? flag_2 : 0);
+    raw.body.flags = (r.is_path ? flag_1 : 0) | (r.has_pose ? flag_2 : 0) | (r.is_confined ? flag_3 : 0);
     put_pose(raw.body, r.pose);
   }
   void operator()(const DeleteRequest& r) { name(r.model); }
@@ -187,7 +187,8 @@ base::Result<Request> Decoder::twist() const {
 
 base::Result<Request> Decoder::spawn() const {
   if (raw_.text.empty()) return fail("needs an SDF text or a path");
-  SpawnRequest request{raw_.text, (body().flags & flag_1) != 0, name_, (body().flags & flag_2) != 0, identity_pose};
+  SpawnRequest request{raw_.text,     (body().flags & flag_1) != 0, name_, (body().flags & flag_2) != 0,
+                       identity_pose, (body().flags & flag_3) != 0};
   if (request.has_pose) {
     const auto wanted = pose();
     if (!wanted) return fail("the quaternion of the pose is zero");

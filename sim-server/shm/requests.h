@@ -51,6 +51,7 @@ struct SpawnRequest {
   std::string name;      // empty = as in the file
   bool has_pose = false;
   Pose pose = identity_pose;
+  bool is_confined = false;  // nothing outside of the model path is opened: on behalf of somebody who may not read all that the server may
 };
 struct DeleteRequest {
   std::string model;

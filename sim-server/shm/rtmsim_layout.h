@@ -419,8 +419,8 @@ enum {
   RTMSIM_REQUEST_LIST = 10,       /* reply text: JSON, see docs/shared-memory.md */
   RTMSIM_REQUEST_TREE = 11,       /* name = model or empty for all; reply text: JSON tree of models, links, joints, sensors */
   RTMSIM_REQUEST_SPAWN = 12,      /* text = SDF, or flags bit 0: text = path of an SDF file or model folder (of a
-                                     shared server: inside its model path); name = new name or empty; flags bit 1: values 0..6 = pose. Reply
-                                     message = name given */
+                                     shared server: inside its model path); name = new name or empty; flags bit 1: values 0..6 = pose; bit 2:
+                                     nothing outside of the model path is opened. Reply message = name given */
   RTMSIM_REQUEST_DELETE = 13,     /* name = model */
   RTMSIM_REQUEST_SCREENSHOT = 14, /* text = absolute path of the PNG, or empty: the PNG is the text of the reply (a shared server writes no
                                      files); width, height; flags RTMSIM_VIEW_*; name = model to follow; values 0..6 = pose of the

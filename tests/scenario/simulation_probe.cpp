@@ -6,7 +6,12 @@
 #include <rtm/Manager.h>
 #include <rtm/idl/SimulationServiceSkel.h>
 
+#include <unistd.h>
+
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
 
 class SimulationProbe : public RTC::DataFlowComponentBase {
  public:
@@ -72,7 +77,16 @@ class SimulationProbe : public RTC::DataFlowComponentBase {
                    [&] {
                      simulation_->set_pose("robot", {NAN, 0, 0, 0, 0, 0});
                    }) &&
-           refuses("a model that is no SDF", [&] { simulation_->spawn("<sdf", "x", {}); });
+           refuses("a model that is no SDF", [&] { simulation_->spawn("<sdf", "x", {}); }) && is_confined();
+  }
+
+  // A file of the simulator's user that is not in its model path.
+  bool is_confined() {
+    const auto file = std::filesystem::temp_directory_path() / ("rtmsim-probe-" + std::to_string(getpid()) + ".sdf");
+    std::ofstream(file) << "<sdf version='1.9'><model name='outside'><link name='l'/></model></sdf>";
+    const bool is_refused = refuses("a file outside of the model path", [&] { simulation_->spawn(file.c_str(), "", {}); });
+    std::filesystem::remove(file);
+    return is_refused;
   }
 
   template <class Call>

@@ -34,6 +34,8 @@ TEST(Requests, all_kinds_survive_the_way_to_bytes_and_back) {
   EXPECT_EQ(spawn.sdf, "<sdf/>");
   EXPECT_FALSE(spawn.is_path);
   EXPECT_TRUE(spawn.has_pose);
+  EXPECT_FALSE(spawn.is_confined);
+  EXPECT_TRUE(there_and_back(SpawnRequest{"m", true, "", false, identity_pose, true}).is_confined);
   ScreenshotRequest shot;
   shot.path = "/tmp/x.png";
   shot.view = ScreenshotRequest::View::follow;
