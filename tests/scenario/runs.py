@@ -252,4 +252,55 @@ def odds_and_ends():
         assert code == 1 and "/nonexistent" in err, err
 
 
+def child_of(process, program):
+    """The pid of the child that runs that program, once there is one."""
+    while process.poll() is None:
+        for pid in pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split():
+            try:
+                if pathlib.Path(f"/proc/{pid}/comm").read_text().strip() == program:
+                    return int(pid)
+            except FileNotFoundError:
+                continue
+        time.sleep(0.01)
+    raise AssertionError(f"no {program}: {process.communicate()}")
+
+
+def has_moved(process):
+    try:
+        words = pathlib.Path(f"/proc/{child_of(process, 'sim-server')}/cmdline").read_text().split("\0")
+    except FileNotFoundError:
+        return False
+    if "--server-id" not in words:
+        return False  # it is just beginning to be that program
+    done = subprocess.run([f"{bin_dir}/simctl", "-s", words[words.index("--server-id") + 1], "--json", "stats"], capture_output=True, text=True, timeout=watchdog)
+    return done.returncode == 0 and json.loads(done.stdout)["sim_time"] > 0
+
+
+# A naming service that hangs is named, whenever it does, and nothing else is blamed.
+def hung_naming():
+    with Place() as place:
+        for moment in ("start", "drive"):
+            process = place.start(avoidance, course, "--duration", "5", "--realtime", "--start-timeout", "20" if moment == "drive" else "3")
+            names = child_of(process, "omniNames")
+            while moment == "drive" and not has_moved(process):
+                time.sleep(0.01)
+            os.kill(names, signal.SIGSTOP)
+            out, err = process.communicate(timeout=watchdog)
+            assert process.returncode == 1 and "\nrtse: naming service" in f"\n{err}" and "gone" not in err, (moment, out, err)
+            assert not is_running(names), "it is still there"
+
+
+# How long a start may take can be said, and a long one is told.
+def slow_start():
+    with Place() as place:
+        never = place.write("omniNames", "#!/bin/sh\nexec sleep 1000\n")
+        os.chmod(never, 0o755)
+        place.environment["PATH"] = f"{place.path}:{place.environment['PATH']}"
+        code, out, err = place.run(avoidance, course, "--start-timeout", "3")
+        assert code == 1 and "naming service: not ready after 1 s, is waited for up to 3 s (--start-timeout)" in err, err
+        assert "not ready after 3 s (--start-timeout)" in err, err
+        code, out, err = place.run(avoidance, course, "--start-timeout", "0")
+        assert code == 2 and "--start-timeout" in err, err
+
+
 globals()[case]()

@@ -101,7 +101,7 @@ RunResult run_apart(const RunOptions& options, std::uint64_t seed) {
   failed.seed = seed;
   ProgramCall call{{own_program("rtse"), "--json", "run", options.system, "--world", options.world, "--duration",
                     base::format_number(options.duration_s), "--seed", std::to_string(seed), "--hang-timeout",
-                    base::format_number(options.hang_timeout_s)},
+                    base::format_number(options.hang_timeout_s), "--start-timeout", base::format_number(options.start_timeout_s)},
                    {},
                    ""};
   const auto add = [&](std::initializer_list<std::string> words) { call.words.insert(call.words.end(), words); };
@@ -283,6 +283,9 @@ void add_run(base::Command& app, Chosen& chosen) {
         return parsed ? std::string() : parsed.error().message;
       });
   run->add_option("--hang-timeout", options->hang_timeout_s, "Seconds of real time that one tick may take")
+      ->check(base::number_between(0.1, 1e6))
+      ->capture_default_str();
+  run->add_option("--start-timeout", options->start_timeout_s, "Seconds of real time for the simulator's start, and for the components'")
       ->check(base::number_between(0.1, 1e6))
       ->capture_default_str();
   run->add_option("--junit", options->junit, "Write the verdicts as JUnit XML");

@@ -6,15 +6,17 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <chrono>
-
 #include "base/own_account.h"
-#include "naming_tree.h"
+#include "remote.h"
 
 namespace editor {
 namespace {
 
-constexpr std::chrono::milliseconds call_limit{1000};
+using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+constexpr auto silence_limit = 8s;  // much more than a busy machine needs for a small answer
+constexpr auto ask_limit = 4s;
 
 // A port of the loopback that nobody listens on just now.
 int free_port() {
@@ -31,28 +33,67 @@ int free_port() {
   return port;
 }
 
+Result<void> answers(CORBA::ORB_ptr orb, const std::string& server, std::chrono::milliseconds limit) {
+  const CallLimit limited(limit);
+  return remote("naming service " + server, [&] {
+    const CORBA::Object_var object = orb->string_to_object(("corbaloc::" + server + "/NameService").c_str());
+    (void)object->_non_existent();
+  });
+}
+
 }  // namespace
 
 Result<void> RunNaming::start(CORBA::ORB_ptr orb, const RunSimulator::Wait& wait_until) {
   const int port = free_port();
   if (port == 0) return Error{"no free port on 127.0.0.1"};
+  orb_ = CORBA::ORB::_duplicate(orb);
   address_ = "127.0.0.1:" + std::to_string(port);
   auto started = ChildProcess::start({{"omniNames", "-start", std::to_string(port), "-datadir", place_.scratch("names"), "-errlog",
-                                       place_.new_file("omninames.err"), "-ORBendPoint", "giop:tcp:127.0.0.1:" + std::to_string(port)},
+                                       place_.new_file("omninames.err"), "-ORBendPoint", "giop:tcp:" + address_},
                                       {{"LD_PRELOAD", base::own_account_door()}},
                                       place_.new_file("omninames.log")});
   if (!started) return started.error();
   process_.emplace(std::move(*started));
-  return wait_until("naming service", [&] { return NamingTree::read(orb, address_, call_limit).ok(); });
+  return wait_until("naming service", [&] { return answers(orb_, address_, 1000ms).ok(); });
+}
+
+void RunNaming::end() {
+  if (process_ && !ask()) kill(process_->pid(), SIGKILL);
+  process_.reset();
+}
+
+void RunNaming::set_running(bool is_to_run) {
+  if (!process_ || is_stopped_ == !is_to_run) return;
+  kill(process_->pid(), is_to_run ? SIGCONT : SIGSTOP);
+  is_stopped_ = !is_to_run;
+  is_silent_ = false;
+  silent_since_.reset();
+}
+
+void RunNaming::answered(bool has_answered) {
+  if (has_answered) {
+    silent_since_.reset();
+  } else if (!silent_since_) {
+    silent_since_ = Clock::now();
+  }
 }
 
 Result<void> RunNaming::check() {
-  if (!process_ || process_->is_running()) return {};
-  return Error{"omniNames " + process_->how_it_ended() + ": " + telling_line(place_.file("omninames.log"))};
+  if (!process_) return {};
+  if (!process_->is_running()) return Error{"omniNames " + process_->how_it_ended() + ": " + telling_line(place_.file("omninames.log"))};
+  if (silent_since_ && !is_stopped_ && Clock::now() - *silent_since_ > silence_limit) return silence();
+  return {};
 }
 
-void RunNaming::set_running(bool is_to_run) const {
-  if (process_) kill(process_->pid(), is_to_run ? SIGCONT : SIGSTOP);
+Result<void> RunNaming::ask() {
+  if (!process_ || !process_->is_running() || is_stopped_) return {};
+  if (!is_silent_ && answers(orb_, address_, ask_limit)) return {};
+  is_silent_ = true;  // one wait is enough
+  return silence();
+}
+
+Error RunNaming::silence() const {
+  return {"naming service " + address_ + " (omniNames, pid " + std::to_string(process_->pid()) + "): does not answer (hung, or stopped?)"};
 }
 
 }  // namespace editor

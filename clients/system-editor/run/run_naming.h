@@ -1,8 +1,10 @@
-// The naming service of a run, on a port of the loopback that nobody else listens on. One thread at a time.
+// The naming service of a run: an omniNames of its own on a free port of the loopback. Whoever waits for it says so to answered(), so that
+// one that has stopped answering is named as that, and soon, instead of what cannot be found without it. One thread at a time.
 #pragma once
 
-#include <sys/types.h>
+#include <omniORB4/CORBA.h>
 
+#include <chrono>
 #include <optional>
 #include <string>
 
@@ -14,23 +16,38 @@ namespace editor {
 
 class RunNaming {
  public:
-  explicit RunNaming(const Workplace& place) : place_(place) {}  // it must live as long
+  // The place must live as long.
+  explicit RunNaming(const Workplace& place) : place_(place) {}
 
   // Returns when it answers.
   Result<void> start(CORBA::ORB_ptr orb, const RunSimulator::Wait& wait_until);
-  // An error that says how it ended, when it has started and ended.
-  Result<void> check();
-  void end() { process_.reset(); }
-  // Stops it, or lets it go on.
-  void set_running(bool is_to_run) const;
+  // Takes it down, one that does not answer by force.
+  void end();
 
-  const std::string& address() const { return address_; }  // HOST:PORT
+  // HOST:PORT.
+  const std::string& address() const { return address_; }
   pid_t pid() const { return process_ ? process_->pid() : 0; }
 
+  // Stops it, or lets it go on.
+  void set_running(bool is_to_run);
+
+  // What the caller has just seen of it.
+  void answered(bool has_answered);
+  // An error that says how it ended, or that it has not answered for some seconds.
+  Result<void> check();
+  // Asks it now: an error when it is there and does not answer.
+  Result<void> ask();
+
  private:
+  Error silence() const;
+
   const Workplace& place_;
+  CORBA::ORB_var orb_;
   std::string address_;
   std::optional<ChildProcess> process_;
+  bool is_stopped_ = false;  // by set_running
+  bool is_silent_ = false;   // when it was asked
+  std::optional<std::chrono::steady_clock::time_point> silent_since_;
 };
 
 }  // namespace editor

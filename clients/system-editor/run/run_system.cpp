@@ -32,7 +32,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-constexpr auto start_limit = 30s;
 constexpr auto call_limit = 5s;
 constexpr auto command_limit = 60s;  // of a command of the user's
 
@@ -53,7 +52,7 @@ class Run final : public RunningSystem {
     const auto began = Clock::now();
     result_.seed = options_.seed;
     if (const auto done = run(); !done) {
-      result_.problem = done.error().message;
+      result_.problem = with_naming(done.error().message);
       result_.logs = last_words();
     }
     ports_.end();
@@ -126,13 +125,31 @@ class Run final : public RunningSystem {
 
   static Result<void> fail(const std::string& what) { return Error{what}; }
 
-  // Waits until `ready`, a child ends, an interrupt comes, or time is up.
-  Result<void> wait_until(const std::string& what, const std::function<bool()>& ready, std::chrono::duration<double> limit = start_limit) {
-    const auto deadline = Clock::now() + limit;
+  using Seconds = std::chrono::duration<double>;
+  Seconds start_limit() const { return Seconds(options_.start_timeout_s); }
+
+  // A problem that has a reason: what needs the naming service cannot be found without it.
+  std::string with_naming(const std::string& problem) {
+    const auto answer = is_interrupted() ? Result<void>() : naming_.ask();
+    return answer || problem == answer.error().message ? problem : answer.error().message + "; " + problem;
+  }
+
+  Result<void> wait_until(const std::string& what, const std::function<bool()>& ready) { return wait_until(what, ready, start_limit()); }
+
+  // Waits until `ready`, a child ends, an interrupt comes, or time is up. A wait is told after a third of the time.
+  Result<void> wait_until(const std::string& what, const std::function<bool()>& ready, Seconds limit) {
+    const auto began = Clock::now();
+    auto told = began;
     while (!ready()) {
+      const auto now = Clock::now();
       if (is_interrupted()) return fail("run: interrupted");
       if (const auto alive = check_children(); !alive) return alive;
-      if (Clock::now() > deadline) return fail(what + ": not ready after " + base::format_number(limit.count()) + " s");
+      if (now - began > limit) return fail(what + ": not ready after " + base::format_number(limit.count()) + " s (--start-timeout)");
+      if (now - told > limit / 3) {
+        told = now;
+        std::fprintf(stderr, "rtse: %s: not ready after %.0f s, is waited for up to %s s (--start-timeout)\n", what.c_str(),
+                     Seconds(now - began).count(), base::format_number(limit.count()).c_str());
+      }
       std::this_thread::sleep_for(20ms);  // what is waited for is another program's start, which nobody announces
     }
     return {};
@@ -198,7 +215,7 @@ class Run final : public RunningSystem {
     }
     std::vector<std::string> expected = foreign_.proxies();
     for (const auto* component : all) expected.push_back(component->instance);
-    if (const auto there = await_components(expected, start_limit); !there) return there;
+    if (const auto there = await_components(expected, start_limit()); !there) return there;
     expected.clear();
     for (const auto& member : foreign_.members()) expected.push_back(member.instance);
     return await_components(expected, foreign_.patience());
@@ -208,6 +225,7 @@ class Run final : public RunningSystem {
     std::string missing;
     const auto are_there = [&] {
       const auto names = NamingTree::read(orb_, naming_.address(), 1000ms);
+      naming_.answered(names.ok());
       if (!names) return false;
       missing.clear();
       for (const auto& name : expected) {
@@ -322,7 +340,8 @@ class Run final : public RunningSystem {
       return missing.empty();
     });
     if (waited || missing.empty() || is_interrupted() || !check_children()) return waited;
-    return fail("component " + missing + ": does not take part in simulated time after " + std::to_string(start_limit.count()) + " s");
+    return fail("component " + missing + ": does not take part in simulated time after " + base::format_number(options_.start_timeout_s) +
+                " s");
   }
 
   // The ends of all logs, for a report.
@@ -377,6 +396,8 @@ class Run final : public RunningSystem {
   // What can be seen only while everything still runs.
   Result<void> look() {
     seen_.values = ports_.end();
+    naming_.set_running(true);  // what is judged now is found by it
+    if (const auto answer = naming_.ask(); !answer) return answer;
     const auto stats = simulator_.statistics(call_limit);
     if (!stats.contains("hash")) return fail("sim-server: does not answer");
     result_.state_hash = stats["hash"].is_string() ? stats["hash"].get<std::string>() : stats["hash"].dump();
@@ -447,6 +468,8 @@ class Run final : public RunningSystem {
 
   // Ends components first, so that they can say good-bye to the naming service.
   void stop() {
+    naming_.set_running(true);
+    if (!naming_.ask()) naming_.end();  // nobody need wait for it
     foreign_.terminate();
     hosts_.terminate();
     hosts_.end();

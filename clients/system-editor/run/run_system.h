@@ -44,6 +44,7 @@ struct RunOptions {
   bool one_process_each = false;  // a host for every component, instead of one for all
   bool in_real_time = false;
   double hang_timeout_s = 30;           // of real time, that one tick may take
+  double start_timeout_s = 30;          // of real time, that the simulator and every other step of the start may take
   std::vector<std::string> properties;  // "INSTANCE:key=value", of the component when it is created
   std::vector<std::string> start;       // commands that start components of others
   std::string run_file;                 // YAML, see run_file.h
