@@ -71,7 +71,11 @@ int main(int argc, char** argv) {
     options.config = std::move(*ports);
   }
   block_signals();
-  gateway::Gateway gateway(std::move(options));
-  if (const auto done = gateway.run(); !done) return fail(done.error());
+  try {
+    gateway::Gateway gateway(std::move(options));
+    if (const auto done = gateway.run(); !done) return fail(done.error());
+  } catch (const std::exception& e) {
+    return fail({std::string("the system refuses what is needed, as threads or memory: ") + e.what()});
+  }
   return 0;
 }

@@ -1,6 +1,7 @@
 #include "physics/worker_pool.h"
 
 #include <chrono>
+#include <system_error>
 
 namespace sim {
 namespace {
@@ -12,7 +13,11 @@ constexpr double not_worth_sharing = 60;
 }  // namespace
 
 WorkerPool::WorkerPool(int threads, Sharing sharing) : sharing_(sharing) {
-  for (int i = 1; i < threads; ++i) workers_.emplace_back([this] { work(); });
+  try {
+    for (int i = 1; i < threads; ++i) workers_.emplace_back([this] { work(); });
+  } catch (const std::system_error&) {
+    // No room for more threads: those that there are do all of the work, with the same result.
+  }
 }
 
 WorkerPool::~WorkerPool() {

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <system_error>
 #include <thread>
 
 #include "base/command_line.h"
@@ -246,11 +247,13 @@ int main(int argc, char** argv) {
   if (const auto end = base::parse_command_line(app, "sim-server", argc, argv)) return *end;
   const base::Level levels[] = {base::Level::error, base::Level::info, base::Level::info, base::Level::debug};
   base::set_log_level(levels[options.verbosity]);
-  Signals signals;
   try {
+    Signals signals;
     return run(options, signals);
   } catch (const std::bad_alloc&) {
     return fail(options.world + ": the memory is not enough for this world");
+  } catch (const std::system_error& e) {  // a thread that cannot be started, most likely
+    return fail(options.world + ": the memory is not enough for this world, or there are too many processes: " + e.what());
   } catch (const std::exception& e) {  // from libraries
     return fail(e.what());
   }

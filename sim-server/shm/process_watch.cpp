@@ -9,6 +9,7 @@
 #include <condition_variable>
 #include <cstring>
 #include <map>
+#include <system_error>
 #include <tuple>
 
 #include "base/text.h"
@@ -77,7 +78,11 @@ base::Result<std::unique_ptr<ProcessWatch>> ProcessWatch::start() {
   event.events = EPOLLIN;
   event.data.u64 = 0;
   epoll_ctl(watch->state_->epoll.get(), EPOLL_CTL_ADD, watch->state_->stop.get(), &event);
-  watch->thread_ = std::thread([raw = watch.get()] { raw->run(); });
+  try {
+    watch->thread_ = std::thread([raw = watch.get()] { raw->run(); });
+  } catch (const std::system_error& error) {
+    return base::Error{std::string("process watch can't start: no thread: ") + error.what()};
+  }
   return watch;
 }
 
