@@ -82,11 +82,13 @@ class Signals {
  private:
   void stop(int signal) {
     constexpr timespec patience{2, 0};
+    bool has_loop = false;
     {
       auto loop = loop_.lock();
-      if (*loop != nullptr) (*loop)->stop();
-      if (*loop == nullptr) end_process(signal);
+      has_loop = *loop != nullptr;
+      if (has_loop) (*loop)->stop();
     }
+    if (!has_loop) end_process(signal);
     const int next = sigtimedwait(&set_, nullptr, &patience);
     if (is_over_.load(std::memory_order_acquire)) return;  // pairs with the release in end
     if (next < 0) std::fprintf(stderr, "sim-server: ended in the middle of a step, which takes more than %ld s\n", patience.tv_sec);

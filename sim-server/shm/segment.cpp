@@ -279,6 +279,12 @@ base::Result<Eviction> evict(const SegmentName& name, const std::string& path) {
   return eviction;
 }
 
+// Of the threads of this process that give names. Who removes them all keeps it: nothing is named behind its back.
+base::Turn<>& naming() {
+  static base::Turn<> turn;
+  return turn;
+}
+
 std::string check_header(const Header& header, const SegmentName& name, std::uint64_t file_size) {
   if (std::memcmp(header.magic, RTMSIM_MAGIC, sizeof header.magic) != 0) return "is not an iface";
   if (header.layout_version != layout_version) {
@@ -390,6 +396,7 @@ base::Result<Segment> Segment::create(const SegmentName& name, const Geometry& g
 
 // Gives the file its name. A stale one of ours goes; when another user has the name, ours is in a folder of our own.
 base::Result<void> Segment::take_name(int file) {
+  const auto mine = naming().take();
   const std::string from = "/proc/self/fd/" + std::to_string(file);
   std::string path = path_of(name_);
   for (int attempt = 0; attempt < 20; ++attempt) {
@@ -531,6 +538,7 @@ std::vector<std::string> remove_stale(std::uint32_t first_server, std::uint32_t 
 }
 
 void remove_own() {
+  static const auto mine = naming().take();
   const ProcessMark own = own_mark();
   for (const auto& name : all_names()) {
     auto segment = Segment::open(name);

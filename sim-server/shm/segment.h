@@ -117,7 +117,8 @@ inline constexpr std::uint32_t first_unnamed_server = 100'000'000;
 // Removes the segments of dead servers with these ids that belong to this user; returns their names.
 std::vector<std::string> remove_stale(std::uint32_t first_server = 0, std::uint32_t last_server = ~std::uint32_t{0});
 
-// Removes all names that this process has made, for one that ends without destructors. Readers are told.
+// Removes all names that this process has made, for one that ends without destructors. Readers are told. No further name is given: other
+// threads that want one wait for the end of the process. No data may be held.
 void remove_own();
 
 // By process and, when that can't be judged, by heartbeat.

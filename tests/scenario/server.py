@@ -514,6 +514,16 @@ def ends_while_it_loads():
     process.send_signal(signal.SIGTERM)
     assert process.wait(watchdog) == 128 + signal.SIGTERM, process.returncode
     assert not segments(), segments()
+    # Also while it makes its ifaces: none is left, and none comes behind the back of what removes them.
+    shape = "<link name='l'><collision name='c'><geometry><box/></geometry></collision></link>"
+    with open(world, "w") as file:
+        models = "".join(f"<model name='m{i}'><pose>{2 * i} 0 1 0 0 0</pose>{shape}</model>" for i in range(4000))
+        file.write(f"<sdf version='1.9'><world name='w'>{models}</world></sdf>")
+    process = server("-u", world=world)
+    await_("some of its ifaces", lambda: len(segments()) > 2000)
+    process.send_signal(signal.SIGTERM)
+    assert process.wait(watchdog) in (0, 128 + signal.SIGTERM), process.returncode
+    assert not segments(), segments()
 
 
 # A file of shared memory that somebody cuts short: said, and everything else goes on.
