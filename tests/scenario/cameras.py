@@ -260,8 +260,9 @@ def large_frames():
         file.write(f"<sdf version='1.9'><world name='w'><model name='robot'><static>true</static><link name='l'>{eyes}</link></model></world></sdf>")
     system.server(world)
     system.naming()
-    system.rtcd(*(f"RTCCamera?instance_name={name}&conf.default.server_id={system.server_id}&conf.default.device_id=robot::{name}" for name in sizes))
-    system.rtcd(*(f"VideoPlayer?instance_name=of_{name}&conf.default.window=0&conf.default.record_dir={system.work}/of_{name}" for name in sizes))
+    patience = ("-o", "corba.call_timeout:60")  # of a machine that does much else; nothing is said of sizes
+    system.rtcd(*patience, *(f"RTCCamera?instance_name={name}&conf.default.server_id={system.server_id}&conf.default.device_id=robot::{name}" for name in sizes))
+    system.rtcd(*patience, *(f"VideoPlayer?instance_name=of_{name}&conf.default.window=0&conf.default.record_dir={system.work}/of_{name}" for name in sizes))
     system.rtse("wait", *sizes, *(f"of_{name}" for name in sizes), "--state", "any", "--timeout", "60")
     for name, size in sizes.items():
         system.rtse("con", f"{name}:image", f"of_{name}:image", "-p", "dataport.interface_type=corba_cdr", "-p", "dataport.subscription_type=flush")
