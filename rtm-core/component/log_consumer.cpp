@@ -77,14 +77,16 @@ class LoggerConsumer final : public SdoServiceConsumerBase {
     const bool is_spelled = base::equal_ignoring_case(base::join(filter, ""), "ALL");
     if (is_spelled || std::ranges::any_of(filter, [](const std::string& name) { return base::equal_ignoring_case(name, "ALL"); }))
       filter.clear();
+    const bool is_simulated = base::equal_ignoring_case(NVUtil::toString(profile.properties, "logger.clock"), "simulated");
     const auto courier = std::make_shared<corba::Courier>("logger service");
     courier_ = courier;
     // What the courier itself logs would come back here for ever.
-    sink_ = addLogSink(level.value_or(Logger::RTL_INFO), [courier, logger, filter](const LogRecord& record) {
+    sink_ = addLogSink(level.value_or(Logger::RTL_INFO), [courier, logger, filter, is_simulated](const LogRecord& record) {
       if (!filter.empty() && std::find(filter.begin(), filter.end(), record.name) == filter.end()) return;
       OpenRTM::LogRecord wire;
-      wire.time.sec = static_cast<CORBA::ULong>(record.time.count() / 1'000'000'000);
-      wire.time.nsec = static_cast<CORBA::ULong>(record.time.count() % 1'000'000'000);
+      const auto time = is_simulated ? record.simulated.value_or(record.time) : record.time;
+      wire.time.sec = static_cast<CORBA::ULong>(time.count() / 1'000'000'000);
+      wire.time.nsec = static_cast<CORBA::ULong>(time.count() % 1'000'000'000);
       wire.loggername = std::string(record.name).c_str();
       wire.level = to_wire(record.level);
       wire.message = std::string(record.message).c_str();

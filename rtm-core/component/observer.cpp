@@ -6,14 +6,20 @@
 #include <rtm/RTObject.h>
 #include <rtm/idl/ComponentObserverSkel.h>
 #include <rtm/idl/FsmComponentObserverSkel.h>
+#include <rtm/idl/LoggerSkel.h>
 
 #include <algorithm>
+#include <array>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <set>
 
+#include "base/chance.h"
+#include "base/clock.h"
 #include "base/guarded.h"
 #include "base/text.h"
+#include "base/tick.h"
 #include "corba/courier.h"
 #include "corba/orb.h"
 
@@ -50,8 +56,30 @@ constexpr std::pair<Kind, const char*> kind_names[] = {
     {Kind::user_defined, "USER_DEFINED"},
 };
 
+// What has happened, and when: by the simulator's clock where there is one.
+struct Event {
+  Kind kind{};
+  std::string hint{};
+  std::string value{};  // of a parameter
+  std::chrono::nanoseconds time = base::SystemClock().now();
+  bool is_in_tick = false;  // else between two of them
+};
+
+Event event_now(Kind kind, const std::string& hint, const std::string& value) {
+  if (const base::Tick* tick = base::tick_in_lock_step()) return {kind, hint, value, tick->time(), true};
+  const auto simulated = base::lock_step_clock();
+  return simulated ? Event{kind, hint, value, simulated->now()} : Event{kind, hint, value};
+}
+
+template <class Observer>
+void send_status(typename Observer::Interface::_ptr_type target, const Event& event) {
+  typename Observer::WireKind wire{};
+  if (Observer::to_wire(event.kind, wire)) target->update_status(wire, event.hint.c_str());
+}
+
 struct OldObserver {
   using Interface = OpenRTM::ComponentObserver;
+  static void send(Interface::_ptr_type target, const Event& event) { send_status<OldObserver>(target, event); }
   static constexpr const char* id = "IDL:OpenRTM/ComponentObserver:1.0";
   static constexpr std::pair<const char*, Kind> heartbeats[] = {{"heartbeat", Kind::rtc_heartbeat}};
   static bool to_wire(Kind kind, OpenRTM::StatusKind& wire) {
@@ -77,6 +105,7 @@ struct OldObserver {
 
 struct NewObserver {
   using Interface = RTC::ComponentObserver;
+  static void send(Interface::_ptr_type target, const Event& event) { send_status<NewObserver>(target, event); }
   static constexpr const char* id = "IDL:omg.org/RTC/ComponentObserver:1.0";
   static constexpr std::pair<const char*, Kind> heartbeats[] = {
       {"heartbeat", Kind::rtc_heartbeat}, {"rtc_heartbeat", Kind::rtc_heartbeat}, {"ec_heartbeat", Kind::ec_heartbeat}};
@@ -88,14 +117,33 @@ struct NewObserver {
 };
 static_assert(static_cast<int>(Kind::user_defined) == RTC::USER_DEFINED && static_cast<int>(Kind::fsm_status) == RTC::FSM_STATUS);
 
+// A logger that is told of events instead of lines, each with its time.
+struct EventLog {
+  using Interface = OpenRTM::Logger;
+  static constexpr const char* id = event_log_type;
+  static constexpr std::array<std::pair<const char*, Kind>, 0> heartbeats{};
+  static void send(Interface::_ptr_type target, const Event& event) {
+    const auto* name = std::ranges::find(kind_names, event.kind, &std::pair<Kind, const char*>::first);
+    if (name == std::end(kind_names)) return;
+    OpenRTM::LogRecord record;
+    record.time.sec = static_cast<CORBA::ULong>(event.time.count() / 1'000'000'000);
+    record.time.nsec = static_cast<CORBA::ULong>(event.time.count() % 1'000'000'000);
+    record.loggername = name->second;
+    record.level = event.is_in_tick ? OpenRTM::RTM_INFO : OpenRTM::RTM_NORMAL;
+    record.message = (event.hint + (event.value.empty() ? "" : "=" + event.value)).c_str();
+    target->publish(record);
+  }
+};
+
 // Where the events of one component go; shared by all listeners, which may be called a little longer than the consumer lives.
 class Link {
  public:
-  using Send = std::function<void(Kind, const std::string& hint)>;
+  using Send = std::function<void(const Event& event)>;
   Link(Send send, std::set<Kind> observed) : courier_("component observer"), send_(std::move(send)), observed_(std::move(observed)) {}
 
-  void tell(Kind kind, const std::string& hint) {
-    if (observed_.count(kind) != 0) courier_.send([this, kind, hint] { send_(kind, hint); });
+  void tell(Kind kind, const std::string& hint, const std::string& value = "") {
+    if (observed_.count(kind) == 0) return;
+    courier_.send([this, event = event_now(kind, hint, value)] { send_(event); });
   }
 
   // At most one such message per interval.
@@ -113,7 +161,7 @@ class Link {
 
   void beat(const std::vector<std::pair<Kind, std::chrono::nanoseconds>>& hearts) {
     std::vector<corba::Courier::Regular> regulars;
-    for (const auto& [kind, interval] : hearts) regulars.push_back({interval, [this, kind = kind] { send_(kind, ""); }});
+    for (const auto& [kind, interval] : hearts) regulars.push_back({interval, [this, kind = kind] { send_({.kind = kind}); }});
     courier_.repeat(std::move(regulars));
   }
 
@@ -284,8 +332,9 @@ class Listeners {
 
   void listen_to_configuration() {
     {
-      auto function = [link = link_](const char* set, const char* parameter) {
-        link->tell(Kind::configuration, "UPDATE_CONFIG_PARAM: " + std::string(set) + "." + parameter);
+      auto function = [&component = component_, link = link_](const char* set, const char* parameter) {
+        link->tell(Kind::configuration, "UPDATE_CONFIG_PARAM: " + std::string(set) + "." + parameter,
+                   component.getConfigService().getConfigurationSet(set).getProperty(parameter));
       };
       auto* listener = new Calls<ConfigurationParamListener, decltype(function), const char*, const char*>(std::move(function));
       component_.addConfigurationParamListener(ON_UPDATE_CONFIG_PARAM, listener);
@@ -397,10 +446,9 @@ class ObserverConsumer final : public SdoServiceConsumerBase {
     profile_ = profile;
     const auto property = [&](const std::string& name) { return NVUtil::toString(profile.properties, name); };
     link_ = std::make_shared<Link>(
-        [observer](Kind kind, const std::string& hint) {
-          typename Observer::WireKind wire{};
-          typename Interface::_var_type target = observer;
-          if (Observer::to_wire(kind, wire)) target->update_status(wire, hint.c_str());
+        [observer](const Event& event) {
+          const typename Interface::_var_type target = observer;
+          Observer::send(target, event);
         },
         observed(property("observed_status")));
     std::map<Kind, std::chrono::nanoseconds> hearts;
@@ -445,6 +493,7 @@ void register_consumer() {
 void registerComponentObserverConsumers() {
   register_consumer<OldObserver>();
   register_consumer<NewObserver>();
+  register_consumer<EventLog>();
 }
 
 }  // namespace RTC
