@@ -34,7 +34,8 @@ struct Options {
   std::string world;
   std::string then;
   std::optional<std::uint64_t> seed;
-  std::vector<std::string> module_paths, resource_paths, properties;
+  std::vector<std::string> module_paths, resource_paths, properties, start;
+  std::string run_file;
   double hang_timeout_s = 30;
 };
 
@@ -196,6 +197,7 @@ void go(Editor& editor, const Options& options) {
   if (options.world.empty()) {
     auto run = RecordedRun::unpack(options.what);
     if (!run) return editor.fail(run.error());
+    if (const auto lost = run->lost(); !lost.empty()) std::cerr << "rtse: " << lost << '\n';
     recorded.emplace(std::move(*run));
     call = recorded->options();
   } else {
@@ -203,6 +205,11 @@ void go(Editor& editor, const Options& options) {
     call.world = options.world;
     call.quiet = true;
   }
+  if (!options.start.empty()) {
+    call.start = options.start;
+    call.start_folder.clear();
+  }
+  if (!options.run_file.empty()) call.run_file = options.run_file;
   if (options.seed) call.seed = *options.seed;
   call.hang_timeout_s = options.hang_timeout_s;
   call.module_paths.insert(call.module_paths.end(), options.module_paths.begin(), options.module_paths.end());
@@ -243,6 +250,9 @@ void add_goto(base::Command& app, editor::Chosen& chosen) {
   command->add_option("-w,--world", options->world, "With a profile: SDFormat world")->check(base::existing_file());
   command->add_option("--then", options->then, "Run this shell command there and end, instead of reading commands");
   command->add_option("--seed", options->seed, "Seed of the world's noise, if not the recorded one")->check(base::number_between(0, 1e18));
+  command->add_option("--start", options->start, "Command that starts components of others, in the place of the recorded ones")
+      ->allow_extra_args(false);
+  command->add_option("--run-file", options->run_file, "Processes of others and their components, YAML")->check(base::existing_file());
   command->add_option("--module-path", options->module_paths, "Folder with modules of components")->allow_extra_args(false);
   command->add_option("--resource-path", options->resource_paths, "Folder with models")->allow_extra_args(false);
   command->add_option("--property", options->properties, "INSTANCE:KEY=VALUE, a property that a component is created with")

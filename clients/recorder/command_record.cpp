@@ -1,10 +1,12 @@
 // record.
 #include <fnmatch.h>
+#include <omnithread.h>
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -17,9 +19,12 @@
 #include "base/command_line.h"
 #include "base/text.h"
 #include "command.h"
+#include "component_source.h"
+#include "hash_channel.h"
 #include "mcap_sink.h"
 #include "port_source.h"
 #include "recorder_commands.h"
+#include "remote.h"
 #include "run/interrupt.h"
 #include "run_clock.h"
 #include "sample_filters.h"
@@ -36,12 +41,14 @@ using editor::Editor;
 // How long a port waits for the recorder. In lock step time waits with it, so that nothing is lost; in real time a sample is dropped.
 constexpr std::chrono::seconds lockstep_patience{10};
 constexpr std::size_t largest_world = 64 << 20;  // [octets] that are attached
+constexpr std::chrono::seconds hashes_limit{60};
 
 struct RecordOptions {
   std::vector<std::string> ports;
   bool all = false;
   bool views = false;       // of the simulator, too
-  bool only_ports = false;  // with `all`: no views
+  bool components = false;  // what they say of themselves, too
+  bool only_ports = false;  // with `all`: no views, and nothing of components but their ports
   bool raw_pictures = false;
   std::vector<std::string> excluded;
   std::vector<std::string> attached;  // NAME=FILE
@@ -51,23 +58,30 @@ struct RecordOptions {
   Split split;
   double rate = 0;    // [Hz] of each channel at most; 0: all
   double last_s = 0;  // only so much before the end; 0: all
+  bool until_error = false;
+  std::string hashes;  // hash log of the run, which is there when the recorder is interrupted once more
   std::string compression = "zstd";
   int server_id = static_cast<int>(default_server_id());
   bool quiet = false;
 };
 
-// Readable when a sink has failed.
-class FailureHandle {
+// Readable when there is a reason to end. Any thread.
+class EndHandle {
  public:
-  FailureHandle() : descriptor_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
-  ~FailureHandle() { ::close(descriptor_); }
-  FailureHandle(const FailureHandle&) = delete;
-  FailureHandle& operator=(const FailureHandle&) = delete;
+  EndHandle() : descriptor_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
+  ~EndHandle() { ::close(descriptor_); }
+  EndHandle(const EndHandle&) = delete;
+  EndHandle& operator=(const EndHandle&) = delete;
   int descriptor() const { return descriptor_; }
-  void raise() const { (void)::eventfd_write(descriptor_, 1); }
+  bool is_raised() const { return is_raised_.load(std::memory_order_relaxed); }
+  void raise() {
+    is_raised_.store(true, std::memory_order_relaxed);
+    (void)::eventfd_write(descriptor_, 1);
+  }
 
  private:
-  int descriptor_;
+  const int descriptor_;
+  std::atomic<bool> is_raised_{false};  // relaxed: says nothing but itself
 };
 
 bool is_excluded(const RecordOptions& options, const std::string& name) {
@@ -100,6 +114,19 @@ base::Result<std::vector<Editor::Port>> chosen_ports(Editor& editor, const Recor
   }
   if (ports.empty()) return base::Error{"record: the naming service " + editor.server() + " has no component with an OutPort"};
   return ports;
+}
+
+// Those whose ports are recorded, or all.
+std::vector<editor::ComponentView> chosen_components(Editor& editor, const RecordOptions& options, const std::vector<Editor::Port>& ports) {
+  if (!options.components && !options.until_error && (!options.all || options.only_ports)) return {};
+  std::vector<editor::ComponentView> chosen;
+  const auto tree = editor.tree();
+  if (!tree) return chosen;
+  for (auto& component : editor::read_components(*tree, {.contexts = true, .configuration = true}, editor.limit())) {
+    const bool is_meant = options.all || std::ranges::any_of(ports, [&](const auto& one) { return one.component.path == component.path; });
+    if (is_meant && component.problem.empty()) chosen.push_back(std::move(component));
+  }
+  return chosen;
 }
 
 std::string file_text(const std::string& path) {
@@ -167,11 +194,10 @@ void report(Editor& editor, const RecordOptions& options, const McapSink& sink, 
 }
 
 // An interrupt, the end of the time that was asked for, or a file that takes no more: which announces itself here.
-void wait_for_end(const RecordOptions& options, channels::Exchange& exchange) {
-  const auto handle = std::make_shared<FailureHandle>();
+void wait_for_end(const RecordOptions& options, channels::Exchange& exchange, const std::shared_ptr<EndHandle>& handle) {
   exchange.on_failure([handle] { handle->raise(); });
   const auto start = std::chrono::steady_clock::now();
-  while (!editor::is_interrupted() && !exchange.failure()) {
+  while (!editor::is_interrupted() && !exchange.failure() && !handle->is_raised()) {
     int wait_ms = -1;
     if (options.duration_s > 0) {
       const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
@@ -185,12 +211,13 @@ void wait_for_end(const RecordOptions& options, channels::Exchange& exchange) {
 
 // The views of the simulator; nothing when none are wanted, or there is no simulator and nobody named them.
 base::Result<std::unique_ptr<channels::WorldSource>> open_views(channels::Exchange& exchange, const RecordOptions& options,
-                                                                const RunClock& clock) {
+                                                                const RunClock& clock, std::function<void(channels::Time)> each_second) {
   if (!options.views && (!options.all || options.only_ports || !clock.is_simulated())) return std::unique_ptr<channels::WorldSource>();
   return channels::WorldSource::open(exchange, {.server_id = static_cast<std::uint32_t>(options.server_id),
                                                 .pictures = options.raw_pictures ? channels::Pictures::raw : channels::Pictures::jpeg,
                                                 .wants_all = true,
-                                                .excluded = options.excluded});
+                                                .excluded = options.excluded,
+                                                .each_second = std::move(each_second)});
 }
 
 // A file with what makes the run again.
@@ -227,22 +254,55 @@ base::Result<Sinks> open_sinks(const RecordOptions& options, const RunClock& clo
 // From all sources into the sink, until it is to end. False when there is nothing to record.
 bool record_into(Editor& editor, const RecordOptions& options, const RunClock& clock, const std::vector<Editor::Port>& ports,
                  channels::Exchange& exchange) {
+  const auto end = std::make_shared<EndHandle>();
   PortSource source(editor.orb(), exchange, clock);
+  ComponentSource components(editor.orb(), exchange, clock);
   auto facts = lockstep_facts(options);
   for (const auto& [component, port] : ports) {
     if (const auto added = source.add(component, port, facts[component.instance]); !added) editor.fail(added.error());
   }
-  const auto views = open_views(exchange, options, clock);
+  if (options.until_error) {
+    components.on_event([end](const std::string&, const ComponentEvent& event) {
+      if (event.kind == "RTC_STATUS" && event.event.starts_with("ERROR:")) end->raise();
+    });
+  }
+  for (const auto& component : chosen_components(editor, options, ports)) {
+    if (const auto added = components.add(component); !added) editor.fail(added.error());
+  }
+  // On the thread of the views, which end before the others.
+  const auto diagnose = [&](channels::Time now) {
+    const omni_thread::ensure_self known_to_the_orb;  // time-outs per thread need it
+    const editor::CallLimit limited(editor.limit());
+    components.diagnose(now, source);
+  };
+  const auto views = open_views(exchange, options, clock, components.size() > 0 ? std::function<void(channels::Time)>(diagnose) : nullptr);
   if (!views) {
     editor.fail(views.error());
     return false;
   }
-  if (source.size() == 0 && !*views) return false;
+  if (source.size() == 0 && components.size() == 0 && !*views) return false;
   if (!options.quiet)
     std::cerr << "recording " << source.size() << " ports" << (*views ? " and the simulator" : "") << " into "
               << base::in_quotes(options.file) << "; Ctrl-C ends it\n";
-  wait_for_end(options, exchange);
+  wait_for_end(options, exchange, end);
+  if (end->is_raised() && !exchange.failure() && !options.quiet) std::cerr << "a component is in its error state\n";
   return true;
+}
+
+// Who made the run says when its hash log is there.
+base::Result<void> keep_hashes(channels::Exchange& exchange, const std::string& file) {
+  (void)exchange.drain(lockstep_patience);
+  eventfd_t count = 0;
+  (void)::eventfd_read(editor::interrupt_handle(), &count);
+  std::cerr << "waiting for hashes" << std::endl;
+  pollfd handle{editor::interrupt_handle(), POLLIN, 0};
+  // The signal that says so interrupts the wait, too.
+  const auto deadline = std::chrono::steady_clock::now() + hashes_limit;
+  int answer = -1;
+  while (answer < 0 && std::chrono::steady_clock::now() < deadline)
+    answer = ::poll(&handle, 1, static_cast<int>(std::chrono::milliseconds(hashes_limit).count()));
+  if (answer != 1) return base::Error{"record: nobody says that the hash log " + base::in_quotes(file) + " is there"};
+  return put_hashes(exchange, file);
 }
 
 void record(Editor& editor, const RecordOptions& options) {
@@ -256,6 +316,9 @@ void record(Editor& editor, const RecordOptions& options) {
     channels::Exchange exchange;
     exchange.attach(sinks->first, {.patience = clock.is_lockstep() ? lockstep_patience : std::chrono::seconds(0)});
     if (!record_into(editor, options, clock, *ports, exchange)) return;
+    if (!options.hashes.empty()) {
+      if (const auto kept = keep_hashes(exchange, options.hashes); !kept) editor.fail(kept.error());
+    }
     if (!exchange.drain(std::chrono::seconds(30))) editor.fail({"record: the file took no more samples for 30 s; the last ones are lost"});
     if (const auto failure = exchange.failure()) editor.fail(*failure);
     if (sinks->last) {
@@ -274,7 +337,9 @@ void add_record(base::Command& app, editor::Chosen& chosen) {
   command->add_option("PORT", options->ports, "OutPorts");
   command->add_flag("--all", options->all, "All OutPorts of the naming service");
   command->add_flag("--views", options->views, "What the simulator shows, too: poses, sensors, cameras, as messages of ROS 2");
-  command->add_flag("--only-ports", options->only_ports, "With --all: without what the simulator shows")->needs("--all");
+  command->add_flag("--components", options->components,
+                    "What components say of themselves, too: states, configuration, events, log; with --all they do");
+  command->add_flag("--only-ports", options->only_ports, "With --all: without what the simulator shows and components say")->needs("--all");
   command->add_flag("--raw-pictures", options->raw_pictures, "Pictures of cameras to the bit; else as JPEG");
   command->add_option("--exclude", options->excluded,
                       "Not the ports and topics that the pattern fits, e.g. 'RTCCamera*:*', '/sim/camera/*'");
@@ -295,6 +360,8 @@ void add_record(base::Command& app, editor::Chosen& chosen) {
   command->add_option("--rate", options->rate, "At most so many samples of each channel in a second")
       ->check(base::number_between(1e-3, 1e6));
   command->add_option("--last", options->last_s, "Keep only so many seconds before the end")->check(base::number_between(0.1, 1e6));
+  command->add_flag("--until-error", options->until_error, "End when a component is in its error state");
+  command->add_option("--hashes", options->hashes, "The hash log of the run, which is there at a second interrupt; rtse run uses it");
   command->add_option("--compression", options->compression, "zstd, lz4 or none")
       ->check(base::one_of({"zstd", "lz4", "none"}))
       ->capture_default_str();

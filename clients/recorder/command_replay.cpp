@@ -26,7 +26,7 @@ struct Options {
   std::vector<std::string> tolerances;  // MEMBER=EPS
   std::vector<std::string> ignored;
   std::vector<std::string> settings;  // NAME=VALUE, of the active configuration set
-  std::vector<std::string> module_paths, properties;
+  std::vector<std::string> module_paths, properties, start;
   bool compares = false;
   std::string junit, keep;
   double hang_timeout_s = 30;
@@ -106,6 +106,20 @@ base::Result<void> configure(editor::SavedComponent& component, const std::vecto
   return {};
 }
 
+// That in which it ran; the profile may say something else.
+base::Result<void> take_rate(editor::SavedComponent& component, const std::string& file) {
+  auto reader = mcap::Reader::open(file);
+  if (!reader) return reader.error();
+  for (const auto& [id, channel] : reader->channels()) {
+    const auto period = channel.metadata.find("period_ns");
+    if (!channel.topic.starts_with("/" + component.instance + "/") || period == channel.metadata.end()) continue;
+    const auto number = base::parse_integer(period->second).value_or(0);
+    if (number > 0 && !component.contexts.empty()) component.contexts.front().rate = base::format_number(1e9 / static_cast<double>(number));
+    return {};
+  }
+  return {};
+}
+
 // A world with nothing in it. Where the component ticks at whole steps one step is one tick.
 base::Result<std::string> empty_world(const RecordedRun& run, const editor::SavedComponent& component) {
   std::int64_t step = base::parse_integer(run.note("step_ns")).value_or(1'000'000);
@@ -122,7 +136,11 @@ base::Result<std::string> empty_world(const RecordedRun& run, const editor::Save
 }
 
 Json to_json(const ReplayResult& result) {
-  Json json = {{"ticks", result.ticks}, {"inputs", result.sent}, {"simulated", result.simulated_s}, {"wall", result.wall_s}};
+  Json json = {{"ticks", result.ticks},
+               {"inputs", result.sent},
+               {"changes", result.changes},
+               {"simulated", result.simulated_s},
+               {"wall", result.wall_s}};
   json["outputs"] = Json::array();
   for (const auto& output : result.outputs) {
     json["outputs"].push_back({{"topic", output.topic},
@@ -188,18 +206,29 @@ void replay_file(Editor& editor, const Options& options) {
   auto given = possible(*links, *system, options);
   if (!given) return editor.fail(given.error());
   replayed.links = std::move(*given);
+  auto life = RecordedLife::read(options.file, options.component);
+  if (!life) return editor.fail(life.error());
+  if (!life->is_recorded)
+    std::cerr << "rtse: configuration and states of " << options.component << ": those of the profile, the recording has no /rtc/"
+              << options.component << "/state\n";
+  for (const auto& text : options.settings) life->forget(text.substr(0, text.find('=')));
+  replayed.life = std::move(*life);
 
+  auto one = alone(*system, options.component);
+  if (const auto taken = take_rate(one.components.front(), options.file); !taken) return editor.fail(taken.error());
   auto call = run->options();
-  const auto world = empty_world(*run, *system->component(options.component));
+  const auto world = empty_world(*run, one.components.front());
   if (!world) return editor.fail(world.error());
   call.world = *world;
   call.system = (run->folder() / "alone.xml").string();
   call.keep = options.keep;
+  call.start = options.start;  // those of the run start others, too
+  call.start_folder.clear();
+  call.run_file.clear();
   call.hang_timeout_s = options.hang_timeout_s;
   call.module_paths.insert(call.module_paths.end(), options.module_paths.begin(), options.module_paths.end());
   std::erase_if(call.properties, [&](const std::string& one) { return !one.starts_with(options.component + ":"); });
   call.properties.insert(call.properties.end(), options.properties.begin(), options.properties.end());
-  auto one = alone(*system, options.component);
   if (const auto done = configure(one.components.front(), options.settings); !done) return editor.fail(done.error());
   if (const auto written = editor::write_system(one, call.system); !written) return editor.fail(written.error());
   ReplayResult result;
@@ -240,6 +269,7 @@ void add_replay(base::Command& app, editor::Chosen& chosen) {
   command->add_option("--set", options->settings, "NAME=VALUE: another value of a configuration parameter than the recorded one")
       ->allow_extra_args(false)
       ->check([](const std::string& text) { return text.find('=') == std::string::npos ? "expected NAME=VALUE" : ""; });
+  command->add_option("--start", options->start, "Command that starts the component, if it is one of others")->allow_extra_args(false);
   command->add_option("--module-path", options->module_paths, "Folder with modules of components")->allow_extra_args(false);
   command->add_option("--property", options->properties, "INSTANCE:KEY=VALUE, a property that the component is created with")
       ->allow_extra_args(false);

@@ -4,6 +4,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <iostream>
 #include <memory>
 
 #include "base/text.h"
@@ -44,6 +45,9 @@ std::vector<std::string> words_of(const Editor& editor, const Options& options, 
   give("--duration", "-d", base::format_number(call.duration_s));
   give("--seed", "--seeds", std::to_string(call.seed));
   if (call.one_process_each && !has(options, "--one-process-each")) words.emplace_back("--one-process-each");
+  for (const auto& command : call.start) words.insert(words.end(), {"--start", command});
+  if (!call.start.empty()) words.insert(words.end(), {"--start-folder", call.start_folder});
+  if (!call.run_file.empty()) words.insert(words.end(), {"--run-file", call.run_file});
   for (const auto& property : call.properties) words.insert(words.end(), {"--property", property});
   for (const auto& path : call.module_paths) words.insert(words.end(), {"--module-path", path});
   for (const auto& path : call.resource_paths) words.insert(words.end(), {"--resource-path", path});
@@ -54,6 +58,7 @@ std::vector<std::string> words_of(const Editor& editor, const Options& options, 
 void run_like(Editor& editor, const Options& options) {
   const auto run = RecordedRun::unpack(options.file);
   if (!run) return editor.fail(run.error());
+  if (const auto lost = run->lost(); !lost.empty()) std::cerr << "rtse: " << lost << '\n';
   auto words = words_of(editor, options, *run);
   std::vector<char*> arguments;
   for (auto& word : words) arguments.push_back(word.data());

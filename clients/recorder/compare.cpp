@@ -20,6 +20,13 @@ class Side {
   base::Result<void> begin() {
     auto query = query_of(reader_, selection_);
     if (!query) return query.error();
+    if (selection_.topics.empty()) {
+      query->channels.push_back(0);  // none but these
+      for (const auto& [id, channel] : reader_.channels()) {
+        const auto wish = channel.metadata.find("compare");
+        if (wish == channel.metadata.end() || wish->second != "no") query->channels.push_back(id);
+      }
+    }
     reader_.seek(std::move(*query));
     return {};
   }

@@ -41,12 +41,22 @@ base::Result<void> PortSource::add(const editor::ComponentView& component, const
   channel.metadata.insert(extra.begin(), extra.end());
   const auto id = exchange_.open(std::move(channel));
   if (!id) return id.error();
-  auto tap = editor::Tap::connect(orb_, port, {}, [this, id = *id](std::span<const unsigned char> payload, bool is_little_endian) {
-    exchange_.put(id, clock_.now(), channels::cdr_head(is_little_endian), {reinterpret_cast<const char*>(payload.data()), payload.size()});
-  });
+  Counter& counter = *counters_.emplace_back(new Counter{"/" + component.instance + "/" + port.name});
+  auto tap =
+      editor::Tap::connect(orb_, port, {}, [this, id = *id, &counter](std::span<const unsigned char> payload, bool is_little_endian) {
+        counter.samples.fetch_add(1, std::memory_order_relaxed);
+        exchange_.put(id, clock_.now(), channels::cdr_head(is_little_endian),
+                      {reinterpret_cast<const char*>(payload.data()), payload.size()});
+      });
   if (!tap) return tap.error();
   taps_.push_back(std::move(*tap));
   return {};
+}
+
+std::map<std::string, std::uint64_t> PortSource::counts() const {
+  std::map<std::string, std::uint64_t> counts;
+  for (const auto& counter : counters_) counts[counter->topic] = counter->samples.load(std::memory_order_relaxed);
+  return counts;
 }
 
 }  // namespace recorder

@@ -2,6 +2,8 @@
 // samples come on the ORB's threads.
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -28,11 +30,18 @@ class PortSource final {
   base::Result<void> add(const editor::ComponentView& component, const editor::PortView& port,
                          const std::map<std::string, std::string>& extra = {});
   std::size_t size() const { return taps_.size(); }
+  // How many samples came so far, by topic. Any thread.
+  std::map<std::string, std::uint64_t> counts() const;
 
  private:
+  struct Counter {
+    std::string topic;
+    std::atomic<std::uint64_t> samples{0};  // relaxed: says nothing but itself
+  };
   CORBA::ORB_var orb_;
   channels::Exchange& exchange_;
   const base::Clock& clock_;
+  std::vector<std::unique_ptr<Counter>> counters_;  // before the taps, which use them
   std::vector<std::unique_ptr<editor::Tap>> taps_;
 };
 

@@ -84,6 +84,10 @@ std::string RecordedRun::note(const std::string& key) const {
   return found == notes_.end() ? "" : found->second;
 }
 
+std::string RecordedRun::lost() const {
+  return note("script") == "yes" ? "what the plan of a campaign did in the run (faults, events) is not done again" : "";
+}
+
 editor::RunOptions RecordedRun::options() const {
   editor::RunOptions options;
   options.system = system_;
@@ -92,6 +96,9 @@ editor::RunOptions RecordedRun::options() const {
   options.duration_s = base::parse_number(note("duration")).value_or(end_s_);
   options.one_process_each = note("one_process_each") == "yes";
   options.properties = lines(note("properties"));
+  options.start = lines(note("start"));
+  options.start_folder = note("start_folder");
+  options.run_file = note("run_file");
   options.module_paths = lines(note("module_paths"));
   options.resource_paths = lines(note("resource_paths"));
   options.resource_paths.insert(options.resource_paths.end(), resource_paths_.begin(), resource_paths_.end());

@@ -26,8 +26,10 @@ class RecordedRun {
   // A text of the metadata `run`; empty when it is not there.
   std::string note(const std::string& key) const;
   double end() const { return end_s_; }  // the time of the last sample [s]
-  // Those of the run.
+  // Those of the run. Processes of others are started by their commands and their run file, which must still be there.
   editor::RunOptions options() const;
+  // What was done in the run that options() cannot do again; empty: nothing.
+  std::string lost() const;
 
  private:
   RecordedRun() = default;

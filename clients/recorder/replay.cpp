@@ -36,7 +36,12 @@ struct Output {
   ReplayedOutput result;
   std::uint16_t channel = 0;  // of the recording; 0: it has none
   std::unique_ptr<editor::Tap> tap;
-  std::deque<std::string> expected;  // with their heads
+  struct Expected {
+    std::chrono::nanoseconds time;
+    std::uint64_t tick;
+    std::string octets;  // with their head
+  };
+  std::deque<Expected> expected;
 };
 
 std::uint32_t phase_of(const mcap::Channel& channel) {
@@ -47,7 +52,14 @@ std::uint32_t phase_of(const mcap::Channel& channel) {
 class Player {
  public:
   Player(CORBA::ORB_ptr orb, editor::RunningSystem& system, const ReplayOptions& options, mcap::Reader inputs, mcap::Reader outputs)
-      : orb_(orb), system_(system), options_(options), inputs_(std::move(inputs)), expected_(std::move(outputs)), values_(expected_) {}
+      : orb_(orb),
+        system_(system),
+        options_(options),
+        inputs_(std::move(inputs)),
+        expected_(std::move(outputs)),
+        values_(expected_),
+        within_ticks_(options.life.part(true)),
+        between_ticks_(options.life.part(false)) {}
   ~Player() {
     is_ending_.store(true, std::memory_order_relaxed);
     if (thread_.joinable()) thread_.join();
@@ -66,7 +78,9 @@ class Player {
   base::Result<void> feed_rest();
   base::Result<void> look_ahead(std::chrono::nanoseconds now);
   base::Result<void> judge(std::chrono::nanoseconds now);
-  void complain(Output& output, std::chrono::nanoseconds now, const std::string& what);
+  base::Result<void> make_steps();
+  void complain(Output& output, std::uint64_t tick, std::chrono::nanoseconds time, const std::string& what);
+  void miss(std::chrono::nanoseconds before);
   std::optional<std::string> differ(const Output& output, const std::string& recorded, const std::string& sent);
 
   CORBA::ORB_ptr orb_;
@@ -74,6 +88,8 @@ class Player {
   const ReplayOptions& options_;
   mcap::Reader inputs_, expected_;
   SampleValues values_;
+  LifePlayer within_ticks_;   // of the thread
+  LifePlayer between_ticks_;  // of who makes the steps
   std::map<std::uint16_t, Input> by_channel_;
   std::vector<std::unique_ptr<Output>> outputs_;
   // What came since it was judged last: place of the output, octets with their head.
@@ -87,7 +103,9 @@ class Player {
   std::vector<Waiting> behind_;  // of this tick, for after the component's
   std::optional<shm::Participant> before_, after_;
   std::uint32_t phase_ = 1;
+  std::chrono::nanoseconds period_{0};
   std::atomic<bool> is_ending_{false};  // relaxed: says nothing but itself
+  std::atomic<bool> has_stood_{false};  // something was done to the component since the last tick; relaxed: time says when
   base::Guarded<std::optional<base::Error>, base::Rank::registry> failure_;
   ReplayResult result_;
   std::thread thread_;
@@ -97,8 +115,11 @@ class Player {
 
 base::Result<void> Player::connect() {
   editor::Editor editor(orb_, system_.naming(), false, std::chrono::milliseconds(call_limit));
-  auto component = editor.component(options_.component + ".rtc", {.connectors = true});
+  auto component = editor.component(options_.component + ".rtc", {.contexts = true, .connectors = true});
   if (!component) return component.error();
+  for (auto* life : {&between_ticks_, &within_ticks_}) {
+    if (const auto begun = life->begin(*component); !begun) return begun;
+  }
   std::map<std::string, std::uint16_t> topics;
   for (const auto& [id, channel] : inputs_.channels()) topics.emplace(channel.topic, id);
   for (const auto& link : options_.links) {
@@ -149,9 +170,9 @@ base::Result<void> Player::join() {
   const auto found = std::ranges::find(*there, options_.component, &shm::ParticipantRecord::name);
   if (found == there->end()) return base::Error{"component " + options_.component + ": does not run on simulated time"};
   phase_ = found->phase;
-  const std::chrono::nanoseconds period(found->period_ns);
+  period_ = std::chrono::nanoseconds(found->period_ns);
   const auto take_place = [&](const char* name, std::uint32_t phase) {
-    return shm::Participant::join(id, {.name = name, .phase = phase, .period = period});
+    return shm::Participant::join(id, {.name = name, .phase = phase, .period = period_});
   };
   // A component of phase 0 has nobody before it.
   if (phase_ > 0) {
@@ -205,6 +226,7 @@ base::Result<void> Player::serve() {
     }
     if (const auto judged = judge(tick.now); !judged) return judged;
     if (const auto fed = feed_rest(); !fed) return fed;
+    if (const auto made = within_ticks_.go_on(tick.now + period_); !made) return made;
     ++result_.ticks;
     after_->finish();
   }
@@ -264,18 +286,26 @@ base::Result<void> Player::look_ahead(std::chrono::nanoseconds now) {
     if (next_expected_->time > limit) return {};
     for (const auto& output : outputs_) {
       if (output->channel != next_expected_->channel) continue;
-      output->expected.push_back(std::move(next_expected_->data));
+      output->expected.push_back({now, result_.ticks, next_expected_->data});
       ++output->result.recorded;
     }
     next_expected_.reset();
   }
 }
 
-void Player::complain(Output& output, std::chrono::nanoseconds now, const std::string& what) {
+void Player::complain(Output& output, std::uint64_t tick, std::chrono::nanoseconds time, const std::string& what) {
   ++output.result.different;
   if (!output.result.first.empty()) return;
   output.result.first =
-      "tick " + std::to_string(result_.ticks) + " (" + base::format_number(std::chrono::duration<double>(now).count()) + " s): " + what;
+      "tick " + std::to_string(tick) + " (" + base::format_number(std::chrono::duration<double>(time).count()) + " s): " + what;
+}
+
+// What was sent while time stood still behind a tick comes before the next one.
+void Player::miss(std::chrono::nanoseconds before) {
+  for (const auto& output : outputs_) {
+    for (; !output->expected.empty() && output->expected.front().time < before; output->expected.pop_front())
+      complain(*output, output->expected.front().tick, output->expected.front().time, "it did not send the sample that was recorded");
+  }
 }
 
 std::optional<std::string> Player::differ(const Output& output, const std::string& recorded, const std::string& sent) {
@@ -292,19 +322,39 @@ base::Result<void> Player::judge(std::chrono::nanoseconds now) {
   if (options_.compares) {
     if (const auto done = look_ahead(now); !done) return done;
   }
+  if (!has_stood_.exchange(false, std::memory_order_relaxed)) miss(now);
   for (auto& [place, octets] : sent) {
     Output& output = *outputs_[place];
     ++output.result.samples;
     if (!options_.compares || output.channel == 0) continue;
     if (output.expected.empty()) {
-      complain(output, now, "it sent a sample that the recording does not have");
+      complain(output, result_.ticks, now, "it sent a sample that the recording does not have");
       continue;
     }
-    if (const auto what = differ(output, output.expected.front(), octets)) complain(output, now, *what);
+    const auto expected = std::move(output.expected.front());
     output.expected.pop_front();
+    if (const auto what = differ(output, expected.octets, octets)) complain(output, expected.tick, expected.time, *what);
   }
-  for (const auto& output : outputs_) {
-    for (; !output->expected.empty(); output->expected.pop_front()) complain(*output, now, "it did not send the sample that was recorded");
+  return {};
+}
+
+// To the end, and to each moment between two ticks in which something was done to the component.
+base::Result<void> Player::make_steps() {
+  const auto steps_to = [&](std::chrono::nanoseconds time) {
+    return static_cast<std::int64_t>(std::floor(std::chrono::duration<double>(time).count() / system_.step() + 1e-6));
+  };
+  const auto last = std::max<std::int64_t>(1, std::llround(result_.simulated_s / system_.step()));
+  std::int64_t done = 0;
+  while (done < last) {
+    const auto change = between_ticks_.next();
+    const auto stop = change ? std::clamp(steps_to(*change), done, last) : last;
+    if (stop > done) {
+      if (const auto made = system_.make_steps(stop - done); !made) return made;
+    }
+    done = stop;
+    if (!change || done == last) continue;
+    if (const auto made = between_ticks_.go_on(*change); !made) return made;
+    has_stood_.store(true, std::memory_order_relaxed);
   }
   return {};
 }
@@ -320,15 +370,16 @@ base::Result<ReplayResult> Player::run() {
     before_.reset();
     after_.reset();
   });
-  const double end = std::chrono::duration<double>(inputs_.statistics().last).count();
+  result_.simulated_s = std::chrono::duration<double>(inputs_.statistics().last).count();
   const auto began = WallClock::now();
-  const auto made = system_.make_steps(std::max<std::int64_t>(1, std::llround(end / system_.step())));
+  const auto made = make_steps();
   result_.wall_s = std::chrono::duration<double>(WallClock::now() - began).count();
-  result_.simulated_s = end;
+  result_.changes = within_ticks_.done() + between_ticks_.done();
   is_ending_.store(true, std::memory_order_relaxed);
   thread_.join();
   if (const auto failure = failure_.snapshot()) return *failure;
   if (!made) return made.error();
+  miss(std::chrono::nanoseconds::max());
   for (const auto& output : outputs_) result_.outputs.push_back(output->result);
   return result_;
 }

@@ -14,6 +14,7 @@
 
 #include "editor.h"
 #include "mcap/mcap.h"
+#include "recorded_life.h"
 #include "run/run_system.h"
 #include "sample_difference.h"
 
@@ -32,6 +33,7 @@ struct ReplayOptions {
   std::vector<ReplayLink> links{};
   bool compares = false;
   DifferenceOptions tolerated{};
+  RecordedLife life{};
 };
 
 // An OutPort of the component against its channel.
@@ -45,7 +47,8 @@ struct ReplayedOutput {
 
 struct ReplayResult {
   std::uint64_t ticks = 0;
-  std::uint64_t sent = 0;  // inputs
+  std::uint64_t sent = 0;     // inputs
+  std::uint64_t changes = 0;  // of configuration and state
   double simulated_s = 0;
   double wall_s = 0;  // of the ticks alone
   std::vector<ReplayedOutput> outputs;

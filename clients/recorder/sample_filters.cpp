@@ -39,16 +39,15 @@ base::Result<void> LastSink::open(channels::ChannelId id, const channels::Channe
   return to_->open(id, channel);
 }
 
+// What held before the time that is kept still holds in it.
 void LastSink::drop_front() {
-  octets_ -= size_of(samples_.front());
+  auto& front = samples_.front();
+  octets_ -= size_of(front);
+  if (const auto held = latched_.find(front.channel); held != latched_.end()) held->second = std::move(front);
   samples_.pop_front();
 }
 
 base::Result<void> LastSink::take(const channels::Sample& sample) {
-  if (const auto held = latched_.find(sample.channel); held != latched_.end()) {
-    held->second = sample;
-    return {};
-  }
   octets_ += size_of(sample);
   samples_.push_back(sample);
   while (samples_.front().log_time < sample.log_time - span_ || octets_ > most_octets) drop_front();

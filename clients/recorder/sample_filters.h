@@ -29,8 +29,8 @@ class RateSink final : public channels::Sink {
   std::set<channels::ChannelId> latched_;  // of which all are handed on
 };
 
-// Keeps the last seconds of all channels, and hands them on when it is told to. Of latched channels the newest
-// sample stays. At most 512 MiB: of more than that the oldest go.
+// Keeps the last seconds of all channels, and hands them on when it is told to. Of latched channels the sample
+// stays that held at their beginning. At most 512 MiB: of more than that the oldest go.
 class LastSink final : public channels::Sink {
  public:
   LastSink(std::shared_ptr<channels::Sink> to, std::chrono::nanoseconds span) : to_(std::move(to)), span_(span) {}

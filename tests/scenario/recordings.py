@@ -277,6 +277,71 @@ def replayed():
     refused("replay", path, "--into", "Nobody0", says="components: RTCLaser0, LaserObstacleAvoid0, RTCPosition2d0")
 
 
+def said(samples, topic, member):
+    return [s["value"][member] for s in samples if s["topic"] == topic]
+
+
+# What components say of themselves is in the recording, at its tick; a replay does to the component what was done to it in the run.
+def lives():
+    up()
+    process = recording("--all", "--attach", f"system.xml={rig.source}/worlds/systems/obstacle_avoidance.xml")
+    seconds(2)
+    rig.rtse("conf", "LaserObstacleAvoid0", "set", "speed_gain", "0.002")
+    seconds(1)
+    rig.rtse("deact", "LaserObstacleAvoid0")
+    seconds(1)
+    rig.rtse("act", "LaserObstacleAvoid0")
+    seconds(2)
+    ended(process)
+    ours, theirs = lines("cat", file), foreign(file)[:-1]
+    assert len(ours) == len(theirs) and all(a["topic"] == b["topic"] and same(a["value"], b["value"]) for a, b in zip(ours, theirs))
+    states = [s for s in ours if s["topic"] == "/rtc/LaserObstacleAvoid0/state"]
+    assert [s["value"]["state"] for s in states] == ["Active", "Inactive", "Active"] and states[1]["time"] <= 3.1 and states[2]["time"] >= 4, states
+    first, *changes = [s for s in ours if s["topic"] == "/rtc/LaserObstacleAvoid0/configuration"]
+    assert not first["value"]["is_change"] and first["value"]["values"]["speed_gain"] == "0.001", first
+    changed = next(s for s in changes if s["value"]["values"].get("speed_gain") == "0.002")
+    assert 2 < changed["time"] <= 2.1 and changed["value"]["is_in_tick"], changed
+    seen = [{one["name"]: (one["message"], {v["key"]: v["value"] for v in one["values"]}) for one in status} for status in said(ours, "/diagnostics", "status")]
+    assert len(seen) >= 5 and seen[2]["RTCLaser0"] == ("Active", {"range [Hz]": "10"}), seen
+    assert any(one["LaserObstacleAvoid0"][0] == "Inactive" for one in seen), seen
+    done = json.loads(rig.rtse("--json", "replay", file, "--into", "LaserObstacleAvoid0", "--compare"))
+    assert done["changes"] >= 3 and done["outputs"][0]["different"] == 0 and done["outputs"][0]["recorded"] > 40, done
+    other = rig.try_rtse("replay", file, "--into", "LaserObstacleAvoid0", "--compare", "--set", "speed_gain=0.001")
+    assert other.returncode == 1 and "(2.1 s): data.vx: 0.4 and 0.2" in other.stderr, other
+
+
+# A ring is for those who look for what went wrong: of a run that passes nothing is kept.
+def ring():
+    kept = rig.path("ring.mcap")
+    call = ["run", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "-w", f"{rig.source}/worlds/obstacle_course.sdf", "-d", "4", "--record", kept, "--last", "1"]
+    rig.rtse(*call)
+    assert not os.path.exists(kept)
+    failed = rig.try_rtse(*call, "-x", f"{rig.source}/tests/scenario/impossible.yaml", "--hash-log", rig.path("run.hashlog"))
+    assert failed.returncode == 1, failed
+    info = json.loads(rig.rtse("--json", "recording", "info", kept))
+    scans = next(c for c in info["channels"] if c["topic"] == "/RTCLaser0/range")
+    assert 9 <= scans["samples"] <= 12 and scans["first"] >= 2.8, scans
+    assert next(c for c in info["channels"] if c["topic"] == "/tf_static")["samples"] == 1, info
+    assert refused_without_record().returncode == 2
+
+
+def refused_without_record():
+    return rig.try_rtse("run", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "-w", f"{rig.source}/worlds/obstacle_course.sdf", "--last", "1")
+
+
+# The hashes of a run's ticks are a channel: those of the hash log.
+def hashed():
+    path = rig.path("run.mcap")
+    done = json.loads(rig.rtse("--json", "run", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "-w", f"{rig.source}/worlds/obstacle_course.sdf",
+                               "-d", "2", "--record", path, "--hash-log", rig.path("run.hashlog")).splitlines()[-1])
+    ticks = lines("cat", path, "/hashes")
+    assert ticks[-1]["value"]["so_far"] == done["run_hash"] != "", (ticks[-1], done)
+    assert [t["value"]["tick"] for t in ticks] == list(range(len(ticks))) and len(ticks) > 100, len(ticks)
+    leaves = set().union(*(t["value"]["leaves"] for t in ticks))
+    assert any("LaserObstacleAvoid0:velocity" in leaf for leaf in leaves), leaves
+    assert [t["value"] for t in foreign(path)[:-1] if t["topic"] == "/hashes"] == [t["value"] for t in ticks]
+
+
 # A component whose inputs were not recorded: it is said which.
 def replayed_without_inputs():
     up()

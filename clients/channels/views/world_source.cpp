@@ -105,7 +105,7 @@ struct WorldSource::State {
   std::pair<std::uint32_t, std::uint32_t> listed{};
   ChannelId clock = 0, tf = 0, tf_static = 0, shapes = 0;
   bool says_clock = false, says_tf = false;
-  Due pose_due;
+  Due pose_due, second_due{1s};
   std::uint64_t clock_seen = 0;
   std::optional<shm::Participant> participant;
   nanoseconds period{0};
@@ -265,6 +265,7 @@ void WorldSource::State::subscribe() {
 
 void WorldSource::State::choose_period() {
   double rate = says_tf || says_clock || says_joints() ? options.pose_rate : 0;
+  if (options.each_second) rate = std::max(rate, 1.0);
   for (const auto& [key, one] : shown) {
     if (one.is_wanted()) rate = std::max(rate, one.view->rate > 0 ? one.view->rate : options.pose_rate);
   }
@@ -361,7 +362,9 @@ void WorldSource::State::collect() {
   if (!simulation.read()) return;
   const auto& sample = simulation.sample<shm::SimulationSample>();
   if (std::exchange(clock_seen, sample.stamp.sequence) == sample.stamp.sequence) return;
-  if (pose_due.is_due(nanoseconds(sample.stamp.sim_time_ns)) || sample.paused != 0) say_poses(sample.stamp);
+  const nanoseconds now(sample.stamp.sim_time_ns);
+  if (pose_due.is_due(now) || sample.paused != 0) say_poses(sample.stamp);
+  if (options.each_second && second_due.is_due(now)) options.each_second(now);
 }
 
 // ---- the thread ----

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,6 +31,7 @@ struct WorldSourceOptions {
   bool takes_part = true;             // in the lock step; else it looks sixty times a second of the wall clock, and the newest samples win
   bool wants_all = false;             // else nothing until want()
   std::vector<std::string> excluded;  // with wants_all: topics that fit one of these patterns are not wanted
+  std::function<void(Time)> each_second{};  // of simulated time; called on the source's thread, of one that takes part within its tick
 };
 
 class WorldSource {

@@ -108,10 +108,12 @@ RunResult run_apart(const RunOptions& options, std::uint64_t seed) {
   if (!options.expectations.empty()) add({"--expect", options.expectations});
   if (!options.run_file.empty()) add({"--run-file", options.run_file});
   for (const auto& command : options.start) add({"--start", command});
+  if (!options.start_folder.empty()) add({"--start-folder", options.start_folder});
   if (options.one_process_each) add({"--one-process-each"});
   if (options.in_real_time) add({"--realtime"});
   if (!options.picture.empty()) add({"--picture", for_seed(options.picture, seed)});
   if (!options.record.empty()) add({"--record", for_seed(options.record, seed)});
+  if (options.record_last_s > 0) add({"--last", base::format_number(options.record_last_s)});
   if (!options.hash_log.empty()) add({"--hash-log", for_seed(options.hash_log, seed)});
   if (options.twice) add({"--twice"});
   if (options.strict) add({"--strict"});
@@ -273,6 +275,7 @@ void add_run(base::Command& app, Chosen& chosen) {
   run->add_flag("--realtime", options->in_real_time, "No faster than real time");
   run->add_option("--start", options->start, "Command that starts components of others, those that have no module")
       ->allow_extra_args(false);
+  run->add_option("--start-folder", options->start_folder, "Where these commands are started; default: here");
   run->add_option("--run-file", options->run_file, "Processes of others and their components, YAML")->check(base::existing_file());
   run->add_option("--module-path", options->module_paths, "Folder with modules of components")->allow_extra_args(false);
   run->add_option("--resource-path", options->resource_paths, "Folder with models")->allow_extra_args(false);
@@ -290,7 +293,7 @@ void add_run(base::Command& app, Chosen& chosen) {
       ->capture_default_str();
   run->add_option("--junit", options->junit, "Write the verdicts as JUnit XML");
   run->add_option("--picture", options->picture, "Write the world at the end as PNG");
-  run->add_option("--record", options->record, "Write what all ports send as MCAP");
+  add_recording_options(*run, *options);
   add_repeatability_options(*run, *options);
   run->add_option("--keep", options->keep, "Keep logs and the record in this folder");
   run->callback([&chosen, options, seeds, jobs] { chosen.work = [=](Editor& e) { editor::run(e, *options, *seeds, *jobs); }; });

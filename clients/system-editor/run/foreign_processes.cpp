@@ -67,7 +67,7 @@ Result<void> ForeignProcesses::read(const RunOptions& options, const SavedSystem
         return Error{"run file " + options.run_file + ": the system has no component " + component.instance};
     }
   }
-  for (const auto& command : options.start) processes_.push_back({.command = command});
+  for (const auto& command : options.start) processes_.push_back({.command = command, .folder = options.start_folder});
   for (const auto& component : system.components) {
     const auto* named = find(processes_, component.instance);
     if (!named && (options.start.empty() || has_module(type_of(component), module_paths(options.module_paths)))) continue;
@@ -107,6 +107,12 @@ std::chrono::duration<double> ForeignProcesses::patience() const {
   double longest = 0;
   for (const auto& process : processes_) longest = std::max(longest, process.wait_s);
   return std::chrono::duration<double>(longest);
+}
+
+std::vector<RunningSystem::Process> ForeignProcesses::processes() const {
+  std::vector<RunningSystem::Process> all;
+  for (const auto& running : running_) all.push_back({"process of " + running.components, running.process.pid()});
+  return all;
 }
 
 Result<void> ForeignProcesses::start(const std::string& naming, const std::string& server_id) {

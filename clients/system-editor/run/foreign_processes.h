@@ -46,6 +46,7 @@ class ForeignProcesses {
   // Where a component comes from, and what its process says, for messages.
   std::string about(const std::string& instance) const;
   std::string last_words() const;
+  std::vector<RunningSystem::Process> processes() const;  // the shells that run the commands
   void terminate();
   void end() { running_.clear(); }
 

@@ -16,6 +16,7 @@ class RunHashes {
   RunHashes(const std::string& file, const Workplace& place);
 
   bool is_wanted() const { return !file_.empty(); }
+  const std::string& file() const { return file_; }
   // Where contexts put their parts, and the simulator's part.
   const std::string& folder() const { return folder_; }
   std::string world_part() const { return folder_ + "/world.hashlog"; }

@@ -38,6 +38,13 @@ void add_repeatability_options(base::Command& run, RunOptions& options) {
   run.add_flag("--strict", options.strict, "Fail when something happened that could depend on chance")->group(group);
 }
 
+void add_recording_options(base::Command& run, RunOptions& options) {
+  auto* record = run.add_option("--record", options.record, "Write what all ports send, components say and the simulator shows, as MCAP");
+  run.add_option("--last", options.record_last_s, "With --record: only so many seconds, the last ones, and only of a run that fails")
+      ->needs(record)
+      ->check(base::number_between(0.1, 1e6));
+}
+
 Result<ComponentProperty> parse_property(const std::string& text) {
   const auto colon = text.find(':');
   const auto equals = text.find('=', colon == std::string::npos ? 0 : colon);
@@ -74,6 +81,10 @@ std::vector<std::pair<std::string, std::string>> notes_on(const RunOptions& opti
   return {{"duration", base::format_number(options.duration_s)},
           {"one_process_each", options.one_process_each ? "yes" : "no"},
           {"properties", base::join(options.properties, "\n")},
+          {"start", base::join(options.start, "\n")},
+          {"start_folder", options.start_folder.empty() ? std::filesystem::current_path().string() : options.start_folder},
+          {"run_file", options.run_file.empty() ? "" : std::filesystem::absolute(options.run_file).string()},
+          {"script", options.script != nullptr ? "yes" : "no"},
           {"module_paths", absolute(options.module_paths)},
           {"resource_paths", absolute(options.resource_paths)}};
 }

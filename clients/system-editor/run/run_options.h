@@ -20,6 +20,8 @@ struct SavedSystem;
 
 // --hash-log, --twice, --strict. `options` must live as long as the command.
 void add_repeatability_options(base::Command& run, RunOptions& options);
+// --record, --last.
+void add_recording_options(base::Command& run, RunOptions& options);
 
 // Rates, folders and properties, held against the system. The properties.
 base::Result<std::vector<ComponentProperty>> read_wishes(const RunOptions& options, const SavedSystem& system);

@@ -1,5 +1,7 @@
 #include "run/run_recorder.h"
 
+#include <signal.h>
+
 #include <chrono>
 #include <fstream>
 #include <iterator>
@@ -26,6 +28,9 @@ base::Result<void> RunRecorder::start(const RecorderCall& call, const Wait& wait
                        "--attach", "system.xml=" + call.system},
                       {},
                       log_};
+  if (call.last_s > 0) program.words.insert(program.words.end(), {"--last", base::format_number(call.last_s)});
+  takes_hashes_ = !call.hashes.empty();
+  if (takes_hashes_) program.words.insert(program.words.end(), {"--hashes", call.hashes});
   for (const auto& [key, value] : call.notes) program.words.insert(program.words.end(), {"--note", key + "=" + value});
   auto started = ChildProcess::start(program);
   if (!started) return started.error();
@@ -37,9 +42,28 @@ base::Result<void> RunRecorder::start(const RecorderCall& call, const Wait& wait
   return base::Error{"recording " + base::in_quotes(call.file) + ": " + (lines.empty() ? process_->how_it_ended() : lines.back())};
 }
 
-base::Result<void> RunRecorder::end() {
-  if (!process_) return {};
+bool RunRecorder::await_word(const char* word) {
+  const auto deadline = std::chrono::steady_clock::now() + ending_limit;
+  while (said().find(word) == std::string::npos) {
+    if (!process_->is_running() || std::chrono::steady_clock::now() > deadline) return false;
+    process_->wait(std::chrono::milliseconds(5));  // its end comes by itself, its words must be looked for
+  }
+  return true;
+}
+
+void RunRecorder::end() {
+  if (!process_) return;
   if (process_->is_running()) process_->terminate();
+  if (takes_hashes_) {
+    (void)await_word("waiting for hashes");
+  } else {
+    (void)process_->wait(ending_limit);
+  }
+}
+
+base::Result<void> RunRecorder::finish() {
+  if (!process_) return {};
+  if (takes_hashes_ && process_->is_running()) ::kill(process_->pid(), SIGTERM);  // a second time, which says that they are there
   const bool has_ended = process_->wait(ending_limit);
   const bool is_good = has_ended && process_->exit_code() == 0;
   const auto lines = base::split_list(said(), '\n');

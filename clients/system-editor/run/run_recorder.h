@@ -18,6 +18,8 @@ struct RecorderCall {
   std::string simulator;                                   // its id
   std::string system;                                      // the profile as it is for this run
   std::string file;                                        // to write
+  double last_s = 0;                                       // only so much before the end; 0: all
+  std::string hashes;                                      // the run's hash log, see finish(); empty: none
   std::vector<std::pair<std::string, std::string>> notes;  // how the run was made
 };
 
@@ -30,15 +32,20 @@ class RunRecorder {
 
   // Returns when every port is connected to it.
   base::Result<void> start(const RecorderCall& call, const Wait& wait_until);
-  // Ends it, so that the file is whole; an error when it is not. Nothing happens when it was not started.
-  base::Result<void> end();
+  // It takes nothing more. The file is whole then, unless there is a hash log to come. Nothing happens when it was not started, here and
+  // in finish().
+  void end();
+  // Once the hash log is there. An error when the file is not whole.
+  base::Result<void> finish();
 
  private:
   std::string said() const;
+  bool await_word(const char* word);
 
   const Workplace& place_;
   std::optional<ChildProcess> process_;
   std::string log_;
+  bool takes_hashes_ = false;
 };
 
 }  // namespace editor

@@ -56,13 +56,15 @@ class Run final : public RunningSystem {
       result_.logs = last_words();
     }
     ports_.end();
-    if (const auto recorded = recorder_.end(); !recorded)
-      result_.verdicts.push_back({"recording " + options_.record, recorded.error().message});
+    recorder_.end();
+    if (!hashes_.is_wanted()) keep_recording();
     const auto warnings = hosts_.warnings();
     result_.notes.insert(result_.notes.end(), warnings.begin(), warnings.end());
     if (options_.script) options_.script->end(scene_ ? &*scene_ : nullptr, seen_, result_);
     stop();
     keep_hashes();
+    if (hashes_.is_wanted()) keep_recording();
+    drop_ring();
     result_.wall_s = std::chrono::duration<double>(Clock::now() - began).count();
     return result_;
   }
@@ -74,6 +76,8 @@ class Run final : public RunningSystem {
     std::vector<Process> all = {{"sim-server", simulator_.pid()}};
     const auto hosts = hosts_.processes();
     all.insert(all.end(), hosts.begin(), hosts.end());
+    const auto foreign = foreign_.processes();
+    all.insert(all.end(), foreign.begin(), foreign.end());
     all.push_back({"omniNames", naming_.pid()});
     return all;
   }
@@ -190,6 +194,18 @@ class Run final : public RunningSystem {
     } else {
       result_.verdicts.push_back({"hash log " + options_.hash_log, hash.error().message});
     }
+  }
+
+  // Its hashes are there, if it is to have some.
+  void keep_recording() {
+    if (const auto recorded = recorder_.finish(); !recorded)
+      result_.verdicts.push_back({"recording " + options_.record, recorded.error().message});
+  }
+
+  // The last seconds are for those who look for what went wrong.
+  void drop_ring() {
+    std::error_code ignored;  // what is not there need not go
+    if (options_.record_last_s > 0 && result_.is_passed()) std::filesystem::remove(options_.record, ignored);
   }
 
   Result<void> start_foreign() { return foreign_.start(naming_.address(), simulator_.id()); }
@@ -349,9 +365,10 @@ class Run final : public RunningSystem {
 
   Result<void> record() {
     if (options_.record.empty()) return {};
-    return recorder_.start({naming_.address(), simulator_.id(), place_.file("system.xml"),
-                            std::filesystem::absolute(options_.record).string(), notes_on(options_)},
-                           wait());
+    return recorder_.start(
+        {naming_.address(), simulator_.id(), place_.file("system.xml"), std::filesystem::absolute(options_.record).string(),
+         options_.record_last_s, hashes_.file(), notes_on(options_)},
+        wait());
   }
 
   Result<void> listen() {

@@ -47,17 +47,19 @@ struct RunOptions {
   double start_timeout_s = 30;          // of real time, that the simulator and every other step of the start may take
   std::vector<std::string> properties;  // "INSTANCE:key=value", of the component when it is created
   std::vector<std::string> start;       // commands that start components of others
+  std::string start_folder;             // where they are started; empty: that of rtse
   std::string run_file;                 // YAML, see run_file.h
   std::vector<std::string> module_paths;
   std::vector<std::string> resource_paths;
-  std::string junit;     // file to write
-  std::string picture;   // PNG to write
-  std::string record;    // MCAP to write
-  std::string hash_log;  // to write
-  bool twice = false;    // and compare
-  bool strict = false;   // what could depend on chance fails the run; else it is a note, when the run is in a CI job
-  std::string keep;      // folder for logs and the record; empty: a temporary one, removed at the end
-  bool quiet = false;    // no progress line
+  std::string junit;         // file to write
+  std::string picture;       // PNG to write
+  std::string record;        // MCAP to write
+  double record_last_s = 0;  // only so much of it, and only of a run that fails; 0: all
+  std::string hash_log;      // to write
+  bool twice = false;        // and compare
+  bool strict = false;       // what could depend on chance fails the run; else it is a note, when the run is in a CI job
+  std::string keep;          // folder for logs and the record; empty: a temporary one, removed at the end
+  bool quiet = false;        // no progress line
   std::vector<std::string> simulator_options{};  // more words for sim-server
   RunScript* script = nullptr;                   // see run_script.h; null: nothing happens but the run
   // Makes the steps instead of the run; nothing is judged then.

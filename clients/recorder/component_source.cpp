@@ -1,0 +1,303 @@
+#include "component_source.h"
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "base/guarded.h"
+#include "base/id.h"
+#include "base/text.h"
+#include "remote.h"
+#include "ros/messages.h"
+#include "rtm/idl/LoggerSkel.h"
+
+namespace recorder {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using std::chrono::nanoseconds;
+using std::chrono::seconds;
+
+constexpr const char* logger_type = "IDL:OpenRTM/Logger:1.0";
+constexpr const char* event_log_type = "rtm-sim/EventLog:1.0";  // of our components: rtm-core/component/observer.h
+constexpr const char* simulator_parameter = "server_id";        // another one in each run
+constexpr seconds longest_simulation{1'000'000'000};            // later stamps are of the wall clock
+
+channels::Schema json_schema(const std::string& name, const std::string& properties) {
+  return {name, "jsonschema", R"({"title":")" + name + R"(","type":"object","properties":{)" + properties + "}}"};
+}
+
+const channels::Schema state_schema =
+    json_schema("rtmsim.State", R"("context":{"type":"integer"},"state":{"type":"string"},"is_in_tick":{"type":"boolean"})");
+const channels::Schema configuration_schema = json_schema(
+    "rtmsim.Configuration",
+    R"("set":{"type":"string"},"values":{"type":"object","additionalProperties":{"type":"string"}},"is_change":{"type":"boolean"},"is_in_tick":{"type":"boolean"})");
+const channels::Schema event_schema = json_schema("rtmsim.Event", R"("kind":{"type":"string"},"event":{"type":"string"})");
+
+std::uint8_t ros_level(OpenRTM::LogLevel level) {
+  constexpr std::uint8_t debug = 10, info = 20, warn = 30, error = 40;
+  switch (level) {
+    case OpenRTM::RTM_ERROR:
+      return error;
+    case OpenRTM::RTM_WARN:
+      return warn;
+    case OpenRTM::RTM_INFO:
+    case OpenRTM::RTM_NORMAL:
+      return info;
+    default:
+      return debug;
+  }
+}
+
+// "ACTIVE:0" -> context 0, "Active".
+std::optional<std::pair<int, std::string>> state_in(const std::string& event) {
+  const auto colon = event.find(':');
+  const auto context = colon == std::string::npos ? std::nullopt : base::parse_integer(event.substr(colon + 1));
+  if (!context) return std::nullopt;
+  for (const auto& [word, state] : {std::pair("ACTIVE", "Active"), std::pair("INACTIVE", "Inactive"), std::pair("ERROR", "Error"),
+                                    std::pair("FINALIZE", "Finalized")}) {
+    if (event.substr(0, colon) == word) return std::pair(static_cast<int>(*context), std::string(state));
+  }
+  return std::nullopt;
+}
+
+// "UPDATE_CONFIG_PARAM: default.gain=0.5" -> default, gain, 0.5.
+std::optional<std::array<std::string, 3>> parameter_in(const std::string& event) {
+  constexpr std::string_view head = "UPDATE_CONFIG_PARAM: ";
+  const auto equals = event.find('=');
+  const auto dot = event.find('.');
+  if (!event.starts_with(head) || equals == std::string::npos || dot > equals) return std::nullopt;
+  return std::array{event.substr(head.size(), dot - head.size()), event.substr(dot + 1, equals - dot - 1), event.substr(equals + 1)};
+}
+
+std::string state_name(RTC::LifeCycleState state) {
+  static constexpr const char* names[] = {"Created", "Inactive", "Active", "Error"};
+  return names[static_cast<std::size_t>(state) % 4];
+}
+
+}  // namespace
+
+// Lives as long as somebody may call it.
+class ComponentSource::Log final : public POA_OpenRTM::Logger {
+ public:
+  using Take = std::function<void(const OpenRTM::LogRecord&)>;
+  explicit Log(Take take) : take_(std::move(take)) {}
+  void publish(const OpenRTM::LogRecord& record) override {
+    const auto mine = turn_.take();
+    if (take_) take_(record);
+  }
+  void close() override {}
+  void stop() {
+    const auto mine = turn_.take();
+    take_ = nullptr;
+  }
+
+ private:
+  base::Turn<> turn_;
+  Take take_;
+};
+
+struct ComponentSource::State {
+  CORBA::ORB_var orb;
+  channels::Exchange& exchange;
+  const base::Clock& clock;
+  std::function<void(const std::string&, const ComponentEvent&)> told{};
+  std::optional<channels::ChannelId> log{}, diagnostics{};
+  std::vector<std::unique_ptr<Watched>> watched{};
+  std::map<std::string, std::uint64_t> counts{};  // of diagnose(), by topic
+  channels::Time diagnosed{0};
+
+  nanoseconds time_of(const RTC::Time& time) const {
+    const nanoseconds said = seconds(time.sec) + nanoseconds(time.nsec);
+    return said < longest_simulation ? said : clock.now();
+  }
+  void put(channels::ChannelId id, nanoseconds time, const Json& json) {
+    const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    exchange.put(id, time, {text.data(), text.size()});
+  }
+  void take_line(const OpenRTM::LogRecord& record) {
+    const auto time = time_of(record.time);
+    exchange.put(
+        *log, time,
+        ros::encode(ros::Log{
+            .stamp = ros::to_time(time), .level = ros_level(record.level), .logger = record.loggername.in(), .msg = record.message.in()}));
+  }
+};
+
+// One component, with the services that are attached to it.
+class ComponentSource::Watched {
+ public:
+  Watched(State& state, const editor::ComponentView& component) : state_(state), view_(component) {}
+  ~Watched() {
+    for (const auto& service : services_) detach(service);
+  }
+  Watched(const Watched&) = delete;
+  Watched& operator=(const Watched&) = delete;
+
+  base::Result<void> open();
+  void attach();
+  const editor::ComponentView& view() const { return view_; }
+
+ private:
+  struct Service {
+    PortableServer::Servant_var<Log> servant;
+    std::string id;
+  };
+  void attach(const char* type, const editor::Properties& properties, Log::Take take);
+  void detach(const Service& service);
+  void take(const OpenRTM::LogRecord& record);
+  std::string topic(const char* what) const { return "/rtc/" + view_.instance + "/" + what; }
+  base::Result<channels::ChannelId> channel(const char* what, const channels::Schema& schema, bool is_latched = false) {
+    channels::Channel channel{topic(what), "json", schema, {{"component", view_.instance}, {"component_type", view_.type}}};
+    if (is_latched) channel.metadata["latched"] = "yes";
+    return state_.exchange.open(std::move(channel));
+  }
+
+  State& state_;
+  const editor::ComponentView view_;
+  channels::ChannelId states_ = 0, configuration_ = 0;
+  base::Guarded<std::optional<channels::ChannelId>, base::Rank::registry> events_;  // when there is the first one
+  std::vector<Service> services_;
+};
+
+base::Result<void> ComponentSource::Watched::open() {
+  const auto states = channel("state", state_schema, true);
+  const auto configuration = channel("configuration", configuration_schema);
+  if (!states || !configuration) return (states ? configuration : states).error();
+  states_ = *states;
+  configuration_ = *configuration;
+  const auto now = state_.clock.now();
+  for (const auto& context : view_.contexts) {
+    if (!context.is_gone() && context.is_running)
+      state_.put(states_, now, {{"context", context.handle}, {"state", state_name(context.state)}, {"is_in_tick", false}});
+  }
+  for (const auto& set : view_.configuration_sets) {
+    if (set.id != view_.active_set) continue;
+    Json values = Json::object();
+    for (const auto& [name, value] : set.values) {
+      if (name != simulator_parameter) values[name] = value;
+    }
+    state_.put(configuration_, now, {{"set", set.id}, {"values", values}, {"is_change", false}, {"is_in_tick", false}});
+  }
+  return {};
+}
+
+// A component that does not know such services says nothing more.
+void ComponentSource::Watched::attach(const char* type, const editor::Properties& properties, Log::Take take) {
+  Service service{new Log(std::move(take)), base::make_uuid()};
+  try {
+    const OpenRTM::Logger_var reference = service.servant->_this();
+    SDOPackage::ServiceProfile profile;
+    profile.id = service.id.c_str();
+    profile.interface_type = type;
+    profile.properties = editor::to_nv_list(properties);
+    profile.service = SDOPackage::SDOService::_duplicate(reference);
+    const SDOPackage::Configuration_var configuration = view_.object->get_configuration();
+    configuration->add_service_profile(profile);
+  } catch (const CORBA::Exception&) {
+    return detach(service);  // which a component that has gone does not mind
+  }
+  services_.push_back(std::move(service));
+}
+
+void ComponentSource::Watched::attach() {
+  attach(event_log_type,
+         {{"observed_status", "RTC_STATUS,EC_STATUS,CONFIGURATION,COMPONENT_PROFILE"}},  // ports would be listened to at each sample
+         [this](const OpenRTM::LogRecord& record) { this->take(record); });
+  attach(logger_type, {{"logger.log_level", "INFO"}, {"logger.filter", view_.instance}, {"logger.clock", "simulated"}},
+         [&state = state_](const OpenRTM::LogRecord& record) { state.take_line(record); });
+}
+
+void ComponentSource::Watched::detach(const Service& service) {
+  try {
+    const SDOPackage::Configuration_var configuration = view_.object->get_configuration();
+    configuration->remove_service_profile(service.id.c_str());
+  } catch (const CORBA::Exception&) {
+    // It has gone, or never knew it.
+  }
+  auto& servant = const_cast<Service&>(service).servant;
+  servant->stop();
+  try {
+    const PortableServer::POA_var poa = servant->_default_POA();
+    const PortableServer::ObjectId_var id = poa->servant_to_id(servant.in());
+    poa->deactivate_object(id);
+  } catch (const CORBA::Exception&) {
+    // The ORB is shutting down.
+  }
+}
+
+void ComponentSource::Watched::take(const OpenRTM::LogRecord& record) {
+  const ComponentEvent event{state_.time_of(record.time), record.loggername.in(), record.message.in(), record.level == OpenRTM::RTM_INFO};
+  if (state_.told) state_.told(view_.instance, event);
+  if (const auto state = event.kind == "RTC_STATUS" ? state_in(event.event) : std::nullopt)
+    return state_.put(states_, event.time, {{"context", state->first}, {"state", state->second}, {"is_in_tick", event.is_in_tick}});
+  if (const auto parameter = parameter_in(event.event)) {
+    const auto& [set, name, value] = *parameter;
+    return state_.put(configuration_, event.time,
+                      {{"set", set}, {"values", {{name, value}}}, {"is_change", true}, {"is_in_tick", event.is_in_tick}});
+  }
+  auto id = events_.snapshot();
+  if (!id) {
+    const auto opened = channel("events", event_schema);
+    if (!opened) return;
+    id = *opened;
+    *events_.lock() = id;
+  }
+  state_.put(*id, event.time, {{"kind", event.kind}, {"event", event.event}});
+}
+
+ComponentSource::ComponentSource(CORBA::ORB_ptr orb, channels::Exchange& exchange, const base::Clock& clock)
+    : state_(new State{CORBA::ORB::_duplicate(orb), exchange, clock}) {}
+
+ComponentSource::~ComponentSource() { state_->watched.clear(); }
+
+void ComponentSource::on_event(std::function<void(const std::string&, const ComponentEvent&)> told) { state_->told = std::move(told); }
+
+std::size_t ComponentSource::size() const { return state_->watched.size(); }
+
+base::Result<void> ComponentSource::add(const editor::ComponentView& component) {
+  if (!state_->log) {
+    // What depends on the machine is no difference between two runs.
+    const auto log = state_->exchange.open({"/log", "cdr", ros::schema<ros::Log>(), {{"compare", "no"}}});
+    const auto diagnostics = state_->exchange.open({"/diagnostics", "cdr", ros::schema<ros::DiagnosticArray>(), {{"compare", "no"}}});
+    if (!log || !diagnostics) return (log ? diagnostics : log).error();
+    state_->log = *log;
+    state_->diagnostics = *diagnostics;
+  }
+  auto watched = std::make_unique<Watched>(*state_, component);
+  if (const auto opened = watched->open(); !opened) return opened;
+  watched->attach();
+  state_->watched.push_back(std::move(watched));
+  return {};
+}
+
+void ComponentSource::diagnose(channels::Time now, const PortSource& ports) {
+  if (!state_->diagnostics) return;
+  const auto counts = ports.counts();
+  const double passed = std::chrono::duration<double>(now - state_->diagnosed).count();
+  ros::DiagnosticArray array{.header = {ros::to_time(now), ""}};
+  for (const auto& watched : state_->watched) {
+    const auto& view = watched->view();
+    ros::DiagnosticStatus status{.subject = view.instance, .message = "gone", .hardware_id = view.type};
+    const auto* context = view.shown_context();
+    RTC::LifeCycleState life = RTC::CREATED_STATE;
+    const bool is_there =
+        context != nullptr && editor::remote("component", [&] { life = context->object->get_component_state(view.object); }).ok();
+    if (is_there) status.message = state_name(life);
+    enum Level { ok, warn, error, stale };
+    status.level = static_cast<ros::Byte>(!is_there ? stale : life == RTC::ERROR_STATE ? error : life == RTC::ACTIVE_STATE ? ok : warn);
+    for (const auto& [topic, count] : counts) {
+      if (!topic.starts_with("/" + view.instance + "/") || passed <= 0) continue;
+      const auto before = state_->counts.contains(topic) ? state_->counts.at(topic) : 0;
+      status.values.push_back(
+          {topic.substr(view.instance.size() + 2) + " [Hz]", base::format_number(static_cast<double>(count - before) / passed)});
+    }
+    array.status.push_back(std::move(status));
+  }
+  state_->counts = counts;
+  state_->diagnosed = now;
+  state_->exchange.put(*state_->diagnostics, now, ros::encode(array));
+}
+
+}  // namespace recorder

@@ -1,0 +1,61 @@
+// What was done to a component while it was recorded, and doing it again: values of parameters, activation, deactivation, reset. One thread
+// at a time.
+//
+// What took effect in tick t is asked for at the end of the tick before, and the component takes it up where its next tick begins; what
+// happened between two ticks is done while time stands still there.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/result.h"
+#include "component_view.h"
+
+namespace recorder {
+
+struct RecordedChange {
+  enum class Kind { configure, activate, deactivate, reset } kind = Kind::configure;
+  std::chrono::nanoseconds time{0};
+  bool is_in_tick = true;
+  std::string set{};                                          // of parameters
+  std::vector<std::pair<std::string, std::string>> values{};  // by parameter
+};
+
+struct RecordedLife {
+  bool is_recorded = false;
+  std::optional<RecordedChange> configuration;  // at the beginning
+  std::string state;                            // at the beginning; empty: not known
+  std::vector<RecordedChange> changes;
+
+  // Of the channels /rtc/COMPONENT/state and /rtc/COMPONENT/configuration.
+  static base::Result<RecordedLife> read(const std::string& file, const std::string& component);
+  // A parameter is left as it is.
+  void forget(const std::string& parameter);
+  // Only what happened in ticks, or only the rest.
+  RecordedLife part(bool is_in_tick) const;
+};
+
+class LifePlayer {
+ public:
+  explicit LifePlayer(RecordedLife life) : life_(std::move(life)) {}
+
+  // The component as it was at first, before time moves. An error names what it refuses.
+  base::Result<void> begin(const editor::ComponentView& component);
+  // The time of the change that is to be made next.
+  std::optional<std::chrono::nanoseconds> next() const;
+  // All changes up to this time.
+  base::Result<void> go_on(std::chrono::nanoseconds until);
+  std::size_t done() const { return done_; }
+
+ private:
+  base::Result<void> make(const RecordedChange& change);
+
+  RecordedLife life_;
+  editor::ComponentView component_;
+  std::size_t next_ = 0, done_ = 0;
+};
+
+}  // namespace recorder
