@@ -18,9 +18,10 @@ using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr auto call_limit = 5s;
-constexpr auto look_period = 100ms;                         // at the processes: one that dies is named within it
-constexpr auto long_time = 1s;                              // without a step: somebody is named
-constexpr int lowest_server = 5000, highest_server = 9999;  // those below are for people and their scripts
+constexpr auto look_period = 100ms;  // at the processes: one that dies is named within it
+constexpr std::chrono::milliseconds shortest_ask_period = 500ms, longest_ask_period = 2s;  // for the time, while steps are made
+constexpr auto long_time = 1s;                                                             // without a step: somebody is named
+constexpr int lowest_server = 5000, highest_server = 9999;                                 // those below are for people and their scripts
 const std::string log_name = "sim-server.log";
 
 Json parsed(const Result<std::string>& text) { return text ? Json::parse(*text, nullptr, false) : Json(); }
@@ -52,6 +53,7 @@ Result<void> RunSimulator::try_start(const Wait& wait_until) {
   if (!started) return started.error();
   process_.emplace(std::move(*started));
   return wait_until("simulator", [&] {
+    if (!is_in_memory()) return false;  // a look costs less than a program that looks
     const auto stats = statistics(call_limit);
     if (stats.value("pid", 0) != process_->pid()) return false;
     step_s_ = stats.value("step", 0.0);
@@ -93,6 +95,7 @@ Json RunSimulator::statistics(std::chrono::milliseconds limit) const {
 
 // Of the simulator with our id, whoever's it is.
 std::optional<pid_t> RunSimulator::owner() const {
+  if (!is_in_memory()) return std::nullopt;
   const auto stats = statistics(call_limit);
   return stats.contains("pid") ? std::optional(stats.value("pid", 0)) : std::nullopt;
 }
@@ -132,6 +135,7 @@ Result<void> RunSimulator::make_steps(std::int64_t steps, const std::function<Re
   std::uint64_t last = 0;
   auto moved = Clock::now();
   bool is_told = false;
+  std::chrono::milliseconds ask_period = shortest_ask_period;  // each question costs a program's start
   for (auto asked = moved;;) {
     const auto ending = stepping->wait_or_interrupt(look_period);
     if (ending == Ending::interrupted) return Error{"run: interrupted"};
@@ -140,12 +144,14 @@ Result<void> RunSimulator::make_steps(std::int64_t steps, const std::function<Re
       const auto said = output_of(*stepping);
       return said ? Result<void>() : said.error();
     }
-    if (Clock::now() - asked < 500ms) continue;
+    if (Clock::now() - asked < ask_period) continue;
     asked = Clock::now();
     const auto stats = statistics(1s);
     const auto now = stats.value("steps", last);
     last_time_ = stats.value("sim_time", last_time_);
-    if (std::exchange(last, now) != now) moved = Clock::now();
+    const bool has_moved = std::exchange(last, now) != now;
+    if (has_moved) moved = Clock::now();
+    ask_period = has_moved ? std::min(2 * ask_period, longest_ask_period) : shortest_ask_period;
     if (Clock::now() - moved > long_time && !std::exchange(is_told, true)) std::fprintf(stderr, "rtse: %s\n", who_waits().c_str());
     if (Clock::now() - moved > std::chrono::duration<double>(options_.hang_timeout_s)) return Error{who_hangs()};
   }
@@ -174,9 +180,17 @@ std::string RunSimulator::who_hangs() const {
   return names.empty() ? "the simulator has not ended its step" + end : base::join(names, ", ") + ": has not ended its tick" + end;
 }
 
+std::string RunSimulator::segment_prefix() const { return "rtmsim-" + std::to_string(getuid()) + "-" + id_ + "."; }
+
+// Whether there is, or was, a simulator with our id.
+bool RunSimulator::is_in_memory() const {
+  std::error_code ignored;  // who cannot look sees nothing
+  return std::filesystem::exists("/dev/shm/" + segment_prefix() + "simulation.world", ignored);
+}
+
 // After an orderly end there is nothing. The id was ours alone.
 void RunSimulator::remove_segments() const {
-  const auto prefix = "rtmsim-" + std::to_string(getuid()) + "-" + id_ + ".";
+  const auto prefix = segment_prefix();
   std::error_code ignored;  // nobody else may be harmed by a file that stays
   for (const auto& entry : std::filesystem::directory_iterator("/dev/shm", ignored)) {
     if (entry.path().filename().string().starts_with(prefix)) std::filesystem::remove(entry.path(), ignored);

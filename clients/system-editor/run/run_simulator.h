@@ -59,6 +59,8 @@ class RunSimulator {
   std::vector<std::string> late() const;  // participants
   std::string who_waits() const;
   std::string who_hangs() const;
+  std::string segment_prefix() const;
+  bool is_in_memory() const;
   void remove_segments() const;
 
   const RunOptions& options_;
