@@ -80,7 +80,11 @@ void hunt_plan(Editor& editor, const HuntCall& call) {
   if (editor.json()) {
     nlohmann::ordered_json finds = nlohmann::ordered_json::array();
     for (const auto& find : result->finds) finds.push_back(to_json(find));
-    std::cout << nlohmann::ordered_json{{"cases", result->cases}, {"states", result->features}, {"wall", result->wall_s}, {"finds", finds}}
+    std::cout << nlohmann::ordered_json{{"cases", result->cases},
+                                        {"states", result->features},
+                                        {"wall", result->wall_s},
+                                        {"finds", finds},
+                                        {"interrupted", editor::is_interrupted()}}
                      .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
               << '\n';
   } else {
@@ -88,6 +92,7 @@ void hunt_plan(Editor& editor, const HuntCall& call) {
                 result->features);
   }
   if (!result->finds.empty()) editor.set_failed();
+  if (editor::is_interrupted()) editor.fail({"interrupted after " + std::to_string(result->cases) + " cases"});
 }
 
 }  // namespace

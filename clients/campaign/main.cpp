@@ -1,7 +1,10 @@
 // rtse-campaign: the verbs of rtse that are about campaigns. rtse becomes this program when it meets one of them.
+#include <csignal>
+
 #include "campaign_commands.h"
 #include "program.h"
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is told like a full disk
   return editor::run_program({campaign::add_sweep, campaign::add_hunt, campaign::add_results}, argc, argv);
 }

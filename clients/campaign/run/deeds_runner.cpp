@@ -108,7 +108,10 @@ Result<void> DeedsRunner::begin(editor::RunScene& scene) {
     const bool is_ours = fault.object == Object::naming || (fault.object == Object::component && !is_by_property(fault.kind));
     if (!is_ours) continue;  // who has it times it
     timed_.push_back({step_of(fault.at_s), Timed::What::fault, i});
-    if (fault.for_s) timed_.push_back({step_of(fault.at_s + *fault.for_s), Timed::What::end_of_fault, i});
+    auto end_s = fault.for_s ? std::optional(fault.at_s + *fault.for_s) : std::nullopt;
+    // The naming service is back for the end, when the states of components are looked at.
+    if (fault.object == Object::naming) end_s = std::min(end_s.value_or(duration_s_), duration_s_);
+    if (end_s) timed_.push_back({step_of(*end_s), Timed::What::end_of_fault, i});
   }
   std::ranges::stable_sort(timed_, {}, &Timed::step);
   return act(scene, 0);
