@@ -20,7 +20,9 @@
 #include "results/statistics.h"
 #include "run/child_process.h"
 #include "run/interrupt.h"
+#include "run/shell_word.h"
 #include "run/sweep.h"
+#include "slurm/slurm_sweep.h"
 
 namespace campaign {
 namespace fs = std::filesystem;
@@ -29,9 +31,10 @@ namespace {
 using editor::Editor;
 
 struct SweepCall {
-  std::string plan, results, keep, audit = "0", state, rows, engine = "local";
+  std::string plan, results, keep, audit = "0", state, rows, engine = "local", shared, task;
+  std::vector<std::string> sbatch;
   std::size_t chunk = 10;
-  int jobs = 1;
+  int jobs = 1, tries = 3;
   std::size_t row = 0;
   bool records = false, fails_fast = false, prints_schema = false;
 };
@@ -124,6 +127,7 @@ void tell(Editor& editor, const SweepResult& result, const SweepCall& call) {
   }
   if (p.failed > enough) std::fprintf(stderr, "rtse: and %zu more; rtse results %s\n", p.failed - enough, results.c_str());
   if (p.failed > 0) editor.set_failed();
+  if (!result.problem.empty()) editor.fail({result.problem});
   for (const auto number : result.different) editor.fail({"audit: row " + std::to_string(number) + " has another state than stored"});
   if (result.is_interrupted)
     editor.fail({"interrupted after " + std::to_string(p.done) + " of " + std::to_string(p.rows) + " rows; the same command goes on"});
@@ -138,20 +142,40 @@ std::optional<std::pair<std::size_t, std::size_t>> parse_rows(const std::string&
   return std::pair(static_cast<std::size_t>(*first), static_cast<std::size_t>(*last));
 }
 
-// A word of a shell's command line.
-std::string in_shell(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
-}
-
 // For GNU parallel and its like: each line runs some rows and adds them to the same results.
 void print_commands(const Campaign& campaign, const SweepCall& call) {
   for (std::size_t first = 1; first <= campaign.rows(); first += call.chunk) {
     const auto last = std::min(campaign.rows(), first + call.chunk - 1);
-    std::printf("%s sweep %s --rows %zu..%zu -o %s\n", in_shell(editor::own_program("rtse")).c_str(),
-                in_shell(fs::absolute(call.plan).string()).c_str(), first, last, in_shell(fs::absolute(results_of(call)).string()).c_str());
+    std::printf("%s sweep %s --rows %zu..%zu -o %s\n", shell_word(editor::own_program("rtse")).c_str(),
+                shell_word(fs::absolute(call.plan).string()).c_str(), first, last,
+                shell_word(fs::absolute(results_of(call)).string()).c_str());
   }
+}
+
+SweepOptions options_of(const Editor& editor, const SweepCall& call) {
+  SweepOptions options;
+  options.results = results_of(call);
+  options.kept = call.keep.empty() ? fs::path(options.results).replace_extension(".runs").string() : call.keep;
+  options.jobs = call.jobs;
+  if (const auto rows = parse_rows(call.rows)) std::tie(options.first_row, options.last_row) = *rows;
+  options.records = call.records;
+  options.fails_fast = call.fails_fast;
+  options.call_limit = editor.limit();
+  const auto percent = base::parse_number(call.audit.ends_with("%") ? call.audit.substr(0, call.audit.size() - 1) : call.audit);
+  options.audit = percent.value_or(0) / (call.audit.ends_with("%") ? 100 : 1);
+  return options;
+}
+
+SlurmOptions slurm_options_of(const SweepCall& call, const SweepOptions& options) {
+  SlurmOptions slurm;
+  slurm.folder = fs::absolute(call.shared.empty() ? fs::path(options.results).replace_extension(".slurm") : fs::path(call.shared)).string();
+  slurm.chunk = call.chunk;
+  slurm.tries = call.tries;
+  slurm.options = call.sbatch;
+  slurm.command = {editor::own_program("rtse"), "sweep", fs::absolute(call.plan).string(), "--keep", options.kept, "-j",
+                   std::to_string(call.jobs)};
+  if (call.records) slurm.command.emplace_back("--record");
+  return slurm;
 }
 
 void sweep_plan(Editor& editor, const SweepCall& call) {
@@ -166,23 +190,42 @@ void sweep_plan(Editor& editor, const SweepCall& call) {
   editor::catch_interrupts();
   if (call.engine == "parallel") return print_commands(*campaign, call);
   if (call.row > 0) return run_one(editor, *campaign, call);
-  SweepOptions options;
-  options.results = results_of(call);
-  options.kept = call.keep.empty() ? fs::path(options.results).replace_extension(".runs").string() : call.keep;
-  options.jobs = call.jobs;
-  if (const auto rows = parse_rows(call.rows)) std::tie(options.first_row, options.last_row) = *rows;
-  options.records = call.records;
-  options.fails_fast = call.fails_fast;
-  options.call_limit = editor.limit();
-  const auto percent = base::parse_number(call.audit.ends_with("%") ? call.audit.substr(0, call.audit.size() - 1) : call.audit);
-  options.audit = percent.value_or(0) / (call.audit.ends_with("%") ? 100 : 1);
+  const auto options = options_of(editor, call);
+  if (!call.task.empty()) {
+    if (const auto done = run_task(editor.orb(), *campaign, options, *parse_task(call.task)); !done) editor.fail(done.error());
+    return;
+  }
   const bool shows = isatty(2) != 0 && !editor.json();
-  const auto result = sweep(editor.orb(), *campaign, options, [&](const Progress& progress) {
+  const auto show = [&](const Progress& progress) {
     if (shows) show_progress(progress);
-  });
+  };
+  const auto result = call.engine == "slurm" ? slurm_sweep(*campaign, options, slurm_options_of(call, options), show)
+                                             : sweep(editor.orb(), *campaign, options, show);
   if (shows) std::fprintf(stderr, "\r\033[K");
   if (!result) return editor.fail(result.error());
   tell(editor, *result, call);
+}
+
+// Who runs the rows.
+void add_engines(base::Command& command, SweepCall& call) {
+  command
+      .add_option("--engine", call.engine,
+                  "local; slurm: job arrays of a cluster; parallel: print command lines that run all rows, for GNU parallel")
+      ->check(base::one_of({"local", "slurm", "parallel"}))
+      ->capture_default_str();
+  command.add_option("--chunk", call.chunk, "Rows of each task of Slurm, or of each command line")
+      ->check(base::integer_between(1, 1000000))
+      ->capture_default_str();
+  command.add_option("--shared", call.shared,
+                     "With --engine slurm: folder that all machines share; default: the results' name with .slurm");
+  command.add_option("--tries", call.tries, "With --engine slurm: how often a row is tried whose task ends without its result")
+      ->check(base::integer_between(1, 100))
+      ->capture_default_str();
+  command.add_option("--sbatch", call.sbatch, "With --engine slurm: an option for sbatch, as --sbatch=--partition=short")
+      ->allow_extra_args(false);
+  command.add_option("--task", call.task, "What tasks of Slurm are called with: FOLDER:ATTEMPT:TASK")->check([](const std::string& text) {
+    return parse_task(text) ? std::string() : "expected FOLDER:ATTEMPT:TASK, got " + base::in_quotes(text);
+  });
 }
 
 }  // namespace
@@ -200,24 +243,23 @@ void add_sweep(base::Command& app, editor::Chosen& chosen) {
   command->add_option("--rows", call->rows, "Only the rows FIRST..LAST")->excludes(row)->check([](const std::string& text) {
     return parse_rows(text) ? std::string() : "expected N or FIRST..LAST, got " + base::in_quotes(text);
   });
-  command->add_option("--engine", call->engine, "local, or parallel: print command lines that run all rows, for GNU parallel")
-      ->check(base::one_of({"local", "parallel"}))
-      ->capture_default_str();
-  command->add_option("--chunk", call->chunk, "Rows of each command line")->check(base::integer_between(1, 1000000))->capture_default_str();
-  command->add_option("--audit", call->audit, "Run this fraction of the stored rows again and compare, as 5% or 0.05")
-      ->excludes(row)
-      ->check([](const std::string& text) {
-        const bool is_percent = text.ends_with("%");
-        const auto number = base::parse_number(is_percent ? text.substr(0, text.size() - 1) : text);
-        return number && *number >= 0 && *number <= (is_percent ? 100 : 1)
-                   ? std::string()
-                   : "expected a fraction as 5% or 0.05, got " + base::in_quotes(text);
-      });
+  add_engines(*command, *call);
+  auto* audit = command->add_option("--audit", call->audit, "Run this fraction of the stored rows again and compare, as 5% or 0.05")
+                    ->excludes(row)
+                    ->check([](const std::string& text) {
+                      const bool is_percent = text.ends_with("%");
+                      const auto number = base::parse_number(is_percent ? text.substr(0, text.size() - 1) : text);
+                      return number && *number >= 0 && *number <= (is_percent ? 100 : 1)
+                                 ? std::string()
+                                 : "expected a fraction as 5% or 0.05, got " + base::in_quotes(text);
+                    });
   command->add_flag("--record", call->records, "Record what all ports send, of rows that fail");
-  command->add_flag("--fail-fast", call->fails_fast, "Begin no row after one that failed");
+  auto* fails_fast = command->add_flag("--fail-fast", call->fails_fast, "Begin no row after one that failed");
   command->add_flag("--schema", call->prints_schema, "Print the JSON Schema of plans");
-  command->callback([&chosen, call, plan] {
+  command->callback([&chosen, call, plan, audit, fails_fast] {
     editor::require(call->prints_schema || plan->count() > 0, "sweep", "expected a PLAN");
+    editor::require(call->engine == "local" || audit->count() + fails_fast->count() == 0, "sweep",
+                    "--audit and --fail-fast are of --engine local");
     chosen.needs_orb = !call->prints_schema;
     chosen.work = [call](Editor& e) { sweep_plan(e, *call); };
   });

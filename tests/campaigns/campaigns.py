@@ -4,6 +4,8 @@ import io
 import json
 import os
 import pathlib
+import shlex
+import shutil
 import signal
 import sqlite3
 import subprocess
@@ -30,7 +32,7 @@ def call(*words):
 
 def rtse(*words, code=0):
     done = call(*words)
-    assert done.returncode == code, (words, done.returncode, done.stdout, done.stderr)
+    assert code is None or done.returncode == code, (words, done.returncode, done.stdout, done.stderr)
     return done
 
 
@@ -137,9 +139,55 @@ def refused():
     ]:
         done = rtse("sweep", plan(text + "\n"), code=1)
         assert expected in done.stderr and len(done.stderr.splitlines()) == 1, (text, done.stderr)
+    # Of the path only what rows need: no sbatch, then nothing.
+    tools = folder / "tools"
+    tools.mkdir()
+    for paths, expected, words in [(tools, "program omniNames: cannot be started; expected it beside rtse or in PATH", []),
+                                   (tools, "program sbatch: cannot be started; --engine slurm expects it in PATH", ["--engine", "slurm"])]:
+        done = subprocess.run([f"{bin_dir}/rtse", "sweep", plan(""), *words], cwd=folder, env={**os.environ, "PATH": str(paths)}, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True, timeout=200)
+        assert done.returncode == 1 and expected in done.stderr and len(done.stderr.splitlines()) == 1, done
+        if not (tools / "omniNames").exists():
+            (tools / "omniNames").symlink_to(shutil.which("omniNames"))
+    done = rtse("sweep", plan("repeat: 100000\n"), "--engine", "slurm", "--chunk", 2, "--task", "nowhere", code=None)
+    assert "--task: expected FOLDER:ATTEMPT:TASK" in done.stderr, done.stderr
     assert not (folder / "plan.db").exists()
     done = rtse("results", plan(""), code=1)
     assert "file is not a database" in done.stderr, done.stderr
+
+
+# A results file that cannot grow is one line, and what is in it stays; so is a page that cannot be written.
+def disk_full():
+    p = plan("repeat: 20\n")
+    rtse("sweep", p, "--rows", "1..2")
+    before = times()
+    limit = (folder / "plan.db").stat().st_size // 1024  # kB; a file of SQLite grows in a log beside it
+    words = " ".join(map(shlex.quote, [f"{bin_dir}/rtse", "sweep", p, "-j", "2", "--rows", "1..12"]))
+    done = subprocess.run(["bash", "-c", f"ulimit -f {max(8, limit // 2)}; exec {words}"], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                          timeout=200)
+    lines = done.stderr.splitlines()
+    assert done.returncode == 1 and len(lines) == 1 and f'results "{folder}/plan.db": ' in lines[0], done
+    assert {key: times()[key] for key in before} == before
+    last = json.loads(rtse("--json", "sweep", p, "--rows", "1..3").stdout)
+    assert last["passed"] == 3 and last["stored"] >= 2, last
+    done = rtse("results", folder / "plan.db", "--html", folder, code=1)
+    assert "cannot be written" in done.stderr and len(done.stderr.splitlines()) == 1, done.stderr
+
+
+# Ctrl-C ends at once, leaves nothing that runs, and says how to go on.
+def interrupted():
+    p = plan("repeat: 300\n")
+    for words, expected in [(["sweep", p, "-j", "2"], "interrupted after "), (["hunt", p, "-j", "2", "--budget", "200s"], "interrupted after ")]:
+        process = subprocess.Popen([f"{bin_dir}/rtse", *words], cwd=folder, env={**os.environ, "TMPDIR": str(folder)}, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
+        deadline = time.monotonic() + 100
+        while not list(folder.glob("rtse-run-*/names")) and time.monotonic() < deadline:
+            time.sleep(0.02)
+        process.send_signal(signal.SIGINT)
+        said = process.communicate(timeout=100)
+        assert process.returncode == 1 and expected in said[1] and len(said[1].splitlines()) == 1, (words, process.returncode, said)
+        assert not list(folder.glob("rtse-run-*")) and not list(folder.glob("plan.finds/*")), list(folder.iterdir())
+    assert json.loads(rtse("--json", "sweep", p, "--rows", "1..1").stdout)["passed"] == 1
 
 
 # Of a plan with one row: its report, the same in two runs.
@@ -179,10 +227,14 @@ def faults():
     for number, fault in enumerate([
         f'sensor: "{laser}", is: "off"', f'sensor: "{laser}", is: noise, amount: 0.4', f'sensor: "{laser}", is: bias, amount: -1',
         f'actuator: "{drive}", is: weak', "connector: velocity-to-robot, is: drop, amount: 1",
-        "component: LaserObstacleAvoid0, is: exception",
+        "component: LaserObstacleAvoid0, is: exception", "component: LaserObstacleAvoid0, is: error",
     ]):
         seen = twice(f"faults: [{{at: 0, {fault}}}]\n", f"fault{number}.yaml")
         assert seen["state"] != quiet["state"] and seen["passed"], (fault, seen)
+    # What the system does not need while it runs, and what takes only real time, changes nothing.
+    for fault in ("naming: gone", "for: 0.3, component: LaserObstacleAvoid0, is: slow"):
+        seen = twice(f"faults: [{{at: 0.2, {fault}}}]\n", "harmless.yaml")
+        assert seen["state"] == quiet["state"] and seen["passed"], (fault, seen)
     # A host that is killed comes back; the run with it is the same each time.
     twice("one_process_each: true\nfaults: [{at: 0.3, for: 0.3, component: LaserObstacleAvoid0, is: kill}]\n", "kill.yaml")
     done = rtse("sweep", plan("hang_timeout: 1\nfaults: [{at: 0.3, component: LaserObstacleAvoid0, is: hang}]\n"), "--row", 1, code=1)
@@ -209,6 +261,6 @@ hunt:
 
 
 try:
-    {"sweep": sweep, "reports": reports, "killed": killed, "refused": refused, "events": events, "faults": faults, "hunts": hunts}[case]()
+    {"sweep": sweep, "reports": reports, "killed": killed, "disk_full": disk_full, "interrupted": interrupted, "refused": refused, "events": events, "faults": faults, "hunts": hunts}[case]()
 finally:
     subprocess.run(["rm", "-rf", str(folder)], check=False)

@@ -99,14 +99,6 @@ Result<void> set_in_system(SavedSystem& system, const std::string& path, const s
   return Error{path + ": is no parameter; expected seed, component/..., property/..., connector/..., model/..., light/... or world/..."};
 }
 
-bool can_be_started(const std::string& name) {
-  const auto program = editor::own_program(name);
-  if (program.find('/') != std::string::npos) return access(program.c_str(), X_OK) == 0;
-  const char* path = std::getenv("PATH");
-  return std::ranges::any_of(base::split_list(path != nullptr ? path : "", ':'),
-                             [&](const std::string& folder) { return access((folder + "/" + program).c_str(), X_OK) == 0; });
-}
-
 // What a run loads: our programs and libraries, and every module of the plan.
 Result<void> hash_programs(const Plan& plan, ContentHash& hash) {
   std::vector<std::string> files;
@@ -131,6 +123,14 @@ Result<void> hash_programs(const Plan& plan, ContentHash& hash) {
 }
 
 }  // namespace
+
+bool can_be_started(const std::string& name) {
+  const auto program = editor::own_program(name);
+  if (program.find('/') != std::string::npos) return access(program.c_str(), X_OK) == 0;
+  const char* path = std::getenv("PATH");
+  return std::ranges::any_of(base::split_list(path != nullptr ? path : "", ':'),
+                             [&](const std::string& folder) { return access((folder + "/" + program).c_str(), X_OK) == 0; });
+}
 
 Result<Campaign> Campaign::prepare(Plan plan) {
   Campaign campaign(std::move(plan));

@@ -12,6 +12,9 @@
 
 namespace campaign {
 
+// Whether a program is there: beside ours, else in PATH.
+bool can_be_started(const std::string& name);
+
 class Campaign {
  public:
   static Result<Campaign> prepare(Plan plan);
@@ -24,6 +27,8 @@ class Campaign {
   // Rows with the same key give the same result: it stands for the programs, modules, world, system and plan as far as they matter, and for
   // the values and the seed.
   std::string key(const Row& row) const;
+  // What it is of a row without seed and values.
+  const std::string& base_key() const { return base_key_; }
 
   // The world of a row; nothing when it is the plan's own.
   Result<std::optional<WorldFile>> world_of(const Row& row) const;

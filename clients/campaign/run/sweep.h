@@ -41,8 +41,14 @@ struct SweepResult {
   Progress progress;
   std::vector<FailedRow> failed;       // the first hundred
   std::vector<std::size_t> different;  // audited rows with another state
+  std::string problem;                 // why rows have no result
   bool is_interrupted = false;
 };
+
+// Of the files of a row, in the folder for kept files.
+std::string folder_name(std::size_t number, const std::string& key);
+// The folder for kept files. The error: it cannot be made, or its disk is full.
+Result<void> make_kept(const SweepOptions& options);
 
 // `show` is called after every row, one call at a time.
 Result<SweepResult> sweep(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepOptions& options,

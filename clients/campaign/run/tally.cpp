@@ -1,0 +1,92 @@
+#include "run/tally.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "rows/random.h"
+#include "run/interrupt.h"
+
+namespace campaign {
+namespace {
+
+constexpr std::size_t most_failed_told = 100;
+
+}  // namespace
+
+Result<void> Tally::list_rows() {
+  if (const auto begun = store_.begin_rows(campaign_.plan()); !begun) return begun;
+  std::set<std::string> keys;
+  for (std::size_t number = 1; number <= campaign_.rows(); ++number) {
+    const auto row = campaign_.row(number);
+    if (!row) return Error{"row " + std::to_string(number) + ": " + row.error().message};
+    const auto key = campaign_.key(*row);
+    if (const auto added = store_.add_row(*row, key); !added) return added;
+    const auto run = store_.run(key);
+    if (!run) return run.error();
+    if (number < options_.first_row || (options_.last_row > 0 && number > options_.last_row)) continue;
+    ++result_.progress.rows;
+    if (*run) {
+      take_stored(number, key, **run);
+    } else if (keys.insert(key).second) {
+      todo_.push_back({number, "", false});
+    } else {
+      ++result_.progress.done;  // its twin is run
+    }
+  }
+  if (const auto ended = store_.end_rows(); !ended) return ended;
+  show_(result_.progress);
+  return {};
+}
+
+void Tally::take_stored(std::size_t number, const std::string& key, const StoredRun& run) {
+  auto& progress = result_.progress;
+  ++progress.done;
+  ++progress.stored;
+  ++(run.is_passed ? progress.passed : progress.failed);
+  if (!run.is_passed && result_.failed.size() < most_failed_told) result_.failed.push_back({number, run.problem});
+  if (Random(options_.results.size(), key).uniform() < options_.audit) todo_.push_back({number, run.state_hash, true});
+}
+
+bool Tally::is_stopped() {
+  const auto mine = telling_.take();
+  return !problem_.empty() || (options_.fails_fast && result_.progress.failed > 0);
+}
+
+void Tally::add(const Todo& todo, const std::string& key, const Outcome& outcome, const std::string& folder) {
+  auto& progress = result_.progress;
+  if (todo.is_audit) {
+    const bool is_same = outcome.state_hash == todo.stored_state;
+    ++progress.audited;
+    if (!is_same) {
+      ++progress.different;
+      result_.different.push_back(todo.number);
+    }
+    if (const auto added = store_.add_audit(key, outcome.state_hash, is_same); !added && problem_.empty()) problem_ = added.error().message;
+    return;
+  }
+  if (const auto added = store_.add_run(key, outcome, folder); !added && problem_.empty()) problem_ = added.error().message;
+  ++progress.done;
+  ++(outcome.is_passed() ? progress.passed : progress.failed);
+  if (!outcome.is_passed() && result_.failed.size() < most_failed_told) result_.failed.push_back({todo.number, outcome.first_problem()});
+}
+
+void Tally::take(const Todo& todo, const std::string& key, const Outcome& outcome, const std::string& folder) {
+  const auto mine = telling_.take();
+  add(todo, key, outcome, folder);
+  ++ended_;
+  auto& progress = result_.progress;
+  progress.wall_s = std::chrono::duration<double>(Clock::now() - began_).count();
+  progress.left_s = progress.wall_s / static_cast<double>(ended_) * static_cast<double>(todo_.size() - ended_);
+  show_(progress);
+}
+
+Result<SweepResult> Tally::result() {
+  const auto mine = telling_.take();
+  if (!problem_.empty()) return Error{problem_};
+  result_.is_interrupted = editor::is_interrupted();
+  result_.progress.wall_s = std::chrono::duration<double>(Clock::now() - began_).count();
+  std::ranges::sort(result_.failed, {}, &FailedRow::number);
+  return result_;
+}
+
+}  // namespace campaign

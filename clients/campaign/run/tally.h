@@ -1,0 +1,56 @@
+// The rows that a sweep has to run, and what has become of them: in the results file, and in numbers. Every engine has one. Only take() and
+// is_stopped() may be called from several threads.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "base/guarded.h"
+#include "results/store.h"
+#include "run/campaign.h"
+#include "run/sweep.h"
+
+namespace campaign {
+
+class Tally {
+ public:
+  struct Todo {
+    std::size_t number = 0;
+    std::string stored_state;  // when it is an audit
+    bool is_audit = false;
+  };
+
+  Tally(const Campaign& campaign, const SweepOptions& options, Store store, const std::function<void(const Progress&)>& show)
+      : campaign_(campaign), options_(options), store_(std::move(store)), show_(show) {}
+
+  // Rows whose key is in the results already, or comes twice, are not run again.
+  Result<void> list_rows();
+  const std::vector<Todo>& todo() const { return todo_; }
+  // Stores what has come out of a row, and shows how far the sweep is. `folder`: of the row's files; empty: there are none.
+  void take(const Todo& todo, const std::string& key, const Outcome& outcome, const std::string& folder);
+  // Nothing more should be begun.
+  bool is_stopped();
+  // When all has ended. The error: the results could not be written.
+  Result<SweepResult> result();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void take_stored(std::size_t number, const std::string& key, const StoredRun& run);
+  void add(const Todo& todo, const std::string& key, const Outcome& outcome, const std::string& folder);
+
+  const Campaign& campaign_;
+  const SweepOptions& options_;
+  Store store_;
+  const std::function<void(const Progress&)>& show_;
+  base::Turn<> telling_;  // one result at a time
+  std::vector<Todo> todo_;
+  std::size_t ended_ = 0;
+  SweepResult result_;
+  std::string problem_;  // of the store
+  Clock::time_point began_ = Clock::now();
+};
+
+}  // namespace campaign

@@ -1,0 +1,22 @@
+// What has come out of a row, as one line of JSON: how a task on another machine tells it. Numbers come back as they were. Any thread.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "run/row_run.h"
+
+namespace campaign {
+
+struct OutcomeLine {
+  std::string key;
+  Outcome outcome;     // without features
+  std::string folder;  // of the row's files; empty: there are none
+};
+
+// With its line feed.
+std::string to_line(const OutcomeLine& line);
+// Nothing: it is no such line, as when its writer was killed.
+std::optional<OutcomeLine> from_line(const std::string& text);
+
+}  // namespace campaign

@@ -1,0 +1,32 @@
+// Slurm's queue, by the commands that people type: sbatch, squeue, scancel. Jobs are known by their name, so a caller that was killed finds
+// them again. Every call has a time-out. One thread at a time.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+
+namespace campaign::slurm {
+
+using base::Error;
+using base::Result;
+
+// What one array may have by Slurm's usual MaxArraySize, and a queue by its usual MaxJobCount.
+inline constexpr std::size_t most_in_array = 1000, most_tasks = 10'000;
+
+// The commands are there. The error names one that is not.
+Result<void> check();
+
+struct Submission {
+  std::string name, script;
+  std::size_t first = 0, count = 0;  // tasks of this array; the script gets `first` as its argument, and SLURM_ARRAY_TASK_ID from 0
+  int jobs = 1;                      // processors of a task
+  std::vector<std::string> options;  // more words for sbatch
+};
+Result<void> submit(const Submission& submission);
+// How many entries the queue has of our jobs of that name: pending, running, or ending.
+Result<std::size_t> count(const std::string& name);
+Result<void> cancel(const std::string& name);
+
+}  // namespace campaign::slurm
