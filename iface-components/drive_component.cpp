@@ -9,12 +9,17 @@ constexpr double default_timeout = 1.0;  // [s]
 
 }  // namespace
 
-Drive::Drive(RTC::Manager* manager, shm::IfaceType type) : IfaceComponent(manager, type, true), commander_(type, say()), errand_(say()) {}
+std::vector<Parameter> drive_parameters() {
+  return {{"motors_enabled", "1", "int", "radio", "(0,1)"}, {"command_timeout", "1.0", "double", "text", "x>=0"}};
+}
 
-void Drive::bindDrive(const char* default_device) {
-  bindDevice(default_device);
-  bindParameter("motors_enabled", motors_enabled_, "1");
-  bindParameter("command_timeout", command_timeout_, "1.0");
+Drive::Drive(RTC::Manager* manager, const Specification& specification, shm::IfaceType type)
+    : IfaceComponent(manager, specification, type, true), commander_(type, say()), errand_(say()) {}
+
+void Drive::bindDrive() {
+  bindDevice();
+  bind("motors_enabled", motors_enabled_);
+  bind("command_timeout", command_timeout_);
 }
 
 void Drive::attached(const Device& device) {

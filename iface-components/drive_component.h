@@ -27,13 +27,17 @@ inline std::array<double, 6> values_of(const RTC::TimedVelocity3D& velocity) {
   return {v.vx, v.vy, v.vz, v.vr, v.vp, v.va};
 }
 
+// Those of every drive, for its specification.
+std::vector<Parameter> drive_parameters();
+
 // The part that does not depend on the type of the velocity.
 class Drive : public IfaceComponent {
  public:
-  Drive(RTC::Manager* manager, shm::IfaceType type);
+  Drive(RTC::Manager* manager, const Specification& specification, shm::IfaceType type);
 
  protected:
-  void bindDrive(const char* default_device);
+  // To be called in onInitialize.
+  void bindDrive();
   void attached(const Device& device) override;
   void detaching() override;
   // Carries the newest sample of the iface to the ports.
@@ -59,7 +63,8 @@ class Drive : public IfaceComponent {
 template <class Velocity>
 class DriveComponent : public Drive {
  public:
-  DriveComponent(RTC::Manager* manager, shm::IfaceType type) : Drive(manager, type), velocity_in_("velocity", velocity_) {}
+  DriveComponent(RTC::Manager* manager, const Specification& specification, shm::IfaceType type)
+      : Drive(manager, specification, type), velocity_in_("velocity", velocity_) {}
 
   RTC::ReturnCode_t onExecute(RTC::UniqueId) override {
     if (!follow_configuration()) return RTC::RTC_ERROR;

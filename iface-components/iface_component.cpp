@@ -1,11 +1,9 @@
 #include "iface_component.h"
 
-#include "specification.h"
-
 namespace iface {
 
-IfaceComponent::IfaceComponent(RTC::Manager* manager, shm::IfaceType type, bool subscribe)
-    : RTC::DataFlowComponentBase(manager), subscribe_(subscribe), link_(type, say()) {}
+IfaceComponent::IfaceComponent(RTC::Manager* manager, const Specification& specification, shm::IfaceType type, bool subscribe)
+    : RTC::DataFlowComponentBase(manager), specification_(specification), subscribe_(subscribe), link_(type, say()) {}
 
 Say IfaceComponent::say() {
   return [this](bool is_problem, const std::string& line) {
@@ -17,9 +15,9 @@ Say IfaceComponent::say() {
   };
 }
 
-void IfaceComponent::bindDevice(const char* default_device) {
+void IfaceComponent::bindDevice() {
   bindParameter("server_id", server_id_, std::to_string(default_server()).c_str());
-  bindParameter("device_id", device_id_, default_device);
+  bindParameter("device_id", device_id_, specification_.device);
 }
 
 bool IfaceComponent::attach() {

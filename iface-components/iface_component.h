@@ -8,12 +8,14 @@
 #include <string>
 
 #include "iface_link.h"
+#include "specification.h"
 
 namespace iface {
 
 class IfaceComponent : public RTC::DataFlowComponentBase {
  public:
-  IfaceComponent(RTC::Manager* manager, shm::IfaceType type, bool subscribe);
+  // The specification must live as long.
+  IfaceComponent(RTC::Manager* manager, const Specification& specification, shm::IfaceType type, bool subscribe);
 
   RTC::ReturnCode_t onActivated(RTC::UniqueId ec_id) override;
   RTC::ReturnCode_t onDeactivated(RTC::UniqueId ec_id) override;
@@ -21,8 +23,12 @@ class IfaceComponent : public RTC::DataFlowComponentBase {
   RTC::ReturnCode_t onFinalize() override;
 
  protected:
-  // To be called in onInitialize.
-  void bindDevice(const char* default_device);
+  // To be called in onInitialize: server_id and device_id, and a parameter of the type's own. Defaults are those of the specification.
+  void bindDevice();
+  template <class Value>
+  void bind(const char* name, Value& value) {
+    bindParameter(name, value, specification_.value_of(name));
+  }
   // Attaches anew when the configuration names another device. False: it names none that exists; the line is logged.
   bool follow_configuration();
   IfaceLink& link() { return link_; }
@@ -36,6 +42,7 @@ class IfaceComponent : public RTC::DataFlowComponentBase {
   bool attach();
   void detach();
 
+  const Specification& specification_;
   int server_id_ = 0;
   std::string device_id_;
   bool subscribe_;

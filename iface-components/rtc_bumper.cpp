@@ -3,38 +3,22 @@
 #include "conversions.h"
 #include "specification.h"
 
-// clang-format off
-static const char* const rtcbumper_spec[] = {
-    "implementation_id", "RTCBumper",
-    "type_name", "RTCBumper",
-    "description", "Contact sensor of a simulated robot",
-    "version", "1.0.0",
-    "vendor", "rtm-sim",
-    "category", "simulation",
-    "activity_type", "PERIODIC",
-    "kind", "DataFlowComponent",
-    "max_instance", "0",
-    "language", "C++",
-    "lang_type", "compile",
-    "exec_cxt.periodic.rate", "1000",
-    "exec_cxt.sim_time.phase", "0",
-    "conf.default.server_id", "0",
-    "conf.default.device_id", "pioneer2dx::bumper",
-    "conf.__type__.server_id", "int",
-    "conf.__type__.device_id", "string",
-    "conf.__widget__.server_id", "spin",
-    "conf.__widget__.device_id", "text",
-    "conf.__constraints__.server_id", "0<=x<=9999",
-    ""};
-// clang-format on
+static const iface::Specification specification{
+    .type_name = "RTCBumper",
+    .description = "Contact sensor of a simulated robot",
+    .phase = iface::sensor_phase,
+    .device = "pioneer2dx::bumper",
+};
 
 RTCBumper::RTCBumper(RTC::Manager* manager)
-    : IfaceComponent(manager, shm::IfaceType::bumper, true), contact_out_("contact", contact_), force_out_("force", force_) {}
+    : IfaceComponent(manager, specification, shm::IfaceType::bumper, true),
+      contact_out_("contact", contact_),
+      force_out_("force", force_) {}
 
 RTC::ReturnCode_t RTCBumper::onInitialize() {
   addOutPort("contact", contact_out_);
   addOutPort("force", force_out_);
-  bindDevice("pioneer2dx::bumper");
+  bindDevice();
   return RTC::RTC_OK;
 }
 
@@ -57,8 +41,5 @@ RTC::ReturnCode_t RTCBumper::onExecute(RTC::UniqueId) {
 }
 
 extern "C" {
-void RTCBumperInit(RTC::Manager* manager) {
-  coil::Properties profile = iface::specification(rtcbumper_spec);
-  manager->registerFactory(profile, RTC::Create<RTCBumper>, RTC::Delete<RTCBumper>);
-}
+void RTCBumperInit(RTC::Manager* manager) { iface::register_type<RTCBumper>(manager, specification); }
 }

@@ -3,38 +3,13 @@
 #include "conversions.h"
 #include "specification.h"
 
-// clang-format off
-static const char* const rtccamera_spec[] = {
-    "implementation_id", "RTCCamera",
-    "type_name", "RTCCamera",
-    "description", "Camera of a simulated robot",
-    "version", "1.0.0",
-    "vendor", "rtm-sim",
-    "category", "simulation",
-    "activity_type", "PERIODIC",
-    "kind", "DataFlowComponent",
-    "max_instance", "0",
-    "language", "C++",
-    "lang_type", "compile",
-    "exec_cxt.periodic.rate", "1000",
-    "exec_cxt.sim_time.phase", "0",
-    "conf.default.server_id", "0",
-    "conf.default.device_id", "helicopter::camera",
-    "conf.default.encoding", "raw",
-    "conf.default.quality", "90",
-    "conf.__type__.server_id", "int",
-    "conf.__type__.device_id", "string",
-    "conf.__type__.encoding", "string",
-    "conf.__type__.quality", "int",
-    "conf.__widget__.server_id", "spin",
-    "conf.__widget__.device_id", "text",
-    "conf.__widget__.encoding", "radio",
-    "conf.__widget__.quality", "slider.1",
-    "conf.__constraints__.server_id", "0<=x<=9999",
-    "conf.__constraints__.encoding", "(raw,jpeg)",
-    "conf.__constraints__.quality", "1<=x<=100",
-    ""};
-// clang-format on
+static const iface::Specification specification{
+    .type_name = "RTCCamera",
+    .description = "Camera of a simulated robot",
+    .phase = iface::sensor_phase,
+    .device = "helicopter::camera",
+    .parameters = {{"encoding", "raw", "string", "radio", "(raw,jpeg)"}, {"quality", "90", "int", "slider.1", "1<=x<=100"}},
+};
 
 namespace {
 
@@ -53,14 +28,16 @@ void give_back(Sequence& sequence) {
 }  // namespace
 
 RTCCamera::RTCCamera(RTC::Manager* manager)
-    : IfaceComponent(manager, shm::IfaceType::camera, true), image_out_("image", image_), timed_image_out_("timed_image", timed_image_) {}
+    : IfaceComponent(manager, specification, shm::IfaceType::camera, true),
+      image_out_("image", image_),
+      timed_image_out_("timed_image", timed_image_) {}
 
 RTC::ReturnCode_t RTCCamera::onInitialize() {
   addOutPort("image", image_out_);
   addOutPort("timed_image", timed_image_out_);
-  bindDevice("helicopter::camera");
-  bindParameter("encoding", encoding_, "raw");
-  bindParameter("quality", quality_, "90");
+  bindDevice();
+  bind("encoding", encoding_);
+  bind("quality", quality_);
   return RTC::RTC_OK;
 }
 
@@ -148,8 +125,5 @@ void RTCCamera::send_timed_image(const shm::CameraInfo& info, const shm::FrameHe
 }
 
 extern "C" {
-void RTCCameraInit(RTC::Manager* manager) {
-  coil::Properties profile = iface::specification(rtccamera_spec);
-  manager->registerFactory(profile, RTC::Create<RTCCamera>, RTC::Delete<RTCCamera>);
-}
+void RTCCameraInit(RTC::Manager* manager) { iface::register_type<RTCCamera>(manager, specification); }
 }

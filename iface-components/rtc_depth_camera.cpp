@@ -7,43 +7,22 @@
 #include "conversions.h"
 #include "specification.h"
 
-// clang-format off
-static const char* const rtcdepthcamera_spec[] = {
-    "implementation_id", "RTCDepthCamera",
-    "type_name", "RTCDepthCamera",
-    "description", "Depth camera of a simulated robot",
-    "version", "1.0.0",
-    "vendor", "rtm-sim",
-    "category", "simulation",
-    "activity_type", "PERIODIC",
-    "kind", "DataFlowComponent",
-    "max_instance", "0",
-    "language", "C++",
-    "lang_type", "compile",
-    "exec_cxt.periodic.rate", "1000",
-    "exec_cxt.sim_time.phase", "0",
-    "conf.default.server_id", "0",
-    "conf.default.device_id", "helicopter::depth",
-    "conf.default.points_step", "4",
-    "conf.__type__.server_id", "int",
-    "conf.__type__.device_id", "string",
-    "conf.__type__.points_step", "int",
-    "conf.__widget__.server_id", "spin",
-    "conf.__widget__.device_id", "text",
-    "conf.__widget__.points_step", "spin",
-    "conf.__constraints__.server_id", "0<=x<=9999",
-    "conf.__constraints__.points_step", "1<=x<=64",
-    ""};
-// clang-format on
+static const iface::Specification specification{
+    .type_name = "RTCDepthCamera",
+    .description = "Depth camera of a simulated robot",
+    .phase = iface::sensor_phase,
+    .device = "helicopter::depth",
+    .parameters = {{"points_step", "4", "int", "spin", "1<=x<=64"}},
+};
 
 RTCDepthCamera::RTCDepthCamera(RTC::Manager* manager)
-    : IfaceComponent(manager, shm::IfaceType::depth, true), depth_out_("depth", depth_), points_out_("points", points_) {}
+    : IfaceComponent(manager, specification, shm::IfaceType::depth, true), depth_out_("depth", depth_), points_out_("points", points_) {}
 
 RTC::ReturnCode_t RTCDepthCamera::onInitialize() {
   addOutPort("depth", depth_out_);
   addOutPort("points", points_out_);
-  bindDevice("helicopter::depth");
-  bindParameter("points_step", points_step_, "4");
+  bindDevice();
+  bind("points_step", points_step_);
   return RTC::RTC_OK;
 }
 
@@ -109,8 +88,5 @@ void RTCDepthCamera::send_points(const shm::CameraInfo& info, const shm::HeldFra
 }
 
 extern "C" {
-void RTCDepthCameraInit(RTC::Manager* manager) {
-  coil::Properties profile = iface::specification(rtcdepthcamera_spec);
-  manager->registerFactory(profile, RTC::Create<RTCDepthCamera>, RTC::Delete<RTCDepthCamera>);
-}
+void RTCDepthCameraInit(RTC::Manager* manager) { iface::register_type<RTCDepthCamera>(manager, specification); }
 }

@@ -3,33 +3,15 @@
 #include "conversions.h"
 #include "specification.h"
 
-// clang-format off
-static const char* const rtcimu_spec[] = {
-    "implementation_id", "RTCImu",
-    "type_name", "RTCImu",
-    "description", "Inertial measurement unit of a simulated robot",
-    "version", "1.0.0",
-    "vendor", "rtm-sim",
-    "category", "simulation",
-    "activity_type", "PERIODIC",
-    "kind", "DataFlowComponent",
-    "max_instance", "0",
-    "language", "C++",
-    "lang_type", "compile",
-    "exec_cxt.periodic.rate", "1000",
-    "exec_cxt.sim_time.phase", "0",
-    "conf.default.server_id", "0",
-    "conf.default.device_id", "pioneer2dx::imu",
-    "conf.__type__.server_id", "int",
-    "conf.__type__.device_id", "string",
-    "conf.__widget__.server_id", "spin",
-    "conf.__widget__.device_id", "text",
-    "conf.__constraints__.server_id", "0<=x<=9999",
-    ""};
-// clang-format on
+static const iface::Specification specification{
+    .type_name = "RTCImu",
+    .description = "Inertial measurement unit of a simulated robot",
+    .phase = iface::sensor_phase,
+    .device = "pioneer2dx::imu",
+};
 
 RTCImu::RTCImu(RTC::Manager* manager)
-    : IfaceComponent(manager, shm::IfaceType::imu, true),
+    : IfaceComponent(manager, specification, shm::IfaceType::imu, true),
       orientation_out_("orientation", orientation_),
       angular_velocity_out_("angular_velocity", angular_velocity_),
       acceleration_out_("acceleration", acceleration_) {}
@@ -38,7 +20,7 @@ RTC::ReturnCode_t RTCImu::onInitialize() {
   addOutPort("orientation", orientation_out_);
   addOutPort("angular_velocity", angular_velocity_out_);
   addOutPort("acceleration", acceleration_out_);
-  bindDevice("pioneer2dx::imu");
+  bindDevice();
   return RTC::RTC_OK;
 }
 
@@ -60,8 +42,5 @@ RTC::ReturnCode_t RTCImu::onExecute(RTC::UniqueId) {
 }
 
 extern "C" {
-void RTCImuInit(RTC::Manager* manager) {
-  coil::Properties profile = iface::specification(rtcimu_spec);
-  manager->registerFactory(profile, RTC::Create<RTCImu>, RTC::Delete<RTCImu>);
-}
+void RTCImuInit(RTC::Manager* manager) { iface::register_type<RTCImu>(manager, specification); }
 }

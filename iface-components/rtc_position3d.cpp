@@ -3,41 +3,16 @@
 #include "conversions.h"
 #include "specification.h"
 
-// clang-format off
-static const char* const rtcposition3d_spec[] = {
-    "implementation_id", "RTCPosition3d",
-    "type_name", "RTCPosition3d",
-    "description", "Flight or free movement of a simulated robot",
-    "version", "1.0.0",
-    "vendor", "rtm-sim",
-    "category", "simulation",
-    "activity_type", "PERIODIC",
-    "kind", "DataFlowComponent",
-    "max_instance", "0",
-    "language", "C++",
-    "lang_type", "compile",
-    "exec_cxt.periodic.rate", "1000",
-    "exec_cxt.sim_time.phase", "2",
-    "conf.default.server_id", "0",
-    "conf.default.device_id", "helicopter::position3d",
-    "conf.default.motors_enabled", "1",
-    "conf.default.command_timeout", "1.0",
-    "conf.__type__.server_id", "int",
-    "conf.__type__.device_id", "string",
-    "conf.__type__.motors_enabled", "int",
-    "conf.__type__.command_timeout", "double",
-    "conf.__widget__.server_id", "spin",
-    "conf.__widget__.device_id", "text",
-    "conf.__widget__.motors_enabled", "radio",
-    "conf.__widget__.command_timeout", "text",
-    "conf.__constraints__.server_id", "0<=x<=9999",
-    "conf.__constraints__.motors_enabled", "(0,1)",
-    "conf.__constraints__.command_timeout", "x>=0",
-    ""};
-// clang-format on
+static const iface::Specification specification{
+    .type_name = "RTCPosition3d",
+    .description = "Flight or free movement of a simulated robot",
+    .phase = iface::command_phase,
+    .device = "helicopter::position3d",
+    .parameters = iface::drive_parameters(),
+};
 
 RTCPosition3d::RTCPosition3d(RTC::Manager* manager)
-    : DriveComponent(manager, shm::IfaceType::position3d),
+    : DriveComponent(manager, specification, shm::IfaceType::position3d),
       pose_out_("pose", pose_),
       actual_velocity_out_("actual_velocity", actual_velocity_) {}
 
@@ -45,7 +20,7 @@ RTC::ReturnCode_t RTCPosition3d::onInitialize() {
   addVelocityPort();
   addOutPort("pose", pose_out_);
   addOutPort("actual_velocity", actual_velocity_out_);
-  bindDrive("helicopter::position3d");
+  bindDrive();
   return RTC::RTC_OK;
 }
 
@@ -61,8 +36,5 @@ void RTCPosition3d::publish(const shm::Iface& robot) {
 }
 
 extern "C" {
-void RTCPosition3dInit(RTC::Manager* manager) {
-  coil::Properties profile = iface::specification(rtcposition3d_spec);
-  manager->registerFactory(profile, RTC::Create<RTCPosition3d>, RTC::Delete<RTCPosition3d>);
-}
+void RTCPosition3dInit(RTC::Manager* manager) { iface::register_type<RTCPosition3d>(manager, specification); }
 }

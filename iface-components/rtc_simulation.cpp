@@ -7,27 +7,11 @@
 #include "sim_clock.h"
 #include "specification.h"
 
-// clang-format off
-static const char* const rtcsimulation_spec[] = {
-    "implementation_id", "RTCSimulation",
-    "type_name", "RTCSimulation",
-    "description", "Clock and control of a simulation",
-    "version", "1.0.0",
-    "vendor", "rtm-sim",
-    "category", "simulation",
-    "activity_type", "PERIODIC",
-    "kind", "DataFlowComponent",
-    "max_instance", "0",
-    "language", "C++",
-    "lang_type", "compile",
-    "exec_cxt.periodic.rate", "1000",
-    "exec_cxt.sim_time.phase", "0",
-    "conf.default.server_id", "0",
-    "conf.__type__.server_id", "int",
-    "conf.__widget__.server_id", "spin",
-    "conf.__constraints__.server_id", "0<=x<=9999",
-    ""};
-// clang-format on
+static const iface::Specification specification{
+    .type_name = "RTCSimulation",
+    .description = "Clock and control of a simulation",
+    .phase = iface::sensor_phase,
+};
 
 namespace {
 
@@ -160,8 +144,5 @@ RTC::ReturnCode_t RTCSimulation::onExecute(RTC::UniqueId) {
 }
 
 extern "C" {
-void RTCSimulationInit(RTC::Manager* manager) {
-  coil::Properties profile = iface::specification(rtcsimulation_spec);
-  manager->registerFactory(profile, RTC::Create<RTCSimulation>, RTC::Delete<RTCSimulation>);
-}
+void RTCSimulationInit(RTC::Manager* manager) { iface::register_type<RTCSimulation>(manager, specification); }
 }

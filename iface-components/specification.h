@@ -1,9 +1,11 @@
-// What the specifications of interface components have in common. Any thread.
+// What an interface component says of itself. A type writes its own rows; what all types have in common stands here. Any thread.
 #pragma once
 
 #include <coil/Properties.h>
+#include <rtm/Manager.h>
 
 #include <string>
+#include <vector>
 
 namespace iface {
 
@@ -13,7 +15,39 @@ inline constexpr int highest_server = 9999;
 // said once and counts as 0.
 int default_server();
 
-// The properties of a type; its conf.default.server_id is default_server().
+// In a tick of simulated time: sensors come first, what commands the robot after those who decide.
+inline constexpr int sensor_phase = 0;
+inline constexpr int command_phase = 2;
+
+// One parameter of the configuration; texts as tools read and show them.
+struct Parameter {
+  const char* name;
+  const char* value;  // in conf.default
+  const char* type;
+  const char* widget;
+  const char* constraint = "";  // empty: every value of the type will do
+};
+
+struct Specification {
+  const char* type_name;
+  const char* description;
+  int phase = sensor_phase;
+  const char* device = "";              // the default of device_id; empty: there is no device_id
+  std::vector<Parameter> parameters{};  // beside server_id and device_id
+
+  // The default of a parameter of these.
+  const char* value_of(const std::string& name) const;
+};
+
+// As a manager takes it; conf.default.server_id is default_server().
+coil::Properties properties_of(const Specification& specification);
+// The same of a type with rows unlike those of the others.
 coil::Properties specification(const char* const spec[]);
+
+template <class Component>
+void register_type(RTC::Manager* manager, const Specification& specification) {
+  coil::Properties profile = properties_of(specification);
+  manager->registerFactory(profile, RTC::Create<Component>, RTC::Delete<Component>);
+}
 
 }  // namespace iface
