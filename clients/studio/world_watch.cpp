@@ -49,22 +49,8 @@ Json ifaces_json(std::uint32_t server_id) {
 }
 
 Json participants_json(const shm::Iface& simulation) {
-  Json list = Json::array();
   const auto records = shm::read_participants(simulation);
-  if (!records) return list;
-  for (const auto& p : *records) {
-    list.push_back({{"name", p.name},
-                    {"pid", p.pid},
-                    {"phase", p.phase},
-                    {"rate", p.period_ns > 0 ? 1e9 / static_cast<double>(p.period_ns) : 0.0},
-                    {"ticks", p.ticks},
-                    {"missed", p.missed},
-                    {"mean_us", static_cast<double>(p.mean_ns) * 1e-3},
-                    {"max_us", static_cast<double>(p.max_ns) * 1e-3},
-                    {"active", p.is_active},
-                    {"late", p.is_late}});
-  }
-  return list;
+  return records ? simctl::participants_json(*records) : Json::array();
 }
 
 Json time_json(const shm::Iface& simulation) {

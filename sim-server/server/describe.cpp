@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/log.h"
+#include "simctl/iface_json.h"
 #include "world/iface_names.h"
 
 namespace sim {
@@ -126,19 +127,6 @@ std::string stats_text(Simulation& simulation, const LoopState& loop) {
                      {"max_us", static_cast<double>(entry.longest.count()) * 1e-3},
                      {"share", all > 0 ? total / all : 0.0}});
   }
-  Json participants = Json::array();
-  for (const auto& p : loop.participants) {
-    participants.push_back({{"name", p.name},
-                            {"pid", p.pid},
-                            {"phase", p.phase},
-                            {"rate", p.period_ns > 0 ? 1e9 / static_cast<double>(p.period_ns) : 0.0},
-                            {"ticks", p.ticks},
-                            {"missed", p.missed},
-                            {"mean_us", static_cast<double>(p.mean_ns) * 1e-3},
-                            {"max_us", static_cast<double>(p.max_ns) * 1e-3},
-                            {"active", p.is_active},
-                            {"late", p.is_late}});
-  }
   return text({{"world", simulation.world().name},
                {"pid", getpid()},
                {"sim_time", static_cast<double>(simulation.time().count()) / 1e9},
@@ -160,7 +148,7 @@ std::string stats_text(Simulation& simulation, const LoopState& loop) {
                {"subscribed", subscribed},
                {"memory_mib", static_cast<double>(resident_memory()) / (1 << 20)},
                {"parts", parts},
-               {"participants", participants},
+               {"participants", simctl::participants_json(loop.participants)},
                {"contacts_by_model", contacts}});
 }
 

@@ -113,4 +113,21 @@ Json frame_json(const shm::HeldFrame& frame) {
   return json;
 }
 
+Json participants_json(const std::vector<shm::ParticipantRecord>& participants) {
+  Json list = Json::array();
+  for (const auto& p : participants) {
+    list.push_back({{"name", p.name},
+                    {"pid", p.pid},
+                    {"phase", p.phase},
+                    {"rate", p.period_ns > 0 ? 1e9 / static_cast<double>(p.period_ns) : 0.0},
+                    {"ticks", p.ticks},
+                    {"missed", p.missed},
+                    {"mean_us", static_cast<double>(p.mean_ns) * 1e-3},
+                    {"max_us", static_cast<double>(p.max_ns) * 1e-3},
+                    {"active", p.is_active},
+                    {"late", p.is_late}});
+  }
+  return list;
+}
+
 }  // namespace simctl

@@ -172,23 +172,10 @@ void participants(Control& control) {
   if (!simulation) return;
   const auto records = shm::read_participants(*simulation);
   if (!records) return control.fail(records.error().message);
-  Json json = Json::array();
-  if (!control.json())
-    std::printf("%-24s %8s %5s %10s %10s %8s %10s %10s %s\n", "NAME", "PID", "PHASE", "RATE Hz", "TICKS", "MISSED", "MEAN us", "MAX us",
-                "");
+  if (control.json()) return control.print(simctl::participants_json(*records));
+  std::printf("%-24s %8s %5s %10s %10s %8s %10s %10s %s\n", "NAME", "PID", "PHASE", "RATE Hz", "TICKS", "MISSED", "MEAN us", "MAX us", "");
   for (const auto& p : *records) {
     const double rate = p.period_ns > 0 ? 1e9 / static_cast<double>(p.period_ns) : 0;
-    json.push_back({{"name", p.name},
-                    {"pid", p.pid},
-                    {"phase", p.phase},
-                    {"rate", rate},
-                    {"ticks", p.ticks},
-                    {"missed", p.missed},
-                    {"mean_us", static_cast<double>(p.mean_ns) * 1e-3},
-                    {"max_us", static_cast<double>(p.max_ns) * 1e-3},
-                    {"active", p.is_active},
-                    {"late", p.is_late}});
-    if (control.json()) continue;
     std::printf("%-24s %8d %5u %10.3f %10llu %8llu %10.1f %10.1f %s\n", p.name.c_str(), p.pid, p.phase, rate,
                 static_cast<unsigned long long>(p.ticks), static_cast<unsigned long long>(p.missed), static_cast<double>(p.mean_ns) * 1e-3,
                 static_cast<double>(p.max_ns) * 1e-3,
@@ -196,7 +183,6 @@ void participants(Control& control) {
                 : p.is_active ? ""
                               : "joining");
   }
-  if (control.json()) control.print(json);
 }
 
 void tree(Control& control, const std::string& model) {
