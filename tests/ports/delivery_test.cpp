@@ -187,8 +187,8 @@ TEST(Delivery, a_periodic_publisher_sends_by_simulated_time) {
   std::vector<std::size_t> counts;
   for (int i = 0; i < 5; ++i) {
     tick.now = milliseconds(10 + 10 * i);  // 10, 20, 30, 40, 50
-    wall.advance(std::chrono::hours(1));
     publisher.write(sample(i), &tick);
+    wall.advance(std::chrono::hours(1));
     tick.end();
     counts.push_back(sent.numbers.size());
   }
@@ -200,7 +200,8 @@ TEST(Delivery, a_periodic_publisher_sends_by_simulated_time) {
 TEST(Delivery, a_periodic_publisher_with_nothing_to_send_says_so_in_each_period_of_simulated_time) {
   Sent sent;
   FakeTick tick;
-  Publisher publisher(Subscription::periodic, {PushPolicy::all, 0, milliseconds(10)}, {}, sent.hooks());
+  const ManualTime wall;
+  Publisher publisher(Subscription::periodic, {PushPolicy::all, 0, milliseconds(10)}, {}, sent.hooks(), wall);
   publisher.write(sample(1), &tick);
   for (int i = 0; i < 4; ++i) {
     tick.now = milliseconds(10 * i);
