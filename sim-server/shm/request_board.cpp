@@ -73,10 +73,11 @@ void RequestBoard::State::reap() {
       continue;
     }
     const std::uint64_t start_time = load(slot.start_time);
-    // A client writes its start time after its owner: seen between the two, it is still the same client, and its request is known already.
-    const bool is_other = client.owner != owner || !client.watched || (client.start_time != 0 && client.start_time != start_time);
+    // A client writes its start time after its owner: seen between the two, it is still the same client. One that came after the last
+    // look here is not watched yet. Of both a request may be known already.
+    const bool is_other = client.owner != owner || (client.start_time != 0 && client.start_time != start_time);
     if (is_other) client = {};
-    if (is_other || client.start_time != start_time) {
+    if (!client.watched || client.start_time != start_time) {
       client.owner = owner;
       client.start_time = start_time;
       client.watched = watch.watch({owner_pid(owner), load(slot.pid_namespace), start_time});

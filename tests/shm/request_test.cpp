@@ -243,6 +243,32 @@ TEST(RequestBoard, a_client_seen_while_it_takes_its_slot_is_served_once) {
   EXPECT_EQ(load(slot.state), static_cast<std::uint32_t>(RTMSIM_SLOT_REPLIED));
 }
 
+// Also when it takes its slot and asks while the server is on its way from who is there to what they ask.
+TEST(RequestBoard, clients_that_come_while_the_server_looks_are_served_once) {
+  BoardFixture f;
+  std::atomic<int> answered{0};
+  std::thread clients([&] {
+    for (int n = 0; n < 2000 && answered == n; ++n) {
+      auto requester = Requester::open(f.id);
+      if (requester && requester->ask(GetPoseRequest{"robot"}, 60s)) ++answered;
+    }
+    f.is_over = true;
+  });
+  std::size_t taken = 0;
+  std::vector<RequestBoard::Asked> waiting;
+  while (!f.is_over) {
+    // Those of before wait for one more look, as steps do.
+    f.board.wake();
+    auto asked = f.board.poll();
+    taken += asked.size();
+    for (const auto& one : waiting) f.board.reply(one.ticket, {});
+    waiting = std::move(asked);
+  }
+  clients.join();
+  EXPECT_EQ(answered, 2000);
+  EXPECT_EQ(taken, 2000U) << "the same request, taken twice";
+}
+
 TEST(RequestBoard, clients_beyond_the_slots_are_told_so) {
   BoardFixture f;
   auto server = f.serve();
