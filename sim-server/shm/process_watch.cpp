@@ -13,27 +13,11 @@
 #include <tuple>
 
 #include "base/text.h"
+#include "shm/file_handle.h"
 #include "shm/process.h"
 
 namespace shm {
 namespace {
-
-class FileHandle {
- public:
-  explicit FileHandle(int file = -1) : file_(file) {}
-  FileHandle(FileHandle&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
-  FileHandle& operator=(FileHandle&& other) noexcept {
-    std::swap(file_, other.file_);
-    return *this;
-  }
-  ~FileHandle() {
-    if (file_ >= 0) ::close(file_);
-  }
-  int get() const { return file_; }
-
- private:
-  int file_;
-};
 
 using Key = std::tuple<std::int32_t, std::uint32_t, std::uint64_t>;
 Key key_of(const ProcessMark& mark) { return {mark.pid, mark.pid_namespace, mark.start_time}; }

@@ -22,6 +22,7 @@
 #include "base/guarded.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "shm/file_handle.h"
 #include "shm/futex.h"
 #include "shm/process.h"
 #include "shm/words.h"
@@ -35,20 +36,6 @@ constexpr std::int64_t heartbeat_limit_ns = 5'000'000'000;  // a server that can
 constexpr std::size_t max_segment = std::size_t{4} << 30;
 
 std::string reason() { return std::strerror(errno); }
-
-class FileHandle {
- public:
-  explicit FileHandle(int file) : file_(file) {}
-  FileHandle(const FileHandle&) = delete;
-  FileHandle& operator=(const FileHandle&) = delete;
-  ~FileHandle() {
-    if (file_ >= 0) ::close(file_);
-  }
-  int get() const { return file_; }
-
- private:
-  int file_;
-};
 
 std::string usual_path(const SegmentName& name) { return std::string(folder) + "/" + name.text(); }
 
