@@ -145,6 +145,7 @@ out += """Texts of replies are JSON:
 | tree | `models`: name, static, pose, `links` (name, mass, pose, collisions, sensors with the names of their ifaces), `joints` (name, type, parent, child, position, velocity), plugins |
 | stats | what `simctl --json stats` prints: time, speed, hash, counts, `parts` (where wall time goes), `participants`, `contacts_by_model` |
 | contacts | `model`, `total` since the start, `contacts` of now: link, other, position, normal, depth |
+| faults | `time`; `faults`: iface, kind, amount or null, from, until [s] or null, on (false: still to come) |
 
 | constant | value |
 | --- | --- |

@@ -1,5 +1,5 @@
 # sim-server and simctl as processes; each case has a server of its own.
-foreach(case requests motion bad_requests same_state killed living_server_is_refused ends check paused_is_idle looked_at_while_paused looked_at_each_device shows_every_type exports
+foreach(case requests motion faults bad_requests same_state killed living_server_is_refused ends check paused_is_idle looked_at_while_paused looked_at_each_device shows_every_type exports
              rate no_room scribbled_over ends_while_it_loads cut_short names shared)
   add_test(NAME server.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/server.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})

@@ -19,38 +19,58 @@ std::chrono::nanoseconds period_of(shm::IfaceWriter& writer) {
   return {};
 }
 
-bool is_of_drive(const FaultOrder& order) { return order.kind == "weak" || order.kind == "halted"; }
-
 }  // namespace
 
-base::Result<std::unique_ptr<Device>> FaultyDevice::make(std::unique_ptr<Device> device, const std::vector<FaultOrder>& orders,
-                                                         std::uint64_t seed) {
-  std::unique_ptr<FaultyDevice> faulty(new FaultyDevice(std::move(device)));
-  faulty->period_ = period_of(faulty->iface());
-  for (const FaultOrder& order : orders) {
-    if (is_of_drive(order)) {
-      faulty->drive_ = dynamic_cast<Position2d*>(faulty->device_.get());
-      if (!faulty->drive_) return base::Error{"fault " + order.kind + " of " + order.iface + ": it is no position2d"};
-      if (order.amount < 0 || order.amount > 1)
-        return base::Error{"fault " + order.kind + " of " + order.iface + ": its amount must be from 0 to 1"};
-      faulty->drive_faults_.push_back(order);
-      continue;
-    }
-    auto fault = SensorFault::make(order, faulty->iface(), seed);
-    if (!fault) return fault.error();
-    faulty->sensor_faults_.push_back(std::move(*fault));
+FaultyDevice::FaultyDevice(std::unique_ptr<Device> device, std::uint64_t seed)
+    : device_(std::move(device)),
+      seed_(seed),
+      drive_(dynamic_cast<Position2d*>(device_.get())),
+      sensor_(dynamic_cast<Sensor*>(device_.get())),
+      period_(period_of(iface())) {}
+
+base::Result<void> FaultyDevice::add(const FaultOrder& order) {
+  const auto& row = shm::row_of(order.kind);
+  if (row.is_of_drive) {
+    if (drive_ == nullptr) return base::Error{"fault " + std::string(row.name) + " of " + order.iface + ": it is no position2d"};
+    entries_.push_back({order, std::nullopt});
+    return {};
   }
-  return std::unique_ptr<Device>(std::move(faulty));
+  auto fault = SensorFault::make(order, iface(), seed_);
+  if (!fault) return fault.error();
+  entries_.push_back({order, std::move(*fault)});
+  return {};
+}
+
+base::Result<void> FaultyDevice::replace(const FaultOrder& order, std::chrono::nanoseconds now) {
+  const auto older = entries_.size();
+  if (const auto added = add(order); !added) return added;
+  const auto first_new = entries_.begin() + static_cast<std::ptrdiff_t>(older);
+  entries_.erase(std::remove_if(entries_.begin(), first_new,
+                                [&](const Entry& entry) {
+                                  return entry.order.until <= now || (entry.order.kind == order.kind && entry.order.is_at(now));
+                                }),
+                 first_new);
+  return {};
+}
+
+std::size_t FaultyDevice::end(const std::function<bool(const FaultOrder&)>& which) {
+  return std::erase_if(entries_, [&](const Entry& entry) { return which(entry.order); });
+}
+
+std::vector<FaultOrder> FaultyDevice::orders() const {
+  std::vector<FaultOrder> orders;
+  for (const Entry& entry : entries_) orders.push_back(entry.order);
+  return orders;
 }
 
 void FaultyDevice::before_step(const Moment& moment) {
-  if (drive_) {
+  if (drive_ != nullptr) {
     double strength = 1;
     bool is_halted = false;
-    for (const FaultOrder& order : drive_faults_) {
-      if (moment.time < order.from || moment.time >= order.until) continue;
-      if (order.kind == "weak") strength *= order.amount;
-      is_halted = is_halted || order.kind == "halted";
+    for (const auto& [order, fault] : entries_) {
+      if (fault || !order.is_at(moment.time)) continue;
+      if (order.kind == shm::FaultKind::weak) strength *= order.amount;
+      is_halted = is_halted || order.kind == shm::FaultKind::halted;
     }
     drive_->set_fault(strength, is_halted);
   }
@@ -61,21 +81,35 @@ void FaultyDevice::before_step(const Moment& moment) {
 bool FaultyDevice::wants_sample(const Moment& moment) {
   if (moment.time < silent_until_ || !device_->wants_sample(moment)) return false;
   bool is_left_out = false;
-  for (SensorFault& fault : sensor_faults_) is_left_out = (fault.is_at(moment.time) && fault.leaves_out()) || is_left_out;
+  for (auto& [order, fault] : entries_) is_left_out = (fault && order.is_at(moment.time) && fault->leaves_out()) || is_left_out;
   if (is_left_out) silent_until_ = moment.time + period_;
   return !is_left_out;
 }
 
 void FaultyDevice::publish(const Moment& moment) {
-  for (SensorFault& fault : sensor_faults_) {
-    if (fault.is_at(moment.time)) fault.apply(iface());
+  for (auto& [order, fault] : entries_) {
+    if (fault && order.is_at(moment.time)) fault->apply(iface());
   }
   device_->publish(moment);
 }
 
+// By copies: a sample that somebody looks at while time stands still changes nothing in those that come later.
+void FaultyDevice::show(const Moment& moment) {
+  if (sensor_ == nullptr) return device_->show(moment);
+  const auto is_off = [&](const Entry& entry) { return entry.order.kind == shm::FaultKind::off && entry.order.is_at(moment.time); };
+  if (std::ranges::any_of(entries_, is_off)) return;
+  sensor_->show_changed(moment, [&](shm::IfaceWriter& writer) {
+    for (const auto& [order, fault] : entries_) {
+      if (fault && order.is_at(moment.time)) SensorFault(*fault).apply(writer);
+    }
+  });
+}
+
 void FaultyDevice::reset() {
   silent_until_ = std::chrono::nanoseconds(0);
-  for (SensorFault& fault : sensor_faults_) fault.reset();
+  for (Entry& entry : entries_) {
+    if (entry.fault) entry.fault->reset();
+  }
   device_->reset();
 }
 

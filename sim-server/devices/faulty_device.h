@@ -2,7 +2,9 @@
 // these. See device.h for the thread rule.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "devices/device.h"
@@ -11,12 +13,19 @@
 namespace sim {
 
 class Position2d;
+class Sensor;
 
 class FaultyDevice final : public Device {
  public:
+  FaultyDevice(std::unique_ptr<Device> device, std::uint64_t seed);
+
   // Fails when the device cannot have such a fault.
-  static base::Result<std::unique_ptr<Device>> make(std::unique_ptr<Device> device, const std::vector<FaultOrder>& orders,
-                                                    std::uint64_t seed);
+  base::Result<void> add(const FaultOrder& order);
+  // The same in place of one of its kind that is on now. Those that have ended are forgotten.
+  base::Result<void> replace(const FaultOrder& order, std::chrono::nanoseconds now);
+  // Ends those that `which` is true of; how many there were.
+  std::size_t end(const std::function<bool(const FaultOrder&)>& which);
+  std::vector<FaultOrder> orders() const;
 
   shm::IfaceWriter& iface() override { return device_->iface(); }
   ModelId model() const override { return device_->model(); }
@@ -28,19 +37,22 @@ class FaultyDevice final : public Device {
   void take_sample(const Moment& moment) override { device_->take_sample(moment); }
   void publish(const Moment& moment) override;
   bool owes_sample() override { return device_->owes_sample(); }
-  void show(const Moment& moment) override { device_->show(moment); }
+  void show(const Moment& moment) override;
   void reset() override;
   void add_to(StateHash& hash) const override { device_->add_to(hash); }
   bool set_odometry(const Eigen::Isometry3d& pose) override { return device_->set_odometry(pose); }
   bool set_motors(bool enabled) override { return device_->set_motors(enabled); }
 
  private:
-  explicit FaultyDevice(std::unique_ptr<Device> device) : device_(std::move(device)) {}
-
+  struct Entry {
+    FaultOrder order;
+    std::optional<SensorFault> fault;  // nothing: of a drive
+  };
   std::unique_ptr<Device> device_;
-  std::vector<SensorFault> sensor_faults_;
-  std::vector<FaultOrder> drive_faults_;
-  Position2d* drive_ = nullptr;  // the device, when it has faults of drives
+  std::uint64_t seed_;
+  std::vector<Entry> entries_;
+  Position2d* drive_;  // the device, when it is one
+  Sensor* sensor_;     // the same
   std::chrono::nanoseconds period_{0}, silent_until_{0};
 };
 

@@ -110,6 +110,7 @@ void Position2d::restart() {
   velocity_ = {0, 0};
   command_ = {0, 0};
   motors_enabled_ = true;
+  halted_at_.reset();
   traction_.restart();
   train_->reset();
 }

@@ -20,9 +20,10 @@ void Sensor::publish(const Moment& moment) {
   writer_->publish(moment.time);
 }
 
-void Sensor::show(const Moment& moment) {
+void Sensor::show_changed(const Moment& moment, const std::function<void(shm::IfaceWriter&)>& change) {
   const auto before = noise_;
   measure(moment);
+  change(*writer_);
   writer_->publish(moment.time);
   noise_ = before;
 }

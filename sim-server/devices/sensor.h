@@ -3,6 +3,7 @@
 // device.h for the thread rule.
 #pragma once
 
+#include <functional>
 #include <initializer_list>
 #include <optional>
 #include <span>
@@ -22,7 +23,11 @@ class Sensor : public Device {
   void take_sample(const Moment& moment) final { measure(moment); }
   void publish(const Moment& moment) final;
   bool owes_sample() final { return writer_->owes_sample(); }
-  void show(const Moment& moment) final;
+  void show(const Moment& moment) final {
+    show_changed(moment, [](shm::IfaceWriter&) {});
+  }
+  // The same with a sample that `change` has seen before it is published.
+  void show_changed(const Moment& moment, const std::function<void(shm::IfaceWriter&)>& change);
   void reset() final;
   void add_to(StateHash& hash) const final;
 

@@ -16,15 +16,6 @@ namespace {
 
 using Kind = SensorFault::Kind;
 
-constexpr std::array<std::pair<std::string_view, Kind>, 7> kinds = {{{"off", Kind::off},
-                                                                     {"stuck", Kind::stuck},
-                                                                     {"bias", Kind::bias},
-                                                                     {"noise", Kind::noise},
-                                                                     {"missing", Kind::missing},
-                                                                     {"latency", Kind::latency},
-                                                                     {"dropout", Kind::dropout}}};
-constexpr double most_latency = 1000;
-
 bool has_ranges(const shm::IfaceWriter& writer) { return writer.type() == shm::IfaceType::laser || writer.type() == shm::IfaceType::sonar; }
 
 // What is measured; not what the simulator says of itself beside it.
@@ -54,27 +45,25 @@ base::Result<FaultOrder> parse_fault_order(const std::string& text) {
     rest.erase(0, end + 1);
   }
   const auto from = base::parse_number(words[1]), length = base::parse_number(words[2]), amount = base::parse_number(words[3]);
-  if (!from || !length || !amount || rest.empty() || *from < 0 || *from > longest || *length < 0 || *length > longest) return fail();
-  FaultOrder order{rest, words[0], *amount, std::chrono::nanoseconds(std::llround(*from * 1e9))};
+  if (!from || !length || (!amount && !words[3].empty()) || rest.empty() || *from < 0 || *from > longest || *length < 0 ||
+      *length > longest)
+    return fail();
+  const auto row = shm::check_fault(words[0], amount);
+  if (!row) return row.error();
+  FaultOrder order{rest, (*row)->kind, amount.value_or((*row)->amount.value_or(0)), std::chrono::nanoseconds(std::llround(*from * 1e9))};
   if (*length > 0) order.until = std::chrono::nanoseconds(std::llround((*from + *length) * 1e9));
   return order;
 }
 
 base::Result<SensorFault> SensorFault::make(const FaultOrder& order, const shm::IfaceWriter& writer, std::uint64_t seed) {
-  const auto kind = std::ranges::find_if(kinds, [&](const auto& one) { return one.first == order.kind; });
-  const auto fail = [&](const std::string& what) { return base::Error{"fault " + order.kind + " of " + writer.name() + ": " + what}; };
-  if (kind == kinds.end()) return fail("a sensor can be off, stuck, or have bias, noise, missing, latency, dropout");
+  const std::string kind(shm::row_of(order.kind).name);
+  const auto fail = [&](const std::string& what) { return base::Error{"fault " + kind + " of " + writer.name() + ": " + what}; };
   const auto& row = shm::row_of(writer.type());
   if (row.sample_size == 0) return fail("its frames cannot be changed");
-  if (kind->second == Kind::missing && !has_ranges(writer)) return fail("only lasers and sonars have beams");
-  const bool is_changed = kind->second == Kind::bias || kind->second == Kind::noise;
+  if (order.kind == Kind::missing && !has_ranges(writer)) return fail("only lasers and sonars have beams");
+  const bool is_changed = order.kind == Kind::bias || order.kind == Kind::noise;
   if (is_changed && !has_ranges(writer) && std::ranges::none_of(row.sample, is_measured)) return fail("it measures no numbers");
-  const bool is_fraction = kind->second == Kind::missing || kind->second == Kind::dropout;
-  if (is_fraction && (order.amount < 0 || order.amount > 1)) return fail("its amount must be from 0 to 1");
-  if (kind->second == Kind::latency && (order.amount < 1 || order.amount > most_latency))
-    return fail("its amount must be from 1 to 1000 samples");
-  if (kind->second == Kind::noise && order.amount < 0) return fail("its amount must not be negative");
-  return SensorFault(kind->second, order, RandomStream(seed, "fault " + order.kind + " " + writer.name()));
+  return SensorFault(order, RandomStream(seed, "fault " + kind + " " + writer.name()));
 }
 
 bool SensorFault::leaves_out() { return kind_ == Kind::off || (kind_ == Kind::dropout && random_.uniform() < amount_); }
@@ -91,6 +80,8 @@ void SensorFault::apply(shm::IfaceWriter& writer) {
       return lose_beams(writer);
     case Kind::off:
     case Kind::dropout:
+    case Kind::weak:
+    case Kind::halted:
       break;
   }
 }

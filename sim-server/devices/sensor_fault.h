@@ -10,6 +10,7 @@
 
 #include "base/result.h"
 #include "rays/noise.h"
+#include "shm/fault_kinds.h"
 #include "shm/writer.h"
 
 namespace sim {
@@ -17,20 +18,21 @@ namespace sim {
 // What somebody asks for, of a sensor or a drive.
 struct FaultOrder {
   std::string iface;
-  std::string kind;  // of a sensor: off, stuck, bias, noise, missing, latency, dropout; of a drive: weak, halted
+  shm::FaultKind kind = shm::FaultKind::off;
   double amount = 0;
   std::chrono::nanoseconds from{}, until = std::chrono::nanoseconds::max();  // simulated
+
+  bool is_at(std::chrono::nanoseconds now) const { return now >= from && now < until; }
 };
-// "KIND:FROM:FOR:AMOUNT:IFACE", seconds; FOR 0: to the end.
+// "KIND:FROM:FOR:AMOUNT:IFACE", seconds; FOR 0: to the end; AMOUNT empty: the usual one.
 base::Result<FaultOrder> parse_fault_order(const std::string& text);
 
 class SensorFault {
  public:
-  enum class Kind { off, stuck, bias, noise, missing, latency, dropout };
+  using Kind = shm::FaultKind;
   // Fails when a sensor of the type cannot have it.
   static base::Result<SensorFault> make(const FaultOrder& order, const shm::IfaceWriter& writer, std::uint64_t seed);
 
-  bool is_at(std::chrono::nanoseconds now) const { return now >= from_ && now < until_; }
   // Asked once for each sample that is due: whether it is to be left out.
   bool leaves_out();
   // Changes the sample that waits to be published.
@@ -38,15 +40,13 @@ class SensorFault {
   void reset();
 
  private:
-  SensorFault(Kind kind, const FaultOrder& order, RandomStream random)
-      : kind_(kind), amount_(order.amount), from_(order.from), until_(order.until), random_(std::move(random)) {}
+  SensorFault(const FaultOrder& order, RandomStream random) : kind_(order.kind), amount_(order.amount), random_(std::move(random)) {}
   void exchange(shm::IfaceWriter& writer);
   void disturb(shm::IfaceWriter& writer);
   void lose_beams(shm::IfaceWriter& writer);
 
   Kind kind_;
   double amount_;
-  std::chrono::nanoseconds from_, until_;
   RandomStream random_;
   std::deque<std::vector<std::byte>> kept_;  // stuck: one; latency: those that are late
 };

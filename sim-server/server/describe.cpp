@@ -165,4 +165,21 @@ std::string contacts_text(const Simulation& simulation, ModelId model) {
   return text({{"model", physics.def(model).name}, {"total", physics.contacts_so_far(model)}, {"contacts", contacts}});
 }
 
+std::string faults_text(const Simulation& simulation, const std::string& iface) {
+  const auto seconds = [](std::chrono::nanoseconds time) { return static_cast<double>(time.count()) / 1e9; };
+  Json faults = Json::array();
+  for (const FaultOrder& fault : simulation.faults()) {
+    if (!iface.empty() && fault.iface != iface) continue;
+    const auto& row = shm::row_of(fault.kind);
+    const bool has_end = fault.until != std::chrono::nanoseconds::max();
+    faults.push_back({{"iface", fault.iface},
+                      {"kind", std::string(row.name)},
+                      {"amount", row.amount ? Json(fault.amount) : Json()},
+                      {"from", seconds(fault.from)},
+                      {"until", has_end ? Json(seconds(fault.until)) : Json()},
+                      {"on", fault.is_at(simulation.time())}});
+  }
+  return text({{"time", seconds(simulation.time())}, {"faults", faults}});
+}
+
 }  // namespace sim

@@ -26,6 +26,9 @@ std::string tree_text(const Simulation& simulation, const std::string& model);
 std::string stats_text(Simulation& simulation, const LoopState& loop);
 // {"model", "total", "contacts": [{"link", "other", "position", "normal", "depth"}]}: those of the last step.
 std::string contacts_text(const Simulation& simulation, ModelId model);
+// {"time", "faults": [{"iface", "kind", "amount", "from", "until", "on"}]}: those that have not ended, of one iface, or of all when `iface`
+// is empty. Seconds; no amount and no end are null.
+std::string faults_text(const Simulation& simulation, const std::string& iface);
 
 // Pages in use by this process [bytes].
 std::size_t resident_memory();

@@ -33,7 +33,7 @@ bool is_one_of(const shm::Request& request) {
 bool leaves_the_world_alone(const shm::Request& request) {
   return is_one_of<shm::PauseRequest, shm::RunRequest, shm::GetPoseRequest, shm::GetVelocityRequest, shm::ListRequest, shm::TreeRequest,
                    shm::StatsRequest, shm::SetRtfRequest, shm::ContactsRequest, shm::DropParticipantRequest, shm::ExportRequest,
-                   shm::PosesRequest>(request);
+                   shm::PosesRequest, shm::FaultsRequest>(request);
 }
 
 // How long a request that needs the world to stand between two steps waits for a tick to end. Clients wait for ten seconds.
@@ -212,6 +212,29 @@ struct ServerLoop::Handler {
     if (device == nullptr) return refused(shm::RequestStatus::not_found, "no iface " + request.iface);
     if (!device->set_motors(request.are_enabled)) return refused(shm::RequestStatus::unsupported, request.iface + " has no motors");
     return {};
+  }
+  shm::Reply operator()(const shm::FaultRequest& request) {
+    if (simulation.device(request.iface) == nullptr) return refused(shm::RequestStatus::not_found, "no iface " + request.iface);
+    const shm::FaultRow& row = *shm::find_fault(request.kind);
+    FaultOrder fault{request.iface, row.kind, request.amount.value_or(row.amount.value_or(0)), simulation.time()};
+    if (request.duration > 0) fault.until = fault.from + std::chrono::nanoseconds(std::llround(std::min(request.duration, 1e9) * 1e9));
+    const auto added = simulation.add_fault(fault);
+    return added ? shm::Reply{} : failed(added.error());
+  }
+  shm::Reply operator()(const shm::EndFaultsRequest& request) {
+    if (!request.iface.empty() && simulation.device(request.iface) == nullptr)
+      return refused(shm::RequestStatus::not_found, "no iface " + request.iface);
+    const shm::FaultRow* row = shm::find_fault(request.kind);
+    shm::Reply reply;
+    reply.count = static_cast<std::int64_t>(simulation.end_faults(request.iface, row ? std::optional(row->kind) : std::nullopt));
+    return reply;
+  }
+  shm::Reply operator()(const shm::FaultsRequest& request) {
+    if (!request.iface.empty() && simulation.device(request.iface) == nullptr)
+      return refused(shm::RequestStatus::not_found, "no iface " + request.iface);
+    shm::Reply reply;
+    reply.text = faults_text(simulation, request.iface);
+    return reply;
   }
   shm::Reply operator()(const shm::SetRtfRequest& request) {
     loop.pace_.want(request.rtf);

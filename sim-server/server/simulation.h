@@ -5,6 +5,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -61,6 +62,14 @@ class Simulation {
   base::Result<void> add_wrench(LinkId link, const Eigen::Vector3d& force, const Eigen::Vector3d& torque,
                                 std::chrono::nanoseconds duration);
 
+  // From now on until it ends, by itself or by end_faults(). One of the same kind that is on gives way. The error: there is no such iface,
+  // or what it belongs to cannot have the fault.
+  base::Result<void> add_fault(const FaultOrder& fault);
+  // Those of an iface, and of a kind; without, all. Also what is still to come. How many there were.
+  std::size_t end_faults(std::string_view iface_name, std::optional<shm::FaultKind> kind);
+  // Those that have not ended, by device.
+  std::vector<FaultOrder> faults() const;
+
   std::uint64_t hash() const;
   Physics& physics() { return *physics_; }
   const Physics& physics() const { return *physics_; }
@@ -76,6 +85,7 @@ class Simulation {
  private:
   Simulation(std::shared_ptr<const WorldDef> world, shm::Server& shm, const SimulationOptions& options);
   base::Result<void> make_devices_of(ModelId model, std::vector<std::string>& left_out);
+  base::Result<void> restore_faults();
   base::Result<ModelId> spawn_whole(const ModelDef& model, std::vector<std::string>& notes);
   void sort_devices();
   // Those of a model one after the other, those of different models on several threads when that is worth it.

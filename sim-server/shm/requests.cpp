@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/text.h"
+#include "shm/fault_kinds.h"
 #include "shm/segment.h"
 #include "shm/writer.h"
 
@@ -16,14 +17,15 @@ constexpr std::uint32_t flag_1 = 1, flag_2 = 2, flag_3 = 4;
 constexpr std::int64_t max_steps = 1'000'000'000;
 constexpr std::uint32_t max_pixels = 8192;
 
-constexpr std::array<std::string_view, 23> names = {"",           "pause",          "run",
+constexpr std::array<std::string_view, 26> names = {"",           "pause",          "run",
                                                     "step",       "reset",          "get-pose",
                                                     "set-pose",   "get-velocity",   "set-velocity",
                                                     "wrench",     "list",           "tree",
                                                     "spawn",      "delete",         "screenshot",
                                                     "statistics", "reset-odometry", "set-motors",
                                                     "set-rtf",    "contacts",       "drop-participant",
-                                                    "export",     "poses"};
+                                                    "export",     "poses",          "fault",
+                                                    "end-faults", "faults"};
 static_assert(std::variant_size_v<Request> == names.size() - 1);
 
 void put_pose(RequestBody& body, const Pose& pose) {
@@ -103,6 +105,18 @@ struct Encoder {
   void operator()(const DropParticipantRequest& r) { name(r.name); }
   void operator()(const ExportRequest& r) { raw.body.flags = r.with_collisions ? flag_1 : 0; }
   void operator()(const PosesRequest&) {}
+  void operator()(const FaultRequest& r) {
+    name(r.iface);
+    raw.text = r.kind;
+    raw.body.flags = r.amount ? flag_1 : 0;
+    raw.body.values[0] = r.amount.value_or(0);
+    raw.body.values[1] = r.duration;
+  }
+  void operator()(const EndFaultsRequest& r) {
+    name(r.iface);
+    raw.text = r.kind;
+  }
+  void operator()(const FaultsRequest& r) { name(r.iface); }
 };
 
 class Decoder {
@@ -130,6 +144,8 @@ class Decoder {
   base::Result<Request> spawn() const;
   base::Result<Request> screenshot() const;
   base::Result<Request> reset_odometry() const;
+  base::Result<Request> fault() const;
+  base::Result<Request> end_faults() const;
 
   const RawRequest& raw_;
   std::string_view kind_;
@@ -249,6 +265,22 @@ base::Result<Request> Decoder::reset_odometry() const {
   return Request(std::move(request));
 }
 
+base::Result<Request> Decoder::fault() const {
+  if (name_.empty()) return fail("needs a name");
+  FaultRequest request{name_, raw_.text, std::nullopt, values()[1]};
+  if ((body().flags & flag_1) != 0) request.amount = values()[0];
+  if (const auto row = check_fault(request.kind, request.amount); !row) return row.error();
+  if (request.duration < 0) return fail("duration must not be negative, got " + base::format_number(request.duration));
+  return Request(std::move(request));
+}
+
+base::Result<Request> Decoder::end_faults() const {
+  if (!raw_.text.empty()) {
+    if (const auto row = check_fault(raw_.text, std::nullopt); !row) return row.error();
+  }
+  return Request(EndFaultsRequest{name_, raw_.text});
+}
+
 base::Result<Request> Decoder::decode() {
   if (auto good = check_common(); !good) return good.error();
   switch (raw_.kind) {
@@ -297,6 +329,12 @@ base::Result<Request> Decoder::decode() {
       return Request(ExportRequest{(body().flags & flag_1) != 0});
     case RTMSIM_REQUEST_POSES:
       return Request(PosesRequest{});
+    case RTMSIM_REQUEST_FAULT:
+      return fault();
+    case RTMSIM_REQUEST_END_FAULTS:
+      return end_faults();
+    case RTMSIM_REQUEST_FAULTS:
+      return Request(FaultsRequest{name_});
     default:
       return fail("unknown kind");
   }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -92,11 +93,22 @@ struct ExportRequest {
   bool with_collisions = false;  // the shapes that collide instead of those that are seen
 };
 struct PosesRequest {};
+struct FaultRequest {
+  std::string iface, kind;       // of shm/fault_kinds.h
+  std::optional<double> amount;  // nothing: the usual one
+  double duration = 0;           // [s], simulated; 0 = until it is ended
+};
+struct EndFaultsRequest {
+  std::string iface, kind;  // empty = all
+};
+struct FaultsRequest {
+  std::string iface;  // empty = all
+};
 
 using Request = std::variant<PauseRequest, RunRequest, StepRequest, ResetRequest, GetPoseRequest, SetPoseRequest, GetVelocityRequest,
                              SetVelocityRequest, WrenchRequest, ListRequest, TreeRequest, SpawnRequest, DeleteRequest, ScreenshotRequest,
                              StatsRequest, ResetOdometryRequest, SetMotorsRequest, SetRtfRequest, ContactsRequest, DropParticipantRequest,
-                             ExportRequest, PosesRequest>;
+                             ExportRequest, PosesRequest, FaultRequest, EndFaultsRequest, FaultsRequest>;
 
 enum class RequestStatus : std::uint32_t {
   ok = RTMSIM_STATUS_OK,

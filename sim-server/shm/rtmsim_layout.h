@@ -433,8 +433,13 @@ enum {
   RTMSIM_REQUEST_DROP_PARTICIPANT = 20, /* name = participant */
   RTMSIM_REQUEST_EXPORT = 21, /* flags 1 = shapes that collide; reply text: the world as glTF 2.0 binary (render/gltf.h); reply count = its
                                  links, values 0 = version of the scene, another one after models have come or gone */
-  RTMSIM_REQUEST_POSES = 22 /* reply count = links, values 0 = version of the scene; text: count x 7 floats x y z qw qx qy qz in the world,
-                               in the order of an export; then values 1 x 4: two positions, two velocities of each joint of TREE */
+  RTMSIM_REQUEST_POSES = 22,  /* reply count = links, values 0 = version of the scene; text: count x 7 floats x y z qw qx qy qz in the
+                                 world, in the order of an export; then values 1 x 4: two positions, two velocities of each joint of TREE */
+  RTMSIM_REQUEST_FAULT = 23, /* from now on a sensor or drive is out of order. name = iface; text = kind (see simctl fault --help); flags 1:
+                                values 0 = amount, else the usual one; values 1 = simulated seconds, 0 = until it is ended. One of its kind
+                                that is on gives way */
+  RTMSIM_REQUEST_END_FAULTS = 24, /* name = iface or empty for all; text = kind or empty for all; reply count = faults that have ended */
+  RTMSIM_REQUEST_FAULTS = 25      /* name = iface or empty for all; reply text: JSON, those that are on or still to come */
 };
 
 /* Views of a screenshot. Without TOP and FOLLOW the camera's pose is in values; none given: one that shows the whole world. */

@@ -7,6 +7,7 @@
 #include "base/command_line.h"
 #include "base/text.h"
 #include "offers.h"
+#include "shm/fault_kinds.h"
 #include "simctl.h"
 
 namespace {
@@ -169,6 +170,45 @@ void add_control(base::Command& app, Work& work) {
   contacts->callback([&work, touched] { work = [touched](Control& c) { simctl::contacts(c, *touched); }; });
 }
 
+std::string meanings_of_faults() {
+  std::string text;
+  for (const auto& row : shm::fault_rows) {
+    text += (text.empty() ? "" : "; ") + std::string(row.name) + ": " + std::string(row.meaning);
+    if (row.amount) text += " (" + base::format_number(*row.amount) + ")";
+  }
+  return text;
+}
+
+void add_fault(base::Command& app, Work& work) {
+  auto* fault = app.add_subcommand(
+      "fault", "Put a sensor or drive out of order, or show which are: fault [IFACE [KIND [AMOUNT]]]; --end: in order again");
+  auto options = option_value<simctl::FaultOptions>();
+  auto amount = option_value<std::string>();
+  std::vector<std::string> kinds;
+  for (const auto& row : shm::fault_rows) kinds.emplace_back(row.name);
+  fault->add_option("IFACE", options->iface, "Iface of a sensor, or of a drive");
+  fault->add_option("KIND", options->kind, meanings_of_faults())->check(base::one_of(std::move(kinds)));
+  fault->add_option("AMOUNT", *amount, "Default: that in brackets");
+  auto* seconds = fault->add_option("--for", options->seconds, "Simulated seconds; default: until it is ended, or the world is reset")
+                      ->check(base::number_between(0.0, 1e9));
+  auto* end = fault->add_flag("--end", options->ends, "End the faults of IFACE, of that KIND; without, all");
+  end->excludes(seconds);
+  fault->callback([&work, options, amount] {
+    if (!amount->empty()) {
+      options->amount = base::parse_number(*amount);
+      if (!options->amount) base::reject_command_line("AMOUNT", "expected a number, got " + base::in_quotes(*amount));
+      if (options->ends) base::reject_command_line("--end", "takes no AMOUNT");
+    }
+    if (options->seconds > 0 && options->kind.empty()) base::reject_command_line("--for", "goes with IFACE KIND");
+    if (!options->kind.empty()) {
+      const auto row = shm::check_fault(options->kind, options->amount);
+      if (!row) base::reject_command_line("AMOUNT", row.error().message);
+      if (options->amount && !(*row)->amount) base::reject_command_line("AMOUNT", "a fault that is " + options->kind + " has none");
+    }
+    work = [options](Control& c) { simctl::fault(c, *options); };
+  });
+}
+
 void add_pictures(base::Command& app, Work& work) {
   auto* screenshot = app.add_subcommand("screenshot", "Write a picture of the world");
   auto options = option_value<simctl::ScreenshotOptions>();
@@ -252,6 +292,7 @@ int main(int argc, char** argv) {
   Work work;
   add_looks(app, work);
   add_control(app, work);
+  add_fault(app, work);
   add_pictures(app, work);
   if (const auto end = base::parse_command_line(app, "simctl", argc, argv, simctl::offers)) return *end;
   Control control(server_id, json);

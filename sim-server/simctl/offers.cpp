@@ -28,6 +28,7 @@ bool fits(IfaceType type, const std::string& value, const std::string& command) 
   if (value == "CAMERA" || value == "--camera") return type == IfaceType::camera;
   if (command == "velocity") return is_drive || type == IfaceType::truth;
   if (command == "odometry" || command == "motors") return is_drive;
+  if (command == "fault") return type != IfaceType::truth && type != IfaceType::simulation && shm::row_of(type).sample_size > 0;
   return true;
 }
 
@@ -36,7 +37,7 @@ bool fits(IfaceType type, const std::string& value, const std::string& command) 
 std::optional<std::vector<base::Offer>> offers(const std::string& value, const std::vector<std::string>& before, const std::string&) {
   static constexpr std::array asked{"IFACE", "MODEL", "CAMERA", "--server-id", "--follow", "--camera"};
   if (std::ranges::find(asked, value) == asked.end()) return std::nullopt;
-  static constexpr std::array sharp{"odometry", "motors", "velocity"};
+  static constexpr std::array sharp{"odometry", "motors", "velocity", "fault"};
   const auto command = std::ranges::find_first_of(before, sharp);
   std::vector<base::Offer> found;
   std::set<std::string> seen;

@@ -64,6 +64,14 @@ void screenshot(Control& control, const ScreenshotOptions& options);
 // The world as glTF 2.0 binary.
 void export_world(Control& control, const std::string& file, bool with_collisions);
 void contacts(Control& control, const std::string& model);
+struct FaultOptions {
+  std::string iface, kind;  // see shm/fault_kinds.h
+  std::optional<double> amount;
+  double seconds = 0;  // simulated; 0: until it is ended
+  bool ends = false;   // those of the iface, and of the kind; without, all
+};
+// Shows the faults that are on, of the iface or all, when there is no kind.
+void fault(Control& control, const FaultOptions& options);
 
 // ---- look inside ----
 void list(Control& control, bool all_servers);

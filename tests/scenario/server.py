@@ -182,6 +182,61 @@ def motion():
     stop(process)
 
 
+# Faults come and go by command, the same each time, and are those that the server's option names.
+def faults():
+    laser, drive = f"{robot}::laser", f"{robot}::position2d"
+
+    def ahead():
+        return read("echo", laser, "-n", "1")["ranges"][90]
+
+    process = started("-u")
+    assert ok("fault") == "no faults\n" and read("fault")["faults"] == []
+    ok("step", "10")
+    free = ahead()
+    ok("fault", laser, "bias", "-1", "--for", "2")
+    ok("fault", drive, "weak")
+    both = [{key: one[key] for key in ("iface", "kind", "amount", "on")} for one in read("fault")["faults"]]
+    assert sorted(both, key=lambda one: one["kind"]) == [{"iface": laser, "kind": "bias", "amount": -1.0, "on": True},
+                                                         {"iface": drive, "kind": "weak", "amount": 0.5, "on": True}], both
+    assert [one["kind"] for one in read("fault", laser)["faults"]] == ["bias"]
+    assert re.search(rf"{laser} +bias +-1 +0\.0\d+ +2\.0\d+\n", ok("fault", laser)), ok("fault", laser)
+    near([ahead()], [free - 1], 0.2)
+    assert read("fault", laser, "--end")["ended"] == 1 and read("fault", laser, "--end")["ended"] == 0
+    near([ahead()], [free], 0.2)
+    assert read("fault", "--end")["ended"] == 1 and read("fault")["faults"] == []
+
+    states = []
+    for _ in range(2):
+        ok("reset")
+        ok("fault", drive, "halted")
+        ok("fault", laser, "noise", "0.3")
+        ok("step", "300")
+        ok("fault", laser, "noise", "--end")
+        ok("step", "300")
+        states.append((state(), [one["kind"] for one in read("fault")["faults"]]))
+    assert states[0] == states[1] and states[0][1] == ["halted"], states
+    before = state()
+    for words, says in [(["nobody", "off"], "no iface nobody"), ([laser, "weak"], "it is no position2d"), ([drive, "missing"], "only lasers and sonars have beams"),
+                        (["nobody", "--end"], "no iface nobody"), (["nobody"], "no iface nobody")]:
+        refused("fault", *words, says=says)
+    for words, says in [([laser, "odd"], "odd"), ([laser, "dropout", "2"], "must be from 0 to 1, got 2"), ([laser, "bias", "nan"], "expected a number"),
+                        ([laser, "off", "1"], "has none"), ([laser, "--for", "1"], "goes with IFACE KIND"), ([laser, "off", "--for", "-1"], "-1")]:
+        refused("fault", *words, code=2, says=says)
+    assert state() == before
+    stop(process)
+
+    process = started("-u", "--fault", f"bias:0:1:-1:{laser}", "--fault", f"off:5:0::{drive}")
+    kinds = [(one["kind"], one["on"], one["until"]) for one in read("fault")["faults"]]
+    assert sorted(kinds) == [("bias", True, 1.0), ("off", False, None)], kinds
+    assert "to come" in ok("fault", drive)
+    assert read("fault", "--end")["ended"] == 2
+    ok("reset")
+    assert len(read("fault")["faults"]) == 2  # as at the start
+    stop(process)
+    refused_start = subprocess.run([f"{bin_dir}/sim-server", course, "--fault", "dropout:0:0:2:x"], capture_output=True, text=True)
+    assert refused_start.returncode == 2 and "must be from 0 to 1, got 2" in refused_start.stderr, refused_start
+
+
 def bad_requests():
     process = started("-u")
     before = state()
@@ -696,7 +751,7 @@ def paused_is_idle():
     stop(process)
 
 
-cases = {f.__name__: f for f in (ends_while_it_loads, cut_short, names, shared, requests, motion, bad_requests, same_state, killed, living_server_is_refused, ends, check, paused_is_idle,
+cases = {f.__name__: f for f in (ends_while_it_loads, cut_short, names, shared, requests, motion, faults, bad_requests, same_state, killed, living_server_is_refused, ends, check, paused_is_idle,
                                   no_room, scribbled_over,
                                   looked_at_while_paused, looked_at_each_device, shows_every_type, exports, rate)}
 try:

@@ -49,6 +49,14 @@ TEST(Requests, all_kinds_survive_the_way_to_bytes_and_back) {
   EXPECT_EQ(there_and_back(SetRtfRequest{2.5}).rtf, 2.5);
   EXPECT_TRUE(there_and_back(ExportRequest{true}).with_collisions);
   there_and_back(PosesRequest{});
+  const auto fault = there_and_back(FaultRequest{"robot::laser", "bias", -1.5, 2});
+  EXPECT_EQ(fault.iface, "robot::laser");
+  EXPECT_EQ(fault.kind, "bias");
+  EXPECT_EQ(fault.amount, -1.5);
+  EXPECT_EQ(fault.duration, 2);
+  EXPECT_FALSE(there_and_back(FaultRequest{"robot::laser", "off", std::nullopt, 0}).amount);
+  EXPECT_EQ(there_and_back(EndFaultsRequest{"", "stuck"}).kind, "stuck");
+  EXPECT_EQ(there_and_back(FaultsRequest{"robot::laser"}).iface, "robot::laser");
 }
 
 TEST(Requests, nonsense_is_refused_with_a_message) {
@@ -70,6 +78,11 @@ TEST(Requests, nonsense_is_refused_with_a_message) {
   shot.path = "/x.png";
   shot.width = 100000;
   EXPECT_EQ(message(shot), "request screenshot: size must be 1x1 to 8192x8192, got 100000x600");
+  EXPECT_EQ(message(FaultRequest{"", "off", std::nullopt, 0}), "request fault: needs a name");
+  EXPECT_EQ(message(FaultRequest{"laser", "odd", std::nullopt, 0}),
+            "fault \"odd\": is none; expected one of off, stuck, bias, noise, missing, latency, dropout, weak, halted");
+  EXPECT_EQ(message(FaultRequest{"laser", "dropout", 1.5, 0}), "fault dropout: its amount must be from 0 to 1, got 1.5");
+  EXPECT_EQ(message(FaultRequest{"laser", "off", std::nullopt, -1}), "request fault: duration must not be negative, got -1");
   RawRequest raw;
   raw.kind = 999;
   EXPECT_FALSE(decode(raw));
@@ -82,7 +95,7 @@ TEST(Requests, random_bytes_are_decoded_or_refused_but_never_worse) {
   std::mt19937_64 random(42);
   for (int n = 0; n < 20000; ++n) {
     RawRequest raw;
-    raw.kind = static_cast<std::uint32_t>(random() % 24);
+    raw.kind = static_cast<std::uint32_t>(random() % 27);
     auto* bytes = reinterpret_cast<unsigned char*>(&raw.body);
     for (std::size_t i = 0; i < sizeof raw.body; ++i) bytes[i] = static_cast<unsigned char>(random() % 4 == 0 ? random() : 0);
     raw.text.assign(random() % 50, static_cast<char>(random()));
