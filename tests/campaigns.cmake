@@ -6,7 +6,7 @@ foreach(case sweep reports killed disk_full interrupted refused events faults hu
   set_tests_properties(campaigns.${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
 # On a cluster of one machine; skipped where Slurm is not installed (scripts/setup --with-slurm).
-foreach(case rows broken killed)
+foreach(case rows broken killed other_rows)
   add_test(NAME campaigns.slurm_${case}
     COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/campaigns/slurm.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(campaigns.slurm_${case} PROPERTIES LABELS integration TIMEOUT 600 SKIP_RETURN_CODE 77)

@@ -280,6 +280,28 @@ def killed():
     assert {key: walls()[key] for key in then} == then
 
 
+# What the tasks of a caller that was killed have found is kept by the next one, also when that one asks for other rows.
+def other_rows():
+    write_plan("repeat: 8\n")
+    for asked in ("1..3", "4..6"):
+        process = begin("--chunk", 3, "--rows", asked)
+        process.kill()
+        process.communicate()
+        end = time.monotonic() + PATIENCE
+        while cluster.jobs():
+            assert time.monotonic() < end, (cluster.jobs(), logs())
+            time.sleep(0.1)
+        first = told()
+        assert len(first) == 3, first
+        # Once with a row to run, once with none.
+        report = sweep("--engine", "slurm", "--rows", "7..7")[0]
+        assert (report["rows"], report["passed"]) == (1, 1), report
+        assert {key: walls().get(key) for key in first} == first, (first, walls())
+        assert not (work / "rows.slurm").exists()
+    report = sweep("--engine", "slurm", "--rows", "1..7")[0]
+    assert (report["rows"], report["stored"]) == (7, 7), report
+
+
 for program in ("sbatch", "slurmctld", "slurmd", "munged"):
     if not shutil.which(program, path=os.environ["PATH"] + ":/usr/sbin:/sbin"):
         skip(f"{program} is not installed (scripts/setup --with-slurm)")
@@ -294,7 +316,7 @@ try:
     (folder / "cluster").mkdir()
     cluster = Cluster(folder / "cluster")
     cluster.bring_up()
-    {"rows": rows, "broken": broken, "killed": killed}[case]()
+    {"rows": rows, "broken": broken, "killed": killed, "other_rows": other_rows}[case]()
 finally:
     os.environ["SLURM_CONF"] = str(folder / "cluster/slurm.conf")
     if cluster is not None:

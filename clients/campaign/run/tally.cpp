@@ -80,6 +80,14 @@ void Tally::take(const Todo& todo, const std::string& key, const Outcome& outcom
   show_(progress);
 }
 
+void Tally::keep(const std::string& key, const Outcome& outcome, const std::string& folder) {
+  const auto mine = telling_.take();
+  const auto run = store_.run(key);
+  if (run && *run) return;
+  const auto added = run ? store_.add_run(key, outcome, folder) : run.error();
+  if (!added && problem_.empty()) problem_ = added.error().message;
+}
+
 Result<SweepResult> Tally::result() {
   const auto mine = telling_.take();
   if (!problem_.empty()) return Error{problem_};

@@ -1,5 +1,5 @@
-// The rows that a sweep has to run, and what has become of them: in the results file, and in numbers. Every engine has one. Only take() and
-// is_stopped() may be called from several threads.
+// The rows that a sweep has to run, and what has become of them: in the results file, and in numbers. Every engine has one. Only take(),
+// keep() and is_stopped() may be called from several threads.
 #pragma once
 
 #include <chrono>
@@ -31,6 +31,8 @@ class Tally {
   const std::vector<Todo>& todo() const { return todo_; }
   // Stores what has come out of a row, and shows how far the sweep is. `folder`: of the row's files; empty: there are none.
   void take(const Todo& todo, const std::string& key, const Outcome& outcome, const std::string& folder);
+  // Stores what has come out of a row that this call has not asked for, unless it is stored already. Neither counted nor shown.
+  void keep(const std::string& key, const Outcome& outcome, const std::string& folder);
   // Nothing more should be begun.
   bool is_stopped();
   // When all has ended. The error: the results could not be written.

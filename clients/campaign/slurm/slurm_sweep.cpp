@@ -43,8 +43,9 @@ class SlurmSweep {
     if (missing_.empty() && !fs::exists(slurm_.folder)) return std::string();
     if (const auto opened = open_folder(); !opened) return opened.error();
     gather();
-    // Tasks of a call that was killed; of no use when nothing is missing.
+    // Tasks of a call that was killed; of no use when nothing is missing, but for what they have found by then.
     if (const auto ended = missing_.empty() ? cancel() : await_tasks(); !ended) return ended.error();
+    gather();
     auto chunk = slurm_.chunk;
     for (int tried = 0; tried < slurm_.tries && !missing_.empty() && !is_over(); ++tried) {
       if (const auto begun = submit(std::max(chunk, least_chunk())); !begun) return begun.error();
@@ -83,7 +84,10 @@ class SlurmSweep {
   void gather() {
     for (auto& line : folder_.news()) {
       const auto found = missing_.find(line.key);
-      if (found == missing_.end()) continue;  // known already, or of a row that the plan has no more
+      if (found == missing_.end()) {  // known already, or of a row that another call has asked for
+        tally_.keep(line.key, line.outcome, line.folder);
+        continue;
+      }
       tally_.take(*found->second, line.key, line.outcome, line.folder);
       missing_.erase(found);
     }
