@@ -258,6 +258,13 @@ hunt:
     assert "NaN" in rtse("sweep", find["plan"], "--row", 1, "--state", find["state"], code=1).stderr
     p.write_text(p.read_text().replace("faulty=YES", "faulty=NO"))
     assert json.loads(rtse("--json", "hunt", p, "--cases", 8, "-j", 2).stdout)["finds"] == []
+    # A system that nobody can start is no find.
+    system = pathlib.Path(f"{source}/tests/hunt/hunt_subject.xml").read_text()
+    (folder / "nobody.xml").write_text(system.replace(":HuntSubject:", ":NoSubject:"))
+    p.write_text(p.read_text().replace(f"{source}/tests/hunt/hunt_subject.xml", "nobody.xml"))
+    done = rtse("hunt", p, "--cases", 8, code=1)
+    assert "does not start: component HuntSubject0" in done.stderr or "does not start: host of" in done.stderr, done
+    assert len(done.stderr.splitlines()) == 1 and done.stdout == "", done
 
 
 try:

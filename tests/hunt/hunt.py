@@ -19,6 +19,7 @@ parser.add_argument("--only", action="append")
 parser.add_argument("--plain", action="store_true")
 parser.add_argument("-j", "--jobs", type=int, default=2)
 arguments = parser.parse_args()
+arguments.lib_dir, arguments.source = (pathlib.Path(path).resolve() for path in (arguments.lib_dir, arguments.source))
 
 KINDS = ["speed_doubles_when_activated_again", "exception_when_deactivated", "first_scan_is_taken_for_granted", "error_without_scan",
          "drives_on_without_scan", "speeds_up_without_scan", "infinite_ranges_are_added", "mean_of_no_ranges", "divides_by_time_between_scans",

@@ -24,7 +24,8 @@ class Hunt {
   Hunt(CORBA::ORB_ptr orb, const Campaign& campaign, const HuntOptions& options, const std::function<void(const HuntProgress&)>& show)
       : orb_(orb), campaign_(campaign), options_(options), show_(show), maker_(campaign), random_(campaign.plan().hunt.seed, "hunt") {}
 
-  HuntResult go() {
+  // The error: the system of the plan does not start.
+  Result<HuntResult> go() {
     while (goes_on()) {
       std::vector<HuntCase> cases;
       for (std::size_t i = 0; i < generation; ++i) cases.push_back(next_case());
@@ -38,6 +39,7 @@ class Hunt {
       if (editor::is_interrupted()) break;
       for (std::size_t i = 0; i < cases.size() && goes_on(); ++i) take(cases[i], outcomes[i]);
     }
+    if (!problem_.empty()) return Error{problem_};
     result_.is_interrupted = editor::is_interrupted();
     result_.corpus = corpus_.size();
     result_.features = features_.size();
@@ -48,7 +50,7 @@ class Hunt {
  private:
   double wall() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
   bool goes_on() const {
-    if (editor::is_interrupted() || Clock::now() - began_ > options_.budget) return false;
+    if (editor::is_interrupted() || !problem_.empty() || Clock::now() - began_ > options_.budget) return false;
     if (options_.most_finds > 0 && result_.finds.size() >= options_.most_finds) return false;
     return options_.most_cases == 0 || result_.cases < options_.most_cases;
   }
@@ -83,7 +85,7 @@ class Hunt {
       find.after_s = wall();
       find.problem = outcome.first_problem();
       find.tried = shrunk(tried, kind);
-      write(find, kind);
+      if (!write(find, kind)) return;
       result_.finds.push_back(std::move(find));
     }
     const bool found = !result_.finds.empty() && result_.finds.back().case_number == result_.cases;
@@ -140,14 +142,19 @@ class Hunt {
     }
   }
 
-  // The plan that repeats it, and whether it does.
-  void write(Find& find, const std::string& kind) {
+  // The plan that repeats it, and whether it does. False: there is nothing to repeat, since nothing runs even when it is left alone.
+  bool write(Find& find, const std::string& kind) {
     find.file = options_.folder + "/find-" + std::to_string(result_.finds.size() + 1) + ".yaml";
     const auto first = run(find.tried, "again"), second = run(find.tried, "again");
+    if (find.tried.deeds() == 0 && !first.problem.empty() && first.simulated_s <= 0 && !editor::is_interrupted()) {
+      problem_ = "plan " + base::in_quotes(campaign_.plan().file) + ": does not start: " + first.problem;
+      return false;
+    }
     find.state_hash = first.state_hash;
     if (!first.first_problem().empty()) find.problem = first.first_problem();
     find.is_repeatable = first.state_hash == second.state_hash && signature(first) == kind && signature(second) == kind;
     std::ofstream(find.file) << "# " << find.problem << "\n# state " << find.state_hash << "\n" << plan_text(campaign_, find.tried);
+    return true;
   }
 
   CORBA::ORB_ptr orb_;
@@ -159,6 +166,7 @@ class Hunt {
   std::vector<HuntCase> corpus_;
   std::set<std::string> features_, signatures_;
   HuntResult result_;
+  std::string problem_;  // why nothing can be found
   Clock::time_point began_ = Clock::now();
 };
 
