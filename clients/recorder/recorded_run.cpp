@@ -44,7 +44,7 @@ RecordedRun::~RecordedRun() {
   if (!folder_.empty()) fs::remove_all(folder_, ignored);
 }
 
-base::Result<RecordedRun> RecordedRun::unpack(const std::string& recording) {
+base::Result<RecordedRun> RecordedRun::unpack(const std::string& recording, Needs needs) {
   auto reader = mcap::Reader::open(recording);
   if (!reader) return reader.error();
   RecordedRun run;
@@ -60,6 +60,7 @@ base::Result<RecordedRun> RecordedRun::unpack(const std::string& recording) {
   for (const auto& [name, place] : {std::pair("system.xml", &run.system_), std::pair("world.sdf", &run.world_)}) {
     const auto attachment = reader->attachment(name);
     if (!attachment) {
+      if (needs == Needs::world && place == &run.system_) continue;
       return base::Error{base::in_quotes(recording) + ": has no attachment " + base::in_quotes(name) +
                          ", which makes the run again; rtse run --record writes it"};
     }

@@ -14,8 +14,10 @@ namespace recorder {
 
 class RecordedRun {
  public:
-  // Fails when the recording has no profile of the system or no world: `rtse run --record` writes both.
-  static base::Result<RecordedRun> unpack(const std::string& recording);
+  // What of a run somebody cannot do without.
+  enum class Needs { system_and_world, world };
+  // Fails when the recording has not what is needed: `rtse run --record` writes both, `rtse record` the world that a simulator runs.
+  static base::Result<RecordedRun> unpack(const std::string& recording, Needs needs = Needs::system_and_world);
   RecordedRun(RecordedRun&& other) noexcept;
   RecordedRun& operator=(RecordedRun&&) = delete;
   ~RecordedRun();
