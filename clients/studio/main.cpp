@@ -4,7 +4,9 @@
 #include <iostream>
 
 #include "base/command_line.h"
+#include "base/text.h"
 #include "orb.h"
+#include "recorded_studio.h"
 #include "remote.h"
 #include "started_run.h"
 #include "studio.h"
@@ -20,11 +22,10 @@ struct Settings {
 };
 
 void add_options(base::Command& app, Settings& settings) {
-  auto* world =
-      app.add_option("-w,--world", settings.start.world, "SDFormat world: start a simulator of it, paused")->check(base::existing_file());
-  app.add_option("SYSTEM", settings.start.system, "RTSProfile: start its components and a simulator, as rtse run does, paused")
-      ->check(base::existing_file())
-      ->needs(world);
+  app.add_option("-w,--world", settings.start.world, "SDFormat world: start a simulator of it, paused")->check(base::existing_file());
+  app.add_option("FILE", settings.start.system,
+                 "RTSProfile: start its components and a simulator of --world, as rtse run does, paused; or a recording (MCAP): show it")
+      ->check(base::existing_file());
   app.add_option("--ns", settings.studio.name_server,
                  "Name server HOST[:PORT]; default: the first of $RTCTREE_NAMESERVERS, else localhost:2809");
   app.add_option("-s,--server-id", settings.studio.server_id, "Which simulator")
@@ -59,12 +60,25 @@ std::string url_of(const studio::WebOptions& options, const studio::WebServer& s
   return "http://" + host + ":" + std::to_string(server.port()) + "/?token=" + server.door().token();
 }
 
-int serve(Settings settings) {
-  const auto page = studio::PageFiles::read(settings.page);
-  if (!page) return fail(page.error());
-  boost::asio::io_context loop(1);
-  boost::asio::signal_set signals(loop, SIGINT, SIGTERM);
-  signals.async_wait([&](boost::system::error_code, int) { loop.stop(); });
+int serve(boost::asio::io_context& loop, const studio::WebOptions& web, const studio::PageFiles& page, studio::WebHandlers handlers) {
+  const auto server = studio::WebServer::open(loop, web, page, std::move(handlers));
+  if (!server) return fail(server.error());
+  std::cout << url_of(web, **server) << std::endl;
+  loop.run();
+  return 0;
+}
+
+int show_recording(boost::asio::io_context& loop, const Settings& settings, const studio::PageFiles& page) {
+  if (!settings.start.world.empty())
+    return fail({"recording " + base::in_quotes(settings.start.system) + ": has its world itself; leave --world out"});
+  const auto recording = studio::RecordedStudio::open(loop, settings.start.system);
+  if (!recording) return fail(recording.error());
+  return serve(loop, settings.web, page, (*recording)->handlers());
+}
+
+int show_run(boost::asio::io_context& loop, Settings settings, const studio::PageFiles& page) {
+  if (!settings.start.system.empty() && settings.start.world.empty())
+    return fail({"system " + base::in_quotes(settings.start.system) + ": needs --world WORLD.sdf"});
   const editor::Orb orb;
   std::unique_ptr<studio::StartedRun> started;
   if (!settings.start.world.empty()) {
@@ -75,18 +89,25 @@ int serve(Settings settings) {
     if (!started->name_server().empty()) settings.studio.name_server = started->name_server();
   }
   studio::Studio hub(loop, orb.get(), settings.studio);
-  const auto server = studio::WebServer::open(loop, settings.web, *page, hub.handlers());
-  if (!server) return fail(server.error());
-  std::cout << url_of(settings.web, **server) << std::endl;
-  loop.run();
-  return 0;
+  return serve(loop, settings.web, page, hub.handlers());
+}
+
+int run(const Settings& settings) {
+  const auto page = studio::PageFiles::read(settings.page);
+  if (!page) return fail(page.error());
+  boost::asio::io_context loop(1);
+  boost::asio::signal_set signals(loop, SIGINT, SIGTERM);
+  signals.async_wait([&](boost::system::error_code, int) { loop.stop(); });
+  const bool is_past = !settings.start.system.empty() && studio::is_recording(settings.start.system);
+  return is_past ? show_recording(loop, settings, *page) : show_run(loop, settings, *page);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   base::Command app{
-      "rtm-studio: a simulated world, a system of RT components and its signals in a browser\nPrints a URL with a token; without it "
+      "rtm-studio: a simulated world, a system of RT components and its signals in a browser, live or recorded\nPrints a URL with a token; "
+      "without it "
       "nothing is "
       "shown or done."};
   base::add_standard_options(app, "rtm-studio", RTMSIM_VERSION);
@@ -97,7 +118,7 @@ int main(int argc, char** argv) {
   settings.studio.call_limit = std::chrono::milliseconds(static_cast<int>(settings.call_limit_s * 1000));
   settings.web.may_move = app.count("--port") == 0;
   try {
-    return serve(settings);
+    return run(settings);
   } catch (const CORBA::Exception& e) {
     return fail({editor::describe(e)});
   } catch (const std::exception& e) {

@@ -138,8 +138,10 @@ Result<std::unique_ptr<StartedRun>> StartedRun::start(CORBA::ORB_ptr orb, const 
   }
   if (shm::Requester::open(server_id))
     return Error{"simulator " + std::to_string(server_id) + ": runs already; leave --world out to attach to it, or choose another -s"};
-  auto process = editor::ChildProcess::start(
-      {{editor::own_program("sim-server"), options.world, "--paused", "--server-id", std::to_string(server_id)}, {}, ""});
+  editor::ProgramCall call{
+      {editor::own_program("sim-server"), options.world, "--paused", "--server-id", std::to_string(server_id)}, {}, ""};
+  for (const auto& path : options.resource_paths) call.words.insert(call.words.end(), {"--resource-path", path});
+  auto process = editor::ChildProcess::start(call);
   if (!process) return process.error();
   auto run = std::make_unique<WorldRun>(std::move(*process), server_id);
   if (const auto there = run->wait(); !there) return there.error();

@@ -7,14 +7,16 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "base/result.h"
 
 namespace studio {
 
 struct StartOptions {
-  std::string system;  // RTSProfile; empty: the simulator alone
-  std::string world;   // SDFormat
+  std::string system;                         // RTSProfile; empty: the simulator alone
+  std::string world;                          // SDFormat
+  std::vector<std::string> resource_paths{};  // where else the simulator looks for what the world names; without a system
 };
 
 class StartedRun {

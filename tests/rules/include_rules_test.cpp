@@ -56,7 +56,7 @@ const std::vector<Layer> layers = {
     {"clients/recorder/mcap", {"mcap", "base"}, {"zstd", "lz4", "deflate"}},
     {"clients/recorder", {"mcap", "ros", "views", "shm", "base", "stubs"}, {"omniORB", "JSON", "PNG", "JPEG"}},
     {"clients/campaign", {"base", "stubs"}, {"omniORB", "pugixml", "JSON", "YAML", "Eigen", "SQLite"}},
-    {"clients/studio", {"views", "simctl", "shm", "base", "stubs"}, {"omniORB", "Boost", "JSON", "deflate", "JPEG"}},
+    {"clients/studio", {"mcap", "views", "simctl", "shm", "base", "stubs"}, {"omniORB", "Boost", "JSON", "deflate", "JPEG"}},
     {"clients/player-gateway/protocol", {"protocol", "base"}},
     {"clients/player-gateway", {"protocol", "shm", "base"}, {"JSON", "YAML", "spdlog"}},
     {"clients/follow", {"protocol", "base"}},

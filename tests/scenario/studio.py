@@ -386,6 +386,55 @@ def pictures():
     viewer.do("unwatch", watch=5)
 
 
+# A recorded run without anything that runs: each viewer is shown the moment that it asks for, and nothing can be done to it.
+def recording():
+    file = rig.path("run.mcap")
+    rig.call(f"{rig.bin_dir}/rtse", "run", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "-w", f"{rig.source}/worlds/obstacle_course.sdf", "-d", "6", "--record", file,
+             "--module-path", rig.lib_dir)
+    studio = Studio(file)
+    viewer, other = studio.viewer(), studio.viewer()
+    hello = viewer.event("hello")
+    assert hello["read_only"] and hello["recording"]["from"] == 0 and hello["recording"]["to"] == 6, hello
+    world = viewer.event("world", lambda m: m["present"])
+    assert "pioneer2dx" in [model["name"] for model in world["models"]], world
+    states = hello["recording"]["states"]
+    assert len(states) == 3 and all(changes[0][1] == "Active" for changes in states.values()), states
+
+    def places_at(who, seconds):
+        who.send({"op": "request", "id": 999, "name": "look", "args": {"time": seconds, "whole": True}})
+        frame = who.wait_for(lambda m: is_poses(m) and m[1] == 1 and struct.unpack_from("<Q", m, 8)[0] == round(seconds * 1e9))
+        return sorted(poses_in(frame).items())
+
+    there = places_at(viewer, 5.5)
+    assert places_at(viewer, 1) != there
+    assert places_at(other, 5.5) == there, "another viewer is shown the same"
+    for step in range(51, 276):
+        viewer.do("look", time=step / 50)  # by steps, as it plays: what comes of it is the same as by a jump
+    assert places_at(viewer, 5.5) == there
+    viewer.do("watch", watch=1, topic="/LaserObstacleAvoid0/velocity", members=["data.vx"])
+    now = viewer.event("values", lambda m: m["watch"] == 1 and "v" in m)
+    series = viewer.do("series", topic="/LaserObstacleAvoid0/velocity", members=["data.vx"])
+    assert len(series["t"]) == 61 and series["left_out"] == 0 and dict(zip(series["t"], [v[0] for v in series["v"]]))[now["t"][0]] == now["v"][0][0], now
+    thin = viewer.do("series", topic="/LaserObstacleAvoid0/velocity", members=["data.vx"], points=20, **{"from": 1, "to": 3})
+    assert 15 <= len(thin["t"]) <= 21 and thin["left_out"] + len(thin["t"]) == 21 and 1 <= thin["t"][0] and thin["t"][-1] <= 3, thin
+    viewer.do("watch", watch=2, topic="/sim/sonar/pioneer2dx/sonar")
+    assert len(viewer.event("values", lambda m: m["watch"] == 2)["value"]["ranges"]) > 1
+    viewer.do("watch", watch=3, topic="/nothing")
+    assert viewer.event("values", lambda m: m["watch"] == 3)["error"] == "it was not recorded"
+    path = next(path for path in states if "LaserObstacleAvoid0" in path)
+    assert {"name": "stop_distance", "value": "0.5"}.items() <= next(v for v in viewer.do("component", path=path)["sets"][0]["values"] if v["name"] == "stop_distance").items()
+    for name, args in {"activate": {"path": path}, "run": {}, "step": {"steps": 1}, "set_pose": {"model": "pioneer2dx", "planar": [0, 0, 0]}, "nonsense": {}}.items():
+        assert "a recording shows what was" in viewer.ask(name, **args)["error"], name
+    for name, args in {"look": {}, "series": {"topic": "/nothing", "members": ["a"]}, "component": {"path": "/no"}, "watch": {"watch": "x"}}.items():
+        assert "error" in viewer.ask(name, **args), name
+    viewer.do("look", time=1e300)
+    viewer.do("look", time=-1e300)
+    assert studio.get(f"/world.glb?token={studio.token}")[2][:4] == b"glTF"
+    foreign = studio.viewer(protocol="foxglove.websocket.v1")
+    assert "a recording is open here" in foreign.event("status")["message"]
+    studio.lives()
+
+
 # A saved system with its world, started paused, and gone with the studio.
 def started():
     studio = Studio(f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "--world", f"{rig.source}/worlds/obstacle_course.sdf")

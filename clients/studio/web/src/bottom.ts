@@ -1,6 +1,7 @@
 // Time: run, pause, step, speed; the line of the last minutes; under it plots, logs, pictures and where a step's time goes.
 import { button, h, icon, once_a_frame, put } from './dom';
 import { History } from './history';
+import { Playback, recording } from './playback';
 import { Plots } from './plots';
 import { keep, settings } from './settings';
 import { act, on, read_only, selected_model, store, wire } from './store';
@@ -19,6 +20,7 @@ export class Bottom {
   private readonly speed = h('input', { id: 'speed', type: 'number', min: 0, step: 'any', value: 1, class: 'number', title: 'Simulated seconds a second; 0: as fast as possible' });
   private readonly band = h('canvas', { class: 'band', role: 'img', 'aria-label': 'States of components over time' });
   private readonly scrub = h('input', { type: 'range', class: 'scrub', min: 0, max: 1, step: 'any', value: 1, 'aria-label': 'Moment that is shown' });
+  private readonly reset_button: HTMLButtonElement;
   private readonly live = button('Back to now', { label: 'Live', id: 'live', pressed: true }, () => this.look(null));
   private readonly tabs = h('div', { class: 'tabs', role: 'tablist', 'aria-label': 'Below the time line' });
   private readonly body = h('div', { class: 'tab-body', role: 'tabpanel' });
@@ -29,28 +31,38 @@ export class Bottom {
   private stops = new Map<string, () => void>();
   private moment: number | null = null;
 
-  constructor(world: WorldView, private readonly history: History) {
-    this.plots = new Plots(() => this.moment ?? store.time?.sim_time ?? 0);
-    const can = () => !read_only() && wire.status === 'open' && store.world?.present;
+  constructor(world: WorldView, private readonly history: History, private readonly playback: Playback) {
+    this.plots = new Plots(() => this.moment ?? store.time?.sim_time ?? 0, (moment) => this.look(moment));
+    const can = () => wire.status === 'open' && (recording() !== undefined || (!read_only() && store.world?.present));
     const step_button = button('Step', { icon: 'step', key: '.', id: 'step' }, () => this.step());
-    const reset_button = button('Reset world and time', { icon: 'reset', key: 'Shift+R', id: 'reset' }, () => this.reset());
+    this.reset_button = button('Reset world and time', { icon: 'reset', key: 'Shift+R', id: 'reset' }, () => this.reset());
     // Enter by itself too: a browser does not tell of a change to what stood there before somebody else had changed it.
     const set_speed = () => {
       const rtf = Number(this.speed.value);
+      if (recording()) {
+        if (rtf > 0) this.playback.speed = rtf;
+        return;
+      }
       if (this.speed.value !== '' && rtf >= 0 && rtf !== store.time?.rtf_wanted) act('Set the speed', 'speed', { rtf });
     };
     this.speed.addEventListener('change', set_speed);
     this.speed.addEventListener('keydown', (event) => { if (event.key === 'Enter') set_speed(); });
-    const window_box = h('select', { 'aria-label': 'Length of the time line', onchange: () => { this.plots.window = Number(window_box.value); this.draw_band(); } }, [10, 30, 60, 300].map((sec) => h('option', { value: sec, selected: sec === 30 }, sec < 60 ? `${sec} s` : `${sec / 60} min`)));
-    this.transport.append(this.run_button, step_button, reset_button, this.clock, h('label', { class: 'speed', for: 'speed' }, '×'), this.speed, this.rate, this.waits, h('span', { class: 'spring' }), window_box, this.live);
+    const window_box = h('select', { 'aria-label': 'Length of the time line', onchange: () => { this.plots.window = Number(window_box.value); this.plots.draw(); this.draw_band(); } }, [10, 30, 60, 300].map((sec) => h('option', { value: sec, selected: sec === 30 }, sec < 60 ? `${sec} s` : `${sec / 60} min`)));
+    this.transport.append(this.run_button, step_button, this.reset_button, this.clock, h('label', { class: 'speed', for: 'speed' }, '×'), this.speed, this.rate, this.waits, h('span', { class: 'spring' }), window_box, this.live);
     this.element.append(this.transport, h('div', { class: 'line-of-time' }, this.band, this.scrub), this.tabs, this.body);
     this.scrub.addEventListener('input', () => this.look(Number(this.scrub.value) >= Number(this.scrub.max) - 1e-6 ? null : Number(this.scrub.value)));
     this.log_filter.addEventListener('input', () => this.show_logs());
     on(['time', 'world', 'status', 'hello'], once_a_frame(() => {
       this.show_time();
-      for (const b of [this.run_button, step_button, reset_button]) b.disabled = !can();
+      for (const b of [this.run_button, step_button, this.reset_button]) b.disabled = !can();
       this.speed.disabled = !can();
     }));
+    on('hello', () => {
+      if (!recording() || window_box.value === '0') return;
+      window_box.prepend(h('option', { value: 0 }, 'all'));
+      window_box.value = '0';
+      this.plots.window = 0;
+    });
     on('log', once_a_frame(() => { if (settings.tab === 'logs') this.show_logs(); }));
     on('time', once_a_frame(() => { if (settings.tab === 'step') this.show_parts(); }));
     on('world', () => this.offer_images(world));
@@ -60,18 +72,22 @@ export class Bottom {
   }
 
   run_or_pause(): void {
+    if (recording()) return this.playback.play_or_stop();
     if (read_only()) return;
     store.time?.paused === false ? act('Pause', 'pause', {}) : act('Run', 'run', {});
     this.look(null);
   }
-  step(): void {
-    if (!read_only()) act('Step', 'step', {});
+  step(way = 1): void {
+    if (recording()) return this.playback.step(way);
+    if (!read_only() && way > 0) act('Step', 'step', {});
   }
   reset(): void {
+    if (recording()) return this.playback.seek(recording()!.from);
     if (!read_only()) act('Reset the world', 'reset_world', {});
   }
 
-  private look(moment: number | null): void {
+  look(moment: number | null): void {
+    if (recording()) return this.playback.seek(moment ?? this.history.last);
     this.moment = moment;
     this.live.setAttribute('aria-pressed', String(moment === null));
     this.element.classList.toggle('past', moment !== null);
@@ -82,7 +98,9 @@ export class Bottom {
 
   private show_time(): void {
     const { time } = store;
-    if (!time || !store.world?.present) {
+    const whole = recording();
+    this.live.hidden = whole !== undefined;
+    if (!time || !(whole || store.world?.present)) {
       this.clock.textContent = '–';
       this.rate.textContent = '';
       return;
@@ -90,15 +108,20 @@ export class Bottom {
     const shown = this.moment ?? time.sim_time;
     this.clock.textContent = `${shown.toFixed(3)} s`;
     this.rate.textContent = time.paused ? 'paused' : `${time.rtf.toFixed(time.rtf < 10 ? 2 : 0)} × real time`;
+    const run = whole ? 'Play' : 'Run';
+    if (whole) {
+      this.reset_button.title = 'To the beginning (Shift+R)';
+      this.reset_button.setAttribute('aria-label', 'To the beginning');
+    }
     const late = (time.participants ?? []).filter((p) => p.late).map((p) => p.name);
-    this.waits.textContent = time.waiting_for > 0 ? `waits for ${time.waiting_for} to join` : late.length > 0 ? `waits for ${late.join(', ')}` : (time.participants?.length ?? 0) > 0 ? `lock step, ${time.participants!.length} take part` : '';
-    this.waits.classList.toggle('late', late.length > 0 || time.waiting_for > 0);
+    this.waits.textContent = this.playback.problem ? this.playback.problem : time.waiting_for > 0 ? `waits for ${time.waiting_for} to join` : late.length > 0 ? `waits for ${late.join(', ')}` : (time.participants?.length ?? 0) > 0 ? `lock step, ${time.participants!.length} take part` : '';
+    this.waits.classList.toggle('late', late.length > 0 || time.waiting_for > 0 || this.playback.problem !== '');
     put(this.run_button, icon(time.paused ? 'run' : 'pause'));
-    this.run_button.setAttribute('aria-label', time.paused ? 'Run' : 'Pause');
-    this.run_button.title = `${time.paused ? 'Run' : 'Pause'} (Space)`;
+    this.run_button.setAttribute('aria-label', time.paused ? run : 'Pause');
+    this.run_button.title = `${time.paused ? run : 'Pause'} (Space)`;
     if (document.activeElement !== this.speed) this.speed.value = String(Number(time.rtf_wanted.toPrecision(4)));
     this.scrub.min = String(this.history.first);
-    this.scrub.max = String(Math.max(time.sim_time, this.history.first + 0.001));
+    this.scrub.max = String(Math.max(this.history.last, this.history.first + 0.001));
     this.scrub.value = String(shown);
     this.scrub.setAttribute('aria-valuetext', `${shown.toFixed(1)} s`);
     this.draw_band();
@@ -127,6 +150,12 @@ export class Bottom {
         draw.fillRect(x * width, i * row + 0.5, Math.max(1, (end - x) * width), Math.max(1.5, row - 1));
       });
     });
+    // Warnings and errors of logs, as marks on their moments.
+    for (const [time, level] of recording()?.lines ?? []) {
+      if (level !== 'ERROR' && level !== 'WARN') continue;
+      draw.fillStyle = style.getPropertyValue(level === 'ERROR' ? '--bad' : '--warn');
+      draw.fillRect(((time - from) / (to - from)) * width - 1, 0, 2, height);
+    }
   }
 
   // ---- tabs ----
@@ -159,7 +188,7 @@ export class Bottom {
     const lines = store.logs.filter((l) => (!words || `${l.level} ${l.source} ${l.text}`.toLowerCase().includes(words)) && (!only || l.source.includes(only))).slice(-400);
     const at_end = this.log_list.scrollTop + this.log_list.clientHeight > this.log_list.scrollHeight - 8;
     put(this.log_list, lines.length === 0 ? h('p', { class: 'hint' }, only ? `Nothing from ${only} yet.` : words ? 'Nothing fits the filter.' : 'Nothing has been logged yet.') : lines.map((l) => h('div', { class: `level-${l.level.toLowerCase()}` },
-      h('span', { class: 'when' }, l.time ? new Date(l.time * 1000).toTimeString().slice(0, 8) : ''), h('span', { class: 'level' }, l.level), h('span', { class: 'source' }, short_path(l.source)), h('span', { class: 'text' }, l.text))));
+      h('span', { class: 'when' }, l.time !== undefined ? h('button', { type: 'button', class: 'link', title: 'Show this moment', onclick: () => this.look(l.time!) }, `${l.time.toFixed(3)} s`) : ''), h('span', { class: 'level' }, l.level), h('span', { class: 'source' }, short_path(l.source)), h('span', { class: 'text' }, l.text))));
     if (at_end) this.log_list.scrollTop = this.log_list.scrollHeight;
   }
 
@@ -167,7 +196,7 @@ export class Bottom {
     const { time } = store;
     const parts = time?.parts ?? [];
     const all = Math.max(1e-9, parts.reduce((sum, p) => sum + p.total_ms, 0));
-    put(this.parts, parts.length === 0 ? h('p', { class: 'hint' }, 'No simulator: nothing takes time.') : h('div', { class: 'columns' },
+    put(this.parts, parts.length === 0 ? h('p', { class: 'hint' }, recording() ? 'A recording does not say where the time of a step went.' : 'No simulator: nothing takes time.') : h('div', { class: 'columns' },
       h('table', null, h('caption', null, 'Where a step\'s time goes'), h('thead', null, h('tr', null, ['part', 'calls', 'mean', 'worst', 'share'].map((t) => h('th', { scope: 'col' }, t)))), h('tbody', null, parts.map((p) => h('tr', null, h('th', { scope: 'row' }, p.name), h('td', null, p.calls), h('td', null, `${((p.total_ms * 1000) / Math.max(1, p.calls)).toFixed(1)} µs`), h('td', null, `${p.max_us.toFixed(0)} µs`), h('td', null, bar(p.total_ms / all), `${((100 * p.total_ms) / all).toFixed(0)} %`))))),
       (time?.participants?.length ?? 0) > 0 ? h('table', null, h('caption', null, 'Who takes part in lock step'), h('thead', null, h('tr', null, ['name', 'phase', 'rate', 'ticks', 'missed', 'mean', 'worst', ''].map((t) => h('th', { scope: 'col' }, t)))), h('tbody', null, time!.participants!.map((p) => h('tr', { class: p.late ? 'late' : undefined }, h('th', { scope: 'row' }, p.name), h('td', null, p.phase), h('td', null, `${p.rate} Hz`), h('td', null, p.ticks), h('td', null, p.missed), h('td', null, `${p.mean_us.toFixed(0)} µs`), h('td', null, `${p.max_us.toFixed(0)} µs`),
         h('td', null, p.late ? button(`Let time go on without ${p.name}`, { label: 'Drop' }, () => act(`Drop ${p.name}`, 'drop_participant', { name: p.name })) : null))))) : null));

@@ -1,4 +1,6 @@
-// The last minutes of a live run: where models were, and states of components. In simulated time; forgotten when time goes back.
+// The last minutes of a live run: where models were, and states of components. In simulated time; forgotten when time goes back. Of a
+// recording only how long it is and its states: the server has the rest.
+import { recording } from './playback';
 import { on, store } from './store';
 import type { State } from './wire';
 import type { WorldView } from './world';
@@ -18,16 +20,25 @@ export class History {
   constructor(private readonly world: WorldView) {
     on(['states', 'system'], () => this.note_states());
     on('time', () => this.note_places());
+    on('hello', () => {
+      const whole = recording();
+      if (!whole) return;
+      this.states.clear();
+      for (const [path, changes] of Object.entries(whole.states)) this.states.set(path, changes.map(([time, state]) => ({ time, state: (state === 'Finalized' ? 'Unknown' : state) as State })));
+    });
   }
 
   get first(): number {
+    const whole = recording();
+    if (whole) return whole.from;
     return Math.max(this.moments[0]?.time ?? 0, this.last - longest);
   }
   get last(): number {
-    return store.time?.sim_time ?? 0;
+    return recording()?.to ?? store.time?.sim_time ?? 0;
   }
 
   private note_states(): void {
+    if (recording()) return;
     for (const { path, state } of store.system.components) {
       const changes = this.states.get(path) ?? [];
       if (changes[changes.length - 1]?.state === state) continue;
@@ -39,7 +50,7 @@ export class History {
 
   private note_places(): void {
     const scene = this.world.world;
-    if (!scene || this.world.is_past) return;
+    if (!scene || this.world.is_past || recording()) return;
     const newest = this.moments[this.moments.length - 1]?.time ?? -1;
     if (scene.version !== this.version || this.last < newest) {
       this.moments = [];

@@ -8,6 +8,7 @@ import { History } from './history';
 import { disconnect, Inspector, spawn_dialog } from './inspector';
 import { apply_theme, keep, linked, settings, to_link } from './settings';
 import { act, changed, component, on, read_only, select, selected_model, store, undo_last, wire } from './store';
+import { Playback, recording } from './playback';
 import { Tree } from './tree';
 import { WorldView } from './world';
 
@@ -18,7 +19,8 @@ const diagram = new Diagram();
 const tree = new Tree();
 const drive = new Drive();
 const history_of_run = new History(world);
-const bottom = new Bottom(world, history_of_run);
+const playback = new Playback(() => world.forget_trails());
+const bottom = new Bottom(world, history_of_run, playback);
 const inspector = new Inspector({
   world,
   drive: (iface) => drive.begin(iface),
@@ -225,17 +227,19 @@ function show_only(panel: Panel): void {
 
 function show_head(): void {
   const { status } = wire;
-  world_name.textContent = store.world?.present ? store.world.name : '';
-  const text = status === 'forbidden' ? 'another token: open the new URL' : status === 'lost' ? 'rtm-studio is gone; waiting for it' : status === 'connecting' ? 'connecting' : store.system.problem ? 'no naming service' : store.world && !store.world.present ? 'no simulator' : '';
+  const whole = recording();
+  world_name.textContent = whole ? `${whole.file}, ${(whole.to - whole.from).toFixed(1)} s recorded` : store.world?.present ? store.world.name : '';
+  const text = status === 'forbidden' ? 'another token: open the new URL' : status === 'lost' ? 'rtm-studio is gone; waiting for it' : status === 'connecting' ? 'connecting' : whole ? (whole.damage ? 'the file is damaged; what could be read is shown' : '') : store.system.problem ? 'no naming service' : store.world && !store.world.present ? 'no simulator' : '';
   link_state.textContent = text;
+  link_state.title = whole?.damage ?? '';
   link_state.classList.toggle('bad', text !== '');
-  status_bar.querySelector('.read-only')!.textContent = read_only() ? 'read-only: this page may look, not act' : '';
+  status_bar.querySelector('.read-only')!.textContent = whole ? 'a recording: it shows what was' : read_only() ? 'read-only: this page may look, not act' : '';
   page.classList.toggle('read-only', read_only());
   const counts = system_panel.querySelector('.counts')!;
   const errors = store.system.components.filter((c) => c.state === 'Error').length;
   counts.textContent = store.system.components.length > 0 ? `${errors > 0 ? `${errors} in error, ` : ''}${store.system.components.length} components` : '';
   document.title = `${store.world?.present ? `${store.world.name} – ` : ''}rtm-studio`;
-  for (const id of ['save', 'open', 'activate-all', 'deactivate-all']) (document.getElementById(id) as HTMLButtonElement | null)?.toggleAttribute('disabled', status !== 'open' || (read_only() && id !== 'save'));
+  for (const id of ['save', 'open', 'activate-all', 'deactivate-all']) (document.getElementById(id) as HTMLButtonElement | null)?.toggleAttribute('disabled', status !== 'open' || (read_only() && (id !== 'save' || whole !== undefined)));
   for (const tool of [tools.move, tools.push, tools.spawn]) tool.disabled = read_only() || !store.world?.present;
 }
 
@@ -251,7 +255,7 @@ function show_tools(): void {
 }
 
 const keys: [string, string][] = [
-  ['Space', 'run or pause'], ['.', 'one step'], ['Shift+R', 'reset world and time'], ['/', 'search'], ['1 – 5', 'panels'], ['O', 'all of the world'], ['T', 'from above'], ['F', 'follow the robot'],
+  ['Space', 'run or pause'], ['.', 'one step'], [',', 'of a recording: one step back'], ['Shift+R', 'reset world and time; of a recording: to its beginning'], ['/', 'search'], ['1 – 5', 'panels'], ['O', 'all of the world'], ['T', 'from above'], ['F', 'follow the robot'],
   ['L, N', 'laser fans, names'], ['M, P', 'move, push by dragging'], ['G', 'drive the robot (arrows or W A S D)'], ['A, D, E', 'activate, deactivate, reset the selected component'], ['C', 'connect the selected port'], ['Delete', 'disconnect'],
   ['Ctrl+Z', 'undo'], ['Escape', 'select nothing'], ['Arrows', 'in the world: turn (with Shift: move); in the system: next component; in the tree: rows'], ['[  ]', 'in the system: next port'], ['+  –', 'zoom'], ['?', 'this list'],
 ];
@@ -273,7 +277,7 @@ document.addEventListener('keydown', (event) => {
   const chosen = store.selection?.kind === 'component' ? component(store.selection.id) : undefined;
   const on_chosen = (name: string, word: string, state: string) => () => { if (chosen?.state === state && !read_only()) act(`${word} ${chosen.instance}`, name, { path: chosen.path }); };
   const table: { [key: string]: () => void } = {
-    ' ': () => bottom.run_or_pause(), '.': () => bottom.step(), R: () => bottom.reset(), '/': () => { show_panel('tree', true); tree.search.focus(); tree.search.select(); }, '?': show_keys,
+    ' ': () => bottom.run_or_pause(), '.': () => bottom.step(), ',': () => bottom.step(-1), R: () => bottom.reset(), '/': () => { show_panel('tree', true); tree.search.focus(); tree.search.select(); }, '?': show_keys,
     o: () => world.whole(), t: () => tools.top.click(), f: follow, l: () => toggle('lasers'), n: () => toggle('names'), m: () => world.set_tool('move'), p: () => world.set_tool('push'), g: () => drive.toggle(),
     a: on_chosen('activate', 'Activate', 'Inactive'), d: on_chosen('deactivate', 'Deactivate', 'Active'), e: on_chosen('reset', 'Reset', 'Error'),
     c: () => document.getElementById('connect')?.click(), Delete: () => { if (store.selection?.kind === 'connection') disconnect(store.selection.id); }, Escape: () => select(null),
@@ -291,7 +295,7 @@ document.addEventListener('keydown', (event) => {
 
 const write_link = once_a_frame(() => {
   const { panels, sizes, tab, plots, lasers, sonars, names, trails, collisions } = settings;
-  const link = to_link({ settings: { panels, sizes, tab, plots, lasers, sonars, names, trails, collisions }, eye: world.eye.state(), selection: store.selection });
+  const link = to_link({ settings: { panels, sizes, tab, plots, lasers, sonars, names, trails, collisions }, eye: world.eye.state(), selection: store.selection, moment: recording() ? playback.moment : undefined });
   history.replaceState(null, '', link);
 });
 let link_timer = 0;
@@ -319,7 +323,8 @@ if (linked.eye) {
   world.mark_restored();
 }
 if (linked.selection) select(linked.selection);
+if (typeof linked.moment === 'number') playback.moment = linked.moment;
 wire.connect();
 
 // For tests, and for whoever looks with the browser's console.
-Object.assign(window, { studio: { world, diagram, store, wire, settings, select, act } });
+Object.assign(window, { studio: { world, diagram, store, wire, settings, select, act, playback, bottom } });

@@ -2,6 +2,7 @@
 import uPlot from 'uplot';
 import { button, h, put } from './dom';
 import { flatten } from './inspector';
+import { recording } from './playback';
 import { keep, settings } from './settings';
 import { on, store, wire } from './store';
 import { signal_name } from './tree';
@@ -10,6 +11,7 @@ import { palette } from './world';
 
 interface Line { topic: string; kind: string; member: string; times: number[]; values: (number | null)[]; stop: () => void; error: string }
 const most_points = 12000;
+const recorded_points = 6000; // of a line, of all of a recording or of the part that is looked at
 
 class Plot {
   readonly element = h('div', { class: 'plot' });
@@ -18,7 +20,7 @@ class Plot {
   private lines: Line[] = [];
   private plot: uPlot | null = null;
 
-  constructor(private readonly entry: { series: { topic: string; member: string }[] }, private readonly remove: () => void) {
+  constructor(private readonly entry: { series: { topic: string; member: string }[] }, private readonly remove: () => void, private readonly choose: (time: number) => void) {
     this.element.append(this.legend, this.body);
     for (const { topic, member } of entry.series) this.begin(topic, member);
     this.element.addEventListener('dragover', (event) => event.preventDefault());
@@ -26,6 +28,10 @@ class Plot {
       event.preventDefault();
       event.stopPropagation();
       first_member(event.dataTransfer?.getData('text/plain') ?? '').then((line) => line && this.add(line.topic, line.member));
+    });
+    this.body.addEventListener('click', (event) => {
+      const over = this.body.querySelector('.u-over')?.getBoundingClientRect();
+      if (this.plot && over && event.clientX >= over.left && event.clientX <= over.right) this.choose(this.plot.posToVal(event.clientX - over.left, 'x'));
     });
     new ResizeObserver(() => this.make()).observe(this.body);
   }
@@ -44,6 +50,8 @@ class Plot {
 
   private begin(topic: string, member: string): void {
     const line: Line = { topic, kind: '', member, times: [], values: [], stop: () => {}, error: '' };
+    this.lines.push(line);
+    if (recording()) return void this.load(line);
     line.stop = watch({ topic, members: [member], hz: 30 }, (values) => {
       line.error = values.error ?? '';
       if (values.error || !values.t) return this.show_legend();
@@ -59,8 +67,35 @@ class Plot {
         line.values.splice(0, 2000);
       }
     });
-    this.lines.push(line);
     this.show_legend();
+  }
+
+  // All of it that is recorded; when that is much, so many samples of it as a plot can show.
+  private async load(line: Line): Promise<void> {
+    const whole = recording()!;
+    this.show_legend();
+    try {
+      for (let from = whole.from; from < whole.to && this.lines.includes(line);) {
+        const { result } = await wire.request('series', { topic: line.topic, members: [line.member], from, to: whole.to, points: recorded_points });
+        line.times.push(...result.t);
+        line.values.push(...result.v.map(([value]: [unknown]) => (typeof value === 'number' ? value : typeof value === 'boolean' ? Number(value) : null)));
+        line.error = result.left_out > 0 ? `(${result.t.length} of ${result.t.length + result.left_out} samples)` : '';
+        if (!(result.until > from)) break;
+        from = result.until >= whole.to ? whole.to : result.until;
+      }
+      if (line.values.length > 0 && line.values.every((value) => value === null)) line.error = 'has no such number';
+    } catch (error) {
+      line.error = (error as Error).message;
+    }
+    this.show_legend();
+  }
+
+  // The server has changed: what was a run may be a recording.
+  again(): void {
+    for (const line of this.lines) line.stop();
+    this.lines = [];
+    for (const { topic, member } of this.entry.series) this.begin(topic, member);
+    this.make();
   }
 
   private show_legend(): void {
@@ -110,10 +145,22 @@ class Plot {
       scales: { x: { time: false }, y: { range: (_, low, high) => around(low, high) } },
       axes: [{ ...axis, size: 24, values: (_, ticks) => ticks.map((t) => `${t}`) }, { ...axis, size: 46 }],
       series: [{}, ...this.lines.map((_, i) => ({ stroke: palette[i % palette.length], width: 1.5, spanGaps: true, points: { show: false } }))],
-    }, this.data(0, Infinity), this.body);
+      hooks: { draw: [(plot) => this.mark_moment(plot)] },
+    }, this.data(-Infinity, Infinity), this.body);
   }
 
-  draw(from: number, to: number): void {
+  private moment: number | null = null;
+  private mark_moment(plot: uPlot): void {
+    if (this.moment === null) return;
+    const x = plot.valToPos(this.moment, 'x', true), { left, top, width, height } = plot.bbox;
+    if (x < left || x > left + width) return;
+    plot.ctx.fillStyle = getComputedStyle(this.element).getPropertyValue('--accent');
+    plot.ctx.fillRect(Math.round(x), top, Math.max(1, devicePixelRatio), height);
+  }
+
+  // `moment`: a line marks it, where it is not the end of the plot.
+  draw(from: number, to: number, moment: number | null): void {
+    this.moment = moment;
     if (!this.plot || this.plot.series.length !== this.lines.length + 1) return;
     this.plot.setData(this.data(from, to), false);
     this.plot.batch(() => {
@@ -128,7 +175,7 @@ export class Plots {
   private plots: Plot[] = [];
   window = 30; // [s]
 
-  constructor(private readonly end: () => number) {
+  constructor(private readonly end: () => number, private readonly choose: (time: number) => void) {
     for (const entry of settings.plots) this.open(entry);
     this.show();
     this.element.addEventListener('dragover', (event) => event.preventDefault());
@@ -137,13 +184,24 @@ export class Plots {
       first_member(event.dataTransfer?.getData('text/plain') ?? '').then((line) => line && this.add(line.topic, line.member));
     });
     on('settings', () => this.plots.forEach((p) => p.make()));
+    let was_recording = false;
+    on('hello', () => {
+      if (was_recording || recording()) this.plots.forEach((p) => p.again());
+      was_recording = recording() !== undefined;
+    });
     setInterval(() => this.draw(), 66);
   }
 
   draw(): void {
     if (this.element.offsetParent === null) return;
-    const to = this.end();
-    for (const plot of this.plots) plot.draw(to - this.window, to);
+    const whole = recording(), moment = this.end();
+    if (!whole) {
+      for (const plot of this.plots) plot.draw(moment - this.window, moment, null);
+      return;
+    }
+    const span = this.window === 0 ? whole.to - whole.from : Math.min(this.window, whole.to - whole.from);
+    const from = Math.min(whole.to - span, Math.max(whole.from, moment - span / 2));
+    for (const plot of this.plots) plot.draw(from, from + span, moment);
   }
 
   add(topic: string, member: string): void {
@@ -162,7 +220,7 @@ export class Plots {
       settings.plots.splice(settings.plots.indexOf(entry), 1);
       keep();
       this.show();
-    });
+    }, this.choose);
     this.plots.push(plot);
   }
 

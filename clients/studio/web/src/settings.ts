@@ -40,7 +40,7 @@ function merged(...parts: Partial<Settings>[]): Settings {
 }
 
 // A link: #v= and JSON in base64 with its own letters.
-export function from_link(): { settings?: Partial<Settings>; eye?: any; selection?: any } {
+export function from_link(): { settings?: Partial<Settings>; eye?: any; selection?: any; moment?: number } {
   const match = /(?:^#|&)v=([\w-]+)/.exec(location.hash);
   if (!match) return {};
   try {

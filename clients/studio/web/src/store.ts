@@ -5,7 +5,7 @@ import type { Component, ComponentDetail, Connection, Hello, LogLine, Signal, St
 export type Kind = 'model' | 'component' | 'port' | 'connection' | 'signal' | 'manager' | 'iface';
 export interface Selection { kind: Kind; id: string }
 
-export type Topic = 'status' | 'system' | 'states' | 'world' | 'time' | 'signals' | 'selection' | 'details' | 'log' | 'acts' | 'settings' | 'hello' | 'plots';
+export type Topic = 'status' | 'system' | 'states' | 'world' | 'time' | 'signals' | 'selection' | 'details' | 'log' | 'acts' | 'settings' | 'hello' | 'plots' | 'scene';
 
 export interface Act {
   text: string;

@@ -13,7 +13,7 @@ export interface Connection { id: string; name: string; ports: string[]; absent?
 export interface System { revision: number; problem: string; components: Component[]; connections: Connection[]; managers: { path: string; problem?: string }[] }
 export interface Iface { type: string; name: string; model?: string; info?: Record<string, unknown> }
 export interface WorldEvent {
-  present: boolean; problem: string; server_id: number; name: string; file?: string; lockstep?: boolean; step?: number; version: number; links: number;
+  present: boolean; problem: string; is_coming?: boolean; server_id: number; name: string; file?: string; lockstep?: boolean; step?: number; version: number; links: number;
   models: { name: string; static: boolean }[]; ifaces: Iface[];
 }
 export interface Participant { name: string; pid: number; phase: number; rate: number; ticks: number; missed: number; mean_us: number; max_us: number; active: boolean; late: boolean }
@@ -23,7 +23,11 @@ export interface TimeEvent {
 }
 export interface Signal { topic: string; kind: 'port' | 'iface' | 'image' | 'state' | 'log'; type: string; model?: string; component?: string }
 export interface LogLine { level: string; source: string; time?: number; text: string }
-export interface Hello { version: string; read_only: boolean; name_server: string; server_id: number }
+// What is recorded, and all of it that is little: states of components by path, and logs, each with its time [s].
+export interface Recording {
+  file: string; from: number; to: number; step: number; damage: string; states: Record<string, [number, string][]>; lines: [number, string, string, string][]; lines_left_out: number;
+}
+export interface Hello { version: string; read_only: boolean; name_server: string; server_id: number; recording?: Recording }
 export interface Values { watch: number; t: number[]; v?: unknown[][]; value?: unknown; error?: string }
 
 export interface Poses { version: number; time: number; all: boolean; count: number; view: DataView }

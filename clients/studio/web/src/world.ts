@@ -101,6 +101,7 @@ export class WorldView {
     if (wire.status !== 'open') return this.say(`${link_problem()}${this.world ? ' This is what was last seen.' : ''}`);
     if (!world || !world.present) {
       const why = world?.problem || 'No simulator runs.';
+      if (store.hello?.recording) return this.say(`${capital(why)} ${world?.is_coming ? '' : 'The rest of the recording can be looked at.'}`);
       return this.say(`${capital(why)} Start one: \`sim-server worlds/obstacle_course.sdf\`. It appears here by itself.`);
     }
     if (this.world?.version === world.version && this.world_key === this.key_of()) return this.say('');
@@ -157,6 +158,7 @@ export class WorldView {
     this.apply_settings();
     if (is_first && !this.restored) this.whole();
     changed('settings');
+    changed('scene');
     this.shadows_dirty = true;
     this.redraw();
   }
@@ -358,6 +360,14 @@ export class WorldView {
   private movers(): Model[] {
     const models = new Set(store.world?.ifaces.filter((i) => i.type.startsWith('position')).map((i) => i.model));
     return [...(this.world?.models.values() ?? [])].filter((m) => models.has(m.name));
+  }
+
+  forget_trails(): void {
+    for (const trail of this.trails.values()) {
+      trail.count = 0;
+      trail.last.set(1e9, 0, 0);
+      trail.line.geometry.setDrawRange(0, 0);
+    }
   }
 
   private lengthen_trails(): void {

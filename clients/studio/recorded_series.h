@@ -1,0 +1,24 @@
+// A signal of a recording over time, for plots. Reads the file by itself; any thread.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "client_message.h"
+#include "recording_facts.h"
+
+namespace studio {
+
+struct SeriesOrder {
+  std::string topic;
+  std::vector<std::string> members;
+  std::chrono::nanoseconds from{0}, to{0};
+  std::size_t points = 0;  // when there are more samples, only so many are given, evenly in time
+};
+
+// {"t":[s,...], "v":[[m1,m2,...],...], "until":s, "left_out":N}: `until` is where it stopped, since it takes no more than ten seconds;
+// `left_out` counts the samples that are not given.
+base::Result<Json> recorded_series(const RecordingFacts& facts, const SeriesOrder& order);
+
+}  // namespace studio

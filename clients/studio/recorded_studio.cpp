@@ -1,0 +1,324 @@
+#include "recorded_studio.h"
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <cmath>
+#include <filesystem>
+
+#include "base/id.h"
+#include "base/text.h"
+#include "foxglove.h"
+#include "scene.h"
+
+namespace studio {
+namespace {
+
+using base::Error;
+using base::Result;
+
+constexpr std::size_t maker_threads = 2;
+constexpr std::size_t most_open_requests = 32;  // of a viewer
+constexpr std::size_t most_members = 256;       // of a watch
+constexpr std::size_t most_points = 20000;      // of a line of a plot
+constexpr double step_s = 0.02;                 // in which poses are recorded
+
+const Json& component_at(const RecordingFacts& facts, const std::string& path) {
+  static const Json nothing;
+  const auto found = std::ranges::find_if(facts.components, [&](const Json& one) { return one.value("path", "") == path; });
+  return found == facts.components.end() ? nothing : *found;
+}
+
+std::string value_in(const editor::SavedComponent& component, const char* set_id, const std::string& name) {
+  for (const auto& set : component.configuration_sets) {
+    if (set.id != set_id) continue;
+    for (const auto& [key, value] : set.values) {
+      if (key == name) return value;
+    }
+  }
+  return {};
+}
+
+// The reply to "component": what the profile says, with the parameters as they were at the moment.
+Result<Json> details(const RecordingFacts& facts, const std::string& path, Playhead& playhead) {
+  const Json& component = component_at(facts, path);
+  if (component.is_null()) return Error{"component " + base::in_quotes(path) + ": is not in the recording"};
+  const auto now = playhead.parameters(component.value("instance", ""));
+  if (!now) return now.error();
+  Json json = component;
+  json["properties"] = Json::object();
+  json["sets"] = Json::array();
+  const auto saved = facts.saved.find(path);
+  if (saved == facts.saved.end()) {
+    Json values = Json::array();
+    for (const auto& [name, value] : *now)
+      values.push_back({{"name", name}, {"value", value}, {"type", ""}, {"widget", ""}, {"constraint", ""}});
+    if (!values.empty()) json["sets"].push_back({{"id", "default"}, {"active", true}, {"values", std::move(values)}});
+    return json;
+  }
+  for (const auto& set : saved->second.configuration_sets) {
+    if (set.is_hidden()) continue;
+    const bool is_active = set.id == saved->second.active_set;
+    Json values = Json::array();
+    for (const auto& [name, value] : set.values) {
+      values.push_back({{"name", name},
+                        {"value", is_active && now->contains(name) ? now->at(name) : value},
+                        {"type", value_in(saved->second, "__type__", name)},
+                        {"widget", value_in(saved->second, "__widget__", name)},
+                        {"constraint", value_in(saved->second, "__constraints__", name)}});
+    }
+    json["sets"].push_back({{"id", set.id}, {"active", is_active}, {"values", std::move(values)}});
+  }
+  return json;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<RecordedStudio>> RecordedStudio::open(boost::asio::io_context& loop, const std::string& file) {
+  auto facts = RecordingFacts::read(file);
+  if (!facts) return facts.error();
+  return std::unique_ptr<RecordedStudio>(new RecordedStudio(loop, std::make_shared<const RecordingFacts>(std::move(*facts))));
+}
+
+RecordedStudio::RecordedStudio(boost::asio::io_context& loop, std::shared_ptr<const RecordingFacts> facts)
+    : loop_(loop),
+      facts_(std::move(facts)),
+      session_(base::make_uuid()),
+      makers_(std::make_unique<Workers>(maker_threads)),
+      reading_(std::make_unique<Workers>(1)) {
+  make_scene();
+}
+
+WebHandlers RecordedStudio::handlers() {
+  return {[this](std::shared_ptr<Viewer> viewer) { join(std::move(viewer)); },
+          [this](Viewer& viewer, std::string_view text) { hear(viewer, text); }, [this](Viewer& viewer) { leave(viewer); },
+          [this](const std::string& path, const std::string& query, const Answer& answer) { return fetch(path, query, answer); }};
+}
+
+// ---- the scene ----
+
+void RecordedStudio::make_scene() {
+  const auto work = [this, file = facts_->file] {
+    Result<Scene> scene = Error{"the world cannot be made in a way that nobody has foreseen"};
+    try {
+      scene = RecordedScene::make(file);
+    } catch (const std::exception& e) {
+      scene = Error{e.what()};
+    }
+    boost::asio::post(loop_, [this, scene] { has_scene(scene); });
+  };
+  (void)makers_->give(work);  // the first work of all: there is room
+}
+
+void RecordedStudio::has_scene(const Result<Scene>& scene) {
+  if (scene) {
+    scene_ = *scene;
+  } else {
+    scene_problem_ = scene.error().message;
+  }
+  for (const auto& [with_collisions, answer] : waiting_)
+    answer(!scene_ ? refusal(scene_problem_) : with_collisions ? scene_->glb_with_collisions : scene_->glb);
+  waiting_.clear();
+  const Frame frame = text_frame(world_event());
+  for (auto& [id, guest] : guests_) {
+    if (scene_) (void)reading_->give([playhead = guest.playhead, scene = scene_] { playhead->set_scene(scene); });
+    guest.viewer->send_newest("world", frame);
+  }
+}
+
+std::string RecordedStudio::world_event() const {
+  Json event{{"op", "world"},
+             {"present", scene_ != nullptr},
+             {"problem", scene_                   ? ""
+                         : scene_problem_.empty() ? "the world is being made from the recording"
+                                                  : scene_problem_},
+             {"is_coming", !scene_ && scene_problem_.empty()},
+             {"server_id", 0},
+             {"name", facts_->world.empty() ? std::filesystem::path(facts_->file).stem().string() : facts_->world},
+             {"file", facts_->file},
+             {"version", scene_ ? scene_->version : 0},
+             {"links", scene_ ? scene_->links.size() : 0},
+             {"models", scene_ ? scene_->models : Json::array()},
+             {"ifaces", facts_->ifaces}};
+  return to_text(event);
+}
+
+bool RecordedStudio::fetch(const std::string& path, const std::string& query, const Answer& answer) {
+  if (path != "/world.glb") return false;
+  const bool with_collisions = query_value(query, "collisions") == "1";
+  if (!scene_ && scene_problem_.empty()) {
+    waiting_.emplace_back(with_collisions, answer);
+  } else {
+    answer(!scene_ ? refusal(scene_problem_) : with_collisions ? scene_->glb_with_collisions : scene_->glb);
+  }
+  return true;
+}
+
+// ---- viewers ----
+
+void RecordedStudio::join(std::shared_ptr<Viewer> viewer) {
+  viewer->send(text_frame(server_info(session_)));
+  if (!viewer->speaks_studio()) {
+    return viewer->send(text_frame(status(2, "a recording is open here, nothing runs: open " + base::in_quotes(facts_->file) + " itself")));
+  }
+  auto playhead = Playhead::open(facts_);
+  if (!playhead) return viewer->send(text_frame(status(2, playhead.error().message)));
+  if (scene_) (*playhead)->set_scene(scene_);
+  Guest& guest = guests_.try_emplace(viewer->id()).first->second;
+  guest.viewer = std::move(viewer);
+  guest.playhead = std::move(*playhead);
+  greet(guest);
+}
+
+void RecordedStudio::greet(Guest& guest) {
+  const auto say = [&](const Json& event) { guest.viewer->send(text_frame(to_text(event))); };
+  say({{"op", "hello"},
+       {"version", RTMSIM_VERSION},
+       {"read_only", true},
+       {"name_server", ""},
+       {"server_id", 0},
+       {"recording",
+        {{"file", std::filesystem::path(facts_->file).filename().string()},
+         {"from", facts_->seconds(facts_->from)},
+         {"to", facts_->seconds(facts_->to)},
+         {"step", step_s},
+         {"damage", facts_->damage},
+         {"states", facts_->states},
+         {"lines", facts_->lines},
+         {"lines_left_out", facts_->lines_left_out}}}});
+  say({{"op", "system"},
+       {"revision", 1},
+       {"problem", ""},
+       {"components", facts_->components},
+       {"connections", facts_->connections},
+       {"managers", Json::array()}});
+  say({{"op", "signals"}, {"signals", facts_->signals}});
+  guest.viewer->send_newest("world", text_frame(world_event()));
+}
+
+void RecordedStudio::leave(Viewer& viewer) { guests_.erase(viewer.id()); }
+
+void RecordedStudio::hear(Viewer& viewer, std::string_view text) {
+  const auto message = parse_message(text);
+  if (!message) return viewer.send(text_frame(status(2, message.error().message)));
+  const auto* request = std::get_if<Request>(&*message);
+  const auto found = guests_.find(viewer.id());
+  if (request != nullptr && found != guests_.end()) return handle(found->second, *request);
+  viewer.send(text_frame(status(2, "a recording is open here: nothing is sent on channels")));
+}
+
+void RecordedStudio::handle(Guest& guest, const Request& request) {
+  const auto viewer = guest.viewer->id();
+  if (++guest.open_requests > most_open_requests) return finish(viewer, request.id, Error{"32 requests are not answered yet"}, {});
+  if (request.name == "series") {
+    auto order = series_of(request.args);
+    return order ? start_series(guest, request.id, std::move(*order)) : finish(viewer, request.id, order.error(), {});
+  }
+  auto work = work_for(request);
+  work ? start(guest, request.id, std::move(*work)) : finish(viewer, request.id, work.error(), {});
+}
+
+Result<RecordedStudio::Work> RecordedStudio::work_for(const Request& request) const {
+  const Json& args = request.args;
+  const auto done = [](Result<Playhead::News> shown, Playhead::News& news) -> Result<Json> {
+    if (!shown) return shown.error();
+    news = std::move(*shown);
+    return Json::object();
+  };
+  if (request.name == "look") {
+    const auto time = number_of(args, "time");
+    if (!time) return time.error();
+    return Work([done, at = facts_->time_of(*time), is_whole = flag_of(args, "whole")](Playhead& playhead, Playhead::News& news) {
+      return done(playhead.look(at, is_whole), news);
+    });
+  }
+  if (request.name == "component") {
+    const auto path = text_of(args, "path");
+    if (!path) return path.error();
+    return Work([facts = facts_, path = *path](Playhead& playhead, Playhead::News&) { return details(*facts, path, playhead); });
+  }
+  if (request.name != "watch" && request.name != "watch_image" && request.name != "unwatch")
+    return Error{"a recording shows what was: " + base::in_quotes(request.name) + " cannot be done to it"};
+  const auto watch = whole_number_of(args, "watch");
+  if (!watch) return watch.error();
+  if (request.name == "unwatch") {
+    return Work([watch = *watch](Playhead& playhead, Playhead::News&) -> Result<Json> {
+      playhead.unwatch(watch);
+      return Json::object();
+    });
+  }
+  if (request.name == "watch_image") {
+    const auto iface = text_of(args, "iface");
+    if (!iface) return iface.error();
+    return Work([done, watch = *watch, iface = *iface](Playhead& playhead, Playhead::News& news) {
+      return done(playhead.watch_picture(watch, iface), news);
+    });
+  }
+  const auto topic = text_of(args, "topic");
+  if (!topic) return topic.error();
+  WatchOrder order{*topic, {}, 0};
+  if (args.contains("members")) {
+    auto members = texts_of(args, "members", 0, most_members);
+    if (!members) return members.error();
+    order.members = std::move(*members);
+  }
+  return Work([done, watch = *watch, order](Playhead& playhead, Playhead::News& news) { return done(playhead.watch(watch, order), news); });
+}
+
+Result<SeriesOrder> RecordedStudio::series_of(const Json& args) const {
+  const auto topic = text_of(args, "topic");
+  if (!topic) return topic.error();
+  auto members = texts_of(args, "members", 1, most_members);
+  if (!members) return members.error();
+  const auto points = std::clamp(number_or(args, "points", 4000), 10.0, static_cast<double>(most_points));
+  SeriesOrder order{*topic, std::move(*members), facts_->time_of(number_or(args, "from", -HUGE_VAL)),
+                    facts_->time_of(number_or(args, "to", HUGE_VAL)), static_cast<std::size_t>(points)};
+  if (order.to < order.from) return Error{"to: expected a time that is not before `from`"};
+  return order;
+}
+
+// ---- work ----
+
+void RecordedStudio::start(Guest& guest, std::int64_t id, Work work) {
+  const auto job = [this, viewer = guest.viewer->id(), id, playhead = guest.playhead, work = std::move(work)] {
+    Playhead::News news;
+    Result<Json> result = Error{"it failed in a way that nobody has foreseen"};
+    try {
+      result = work(*playhead, news);
+    } catch (const std::exception& e) {
+      result = Error{base::in_quotes(facts_->file) + ": " + e.what()};
+    }
+    boost::asio::post(loop_, [this, viewer, id, result, news = std::move(news)] { finish(viewer, id, result, news); });
+  };
+  if (!reading_->give(job)) finish(guest.viewer->id(), id, Error{"too much is being done already; try again"}, {});
+}
+
+void RecordedStudio::start_series(Guest& guest, std::int64_t id, SeriesOrder order) {
+  const auto job = [this, viewer = guest.viewer->id(), id, facts = facts_, order = std::move(order)] {
+    Result<Json> result = Error{"it failed in a way that nobody has foreseen"};
+    try {
+      result = recorded_series(*facts, order);
+    } catch (const std::exception& e) {
+      result = Error{base::in_quotes(facts->file) + ": " + e.what()};
+    }
+    boost::asio::post(loop_, [this, viewer, id, result] { finish(viewer, id, result, {}); });
+  };
+  if (!makers_->give(job)) finish(guest.viewer->id(), id, Error{"too much is being done already; try again"}, {});
+}
+
+// What is shown comes before the reply, so that a page that asks again has seen it.
+void RecordedStudio::finish(std::uint64_t viewer, std::int64_t id, const Result<Json>& result, const Playhead::News& news) {
+  const auto found = guests_.find(viewer);
+  if (found == guests_.end()) return;
+  Guest& guest = found->second;
+  if (guest.open_requests > 0) --guest.open_requests;
+  for (const auto& [key, frame] : news) guest.viewer->send_newest(key, frame);
+  Json reply{{"op", "reply"}, {"id", id}};
+  if (result) {
+    reply["result"] = *result;
+  } else {
+    reply["error"] = result.error().message;
+  }
+  guest.viewer->send(text_frame(to_text(reply)));
+}
+
+}  // namespace studio

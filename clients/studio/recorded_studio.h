@@ -1,0 +1,63 @@
+// A recording for viewers: each has a playhead of its own, asks for moments (request "look") and is shown what held then, in the events and
+// frames of a live run. Nothing can be done to it. The loop's thread only; the file is read by workers, which post to the loop.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "client_message.h"
+#include "playhead.h"
+#include "recorded_series.h"
+#include "web.h"
+#include "workers.h"
+
+namespace studio {
+
+class RecordedStudio {
+ public:
+  // An error when the file is no recording.
+  static base::Result<std::unique_ptr<RecordedStudio>> open(boost::asio::io_context& loop, const std::string& file);
+
+  // For the web server; used as long as the object lives.
+  WebHandlers handlers();
+
+ private:
+  struct Guest {
+    std::shared_ptr<Viewer> viewer;
+    std::shared_ptr<Playhead> playhead;  // of the reading thread
+    std::size_t open_requests = 0;
+  };
+  using Scene = std::shared_ptr<const RecordedScene>;
+  using Work = std::function<base::Result<Json>(Playhead&, Playhead::News&)>;
+
+  RecordedStudio(boost::asio::io_context& loop, std::shared_ptr<const RecordingFacts> facts);
+  void join(std::shared_ptr<Viewer> viewer);
+  void greet(Guest& guest);
+  void leave(Viewer& viewer);
+  void hear(Viewer& viewer, std::string_view text);
+  void handle(Guest& guest, const Request& request);
+  base::Result<Work> work_for(const Request& request) const;
+  base::Result<SeriesOrder> series_of(const Json& args) const;
+  void start(Guest& guest, std::int64_t id, Work work);
+  void start_series(Guest& guest, std::int64_t id, SeriesOrder order);
+  void finish(std::uint64_t viewer, std::int64_t id, const base::Result<Json>& result, const Playhead::News& news);
+  void make_scene();
+  void has_scene(const base::Result<Scene>& scene);
+  bool fetch(const std::string& path, const std::string& query, const Answer& answer);
+  std::string world_event() const;
+
+  boost::asio::io_context& loop_;
+  const std::shared_ptr<const RecordingFacts> facts_;
+  const std::string session_;
+  std::map<std::uint64_t, Guest> guests_;
+  Scene scene_;
+  std::string scene_problem_;                     // why there is none; empty while it is made
+  std::vector<std::pair<bool, Answer>> waiting_;  // for the scene; true: with collisions
+  std::unique_ptr<Workers> makers_;               // of the scene and of plots
+  std::unique_ptr<Workers> reading_;              // one thread: all playheads are its
+};
+
+}  // namespace studio

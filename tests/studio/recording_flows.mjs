@@ -1,0 +1,185 @@
+// A recording in the page: made by rtse run, opened by rtm-studio without anything that runs. recording_flows.mjs BIN_DIR SOURCE_DIR LIB_DIR
+import { execFile } from 'node:child_process';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { promisify } from 'node:util';
+import { check, has_world, is_ready, open, Rig, run, same, until } from './rig.mjs';
+
+const [bin, source, lib] = process.argv.slice(2);
+const worlds = join(source, 'worlds');
+
+async function set_up(browser) {
+  const rig = new Rig(bin, source, lib);
+  await rig.claim();
+  const file = join(rig.work, 'run.mcap');
+  await rig.call('rtse', 'run', join(worlds, 'systems/obstacle_avoidance.xml'), '-w', join(worlds, 'obstacle_course.sdf'), '-d', '12', '--record', file, '--module-path', lib);
+  const studio = rig.start('rtm-studio', [file, '-p', '0', ...(process.env.STUDIO_PAGE ? ['--page', process.env.STUDIO_PAGE] : [])]);
+  const url = await until('rtm-studio', () => /http:\/\/\S+/.exec(studio.log())?.[0]);
+  const page = await open(browser, url);
+  await is_ready(page);
+  await has_world(page);
+  return { browser, rig, file, studio, url, page };
+}
+
+const moment = (page) => page.evaluate(() => window.studio.store.time?.sim_time ?? -1);
+const robot = (page) => page.evaluate(() => window.studio.world.world.models.get('pioneer2dx').canonical.position.toArray());
+const choose = (page, kind, id) => page.evaluate(([k, i]) => window.studio.select({ kind: k, id: i }), [kind, id]);
+const path_of = (page, instance) => page.evaluate((name) => window.studio.store.system.components.find((c) => c.instance === name).path, instance);
+
+// By the slider, as a hand does.
+async function scrub(page, time) {
+  await page.locator('.scrub').evaluate((slider, to) => {
+    slider.value = String(to);
+    slider.dispatchEvent(new Event('input', { bubbles: true }));
+  }, time);
+  await until(`${time} s is shown`, async () => Math.abs((await moment(page)) - time) < 1e-6);
+}
+
+// Where the robot was by the file itself.
+async function recorded_place(rig, file, time) {
+  const lines = (await rig.call('rtse', 'recording', 'cat', file, '/tf', '--from', String(time - 0.03), '--to', String(time), '--json')).trim().split('\n');
+  const last = JSON.parse(lines.at(-1));
+  const text = JSON.stringify(last);
+  const found = (last.value ?? last.data ?? last.message ?? last.sample).transforms.find((t) => t.child_frame_id === 'pioneer2dx');
+  check(found, text.slice(0, 200));
+  return [found.transform.translation.x, found.transform.translation.y];
+}
+
+const near = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]) < 1e-3;
+
+const flows = [
+  ['the page says what it shows, and for how long', async ({ page }) => {
+    check((await page.locator('.top .what').textContent()).includes('run.mcap, 12.0 s recorded'), 'head');
+    check((await page.locator('footer').textContent()).includes('a recording: it shows what was'), 'foot');
+    check(await page.locator('#live').isHidden(), 'there is no now');
+    same(await page.locator('.diagram .box .name').allTextContents(), ['RTCLaser0', 'LaserObstacleAvoid0', 'RTCPosition2d0'], 'components');
+    same(await page.locator('.diagram .edge').count(), 2, 'connections');
+    check(await page.locator('#activate-all').isDisabled(), 'nothing can be done to it');
+  }],
+  ['the time line moves the robot to where it was', async ({ page, rig, file }) => {
+    for (const time of [11.5, 3, 7.25]) {
+      const wanted = await recorded_place(rig, file, time);
+      await scrub(page, time);
+      await until(`the place at ${time} s`, async () => near(await robot(page), wanted));
+    }
+    await until('the clock', async () => (await page.locator('.clock').textContent()) === '7.250 s');
+  }],
+  ['it plays, stops at the end and begins again', async ({ page }) => {
+    await scrub(page, 11);
+    await page.locator('#speed').fill('4');
+    await page.keyboard.press('Enter');
+    const before = await robot(page);
+    await page.locator('#run').click();
+    await until('the end', async () => (await moment(page)) >= 11.999);
+    await until('it stops', () => page.evaluate(() => !window.studio.playback.is_playing));
+    check(!near(await robot(page), before), 'the robot has moved');
+    await page.locator('#run').click();
+    await until('from the beginning', async () => { const now = await moment(page); return now > 0.2 && now < 11; });
+    await page.locator('#run').click();
+    const stood = await moment(page);
+    await until('it stands', () => page.evaluate(() => !window.studio.playback.is_playing && window.studio.playback.moment === window.studio.store.time.sim_time));
+    check((await moment(page)) < stood + 2, 'it stands');
+  }],
+  ['steps go on and back, keys too', async ({ page }) => {
+    await scrub(page, 5);
+    await page.locator('#step').click();
+    await until('one on', async () => Math.abs((await moment(page)) - 5.02) < 1e-6);
+    await page.evaluate(() => document.activeElement.blur());
+    await page.keyboard.press(',');
+    await page.keyboard.press(',');
+    await until('two back', async () => Math.abs((await moment(page)) - 4.98) < 1e-6);
+    await page.keyboard.press('Shift+R');
+    await until('the beginning', async () => (await moment(page)) === 0);
+  }],
+  ['the laser fan is that of the moment', async ({ page }) => {
+    await scrub(page, 9);
+    const fan = () => page.evaluate(() => { const [one] = window.studio.world.fans.values(); return Array.from(one.parts[1].geometry.getAttribute('position')?.array.slice(0, 60) ?? []); });
+    const late = await until('a fan', async () => { const f = await fan(); return f.length > 0 && f; });
+    await scrub(page, 1);
+    await until('another one', async () => JSON.stringify(await fan()) !== JSON.stringify(late));
+  }],
+  ['states are those of the moment, and a band over time', async ({ page }) => {
+    const path = await path_of(page, 'RTCLaser0');
+    await scrub(page, 6);
+    same(await page.evaluate((p) => window.studio.store.system.components.find((c) => c.path === p).state, path), 'Active', 'state');
+    check(await page.evaluate(() => { const band = document.querySelector('canvas.band'); return band.getContext('2d').getImageData(0, 0, band.width, band.height).data.some((v, i) => i % 4 === 3 && v > 0); }), 'the band is drawn');
+  }],
+  ['parameters are shown and cannot be set', async ({ page }) => {
+    await choose(page, 'component', await path_of(page, 'LaserObstacleAvoid0'));
+    await until('parameters', async () => (await page.locator('.inspector .grid input').count()) > 5);
+    check(await page.locator('.inspector .grid input').first().isDisabled(), 'disabled');
+    same(await page.locator('#act-activate').count(), 0, 'buttons');
+  }],
+  ['a plot shows the whole recording, and a click on it chooses a moment', async ({ page }) => {
+    await page.evaluate(() => window.studio.select({ kind: 'signal', id: '/LaserObstacleAvoid0/velocity' }));
+    await page.locator('.inspector button[aria-label="Plot data.vx"]').click();
+    await until('its line', () => page.evaluate(() => window.studio.bottom.plots.plots[0].lines[0].times.length > 100));
+    const lines = await page.evaluate(() => { const { times } = window.studio.bottom.plots.plots[0].lines[0]; return [times[0], times.at(-1)]; });
+    check(lines[0] < 0.2 && lines[1] > 11.8, `from ${lines[0]} to ${lines[1]}`);
+    const box = await until('the plot', () => page.locator('.plot .u-over').boundingBox());
+    await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
+    await until('the middle', async () => Math.abs((await moment(page)) - 6) < 0.1);
+  }],
+  ['the inspector has the sample of the moment', async ({ page, rig, file }) => {
+    await choose(page, 'signal', '/LaserObstacleAvoid0/velocity');
+    await scrub(page, 8);
+    const lines = (await rig.call('rtse', 'recording', 'cat', file, '/LaserObstacleAvoid0/velocity', '--to', '8', '--json')).trim().split('\n');
+    const last = JSON.parse(lines.at(-1));
+    const wanted = Number((last.value ?? last.data ?? last.message ?? last.sample).data.vx.toPrecision(6));
+    await until(`vx ${wanted}`, async () => Number(await page.locator('.inspector dl.values dt:has-text("data.vx") + dd').textContent()) === wanted);
+  }],
+  ['two viewers have two moments', async ({ browser, page, url }) => {
+    const other = await open(browser, url);
+    await has_world(other);
+    await scrub(page, 10);
+    await scrub(other, 2);
+    check(Math.abs((await moment(page)) - 10) < 1e-6, 'the first one stays');
+    check(!near(await robot(page), await robot(other)), 'two places');
+    await other.context().close();
+  }],
+  ['a link holds the moment', async ({ browser, page }) => {
+    await scrub(page, 4.5);
+    const link = await until('the link', async () => { const href = await page.evaluate(() => location.href); const text = Buffer.from(href.split('#v=')[1] ?? '', 'base64url').toString(); return text.includes('"moment":4.5') && href; });
+    const context = page.context();
+    const other = await context.newPage();
+    await other.goto(link);
+    await is_ready(other);
+    await until('the same moment', async () => Math.abs((await moment(other)) - 4.5) < 1e-6);
+    await other.close();
+    void browser;
+  }],
+  ['the page comes back with a studio of the same recording', async ({ page, rig, file, studio, url }) => {
+    await scrub(page, 5);
+    await rig.end(studio);
+    await until('it waits', () => page.evaluate(() => window.studio.wire.status !== 'open'));
+    const port = new URL(url).port;
+    const again = rig.start('rtm-studio', [file, '-p', port, ...(process.env.STUDIO_PAGE ? ['--page', process.env.STUDIO_PAGE] : [])]);
+    const fresh = await until('rtm-studio', () => /http:\/\/\S+/.exec(again.log())?.[0]);
+    await page.goto(fresh);
+    await is_ready(page);
+    await has_world(page);
+    await rig.end(again);
+  }],
+  ['files that are none, damaged or without a world', async ({ rig, file, browser }) => {
+    const bad = join(rig.work, 'bad.mcap'), cut = join(rig.work, 'cut.mcap');
+    writeFileSync(bad, 'hello');
+    const refused = async (...words) => promisify(execFile)(join(bin, 'rtm-studio'), [...words, '-p', '0'], { timeout: 60000 }).then(() => 'it took it', (error) => error.stderr);
+    for (const line of [await refused(bad), await refused(file, '--world', join(worlds, 'empty.sdf')), await refused(join(worlds, 'systems/obstacle_avoidance.xml'))]) {
+      check(line.startsWith('rtm-studio: ') && line.trim().split('\n').length === 1, line);
+    }
+    const octets = readFileSync(file);
+    writeFileSync(cut, octets.subarray(0, Math.floor(octets.length * 0.6)));
+    const studio = rig.start('rtm-studio', [cut, '-p', '0', ...(process.env.STUDIO_PAGE ? ['--page', process.env.STUDIO_PAGE] : [])]);
+    const page = await open(browser, await until('rtm-studio', () => /http:\/\/\S+/.exec(studio.log())?.[0]));
+    await has_world(page);
+    await until('it says so', async () => (await page.locator('.link-state').textContent()).includes('damaged'));
+    const to = await page.evaluate(() => window.studio.store.hello.recording.to);
+    check(to > 1 && to < 12, `to ${to}`);
+    await scrub(page, to);
+    same(page.problems, [], 'problems');
+    await page.context().close();
+    await rig.end(studio);
+  }],
+];
+
+run(flows, set_up, async (shared) => shared?.rig.end_all());
