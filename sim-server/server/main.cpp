@@ -17,6 +17,7 @@
 #include "render/scene.h"
 #include "server/server_loop.h"
 #include "shm/segment.h"
+#include "shm/specs.h"
 #include "world/world_loader.h"
 
 namespace {
@@ -212,7 +213,7 @@ int main(int argc, char** argv) {
   app.add_option("--rtf", options.rtf, "simulated seconds per second (1); 0: as fast as possible")->check(base::number_between(0.0, 1e6));
   app.add_flag("--lockstep", options.is_lockstep, "time passes only when all participants have finished their tick");
   app.add_option("--wait-for", options.wait_for, "participants that must join before time starts (0)")
-      ->check(base::integer_between(0, 256));
+      ->check(base::integer_between(0, static_cast<int>(shm::most_participants)));
   app.add_option("--participant-timeout", options.participant_timeout, "seconds after which a hanging participant is dropped (0: never)")
       ->check(base::number_between(0.0, 1e6));
   app.add_option("--duration", options.duration, "end after so many simulated seconds")->check(base::number_between(0.0, 1e9));

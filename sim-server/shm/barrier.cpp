@@ -46,6 +46,7 @@ struct Barrier::State {
   Server& server;
   BarrierOptions options;
   std::vector<Member> members;  // by phase, then in the order of joining
+  std::vector<Member*> due;     // of the phase that runs; kept, so that no tick has to make room
   std::uint32_t seen_epoch = 0;
   std::uint64_t seen_deaths = 0;
   std::uint32_t seen_attention = 0;  // of requests and the like, which are served while a tick waits
@@ -284,15 +285,14 @@ bool Barrier::State::look_for_end(std::span<Member*> group, nanoseconds limit) c
 // Those who are due first are woken while the last steps before are still made, and are there when their tick begins.
 void Barrier::State::wake_ahead(std::int64_t step) {
   if (std::exchange(has_looked_ahead, true)) return;
-  std::array<Member*, 256> due;
-  std::size_t count = 0;
+  due.clear();
   for (Member& member : members) {
-    if (count > 0 && member.phase != due[0]->phase) break;
-    if (member.next_due < earliest_due + step && count < due.size()) due[count++] = &member;
+    if (!due.empty() && member.phase != due[0]->phase) break;
+    if (member.next_due < earliest_due + step) due.push_back(&member);
   }
   free.look(steady_clock::now());
-  if (count == 0 || !free.are_there_for(count)) return;
-  wake({due.data(), count});
+  if (due.empty() || !free.are_there_for(due.size())) return;
+  wake(due);
   woken_ahead = steady_clock::now();
 }
 
@@ -339,20 +339,19 @@ bool Barrier::tick(nanoseconds now, std::uint64_t steps) {
     if (state.options.is_lockstep && now.count() + step * state.ahead.steps() >= state.earliest_due) state.wake_ahead(step);
     return true;
   }
-  std::array<State::Member*, 256> due;  // no allocation in the loop; there are no more slots than that
   std::size_t begin = 0;
   bool is_complete = true, has_begun = false;
   state.is_ticking = true;
   while (begin < state.members.size() && is_complete) {
     const std::uint32_t phase = state.members[begin].phase;
-    std::size_t end = begin, count = 0;
+    std::size_t end = begin;
+    state.due.clear();
     for (; end < state.members.size() && state.members[end].phase == phase; ++end) {
-      if (state.members[end].owner != 0 && state.members[end].next_due <= now.count() && count < due.size())
-        due[count++] = &state.members[end];
+      if (state.members[end].owner != 0 && state.members[end].next_due <= now.count()) state.due.push_back(&state.members[end]);
     }
-    const std::span<State::Member*> group(due.data(), count);
-    if (count > 0 && !std::exchange(has_begun, true)) state.learn_ahead(group);
-    if (count > 0) is_complete = state.run_phase(group, now.count(), steps);
+    const std::span<State::Member*> group(state.due);
+    if (!group.empty() && !std::exchange(has_begun, true)) state.learn_ahead(group);
+    if (!group.empty()) is_complete = state.run_phase(group, now.count(), steps);
     for (const auto* member : group) state.has_gone = state.has_gone || member->owner == 0;
     begin = end;
   }

@@ -12,12 +12,13 @@ namespace {
 using State = Participant::State;
 
 struct BarrierFixture : Fixture {
-  std::unique_ptr<IfaceWriter> simulation = make(simulation_spec(simulation_info(), 4, 16));
+  std::unique_ptr<IfaceWriter> simulation;
   std::vector<BarrierEvent> events;
   std::unique_ptr<Barrier> barrier;
   std::uint64_t steps = 0;
 
-  explicit BarrierFixture(BarrierOptions options = {}) {
+  explicit BarrierFixture(BarrierOptions options = {}, std::uint32_t places = 16)
+      : simulation(make(simulation_spec(simulation_info(), 4, places))) {
     options.on_event = [this](const BarrierEvent& event) { events.push_back(event); };
     barrier = std::make_unique<Barrier>(*simulation, *server, std::move(options));
   }
@@ -153,6 +154,30 @@ TEST(Barrier, more_participants_than_places_are_refused) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().message, "participant \"one more\": all 16 places on server " + std::to_string(f.id) + " are taken");
   EXPECT_EQ(f.barrier->refresh(), 16U);
+}
+
+TEST(Barrier, a_hundred_robots_with_several_contexts_each_take_part) {
+  BarrierFixture f({}, most_participants);
+  std::vector<Participant> all;
+  for (std::uint32_t i = 0; i < most_participants; ++i) all.push_back(f.join("p" + std::to_string(i), i * 3 / most_participants));
+  EXPECT_FALSE(Participant::join(f.id, {"one more", 1, 1ms}));
+  ASSERT_EQ(f.barrier->refresh(), most_participants);
+  // One after the other, in the order of their phases.
+  std::vector<std::uint64_t> ticks(all.size());
+  std::thread thread([&] {
+    for (int round = 0; round < 3; ++round) {
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        Tick tick;
+        if (all[i].wait(tick, 60s) != State::tick) return;
+        ++ticks[i];
+        all[i].finish();
+      }
+    }
+  });
+  for (int ms = 0; ms <= 20; ms += 10) EXPECT_TRUE(f.barrier->tick(std::chrono::milliseconds(ms), static_cast<std::uint64_t>(ms)));
+  f.barrier.reset();
+  thread.join();
+  EXPECT_EQ(ticks, std::vector<std::uint64_t>(all.size(), 3));
 }
 
 TEST(Participant, options_that_make_no_sense_are_refused) {
