@@ -1,7 +1,11 @@
 // A 64-bit hash of a stream of octets, the same on every machine and however the stream is cut into pieces. For finding differences, not
 // for keeping secrets. A value; one thread at a time.
+//
+// Four words at a time go into a state each, because each state has to wait for the product before.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -14,47 +18,62 @@ namespace base {
 class Hash64 {
  public:
   void add(std::span<const std::byte> octets) {
+    if (octets.empty()) return;
+    const std::size_t filled = length_ % block_size;
     length_ += octets.size();
-    while (!octets.empty() && (filled_ != 0 || octets.size() < sizeof(std::uint64_t))) {
-      word_ |= std::to_integer<std::uint64_t>(octets.front()) << (8 * filled_);
-      octets = octets.subspan(1);
-      if (++filled_ == sizeof word_) mix(word_), word_ = 0, filled_ = 0;
+    if (filled != 0) {
+      const std::size_t room = block_size - filled;
+      if (octets.size() < room) return keep(filled, octets);
+      keep(filled, octets.first(room));
+      mix_block(rest_.data());
+      octets = octets.subspan(room);
     }
-    for (; octets.size() >= sizeof(std::uint64_t); octets = octets.subspan(sizeof(std::uint64_t))) {
-      std::uint64_t word = 0;
-      std::memcpy(&word, octets.data(), sizeof word);
-      if constexpr (std::endian::native == std::endian::big) word = __builtin_bswap64(word);
-      mix(word);
-    }
-    if (!octets.empty()) add_tail(octets);
+    for (; octets.size() >= block_size; octets = octets.subspan(block_size)) mix_block(octets.data());
+    keep(0, octets);
   }
   void add(std::string_view text) { add(std::as_bytes(std::span(text))); }
   void add(std::uint64_t number) {
-    std::byte octets[sizeof number];
-    for (std::size_t i = 0; i < sizeof number; ++i) octets[i] = static_cast<std::byte>(number >> (8 * i));
-    add(std::span<const std::byte>(octets));
+    number = little(number);
+    add(std::as_bytes(std::span(&number, 1)));
   }
   std::uint64_t value() const {
-    Hash64 end = *this;
-    end.mix(word_);
-    end.mix(length_);
-    return end.state_;
+    std::uint64_t all = length_;
+    for (const std::uint64_t state : states_) all = mixed(all, state);
+    const std::size_t filled = length_ % block_size;
+    for (std::size_t at = 0; at < filled; at += sizeof(std::uint64_t)) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, rest_.data() + at, std::min(sizeof word, filled - at));
+      all = mixed(all, little(word));
+    }
+    return all;
   }
 
  private:
-  void add_tail(std::span<const std::byte> octets) {
-    for (const std::byte octet : octets) word_ |= std::to_integer<std::uint64_t>(octet) << (8 * filled_++);
+  static constexpr std::size_t lanes = 4, block_size = lanes * sizeof(std::uint64_t);
+
+  static std::uint64_t little(std::uint64_t word) {
+    if constexpr (std::endian::native == std::endian::big) return __builtin_bswap64(word);
+    return word;
   }
   // Both halves of a product with an odd number.
-  void mix(std::uint64_t word) {
+  static std::uint64_t mixed(std::uint64_t state, std::uint64_t word) {
     __extension__ using Wide = unsigned __int128;
-    const Wide product = static_cast<Wide>((state_ ^ word) + 0x9e3779b97f4a7c15U) * 0xd6e8feb86659fd93U;
-    state_ = static_cast<std::uint64_t>(product) ^ static_cast<std::uint64_t>(product >> 64U);
-    state_ ^= state_ >> 29U;
+    const Wide product = static_cast<Wide>((state ^ word) + 0x9e3779b97f4a7c15U) * 0xd6e8feb86659fd93U;
+    state = static_cast<std::uint64_t>(product) ^ static_cast<std::uint64_t>(product >> 64U);
+    return state ^ state >> 29U;
+  }
+  void mix_block(const std::byte* octets) {
+    std::array<std::uint64_t, lanes> words;
+    std::memcpy(words.data(), octets, block_size);
+    for (std::size_t i = 0; i < lanes; ++i) states_[i] = mixed(states_[i], little(words[i]));
+  }
+  void keep(std::size_t at, std::span<const std::byte> octets) {
+    if (!octets.empty()) std::memcpy(rest_.data() + at, octets.data(), octets.size());
   }
 
-  std::uint64_t state_ = 0, length_ = 0, word_ = 0;
-  unsigned filled_ = 0;
+  std::array<std::uint64_t, lanes> states_{1, 2, 3, 4};  // different, so that lanes cannot change places
+  std::array<std::byte, block_size> rest_{};             // the octets after the last whole block
+  std::uint64_t length_ = 0;
 };
 
 }  // namespace base

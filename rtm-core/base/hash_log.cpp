@@ -25,16 +25,19 @@ void put_text(std::string& out, std::string_view text) {
 }
 
 void put_word(std::string& out, std::uint64_t word) {
-  for (unsigned i = 0; i < 8; ++i) out += static_cast<char>(word >> (8 * i));
+  char octets[sizeof word];
+  for (unsigned i = 0; i < sizeof word; ++i) octets[i] = static_cast<char>(word >> (8 * i));
+  out.append(octets, sizeof octets);
 }
 
 }  // namespace
 
-Result<HashLogWriter> HashLogWriter::create(const std::string& path) {
+Result<HashLogWriter> HashLogWriter::create(const std::string& path, unsigned version) {
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
   if (!file) return Error{"hash log " + in_quotes(path) + ": " + std::strerror(errno)};
   HashLogWriter writer(std::move(file));
   writer.out_ = hash_log_format::magic;
+  writer.out_.back() = static_cast<char>('0' + version);
   return writer;
 }
 

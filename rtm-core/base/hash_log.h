@@ -52,9 +52,13 @@ struct HashTick {
 // Longer values are not kept.
 inline constexpr std::size_t longest_hash_value = 256;
 
+// Of the hashes: logs of different versions cannot be compared. All since version 1 can be read.
+inline constexpr unsigned hash_log_version = 2;
+
 class HashLogWriter {
  public:
-  static Result<HashLogWriter> create(const std::string& path);
+  // Another version: for entries that come from a log of that version.
+  static Result<HashLogWriter> create(const std::string& path, unsigned version = hash_log_version);
 
   // The number of the leaf, for add().
   std::uint32_t key(const HashKey& key);
@@ -80,12 +84,13 @@ class HashLogWriter {
 
 class HashLogReader {
  public:
-  // An error when it is no hash log.
+  // An error when it is no hash log, or of a later version.
   static Result<HashLogReader> open(const std::string& path);
 
   const std::vector<HashKey>& keys() const { return keys_; }
   // False at the end. An error names the octet from which on the file is damaged.
   Result<bool> next(HashTick& tick);
+  unsigned version() const { return version_; }
   // The run came to its end; known when next() has said false.
   bool is_complete() const { return is_complete_; }
   // Of everything that was read so far: equal for equal runs.
@@ -106,6 +111,7 @@ class HashLogReader {
   std::vector<HashKey> keys_;
   Hash64 all_;
   std::uint64_t ticks_ = 0;
+  unsigned version_ = hash_log_version;
   bool is_complete_ = false;
 };
 

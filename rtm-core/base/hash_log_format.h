@@ -5,7 +5,9 @@
 
 namespace base::hash_log_format {
 
-inline constexpr std::string_view magic = "RTMHASH1";
+// The last octet is the version: another one when the same run gets other hashes.
+inline constexpr std::string_view magic = "RTMHASH2";
+inline constexpr char oldest_version = '1';
 inline constexpr char key_record = 1;
 inline constexpr char tick_record = 2;
 inline constexpr char end_record = 3;

@@ -41,8 +41,15 @@ Result<HashLogReader> HashLogReader::open(const std::string& path) {
   if (!file) return Error{"hash log " + in_quotes(path) + ": " + std::strerror(errno)};
   std::string start(hash_log_format::magic.size(), '\0');
   file.read(start.data(), static_cast<std::streamsize>(start.size()));
-  if (!file || start != hash_log_format::magic) return Error{"file " + in_quotes(path) + ": is no hash log"};
-  return HashLogReader(path, std::move(file));
+  const std::string_view magic = hash_log_format::magic;
+  const bool is_log = file && std::string_view(start).substr(0, magic.size() - 1) == magic.substr(0, magic.size() - 1);
+  if (!is_log || start.back() < hash_log_format::oldest_version) return Error{"file " + in_quotes(path) + ": is no hash log"};
+  const auto version = static_cast<unsigned>(start.back() - '0');
+  if (start.back() > magic.back())
+    return Error{"hash log " + in_quotes(path) + ": is of version " + std::to_string(version) + ", which is newer than this program"};
+  HashLogReader reader(path, std::move(file));
+  reader.version_ = version;
+  return reader;
 }
 
 Error HashLogReader::damaged() const { return Error{"hash log " + in_quotes(path_) + ": is damaged after tick " + std::to_string(ticks_)}; }
@@ -157,12 +164,24 @@ Result<std::vector<Part>> open_all(const std::vector<std::string>& paths) {
   return parts;
 }
 
+// Hashes of different versions say nothing about each other.
+Result<void> same_version(const std::vector<Part>& parts, const std::vector<std::string>& paths) {
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    if (parts[i].reader.version() == parts[0].reader.version()) continue;
+    return Error{"hash logs " + in_quotes(paths[0]) + " and " + in_quotes(paths[i]) + ": are of versions " +
+                 std::to_string(parts[0].reader.version()) + " and " + std::to_string(parts[i].reader.version()) +
+                 ", whose hashes differ for equal runs"};
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<void> merge_hash_logs(const std::vector<std::string>& paths, const std::string& path) {
   auto parts = open_all(paths);
   if (!parts) return parts.error();
-  auto writer = HashLogWriter::create(path);
+  if (const auto same = same_version(*parts, paths); !same) return same.error();
+  auto writer = HashLogWriter::create(path, parts->empty() ? hash_log_version : parts->front().reader.version());
   if (!writer) return writer.error();
   while (true) {
     const HashTick* first = nullptr;
@@ -218,6 +237,7 @@ Result<HashComparison> compare_hash_logs(const std::string& path_a, const std::s
   if (!parts) return parts.error();
   Part& a = (*parts)[0];
   Part& b = (*parts)[1];
+  if (const auto same = same_version(*parts, {path_a, path_b}); !same) return same.error();
   HashComparison result;
   while (!a.is_over || !b.is_over) {
     const bool has_a = !a.is_over && (b.is_over || a.tick.when() <= b.tick.when());

@@ -271,14 +271,16 @@ JointInstance* ModelInstance::joint(std::uint32_t index) {
   return place < 0 ? nullptr : &joints_[static_cast<std::size_t>(place)];
 }
 
+std::optional<BodyState> ModelInstance::state(std::size_t assembly) const {
+  const dBodyID body = bodies_[assembly].id();
+  if (body == nullptr) return std::nullopt;
+  return BodyState{ode::vector(dBodyGetPosition(body)), ode::vector(dBodyGetLinearVel(body)), ode::vector(dBodyGetAngularVel(body)),
+                   ode::quaternion(dBodyGetQuaternion(body)), dBodyIsEnabled(body) != 0};
+}
+
 std::vector<BodyState> ModelInstance::save() const {
   std::vector<BodyState> states;
-  for (const auto& body : bodies_) {
-    if (body.id() == nullptr) continue;
-    states.push_back({ode::vector(dBodyGetPosition(body.id())), ode::vector(dBodyGetLinearVel(body.id())),
-                      ode::vector(dBodyGetAngularVel(body.id())), ode::quaternion(dBodyGetQuaternion(body.id())),
-                      dBodyIsEnabled(body.id()) != 0});
-  }
+  for_each_state([&states](const BodyState& state) { states.push_back(state); });
   return states;
 }
 

@@ -41,6 +41,13 @@ class ModelInstance {
   void set_base(const Eigen::Isometry3d& base);
 
   std::vector<BodyState> save() const;
+  // The same, without a place for all of them.
+  template <class Take>
+  void for_each_state(const Take& take) const {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      if (const auto each = state(i)) take(*each);
+    }
+  }
   void restore(const std::vector<BodyState>& states);
 
   ModelId id() const { return id_; }
@@ -106,6 +113,8 @@ class ModelInstance {
   void take_initial_positions();
   void float_in(const FluidDef& fluid, const Eigen::Vector3d& gravity);
   int assembly_of(const std::string& link) const;
+  // Nothing of an anchored one.
+  std::optional<BodyState> state(std::size_t assembly) const;
 
   ModelId id_;
   std::shared_ptr<const Blueprint> blueprint_;

@@ -432,6 +432,23 @@ std::span<const Contact> Physics::contacts(ModelId model) const { return impl_->
 std::uint64_t Physics::contacts_so_far(ModelId model) const { return impl_->at(model).contacts_so_far; }
 void Physics::record_forces(ModelId model) { impl_->at(model).records_forces = true; }
 
+namespace {
+
+void add_parts_to(StateHash& hash, const ModelInstance& model) {
+  model.for_each_state([&hash](const BodyState& state) {
+    hash.add(state.position);
+    hash.add(state.orientation);
+    hash.add(state.linear);
+    hash.add(state.angular);
+    hash.add(std::uint64_t{state.is_awake});
+  });
+  for (const auto& joint : model.joints()) {
+    for (const int axis : {0, 1}) hash.add(joint.drive(axis).velocity), hash.add(joint.drive(axis).effort);
+  }
+}
+
+}  // namespace
+
 void Physics::add_to(StateHash& hash) const {
   hash.add(impl_->steps_);
   for (const auto& model : impl_->models_) {
@@ -440,19 +457,15 @@ void Physics::add_to(StateHash& hash) const {
 }
 
 void Physics::add_to(StateHash& hash, ModelId id) const {
-  const ModelInstance& model = impl_->at(id);
   hash.add(std::uint64_t{id});
   hash.add(model_pose(id).translation());
-  for (const auto& state : model.save()) {
-    hash.add(state.position);
-    hash.add(state.orientation);
-    hash.add(state.linear);
-    hash.add(state.angular);
-    hash.add(std::uint64_t{state.is_awake});
-  }
-  for (const auto& joint : model.joints()) {
-    for (const int axis : {0, 1}) hash.add(joint.drive(axis).velocity), hash.add(joint.drive(axis).effort);
-  }
+  add_parts_to(hash, impl_->at(id));
+}
+
+void Physics::add_place_and_parts_to(StateHash& hash, ModelId id) const {
+  const ModelInstance& model = impl_->at(id);
+  for (int column = 0; column < 4; ++column) hash.add(Eigen::Vector3d(model.base().matrix().col(column).head<3>()));
+  add_parts_to(hash, model);
 }
 
 PhysicsStatistics Physics::statistics() const {

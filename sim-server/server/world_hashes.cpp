@@ -10,6 +10,17 @@
 namespace sim {
 namespace {
 
+// The same on every machine.
+std::uint64_t hash_of(const StateHash& state) {
+  base::Hash64 hash;
+  if constexpr (std::endian::native == std::endian::little) {
+    hash.add(std::as_bytes(state.words()));
+  } else {
+    for (const std::uint64_t word : state.words()) hash.add(word);
+  }
+  return hash.value();
+}
+
 // Little-endian doubles, on every machine.
 std::array<std::byte, 7 * sizeof(double)> octets_of(const Eigen::Isometry3d& pose) {
   const Eigen::Vector3d p = pose.translation();
@@ -31,40 +42,44 @@ base::Result<WorldHashes> WorldHashes::open(const std::string& path, std::chrono
   return WorldHashes(path, std::move(*log), 1e9 / static_cast<double>(period.count()));
 }
 
-WorldHashes::Leaf& WorldHashes::leaf(std::vector<Leaf>& leaves, std::size_t index, base::HashKey::Kind kind, const std::string& name) {
+WorldHashes::Leaf& WorldHashes::leaf(std::vector<Leaf>& leaves, std::size_t index, std::string_view type, std::string_view name) {
   if (index >= leaves.size()) leaves.resize(index + 1);
   Leaf& leaf = leaves[index];
-  if (leaf.name != name) {
-    leaf = {name};
-    leaf.key = log_.key({kind, 0, name, kind == base::HashKey::Kind::model ? "pose" : ""});
+  if (leaf.type != type || leaf.name != name) {
+    leaf = {std::string(type), std::string(name)};
+    leaf.key = type.empty() ? log_.key({base::HashKey::Kind::model, 0, leaf.name, "pose"})
+                            : log_.key({base::HashKey::Kind::device, 0, leaf.type + " " + leaf.name, ""});
   }
   return leaf;
+}
+
+// Of the leaf whose state is in state_: it is another one than before.
+bool WorldHashes::is_new(Leaf& leaf) const {
+  const std::uint64_t hash = hash_of(state_);
+  if (std::exchange(leaf.is_known, true) && leaf.hash == hash) return false;
+  leaf.hash = hash;
+  return true;
 }
 
 void WorldHashes::record_models(const Simulation& simulation) {
   const Physics& physics = simulation.physics();
   for (ModelId id = 0; id < physics.model_slots(); ++id) {
     if (!physics.exists(id)) continue;
-    StateHash hash;
-    physics.add_to(hash, id);
-    Leaf& model = leaf(models_, id, base::HashKey::Kind::model, physics.def(id).name);
-    if (std::exchange(model.is_known, true) && model.hash == hash.value()) continue;
-    model.hash = hash.value();
-    log_.add(model.key, model.hash, octets_of(physics.model_pose(id)));
+    state_.clear();
+    physics.add_place_and_parts_to(state_, id);
+    Leaf& model = leaf(models_, id, "", physics.def(id).name);
+    if (is_new(model)) log_.add(model.key, model.hash, octets_of(physics.model_pose(id)));
   }
 }
 
 void WorldHashes::record_devices(const Simulation& simulation) {
   const auto& devices = simulation.devices();
   for (std::size_t i = 0; i < devices.size(); ++i) {
-    StateHash hash;
-    devices[i]->add_to(hash);
+    state_.clear();
+    devices[i]->add_to(state_);
     const auto& iface = devices[i]->iface();
-    Leaf& device =
-        leaf(devices_, i, base::HashKey::Kind::device, std::string(shm::to_text(iface.type())) + " " + std::string(iface.name()));
-    if (std::exchange(device.is_known, true) && device.hash == hash.value()) continue;
-    device.hash = hash.value();
-    log_.add(device.key, device.hash);
+    Leaf& device = leaf(devices_, i, shm::to_text(iface.type()), iface.name());
+    if (is_new(device)) log_.add(device.key, device.hash);
   }
 }
 

@@ -5,12 +5,14 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
 #include "base/hash_log.h"
 #include "base/result.h"
 #include "devices/device.h"
+#include "physics/hash.h"
 #include "server/simulation.h"
 
 namespace sim {
@@ -30,18 +32,20 @@ class WorldHashes {
  private:
   WorldHashes(std::string path, base::HashLogWriter log, double rate) : path_(std::move(path)), log_(std::move(log)), schedule_(rate) {}
   struct Leaf {
-    std::string name;  // the number may have been another's
+    std::string type, name;  // of the device; of the model, without a type. The number may have been another's.
     std::uint32_t key = 0;
     std::uint64_t hash = 0;
     bool is_known = false;
   };
-  Leaf& leaf(std::vector<Leaf>& leaves, std::size_t index, base::HashKey::Kind kind, const std::string& name);
+  Leaf& leaf(std::vector<Leaf>& leaves, std::size_t index, std::string_view type, std::string_view name);
+  bool is_new(Leaf& leaf) const;
   void record_models(const Simulation& simulation);
   void record_devices(const Simulation& simulation);
 
   std::string path_;
   base::HashLogWriter log_;
   Schedule schedule_;
+  StateHash state_;  // of one leaf after the other
   std::vector<Leaf> models_, devices_;
 };
 

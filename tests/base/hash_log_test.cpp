@@ -138,6 +138,36 @@ TEST_F(HashLogs, what_is_no_hash_log_or_is_damaged_is_named) {
   EXPECT_EQ(log->next(tick).error().message, "hash log " + in_quotes(a) + ": is damaged after tick 0");
 }
 
+TEST_F(HashLogs, a_log_of_the_first_version_is_read_and_compared_with_its_like_only) {
+  const auto as_version = [&](const std::string& path, char version) {
+    std::fstream(path, std::ios::in | std::ios::out | std::ios::binary).seekp(7).put(version);
+    return path;
+  };
+  const auto a = as_version(write("a", {{0, model, 1}}), '1'), b = as_version(write("b", {{0, model, 1}}), '1'),
+             c = write("c", {{0, model, 1}});
+  ASSERT_TRUE(compare_hash_logs(a, b).ok());
+  EXPECT_FALSE(compare_hash_logs(a, b)->first);
+  EXPECT_EQ(compare_hash_logs(a, c).error().message,
+            "hash logs " + in_quotes(a) + " and " + in_quotes(c) + ": are of versions 1 and 2, whose hashes differ for equal runs");
+  ASSERT_TRUE(merge_hash_logs({a}, file("whole")).ok());
+  EXPECT_EQ(HashLogReader::open(file("whole"))->version(), 1U);
+  EXPECT_EQ(HashLogReader::open(as_version(c, '3')).error().message,
+            "hash log " + in_quotes(c) + ": is of version 3, which is newer than this program");
+  EXPECT_EQ(HashLogReader::open(as_version(c, '0')).error().message, "file " + in_quotes(c) + ": is no hash log");
+}
+
+TEST(Hash64, tells_words_that_changed_places) {
+  const auto hash_of = [](std::initializer_list<std::uint64_t> words) {
+    Hash64 hash;
+    for (const std::uint64_t word : words) hash.add(word);
+    return hash.value();
+  };
+  EXPECT_NE(hash_of({1, 0, 0, 0}), hash_of({0, 1, 0, 0}));
+  EXPECT_NE(hash_of({1, 2, 3, 4, 5, 6, 7, 8}), hash_of({5, 2, 3, 4, 1, 6, 7, 8}));
+  EXPECT_NE(hash_of({0, 0}), hash_of({0, 0, 0}));
+  EXPECT_NE(hash_of({}), hash_of({0}));
+}
+
 TEST(Hash64, does_not_depend_on_how_the_octets_are_cut) {
   std::vector<std::byte> octets;
   for (int i = 0; i < 100; ++i) octets.push_back(static_cast<std::byte>(i * 7));
