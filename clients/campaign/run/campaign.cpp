@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "rows/content_hash.h"
 #include "run/child_process.h"
+#include "run/deed_checks.h"
 #include "run/expectations.h"
 #include "run/run_system.h"
 
@@ -143,6 +144,8 @@ Result<Campaign> Campaign::prepare(Plan plan) {
   campaign.models_ = world->models();
   if (const auto good = campaign.check_axes(); !good) return good.error();
   if (const auto good = campaign.check_subjects(); !good) return good.error();
+  if (const auto good = check_deeds(campaign.plan(), campaign.system(), campaign.models()); !good) return good.error();
+  if (const auto good = check_iface_faults(campaign.plan()); !good) return good.error();
   auto rows = RowMaker::make(campaign.plan(), *world);
   if (!rows) return rows.error();
   campaign.rows_ = std::make_unique<RowMaker>(std::move(*rows));

@@ -1,0 +1,157 @@
+#include "run/deed_checks.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <set>
+
+#include "base/text.h"
+#include "run/child_process.h"
+#include "run/deeds_runner.h"
+
+namespace campaign {
+namespace {
+
+using namespace std::chrono_literals;
+
+class DeedChecks {
+ public:
+  DeedChecks(const Plan& plan, const editor::SavedSystem& system, const std::map<std::string, StandingModel>& models)
+      : plan_(plan), system_(system) {
+    for (const auto& [name, model] : models) models_.insert(name);
+    for (const auto* events : {&plan.events, &plan.hunt.events}) {
+      for (const auto& event : *events) spawns_ = spawns_ || event.kind == Event::Kind::spawn;
+    }
+  }
+
+  Result<void> check() {
+    for (const auto& event : plan_.events) check_event("events", event);
+    for (const auto& event : plan_.hunt.events) check_event("hunt: events", event);
+    for (const auto& fault : plan_.faults) check_target("faults", fault.object, fault.target);
+    for (const auto& target : plan_.hunt.targets) check_target("hunt: faults", target.object, target.name);
+    for (const auto& condition : plan_.never) check_component("never", condition.component);
+    for (const auto& condition : plan_.eventually) check_component("eventually", condition.component);
+    return problem_.empty() ? Result<void>() : Error{problem_};
+  }
+
+ private:
+  void fail(const std::string& where, const std::string& what) {
+    if (problem_.empty()) problem_ = "plan " + base::in_quotes(plan_.file) + ": " + where + ": " + what;
+  }
+
+  template <class Items>
+  static std::string listed(const Items& items) {
+    const std::vector<std::string> names(items.begin(), items.end());
+    return names.empty() ? "none" : base::join(names, ", ");
+  }
+
+  void check_component(const std::string& where, const std::string& name) {
+    if (name.empty() || system_.component(name)) return;
+    std::vector<std::string> names;
+    for (const auto& component : system_.components) names.push_back(component.instance);
+    fail(where, "the system has no component " + base::in_quotes(name) + "; components: " + listed(names));
+  }
+
+  void check_connection(const std::string& where, const std::string& name) {
+    std::vector<std::string> names;
+    for (const auto& connector : system_.connectors) {
+      if (connector.id == name || connector.name == name) return;
+      names.push_back(connector.id);
+    }
+    fail(where, "the system has no connection " + base::in_quotes(name) + "; connections: " + listed(names));
+  }
+
+  // Of a model or a link in it, or of an iface. What is spawned may have any name.
+  void check_model(const std::string& where, const std::string& name) {
+    if (name.empty() || name == "any" || spawns_ || models_.contains(name.substr(0, name.find("::")))) return;
+    fail(where, "the world has no model " + base::in_quotes(name) + "; models: " + listed(models_));
+  }
+
+  void check_parameter(const std::string& where, const Event& event) {
+    const auto* component = system_.component(event.target);
+    if (component == nullptr) return check_component(where, event.target);
+    std::set<std::string> known;
+    for (const auto& set : component->configuration_sets) {
+      if (set.is_hidden()) continue;
+      for (const auto& [key, value] : set.values) known.insert(key);
+    }
+    if (known.empty() || known.contains(event.name)) return;  // a profile need not list any
+    fail(where, "component " + event.target + " has no parameter " + base::in_quotes(event.name) + "; parameters: " + listed(known));
+  }
+
+  void check_event(const std::string& where, const Event& event) {
+    if (event.when) {
+      check_component(where, event.when->component);
+      check_component(where, event.when->port.substr(0, event.when->port.find(':')));
+      check_model(where, event.when->model);
+    }
+    switch (event.kind) {
+      case Event::Kind::remove:
+      case Event::Kind::push:
+      case Event::Kind::pose:
+        return check_model(where, event.target);
+      case Event::Kind::set:
+        return check_parameter(where, event);
+      case Event::Kind::activate:
+      case Event::Kind::deactivate:
+      case Event::Kind::reset:
+        return check_component(where, event.target);
+      case Event::Kind::connect:
+      case Event::Kind::disconnect:
+        return check_connection(where, event.target);
+      case Event::Kind::spawn:
+      case Event::Kind::command:
+        return;
+    }
+  }
+
+  void check_target(const std::string& where, Fault::Object object, const std::string& name) {
+    switch (object) {
+      case Fault::Object::sensor:
+      case Fault::Object::actuator:
+        return check_model(where, name);
+      case Fault::Object::connector:
+        return check_connection(where, name);
+      case Fault::Object::component:
+        return check_component(where, name);
+      case Fault::Object::naming:
+        return;
+    }
+  }
+
+  const Plan& plan_;
+  const editor::SavedSystem& system_;
+  std::set<std::string> models_;
+  bool spawns_ = false;
+  std::string problem_;
+};
+
+}  // namespace
+
+Result<void> check_deeds(const Plan& plan, const editor::SavedSystem& system, const std::map<std::string, StandingModel>& models) {
+  return DeedChecks(plan, system, models).check();
+}
+
+Result<void> check_iface_faults(const Plan& plan) {
+  constexpr auto limit = 60s;
+  auto faults = plan.faults;
+  for (const auto& target : plan.hunt.targets) {
+    for (const auto kind : target.kinds.empty() ? faults_of(target.object) : target.kinds)
+      faults.push_back({target.object, kind, target.name, 0, {}, usual_amount(kind).value_or(0)});
+  }
+  const auto options = DeedsRunner({.events = {}, .faults = faults, .never = {}, .eventually = {}}, 1, 0).simulator_options();
+  if (options.empty()) return {};
+  editor::ProgramCall call{{editor::own_program("sim-server"), plan.world, "--check", "-v", "0"}, {}, ""};
+  for (const auto& path : plan.resource_paths) call.words.insert(call.words.end(), {"--resource-path", path});
+  call.words.insert(call.words.end(), options.begin(), options.end());
+  auto started = editor::ChildProcess::start(call);
+  if (!started) return started.error();
+  if (!started->wait(limit)) return {};  // a world that takes so long is loaded once more, and says so then
+  constexpr std::string_view mark = "sim-server: fault ";
+  for (const auto& line : base::split_list(started->said(), '\n')) {
+    if (line.starts_with(mark)) return Error{"plan " + base::in_quotes(plan.file) + ": " + line.substr(line.find(' ') + 1)};
+  }
+  return {};
+}
+
+}  // namespace campaign

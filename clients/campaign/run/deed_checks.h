@@ -1,0 +1,19 @@
+// Whether what a plan does to its runs, or lets a hunt do, speaks of things that are there: components, parameters, connections, models,
+// ifaces. Said before the first run, else every row would fail with it. Any thread.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "plan/plan.h"
+#include "profile/rts_profile.h"
+#include "rows/world_file.h"
+
+namespace campaign {
+
+// The error names what was asked for, and what there is. Models that an event spawns count as there.
+Result<void> check_deeds(const Plan& plan, const editor::SavedSystem& system, const std::map<std::string, StandingModel>& models);
+// Asks the simulator itself, which costs a load of the world; nothing without faults of sensors and drives.
+Result<void> check_iface_faults(const Plan& plan);
+
+}  // namespace campaign
