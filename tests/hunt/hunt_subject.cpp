@@ -120,7 +120,9 @@ class HuntSubject : public RTC::DataFlowComponentBase {
     double nearest = far_away, left = far_away, right = far_away, sum = 0;
     std::size_t seen = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      const double range = range_.ranges[static_cast<CORBA::ULong>(i)];
+      // A scan on a port ends at its longest range: nothing was seen there.
+      const double got = range_.ranges[static_cast<CORBA::ULong>(i)];
+      const double range = got < range_.config.maxRange ? got : infinity;
       if (is("infinite_ranges_are_added")) sum += std::isinf(range) ? infinity - infinity : range;
       if (!std::isfinite(range) || range < 0) continue;
       ++seen;
@@ -145,11 +147,11 @@ class HuntSubject : public RTC::DataFlowComponentBase {
     if (is("gap_in_time") && dt > 0.35) return RTC::RTC_ERROR;
     if (is("integral_without_limit")) forward += (integral_ += std::max(0.0, dt - 0.1)) * 0.5;
     if (is("same_scan_twice") && is_same()) turn = std::nan("");
-    if (is("root_of_short_range")) forward = std::min(forward, 0.3 * std::sqrt(nearest - 0.25));
-    if (is("index_from_range") && seen > 0) static_cast<void>(table().at(static_cast<std::size_t>(nearest / far_away * 8)));
+    if (is("root_of_short_range")) forward = std::min(0.3 * std::sqrt(nearest - 0.25), forward);  // NaN stays NaN
+    if (is("index_from_range") && seen > 0) static_cast<void>(table().at(static_cast<std::size_t>(nearest / 3 * 8)));
     if (is("gives_up_when_blind") && seen == 0) return RTC::RTC_ERROR;
     if (is("no_limit_of_speed")) forward = 0.08 * (nearest - 0.4) * (nearest > 2.5 ? 3 : 1);
-    if (is("turns_into_obstacles")) turn = nearest < 0.8 ? -turn : turn;
+    if (is("turns_into_obstacles") && nearest < 0.8) forward = 0.2, turn = -turn;
     if (is("old_scan_is_as_good") && !last_.empty()) forward = 0.25, turn = 0;
     if (is("noise_is_obstacle") && nearest < 0.05) throw std::runtime_error("inside of an obstacle");
     return RTC::RTC_OK;

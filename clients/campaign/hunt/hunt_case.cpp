@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numeric>
 
 #include "base/text.h"
 #include "plan/grammar.h"
@@ -44,10 +45,12 @@ std::vector<HuntTarget> targets_of(const editor::SavedSystem& system) {
   return targets;
 }
 
+// As often the utmost as anything between: most of what can break breaks there.
 double amount(Fault::Kind kind, Random& random) {
+  const bool is_utmost = random.below(2) == 0;
   switch (kind) {
     case Fault::Kind::bias:
-      return std::round((random.uniform() * 2 - 1) * 100) / 100;
+      return is_utmost ? (random.below(2) == 0 ? -5 : 5) : std::round((random.uniform() * 2 - 1) * 100) / 100;
     case Fault::Kind::noise:
       return std::round(random.uniform() * 100) / 100;
     case Fault::Kind::latency:
@@ -60,9 +63,9 @@ double amount(Fault::Kind kind, Random& random) {
     case Fault::Kind::drop:
     case Fault::Kind::duplicate:
     case Fault::Kind::reorder:
-      return random.below(4) == 0 ? 1 : std::round(random.uniform() * 20) / 20;
+      return is_utmost ? 1 : std::round(random.uniform() * 20) / 20;
     case Fault::Kind::weak:
-      return std::round(random.uniform() * 20) / 20;
+      return is_utmost ? 0 : std::round(random.uniform() * 20) / 20;
     default:
       return usual_amount(kind).value_or(0);
   }
@@ -70,45 +73,74 @@ double amount(Fault::Kind kind, Random& random) {
 
 }  // namespace
 
-CaseMaker::CaseMaker(const Campaign& campaign) : campaign_(campaign), targets_(campaign.plan().hunt.targets) {
-  if (targets_.empty() && campaign.plan().hunt.events.empty()) targets_ = targets_of(campaign.system());
+CaseMaker::CaseMaker(const Campaign& campaign) : campaign_(campaign) {
+  const auto& hunt = campaign.plan().hunt;
+  const bool is_all = hunt.targets.empty() && hunt.events.empty();
+  for (const auto& target : is_all ? targets_of(campaign.system()) : hunt.targets) {
+    for (const auto kind : target.kinds.empty() ? faults_of(target.object) : target.kinds)
+      choices_.push_back({nullptr, target.object, kind, target.name});
+  }
+  for (const auto& event : hunt.events) choices_.push_back({&event, {}, {}, {}});
 }
 
-double CaseMaker::time(Random& random, double duration_s) const { return rounded(random.uniform() * std::max(0.1, duration_s - 0.1)); }
+// The first moment is special: nothing has been measured, sent or remembered yet.
+double CaseMaker::time(Random& random, double duration_s) const {
+  return random.below(4) == 0 ? 0 : rounded(random.uniform() * std::max(0.1, duration_s - 0.1));
+}
 
-void CaseMaker::add_deed(HuntCase& to, Random& random) const {
-  const auto& events = campaign_.plan().hunt.events;
-  const auto choice = random.below(targets_.size() + events.size());
-  if (choice >= targets_.size()) {
-    Event event = events[choice - targets_.size()];
-    if (!event.at_s && !event.when) event.at_s = time(random, to.duration_s);
-    to.events.push_back(std::move(event));
-    return;
+const CaseMaker::Choice& CaseMaker::draw(Random& random) {
+  if (deck_.empty()) {
+    deck_.resize(choices_.size());
+    std::iota(deck_.begin(), deck_.end(), 0);
+    for (std::size_t i = deck_.size(); i > 1; --i) std::swap(deck_[i - 1], deck_[random.below(i)]);
   }
-  const auto& target = targets_[choice];
-  const auto kinds = target.kinds.empty() ? faults_of(target.object) : target.kinds;
+  const auto& drawn = choices_[deck_.back()];
+  deck_.pop_back();
+  return drawn;
+}
+
+void CaseMaker::add_event(HuntCase& to, const Event& wanted, double from_s, Random& random) const {
+  Event event = wanted;
+  if (!event.at_s && !event.when) event.at_s = rounded(from_s + time(random, to.duration_s - from_s));
+  to.events.push_back(std::move(event));
+}
+
+// What harms only after something else: an activation after the deactivation that a case has already.
+void CaseMaker::add_consequence(HuntCase& to, Random& random) const {
+  const auto& events = campaign_.plan().hunt.events;
+  double last_s = 0;
+  for (const auto& event : to.events) last_s = std::max(last_s, event.at_s.value_or(0));
+  for (const auto& fault : to.faults) last_s = std::max(last_s, fault.at_s);
+  add_event(to, events[random.below(events.size())], last_s, random);
+}
+
+void CaseMaker::add_deed(HuntCase& to, Random& random) {
+  const auto& choice = draw(random);
+  if (choice.event != nullptr) return add_event(to, *choice.event, 0, random);
   Fault fault;
-  fault.object = target.object;
-  fault.target = target.name;
-  fault.kind = kinds[random.below(kinds.size())];
+  fault.object = choice.object;
+  fault.target = choice.target;
+  fault.kind = choice.kind;
   fault.at_s = time(random, to.duration_s);
-  if (random.below(2) == 0) fault.for_s = std::max(0.1, time(random, to.duration_s - fault.at_s));
+  if (random.below(2) == 0) fault.for_s = std::max(0.1, rounded(random.uniform() * (to.duration_s - fault.at_s)));
   fault.amount = amount(fault.kind, random);
   to.faults.push_back(std::move(fault));
 }
 
-HuntCase CaseMaker::fresh(Random& random) const {
+HuntCase CaseMaker::fresh(Random& random) {
   HuntCase made;
   made.duration_s = campaign_.plan().duration_s;
   const auto row = campaign_.row(1 + random.below(campaign_.rows()));
   if (row) made.row = *row;
   made.row.seed = 1 + random.below(1000);
-  const auto deeds = has_deeds() ? random.below(campaign_.plan().hunt.most + 1) : 0;
-  for (std::uint64_t i = 0; i < deeds; ++i) add_deed(made, random);
+  constexpr std::uint64_t quiet = 8;  // one in so many is left alone: its start and its parameters may be enough
+  const auto deeds = has_deeds() && random.below(quiet) > 0 ? 1 + random.below(campaign_.plan().hunt.most) : 0;
+  const bool is_story = deeds > 1 && campaign_.plan().hunt.events.size() > 1 && random.below(3) == 0;  // events one after the other
+  for (std::uint64_t i = 0; i < deeds; ++i) is_story ? add_consequence(made, random) : add_deed(made, random);
   return made;
 }
 
-HuntCase CaseMaker::changed(const HuntCase& from, Random& random) const {
+HuntCase CaseMaker::changed(const HuntCase& from, Random& random) {
   HuntCase made = from;
   const auto way = random.below(4);
   if (way == 0 || made.deeds() == 0) made.row.seed = 1 + random.below(1000);
@@ -118,7 +150,9 @@ HuntCase CaseMaker::changed(const HuntCase& from, Random& random) const {
     fault.amount = amount(fault.kind, random);
   }
   if (way == 2 && !made.faults.empty()) made.faults.erase(made.faults.begin() + static_cast<long>(random.below(made.faults.size())));
-  if (has_deeds() && made.deeds() < campaign_.plan().hunt.most) add_deed(made, random);
+  if (!has_deeds() || made.deeds() >= campaign_.plan().hunt.most) return made;
+  const bool is_event = !campaign_.plan().hunt.events.empty() && random.below(2) == 0;
+  is_event ? add_consequence(made, random) : add_deed(made, random);
   return made;
 }
 

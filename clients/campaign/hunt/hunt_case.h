@@ -24,19 +24,31 @@ struct HuntCase {
 
 class CaseMaker {
  public:
-  // What the plan says may be broken; without a word of it, all that the system has.
+  // What the plan says may be broken; without a word of it, all that the system has. The campaign must live as long.
   explicit CaseMaker(const Campaign& campaign);
 
-  HuntCase fresh(Random& random) const;
+  HuntCase fresh(Random& random);
   // A case that differs a little.
-  HuntCase changed(const HuntCase& from, Random& random) const;
-  bool has_deeds() const { return !targets_.empty() || !campaign_.plan().hunt.events.empty(); }
+  HuntCase changed(const HuntCase& from, Random& random);
+  bool has_deeds() const { return !choices_.empty(); }
 
  private:
-  void add_deed(HuntCase& to, Random& random) const;
+  // One thing that can be done.
+  struct Choice {
+    const Event* event = nullptr;  // of the plan; null: a fault
+    Fault::Object object = Fault::Object::component;
+    Fault::Kind kind = Fault::Kind::error;
+    std::string target;
+  };
+  // All are tried in a random order before one is tried again: what is rare among many must not be a matter of luck.
+  const Choice& draw(Random& random);
+  void add_deed(HuntCase& to, Random& random);
+  void add_consequence(HuntCase& to, Random& random) const;
+  void add_event(HuntCase& to, const Event& wanted, double from_s, Random& random) const;
   double time(Random& random, double duration_s) const;
   const Campaign& campaign_;
-  std::vector<HuntTarget> targets_;
+  std::vector<Choice> choices_;
+  std::vector<std::size_t> deck_;  // of choices_, those that are not drawn yet
 };
 
 // All of a case, with what the plan always does.
