@@ -16,6 +16,7 @@
 #include "render/assets.h"
 #include "render/scene.h"
 #include "server/server_loop.h"
+#include "server/warm_start.h"
 #include "shm/segment.h"
 #include "shm/specs.h"
 #include "world/world_loader.h"
@@ -198,9 +199,7 @@ int run(const Options& options, Signals& signals) {
   return is_complete ? 0 : 1;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int serve(int argc, char** argv) {
   Options options;
   base::Command app("Loads an SDFormat world and runs it. Every device is an iface in shared memory; simctl shows and controls all of it.",
                     "sim-server");
@@ -260,4 +259,12 @@ int main(int argc, char** argv) {
   } catch (const std::exception& e) {  // from libraries
     return fail(e.what());
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // For rtse alone, so --help is silent about it.
+  if (argc == 2 && std::string_view(argv[1]) == "--warm") return sim::make_servers(serve);
+  return serve(argc, argv);
 }

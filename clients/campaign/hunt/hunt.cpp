@@ -6,10 +6,12 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <optional>
 
 #include "base/text.h"
 #include "remote.h"
 #include "run/interrupt.h"
+#include "run/warm_program.h"
 
 namespace campaign {
 namespace {
@@ -67,6 +69,7 @@ class Hunt {
     options.duration_s = tried.duration_s;
     options.checks_invariants = true;
     options.draws = false;
+    options.warm_simulator = warm_ ? &*warm_ : nullptr;
     auto outcome = run_row(orb_, campaign_, tried.row, options);
     std::error_code ignored;
     fs::remove_all(options.folder, ignored);
@@ -166,6 +169,7 @@ class Hunt {
   std::vector<HuntCase> corpus_;
   std::set<std::string> features_, signatures_;
   HuntResult result_;
+  const std::optional<editor::WarmProgram> warm_ = editor::WarmProgram::start_simulator();
   std::string problem_;  // why nothing can be found
   Clock::time_point began_ = Clock::now();
 };

@@ -26,6 +26,7 @@ editor::RunOptions options_of(const Campaign& campaign, const Row& row, const Ro
   run.resource_paths = plan.resource_paths;
   run.keep = options.folder;
   run.quiet = true;
+  run.warm_simulator = options.warm_simulator;
   if (options.records) run.record = options.folder + "/run.mcap";
   return run;
 }

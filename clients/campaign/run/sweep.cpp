@@ -6,12 +6,14 @@
 #include "remote.h"
 #include "run/interrupt.h"
 #include "run/tally.h"
+#include "run/warm_program.h"
 
 namespace campaign {
 namespace fs = std::filesystem;
 namespace {
 
-void work(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepOptions& options, Tally& tally, const Tally::Todo& todo) {
+void work(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepOptions& options, const editor::WarmProgram* warm, Tally& tally,
+          const Tally::Todo& todo) {
   if (editor::is_interrupted() || tally.is_stopped()) return;
   const auto row = campaign.row(todo.number);
   if (!row) return;  // list_rows() has made it already
@@ -19,7 +21,8 @@ void work(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepOptions& opti
   const auto folder = options.kept + "/" + folder_name(todo.number, key) + (todo.is_audit ? "-audit" : "");
   std::error_code ignored;
   fs::remove_all(folder, ignored);  // of a call that was killed
-  const auto outcome = run_row(orb, campaign, *row, {.folder = folder, .keeps_files = false, .records = options.records});
+  const auto outcome =
+      run_row(orb, campaign, *row, {.folder = folder, .keeps_files = false, .records = options.records, .warm_simulator = warm});
   if (editor::is_interrupted() && !outcome.problem.empty()) {
     fs::remove_all(folder, ignored);
     return;
@@ -49,8 +52,9 @@ Result<SweepResult> sweep(CORBA::ORB_ptr orb, const Campaign& campaign, const Sw
   Tally tally(campaign, options, std::move(*store), show);
   if (const auto listed = tally.list_rows(); !listed) return listed.error();
   const auto& todo = tally.todo();
+  const auto warm = todo.size() > 1 ? editor::WarmProgram::start_simulator() : std::nullopt;
   editor::in_parallel(
-      todo.size(), options.call_limit, [&](std::size_t i) { work(orb, campaign, options, tally, todo[i]); },
+      todo.size(), options.call_limit, [&](std::size_t i) { work(orb, campaign, options, warm ? &*warm : nullptr, tally, todo[i]); },
       static_cast<std::size_t>(options.jobs));
   std::error_code ignored;
   fs::remove(options.kept, ignored);  // when it is empty

@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "remote.h"
 #include "run/interrupt.h"
+#include "run/warm_program.h"
 #include "slurm/slurm_sweep.h"
 #include "slurm/task_folder.h"
 
@@ -101,6 +102,7 @@ Result<void> run_task(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepO
   if (!rows) return rows.error();
   Part part(shared.part(place.attempt, place.task));
   const Scratch scratch;
+  const auto warm = rows->size() > 1 ? editor::WarmProgram::start_simulator() : std::nullopt;
   const auto work = [&](std::size_t number) {
     if (editor::is_interrupted() || !part.problem().empty()) return;
     const auto row = campaign.row(number);
@@ -108,7 +110,9 @@ Result<void> run_task(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepO
     const auto key = campaign.key(*row);
     const auto name = folder_name(number, key);
     const auto folder = scratch.folder() / name;
-    auto outcome = run_row(orb, campaign, *row, {.folder = folder.string(), .keeps_files = false, .records = options.records});
+    auto outcome =
+        run_row(orb, campaign, *row,
+                {.folder = folder.string(), .keeps_files = false, .records = options.records, .warm_simulator = warm ? &*warm : nullptr});
     if (editor::is_interrupted() && !outcome.problem.empty()) return;
     std::string kept;
     if (!outcome.is_passed()) {

@@ -27,24 +27,15 @@ using base::Result;
 constexpr std::chrono::milliseconds ending_limit{5000};
 constexpr std::chrono::milliseconds killing_limit{5000};  // the kernel takes its time only when memory or a disk is stuck
 
-// Until the process ends, the handle can be read, a signal comes or the time is up.
-void wait_for_event(pid_t pid, int handle, std::chrono::milliseconds limit) {
-  const int process = static_cast<int>(syscall(SYS_pidfd_open, pid, 0));
-  pollfd events[2] = {{process, POLLIN, 0}, {handle, POLLIN, 0}};
-  poll(events, 2, static_cast<int>(std::min<std::int64_t>(limit.count() + 1, 60'000)));
-  if (process >= 0) close(process);
-}
-
 int code_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
 
 // Between fork and exec only what is safe there: everything is made before.
-[[noreturn]] void become(char* const* words, char* const* environment, int output, const char* folder, pid_t parent) {
+[[noreturn]] void become(char* const* words, char* const* environment, int input, int output, const char* folder, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(127);  // the parent died before the line above
   setpgid(0, 0);                        // an interrupt from the terminal is ours to hand on
   const bool is_there = *folder == '\0' || chdir(folder) == 0;
-  const int null = open("/dev/null", O_RDONLY);
-  dup2(null, 0);
+  dup2(input >= 0 ? input : open("/dev/null", O_RDONLY), 0);
   dup2(output, 1);
   dup2(output, 2);
   for (int number = 1; number < NSIG; ++number) signal(number, SIG_DFL);  // what we ignore is no business of others
@@ -79,7 +70,7 @@ Result<ChildProcess> ChildProcess::start(const ProgramCall& call) {
   environment.push_back(nullptr);
   const pid_t parent = getpid();
   const pid_t child = fork();
-  if (child == 0) become(words.data(), environment.data(), output, call.folder.c_str(), parent);
+  if (child == 0) become(words.data(), environment.data(), call.input, output, call.folder.c_str(), parent);
   if (!collects || child < 0) close(output);
   if (child < 0) return Error{"program " + call.words[0] + ": no process can be made"};
   setpgid(child, child);  // as it does itself: whoever comes first
@@ -91,6 +82,7 @@ ChildProcess::ChildProcess(ChildProcess&& other) noexcept
       started_(other.started_),
       ends_as_group_(other.ends_as_group_),
       is_told_(other.is_told_),
+      watched_(std::exchange(other.watched_, -1)),
       collected_(std::exchange(other.collected_, -1)),
       exit_code_(other.exit_code_),
       program_(std::move(other.program_)) {}
@@ -102,6 +94,7 @@ ChildProcess& ChildProcess::operator=(ChildProcess&& other) noexcept {
   started_ = other.started_;
   ends_as_group_ = other.ends_as_group_;
   is_told_ = other.is_told_;
+  watched_ = std::exchange(other.watched_, -1);
   collected_ = std::exchange(other.collected_, -1);
   exit_code_ = other.exit_code_;
   program_ = std::move(other.program_);
@@ -114,6 +107,7 @@ bool ChildProcess::is_running() { return !wait(std::chrono::milliseconds(0)); }
 
 // Takes note of its end, if it has ended, and ends what it has left behind in its process group.
 bool ChildProcess::reap() {
+  if (watched_ >= 0) return reap_watched();
   siginfo_t info{};
   if (waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid != pid_) return false;
   kill(-pid_, SIGKILL);  // while its number cannot belong to anybody else
@@ -124,13 +118,33 @@ bool ChildProcess::reap() {
   return true;
 }
 
+// Who has made it has taken note and ended what it has left behind; when that one has died, the kernel has ended both.
+bool ChildProcess::reap_watched() {
+  pollfd event{watched_, POLLIN, 0};
+  if (poll(&event, 1, 0) <= 0) return false;
+  int status = SIGKILL;
+  static_cast<void>(!read(watched_, &status, sizeof status));
+  close(std::exchange(watched_, -1));
+  pid_ = -1;
+  exit_code_ = code_of(status);
+  return true;
+}
+
+// Until the process ends, the handle can be read, a signal comes or the time is up.
+void ChildProcess::wait_for_event(int handle, std::chrono::milliseconds limit) const {
+  const int process = watched_ >= 0 ? -1 : static_cast<int>(syscall(SYS_pidfd_open, pid_, 0));
+  pollfd events[2] = {{watched_ >= 0 ? watched_ : process, POLLIN, 0}, {handle, POLLIN, 0}};
+  poll(events, 2, static_cast<int>(std::min<std::int64_t>(limit.count() + 1, 60'000)));
+  if (process >= 0) close(process);
+}
+
 bool ChildProcess::wait(std::chrono::milliseconds limit) {
   const auto deadline = std::chrono::steady_clock::now() + limit;
   for (;;) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
     if (pid_ < 0 || reap()) return true;
     if (left.count() < 0) return false;
-    wait_for_event(pid_, -1, left);
+    wait_for_event(-1, left);
   }
 }
 
@@ -141,11 +155,12 @@ Ending ChildProcess::wait_or_interrupt(std::chrono::milliseconds limit) {
     if (pid_ < 0 || reap()) return Ending::ended;
     if (is_interrupted()) return Ending::interrupted;
     if (left.count() < 0) return Ending::timed_out;
-    wait_for_event(pid_, interrupt_handle(), left);
+    wait_for_event(interrupt_handle(), left);
   }
 }
 
 void ChildProcess::terminate() {
+  if (pid_ > 0 && watched_ >= 0 && reap_watched()) return;  // its number may belong to another one already
   if (pid_ > 0 && !std::exchange(is_told_, true)) kill(ends_as_group_ ? -pid_ : pid_, SIGTERM);
 }
 

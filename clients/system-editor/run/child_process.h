@@ -19,6 +19,7 @@ struct ProgramCall {
   std::string output{};                            // file for its standard output and error; empty: they are collected, see said()
   std::string folder{};                            // where it starts; empty: in ours
   bool ends_as_group = false;                      // what it has started is told to end with it
+  int input = -1;                                  // descriptor of its standard input; -1: it has none
 };
 
 enum class Ending { ended, timed_out, interrupted };
@@ -46,14 +47,18 @@ class ChildProcess {
   const std::string& program() const { return program_; }
 
  private:
+  friend class WarmProgram;
   ChildProcess(pid_t pid, int collected, std::string program, bool ends_as_group)
       : pid_(pid), started_(pid), ends_as_group_(ends_as_group), collected_(collected), program_(std::move(program)) {}
   bool reap();
+  bool reap_watched();
+  void wait_for_event(int handle, std::chrono::milliseconds limit) const;
   void end();
   pid_t pid_ = -1;  // -1: it has ended
   pid_t started_ = -1;
   bool ends_as_group_ = false;
   bool is_told_ = false;  // to end: programs may take a second time for impatience
+  int watched_ = -1;      // of one that another process has made: a pipe that its status comes by; see warm_program.h
   int collected_ = -1;
   int exit_code_ = -1;
   std::string program_;

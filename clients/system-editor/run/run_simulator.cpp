@@ -9,6 +9,7 @@
 
 #include "base/text.h"
 #include "run/same_math.h"
+#include "run/warm_program.h"
 
 namespace editor {
 namespace {
@@ -49,7 +50,7 @@ Result<void> RunSimulator::try_start(const Wait& wait_until) {
   if (hashes_.is_wanted()) call.words.insert(call.words.end(), {"--hash-log", hashes_.world_part()});
   for (const auto& path : options_.resource_paths) call.words.insert(call.words.end(), {"--resource-path", path});
   call.words.insert(call.words.end(), options_.simulator_options.begin(), options_.simulator_options.end());
-  auto started = ChildProcess::start(call);
+  auto started = options_.warm_simulator != nullptr ? options_.warm_simulator->start(call) : ChildProcess::start(call);
   if (!started) return started.error();
   process_.emplace(std::move(*started));
   return wait_until("simulator", [&] {

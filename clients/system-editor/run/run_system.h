@@ -18,6 +18,7 @@
 namespace editor {
 
 class RunScript;
+class WarmProgram;
 
 // A system that is wired and active and stands before its first step, in the hands of who drives it.
 class RunningSystem {
@@ -61,6 +62,7 @@ struct RunOptions {
   std::string keep;          // folder for logs and the record; empty: a temporary one, removed at the end
   bool quiet = false;        // no progress line
   std::vector<std::string> simulator_options{};  // more words for sim-server
+  const WarmProgram* warm_simulator = nullptr;   // that makes the simulator; null: it is started alone
   RunScript* script = nullptr;                   // see run_script.h; null: nothing happens but the run
   // Makes the steps instead of the run; nothing is judged then.
   std::function<Result<void>(RunningSystem&)> driver{};
