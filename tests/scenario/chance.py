@@ -114,6 +114,27 @@ def service_of_one_phase():
     assert code == 0, (code, out, err)
 
 
+# Two components that call a third, in processes of their own and in one: who comes first, nobody decides.
+def callers_of_one_phase():
+    provider, consumer = "RTC:rtm-sim:example:EchoProvider:1.0.0", "RTC:rtm-sim:example:EchoConsumer:1.0.0"
+    text = chance_system.system(chance_system.component("P", 10, provider), chance_system.component("C", 10, consumer), chance_system.component("D", 10, consumer),
+                                chance_system.service("P.Echo", "C.Echo", provider, consumer), chance_system.service("D.Echo", "P.Echo", consumer, provider))
+    named = "calls from C.Echo and D.Echo, both of phase 2, to P.Echo: give them different phases"
+    options = ["--duration", "0.5", "--property", "C:exec_cxt.sim_time.phase=2", "--property"]
+    for processes in ([], ["--one-process-each"]):
+        code, out, err = run(text, *processes, *options, "D:exec_cxt.sim_time.phase=2", "--strict")
+        assert code == 1 and named in err, (code, out, err)
+    code, out, err = run(text, *options, "D:exec_cxt.sim_time.phase=2", env={"CI": "true"})
+    assert code == 0 and named in err, (code, out, err)
+    code, out, err = run(text, *options, "D:exec_cxt.sim_time.phase=3", "--strict")
+    assert code == 0, (code, out, err)
+    # One client of two is no such thing: it calls one after the other.
+    text = chance_system.system(chance_system.component("P", 10, provider), chance_system.component("Q", 10, provider), chance_system.component("C", 10, consumer),
+                                chance_system.service("P.Echo", "C.Echo", provider, consumer), chance_system.service("Q.Echo", "C.Echo", provider, consumer))
+    code, out, err = run(text, "--duration", "0.5", "--strict", "--property", "C:exec_cxt.sim_time.phase=2")
+    assert code == 0, (code, out, err)
+
+
 # The same run on other processors, as far as one can be made to look like others: the C library without AVX2 and AVX-512, the ray tracer with fewer
 # instructions (up to AVX they give the same),
 # the renderer with narrower vectors and more threads. Each pose, each scan, a picture a second.

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <thread>
 
 #include "base/text.h"
@@ -427,6 +428,7 @@ class Run final : public RunningSystem {
     for (const auto& component : system_.components) {
       const auto view = editor_->component(component.instance + ".rtc", {.contexts = true});
       seen_.states[component.instance] = view ? state_text(view->state()) : "gone";
+      if (view) providers_.merge(providers_of(*view));
     }
     check_states();
     check_chances();
@@ -437,7 +439,9 @@ class Run final : public RunningSystem {
   void check_chances() {
     if (!options_.strict && !std::getenv("CI")) return;
     auto chances = chances_in(hosts_.logs());
-    for (auto& pair : services_of_one_phase(system_, simulator_.phases())) chances.push_back(std::move(pair));
+    const auto phases = simulator_.phases();
+    for (auto& pair : services_of_one_phase(system_, phases)) chances.push_back(std::move(pair));
+    for (auto& pair : callers_of_one_phase(system_, phases, providers_)) chances.push_back(std::move(pair));
     if (options_.strict) {
       result_.verdicts.push_back({"nothing depends on chance", base::join(chances, "; ")});
     } else {
@@ -503,6 +507,7 @@ class Run final : public RunningSystem {
   std::vector<Expectation> expectations_;
   std::vector<ComponentProperty> properties_;
   Seen seen_;
+  std::set<std::string> providers_;  // full names of ports
   RunResult result_;
   RunHashes hashes_;
   RunSimulator simulator_;
