@@ -5,11 +5,10 @@
 #include <utility>
 
 #include "base/guarded.h"
-#include "base/id.h"
 #include "base/text.h"
+#include "logger_service.h"
 #include "remote.h"
 #include "ros/messages.h"
-#include "rtm/idl/LoggerSkel.h"
 
 namespace recorder {
 
@@ -19,7 +18,6 @@ using Json = nlohmann::ordered_json;
 using std::chrono::nanoseconds;
 using std::chrono::seconds;
 
-constexpr const char* logger_type = "IDL:OpenRTM/Logger:1.0";
 constexpr const char* event_log_type = "rtm-sim/EventLog:1.0";  // of our components: rtm-core/component/observer.h
 constexpr const char* simulator_parameter = "server_id";        // another one in each run
 constexpr seconds longest_simulation{1'000'000'000};            // later stamps are of the wall clock
@@ -78,26 +76,6 @@ std::string state_name(RTC::LifeCycleState state) {
 
 }  // namespace
 
-// Lives as long as somebody may call it.
-class ComponentSource::Log final : public POA_OpenRTM::Logger {
- public:
-  using Take = std::function<void(const OpenRTM::LogRecord&)>;
-  explicit Log(Take take) : take_(std::move(take)) {}
-  void publish(const OpenRTM::LogRecord& record) override {
-    const auto mine = turn_.take();
-    if (take_) take_(record);
-  }
-  void close() override {}
-  void stop() {
-    const auto mine = turn_.take();
-    take_ = nullptr;
-  }
-
- private:
-  base::Turn<> turn_;
-  Take take_;
-};
-
 struct ComponentSource::State {
   CORBA::ORB_var orb;
   channels::Exchange& exchange;
@@ -129,9 +107,6 @@ struct ComponentSource::State {
 class ComponentSource::Watched {
  public:
   Watched(State& state, const editor::ComponentView& component) : state_(state), view_(component) {}
-  ~Watched() {
-    for (const auto& service : services_) detach(service);
-  }
   Watched(const Watched&) = delete;
   Watched& operator=(const Watched&) = delete;
 
@@ -140,12 +115,6 @@ class ComponentSource::Watched {
   const editor::ComponentView& view() const { return view_; }
 
  private:
-  struct Service {
-    PortableServer::Servant_var<Log> servant;
-    std::string id;
-  };
-  void attach(const char* type, const editor::Properties& properties, Log::Take take);
-  void detach(const Service& service);
   void take(const OpenRTM::LogRecord& record);
   std::string topic(const char* what) const { return "/rtc/" + view_.instance + "/" + what; }
   base::Result<channels::ChannelId> channel(const char* what, const channels::Schema& schema, bool is_latched = false) {
@@ -158,7 +127,7 @@ class ComponentSource::Watched {
   const editor::ComponentView view_;
   channels::ChannelId states_ = 0, configuration_ = 0;
   base::Guarded<std::optional<channels::ChannelId>, base::Rank::registry> events_;  // when there is the first one
-  std::vector<Service> services_;
+  std::unique_ptr<LoggerService> own_events_, log_;                                 // last: they call the others
 };
 
 base::Result<void> ComponentSource::Watched::open() {
@@ -184,47 +153,12 @@ base::Result<void> ComponentSource::Watched::open() {
 }
 
 // A component that does not know such services says nothing more.
-void ComponentSource::Watched::attach(const char* type, const editor::Properties& properties, Log::Take take) {
-  Service service{new Log(std::move(take)), base::make_uuid()};
-  try {
-    const OpenRTM::Logger_var reference = service.servant->_this();
-    SDOPackage::ServiceProfile profile;
-    profile.id = service.id.c_str();
-    profile.interface_type = type;
-    profile.properties = editor::to_nv_list(properties);
-    profile.service = SDOPackage::SDOService::_duplicate(reference);
-    const SDOPackage::Configuration_var configuration = view_.object->get_configuration();
-    configuration->add_service_profile(profile);
-  } catch (const CORBA::Exception&) {
-    return detach(service);  // which a component that has gone does not mind
-  }
-  services_.push_back(std::move(service));
-}
-
 void ComponentSource::Watched::attach() {
-  attach(event_log_type,
-         {{"observed_status", "RTC_STATUS,EC_STATUS,CONFIGURATION,COMPONENT_PROFILE"}},  // ports would be listened to at each sample
-         [this](const OpenRTM::LogRecord& record) { this->take(record); });
-  attach(logger_type, {{"logger.log_level", "INFO"}, {"logger.filter", view_.instance}, {"logger.clock", "simulated"}},
-         [&state = state_](const OpenRTM::LogRecord& record) { state.take_line(record); });
-}
-
-void ComponentSource::Watched::detach(const Service& service) {
-  try {
-    const SDOPackage::Configuration_var configuration = view_.object->get_configuration();
-    configuration->remove_service_profile(service.id.c_str());
-  } catch (const CORBA::Exception&) {
-    // It has gone, or never knew it.
-  }
-  auto& servant = const_cast<Service&>(service).servant;
-  servant->stop();
-  try {
-    const PortableServer::POA_var poa = servant->_default_POA();
-    const PortableServer::ObjectId_var id = poa->servant_to_id(servant.in());
-    poa->deactivate_object(id);
-  } catch (const CORBA::Exception&) {
-    // The ORB is shutting down.
-  }
+  own_events_ = LoggerService::attach(
+      view_, event_log_type,
+      {{"observed_status", "RTC_STATUS,EC_STATUS,CONFIGURATION,COMPONENT_PROFILE"}},  // ports would be listened to at each sample
+      [this](const OpenRTM::LogRecord& record) { this->take(record); });
+  log_ = LoggerService::of_log(view_, [&state = state_](const OpenRTM::LogRecord& record) { state.take_line(record); });
 }
 
 void ComponentSource::Watched::take(const OpenRTM::LogRecord& record) {

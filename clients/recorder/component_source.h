@@ -47,7 +47,6 @@ class ComponentSource final {
   std::size_t size() const;
 
  private:
-  class Log;
   class Watched;
   struct State;
   std::unique_ptr<State> state_;

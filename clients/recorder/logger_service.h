@@ -1,0 +1,35 @@
+// A service that hears what a component says of itself (OpenRTM::Logger), attached to it as a service profile: its log, or its events. What
+// comes is taken on threads of the ORB, one call at a time, and none after the end of the object. One thread at a time.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "component_view.h"
+#include "rtm/idl/LoggerSkel.h"
+
+namespace recorder {
+
+class LoggerService final {
+ public:
+  using Take = std::function<void(const OpenRTM::LogRecord&)>;
+
+  // Lines of its log from level info on, with simulated times where there is a simulation. Nothing for components that do not know such
+  // services, and for those that do not answer.
+  static std::unique_ptr<LoggerService> of_log(const editor::ComponentView& component, Take take);
+  static std::unique_ptr<LoggerService> attach(const editor::ComponentView& component, const char* type,
+                                               const editor::Properties& properties, Take take);
+  ~LoggerService();  // asks the component to forget it
+  LoggerService(const LoggerService&) = delete;
+  LoggerService& operator=(const LoggerService&) = delete;
+
+ private:
+  class Servant;
+  LoggerService(const editor::ComponentView& component, Take take);
+  const RTC::RTObject_var component_;
+  const std::string id_;
+  PortableServer::Servant_var<Servant> servant_;
+};
+
+}  // namespace recorder
