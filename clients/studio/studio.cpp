@@ -23,6 +23,7 @@ constexpr std::chrono::milliseconds tend_period{100};
 constexpr unsigned tends_per_look = 10;  // for channels, whose simulator may have come back
 
 constexpr const char* poses_key = "poses";
+constexpr const char* lines_key = "logs";
 constexpr const char* clock_key = "clock";
 std::string channel_key(std::uint32_t subscription) { return "channel." + std::to_string(subscription); }
 std::string values_key(std::uint32_t watch) { return "values." + std::to_string(watch); }
@@ -67,11 +68,15 @@ Studio::Studio(boost::asio::io_context& loop, CORBA::ORB_ptr orb, const StudioOp
       ChannelBook::Tellers{[this](channels::ChannelId id, const channels::Channel& channel) { tell_channel(id, channel); },
                            [this](channels::ChannelId id) { tell_no_channel(id); },
                            [this](const channels::Sample& sample) { tell_sample(sample); }});
+  logs_ = std::make_unique<LogBook>(loop, settings, *workers_, [this] {
+    for (auto& [id, guest] : guests_) send_lines(guest);
+  });
   tend();
 }
 
 // Those who give work to the workers end before them.
 Studio::~Studio() {
+  logs_.reset();
   channels_.reset();
   signals_.reset();
 }
@@ -97,6 +102,8 @@ void Studio::join(std::shared_ptr<Viewer> viewer) {
                                            {"server_id", options_.server_id}})));
     for (const auto& [key, frame] : newest_) guest.viewer->send_newest(key, frame);
     send_poses(guest);
+    send_lines(guest);
+    logs_->set_watched(true);
   }
   system_->set_watched(true);
   world_->set_watched(true);
@@ -108,6 +115,7 @@ void Studio::leave(Viewer& viewer) {
   pictures_->unwatch_all(viewer.id());
   const auto guest = guests_.extract(viewer.id());
   if (!guest.empty()) want_channels(guest.mapped().subscriptions);
+  logs_->set_watched(std::any_of(guests_.begin(), guests_.end(), [](const auto& one) { return one.second.viewer->speaks_studio(); }));
   system_->set_watched(!guests_.empty());
   world_->set_watched(!guests_.empty());
 }
@@ -353,6 +361,7 @@ void Studio::tell_system(SystemNews news) {
     const Json system = Json::parse(news.structure, nullptr, false);
     const bool has_changed = book_.take_system(system);
     channels_->take_system(system);
+    logs_->take_system(system);
     tell("system", std::move(news.structure));
     if (has_changed) tell("signals", to_text(book_.event()));
   } else {
@@ -378,8 +387,21 @@ void Studio::send_poses(Guest& guest) {
   });
 }
 
+// As poses: all that has come when its turn comes.
+void Studio::send_lines(Guest& guest) {
+  if (!guest.viewer->speaks_studio()) return;
+  guest.viewer->send_newest(lines_key, [this, id = guest.viewer->id()]() -> std::optional<Frame> {
+    const auto found = guests_.find(id);
+    if (found == guests_.end()) return std::nullopt;
+    auto event = logs_->event_since(found->second.seen_lines);
+    if (!event) return std::nullopt;
+    return text_frame(std::move(*event));
+  });
+}
+
 void Studio::tell_clock(std::chrono::nanoseconds time) {
   channels_->set_time(time);
+  logs_->set_time(time);
   std::optional<Frame> frame;
   for (auto& [id, guest] : guests_) {
     if (guest.viewer->speaks_studio()) continue;

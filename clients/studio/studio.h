@@ -12,6 +12,7 @@
 #include "channel_book.h"
 #include "client_message.h"
 #include "drives.h"
+#include "log_book.h"
 #include "pictures.h"
 #include "pose_board.h"
 #include "signal_book.h"
@@ -41,7 +42,7 @@ class Studio {
  private:
   struct Guest {
     std::shared_ptr<Viewer> viewer;
-    std::uint64_t seen_poses = 0;
+    std::uint64_t seen_poses = 0, seen_lines = 0;
     std::size_t open_requests = 0;
     std::map<std::uint32_t, channels::ChannelId> subscriptions;
   };
@@ -76,6 +77,7 @@ class Studio {
   void tell_values(const WatchKey& key, std::string event);
   void tell_clock(std::chrono::nanoseconds time);
   void send_poses(Guest& guest);
+  void send_lines(Guest& guest);
   void tend();
 
   boost::asio::io_context& loop_;
@@ -95,6 +97,7 @@ class Studio {
   std::unique_ptr<Signals> signals_;
   std::unique_ptr<Pictures> pictures_;
   std::unique_ptr<ChannelBook> channels_;
+  std::unique_ptr<LogBook> logs_;
 };
 
 }  // namespace studio

@@ -266,7 +266,7 @@ const flows = [
   }],
   ['logs are filtered', async ({ page, mock }) => {
     await choose(page, 'model', 'pioneer2dx');
-    for (const [level, text] of [['warn', 'the laser is slow'], ['info', 'all is well']]) mock.say({ op: 'log', level, source: 'RTCLaser0', time: 1e9, text });
+    mock.say({ op: 'logs', lines: [['WARN', 'the laser is slow'], ['INFO', 'all is well']].map(([level, text]) => ({ level, source: 'RTCLaser0', time: 3.25, text })) });
     await page.locator('#tab-logs').click();
     await until('both', async () => (await page.locator('.log > div').count()) === 2);
     await page.locator('input[aria-label="Filter logs"]').fill('slow');
@@ -408,7 +408,7 @@ const flows = [
   ['names that mean mischief are only text', async ({ browser }) => {
     const mock = new Mock({ page: built, glb });
     const bad = '<img src=x onerror="window.hurt=1">"\'&';
-    for (const event of [hello(), { op: 'system', revision: 1, problem: '', managers: [], connections: [], components: [component(bad, bad, 'Active', [[bad, 'in', bad]])] }, { op: 'signals', signals: [{ topic: bad, kind: 'port', type: bad }] }, { op: 'log', level: bad, source: bad, text: bad }]) mock.say(event);
+    for (const event of [hello(), { op: 'system', revision: 1, problem: '', managers: [], connections: [], components: [component(bad, bad, 'Active', [[bad, 'in', bad]])] }, { op: 'signals', signals: [{ topic: bad, kind: 'port', type: bad }] }, { op: 'logs', lines: [{ time: 1, level: bad, source: bad, text: bad }] }]) mock.say(event);
     const page = await open(browser, await mock.start());
     await until('box', async () => (await page.locator('.diagram .box').count()) === 1);
     await choose(page, 'component', `${host}/${bad}.rtc`);

@@ -143,6 +143,14 @@ const flows = [
     await choose(page, 'RTCLaser0');
     await page.locator('#act-activate').click();
     await in_state(page, 'error', 1);
+    await page.locator('#tab-logs').click();
+    const line = page.locator('.log > .level-error', { hasText: 'lazer' }).first();
+    await until('its log says why', async () => (await line.locator('.source').textContent()) === 'RTCLaser0');
+    await page.locator('input[aria-label="Filter logs"]').fill('nothing of the kind');
+    await until('filtered', async () => (await page.locator('.log > div').count()) === 0);
+    await page.locator('input[aria-label="Filter logs"]').fill('');
+    if (process.env.STUDIO_PICTURES) await page.screenshot({ path: join(process.env.STUDIO_PICTURES, 'error-log.png') });
+    await page.locator('#tab-plots').click();
     await rig.rtse('conf', 'RTCLaser0', 'set', 'device_id', 'pioneer2dx::laser');
     await page.locator('#act-reset').click();
     await in_state(page, 'inactive', 3);

@@ -188,7 +188,7 @@ export class Bottom {
     const lines = store.logs.filter((l) => (!words || `${l.level} ${l.source} ${l.text}`.toLowerCase().includes(words)) && (!only || l.source.includes(only))).slice(-400);
     const at_end = this.log_list.scrollTop + this.log_list.clientHeight > this.log_list.scrollHeight - 8;
     put(this.log_list, lines.length === 0 ? h('p', { class: 'hint' }, only ? `Nothing from ${only} yet.` : words ? 'Nothing fits the filter.' : 'Nothing has been logged yet.') : lines.map((l) => h('div', { class: `level-${l.level.toLowerCase()}` },
-      h('span', { class: 'when' }, l.time !== undefined ? h('button', { type: 'button', class: 'link', title: 'Show this moment', onclick: () => this.look(l.time!) }, `${l.time.toFixed(3)} s`) : ''), h('span', { class: 'level' }, l.level), h('span', { class: 'source' }, short_path(l.source)), h('span', { class: 'text' }, l.text))));
+      h('span', { class: 'when' }, l.time === undefined ? '' : l.time > 1e9 ? new Date(l.time * 1000).toTimeString().slice(0, 8) : h('button', { type: 'button', class: 'link', title: 'Show this moment', onclick: () => this.look(l.time!) }, `${l.time.toFixed(3)} s`)), h('span', { class: 'level' }, l.level), h('span', { class: 'source' }, short_path(l.source)), h('span', { class: 'text' }, l.text))));
     if (at_end) this.log_list.scrollTop = this.log_list.scrollHeight;
   }
 

@@ -181,8 +181,8 @@ wire.on('signals', ({ signals }) => {
   store.signals = signals;
   changed('signals');
 });
-wire.on('log', (line) => {
-  store.logs.push(line);
+wire.on('logs', ({ lines }) => {
+  store.logs.push(...lines);
   if (store.logs.length > 2000) store.logs.splice(0, 500);
   changed('log');
 });

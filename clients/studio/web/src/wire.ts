@@ -44,7 +44,7 @@ interface Events {
   states: { states: Record<string, State>; rates?: Record<string, [number, boolean]> };
   world: WorldEvent;
   time: TimeEvent;
-  log: LogLine;
+  logs: { lines: LogLine[] };
   signals: { signals: Signal[] };
   values: Values;
   poses: Poses;
