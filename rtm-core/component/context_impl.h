@@ -64,6 +64,8 @@ struct ExecutionContextBase::Impl {
 
   std::optional<Member> find(RTC::LightweightRTObject_ptr component) const;
   std::vector<Member> members() const;
+  // All participants of `context` are entries.
+  static const Member& member_of(const rt::Participant& participant) { return static_cast<const Entry&>(participant).member(); }
   // False when somebody else has been faster. `is_left_alone`: no callback of it runs any more.
   bool remove(const Member& member, std::chrono::nanoseconds patience, bool* is_left_alone = nullptr);
   std::shared_ptr<corba::MemberWatch> member_watch();

@@ -40,7 +40,7 @@ void ExecutionContextBase::Impl::Entry::joined(rt::MemberId id) {
 
 std::vector<ExecutionContextBase::Impl::Member> ExecutionContextBase::Impl::members() const {
   std::vector<Member> all;
-  for (const auto& participant : context.participants()) all.push_back(static_cast<const Entry&>(*participant).member());
+  for (const auto& participant : context.participants()) all.push_back(member_of(*participant));
   return all;
 }
 
@@ -57,19 +57,22 @@ bool ExecutionContextBase::Impl::remove(const Member& member, std::chrono::nanos
 
 std::optional<ExecutionContextBase::Impl::Member> ExecutionContextBase::Impl::find(RTC::LightweightRTObject_ptr component) const {
   if (CORBA::is_nil(component)) return std::nullopt;
-  const std::vector<Member> all = members();
-  for (const Member& member : all)
-    if (member.reference->_is_equivalent(component)) return member;
+  const auto all = context.participants();
+  // Most often it is the very reference that somebody got from here.
+  for (const auto& participant : all)
+    if (const Member& member = member_of(*participant); member.reference.in() == component) return member;
+  for (const auto& participant : all)
+    if (const Member& member = member_of(*participant); member.reference->_is_equivalent(component)) return member;
   // The same component under another key (corbaloc).
   if (const auto local = findLocalComponent(component))
-    for (const Member& member : all)
-      if (member.local == local.get()) return member;
+    for (const auto& participant : all)
+      if (const Member& member = member_of(*participant); member.local == local.get()) return member;
   return std::nullopt;
 }
 
 std::vector<RTC::LightweightRTObject_var> ExecutionContextBase::getComponents() const {
   std::vector<RTC::LightweightRTObject_var> components;
-  for (const Impl::Member& member : impl_->members()) components.push_back(member.reference);
+  for (const auto& participant : impl_->context.participants()) components.push_back(Impl::member_of(*participant).reference);
   return components;
 }
 
