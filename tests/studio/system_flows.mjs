@@ -159,6 +159,17 @@ const flows = [
     await page.evaluate((id) => window.studio.select({ kind: 'model', id }), robot);
     await until('RTCPosition2d0 is marked', async () => (await page.locator('.diagram .box.related').count()) >= 1);
   }],
+  ['contacts of the selected robot are seen', async ({ page }) => {
+    await page.evaluate((id) => window.studio.select({ kind: 'model', id }), robot);
+    await page.locator('button[aria-label="Contacts of the selected model"]').click();
+    await until('its wheels touch the ground', () => page.evaluate(() => window.studio.world.contacts.count >= 2));
+    if (process.env.STUDIO_PICTURES) {
+      await page.evaluate((name) => { window.studio.world.follow(name); window.studio.world.draw(); }, robot);
+      await page.screenshot({ path: join(process.env.STUDIO_PICTURES, 'contacts.png') });
+    }
+    await page.locator('button[aria-label="Contacts of the selected model"]').click();
+    await until('none', () => page.evaluate(() => window.studio.world.contacts.count === 0));
+  }],
   ['a robot is put somewhere else by dragging, and pushed', async ({ page, rig }) => {
     const place = async () => JSON.parse(await rig.simctl('--json', 'pose', robot)).position;
     await page.evaluate((name) => { window.studio.world.follow(name); window.studio.world.set_tool('move'); }, robot);

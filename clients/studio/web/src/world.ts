@@ -3,6 +3,7 @@ import {
   Box3, BufferAttribute, BufferGeometry, Color, ConeGeometry, DirectionalLight, DoubleSide, Line, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, Object3D, PCFSoftShadowMap, Plane, PlaneGeometry,
   Quaternion, Raycaster, Scene, ShaderMaterial, Sphere, Vector2, Vector3, WebGLRenderer,
 } from 'three';
+import { Contacts } from './contacts';
 import { button, h, put } from './dom';
 import { Model, read_world, Sensor, WorldScene } from './glb';
 import { linear, place_lights, sky_material, suns_of } from './material';
@@ -36,6 +37,7 @@ export class WorldView {
   private renderer: WebGLRenderer | null = null;
   private scene = new Scene();
   private sun = new DirectionalLight();
+  readonly contacts = new Contacts(this.scene, () => this.redraw());
   private sky: { mesh: Mesh; material: ShaderMaterial } | null = null;
   private marker = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ color: 0xf2a516, depthTest: false, transparent: true }));
   private arrow = new Line(new BufferGeometry(), new LineBasicMaterial({ color: 0xe0452a, depthTest: false, transparent: true }));
