@@ -19,7 +19,6 @@ using namespace std::chrono_literals;
 
 constexpr double look_period_s = 0.1;
 constexpr auto call_limit = 10s;
-constexpr const char* usually_touched = "ground_plane";
 
 // "kind:from:for:amount:seed", as core/fault.h reads it.
 std::string fault_text(const Fault& fault, std::uint64_t seed) {

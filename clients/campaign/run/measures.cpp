@@ -11,8 +11,6 @@
 namespace campaign {
 namespace {
 
-constexpr const char* usually_touched = "ground_plane";
-
 // Calls visit(time, poses of all moving models) for each moment of a record.
 template <class Visit>
 void for_moments(const std::string& file, double last, Visit visit) {
