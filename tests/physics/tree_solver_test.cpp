@@ -148,6 +148,50 @@ TEST(TreeSolver, pushes_what_is_in_its_way_and_is_stopped_by_walls) {
   EXPECT_NEAR(f.position("sled").z(), 0.05, 0.005);
 }
 
+TEST(TreeSolver, rides_on_what_moves_by_itself) {
+  ModelDef belt = body("belt", BoxShape{{6, 6, 0.1}}, at(0, 0, 0.05), 10);
+  belt.allow_auto_disable = false;
+  ModelDef rider = sled(0.4);
+  rider.pose = at(0, 0, 0.15);
+  PhysicsFixture f(world_of({belt, rider}));
+  ASSERT_TRUE(f.physics.make_kinematic(f.id("belt")));
+  f.run(0.05);
+  const Eigen::Vector3d start = f.position("sled");
+  ASSERT_TRUE(f.physics.set_model_twist(f.id("belt"), {{0.5, 0, 0}, {0, 0, 0}}));
+  f.run(1);
+  EXPECT_NEAR(f.physics.link_twist(f.link("sled")).linear.x(), 0.5, 1e-3);
+  // Friction brings it to the belt's speed in 0.5 / (0.4 * 9.8) seconds, in which it goes half as far.
+  EXPECT_NEAR((f.position("sled") - start).x(), 0.5 - 0.5 * 0.5 * 0.5 / (0.4 * 9.8), 0.004);
+  EXPECT_NEAR(f.position("sled").z(), 0.15, 1e-3);
+}
+
+TEST(TreeSolver, what_falls_among_things_stays_whole) {
+  std::vector<ModelDef> models = {ground()};
+  for (int i = 0; i < 9; ++i)
+    models.push_back(body("crate" + std::to_string(i), BoxShape{{0.2, 0.2, 0.2}}, at(0.4 * (i % 3) - 0.4, 0.4 * (i / 3) - 0.4, 0.1), 1));
+  ModelDef falling = sled(0.4);
+  falling.pose = Eigen::Translation3d(0.15, 0.1, 0.9) * Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 0.5, 0).normalized());
+  models.push_back(falling);
+  PhysicsFixture f(world_of(std::move(models)));
+  const ModelId id = f.id("sled");
+  const auto place_in_plate = [&](std::uint32_t link) {
+    return Eigen::Vector3d(f.physics.link_pose({id, 0}).inverse() * f.physics.link_pose({id, link}).translation());
+  };
+  std::vector<Eigen::Vector3d> before;
+  for (std::uint32_t link = 0; link < 13; ++link) before.push_back(place_in_plate(link));
+  std::uint32_t most_contacts = 0;
+  for (int i = 0; i < 100; ++i) {
+    f.run(0.02);
+    most_contacts = std::max(most_contacts, f.physics.statistics().contacts);
+    for (std::uint32_t link = 0; link < 13; ++link)
+      ASSERT_LT((place_in_plate(link) - before[link]).norm(), 0.002) << i << ", link " << link;
+    ASSERT_LT(f.physics.link_twist({id, 0}).linear.norm(), 6) << i << ": nothing throws it about";
+  }
+  EXPECT_GT(most_contacts, 9U * 4U) << "it has met the crates";
+  EXPECT_LT(f.physics.link_twist({id, 0}).linear.norm(), 0.05) << "and lies";
+  EXPECT_GT(f.position("sled").z(), 0.1) << "on them";
+}
+
 TEST(BoundedSystem, finds_what_keeps_the_bounds_and_leaves_over_only_what_they_allow) {
   std::mt19937 random(3);
   std::normal_distribution<double> any;
