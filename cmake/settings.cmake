@@ -5,6 +5,10 @@ target_compile_options(rtmsim_settings INTERFACE -Wall -Wextra -Wpedantic -Wshad
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 12 AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(rtmsim_settings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-restrict>)
 endif()
+# Several sources at a time: each is included, and its own classes look like those of a header.
+if(RTMSIM_COLD_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(rtmsim_settings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
+endif()
 if(RTMSIM_SANITIZE)
   add_compile_options(-fsanitize=${RTMSIM_SANITIZE} -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${RTMSIM_SANITIZE})

@@ -26,7 +26,7 @@ namespace {
 
 using editor::Editor;
 
-struct Options {
+struct GotoOptions {
   std::string what;  // a recording or a profile
   std::optional<double> time_s;
   std::string condition;
@@ -43,7 +43,7 @@ struct Options {
 class Stand {
  public:
   // `input`: what was read of the user's commands and not obeyed yet; it outlives the stands.
-  Stand(Editor& editor, const Options& options, const std::optional<Expression>& condition, double time_s, std::string& input)
+  Stand(Editor& editor, const GotoOptions& options, const std::optional<Expression>& condition, double time_s, std::string& input)
       : editor_(editor), options_(options), condition_(condition), time_s_(time_s), input_(input) {}
 
   base::Result<void> drive(editor::RunningSystem& system);
@@ -61,7 +61,7 @@ class Stand {
   double now() const { return static_cast<double>(steps_) * system_->step(); }
 
   Editor& editor_;
-  const Options& options_;
+  const GotoOptions& options_;
   const std::optional<Expression>& condition_;
   const double time_s_;
   std::string& input_;
@@ -132,7 +132,7 @@ base::Result<bool> Stand::obey(const std::string& line) {
   }
   const bool is_back = (verb == "b" || verb == "back") && (words.size() < 2 || (number && *number >= 1));
   if (is_back || ((verb == "t" || verb == "to") && number && *number >= 0)) {
-    const double given = number ? *number : 1;
+    const double given = number.value_or(1);
     const double to = is_back ? std::max(0.0, now() - given * static_cast<double>(tick_) * system_->step()) : given;
     if (to < now()) {
       wish_ = to;
@@ -185,7 +185,7 @@ base::Result<void> Stand::drive(editor::RunningSystem& system) {
   return options_.then.empty() ? listen() : then();
 }
 
-void go(Editor& editor, const Options& options) {
+void go(Editor& editor, const GotoOptions& options) {
   std::optional<Expression> condition;
   if (!options.condition.empty()) {
     auto parsed = Expression::parse(options.condition);
@@ -216,7 +216,7 @@ void go(Editor& editor, const Options& options) {
   call.resource_paths.insert(call.resource_paths.end(), options.resource_paths.begin(), options.resource_paths.end());
   call.properties.insert(call.properties.end(), options.properties.begin(), options.properties.end());
   editor::catch_interrupts();
-  Options wanted = options;
+  GotoOptions wanted = options;
   double time_s = options.time_s.value_or(call.duration_s);
   std::string input;
   for (;;) {
@@ -237,7 +237,7 @@ void go(Editor& editor, const Options& options) {
 void add_goto(base::Command& app, editor::Chosen& chosen) {
   auto* command =
       app.add_subcommand("goto", "Make a recorded run again, as fast as it can, and stand at a moment of it with all processes alive");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<GotoOptions>();
   command->add_option("RUN", options->what, "A recording of rtse run --record, or an RTSProfile with --world")
       ->required()
       ->check(base::existing_file());

@@ -227,7 +227,7 @@ void replay_file(Editor& editor, const Options& options) {
   call.run_file.clear();
   call.hang_timeout_s = options.hang_timeout_s;
   call.module_paths.insert(call.module_paths.end(), options.module_paths.begin(), options.module_paths.end());
-  std::erase_if(call.properties, [&](const std::string& one) { return !one.starts_with(options.component + ":"); });
+  std::erase_if(call.properties, [&](const std::string& property) { return !property.starts_with(options.component + ":"); });
   call.properties.insert(call.properties.end(), options.properties.begin(), options.properties.end());
   if (const auto done = configure(one.components.front(), options.settings); !done) return editor.fail(done.error());
   if (const auto written = editor::write_system(one, call.system); !written) return editor.fail(written.error());

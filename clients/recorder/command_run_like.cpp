@@ -20,12 +20,12 @@ namespace {
 
 using editor::Editor;
 
-struct Options {
+struct LikeOptions {
   std::string file;
   std::vector<std::string> more;  // options of rtse run
 };
 
-bool has(const Options& options, const std::string& name) {
+bool has(const LikeOptions& options, const std::string& name) {
   for (const auto& word : options.more) {
     if (word == name || word.starts_with(name + "=")) return true;
   }
@@ -33,7 +33,7 @@ bool has(const Options& options, const std::string& name) {
 }
 
 // What the user says counts before what was recorded.
-std::vector<std::string> words_of(const Editor& editor, const Options& options, const RecordedRun& run) {
+std::vector<std::string> words_of(const Editor& editor, const LikeOptions& options, const RecordedRun& run) {
   const auto call = run.options();
   std::vector<std::string> words = {editor::own_program("rtse")};
   if (editor.json()) words.emplace_back("--json");
@@ -55,7 +55,7 @@ std::vector<std::string> words_of(const Editor& editor, const Options& options, 
   return words;
 }
 
-void run_like(Editor& editor, const Options& options) {
+void run_like(Editor& editor, const LikeOptions& options) {
   const auto run = RecordedRun::unpack(options.file);
   if (!run) return editor.fail(run.error());
   if (const auto lost = run->lost(); !lost.empty()) std::cerr << "rtse: " << lost << '\n';
@@ -77,7 +77,7 @@ void run_like(Editor& editor, const Options& options) {
 
 void add_run_like(base::Command& app, editor::Chosen& chosen) {
   auto* command = app.add_subcommand("run", "Make a recorded run again; all options of rtse run besides");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<LikeOptions>();
   command->add_option("--like", options->file, "A recording of rtse run --record")->required()->check(base::existing_file());
   command->allow_extras();
   command->fallthrough(false);

@@ -16,11 +16,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using std::chrono::nanoseconds;
-using std::chrono::seconds;
 
-constexpr const char* event_log_type = "rtm-sim/EventLog:1.0";  // of our components: rtm-core/component/observer.h
-constexpr const char* simulator_parameter = "server_id";        // another one in each run
-constexpr seconds longest_simulation{1'000'000'000};            // later stamps are of the wall clock
+constexpr const char* event_log_type = "rtm-sim/EventLog:1.0";     // of our components: rtm-core/component/observer.h
+constexpr const char* simulator_parameter = "server_id";           // another one in each run
+constexpr std::chrono::seconds longest_simulation{1'000'000'000};  // later stamps are of the wall clock
 
 channels::Schema json_schema(const std::string& name, const std::string& properties) {
   return {name, "jsonschema", R"({"title":")" + name + R"(","type":"object","properties":{)" + properties + "}}"};
@@ -87,7 +86,7 @@ struct ComponentSource::State {
   channels::Time diagnosed{0};
 
   nanoseconds time_of(const RTC::Time& time) const {
-    const nanoseconds said = seconds(time.sec) + nanoseconds(time.nsec);
+    const nanoseconds said = std::chrono::seconds(time.sec) + nanoseconds(time.nsec);
     return said < longest_simulation ? said : clock.now();
   }
   void put(channels::ChannelId id, nanoseconds time, const Json& json) {

@@ -19,7 +19,7 @@ constexpr nanoseconds first_span = 1s;      // before a moment in which its samp
 constexpr int span_growth = 8;
 constexpr std::size_t most_watches = 512;
 constexpr std::size_t most_sonars = 64;  // of a ring
-constexpr char picture_octet = static_cast<char>(0x83);
+constexpr char recorded_picture_octet = static_cast<char>(0x83);
 
 std::string values_key(std::uint32_t watch) { return "values." + std::to_string(watch); }
 
@@ -241,7 +241,7 @@ Result<std::string> Playhead::picture(std::uint32_t number, Channel channel) {
                         ? compressed_in(sample.octets)
                         : std::nullopt;
   if (!jpeg) return Error{"its pictures were recorded in a form that is not shown; rtse recording export --png writes them"};
-  std::string frame{picture_octet, 0, 0, 0};
+  std::string frame{recorded_picture_octet, 0, 0, 0};
   put_u32(frame, number);
   put_u64(frame, static_cast<std::uint64_t>(std::max<std::int64_t>((sample.time - facts_->zero).count(), 0)));
   return frame.append(*jpeg);

@@ -15,9 +15,9 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto return_period = 500ms;  // a source that is away is looked for so often
-constexpr std::size_t most_waiting = 256;
-constexpr std::size_t most_octets = 16 << 20;  // of samples of a port that wait
+constexpr auto source_return_period = 500ms;  // a source that is away is looked for so often
+constexpr std::size_t most_samples_waiting = 256;
+constexpr std::size_t most_octets_of_samples = 16 << 20;  // of samples of a port that wait
 
 // Without a lease for subscribing it shows what others have the sensor measure.
 class IfaceSource final : public SignalSource {
@@ -38,7 +38,7 @@ class IfaceSource final : public SignalSource {
  private:
   bool open() {
     if (Clock::now() < next_try_) return false;
-    next_try_ = Clock::now() + return_period;
+    next_try_ = Clock::now() + source_return_period;
     const auto colon = std::min(topic_.find(':'), topic_.size());
     const auto type = shm::parse_type(topic_.substr(0, colon));
     if (!type || colon == topic_.size()) return problem_ = "signal " + topic_ + ": expected TYPE:IFACE", false;
@@ -124,13 +124,13 @@ class PortTap : public std::enable_shared_from_this<PortTap> {
 
   // On the ORB's threads.
   void put(std::span<const unsigned char> payload, bool is_little_endian) {
-    if (payload.size() > most_octets) return;
+    if (payload.size() > most_octets_of_samples) return;
     Octets octets{{payload.begin(), payload.end()}, is_little_endian};
     auto data = data_.lock();
     data->heard = Clock::now();
     data->octets += payload.size();
     data->waiting.push_back(std::move(octets));
-    while (data->waiting.size() > most_waiting || data->octets > most_octets) {
+    while (data->waiting.size() > most_samples_waiting || data->octets > most_octets_of_samples) {
       data->octets -= data->waiting.front().payload.size();
       data->waiting.pop_front();
     }
@@ -188,10 +188,10 @@ class PortSource final : public SignalSource {
   // Connects, and again when nothing has come for a while and the connection is not there any more.
   void look_after() {
     if (Clock::now() < next_try_) return;
-    next_try_ = Clock::now() + return_period * 4;
+    next_try_ = Clock::now() + source_return_period * 4;
     {
       auto data = tap_->data().lock();
-      if (data->is_connecting || Clock::now() - data->heard < return_period * 4) return;
+      if (data->is_connecting || Clock::now() - data->heard < source_return_period * 4) return;
       data->is_connecting = true;
     }
     const bool is_given = workers_.give([tap = tap_, settings = settings_, path = path_] { renew(*tap, settings, path); });
@@ -220,7 +220,7 @@ class PortSource final : public SignalSource {
 
   double now() {
     if (!clock_ && Clock::now() >= next_clock_) {
-      next_clock_ = Clock::now() + return_period;
+      next_clock_ = Clock::now() + source_return_period;
       auto clock = shm::Iface::open(settings_.server_id, shm::IfaceType::simulation, "world");
       if (clock) clock_ = std::move(*clock);
     }

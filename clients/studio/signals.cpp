@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto look_period = 10ms;
+constexpr auto signals_period = 10ms;
 constexpr std::size_t most_watches = 512;
 constexpr std::size_t most_samples = 256;  // of an event
 
@@ -69,7 +69,7 @@ void Signals::unwatch_all(std::uint64_t viewer) {
 
 void Signals::run() {
   const omni_thread::ensure_self known_to_the_orb;  // connections to ports end here
-  for (auto next = Clock::now();; next = std::max(next + look_period, Clock::now())) {
+  for (auto next = Clock::now();; next = std::max(next + signals_period, Clock::now())) {
     {
       auto data = data_.lock();
       data.wait(changed_, [&] { return data->is_ending || !data->orders.empty() || data->changes != changes_; });

@@ -18,7 +18,7 @@ namespace websocket = beast::websocket;
 using Code = boost::system::error_code;
 
 constexpr std::chrono::seconds handshake_limit{10}, silence_limit{30};
-constexpr std::size_t most_waiting = 16 << 20;
+constexpr std::size_t most_octets_waiting = 16 << 20;
 constexpr int send_buffer = 256 << 10;  // [octet] what the system keeps for a viewer that is slow
 constexpr int unsent_mark = 32 << 10;   // [octet] with so much unsent the next frame waits here, where a newer one takes its place
 
@@ -122,7 +122,7 @@ class SocketViewer final : public Viewer, public std::enable_shared_from_this<So
   std::string_view protocol_;
   std::uint64_t id_;
   beast::flat_buffer buffer_{most_message};
-  Outbox outbox_{most_waiting};
+  Outbox outbox_{most_octets_waiting};
   std::optional<Frame> sending_;
   bool is_open_ = false;
 };

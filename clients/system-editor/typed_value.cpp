@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "value_codec.h"
+#include "value_failure.h"
 
 namespace editor {
 namespace {
@@ -13,11 +14,6 @@ namespace {
 using base::Error;
 using base::Result;
 using Json = nlohmann::ordered_json;
-
-// Ends the walk; only parse_value lets it out, as an Error.
-struct Failure {
-  std::string message;
-};
 
 bool is_time(CORBA::TypeCode_ptr type) { return type->kind() == CORBA::tk_struct && std::string(type->id()) == "IDL:RTC/Time:1.0"; }
 
@@ -37,7 +33,7 @@ class PythonForm {
 
  private:
   [[noreturn]] void fail(const std::string& expected) const {
-    throw Failure{"value " + base::in_quotes(text_) + ": expected " + expected + " at character " + std::to_string(at_ + 1)};
+    throw ValueFailure{"value " + base::in_quotes(text_) + ": expected " + expected + " at character " + std::to_string(at_ + 1)};
   }
   void blanks() {
     while (at_ < text_.size() && std::isspace(static_cast<unsigned char>(text_[at_]))) ++at_;
@@ -66,7 +62,7 @@ class PythonForm {
     return text;
   }
   Json expression(CORBA::TypeCode_ptr declared) {
-    if (++depth_ > deepest) throw Failure{"value: nested too deeply"};
+    if (++depth_ > deepest) throw ValueFailure{"value: nested too deeply"};
     const auto type = resolved(declared);
     blanks();
     Json value;
@@ -112,7 +108,7 @@ class PythonForm {
     if (type->kind() != CORBA::tk_struct) fail("no call here");
     const auto begin = text.find_last_of(".:");
     if (text.substr(begin == std::string::npos ? 0 : begin + 1) != type->name())
-      throw Failure{"value " + base::in_quotes(text_) + ": is a " + text + ", expected a " + std::string(type->name())};
+      throw ValueFailure{"value " + base::in_quotes(text_) + ": is a " + text + ", expected a " + std::string(type->name())};
   }
   Json members(CORBA::TypeCode_ptr type) {
     if (type->kind() != CORBA::tk_struct) fail("no call here");
@@ -161,7 +157,7 @@ Result<Json> parse_value(CORBA::TypeCode_ptr declared, const std::string& text, 
   if (value.is_discarded()) {
     try {
       value = PythonForm(text, now_ns).parse(type);
-    } catch (const Failure& failure) {
+    } catch (const ValueFailure& failure) {
       const auto first = text.find_first_not_of(" \t\n");
       if (takes_text(type) && text.find_first_of("\"'(") == std::string::npos) {
         value = text;  // words need no quotes where only text can stand

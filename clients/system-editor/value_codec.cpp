@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
+#include "value_failure.h"
 
 namespace editor {
 
@@ -21,11 +22,6 @@ namespace {
 using base::Error;
 using base::Result;
 using Json = nlohmann::ordered_json;
-
-// Any failure inside a value ends the walk; only the public functions below let it out, as an Error.
-struct Failure {
-  std::string message;
-};
 
 std::string from_utf16(std::span<const unsigned char> bytes) {
   bool little = false;
@@ -122,7 +118,7 @@ class Reader {
       case CORBA::tk_array:
         return elements(type, type->length());
       default:
-        throw Failure{"holds a kind of value that data ports do not carry"};
+        throw ValueFailure{"holds a kind of value that data ports do not carry"};
     }
   }
 
@@ -139,7 +135,7 @@ class Reader {
     return value;
   }
   void need(std::size_t count) const {
-    if (at_ > bytes_.size() || count > bytes_.size() - at_) throw Failure{"is cut short at octet " + std::to_string(bytes_.size())};
+    if (at_ > bytes_.size() || count > bytes_.size() - at_) throw ValueFailure{"is cut short at octet " + std::to_string(bytes_.size())};
   }
   std::string string() {
     const auto length = number<std::uint32_t>();
@@ -161,7 +157,7 @@ class Reader {
   Json enumerator(CORBA::TypeCode_ptr type) {
     const auto value = number<std::uint32_t>();
     if (value >= type->member_count())
-      throw Failure{"holds " + std::to_string(value) + " where an enumerator of " + type->name() + " was expected"};
+      throw ValueFailure{"holds " + std::to_string(value) + " where an enumerator of " + type->name() + " was expected"};
     return std::string(type->member_name(value));
   }
   Json structure(CORBA::TypeCode_ptr type) {
@@ -174,7 +170,7 @@ class Reader {
   }
   Json elements(CORBA::TypeCode_ptr type, std::uint32_t count) {
     if (count > bytes_.size() - std::min(at_, bytes_.size()))
-      throw Failure{"announces " + std::to_string(count) + " elements and is shorter"};
+      throw ValueFailure{"announces " + std::to_string(count) + " elements and is shorter"};
     const CORBA::TypeCode_var content = type->content_type();
     Json array = Json::array();
     for (std::uint32_t i = 0; i < count; ++i) array.push_back(read(content));
@@ -230,14 +226,14 @@ class Writer {
       case CORBA::tk_array:
         return elements(type, value, where, false);
       default:
-        throw Failure{where + ": is of a kind that data ports do not carry"};
+        throw ValueFailure{where + ": is of a kind that data ports do not carry"};
     }
   }
   std::vector<unsigned char> take() { return std::move(bytes_); }
 
  private:
   [[noreturn]] static void refuse(const std::string& where, const std::string& expected, const Json& value) {
-    throw Failure{where + ": must be " + expected + ", got " + base::in_quotes(value.dump())};
+    throw ValueFailure{where + ": must be " + expected + ", got " + base::in_quotes(value.dump())};
   }
   template <class T>
   void put(T value) {
@@ -334,7 +330,8 @@ class Writer {
     for (const auto& [key, unused] : value.items()) {
       bool known = false;
       for (CORBA::ULong i = 0; i < type->member_count(); ++i) known = known || key == type->member_name(i);
-      if (!known) throw Failure{(where.empty() ? "" : where + ": ") + std::string(type->name()) + " has no member " + base::in_quotes(key)};
+      if (!known)
+        throw ValueFailure{(where.empty() ? "" : where + ": ") + std::string(type->name()) + " has no member " + base::in_quotes(key)};
     }
   }
   void elements(CORBA::TypeCode_ptr type, const Json& value, const std::string& where, bool is_sequence) {
@@ -355,7 +352,7 @@ class Writer {
 Result<Json> decode(CORBA::TypeCode_ptr type, std::span<const unsigned char> payload, bool little_endian) {
   try {
     return Reader(payload, little_endian).read(type);
-  } catch (const Failure& failure) {
+  } catch (const ValueFailure& failure) {
     return Error{std::string("payload of ") + type->id() + " " + failure.message};
   }
 }
@@ -365,7 +362,7 @@ Result<std::vector<unsigned char>> encode(CORBA::TypeCode_ptr type, const Json& 
     Writer writer(little_endian);
     writer.write(type, value, "");
     return writer.take();
-  } catch (const Failure& failure) {
+  } catch (const ValueFailure& failure) {
     return Error{std::string("value for ") + type->id() + ": " + failure.message};
   }
 }

@@ -13,8 +13,8 @@ std::string own_account_door() {
   if (slash == std::string::npos) return {};
   const auto folder = file.substr(0, slash + 1);
   // Built, it is beside this library; installed, in the folder of what no one links.
-  for (const char* place : {"", "rtm-sim/"}) {
-    file = folder + place + "librtmsim_own_account.so";
+  for (const char* below : {"", "rtm-sim/"}) {
+    file = folder + below + "librtmsim_own_account.so";
     if (access(file.c_str(), R_OK) == 0) return file;
   }
   return {};

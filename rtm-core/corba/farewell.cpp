@@ -55,18 +55,18 @@ struct State {
 };
 
 // The processes are for all ports, so this is a global. Never destroyed: ports may die after it otherwise.
-struct Table {
+struct Farewells {
   base::Guarded<State, base::Rank::registry> state;
   std::condition_variable changed;
-  static Table& instance() {
-    static Table& table = *new Table;
+  static Farewells& instance() {
+    static Farewells& table = *new Farewells;
     return table;
   }
 };
 
 // False if the process is not known to hang.
 bool leave_message(const std::string& address, RTC::PortService_ptr port, const char* connector_id) {
-  auto state = Table::instance().state.lock();
+  auto state = Farewells::instance().state.lock();
   const auto found = state->processes.find(address);
   if (found == state->processes.end() || !found->second.hangs) return false;
   found->second.untold.push_back({RTC::PortService::_duplicate(port), connector_id, Clock::now() + port_call_timeout(), nullptr});
@@ -114,7 +114,7 @@ bool connect_again(const RTC::ConnectorProfile& profile) {
 // Until each message is delivered or past its deadline.
 void tell_late(const std::string& address) {
   const omni_thread::ensure_self known_to_the_orb;  // time-outs need it
-  auto& table = Table::instance();
+  auto& table = Farewells::instance();
   const auto start = Clock::now();
   bool is_awake = false;
   while (true) {
@@ -150,7 +150,7 @@ void tell_late(const std::string& address) {
 void tell_later(const std::string& address, RTC::PortService_ptr port, const char* connector_id, bool hangs, Clock::duration lasts,
                 std::shared_ptr<const RTC::ConnectorProfile> connects = nullptr) {
   {
-    auto state = Table::instance().state.lock();
+    auto state = Farewells::instance().state.lock();
     if (state->is_ending) return;
     const bool has_thread = state->processes.contains(address);
     Process& process = state->processes[address];
@@ -161,17 +161,17 @@ void tell_later(const std::string& address, RTC::PortService_ptr port, const cha
   }
   std::thread([address] {
     tell_late(address);
-    --Table::instance().state.lock()->threads;
-    Table::instance().changed.notify_all();
+    --Farewells::instance().state.lock()->threads;
+    Farewells::instance().changed.notify_all();
   }).detach();
 }
 
 }  // namespace
 
-void begin_farewells() { Table::instance().state.lock()->is_ending = false; }
+void begin_farewells() { Farewells::instance().state.lock()->is_ending = false; }
 
 void end_farewells() {
-  auto& table = Table::instance();
+  auto& table = Farewells::instance();
   auto state = table.state.lock();
   state->is_ending = true;
   table.changed.notify_all();

@@ -69,7 +69,7 @@ class Mailbox {
     BufferSettings settings;
     Ring ring;
     Sample last;                    // what was read last
-    std::deque<Sample> aside;       // written in the phase `moment`
+    std::deque<Sample> aside{};     // written in the phase `moment`
     std::uint64_t moment = 0;       // the latest phase in which something happened here
     std::size_t size_at_start = 0;  // of the ring, in that phase
     bool is_rendezvous = false;

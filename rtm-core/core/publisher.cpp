@@ -30,9 +30,9 @@ struct Publisher::Work : std::enable_shared_from_this<Publisher::Work> {
     bool is_stopped = false;
     bool is_lost = false;
     bool is_in_hooks = false;
-    bool belongs_to_ticks = false;     // what is in the queue: the thread leaves it alone
-    std::weak_ptr<void> announcement;  // alive while a tick is going to call send_in
-    std::chrono::nanoseconds due{-1};  // periodic: simulated time of the next sending; negative: not known
+    bool belongs_to_ticks = false;       // what is in the queue: the thread leaves it alone
+    std::weak_ptr<void> announcement{};  // alive while a tick is going to call send_in
+    std::chrono::nanoseconds due{-1};    // periodic: simulated time of the next sending; negative: not known
 
     bool has_own_work() const { return !belongs_to_ticks && !queue.is_empty(); }
   };

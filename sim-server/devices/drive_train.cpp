@@ -40,7 +40,4 @@ bool is_of_gz_sim(const PluginDef& plugin) {
          plugin.filename.find("ignition-gazebo") != std::string::npos;
 }
 
-// Nearly all are within already, and the division is slow.
-double wrapped(double angle) { return std::abs(angle) < std::numbers::pi ? angle : std::remainder(angle, 2 * std::numbers::pi); }
-
 }  // namespace sim

@@ -53,7 +53,5 @@ double wheel_radius(const ModelDef& model, std::uint32_t joint);
 double torque_of(const ModelDef& model, std::uint32_t joint);
 // gz-sim turns wheels as told whatever it takes; in Gazebo classic they have a torque, 5 N m when nothing is said.
 bool is_of_gz_sim(const PluginDef& plugin);
-// Within (-pi, pi].
-double wrapped(double angle);
 
 }  // namespace sim

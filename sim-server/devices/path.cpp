@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/text.h"
+#include "devices/angle.h"
 #include "devices/device.h"
 
 namespace sim {
@@ -15,7 +16,6 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double same_place = 1e-6;  // [m]
 
-double wrapped(double angle) { return std::remainder(angle, 2 * pi); }
 double heading_of(const Eigen::Vector3d& way) { return std::atan2(way.y(), way.x()); }
 double flat(const Eigen::Vector3d& way) { return way.head<2>().norm(); }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/log.h"
+#include "devices/angle.h"
 #include "world/iface_names.h"
 
 namespace sim {

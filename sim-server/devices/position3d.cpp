@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "base/text.h"
+#include "devices/angle.h"
 #include "world/iface_names.h"
 #include "world/plugin_kind.h"
 
 namespace sim {
 namespace {
-
-double wrapped(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
 
 Eigen::Vector3d three(const std::optional<std::string>& text) {
   Eigen::Vector3d v(0, 0, 0);

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "devices/angle.h"
+
 namespace sim {
 namespace {
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "devices/angle.h"
 #include "devices/drive_train.h"
 #include "world/plugin_kind.h"
 

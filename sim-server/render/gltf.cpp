@@ -21,7 +21,7 @@ std::string color(const Color& c) { return glb::vector3({c.r, c.g, c.b}); }
 const char* yes_no(bool value) { return value ? "true" : "false"; }
 
 // Ours are kept with gamma 2.
-Image to_srgb(Image image) {
+Image in_srgb(Image image) {
   static const auto table = [] {
     std::array<std::uint8_t, 256> out{};
     for (std::size_t i = 0; i < out.size(); ++i) {
@@ -141,7 +141,7 @@ std::size_t Writer::picture_of(const Texture& texture, bool is_color) {
   if (!is_new) return kept->second;
   auto level = texture.levels.begin();
   while (std::max(level->width, level->height) > largest_side && level + 1 != texture.levels.end()) ++level;
-  const auto png = encode_png(is_color ? to_srgb(*level) : *level);
+  const auto png = encode_png(is_color ? in_srgb(*level) : *level);
   if (!png) {
     error_ = png.error();
     return 0;

@@ -7,8 +7,6 @@
 namespace sim {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 std::array<float, 3> to_array(const Eigen::Vector3d& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
@@ -37,7 +35,7 @@ void add_lathe(Mesh& mesh, const std::vector<ProfilePoint>& profile, int segment
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   for (const auto& p : profile) {
     for (int s = 0; s <= segments; ++s) {
-      const double angle = 2 * pi * s / segments;
+      const double angle = 2 * std::numbers::pi * s / segments;
       const Eigen::Vector3d out(std::cos(angle), std::sin(angle), 0);
       add_vertex(mesh, out * p.radius + Eigen::Vector3d(0, 0, p.z), out * p.normal.x() + Eigen::Vector3d(0, 0, p.normal.y()),
                  static_cast<double>(s) / segments, p.v);
@@ -59,7 +57,7 @@ void add_disc(Mesh& mesh, double radius, double z, bool is_up, int segments) {
   const auto middle = static_cast<std::uint32_t>(mesh.vertices.size());
   add_vertex(mesh, {0, 0, z}, normal, 0.5, 0.5);
   for (int s = 0; s <= segments; ++s) {
-    const double angle = 2 * pi * s / segments;
+    const double angle = 2 * std::numbers::pi * s / segments;
     add_vertex(mesh, {radius * std::cos(angle), radius * std::sin(angle), z}, normal, 0.5 + 0.5 * std::cos(angle),
                0.5 - 0.5 * std::sin(angle));
   }
@@ -114,7 +112,7 @@ Mesh make_sphere(int rings, int segments) {
   Mesh mesh;
   std::vector<ProfilePoint> profile;
   for (int r = 0; r <= rings; ++r) {
-    const double polar = pi * r / rings;
+    const double polar = std::numbers::pi * r / rings;
     const Eigen::Vector2d normal(std::sin(polar), std::cos(polar));
     const double radius = r == 0 || r == rings ? 0 : 0.5 * normal.x();
     profile.push_back({radius, 0.5 * normal.y(), normal, static_cast<double>(r) / rings});
@@ -160,11 +158,11 @@ Mesh make_plane() {
 
 Mesh make_capsule(double radius, double length, int rings, int segments) {
   Mesh mesh;
-  const double whole = length + pi * radius;
+  const double whole = length + std::numbers::pi * radius;
   std::vector<ProfilePoint> profile;
   for (int half = 0; half < 2; ++half) {
     for (int r = 0; r <= rings / 2; ++r) {
-      const double polar = pi / 2 * (half + 2.0 * r / rings);
+      const double polar = std::numbers::pi / 2 * (half + 2.0 * r / rings);
       const Eigen::Vector2d normal(std::sin(polar), std::cos(polar));
       const bool is_pole = (half == 0 && r == 0) || (half == 1 && r == rings / 2);
       const double z = radius * normal.y() + (half == 0 ? 0.5 : -0.5) * length;

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/lights.h"
+
 namespace sim {
 namespace {
-
-Eigen::Vector3f linear(const Color& color) { return {to_linear(color.r), to_linear(color.g), to_linear(color.b)}; }
 
 Material to_material(const MaterialDef& in, double transparency, Assets& assets) {
   Material out;

@@ -17,8 +17,6 @@ constexpr auto tend_period = 100ms;    // of heartbeats and of leases that are g
 constexpr auto pause_period = 1000ms;  // the same while it stands still: clients who come, ask or die wake the loop
 constexpr auto unwatched_lead = 5ms;   // of wall time that steps may come early when nobody is there to see it: one sleep for several steps
 
-double seconds(std::chrono::nanoseconds t) { return static_cast<double>(t.count()) * 1e-9; }
-
 }  // namespace
 
 ServerLoop::ServerLoop(Simulation& simulation, shm::Server& server, shm::IfaceWriter& iface, const ModelPath& model_path,
@@ -195,8 +193,9 @@ void ServerLoop::watch_rate() {
   const auto& sample = iface_.sample<shm::SimulationSample>();
   if (mode_.is_paused()) publish_clock();
   if (options_.has_status_line) {
-    std::fprintf(stderr, "\r%10.3f s  %7.2f x real time  load %3.0f %%  contacts %u  sensors %u%s   ", seconds(simulation_.time()),
-                 pace_.reached(), 100 * pace_.load(), sample.contacts, sample.active_sensors, mode_.is_paused() ? "  paused" : "");
+    std::fprintf(stderr, "\r%10.3f s  %7.2f x real time  load %3.0f %%  contacts %u  sensors %u%s   ",
+                 std::chrono::duration<double>(simulation_.time()).count(), pace_.reached(), 100 * pace_.load(), sample.contacts,
+                 sample.active_sensors, mode_.is_paused() ? "  paused" : "");
     std::fflush(stderr);
   }
   if (mode_.is_paused()) return;

@@ -57,7 +57,7 @@ int pthread_cond_timedwait(pthread_cond_t* condition, pthread_mutex_t* mutex, co
   static int (*next)(pthread_cond_t*, pthread_mutex_t*, clockid_t, const struct timespec*);
   struct timespec moved = *until;
   if (next == NULL)
-    next = (int (*)(pthread_cond_t*, pthread_mutex_t*, clockid_t, const struct timespec*))dlsym(RTLD_NEXT, "pthread_cond_clockwait");
+    *(void**)&next = dlsym(RTLD_NEXT, "pthread_cond_clockwait");  /* as POSIX has it */
   moved.tv_sec -= offset();
   if (moved.tv_sec < 0) moved.tv_sec = 0;
   return next(condition, mutex, CLOCK_REALTIME, &moved);
@@ -66,7 +66,7 @@ int pthread_cond_timedwait(pthread_cond_t* condition, pthread_mutex_t* mutex, co
 int sem_timedwait(sem_t* semaphore, const struct timespec* until) {
   static int (*next)(sem_t*, clockid_t, const struct timespec*);
   struct timespec moved = *until;
-  if (next == NULL) next = (int (*)(sem_t*, clockid_t, const struct timespec*))dlsym(RTLD_NEXT, "sem_clockwait");
+  if (next == NULL) *(void**)&next = dlsym(RTLD_NEXT, "sem_clockwait");
   moved.tv_sec -= offset();
   if (moved.tv_sec < 0) moved.tv_sec = 0;
   return next(semaphore, CLOCK_REALTIME, &moved);

@@ -8,8 +8,6 @@
 namespace campaign {
 namespace {
 
-std::string word(const YAML::Node& node, const char* key) { return node[key] ? node[key].Scalar() : ""; }
-
 std::optional<double> number(const YAML::Node& node, const char* key) {
   return node[key] ? base::parse_number(node[key].Scalar()) : std::nullopt;
 }

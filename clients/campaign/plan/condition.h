@@ -10,9 +10,6 @@ class Node;
 
 namespace campaign {
 
-// What models stand on: touching it is no contact.
-inline constexpr const char* usually_touched = "ground_plane";
-
 struct Condition {
   enum class Kind { value, region, touches, state };
   Kind kind = Kind::value;

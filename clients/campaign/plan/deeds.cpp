@@ -55,8 +55,6 @@ std::string flow_text(const YAML::Node& node) {
   return flow.c_str();
 }
 
-std::string scalar(const YAML::Node& node, const char* key) { return node[key] ? node[key].Scalar() : ""; }
-
 std::vector<std::string> numbers_of(const YAML::Node& node, const char* what, std::initializer_list<std::size_t> sizes) {
   std::vector<std::string> numbers;
   for (const auto& one : node) {
@@ -90,23 +88,23 @@ constexpr std::array event_rows = {
 void read_details(const YAML::Node& what, Event& event) {
   switch (event.kind) {
     case Event::Kind::spawn:
-      event.target = scalar(what, "model");
-      event.name = scalar(what, "name");
+      event.target = word(what, "model");
+      event.name = word(what, "name");
       if (what["pose"]) event.numbers = numbers_of(what["pose"], "pose", {3, 4, 6});
       break;
     case Event::Kind::push:
-      event.target = scalar(what, "model");
+      event.target = word(what, "model");
       event.numbers = numbers_of(what["force"], "force", {3, 6});
       if (what["for"]) event.duration_s = *base::parse_number(what["for"].Scalar());
       break;
     case Event::Kind::pose:
-      event.target = scalar(what, "model");
+      event.target = word(what, "model");
       event.numbers = numbers_of(what["to"], "to", {3, 4, 6});
       break;
     case Event::Kind::set:
-      event.target = scalar(what, "component");
-      event.name = scalar(what, "parameter");
-      event.value = scalar(what, "value");
+      event.target = word(what, "component");
+      event.name = word(what, "parameter");
+      event.value = word(what, "value");
       break;
     default:
       event.target = what.Scalar();

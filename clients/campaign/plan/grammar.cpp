@@ -387,6 +387,8 @@ void check_shape(const YAML::Node& node, std::string_view name, const std::strin
   }
 }
 
+std::string word(const YAML::Node& node, const char* key, const std::string& usual) { return node[key] ? node[key].Scalar() : usual; }
+
 Json plan_schema() {
   Json json{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Plan of a campaign (rtse sweep, rtse hunt)"}};
   json.update(schema_of(shape(plan_shape)));

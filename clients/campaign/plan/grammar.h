@@ -58,6 +58,8 @@ const Shape& shape(std::string_view name);
 // Throws PlanError.
 void check_shape(const YAML::Node& node, std::string_view shape, const std::string& what);
 void check_form(const YAML::Node& node, const Key& key);
+// The scalar of this key of a map; `usual` without one.
+std::string word(const YAML::Node& node, const char* key, const std::string& usual = "");
 [[noreturn]] void fail_at(const YAML::Node& node, const std::string& message);
 
 // Draft 2020-12.

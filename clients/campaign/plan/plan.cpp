@@ -16,8 +16,6 @@
 namespace campaign {
 namespace {
 
-std::string word(const YAML::Node& node, const char* key, const std::string& usual = "") { return node[key] ? node[key].Scalar() : usual; }
-
 double number(const YAML::Node& node, const char* key, double usual) {
   return node[key] ? base::parse_number(node[key].Scalar()).value_or(usual) : usual;
 }

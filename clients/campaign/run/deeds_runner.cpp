@@ -12,7 +12,7 @@
 namespace campaign {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 using Object = Fault::Object;
 using Kind = Fault::Kind;
 using namespace std::chrono_literals;
@@ -207,7 +207,7 @@ Result<bool> DeedsRunner::is_true(editor::RunScene& scene, const Condition& cond
   return std::ranges::any_of(contacts, [&](const Json& contact) {
     const auto other = contact.value("other", "");
     const auto model = other.substr(0, other.find("::"));
-    return condition.touched == "any" ? model != usually_touched : model == condition.touched;
+    return condition.touched == "any" ? model != editor::usually_touched : model == condition.touched;
   });
 }
 

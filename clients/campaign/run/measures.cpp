@@ -82,8 +82,8 @@ std::optional<double> value(const Measure& measure, const editor::Seen& seen) {
 
 double contacts(const Measure& measure, const editor::Seen& seen) {
   return static_cast<double>(std::ranges::count_if(seen.record.contacts, [&](const auto& contact) {
-    return (contact.model == measure.model && contact.other != usually_touched) ||
-           (contact.other == measure.model && contact.model != usually_touched);
+    return (contact.model == measure.model && contact.other != editor::usually_touched) ||
+           (contact.other == measure.model && contact.model != editor::usually_touched);
   }));
 }
 

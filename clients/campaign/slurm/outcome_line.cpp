@@ -5,7 +5,11 @@
 
 namespace campaign {
 
+namespace {
+
 using Json = nlohmann::ordered_json;
+
+}  // namespace
 
 std::string to_line(const OutcomeLine& line) {
   const auto& outcome = line.outcome;

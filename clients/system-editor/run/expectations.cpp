@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "value_failure.h"
 
 namespace editor {
 namespace {
@@ -30,18 +31,12 @@ const std::map<Kind, std::set<std::string>> keys = {
     {Kind::stay, {"model", "region", "within"}},     {Kind::no_contact, {"model", "except"}},
     {Kind::value, {"port", "member", "min", "max"}}, {Kind::state, {"component", "is"}}};
 
-const std::string usually_touched = "ground_plane";
-
 const std::set<std::string> states = {"Created", "Inactive", "Active", "Error"};
-
-struct Failure {
-  std::string message;
-};
 
 std::optional<double> number(const YAML::Node& node, const char* key) {
   if (!node[key]) return std::nullopt;
   const auto value = base::parse_number(node[key].Scalar());
-  if (!value) throw Failure{std::string(key) + " must be a finite number, got " + base::in_quotes(node[key].Scalar())};
+  if (!value) throw ValueFailure{std::string(key) + " must be a finite number, got " + base::in_quotes(node[key].Scalar())};
   return value;
 }
 
@@ -51,9 +46,9 @@ void check_keys(const YAML::Node& node, const std::string& name, Kind kind) {
   for (const auto& entry : node) {
     const auto& key = entry.first.Scalar();
     if (!known.contains(key))
-      throw Failure{name + " has no key " + base::in_quotes(key) + "; it has " +
-                    base::join(std::vector<std::string>(known.begin(), known.end()), ", ")};
-    if (!seen.insert(key).second) throw Failure{name + " has " + key + " twice"};
+      throw ValueFailure{name + " has no key " + base::in_quotes(key) + "; it has " +
+                         base::join(std::vector<std::string>(known.begin(), known.end()), ", ")};
+    if (!seen.insert(key).second) throw ValueFailure{name + " has " + key + " twice"};
   }
 }
 
@@ -62,16 +57,16 @@ std::string without_kind(const std::string& component) {
 }
 
 std::string text(const YAML::Node& node, const char* key) {
-  if (!node[key] || !node[key].IsScalar() || node[key].Scalar().empty()) throw Failure{std::string("needs ") + key};
+  if (!node[key] || !node[key].IsScalar() || node[key].Scalar().empty()) throw ValueFailure{std::string("needs ") + key};
   return node[key].Scalar();
 }
 
 void read_region(const YAML::Node& node, Expectation& expectation) {
   const auto region = node["region"];
-  if (!region || !region.IsSequence() || region.size() != 4) throw Failure{"needs region: [x1, y1, x2, y2]"};
+  if (!region || !region.IsSequence() || region.size() != 4) throw ValueFailure{"needs region: [x1, y1, x2, y2]"};
   for (std::size_t i = 0; i < 4; ++i) {
     const auto value = base::parse_number(region[i].Scalar());
-    if (!value) throw Failure{"region must hold finite numbers, got " + base::in_quotes(region[i].Scalar())};
+    if (!value) throw ValueFailure{"region must hold finite numbers, got " + base::in_quotes(region[i].Scalar())};
     expectation.region[i] = *value;
   }
   if (expectation.region[0] > expectation.region[2]) std::swap(expectation.region[0], expectation.region[2]);
@@ -81,35 +76,35 @@ void read_region(const YAML::Node& node, Expectation& expectation) {
 Expectation read_one(const std::string& name, const YAML::Node& node) {
   const auto kind = kinds.find(name);
   if (kind == kinds.end())
-    throw Failure{"unknown expectation " + base::in_quotes(name) +
-                  ", expected path_length, reach, stay, no_contact, value, state or command"};
+    throw ValueFailure{"unknown expectation " + base::in_quotes(name) +
+                       ", expected path_length, reach, stay, no_contact, value, state or command"};
   Expectation expectation;
   expectation.kind = kind->second;
   YAML::Emitter flow;
   flow << YAML::Flow << node;
   expectation.text = name + ": " + flow.c_str();
   if (expectation.kind == Kind::command) {
-    if (!node.IsScalar() || node.Scalar().empty()) throw Failure{"command needs a command line"};
+    if (!node.IsScalar() || node.Scalar().empty()) throw ValueFailure{"command needs a command line"};
     expectation.command = node.Scalar();
     return expectation;
   }
-  if (!node.IsMap()) throw Failure{name + " needs a map"};
+  if (!node.IsMap()) throw ValueFailure{name + " needs a map"};
   check_keys(node, name, expectation.kind);
   expectation.min = number(node, "min");
   expectation.max = number(node, "max");
-  if (expectation.min && expectation.max && *expectation.min > *expectation.max) throw Failure{"min must not be more than max"};
+  if (expectation.min && expectation.max && *expectation.min > *expectation.max) throw ValueFailure{"min must not be more than max"};
   expectation.within = number(node, "within").value_or(0);
-  if (node["within"] && expectation.within <= 0) throw Failure{"within must be more than 0, got " + node["within"].Scalar()};
+  if (node["within"] && expectation.within <= 0) throw ValueFailure{"within must be more than 0, got " + node["within"].Scalar()};
   if (expectation.kind == Kind::value) {
     expectation.port = text(node, "port");
     expectation.member = text(node, "member");
-    if (const auto path = member_path(expectation.member); !path) throw Failure{path.error().message};
+    if (const auto path = member_path(expectation.member); !path) throw ValueFailure{path.error().message};
   } else if (expectation.kind == Kind::state) {
     expectation.component = without_kind(text(node, "component"));
     expectation.state = text(node, "is");
     const auto is_it = [&](const std::string& state) { return base::equal_ignoring_case(state, expectation.state); };
     if (std::none_of(states.begin(), states.end(), is_it))
-      throw Failure{"is must be Created, Inactive, Active or Error, got " + base::in_quotes(expectation.state)};
+      throw ValueFailure{"is must be Created, Inactive, Active or Error, got " + base::in_quotes(expectation.state)};
   } else {
     expectation.model = text(node, "model");
   }
@@ -118,15 +113,15 @@ Expectation read_one(const std::string& name, const YAML::Node& node) {
     expectation.except = {usually_touched};
     if (node["except"]) expectation.except.clear();
     const auto except = node["except"];
-    if (except && !except.IsScalar() && !except.IsSequence()) throw Failure{"except must be a model or a list of models"};
+    if (except && !except.IsScalar() && !except.IsSequence()) throw ValueFailure{"except must be a model or a list of models"};
     if (except && except.IsScalar()) expectation.except = {except.Scalar()};
     for (std::size_t i = 0; except && except.IsSequence() && i < except.size(); ++i) {
-      if (!except[i].IsScalar()) throw Failure{"except must be a model or a list of models"};
+      if (!except[i].IsScalar()) throw ValueFailure{"except must be a model or a list of models"};
       expectation.except.push_back(except[i].Scalar());
     }
   }
   const bool bounded = expectation.kind == Kind::path_length || expectation.kind == Kind::value;
-  if (bounded && !expectation.min && !expectation.max) throw Failure{name + " needs min or max"};
+  if (bounded && !expectation.min && !expectation.max) throw ValueFailure{name + " needs min or max"};
   return expectation;
 }
 
@@ -255,11 +250,11 @@ Result<std::vector<Expectation>> read_expectations(const std::string& file) {
     std::vector<Expectation> expectations;
     for (const auto& entry : root) {
       line = entry.Mark().line + 1;
-      if (!entry.IsMap() || entry.size() != 1) throw Failure{"each expectation must be one NAME: {...}"};
+      if (!entry.IsMap() || entry.size() != 1) throw ValueFailure{"each expectation must be one NAME: {...}"};
       expectations.push_back(read_one(entry.begin()->first.Scalar(), entry.begin()->second));
     }
     return expectations;
-  } catch (const Failure& failure) {
+  } catch (const ValueFailure& failure) {
     return Error{"file " + base::in_quotes(file) + ":" + std::to_string(line) + ": " + failure.message};
   } catch (const YAML::BadFile&) {
     return Error{"file " + base::in_quotes(file) + ": cannot be read"};

@@ -21,6 +21,8 @@
 
 namespace editor {
 
+inline constexpr const char* usually_touched = "ground_plane";  // what a model may touch when nothing else is said
+
 struct Expectation {
   enum class Kind { path_length, reach, stay, no_contact, value, state, command };
   Kind kind = Kind::command;

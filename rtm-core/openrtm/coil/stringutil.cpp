@@ -12,8 +12,6 @@
 namespace coil {
 namespace {
 
-constexpr const char* blanks = " \t";
-
 std::string upper(std::string s) {
   for (char& c : s) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   return s;
@@ -30,7 +28,7 @@ std::string without_blanks(std::string s) {
 }
 
 std::string without_head_blanks(std::string s) {
-  s.erase(0, std::min(s.find_first_not_of(blanks), s.size()));
+  s.erase(0, std::min(s.find_first_not_of(" \t"), s.size()));
   return s;
 }
 

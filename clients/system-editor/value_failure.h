@@ -1,0 +1,12 @@
+// What ends the walk through a value that cannot be read or written. Thrown and caught inside one file: only an Error leaves it.
+#pragma once
+
+#include <string>
+
+namespace editor {
+
+struct ValueFailure {
+  std::string message;
+};
+
+}  // namespace editor
