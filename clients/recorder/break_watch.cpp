@@ -21,7 +21,7 @@ namespace recorder {
 namespace {
 
 using namespace std::chrono_literals;
-using Kind = Expression::Value::Kind;
+using ValueKind = Expression::Value::Kind;
 
 constexpr std::uint32_t last_phase = 15;
 constexpr auto call_limit = 5s;
@@ -64,12 +64,12 @@ struct BreakWatch::State {
 
 base::Result<void> BreakWatch::State::prepare(CORBA::ORB_ptr orb) {
   for (const auto& value : condition.values()) {
-    if (value.kind == Kind::pose && !models.contains(value.name)) {
+    if (value.kind == ValueKind::pose && !models.contains(value.name)) {
       auto iface = shm::Iface::open(simulator, shm::IfaceType::truth, value.name);
       if (!iface) return iface.error();
       if (const auto done = iface->subscribe(); !done) return done;
       models.emplace(value.name, std::move(*iface));
-    } else if (value.kind == Kind::port && !ports.contains(value.name)) {
+    } else if (value.kind == ValueKind::port && !ports.contains(value.name)) {
       const auto colon = value.name.find(':');
       const auto found = editor.port(value.name.substr(0, colon) + ".rtc" + value.name.substr(colon));
       if (!found) return found.error();
@@ -84,7 +84,7 @@ base::Result<void> BreakWatch::State::prepare(CORBA::ORB_ptr orb) {
       if (!tap) return tap.error();
       port->tap = std::move(*tap);
       ports.emplace(value.name, std::move(port));
-    } else if (value.kind == Kind::state) {
+    } else if (value.kind == ValueKind::state) {
       if (const auto found = editor.component(value.name + ".rtc", {.contexts = true}); !found) return found.error();
     }
   }
@@ -108,17 +108,17 @@ std::optional<double> BreakWatch::State::sample_member(const Expression::Value& 
 
 std::optional<double> BreakWatch::State::look_up(const Expression::Value& value, std::chrono::nanoseconds now) {
   switch (value.kind) {
-    case Kind::number:
+    case ValueKind::number:
       return value.number;
-    case Kind::time:
+    case ValueKind::time:
       return std::chrono::duration<double>(now).count();
-    case Kind::port:
+    case ValueKind::port:
       return sample_member(value);
-    case Kind::state: {
+    case ValueKind::state: {
       const auto component = editor.component(value.name + ".rtc", {.contexts = true});
       return component ? std::optional(static_cast<double>(component->state())) : std::nullopt;
     }
-    case Kind::pose:
+    case ValueKind::pose:
       break;
   }
   shm::Iface& model = models.at(value.name);

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using Field = RosDefinition::Field;
-using Kind = RosDefinition::Kind;
+using RosKind = RosDefinition::Kind;
 using Message = RosDefinition::Message;
 
 constexpr int deepest = 32;                       // messages in each other
@@ -27,11 +27,12 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-std::optional<Kind> primitive(std::string_view name) {
-  static const std::map<std::string_view, Kind> kinds = {
-      {"bool", Kind::boolean},  {"byte", Kind::uint8},      {"char", Kind::uint8},      {"int8", Kind::int8},     {"uint8", Kind::uint8},
-      {"int16", Kind::int16},   {"uint16", Kind::uint16},   {"int32", Kind::int32},     {"uint32", Kind::uint32}, {"int64", Kind::int64},
-      {"uint64", Kind::uint64}, {"float32", Kind::float32}, {"float64", Kind::float64}, {"string", Kind::string}};
+std::optional<RosKind> primitive(std::string_view name) {
+  static const std::map<std::string_view, RosKind> kinds = {
+      {"bool", RosKind::boolean},    {"byte", RosKind::uint8},   {"char", RosKind::uint8},    {"int8", RosKind::int8},
+      {"uint8", RosKind::uint8},     {"int16", RosKind::int16},  {"uint16", RosKind::uint16}, {"int32", RosKind::int32},
+      {"uint32", RosKind::uint32},   {"int64", RosKind::int64},  {"uint64", RosKind::uint64}, {"float32", RosKind::float32},
+      {"float64", RosKind::float64}, {"string", RosKind::string}};
   const auto found = kinds.find(name);
   return found == kinds.end() ? std::nullopt : std::optional(found->second);
 }
@@ -145,7 +146,7 @@ class Decoder {
       size = *length;
     }
     if (size > cdr_.left()) return std::nullopt;  // each element has an octet at least
-    if (field.kind == Kind::uint8) {
+    if (field.kind == RosKind::uint8) {
       const auto octets = cdr_.take(size);
       return octets ? std::optional<Json>(base64(*octets)) : std::nullopt;
     }
@@ -167,37 +168,37 @@ class Decoder {
   std::optional<Json> one(const Field& field, int depth) {
     if (values_left_-- == 0) return std::nullopt;
     switch (field.kind) {
-      case Kind::boolean: {
+      case RosKind::boolean: {
         const auto value = cdr_.number<std::uint8_t>();
         return value ? std::optional<Json>(*value != 0) : std::nullopt;
       }
-      case Kind::int8:
+      case RosKind::int8:
         return number<std::int8_t>();
-      case Kind::uint8:
+      case RosKind::uint8:
         return number<std::uint8_t>();
-      case Kind::int16:
+      case RosKind::int16:
         return number<std::int16_t>();
-      case Kind::uint16:
+      case RosKind::uint16:
         return number<std::uint16_t>();
-      case Kind::int32:
+      case RosKind::int32:
         return number<std::int32_t>();
-      case Kind::uint32:
+      case RosKind::uint32:
         return number<std::uint32_t>();
-      case Kind::int64:
+      case RosKind::int64:
         return number<std::int64_t>();
-      case Kind::uint64:
+      case RosKind::uint64:
         return number<std::uint64_t>();
-      case Kind::float32:
+      case RosKind::float32:
         return number<float>();
-      case Kind::float64:
+      case RosKind::float64:
         return number<double>();
-      case Kind::string: {
+      case RosKind::string: {
         const auto length = cdr_.number<std::uint32_t>();
         const auto text = length ? cdr_.take(*length) : std::nullopt;
         if (!text) return std::nullopt;
         return Json(std::string(text->substr(0, text->find('\0'))));
       }
-      case Kind::message:
+      case RosKind::message:
         return message(field.message, depth + 1);
     }
     return std::nullopt;
