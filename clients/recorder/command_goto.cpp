@@ -241,8 +241,8 @@ void add_goto(base::Command& app, editor::Chosen& chosen) {
   command->add_option("RUN", options->what, "A recording of rtse run --record, or an RTSProfile with --world")
       ->required()
       ->check(base::existing_file());
-  auto* time = command->add_option("TIME", options->time_s, "Simulated seconds")->check(base::number_between(0.0, 1e7));
-  command->add_option("--until", options->time_s, "The same")->check(base::number_between(0.0, 1e7))->excludes(time);
+  auto* time = command->add_option("TIME", options->time_s, "Simulated seconds")->seconds_between(0.0, 1e7);
+  command->add_option("--until", options->time_s, "The same")->seconds_between(0.0, 1e7)->excludes(time);
   command->add_option(
       "--break", options->condition,
       "Stand at the first tick in which this holds, e.g. 'pose(pioneer2dx).x > 2 && A0:out.data < 0.1'; TIME ends the search");

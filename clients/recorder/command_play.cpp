@@ -209,8 +209,8 @@ void add_play(base::Command& app, editor::Chosen& chosen) {
   command->add_option("LINK", options->links, "What goes where: COMPONENT:PORT=INPORT, e.g. RTCLaser0:range=MyFilter0:in")->required();
   command->add_option("-r,--rate", options->rate, "So many times as fast")->check(base::number_between(1e-3, 1e6))->capture_default_str();
   command->add_flag("--loop", options->loop, "Start over at the end, until stopped");
-  command->add_option("--from", options->from_s, "From this time on [s]")->check(base::number_between(0.0, 1e10));
-  command->add_option("--to", options->to_s, "Up to this time [s]")->check(base::number_between(0.0, 1e10));
+  command->add_option("--from", options->from_s, "From this time on [s]")->seconds_between(0.0, 1e10);
+  command->add_option("--to", options->to_s, "Up to this time [s]")->seconds_between(0.0, 1e10);
   command->add_flag("--sim-time", options->by_simulation,
                     "By the clock of the simulator; in lock step time waits until all that is due was sent");
   command->add_option("-s,--server-id", options->server_id, "With --sim-time: which simulator; default: $RTMSIM_SERVER_ID, else 0")

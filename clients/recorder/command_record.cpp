@@ -349,8 +349,7 @@ void add_record(base::Command& app, editor::Chosen& chosen) {
       ->allow_extra_args(false)
       ->check([](const std::string& text) { return text.find('=') == std::string::npos ? "expected KEY=VALUE" : ""; });
   command->add_option("-o,--output", options->file, "The file to write")->required();
-  command->add_option("-t,--duration", options->duration_s, "End after so many seconds of real time")
-      ->check(base::number_between(0.0, 1e9));
+  command->add_option("-t,--duration", options->duration_s, "End after so many seconds of real time")->seconds_between(0.0, 1e9);
   auto split = std::make_shared<std::string>();
   command->add_option("--split", *split, "Begin a new file after so many octets (500M) or so much time (10m)")
       ->check([](const std::string& text) {
@@ -359,7 +358,7 @@ void add_record(base::Command& app, editor::Chosen& chosen) {
       });
   command->add_option("--rate", options->rate, "At most so many samples of each channel in a second")
       ->check(base::number_between(1e-3, 1e6));
-  command->add_option("--last", options->last_s, "Keep only so many seconds before the end")->check(base::number_between(0.1, 1e6));
+  command->add_option("--last", options->last_s, "Keep only so many seconds before the end")->seconds_between(0.1, 1e6);
   command->add_flag("--until-error", options->until_error, "End when a component is in its error state");
   command->add_option("--hashes", options->hashes, "The hash log of the run, which is there at a second interrupt; rtse run uses it");
   command->add_option("--compression", options->compression, "zstd, lz4 or none")

@@ -313,8 +313,8 @@ void repair(Editor& editor, const std::string& file, const std::string& output) 
 void add_selection(base::Command& command, Selection& selection) {
   command.add_option("FILE", selection.file, "The recording")->required();
   command.add_option("CHANNEL", selection.topics, "Topics or COMPONENT:PORT, patterns too; default: all");
-  command.add_option("--from", selection.from_s, "From this time on [s]")->check(base::number_between(0.0, 1e10));
-  command.add_option("--to", selection.to_s, "Up to this time [s]")->check(base::number_between(0.0, 1e10));
+  command.add_option("--from", selection.from_s, "From this time on [s]")->seconds_between(0.0, 1e10);
+  command.add_option("--to", selection.to_s, "Up to this time [s]")->seconds_between(0.0, 1e10);
 }
 
 }  // namespace

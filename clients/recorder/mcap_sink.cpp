@@ -27,6 +27,10 @@ std::string numbered(const std::string& path, std::size_t number) {
 base::Result<Split> parse_split(const std::string& text) {
   const auto wrong = base::Error{"split " + base::in_quotes(text) + ": expected octets as 64k, 500M or 2G, or a time as 30s, 10m or 1h"};
   if (text.empty()) return wrong;
+  if (const auto seconds = base::parse_seconds(text); seconds && !base::parse_number(text)) {
+    if (!(*seconds > 0)) return wrong;
+    return Split{.time = std::chrono::nanoseconds(std::llround(std::min(*seconds, 1e9) * 1e9))};
+  }
   const auto number = base::parse_number(text.substr(0, text.size() - 1));
   if (!number || !(*number > 0) || *number > 1e9) return wrong;
   switch (text.back()) {
@@ -36,12 +40,6 @@ base::Result<Split> parse_split(const std::string& text) {
       return Split{.octets = static_cast<std::uint64_t>(std::ceil(*number * 1024 * 1024))};
     case 'G':
       return Split{.octets = static_cast<std::uint64_t>(std::ceil(*number * 1024 * 1024 * 1024))};
-    case 's':
-      return Split{.time = std::chrono::nanoseconds(std::llround(*number * 1e9))};
-    case 'm':
-      return Split{.time = std::chrono::nanoseconds(std::llround(std::min(*number, 1e7) * 60e9))};
-    case 'h':
-      return Split{.time = std::chrono::nanoseconds(std::llround(std::min(*number, 1e5) * 3600e9))};
     default:
       return wrong;
   }

@@ -51,6 +51,19 @@ Option* Option::check(std::function<std::string(const std::string&)> problem) {
   return this;
 }
 
+Option* Option::seconds_between(double low, double high) {
+  const auto range = format_number(low) + " - " + format_number(high);
+  inner_.transform(CLI::Validator(
+      [=](std::string& word) {
+        const auto value = parse_seconds(word);
+        if (!value || *value < low || *value > high) return "must be a time in [" + range + "] s, as 30, 500ms or 2min, got " + word;
+        word = format_number(*value);
+        return std::string();
+      },
+      "SECONDS in [" + range + "]"));
+  return this;
+}
+
 Option* Option::capture_default_str() {
   inner_.capture_default_str();
   return this;

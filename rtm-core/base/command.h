@@ -40,7 +40,8 @@ class Option final {
   Option* required();
   Option* check(const Check& check);
   Option* check(std::function<std::string(const std::string&)> problem);
-  Option* capture_default_str();  // the help shows the value that the variable has now
+  Option* seconds_between(double low, double high);  // the value is a time, as parse_seconds reads it: 30, 500ms, 2min
+  Option* capture_default_str();                     // the help shows the value that the variable has now
   Option* expected(int count);
   Option* expected(int least, int most);
   Option* description(const std::string& text);

@@ -75,6 +75,22 @@ std::optional<double> parse_number(std::string_view text) {
   return value;
 }
 
+std::optional<double> parse_seconds(std::string_view text) {
+  struct Unit {
+    std::string_view name;
+    double seconds;
+  };
+  static constexpr Unit units[] = {{"us", 1e-6}, {"ms", 1e-3}, {"s", 1}, {"min", 60}, {"m", 60}, {"h", 3600}};
+  text = trim(text);
+  for (const auto& unit : units) {
+    if (!text.ends_with(unit.name)) continue;
+    const auto number = parse_number(text.substr(0, text.size() - unit.name.size()));
+    if (!number || !std::isfinite(*number * unit.seconds)) return std::nullopt;
+    return *number * unit.seconds;
+  }
+  return parse_number(text);
+}
+
 std::optional<bool> parse_bool(std::string_view text) {
   text = trim(text);
   for (const auto yes : {"yes", "true", "on", "1"}) {

@@ -21,6 +21,8 @@ std::string join(const std::vector<std::string>& parts, std::string_view separat
 // The whole text (blanks at the ends apart) must be the number; no overflow. parse_number also refuses NaN and infinities.
 std::optional<std::int64_t> parse_integer(std::string_view text);
 std::optional<double> parse_number(std::string_view text);
+// A time in seconds: a number alone, or with us, ms, s, min (m) or h behind it.
+std::optional<double> parse_seconds(std::string_view text);
 // YES/NO, TRUE/FALSE, ON/OFF, 1/0 in any case.
 std::optional<bool> parse_bool(std::string_view text);
 

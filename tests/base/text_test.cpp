@@ -12,6 +12,17 @@ TEST(Text, lists_are_split_at_separators_and_trimmed) {
   EXPECT_TRUE(split_list("  ").empty());
 }
 
+TEST(Text, a_time_is_seconds_or_has_a_unit) {
+  EXPECT_EQ(parse_seconds("30"), 30.0);
+  EXPECT_EQ(parse_seconds(" 30s "), 30.0);
+  EXPECT_EQ(parse_seconds("500ms"), 0.5);
+  EXPECT_EQ(parse_seconds("2min"), 120.0);
+  EXPECT_EQ(parse_seconds("1.5m"), 90.0);
+  EXPECT_EQ(parse_seconds("1h"), 3600.0);
+  EXPECT_DOUBLE_EQ(parse_seconds("250us").value_or(0), 2.5e-4);
+  for (const auto bad : {"", "s", "1d", "1 2s", "nans", "1e308h", "ms"}) EXPECT_EQ(parse_seconds(bad), std::nullopt) << bad;
+}
+
 TEST(Text, numbers_are_read_whole_or_not_at_all) {
   EXPECT_EQ(parse_number(" -1.5e3 "), -1500.0);
   EXPECT_EQ(parse_number("+2"), 2.0);

@@ -166,7 +166,7 @@ def played():
 def kept():
     up()
     processes = []
-    for name, *words in (("split.mcap", "--split", "1s"), ("few.mcap", "--rate", "2"), ("last.mcap", "--last", "1")):
+    for name, *words in (("split.mcap", "--split", "1s"), ("few.mcap", "--rate", "2"), ("last.mcap", "--last", "1000ms")):
         processes.append(subprocess.Popen([f"{rig.bin_dir}/rtse", "--ns", rig.names, "record", "-s", str(rig.server_id), "-o", rig.path(name),
                                            "RTCLaser0:range", *words], stderr=subprocess.PIPE, text=True))
         assert processes[-1].stderr.readline().startswith("recording ")
@@ -313,7 +313,7 @@ def lives():
 # A ring is for those who look for what went wrong: of a run that passes nothing is kept.
 def ring():
     kept = rig.path("ring.mcap")
-    call = ["run", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "-w", f"{rig.source}/worlds/obstacle_course.sdf", "-d", "4", "--record", kept, "--last", "1"]
+    call = ["run", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "-w", f"{rig.source}/worlds/obstacle_course.sdf", "-d", "4s", "--record", kept, "--last", "1s"]
     rig.rtse(*call)
     assert not os.path.exists(kept)
     failed = rig.try_rtse(*call, "-x", f"{rig.source}/tests/scenario/impossible.yaml", "--hash-log", rig.path("run.hashlog"))

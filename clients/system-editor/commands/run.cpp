@@ -260,9 +260,7 @@ void add_run(base::Command& app, Chosen& chosen) {
   auto jobs = std::make_shared<int>(1);
   run->add_option("SYSTEM", options->system, "RTSProfile, XML or YAML")->required()->check(base::existing_file());
   run->add_option("-w,--world", options->world, "SDFormat world")->required()->check(base::existing_file());
-  run->add_option("-d,--duration", options->duration_s, "Simulated seconds")
-      ->check(base::number_between(0.001, 1e7))
-      ->capture_default_str();
+  run->add_option("-d,--duration", options->duration_s, "Simulated seconds")->seconds_between(0.001, 1e7)->capture_default_str();
   run->add_option("-x,--expect", options->expectations, "Expectations, YAML")->check(base::existing_file());
   auto* seed =
       run->add_option("--seed", options->seed, "Seed of the world's noise")->capture_default_str()->check(base::number_between(0, 1e18));

@@ -42,7 +42,7 @@ void add_recording_options(base::Command& run, RunOptions& options) {
   auto* record = run.add_option("--record", options.record, "Write what all ports send, components say and the simulator shows, as MCAP");
   run.add_option("--last", options.record_last_s, "With --record: only so many seconds, the last ones, and only of a run that fails")
       ->needs(record)
-      ->check(base::number_between(0.1, 1e6));
+      ->seconds_between(0.1, 1e6);
 }
 
 Result<ComponentProperty> parse_property(const std::string& text) {
