@@ -56,11 +56,19 @@ def copy_to(root):
         shutil.copy2(source / name, root / name)
 
 
+# The sources of a command: several of a folder in a build from nothing.
+def sources_of(command):
+    file = pathlib.Path(command["file"])
+    if not file.name.startswith("unity_"):
+        return [file]
+    return [file.parent / line.split('"')[1] for line in file.read_text().splitlines() if line.startswith("#include")]
+
+
 # With the compiler's own command for it, or for a neighbour when it is new.
 def compiles(root, name):
     commands = json.loads((build / "compile_commands.json").read_text())
-    own = [one for one in commands if one["file"] == str(source / name)]
-    beside = own or [one for one in commands if pathlib.Path(one["file"]).parent == (source / name).parent and (name.split("/")[0] != "tests" or "/sim-server" in one["command"])]
+    own = [one for one in commands if source / name in sources_of(one)]
+    beside = own or [one for one in commands if (source / name).parent in [file.parent for file in sources_of(one)] and (name.split("/")[0] != "tests" or "/sim-server" in one["command"])]
     assert beside, f"{name}: nothing beside it is compiled"
     command = beside[0]["command"]
     for folder in ("sim-server", "tests", "clients", "iface-components", "rtm-core"):
@@ -70,7 +78,7 @@ def compiles(root, name):
     output = words.index("-o")
     words = words[:output] + words[output + 2:]
     words = [str(root / name) if word == beside[0]["file"] or word == str(root / pathlib.Path(beside[0]["file"]).relative_to(source)) else word for word in words]
-    done = subprocess.run([*words, "-O0", "-fsyntax-only", "-Werror"], cwd=beside[0]["directory"], capture_output=True, text=True)
+    done = subprocess.run([*words, "-O0", "-fsyntax-only", "-Werror", "-Wno-invalid-pch"], cwd=beside[0]["directory"], capture_output=True, text=True)
     assert done.returncode == 0, f"{name}: {done.stderr}"
 
 
