@@ -17,7 +17,7 @@ namespace studio {
 // Values that hold as long as the program runs.
 struct ActContext {
   CORBA::ORB_ptr orb = CORBA::ORB::_nil();
-  std::string name_server;
+  std::string name_server{};
   std::uint32_t server_id = 0;
   std::chrono::milliseconds call_limit{1000};
 };
