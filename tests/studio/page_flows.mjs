@@ -112,7 +112,7 @@ const flows = [
     await until('wheel zooms', () => page.evaluate((d) => window.studio.world.eye.distance < d, distance));
   }],
   ['a robot is moved by dragging it', async ({ page, mock }) => {
-    await page.evaluate(() => { window.studio.world.follow('pioneer2dx'); window.studio.world.set_tool('move'); window.studio.world.draw(); });
+    await page.evaluate(() => { window.studio.world.follow('pioneer2dx'); window.studio.world.hands.set_tool('move'); window.studio.world.draw(); });
     const box = await page.locator('.world canvas').boundingBox();
     const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
     await page.mouse.move(x, y);
@@ -121,13 +121,13 @@ const flows = [
     await page.mouse.up();
     await until('set_pose', () => asked(mock, 'set_pose').length > 0);
     check(asked(mock, 'set_pose').at(-1).args.planar.every(Number.isFinite), 'numbers');
-    await page.evaluate(() => window.studio.world.set_tool('push'));
+    await page.evaluate(() => window.studio.world.hands.set_tool('push'));
     await page.mouse.move(x, y);
     await page.mouse.down();
     await page.mouse.move(x + 60, y, { steps: 4 });
     await page.mouse.up();
     await until('push', () => asked(mock, 'push').length > 0);
-    await page.evaluate(() => { window.studio.world.set_tool('push'); window.studio.world.whole(); });
+    await page.evaluate(() => { window.studio.world.hands.set_tool('push'); window.studio.world.whole(); });
   }],
   ['keys drive the robot, and stop it when they are let go', async ({ page, mock }) => {
     await choose(page, 'model', 'pioneer2dx');

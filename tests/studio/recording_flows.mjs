@@ -93,7 +93,7 @@ const flows = [
   }],
   ['the laser fan is that of the moment', async ({ page }) => {
     await scrub(page, 9);
-    const fan = () => page.evaluate(() => { const [one] = window.studio.world.fans.values(); return Array.from(one.parts[1].geometry.getAttribute('position')?.array.slice(0, 60) ?? []); });
+    const fan = () => page.evaluate(() => { const [one] = window.studio.world.ranges.fans.values(); return Array.from(one.parts[1].geometry.getAttribute('position')?.array.slice(0, 60) ?? []); });
     const late = await until('a fan', async () => { const f = await fan(); return f.length > 0 && f; });
     await scrub(page, 1);
     await until('another one', async () => JSON.stringify(await fan()) !== JSON.stringify(late));

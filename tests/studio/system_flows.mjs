@@ -172,7 +172,7 @@ const flows = [
   }],
   ['a robot is put somewhere else by dragging, and pushed', async ({ page, rig }) => {
     const place = async () => JSON.parse(await rig.simctl('--json', 'pose', robot)).position;
-    await page.evaluate((name) => { window.studio.world.follow(name); window.studio.world.set_tool('move'); }, robot);
+    await page.evaluate((name) => { window.studio.world.follow(name); window.studio.world.hands.set_tool('move'); }, robot);
     await page.evaluate(() => window.studio.world.draw());
     const before = await place();
     const box = await page.locator('.world canvas').boundingBox();
@@ -182,7 +182,7 @@ const flows = [
     await page.mouse.move(x + 70, y, { steps: 5 });
     await page.mouse.up();
     await until('it was put', async () => { const now = await place(); return Math.hypot(now[0] - before[0], now[1] - before[1]) > 0.05; });
-    await page.evaluate(() => { window.studio.world.set_tool('move'); window.studio.world.whole(); });
+    await page.evaluate(() => { window.studio.world.hands.set_tool('move'); window.studio.world.whole(); });
   }],
   ['keys drive the robot, and it stops without them', async ({ page, rig }) => {
     await page.locator('.world canvas').focus();

@@ -1,5 +1,5 @@
 // The system as RTSystemEditor draws it: boxes with ports, lines between them; live.
-import { button, h, once_a_frame, put, s } from './dom';
+import { button, h, once_a_frame, put, s, with_code } from './dom';
 import { connect_dialog } from './connect_dialog';
 import { arrange, Place } from './diagram_layout';
 import { keep, settings } from './settings';
@@ -8,7 +8,6 @@ import {
   component, component_of_port, components_of, connections_of, is_selected, link_problem, name_of_port, on, port_of, read_only, select, selected_model, store, wire,
 } from './store';
 import type { Component, Connection, Port } from './wire';
-import { with_code } from './world';
 
 interface Shape { element: SVGGElement; width: number; height: number; ports: Map<string, { x: number; y: number; element: SVGGElement; port: Port }>; component: Component; mark: SVGPathElement; rate: SVGTextElement; is_out: boolean }
 

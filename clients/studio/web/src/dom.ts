@@ -114,3 +114,8 @@ export function once_a_frame(work: () => void): () => void {
     });
   };
 }
+
+// `words` in backquotes become code.
+export function with_code(text: string): (string | HTMLElement)[] {
+  return text.split('`').map((part, i) => (i % 2 === 1 ? h('code', null, part) : part));
+}

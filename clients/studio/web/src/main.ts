@@ -19,7 +19,7 @@ const diagram = new Diagram();
 const tree = new Tree();
 const drive = new Drive();
 const history_of_run = new History(world);
-const playback = new Playback(() => world.forget_trails());
+const playback = new Playback(() => world.trails.forget());
 const bottom = new Bottom(world, history_of_run, playback);
 const inspector = new Inspector({
   world,
@@ -91,8 +91,8 @@ const tools: { [name: string]: HTMLButtonElement } = {
   names: button('Names', { icon: 'names', key: 'N', pressed: settings.names }, () => toggle('names')),
   collisions: button('Shapes that collide', { icon: 'shapes', pressed: settings.collisions }, () => toggle('collisions')),
   contacts: button('Contacts of the selected model', { icon: 'contact', key: 'K', pressed: settings.contacts }, () => toggle('contacts')),
-  move: button('Move models by dragging; with Ctrl they turn', { icon: 'move', key: 'M', pressed: false }, () => world.set_tool('move')),
-  push: button('Push models by dragging', { icon: 'push', key: 'P', pressed: false }, () => world.set_tool('push')),
+  move: button('Move models by dragging; with Ctrl they turn', { icon: 'move', key: 'M', pressed: false }, () => world.hands.set_tool('move')),
+  push: button('Push models by dragging', { icon: 'push', key: 'P', pressed: false }, () => world.hands.set_tool('push')),
   spawn: button('Spawn a model', { icon: 'plus' }, () => spawn_dialog()),
 };
 
@@ -248,7 +248,7 @@ function show_tools(): void {
   tools.top.setAttribute('aria-pressed', String(world.eye.mode === 'top'));
   tools.follow.setAttribute('aria-pressed', String(world.eye.mode === 'follow'));
   for (const name of ['lasers', 'sonars', 'trails', 'names', 'collisions', 'contacts'] as const) tools[name].setAttribute('aria-pressed', String(settings[name]));
-  for (const name of ['move', 'push'] as const) tools[name].setAttribute('aria-pressed', String(world.tool === name));
+  for (const name of ['move', 'push'] as const) tools[name].setAttribute('aria-pressed', String(world.hands.tool === name));
   const cameras = world.cameras();
   if (camera_box.options.length !== cameras.length + 1) put(camera_box, h('option', { value: '' }, 'own eye'), cameras.map((c) => h('option', { value: c }, c)));
   camera_box.hidden = cameras.length === 0;
@@ -279,7 +279,7 @@ document.addEventListener('keydown', (event) => {
   const on_chosen = (name: string, word: string, state: string) => () => { if (chosen?.state === state && !read_only()) act(`${word} ${chosen.instance}`, name, { path: chosen.path }); };
   const table: { [key: string]: () => void } = {
     ' ': () => bottom.run_or_pause(), '.': () => bottom.step(), ',': () => bottom.step(-1), R: () => bottom.reset(), '/': () => { show_panel('tree', true); tree.search.focus(); tree.search.select(); }, '?': show_keys,
-    o: () => world.whole(), t: () => tools.top.click(), f: follow, l: () => toggle('lasers'), n: () => toggle('names'), k: () => toggle('contacts'), m: () => world.set_tool('move'), p: () => world.set_tool('push'), g: () => drive.toggle(),
+    o: () => world.whole(), t: () => tools.top.click(), f: follow, l: () => toggle('lasers'), n: () => toggle('names'), k: () => toggle('contacts'), m: () => world.hands.set_tool('move'), p: () => world.hands.set_tool('push'), g: () => drive.toggle(),
     a: on_chosen('activate', 'Activate', 'Inactive'), d: on_chosen('deactivate', 'Deactivate', 'Active'), e: on_chosen('reset', 'Reset', 'Error'),
     c: () => document.getElementById('connect')?.click(), Delete: () => { if (store.selection?.kind === 'connection') disconnect(store.selection.id); }, Escape: () => select(null),
   };

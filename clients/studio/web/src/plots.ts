@@ -7,7 +7,7 @@ import { keep, settings } from './settings';
 import { on, store, wire } from './store';
 import { signal_name } from './tree';
 import { watch } from './watches';
-import { palette } from './world';
+import { palette } from './palette';
 
 interface Line { topic: string; kind: string; member: string; times: number[]; values: (number | null)[]; stop: () => void; error: string }
 const most_points = 12000;

@@ -1,0 +1,113 @@
+// The mouse on models: a click selects, a double click follows; with a tool in hand they are moved, turned and pushed.
+import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial, Mesh, Object3D, Plane, Quaternion, Raycaster, Scene, Vector2, Vector3 } from 'three';
+import type { Model, WorldScene } from './glb';
+import type { Eye } from './orbit';
+import { act, changed, read_only, select, wire } from './store';
+
+export type Tool = 'look' | 'move' | 'push';
+
+// What they reach into.
+export interface Reach { canvas: HTMLCanvasElement; eye: Eye; world: WorldScene | null; redraw(): void; follow(model: string): void }
+
+interface Drag { model: Model; at: Vector3; offset: Vector3; yaw: number; last: number; start: [number, number] }
+
+export class Hands {
+  tool: Tool = 'look';
+  private readonly arrow = new Line(new BufferGeometry(), new LineBasicMaterial({ color: 0xe0452a, depthTest: false, transparent: true }));
+  private drag: Drag | null = null;
+
+  constructor(private readonly view: Reach, scene: Scene) {
+    this.arrow.renderOrder = 10;
+    this.arrow.visible = false;
+    this.arrow.frustumCulled = false;
+    scene.add(this.arrow);
+    this.listen();
+  }
+
+  private ray(event: { clientX: number; clientY: number }): Raycaster {
+    const box = this.view.canvas.getBoundingClientRect();
+    const ray = new Raycaster();
+    ray.setFromCamera(new Vector2(((event.clientX - box.left) / box.width) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2), this.view.eye.camera as never);
+    return ray;
+  }
+
+  private hit(event: { clientX: number; clientY: number }): { model: string; point: Vector3 } | null {
+    if (!this.view.world) return null;
+    const hits = this.ray(event).intersectObject(this.view.world.root, true);
+    const found = hits.find(({ object }) => !object.userData.overlay && !object.userData.ground && object instanceof Mesh && model_name(object));
+    return found ? { model: model_name(found.object)!, point: found.point } : null;
+  }
+
+  private on_plane(event: PointerEvent, z: number): Vector3 | null {
+    return this.ray(event).ray.intersectPlane(new Plane(new Vector3(0, 0, 1), -z), new Vector3());
+  }
+
+  // True: this press is for a model, and does not turn the eye.
+  begin_drag(event: PointerEvent): boolean {
+    if (this.tool === 'look' || event.button !== 0 || read_only()) return false;
+    const hit = this.hit(event);
+    const model = hit && this.view.world!.models.get(hit.model);
+    if (!hit || !model?.canonical || model.is_static) return false;
+    select({ kind: 'model', id: model.name });
+    const x = new Vector3(1, 0, 0).applyQuaternion(model.canonical.getWorldQuaternion(new Quaternion()));
+    this.drag = {
+      model, at: hit.point.clone(), offset: model.canonical.position.clone().sub(hit.point), yaw: Math.atan2(x.y, x.x), last: 0, start: [event.clientX, event.clientY],
+    };
+    this.view.canvas.setPointerCapture(event.pointerId);
+    return true;
+  }
+
+  private go_on(event: PointerEvent, is_end: boolean): void {
+    const { drag } = this;
+    if (!drag) return;
+    const point = this.on_plane(event, drag.at.z);
+    if (!point) return;
+    if (this.tool === 'push') {
+      this.arrow.visible = !is_end;
+      this.arrow.geometry.setAttribute('position', new BufferAttribute(new Float32Array([...drag.at.toArray(), ...point.toArray()]), 3));
+      if (is_end) this.push(drag.model.name, point.sub(drag.at));
+    } else if (is_end || event.timeStamp - drag.last > 80) {
+      drag.last = event.timeStamp;
+      if (event.altKey || event.ctrlKey) drag.yaw += (event.clientX - drag.start[0]) * 0.001;
+      const place = point.add(drag.offset);
+      const args = { model: drag.model.name, planar: [place.x, place.y, drag.yaw] };
+      if (is_end) act(`Move ${drag.model.name}`, 'set_pose', args);
+      else wire.request('set_pose', args).catch(() => {});
+    }
+    if (is_end) this.drag = null;
+    this.view.redraw();
+  }
+
+  // 100 N for each metre of the arrow, for a fifth of a second.
+  private push(model: string, way: Vector3): void {
+    if (way.length() < 0.02) return;
+    const force = way.multiplyScalar(100).toArray().map((f) => Math.round(f));
+    act(`Push ${model}`, 'push', { name: model, force, seconds: 0.2 });
+  }
+
+  set_tool(tool: Tool): void {
+    this.tool = this.tool === tool ? 'look' : tool;
+    this.view.canvas.parentElement!.dataset.tool = this.tool;
+    changed('settings');
+  }
+
+  private listen(): void {
+    let down: [number, number] | null = null;
+    this.view.canvas.addEventListener('pointerdown', (event) => { down = [event.clientX, event.clientY]; });
+    this.view.canvas.addEventListener('pointermove', (event) => this.go_on(event, false));
+    this.view.canvas.addEventListener('pointerup', (event) => {
+      if (this.drag) return this.go_on(event, true);
+      if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4 || event.button !== 0) return;
+      const hit = this.hit(event);
+      select(hit ? { kind: 'model', id: hit.model } : null);
+    });
+    this.view.canvas.addEventListener('dblclick', (event) => {
+      const hit = this.hit(event);
+      if (hit) this.view.follow(hit.model);
+    });
+  }
+}
+
+function model_name(object: Object3D | null): string | undefined {
+  return object ? (object.userData.model as string | undefined) ?? model_name(object.parent) : undefined;
+}
