@@ -5,10 +5,16 @@ rtmsim_test(player_devices_test player/player_devices_test.cpp player/new_player
 rtmsim_test(pose_control_test player/pose_control_test.cpp LIBRARIES player_gateway)
 rtmsim_test(door_test player/door_test.cpp LIBRARIES player_gateway)
 rtmsim_test(alarm_test player/alarm_test.cpp LIBRARIES player_gateway)
-foreach(case listing drive properties flow rate two_clients gateway_ends restart hung late_and_changing simulation rangers sensors config bad_input stuck)
-  add_test(NAME player.${case}
-    COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/player.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
-  set_tests_properties(player.${case} PROPERTIES LABELS integration TIMEOUT 300)
+foreach(script_and_cases
+    "player listing drive properties flow rate two_clients simulation rangers sensors config"
+    "player_faults gateway_ends restart hung late_and_changing bad_input stuck")
+  separate_arguments(cases UNIX_COMMAND "${script_and_cases}")
+  list(POP_FRONT cases script)
+  foreach(case ${cases})
+    add_test(NAME player.${case}
+      COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/${script}.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+    set_tests_properties(player.${case} PROPERTIES LABELS integration TIMEOUT 300)
+  endforeach()
 endforeach()
 foreach(case position heading cars flight)
   add_test(NAME player.${case}

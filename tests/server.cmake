@@ -1,9 +1,14 @@
 # sim-server and simctl as processes; each case has a server of its own.
-foreach(case requests motion faults bad_requests same_state killed living_server_is_refused ends check paused_is_idle looked_at_while_paused looked_at_each_device shows_every_type exports
-             rate no_room scribbled_over ends_while_it_loads cut_short names shared)
-  add_test(NAME server.${case}
-    COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/server.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
-  set_tests_properties(server.${case} PROPERTIES LABELS sim TIMEOUT 300 SKIP_RETURN_CODE 77)
+foreach(script_and_cases
+    "server requests motion same_state looked_at_while_paused looked_at_each_device shows_every_type exports check names rate paused_is_idle"
+    "server_faults faults bad_requests no_room scribbled_over killed living_server_is_refused ends ends_while_it_loads cut_short shared")
+  separate_arguments(cases UNIX_COMMAND "${script_and_cases}")
+  list(POP_FRONT cases script)
+  foreach(case ${cases})
+    add_test(NAME server.${case}
+      COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/${script}.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+    set_tests_properties(server.${case} PROPERTIES LABELS sim TIMEOUT 300 SKIP_RETURN_CODE 77)
+  endforeach()
 endforeach()
 add_test(NAME server.by_the_page COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/by_the_page.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
 set_tests_properties(server.by_the_page PROPERTIES LABELS sim TIMEOUT 300)
