@@ -1,6 +1,5 @@
 #include "shm/segment.h"
 
-#include <dirent.h>
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/mman.h>
@@ -15,7 +14,6 @@
 #include <map>
 #include <memory>
 #include <thread>
-#include <tuple>
 #include <utility>
 
 #include "base/cut_guard.h"
@@ -25,90 +23,16 @@
 #include "shm/file_handle.h"
 #include "shm/futex.h"
 #include "shm/process.h"
+#include "shm/segment_place.h"
 #include "shm/words.h"
 
 namespace shm {
 namespace {
 
-constexpr char folder[] = "/dev/shm";
-constexpr std::string_view prefix = "rtmsim-";
 constexpr std::int64_t heartbeat_limit_ns = 5'000'000'000;  // a server that can't be judged otherwise is dead after that
 constexpr std::size_t max_segment = std::size_t{4} << 30;
 
 std::string reason() { return std::strerror(errno); }
-
-std::string usual_path(const SegmentName& name) { return std::string(folder) + "/" + name.text(); }
-
-bool is_owned_by(const std::string& path, uid_t uid) {
-  struct stat status {};
-  return ::lstat(path.c_str(), &status) == 0 && status.st_uid == uid;
-}
-
-std::vector<std::string> entries_of(const std::string& path) {
-  std::vector<std::string> entries;
-  std::unique_ptr<DIR, int (*)(DIR*)> dir(::opendir(path.c_str()), &::closedir);
-  if (!dir) return entries;
-  while (const dirent* entry = ::readdir(dir.get())) entries.emplace_back(entry->d_name);
-  return entries;
-}
-
-// Folders for names that somebody else has taken in /dev/shm, where everybody may make files: "rtmsim-<uid>.<six random letters>". Nobody
-// can guess one before it is there, and in one nobody else can make a name. Those of other owners are not looked at.
-std::string refuge_prefix(uid_t uid) { return std::string(prefix) + std::to_string(uid) + "."; }
-
-// The user whose folder for taken names this entry of /dev/shm is.
-std::optional<uid_t> refuge_owner(const std::string& entry) {
-  struct stat status {};
-  if (!entry.starts_with(prefix) || ::lstat((std::string(folder) + "/" + entry).c_str(), &status) != 0) return std::nullopt;
-  if (!S_ISDIR(status.st_mode) || !entry.starts_with(refuge_prefix(status.st_uid))) return std::nullopt;
-  return status.st_uid;
-}
-
-std::vector<std::string> refuges_of(uid_t uid) {
-  std::vector<std::string> paths;
-  for (const std::string& entry : entries_of(folder)) {
-    if (refuge_owner(entry) == uid) paths.push_back(std::string(folder) + "/" + entry);
-  }
-  std::sort(paths.begin(), paths.end());
-  return paths;
-}
-
-// Those of other users may pass through, as they may read names in /dev/shm: the mode of a segment says who may use it.
-base::Result<std::string> make_refuge() {
-  if (auto known = refuges_of(::geteuid()); !known.empty()) return known.front();
-  std::string path = std::string(folder) + "/" + refuge_prefix(::geteuid()) + "XXXXXX";
-  if (::mkdtemp(path.data()) == nullptr || ::chmod(path.c_str(), 0755) != 0) {
-    return base::Error{"folder " + path + " can't be made: " + reason()};
-  }
-  // Somebody else of this account may have made one at the same time: one is enough.
-  const auto known = refuges_of(::geteuid());
-  if (known.empty() || known.front() == path) return path;
-  ::rmdir(path.c_str());
-  return known.front();
-}
-
-// Where a segment of this name is: the usual path, unless another user has that name.
-std::string path_of(const SegmentName& name) {
-  std::string usual = usual_path(name);
-  if (is_owned_by(usual, name.uid)) return usual;
-  for (const std::string& refuge : refuges_of(name.uid)) {
-    if (std::string path = refuge + "/" + name.text(); is_owned_by(path, name.uid)) return path;
-  }
-  return usual;
-}
-
-void remove_name(const SegmentName& name, const std::string& path) {
-  ::unlink(path.c_str());
-  if (path != usual_path(name)) ::rmdir(path.substr(0, path.rfind('/')).c_str());  // does so when nothing is left in it
-}
-
-// Another file of the same owner has the same name in another place: two have made it at the same time, each where the other did not look.
-bool is_elsewhere_too(const SegmentName& name, const std::string& path) {
-  const auto is_other = [&](const std::string& place) { return place != path && is_owned_by(place, name.uid); };
-  const auto refuges = refuges_of(name.uid);
-  return is_other(usual_path(name)) ||
-         std::any_of(refuges.begin(), refuges.end(), [&](const std::string& refuge) { return is_other(refuge + "/" + name.text()); });
-}
 
 template <class Number>
 bool take_number(std::string_view& text, char end, Number& number) {
@@ -190,7 +114,7 @@ std::uint64_t lay_out(const Geometry& geometry, Header& header) {
 
 // An unnamed file that gets its name when it is complete. Needs no clean-up when we die in between.
 base::Result<int> make_file(const SegmentName& name, std::uint64_t size, const Access& access) {
-  const int file = ::open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  const int file = ::open(segment_folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   const auto fail = [&](const std::string& what) {
     const std::string why = reason();
     if (file >= 0) ::close(file);
@@ -299,12 +223,13 @@ std::string check_header(const Header& header, const SegmentName& name, std::uin
 }  // namespace
 
 std::string SegmentName::text() const {
-  return std::string(prefix) + std::to_string(uid) + "-" + std::to_string(server_id) + "." + std::string(to_text(type)) + "." + iface;
+  return std::string(segment_prefix) + std::to_string(uid) + "-" + std::to_string(server_id) + "." + std::string(to_text(type)) + "." +
+         iface;
 }
 
 std::optional<SegmentName> SegmentName::parse(std::string_view text) {
-  if (text.substr(0, prefix.size()) != prefix) return std::nullopt;
-  text.remove_prefix(prefix.size());
+  if (text.substr(0, segment_prefix.size()) != segment_prefix) return std::nullopt;
+  text.remove_prefix(segment_prefix.size());
   SegmentName name;
   if (!take_number(text, '-', name.uid) || !take_number(text, '.', name.server_id)) return std::nullopt;
   const auto dot = text.find('.');
@@ -479,23 +404,6 @@ Found inspect(const SegmentName& name) {
     if (load(lease.owner) != 0 && (load(lease.flags) & RTMSIM_LEASE_SUBSCRIBER) != 0) ++found.subscribers;
   }
   return found;
-}
-
-std::vector<SegmentName> all_names() {
-  std::vector<SegmentName> names;
-  for (const std::string& entry : entries_of(folder)) {
-    if (auto name = SegmentName::parse(entry)) {
-      names.push_back(std::move(*name));
-    } else if (const auto uid = refuge_owner(entry)) {
-      for (const std::string& inside : entries_of(std::string(folder) + "/" + entry)) {
-        if (auto hidden = SegmentName::parse(inside); hidden && hidden->uid == *uid) names.push_back(std::move(*hidden));
-      }
-    }
-  }
-  const auto key = [](const SegmentName& name) { return std::tie(name.server_id, name.uid, name.type, name.iface); };
-  std::sort(names.begin(), names.end(), [&](const SegmentName& a, const SegmentName& b) { return key(a) < key(b); });
-  names.erase(std::unique(names.begin(), names.end()), names.end());
-  return names;
 }
 
 }  // namespace

@@ -1,0 +1,121 @@
+#include "shm/segment_place.h"
+
+#include <dirent.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+namespace shm {
+namespace {
+
+std::string usual_path(const SegmentName& name) { return std::string(segment_folder) + "/" + name.text(); }
+
+bool is_owned_by(const std::string& path, uid_t uid) {
+  struct stat status {};
+  return ::lstat(path.c_str(), &status) == 0 && status.st_uid == uid;
+}
+
+std::vector<std::string> entries_of(const std::string& path) {
+  std::vector<std::string> entries;
+  std::unique_ptr<DIR, int (*)(DIR*)> dir(::opendir(path.c_str()), &::closedir);
+  if (!dir) return entries;
+  while (const dirent* entry = ::readdir(dir.get())) entries.emplace_back(entry->d_name);
+  return entries;
+}
+
+// Folders for names that somebody else has taken in /dev/shm, where everybody may make files: "rtmsim-<uid>.<six random letters>". Nobody
+// can guess one before it is there, and in one nobody else can make a name. Those of other owners are not looked at.
+std::string refuge_prefix(uid_t uid) { return std::string(segment_prefix) + std::to_string(uid) + "."; }
+
+// The user whose refuge this entry of /dev/shm is. Its name is looked at before the file: a server has thousands of segments there.
+std::optional<uid_t> refuge_owner(const std::string& entry) {
+  if (!entry.starts_with(segment_prefix)) return std::nullopt;
+  uid_t uid = 0;
+  const char* end = entry.data() + entry.size();
+  const auto [rest, error] = std::from_chars(entry.data() + segment_prefix.size(), end, uid);
+  if (error != std::errc() || rest == end || *rest != '.' || !entry.starts_with(refuge_prefix(uid))) return std::nullopt;
+  struct stat status {};
+  if (::lstat((std::string(segment_folder) + "/" + entry).c_str(), &status) != 0) return std::nullopt;
+  return S_ISDIR(status.st_mode) && status.st_uid == uid ? std::optional(uid) : std::nullopt;
+}
+
+// A folder of tmpfs has two links, and one more for each folder in it (tmpfs(5) is what /dev/shm is): with two there is no refuge, and the
+// list of a thousand files need not be read for each of them. Other file systems say other numbers, and their list is read.
+bool has_no_folders(const char* path) {
+  struct stat status {};
+  return ::stat(path, &status) == 0 && status.st_nlink == 2;
+}
+
+std::vector<std::string> refuges_of(uid_t uid) {
+  std::vector<std::string> paths;
+  if (has_no_folders(segment_folder)) return paths;
+  for (const std::string& entry : entries_of(segment_folder)) {
+    if (refuge_owner(entry) == uid) paths.push_back(std::string(segment_folder) + "/" + entry);
+  }
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+}  // namespace
+
+// Those of other users may pass through, as they may read names in /dev/shm: the mode of a segment says who may use it.
+base::Result<std::string> make_refuge() {
+  if (auto known = refuges_of(::geteuid()); !known.empty()) return known.front();
+  std::string path = std::string(segment_folder) + "/" + refuge_prefix(::geteuid()) + "XXXXXX";
+  if (::mkdtemp(path.data()) == nullptr || ::chmod(path.c_str(), 0755) != 0) {
+    return base::Error{"folder " + path + " can't be made: " + std::strerror(errno)};
+  }
+  // Somebody else of this account may have made one at the same time: one is enough.
+  const auto known = refuges_of(::geteuid());
+  if (known.empty() || known.front() == path) return path;
+  ::rmdir(path.c_str());
+  return known.front();
+}
+
+std::string path_of(const SegmentName& name) {
+  std::string usual = usual_path(name);
+  if (is_owned_by(usual, name.uid)) return usual;
+  for (const std::string& refuge : refuges_of(name.uid)) {
+    if (std::string path = refuge + "/" + name.text(); is_owned_by(path, name.uid)) return path;
+  }
+  return usual;
+}
+
+void remove_name(const SegmentName& name, const std::string& path) {
+  ::unlink(path.c_str());
+  if (path != usual_path(name)) ::rmdir(path.substr(0, path.rfind('/')).c_str());  // does so when nothing is left in it
+}
+
+bool is_elsewhere_too(const SegmentName& name, const std::string& path) {
+  const auto is_other = [&](const std::string& place) { return place != path && is_owned_by(place, name.uid); };
+  const auto refuges = refuges_of(name.uid);
+  return is_other(usual_path(name)) ||
+         std::any_of(refuges.begin(), refuges.end(), [&](const std::string& refuge) { return is_other(refuge + "/" + name.text()); });
+}
+
+std::vector<SegmentName> all_names() {
+  std::vector<SegmentName> names;
+  for (const std::string& entry : entries_of(segment_folder)) {
+    if (auto name = SegmentName::parse(entry)) {
+      names.push_back(std::move(*name));
+    } else if (const auto uid = refuge_owner(entry)) {
+      for (const std::string& inside : entries_of(std::string(segment_folder) + "/" + entry)) {
+        if (auto hidden = SegmentName::parse(inside); hidden && hidden->uid == *uid) names.push_back(std::move(*hidden));
+      }
+    }
+  }
+  const auto key = [](const SegmentName& name) { return std::tie(name.server_id, name.uid, name.type, name.iface); };
+  std::sort(names.begin(), names.end(), [&](const SegmentName& a, const SegmentName& b) { return key(a) < key(b); });
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
+}  // namespace shm
