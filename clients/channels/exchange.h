@@ -3,8 +3,9 @@
 //
 // Any thread may put, open, close and attach. A sink is called on its thread alone: open() before the first sample of a channel, take() in
 // the order in which samples were put, close() behind the last sample, rest() when there is nothing to take and at least once in
-// rest_period. When a sink fails it is called no more, and failure() says why. When a queue is full, put() waits up to `patience` of that
-// sink; then the sample is dropped for it and counted. With a patience of zero a source never waits.
+// rest_period. A sink gets samples some ten milliseconds after they were put, together. When a sink fails it is called no more, and
+// failure() says why. When a queue is full, put() waits up to `patience` of that sink; then the sample is dropped for it and counted. With
+// a patience of zero a source never waits.
 #pragma once
 
 #include <chrono>
