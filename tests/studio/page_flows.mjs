@@ -111,6 +111,17 @@ const flows = [
     await page.mouse.wheel(0, -300);
     await until('wheel zooms', () => page.evaluate((d) => window.studio.world.eye.distance < d, distance));
   }],
+  ['frames are shown by a key, with the names of links', async ({ page }) => {
+    await page.locator('.world canvas').focus();
+    await page.evaluate(() => { window.studio.select({ kind: 'model', id: 'pioneer2dx' }); window.studio.world.follow('pioneer2dx'); });
+    await page.keyboard.press('x');
+    const links = await page.evaluate(() => window.studio.world.world.models.get('pioneer2dx').links.length);
+    await until('the world and its links', () => page.evaluate((n) => window.studio.world.axes.count === n + 1, links));
+    await until('names', async () => (await page.locator('.labels span.frame').count()) > 0);
+    same(await page.locator('button[aria-label^="Frames"]').getAttribute('aria-pressed'), 'true', 'the button');
+    await page.keyboard.press('x');
+    await until('none', async () => (await page.evaluate(() => window.studio.world.axes.count)) === 0 && (await page.locator('.labels span.frame').count()) === 0);
+  }],
   ['a robot is moved by dragging it', async ({ page, mock }) => {
     await page.evaluate(() => { window.studio.world.follow('pioneer2dx'); window.studio.world.hands.set_tool('move'); window.studio.world.draw(); });
     const box = await page.locator('.world canvas').boundingBox();

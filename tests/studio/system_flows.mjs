@@ -172,6 +172,7 @@ const flows = [
   }],
   ['a robot is put somewhere else by dragging, and pushed', async ({ page, rig }) => {
     const place = async () => JSON.parse(await rig.simctl('--json', 'pose', robot)).position;
+    await rig.simctl('pause');
     await page.evaluate((name) => { window.studio.world.follow(name); window.studio.world.hands.set_tool('move'); }, robot);
     await page.evaluate(() => window.studio.world.draw());
     const before = await place();
@@ -182,7 +183,27 @@ const flows = [
     await page.mouse.move(x + 70, y, { steps: 5 });
     await page.mouse.up();
     await until('it was put', async () => { const now = await place(); return Math.hypot(now[0] - before[0], now[1] - before[1]) > 0.05; });
+    const put = await place();
+    await until('the page knows that it was', () => page.evaluate(() => window.studio.store.acts.at(-1).undo?.text === 'Put pioneer2dx back'));
+    await page.keyboard.press('Control+z');
+    await until('it is back by undo', async () => { const now = await place(); return Math.hypot(now[0] - before[0], now[1] - before[1]) < 0.01; });
+    check(Math.hypot(put[0] - before[0], put[1] - before[1]) > 0.05, 'it had been put');
+    // With Ctrl it turns where it is.
+    await page.evaluate((name) => window.studio.world.follow(name), robot);
+    await until('it is seen there', () => page.evaluate(([name, x]) => { window.studio.world.draw(); return Math.abs(window.studio.world.world.models.get(name).canonical.position.x - x) < 0.01; }, [robot, before[0]]));
+    const yaw = async () => JSON.parse(await rig.simctl('--json', 'pose', robot)).yaw;
+    const straight = await yaw();
+    await page.keyboard.down('Control');
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 50, y, { steps: 5 });
+    await page.mouse.up();
+    await page.keyboard.up('Control');
+    await until('it has turned', async () => Math.abs((await yaw()) - straight) > 0.3);
+    const now = await place();
+    check(Math.hypot(now[0] - before[0], now[1] - before[1]) < 0.02, `it has stayed: ${now}`);
     await page.evaluate(() => { window.studio.world.hands.set_tool('move'); window.studio.world.whole(); });
+    await rig.simctl('run');
   }],
   ['keys drive the robot, and it stops without them', async ({ page, rig }) => {
     await page.locator('.world canvas').focus();

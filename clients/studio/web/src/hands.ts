@@ -9,7 +9,7 @@ export type Tool = 'look' | 'move' | 'push';
 // What they reach into.
 export interface Reach { canvas: HTMLCanvasElement; eye: Eye; world: WorldScene | null; redraw(): void; follow(model: string): void }
 
-interface Drag { model: Model; at: Vector3; offset: Vector3; yaw: number; last: number; start: [number, number] }
+interface Drag { model: Model; at: Vector3; offset: Vector3; from: number[]; yaw: number; last: number; turn: { x: number; yaw: number; place: Vector3 } | null }
 
 export class Hands {
   tool: Tool = 'look';
@@ -51,7 +51,7 @@ export class Hands {
     select({ kind: 'model', id: model.name });
     const x = new Vector3(1, 0, 0).applyQuaternion(model.canonical.getWorldQuaternion(new Quaternion()));
     this.drag = {
-      model, at: hit.point.clone(), offset: model.canonical.position.clone().sub(hit.point), yaw: Math.atan2(x.y, x.x), last: 0, start: [event.clientX, event.clientY],
+      model, from: [...model.canonical.position.toArray(), ...wxyz(model.canonical.quaternion)], at: hit.point.clone(), offset: model.canonical.position.clone().sub(hit.point), yaw: Math.atan2(x.y, x.x), last: 0, turn: null,
     };
     this.view.canvas.setPointerCapture(event.pointerId);
     return true;
@@ -68,14 +68,22 @@ export class Hands {
       if (is_end) this.push(drag.model.name, point.sub(drag.at));
     } else if (is_end || event.timeStamp - drag.last > 80) {
       drag.last = event.timeStamp;
-      if (event.altKey || event.ctrlKey) drag.yaw += (event.clientX - drag.start[0]) * 0.001;
-      const place = point.add(drag.offset);
+      const place = this.turned(drag, event) ?? point.add(drag.offset);
       const args = { model: drag.model.name, planar: [place.x, place.y, drag.yaw] };
-      if (is_end) act(`Move ${drag.model.name}`, 'set_pose', args);
+      const { from, model: { name } } = drag;
+      if (is_end) act(`Move ${name}`, 'set_pose', args, () => ({ text: `Put ${name} back`, name: 'set_pose', args: { model: name, pose: from } }));
       else wire.request('set_pose', args).catch(() => {});
     }
     if (is_end) this.drag = null;
     this.view.redraw();
+  }
+
+  // With Ctrl or Alt it turns where it is, a hundredth radian for each pixel to the right.
+  private turned(drag: Drag, event: PointerEvent): Vector3 | null {
+    if (!event.ctrlKey && !event.altKey) return (drag.turn = null);
+    drag.turn ??= { x: event.clientX, yaw: drag.yaw, place: drag.model.canonical!.position.clone() };
+    drag.yaw = drag.turn.yaw + (event.clientX - drag.turn.x) * 0.01;
+    return drag.turn.place;
   }
 
   // 100 N for each metre of the arrow, for a fifth of a second.
@@ -107,6 +115,8 @@ export class Hands {
     });
   }
 }
+
+const wxyz = ({ w, x, y, z }: Quaternion): number[] => [w, x, y, z];
 
 function model_name(object: Object3D | null): string | undefined {
   return object ? (object.userData.model as string | undefined) ?? model_name(object.parent) : undefined;

@@ -86,14 +86,15 @@ const tools: { [name: string]: HTMLButtonElement } = {
   top: button('From above', { icon: 'top', key: 'T' }, () => (world.eye.mode === 'top' ? world.whole() : world.top())),
   follow: button('Follow the selected robot', { icon: 'follow', key: 'F' }, () => follow()),
   lasers: button('Laser fans', { icon: 'laser', key: 'L', pressed: settings.lasers }, () => toggle('lasers')),
-  sonars: button('Sonar cones', { icon: 'sonar', pressed: settings.sonars }, () => toggle('sonars')),
-  trails: button('Trails', { icon: 'trail', pressed: settings.trails }, () => toggle('trails')),
+  sonars: button('Sonar cones', { icon: 'sonar', key: 'S', pressed: settings.sonars }, () => toggle('sonars')),
+  trails: button('Trails', { icon: 'trail', key: 'H', pressed: settings.trails }, () => toggle('trails')),
   names: button('Names', { icon: 'names', key: 'N', pressed: settings.names }, () => toggle('names')),
-  collisions: button('Shapes that collide', { icon: 'shapes', pressed: settings.collisions }, () => toggle('collisions')),
+  collisions: button('Shapes that collide', { icon: 'shapes', key: 'B', pressed: settings.collisions }, () => toggle('collisions')),
   contacts: button('Contacts of the selected model', { icon: 'contact', key: 'K', pressed: settings.contacts }, () => toggle('contacts')),
+  frames: button('Frames of the selected model, or of all that moves', { icon: 'frames', key: 'X', pressed: settings.frames }, () => toggle('frames')),
   move: button('Move models by dragging; with Ctrl they turn', { icon: 'move', key: 'M', pressed: false }, () => world.hands.set_tool('move')),
   push: button('Push models by dragging', { icon: 'push', key: 'P', pressed: false }, () => world.hands.set_tool('push')),
-  spawn: button('Spawn a model', { icon: 'plus' }, () => spawn_dialog()),
+  spawn: button('Spawn a model', { icon: 'plus', key: 'Insert' }, () => spawn_dialog()),
 };
 
 const camera_box = h('select', { class: 'camera-box', 'aria-label': 'Look through a camera', hidden: true });
@@ -102,7 +103,9 @@ camera_box.addEventListener('change', () => {
   else world.whole();
 });
 
-function toggle(name: 'lasers' | 'sonars' | 'trails' | 'names' | 'collisions' | 'contacts'): void {
+const overlays = ['lasers', 'sonars', 'trails', 'names', 'collisions', 'contacts', 'frames'] as const;
+
+function toggle(name: (typeof overlays)[number]): void {
   settings[name] = !settings[name];
   keep();
 }
@@ -145,7 +148,7 @@ async function copy(text: string): Promise<void> {
 // ---- panels ----
 
 const world_panel = h('section', { class: 'panel world-panel', 'aria-label': 'World' },
-  h('div', { class: 'bar', role: 'toolbar', 'aria-label': 'World' }, h('h2', null, 'World'), tools.whole, tools.top, tools.follow, camera_box, h('span', { class: 'gap' }), tools.lasers, tools.sonars, tools.trails, tools.names, tools.collisions, tools.contacts, h('span', { class: 'spring' }), tools.move, tools.push, tools.spawn),
+  h('div', { class: 'bar', role: 'toolbar', 'aria-label': 'World' }, h('h2', null, 'World'), tools.whole, tools.top, tools.follow, camera_box, h('span', { class: 'gap' }), tools.lasers, tools.sonars, tools.trails, tools.names, tools.collisions, tools.contacts, tools.frames, h('span', { class: 'spring' }), tools.move, tools.push, tools.spawn),
   world.element, drive.element);
 const system_panel = h('section', { class: 'panel system-panel', 'aria-label': 'System' },
   h('div', { class: 'bar', role: 'toolbar', 'aria-label': 'System' }, h('h2', null, 'System'), h('span', { class: 'counts' }), h('span', { class: 'spring' }),
@@ -247,7 +250,7 @@ function show_head(): void {
 function show_tools(): void {
   tools.top.setAttribute('aria-pressed', String(world.eye.mode === 'top'));
   tools.follow.setAttribute('aria-pressed', String(world.eye.mode === 'follow'));
-  for (const name of ['lasers', 'sonars', 'trails', 'names', 'collisions', 'contacts'] as const) tools[name].setAttribute('aria-pressed', String(settings[name]));
+  for (const name of overlays) tools[name].setAttribute('aria-pressed', String(settings[name]));
   for (const name of ['move', 'push'] as const) tools[name].setAttribute('aria-pressed', String(world.hands.tool === name));
   const cameras = world.cameras();
   if (camera_box.options.length !== cameras.length + 1) put(camera_box, h('option', { value: '' }, 'own eye'), cameras.map((c) => h('option', { value: c }, c)));
@@ -257,7 +260,7 @@ function show_tools(): void {
 
 const keys: [string, string][] = [
   ['Space', 'run or pause'], ['.', 'one step'], [',', 'of a recording: one step back'], ['Shift+R', 'reset world and time; of a recording: to its beginning'], ['/', 'search'], ['1 – 5', 'panels'], ['O', 'all of the world'], ['T', 'from above'], ['F', 'follow the robot'],
-  ['L, N, K', 'laser fans, names, contacts'], ['M, P', 'move, push by dragging'], ['G', 'drive the robot (arrows or W A S D)'], ['A, D, E', 'activate, deactivate, reset the selected component'], ['C', 'connect the selected port'], ['Delete', 'disconnect'],
+  ['L, S, H', 'laser fans, sonar cones, trails'], ['N, B, K, X', 'names, shapes that collide, contacts, frames'], ['M, P', 'move, push by dragging'], ['Insert', 'spawn a model'], ['G', 'drive the robot (arrows or W A S D)'], ['A, D, E', 'activate, deactivate, reset the selected component'], ['C', 'connect the selected port'], ['Delete', 'disconnect'],
   ['Ctrl+Z', 'undo'], ['Escape', 'select nothing'], ['Arrows', 'in the world: turn (with Shift: move); in the system: next component; in the tree: rows'], ['[  ]', 'in the system: next port'], ['+  –', 'zoom'], ['?', 'this list'],
 ];
 
@@ -279,7 +282,7 @@ document.addEventListener('keydown', (event) => {
   const on_chosen = (name: string, word: string, state: string) => () => { if (chosen?.state === state && !read_only()) act(`${word} ${chosen.instance}`, name, { path: chosen.path }); };
   const table: { [key: string]: () => void } = {
     ' ': () => bottom.run_or_pause(), '.': () => bottom.step(), ',': () => bottom.step(-1), R: () => bottom.reset(), '/': () => { show_panel('tree', true); tree.search.focus(); tree.search.select(); }, '?': show_keys,
-    o: () => world.whole(), t: () => tools.top.click(), f: follow, l: () => toggle('lasers'), n: () => toggle('names'), k: () => toggle('contacts'), m: () => world.hands.set_tool('move'), p: () => world.hands.set_tool('push'), g: () => drive.toggle(),
+    o: () => world.whole(), t: () => tools.top.click(), f: follow, l: () => toggle('lasers'), n: () => toggle('names'), k: () => toggle('contacts'), s: () => toggle('sonars'), h: () => toggle('trails'), b: () => toggle('collisions'), x: () => toggle('frames'), Insert: () => tools.spawn.click(), m: () => world.hands.set_tool('move'), p: () => world.hands.set_tool('push'), g: () => drive.toggle(),
     a: on_chosen('activate', 'Activate', 'Inactive'), d: on_chosen('deactivate', 'Deactivate', 'Active'), e: on_chosen('reset', 'Reset', 'Error'),
     c: () => document.getElementById('connect')?.click(), Delete: () => { if (store.selection?.kind === 'connection') disconnect(store.selection.id); }, Escape: () => select(null),
   };
@@ -295,8 +298,8 @@ document.addEventListener('keydown', (event) => {
 // ---- the link ----
 
 const write_link = once_a_frame(() => {
-  const { panels, sizes, tab, plots, lasers, sonars, names, trails, collisions, contacts } = settings;
-  const link = to_link({ settings: { panels, sizes, tab, plots, lasers, sonars, names, trails, collisions, contacts }, eye: world.eye.state(), selection: store.selection, moment: recording() ? playback.moment : undefined });
+  const { panels, sizes, tab, plots, lasers, sonars, names, trails, collisions, contacts, frames } = settings;
+  const link = to_link({ settings: { panels, sizes, tab, plots, lasers, sonars, names, trails, collisions, contacts, frames }, eye: world.eye.state(), selection: store.selection, moment: recording() ? playback.moment : undefined });
   history.replaceState(null, '', link);
 });
 let link_timer = 0;

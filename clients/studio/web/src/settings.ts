@@ -3,7 +3,7 @@ import { changed } from './store';
 
 export interface Settings {
   theme: 'auto' | 'light' | 'dark';
-  lasers: boolean; sonars: boolean; names: boolean; trails: boolean; collisions: boolean; contacts: boolean;
+  lasers: boolean; sonars: boolean; names: boolean; trails: boolean; collisions: boolean; contacts: boolean; frames: boolean;
   panels: { tree: boolean; world: boolean; system: boolean; inspector: boolean; bottom: boolean };
   sizes: { tree: number; inspector: number; bottom: number; split: number };
   tab: 'plots' | 'logs' | 'images' | 'step';
@@ -12,7 +12,7 @@ export interface Settings {
 }
 
 const usual: Settings = {
-  theme: 'auto', lasers: true, sonars: false, names: true, trails: true, collisions: false, contacts: false,
+  theme: 'auto', lasers: true, sonars: false, names: true, trails: true, collisions: false, contacts: false, frames: false,
   panels: { tree: true, world: true, system: true, inspector: true, bottom: true },
   sizes: { tree: 230, inspector: 300, bottom: 220, split: 0.55 },
   tab: 'plots', positions: {}, plots: [],

@@ -2,6 +2,7 @@
 import { Box3, Mesh, PCFSoftShadowMap, Scene, ShaderMaterial, Vector3, WebGLRenderer } from 'three';
 import { Contacts } from './contacts';
 import { Daylight } from './daylight';
+import { Frames } from './frames';
 import { button, h, put, with_code } from './dom';
 import { Model, read_world, WorldScene } from './glb';
 import { Hands } from './hands';
@@ -27,6 +28,7 @@ export class WorldView {
   private daylight = new Daylight(this.scene);
   readonly ranges = new Ranges(() => this.redraw());
   readonly contacts = new Contacts(this.scene, () => this.redraw());
+  readonly axes = new Frames(this.scene);
   readonly trails = new Trails(this.scene);
   readonly hands: Hands;
   private marker = new Marker(this.scene);
@@ -253,6 +255,7 @@ export class WorldView {
     camera.updateMatrixWorld();
     place_lights(this.world.look, this.world.lights);
     this.marker.draw(this.eye.mode === 'fixed' ? undefined : this.world.models.get(selected_model() ?? ''));
+    const spots = this.axes.draw(this.world, selected_model());
     this.daylight.look_from(camera, this.eye.mode !== 'top');
     const began = performance.now();
     if (this.shadows_dirty && began - this.shadows_at >= 4 * this.cost) {
@@ -263,7 +266,7 @@ export class WorldView {
     this.renderer.render(this.scene, camera);
     if (this.frames > 1 && this.frames % 16 === 2) this.measure_cost(began);
     if (this.shadows_dirty) setTimeout(() => this.redraw(), 4 * this.cost);
-    this.labels.draw(this.movers(), camera, width, height);
+    this.labels.draw(this.movers(), spots, camera, width, height);
     this.frames += 1;
     if (this.frames === 1) performance.mark('first-picture');
   }
