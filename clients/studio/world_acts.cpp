@@ -1,6 +1,9 @@
 // Acts on the simulated world.
+#include <algorithm>
+
 #include "acts.h"
 #include "base/text.h"
+#include "shm/lockstep.h"
 #include "shm/request_board.h"
 
 namespace studio {
@@ -53,8 +56,32 @@ Json json_of(const shm::Reply& reply) {
 Result<Plan> run(const ActContext& context, const Json&) { return plan(context, shm::RunRequest{}, {"run"}); }
 Result<Plan> pause(const ActContext& context, const Json&) { return plan(context, shm::PauseRequest{}, {"pause"}); }
 
+// Until the next tick of a participant of the lock step: they tick at multiples of their periods.
+Result<double> steps_to_tick(std::uint32_t server_id, const std::string& name) {
+  auto simulation = shm::Iface::open(server_id, shm::IfaceType::simulation, "world");
+  if (!simulation) return simulation.error();
+  const auto participants = shm::read_participants(*simulation);
+  if (!participants) return participants.error();
+  const auto found = std::find_if(participants->begin(), participants->end(), [&](const auto& p) { return p.name == name; });
+  if (found == participants->end() || found->period_ns <= 0)
+    return Error{"participant " + base::in_quotes(name) + ": takes no part in a lock step"};
+  const auto step = simulation->info<shm::SimulationInfo>().step_ns;
+  if (!simulation->read() || step <= 0) return Error{"simulator: its clock cannot be read"};
+  const auto now = static_cast<std::int64_t>(simulation->sample<shm::SimulationSample>().stamp.sim_time_ns);
+  if (now == 0) return 1;  // the first step begins with the tick at 0
+  const auto due = (now / found->period_ns + 1) * found->period_ns;
+  return static_cast<double>((due - now + step - 1) / step);
+}
+
 Result<Plan> step(const ActContext& context, const Json& args) {
-  const double steps = number_or(args, "steps", 1);
+  double steps = number_or(args, "steps", 1);
+  if (args.contains("participant")) {
+    const auto name = text_of(args, "participant");
+    if (!name) return name.error();
+    const auto until = steps_to_tick(context.server_id, *name);
+    if (!until) return until.error();
+    steps = *until;
+  }
   if (!(steps >= 1 && steps <= most_steps)) return Error{"steps: expected 1 to 1e9"};
   const bool is_paced = flag_of(args, "paced");
   std::vector<std::string> words{"step", base::format_number(steps)};

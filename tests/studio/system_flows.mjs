@@ -155,6 +155,35 @@ const flows = [
     await page.locator('#act-reset').click();
     await in_state(page, 'inactive', 3);
   }],
+  ['the last minutes of a live run are scrolled back to', async ({ page, rig }) => {
+    const shown = () => page.evaluate((name) => window.studio.world.world.models.get(name).canonical.position.toArray(), robot);
+    const there = async () => JSON.parse(await rig.simctl('--json', 'pose', robot)).position;
+    const now = () => page.evaluate(() => window.studio.store.time.sim_time);
+    await page.locator('#activate-all').click();
+    await in_state(page, 'active', 3);
+    await drives(rig);
+    const then = await now(), place = await shown();
+    await until('it has gone on', async () => { const [x, y] = await there(); return (await now()) > then + 1.5 && Math.hypot(x - place[0], y - place[1]) > 0.2; });
+    await page.locator('#deactivate-all').click();
+    await in_state(page, 'inactive', 3);
+    const look = (time) => page.locator('.scrub').evaluate((slider, to) => {
+      slider.value = String(to);
+      slider.dispatchEvent(new Event('input', { bubbles: true }));
+    }, time);
+    await look(then);
+    const near = async (at, far) => { const [x, y] = await shown(); return Math.hypot(x - at[0], y - at[1]) < far; };
+    await until('it is where it was', () => near(place, 0.15));
+    await in_state(page, 'active', 3);
+    // What comes meanwhile is kept.
+    const before = await now();
+    await until('time goes on', () => page.locator('.scrub').evaluate((slider, to) => Number(slider.max) > to, before + 1));
+    await look(before + 0.6);
+    await in_state(page, 'inactive', 3);
+    check((await page.locator('#live').getAttribute('aria-pressed')) === 'false', 'not live');
+    await page.locator('#live').click();
+    const at = await there();
+    await until('it is where it is', () => near(at, 0.02));
+  }],
   ['selecting the robot marks its components', async ({ page }) => {
     await page.evaluate((id) => window.studio.select({ kind: 'model', id }), robot);
     await until('RTCPosition2d0 is marked', async () => (await page.locator('.diagram .box.related').count()) >= 1);
@@ -294,6 +323,34 @@ const flows = [
     // With the same port and the token that this page has.
     shared.studio = await rig.studio('-p', url.port);
     await until('another token: it asks for the new URL', () => page.evaluate(() => window.studio.wire.status !== 'open'));
+  }],
+  ['in lock step a step goes to the next tick of a participant', async ({ browser }) => {
+    const rig = new Rig(bin, source, lib);
+    await rig.claim();
+    try {
+      await rig.naming();
+      await rig.server('worlds/obstacle_course.sdf', '--lockstep', '-u');
+      rig.host('-o', 'manager.modules.preload:SimTimeContext.so', '-o', 'exec_cxt.periodic.type:SimTimeContext', 'LaserObstacleAvoid?exec_cxt.periodic.rate=40');
+      const one = async () => JSON.parse(await rig.simctl('--json', 'participants'))[0];
+      await until('it takes part', async () => (await one())?.active);
+      const { name } = await one();
+      const studio = await rig.studio();
+      const page = await open(browser, studio.url);
+      await is_ready(page);
+      await until('who takes part', async () => (await page.locator('.waits').textContent()).includes('one takes part'));
+      await page.locator('#step-what').selectOption(name);
+      const time = async () => JSON.parse(await rig.simctl('--json', 'stats')).sim_time;
+      for (let i = 0; i < 3; ++i) {
+        const { ticks } = await one(), was = await time();
+        const wanted = was === 0 ? 0.001 : Math.floor(was / 0.025 + 1e-6) * 0.025 + 0.025;
+        await page.locator('#step').click();
+        await until('the tick', async () => (await one()).ticks === ticks + 1 && Math.abs((await time()) - wanted) < 1e-6);
+      }
+      same(page.problems, [], 'problems');
+      await page.context().close();
+    } finally {
+      await rig.end_all();
+    }
   }],
   ['read-only: it may look, not act', async ({ browser, rig }) => {
     const studio = await rig.studio('--read-only');

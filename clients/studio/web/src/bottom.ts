@@ -7,6 +7,7 @@ import { keep, settings } from './settings';
 import { act, on, read_only, selected_model, store, wire } from './store';
 import { short_path } from './tree';
 import { watch_image } from './watches';
+import type { Participant } from './wire';
 import type { WorldView } from './world';
 
 export class Bottom {
@@ -30,6 +31,8 @@ export class Bottom {
   private readonly parts = h('div', { class: 'parts', tabindex: 0, role: 'region', 'aria-label': 'Where time goes' });
   private stops = new Map<string, () => void>();
   private moment: number | null = null;
+  // What a step is: one of the simulator, or until this participant's next tick.
+  private readonly step_box = h('select', { id: 'step-what', 'aria-label': 'What a step is', hidden: true }, h('option', { value: '' }, 'one step'));
 
   constructor(world: WorldView, private readonly history: History, private readonly playback: Playback) {
     this.plots = new Plots(() => this.moment ?? store.time?.sim_time ?? 0, (moment) => this.look(moment));
@@ -48,7 +51,7 @@ export class Bottom {
     this.speed.addEventListener('change', set_speed);
     this.speed.addEventListener('keydown', (event) => { if (event.key === 'Enter') set_speed(); });
     const window_box = h('select', { 'aria-label': 'Length of the time line', onchange: () => { this.plots.window = Number(window_box.value); this.plots.draw(); this.draw_band(); } }, [10, 30, 60, 300].map((sec) => h('option', { value: sec, selected: sec === 30 }, sec < 60 ? `${sec} s` : `${sec / 60} min`)));
-    this.transport.append(this.run_button, step_button, this.reset_button, this.clock, h('label', { class: 'speed', for: 'speed' }, '×'), this.speed, this.rate, this.waits, h('span', { class: 'spring' }), window_box, this.live);
+    this.transport.append(this.run_button, step_button, this.step_box, this.reset_button, this.clock, h('label', { class: 'speed', for: 'speed' }, '×'), this.speed, this.rate, this.waits, h('span', { class: 'spring' }), window_box, this.live);
     this.element.append(this.transport, h('div', { class: 'line-of-time' }, this.band, this.scrub), this.tabs, this.body);
     this.scrub.addEventListener('input', () => this.look(Number(this.scrub.value) >= Number(this.scrub.max) - 1e-6 ? null : Number(this.scrub.value)));
     this.log_filter.addEventListener('input', () => this.show_logs());
@@ -66,6 +69,7 @@ export class Bottom {
     on('log', once_a_frame(() => { if (settings.tab === 'logs') this.show_logs(); }));
     on('time', once_a_frame(() => { if (settings.tab === 'step') this.show_parts(); }));
     on('world', () => this.offer_images(world));
+    on('scene', () => { if (this.moment !== null) this.look(null); });
     on('selection', () => { if (settings.tab === 'logs') this.show_logs(); });
     new ResizeObserver(() => this.draw_band()).observe(this.band);
     this.show_tab(settings.tab);
@@ -79,11 +83,16 @@ export class Bottom {
   }
   step(way = 1): void {
     if (recording()) return this.playback.step(way);
-    if (!read_only() && way > 0) act('Step', 'step', {});
+    if (read_only() || way < 0) return;
+    const participant = this.step_box.value;
+    if (participant) act(`Step to the next tick of ${participant}`, 'step', { participant });
+    else act('Step', 'step', {});
   }
   reset(): void {
     if (recording()) return this.playback.seek(recording()!.from);
-    if (!read_only()) act('Reset the world', 'reset_world', {});
+    if (read_only()) return;
+    this.look(null);
+    act('Reset the world', 'reset_world', {});
   }
 
   look(moment: number | null): void {
@@ -105,6 +114,8 @@ export class Bottom {
       this.rate.textContent = '';
       return;
     }
+    if (this.moment !== null && this.moment > this.history.last) return this.look(null); // time has gone back
+    this.offer_steps(time.participants ?? []);
     const shown = this.moment ?? time.sim_time;
     this.clock.textContent = `${shown.toFixed(3)} s`;
     this.rate.textContent = time.paused ? 'paused' : `${time.rtf.toFixed(time.rtf < 10 ? 2 : 0)} × real time`;
@@ -114,7 +125,7 @@ export class Bottom {
       this.reset_button.setAttribute('aria-label', 'To the beginning');
     }
     const late = (time.participants ?? []).filter((p) => p.late).map((p) => p.name);
-    this.waits.textContent = this.playback.problem ? this.playback.problem : time.waiting_for > 0 ? `waits for ${time.waiting_for} to join` : late.length > 0 ? `waits for ${late.join(', ')}` : (time.participants?.length ?? 0) > 0 ? `lock step, ${time.participants!.length} take part` : '';
+    this.waits.textContent = this.playback.problem ? this.playback.problem : time.waiting_for > 0 ? `waits for ${time.waiting_for} to join` : late.length > 0 ? `waits for ${late.join(', ')}` : (time.participants?.length ?? 0) > 0 ? `lock step, ${time.participants!.length === 1 ? 'one takes part' : `${time.participants!.length} take part`}` : '';
     this.waits.classList.toggle('late', late.length > 0 || time.waiting_for > 0 || this.playback.problem !== '');
     put(this.run_button, icon(time.paused ? 'run' : 'pause'));
     this.run_button.setAttribute('aria-label', time.paused ? run : 'Pause');
@@ -125,6 +136,15 @@ export class Bottom {
     this.scrub.value = String(shown);
     this.scrub.setAttribute('aria-valuetext', `${shown.toFixed(1)} s`);
     this.draw_band();
+  }
+
+  private offer_steps(participants: Participant[]): void {
+    const names = [...new Set(participants.filter((p) => p.active).map((p) => p.name))];
+    this.step_box.hidden = names.length === 0;
+    if (names.join('\n') === [...this.step_box.options].slice(1).map((o) => o.value).join('\n')) return;
+    const chosen = this.step_box.value;
+    put(this.step_box, h('option', { value: '' }, 'one step'), names.map((name) => h('option', { value: name }, `tick of ${name}`)));
+    this.step_box.value = names.includes(chosen) ? chosen : '';
   }
 
   // A row for each component: its states, in the colours of the diagram.

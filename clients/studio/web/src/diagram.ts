@@ -5,7 +5,7 @@ import { arrange, Place } from './diagram_layout';
 import { keep, settings } from './settings';
 import { state_class, state_shape, state_words } from './states';
 import {
-  component, component_of_port, components_of, connections_of, is_selected, link_problem, name_of_port, on, port_of, read_only, select, selected_model, store, wire,
+  component, component_of_port, components_of, connections_of, is_selected, link_problem, name_of_port, on, port_of, read_only, select, selected_model, shown_state, store, wire,
 } from './store';
 import type { Component, Connection, Port } from './wire';
 
@@ -77,13 +77,14 @@ export class Diagram {
     const service_width = services.reduce((sum, p) => sum + Math.max(30, p.name.length * 5.6 + 16), 8);
     const width = Math.ceil(Math.max(118, one.instance.length * 7.2 + 40, one.type.length * 5.8 + 70, long(ins) + long(outs) + 48, service_width));
     const height = head + Math.max(1, Math.max(ins.length, outs.length)) * row + 6 + (services.length > 0 ? 22 : 0);
-    const mark = s('path', { class: 'shape', d: state_shape(one.state), transform: 'translate(8 8) scale(1.1)' });
+    const state = shown_state(one);
+    const mark = s('path', { class: 'shape', d: state_shape(state), transform: 'translate(8 8) scale(1.1)' });
     const rate = s('text', { class: 'rate', x: width - 9, y: 32, 'text-anchor': 'end' }, rate_text(one));
-    const element = s('g', { class: `box ${state_class(one.state)}${one.composite ? ' composite' : ''}`, 'data-path': one.path },
+    const element = s('g', { class: `box ${state_class(state)}${one.composite ? ' composite' : ''}`, 'data-path': one.path },
       one.composite ? s('rect', { class: 'outer', x: -3, y: -3, width: width + 6, height: height + 6, rx: 5 }) : null,
       s('rect', { class: 'frame', width, height, rx: 3 }), s('path', { class: 'band', d: `M0 3a3 3 0 0 1 3-3h${width - 6}a3 3 0 0 1 3 3v21H0z` }), mark,
       s('text', { class: 'name', x: 24, y: 17 }, one.instance), s('text', { class: 'type', x: 9, y: 32 }, one.type), rate,
-      s('title', null, `${one.instance} (${one.type}) is ${state_words[one.state] ?? one.state}${one.problem ? `: ${one.problem}` : ''}`));
+      s('title', null, `${one.instance} (${one.type}) is ${state_words[state] ?? state}${one.problem ? `: ${one.problem}` : ''}`));
     const shape: Shape = { element, width, height, ports: new Map(), component: one, mark, rate, is_out: false };
     ins.forEach((port, i) => this.add_port(shape, port, 0, head + 9 + i * row));
     outs.forEach((port, i) => this.add_port(shape, port, width, head + 9 + i * row));
@@ -175,10 +176,11 @@ export class Diagram {
       const now = component(path);
       if (!now) continue;
       shape.component = now;
-      shape.element.setAttribute('class', `box ${state_class(now.state)}${now.composite ? ' composite' : ''}${shape.element.classList.contains('chosen') ? ' chosen' : ''}${shape.element.classList.contains('related') ? ' related' : ''}`);
-      shape.mark.setAttribute('d', state_shape(now.state));
+      const state = shown_state(now);
+      shape.element.setAttribute('class', `box ${state_class(state)}${now.composite ? ' composite' : ''}${shape.element.classList.contains('chosen') ? ' chosen' : ''}${shape.element.classList.contains('related') ? ' related' : ''}`);
+      shape.mark.setAttribute('d', state_shape(state));
       shape.rate.textContent = rate_text(now);
-      shape.element.querySelector(':scope > title')!.textContent = `${now.instance} (${now.type}) is ${state_words[now.state] ?? now.state}`;
+      shape.element.querySelector(':scope > title')!.textContent = `${now.instance} (${now.type}) is ${state_words[state] ?? state}`;
     }
   }
 

@@ -1,7 +1,7 @@
 // The last minutes of a live run: where models were, and states of components. In simulated time; forgotten when time goes back. Of a
 // recording only how long it is and its states: the server has the rest.
 import { recording } from './playback';
-import { on, store } from './store';
+import { changed, on, store } from './store';
 import type { State } from './wire';
 import type { WorldView } from './world';
 
@@ -50,7 +50,7 @@ export class History {
 
   private note_places(): void {
     const scene = this.world.world;
-    if (!scene || this.world.is_past || recording()) return;
+    if (!scene || recording()) return;
     const newest = this.moments[this.moments.length - 1]?.time ?? -1;
     if (scene.version !== this.version || this.last < newest) {
       this.moments = [];
@@ -59,18 +59,25 @@ export class History {
       for (const changes of this.states.values()) changes.splice(0, changes.length - 1).forEach(() => {});
       for (const changes of this.states.values()) if (changes[0]) changes[0].time = 0;
     } else if (this.last - newest < period) return;
-    const places = new Float32Array(scene.links.length * 7);
-    scene.links.forEach(({ position: p, quaternion: q }, i) => places.set([p.x, p.y, p.z, q.x, q.y, q.z, q.w], 7 * i));
+    const places = this.world.places();
     this.moments.push({ time: this.last, places });
     this.octets += places.byteLength;
     while (this.octets > most_octets || (this.moments.length > 1 && this.moments[0].time < this.last - longest)) this.octets -= this.moments.shift()!.places.byteLength;
   }
 
-  // Puts the world as it was, or back to now.
+  // Puts the world and the states as they were, or back to now.
   show(time: number | null): void {
+    store.past_states = time === null ? null : this.states_at(time);
+    changed('states');
     if (time === null) return this.world.show_past(null);
     let best = this.moments[0];
     for (const moment of this.moments) if (moment.time <= time) best = moment;
     this.world.show_past(best?.places ?? null);
+  }
+
+  private states_at(time: number): Map<string, State> {
+    const states = new Map<string, State>();
+    for (const [path, changes] of this.states) for (const change of changes) if (change.time <= time || !states.has(path)) states.set(path, change.state);
+    return states;
   }
 }

@@ -241,7 +241,7 @@ function show_head(): void {
   page.classList.toggle('read-only', read_only());
   const counts = system_panel.querySelector('.counts')!;
   const errors = store.system.components.filter((c) => c.state === 'Error').length;
-  counts.textContent = store.system.components.length > 0 ? `${errors > 0 ? `${errors} in error, ` : ''}${store.system.components.length} components` : '';
+  counts.textContent = store.system.components.length > 0 ? `${errors > 0 ? `${errors} in error, ` : ''}${store.system.components.length} component${store.system.components.length === 1 ? '' : 's'}` : '';
   document.title = `${store.world?.present ? `${store.world.name} – ` : ''}rtm-studio`;
   for (const id of ['save', 'open', 'activate-all', 'deactivate-all']) (document.getElementById(id) as HTMLButtonElement | null)?.toggleAttribute('disabled', status !== 'open' || (read_only() && (id !== 'save' || whole !== undefined)));
   for (const tool of [tools.move, tools.push, tools.spawn]) tool.disabled = read_only() || !store.world?.present;

@@ -25,6 +25,7 @@ export const store = {
   signals: [] as Signal[],
   details: new Map<string, ComponentDetail>(),
   selection: null as Selection | null,
+  past_states: null as Map<string, State> | null, // of the moment of a live run that is shown; null: of now
   logs: [] as LogLine[],
   acts: [] as Act[],
 };
@@ -56,6 +57,9 @@ export function link_problem(): string {
 }
 
 export const is_selected = (kind: Kind, id: string): boolean => store.selection?.kind === kind && store.selection.id === id;
+
+// As of the moment that is shown.
+export const shown_state = ({ path, state }: Component): State => store.past_states?.get(path) ?? state;
 
 export const component = (path: string): Component | undefined => store.system.components.find((c) => c.path === path);
 export const connection = (id: string): Connection | undefined => store.system.connections.find((c) => c.id === id);

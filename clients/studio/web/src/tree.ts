@@ -1,7 +1,7 @@
 // Everything by name: robots with their ifaces, components with their ports, managers, signals. One search for all.
 import { h, icon, once_a_frame, put } from './dom';
 import { state_mark, state_words } from './states';
-import { changed, iface_id, is_selected, on, select, Selection, selected_model, store, wire, components_of } from './store';
+import { changed, iface_id, is_selected, on, select, Selection, selected_model, shown_state, store, wire, components_of } from './store';
 
 interface Row { key: string; label: string; more?: string; selection?: Selection; children?: () => Row[]; mark?: () => Element | null; hint?: string; topic?: string; related?: boolean; closed?: boolean }
 
@@ -47,8 +47,8 @@ export class Tree {
       { key: 'things', label: 'Things', more: String(others.length), closed: true, children: () => others.map(model) },
       {
         key: 'components', label: 'Components', more: String(system.components.length), children: () => system.components.map((c) => ({
-          key: `component:${c.path}`, label: c.instance, more: c.type === c.instance.replace(/\d+$/, '') ? '' : c.type, hint: `${c.instance} is ${state_words[c.state]}`, selection: { kind: 'component', id: c.path },
-          closed: true, related: related.has(c.path), mark: () => state_mark(c.state),
+          key: `component:${c.path}`, label: c.instance, more: c.type === c.instance.replace(/\d+$/, '') ? '' : c.type, hint: `${c.instance} is ${state_words[shown_state(c)]}`, selection: { kind: 'component', id: c.path },
+          closed: true, related: related.has(c.path), mark: () => state_mark(shown_state(c)),
           children: () => c.ports.map((p) => ({
             key: `port:${c.path}:${p.name}`, label: p.name, more: { in: 'in', out: 'out', service: 'service' }[p.kind], selection: { kind: 'port', id: `${c.path}:${p.name}` },
           })),

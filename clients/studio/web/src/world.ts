@@ -135,6 +135,8 @@ export class WorldView {
     const is_first = this.world === null;
     if (this.world) this.drop(this.world);
     this.world = world;
+    this.is_past = false;
+    this.present = null;
     this.scene.add(world.root);
     this.scene.background = linear(world.look.background);
     this.measure();
@@ -178,13 +180,19 @@ export class WorldView {
     if (this.world && poses.version === this.world.version) this.apply(poses);
   }
 
+  // Seven numbers a link: where they are now, also while what was is shown.
+  places(): Float32Array {
+    if (this.present) return this.present.slice();
+    const links = this.world?.links ?? [];
+    const places = new Float32Array(links.length * 7);
+    links.forEach(({ position: p, quaternion: q }, i) => places.set([p.x, p.y, p.z, q.x, q.y, q.z, q.w], 7 * i));
+    return places;
+  }
+
   // Seven numbers a link: what was. Null: what is.
   show_past(places: Float32Array | null): void {
     const links = this.world?.links ?? [];
-    if (places && !this.is_past) {
-      this.present = new Float32Array(links.length * 7);
-      links.forEach(({ position: p, quaternion: q }, i) => this.present!.set([p.x, p.y, p.z, q.x, q.y, q.z, q.w], 7 * i));
-    }
+    if (places && !this.is_past) this.present = this.places();
     const shown = places ?? this.present;
     this.is_past = places !== null;
     if (!places) this.present = null;
