@@ -1,9 +1,12 @@
 // Acts through managers, and those on whole systems: done by rtse itself, which each of them starts.
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "acts.h"
 #include "base/text.h"
@@ -18,6 +21,7 @@ using base::Result;
 using Touches = Plan::Touches;
 
 constexpr std::chrono::seconds program_limit{30};
+constexpr std::size_t most_places = 10000;
 
 std::vector<std::string> rtse_words(const ActContext& context, const std::vector<std::string>& words, bool json) {
   std::vector<std::string> all{editor::own_program("rtse"), "--ns", context.name_server};
@@ -170,15 +174,63 @@ class ScratchFile {
   std::string name_;
 };
 
+// "127.0.0.1:2809/PC.host_cxt/Laser0.rtc" as "PC.host_cxt/Laser0.rtc": a naming service has several names.
+std::string below_name_server(std::string_view path) {
+  if (path.starts_with('/')) path.remove_prefix(1);
+  return std::string(path.substr(std::min(path.find('/'), path.size() - 1) + 1));
+}
+
+using Places = std::map<std::string, editor::SavedPlace>;  // by the path below the naming service
+
+// {"/localhost:2809/PC.host_cxt/Laser0.rtc":[x,y,width,height], ...}
+Result<Places> places_of(const Json& args) {
+  Places places;
+  const auto all = args.find("positions");
+  if (all == args.end()) return places;
+  if (!all->is_object() || all->size() > most_places) return Error{"positions: expected an object of at most 10000 places"};
+  for (const auto& [path, numbers] : all->items()) {
+    const auto is_number = [](const Json& number) { return number.is_number() && std::abs(number.get<double>()) < 1e6; };
+    if (path.empty() || !numbers.is_array() || numbers.size() != 4 || !std::all_of(numbers.begin(), numbers.end(), is_number))
+      return Error{"positions: expected [x, y, width, height] for each component"};
+    const auto pixels = [&](std::size_t i) { return static_cast<int>(std::lround(numbers[i].get<double>())); };
+    places[below_name_server(path)] = {pixels(0), pixels(1), pixels(2), pixels(3), "right"};
+  }
+  return places;
+}
+
+// As rtse says it, with the boxes where the page has them.
+Result<Json> save_with(const std::string& xml, const Places& places) {
+  if (places.empty()) return Json{{"xml", xml}};
+  auto system = editor::parse_xml(xml, "the saved system");
+  if (!system) return system.error();
+  for (auto& component : system->components) {
+    if (const auto place = places.find(below_name_server(component.path_uri)); place != places.end()) component.place = place->second;
+  }
+  return Json{{"xml", editor::to_xml(*system)}};
+}
+
 Result<Plan> save_profile(const ActContext& context, const Json& args) {
   std::vector<std::string> words{"save", "-"};
   const auto name = text_or(args, "name", "");
   if (!name.empty()) words.insert(words.end(), {"--name=" + name});
-  return Plan{rtse_line(context, words), [context, words]() -> Result<Json> {
+  const auto places = places_of(args);
+  if (!places) return places.error();
+  return Plan{rtse_line(context, words), [context, words, places = *places]() -> Result<Json> {
                 const auto said = rtse(context, words);
                 if (!said) return said.error();
-                return Json{{"xml", *said}};
+                return save_with(*said, places);
               }};
+}
+
+// {"PC.host_cxt/Laser0.rtc":[x,y], ...} of those that somebody has placed.
+Json positions_in(const std::string& file) {
+  Json positions = Json::object();
+  const auto system = editor::read_system(file);
+  if (!system) return positions;
+  for (const auto& component : system->components) {
+    if (component.place.is_placed()) positions[below_name_server(component.path_uri)] = {component.place.x, component.place.y};
+  }
+  return positions;
 }
 
 Result<Plan> with_profile(const ActContext& context, const Json& args, std::vector<std::string> words) {
@@ -193,7 +245,7 @@ Result<Plan> with_profile(const ActContext& context, const Json& args, std::vect
                 words.push_back(file->name());
                 const auto said = rtse(context, words);
                 if (!said) return said.error();
-                return Json::object();
+                return Json{{"positions", positions_in(file->name())}};
               },
               Touches::system};
 }

@@ -269,14 +269,23 @@ const flows = [
     await boxes(page, 3);
   }],
   ['saved, torn down and opened again', async ({ page, rig }) => {
+    const at = () => page.evaluate(() => Object.fromEntries(Object.entries(window.studio.diagram.positions()).map(([path, [x, y]]) => [path, [x, y]])));
+    await page.evaluate(() => {
+      const { diagram } = window.studio;
+      diagram.place_all(Object.fromEntries(Object.entries(diagram.positions()).map(([path, [x, y]], i) => [path.slice(1), [x + 30 + i, y - 40]])));
+    });
+    const placed = await until('boxes are where they were put', async () => { const now = await at(); return Object.values(now).every(([, y]) => y < 0) && now; });
     const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#save').click()]);
     const file = join(rig.work, 'saved.xml');
     writeFileSync(file, readFileSync(await download.path()));
+    same([...readFileSync(file, 'utf8').matchAll(/<rtsExt:Location rtsExt:x="(-?\d+)" rtsExt:y="(-?\d+)"/g)].map(([, x, y]) => [Number(x), Number(y)]).sort(), Object.values(placed).sort(), 'places in the file');
+    await page.evaluate(() => window.studio.diagram.arrange());
     await rig.rtse('check', file);
     await rig.rtse('teardown', file);
     await edges(page, 0);
     await page.locator('input[type=file]').setInputFiles(file);
     await edges(page, 2);
+    await until('boxes are where they were saved', async () => JSON.stringify(await at()) === JSON.stringify(placed));
     await page.locator('#activate-all').click();
     await in_state(page, 'active', 3);
     await drives(rig);

@@ -37,6 +37,7 @@ TEST(RtsProfile, xml_and_yaml_keep_everything) {
   for (const auto name : {"rtsprofile_cpp.xml", "rtsprofile_python.xml", "rtsprofile_hidden_sets.xml", "rtsprofile_hidden_sets.yaml"}) {
     auto system = read_system(golden(name));
     ASSERT_TRUE(system.ok()) << system.error().message;
+    system->components[0].place = {40, -7, 120, 66, "right"};
     system->start_up = {{"SeqOut0", "127.0.0.1:2898/SeqOut0.rtc", "RTC:AIST:example:SeqOut:2.0.0", "0", 2}};
     const auto xml = parse_xml(to_xml(*system), "copy.xml");
     ASSERT_TRUE(xml.ok()) << xml.error().message;
@@ -45,6 +46,23 @@ TEST(RtsProfile, xml_and_yaml_keep_everything) {
     ASSERT_TRUE(yaml.ok()) << yaml.error().message;
     expect_same(*system, *yaml);
   }
+}
+
+TEST(RtsProfile, places_of_boxes_are_read_and_written) {
+  auto system = read_system(golden("rtsprofile_cpp.xml"));
+  ASSERT_TRUE(system.ok()) << system.error().message;
+  EXPECT_FALSE(system->components[0].place.is_placed());
+  system->components[0].place = {40, -7, 120, 66, "right"};
+  for (const auto& copy : {parse_xml(to_xml(*system), "copy.xml"), parse_yaml(to_yaml(*system), "copy.yaml")}) {
+    ASSERT_TRUE(copy.ok()) << copy.error().message;
+    const auto& [x, y, width, height, direction] = copy->components[0].place;
+    EXPECT_EQ(std::vector({x, y, width, height}), (std::vector{40, -7, 120, 66}));
+    EXPECT_EQ(direction, "right");
+    EXPECT_FALSE(copy->components[1].place.is_placed());
+  }
+  EXPECT_NE(to_xml(*system).find(
+                R"(<rtsExt:Location rtsExt:x="40" rtsExt:y="-7" rtsExt:height="66" rtsExt:width="120" rtsExt:direction="right"/>)"),
+            std::string::npos);
 }
 
 TEST(RtsProfile, yaml_that_python_wrote_is_read) {

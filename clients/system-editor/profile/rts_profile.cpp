@@ -1,5 +1,6 @@
 #include "profile/rts_profile.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -26,6 +27,11 @@ base::Result<std::string> content_of(const std::string& file) {
 }
 
 }  // namespace
+
+int SavedPlace::pixels(const std::string& text) {
+  constexpr std::int64_t most = 1'000'000;
+  return static_cast<int>(std::clamp(base::parse_integer(text).value_or(0), -most, most));
+}
 
 const SavedComponent* SavedSystem::component(const std::string& instance) const {
   for (const auto& candidate : components) {

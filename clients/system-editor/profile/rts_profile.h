@@ -36,6 +36,16 @@ struct SavedContext {
   std::string state;  // Active, Inactive, Error: the component's when it was saved; empty: not known
 };
 
+// Where RTSystemEditor draws a component: its upper left corner and its size, in the pixels of the diagram. All zero: nobody has placed it.
+struct SavedPlace {
+  int x = 0, y = 0, width = 0, height = 0;
+  std::string direction = "down";  // of its ports: right, left, up, down
+
+  // What a file says of a coordinate; what is no whole number is 0.
+  static int pixels(const std::string& text);
+  bool is_placed() const { return x != 0 || y != 0 || width != 0 || height != 0; }
+};
+
 struct SavedComponent {
   std::string id;        // RTC:vendor:category:type:version
   std::string path_uri;  // "host/ctx.host_cxt/Name0.rtc"
@@ -48,6 +58,7 @@ struct SavedComponent {
   std::vector<SavedConfigurationSet> configuration_sets;
   std::vector<SavedContext> contexts;
   std::vector<std::string> participants;  // instance names
+  SavedPlace place;
   NamedValues properties;
 };
 

@@ -69,6 +69,11 @@ SavedComponent component_of(const pugi::xml_node& node) {
     const auto inner = first(child, "Participant");
     component.participants.push_back(attribute(inner ? inner : child, "instanceName"));
   });
+  if (const auto location = first(node, "Location")) {
+    const auto number = [&](const char* name) { return SavedPlace::pixels(attribute(location, name)); };
+    component.place = {number("x"), number("y"), number("width"), number("height"),
+                       base::to_lower(attribute(location, "direction", "down"))};
+  }
   component.properties = properties_of(node);
   return component;
 }
@@ -168,8 +173,11 @@ void put_component(pugi::xml_node root, const SavedComponent& component) {
     put(child, "rts:instanceName", participant);
   }
   auto location = node.append_child("rtsExt:Location");
-  for (const auto* key : {"rtsExt:x", "rtsExt:y", "rtsExt:height", "rtsExt:width"}) put(location, key, "0");
-  put(location, "rtsExt:direction", "down");
+  const auto& place = component.place;
+  for (const auto& [key, value] :
+       {std::pair("rtsExt:x", place.x), {"rtsExt:y", place.y}, {"rtsExt:height", place.height}, {"rtsExt:width", place.width}})
+    put(location, key, std::to_string(value));
+  put(location, "rtsExt:direction", place.direction);
   put_properties(node, component.properties);
 }
 

@@ -81,6 +81,10 @@ SavedComponent component_of(const YAML::Node& node) {
     const auto inner = child(entry, "participant");
     component.participants.push_back(text(inner ? inner : entry, "instanceName"));
   });
+  if (const auto location = child(node, "location")) {
+    const auto number = [&](const char* name) { return SavedPlace::pixels(text(location, name)); };
+    component.place = {number("x"), number("y"), number("width"), number("height"), base::to_lower(text(location, "direction", "down"))};
+  }
   component.properties = properties_of(node);
   return component;
 }
@@ -169,6 +173,11 @@ YAML::Node from_properties(const NamedValues& properties) {
   return list;
 }
 
+std::string in_capitals(std::string text) {
+  for (char& c : text) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  return text;
+}
+
 YAML::Node from_component(const SavedComponent& component) {
   YAML::Node node;
   node["id"] = component.id;
@@ -214,8 +223,10 @@ YAML::Node from_component(const SavedComponent& component) {
     node["participants"].push_back(entry);
   }
   auto location = node["rtsExt::location"];
-  for (const auto* key : {"x", "y", "height", "width"}) location[key] = bare(0);
-  location["direction"] = "DOWN";
+  const auto& place = component.place;
+  for (const auto& [key, value] : {std::pair("x", place.x), {"y", place.y}, {"height", place.height}, {"width", place.width}})
+    location[key] = bare(value);
+  location["direction"] = in_capitals(place.direction);
   node["rtsExt::properties"] = from_properties(component.properties);
   return node;
 }

@@ -263,8 +263,15 @@ export class Diagram {
     this.build();
   }
 
+  // As a profile has them, by paths below the naming service; a component that has another host now is known by its name.
   place_all(positions: { [path: string]: number[] }): void {
-    for (const [path, [x, y]] of Object.entries(positions)) settings.positions[path] = [x, y];
+    const places = Object.entries(positions);
+    const last = (path: string) => path.slice(path.lastIndexOf('/') + 1);
+    for (const { path } of store.system.components) {
+      const same = places.filter(([saved]) => last(saved) === last(path));
+      const [, place] = same.find(([saved]) => path.endsWith(`/${saved}`)) ?? (same.length === 1 ? same[0] : []);
+      if (place) settings.positions[path] = [place[0], place[1]];
+    }
     keep();
     this.has_panned = false;
     this.redraw();
