@@ -359,12 +359,17 @@ Result<Json> call_context(const ActContext& context, const std::string& path, st
   return done(editor::check(line, code));
 }
 
-Result<Plan> plan_context(const ActContext& context, const Json& args, const std::string& what, ContextCall call) {
+// `words`: of rtse ec, after the path.
+Result<Plan> plan_context(const ActContext& context, const Json& args, const std::string& what, const std::vector<std::string>& words,
+                          ContextCall call) {
   const auto path = text_of(args, "path");
   if (!path) return path.error();
   const double index = number_or(args, "context", 0);
   if (index < 0 || index > 1000) return Error{"context: expected its number, from 0"};
-  return Plan{"",
+  std::vector<std::string> line{"ec", *path};
+  line.insert(line.end(), words.begin(), words.end());
+  if (index >= 1) line.insert(line.end(), {"-e", std::to_string(static_cast<std::size_t>(index))});
+  return Plan{rtse_line(context, line),
               [context, path = *path, index = static_cast<std::size_t>(index), what, call = std::move(call)] {
                 return call_context(context, path, index, what, call);
               },
@@ -375,15 +380,16 @@ Result<Plan> set_rate(const ActContext& context, const Json& args) {
   const auto rate = number_of(args, "rate");
   if (!rate) return rate.error();
   if (*rate <= 0 || *rate > 1e6) return Error{"rate: expected more than 0 and at most 1e6 Hz"};
-  return plan_context(context, args, "setting the rate", [rate = *rate](RTC::ExecutionContext_ptr one) { return one->set_rate(rate); });
+  return plan_context(context, args, "setting the rate", {"rate", base::format_number(*rate)},
+                      [rate = *rate](RTC::ExecutionContext_ptr one) { return one->set_rate(rate); });
 }
 
 Result<Plan> start_context(const ActContext& context, const Json& args) {
-  return plan_context(context, args, "starting a context", [](RTC::ExecutionContext_ptr one) { return one->start(); });
+  return plan_context(context, args, "starting a context", {"start"}, [](RTC::ExecutionContext_ptr one) { return one->start(); });
 }
 
 Result<Plan> stop_context(const ActContext& context, const Json& args) {
-  return plan_context(context, args, "stopping a context", [](RTC::ExecutionContext_ptr one) { return one->stop(); });
+  return plan_context(context, args, "stopping a context", {"stop"}, [](RTC::ExecutionContext_ptr one) { return one->stop(); });
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 
 int main(int argc, char** argv) {
   editor::become_program_of_verb(argc, argv);
-  return editor::run_program({editor::add_list, editor::add_watch, editor::add_state, editor::add_conf, editor::add_connect,
-                              editor::add_data, editor::add_system, editor::add_check, editor::add_join, editor::add_manager,
-                              editor::add_run, editor::add_diff, editor::add_new, editor::add_verbs_elsewhere},
+  return editor::run_program({editor::add_list, editor::add_watch, editor::add_state, editor::add_conf, editor::add_context,
+                              editor::add_connect, editor::add_data, editor::add_system, editor::add_check, editor::add_join,
+                              editor::add_manager, editor::add_run, editor::add_diff, editor::add_new, editor::add_verbs_elsewhere},
                              argc, argv);
 }

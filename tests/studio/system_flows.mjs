@@ -136,6 +136,25 @@ const flows = [
     await page.keyboard.press('Tab');
     await until('refused', async () => (await page.locator('footer.failed').count()) === 1);
   }],
+  ['contexts have a rate, stop and start, and rtse does the same', async ({ page, rig }) => {
+    const context = async () => JSON.parse(await rig.rtse('--json', 'ec', 'LaserObstacleAvoid0'))[0];
+    const told = (words) => until(`rtse ${words}`, async () => (await page.locator('footer .command').textContent()).endsWith(words));
+    await choose(page, 'LaserObstacleAvoid0');
+    const { rate } = await context();
+    await page.locator('#rate-0').fill('25');
+    await page.keyboard.press('Tab');
+    await until('25 Hz', async () => (await context()).rate === 25);
+    await told('LaserObstacleAvoid0.rtc rate 25');
+    await page.locator('#context-0').click();
+    await until('stopped', async () => !(await context()).running);
+    await told('LaserObstacleAvoid0.rtc stop');
+    await until('the page knows', async () => (await page.locator('#context-0').textContent()) === 'Start');
+    await rig.rtse('ec', 'LaserObstacleAvoid0', 'start');
+    await rig.rtse('ec', 'LaserObstacleAvoid0', 'rate', String(rate), '-e', '0');
+    same({ ...(await context()), state: '' }, { index: 0, owned: true, kind: 'PERIODIC', rate, running: true, state: '', problem: '' }, 'by rtse');
+    const refused = await rig.rtse('ec', 'LaserObstacleAvoid0', 'stop', '-e', '7').then(() => 'it took it', (error) => error.stderr);
+    check(refused.includes('has no execution context number 7'), refused);
+  }],
   ['the error state is seen, and reset', async ({ page, rig }) => {
     await page.locator('#deactivate-all').click();
     await in_state(page, 'inactive', 3);

@@ -61,7 +61,7 @@ TEST(RtsProfile, places_of_boxes_are_read_and_written) {
     EXPECT_FALSE(copy->components[1].place.is_placed());
   }
   EXPECT_NE(to_xml(*system).find(
-                R"(<rtsExt:Location rtsExt:x="40" rtsExt:y="-7" rtsExt:height="66" rtsExt:width="120" rtsExt:direction="right"/>)"),
+                R"(<rtsExt:Location rtsExt:x="40" rtsExt:y="-7" rtsExt:height="66" rtsExt:width="120" rtsExt:direction="right")"),
             std::string::npos);
 }
 

@@ -14,6 +14,7 @@ void add_join(base::Command& app, Chosen& chosen);     // join, leave
 void add_watch(base::Command& app, Chosen& chosen);    // watch
 void add_state(base::Command& app, Chosen& chosen);    // act, deact, reset, exit, del, wait
 void add_conf(base::Command& app, Chosen& chosen);     // conf
+void add_context(base::Command& app, Chosen& chosen);  // ec
 void add_connect(base::Command& app, Chosen& chosen);  // con, dis
 void add_data(base::Command& app, Chosen& chosen);     // print, inject
 void add_system(base::Command& app, Chosen& chosen);   // save, load, start, stop, teardown
