@@ -33,13 +33,6 @@ constexpr int newest_known = 109;
 constexpr int first_with_frames = 107;
 constexpr int first_with_nested_names = 108;
 
-// Nested models count for more: their frames cost more than anything else.
-std::size_t element_count(pugi::xml_node node) {
-  std::size_t count = std::string_view(node.name()) == "model" ? 50 : 1;
-  for (pugi::xml_node child : node.children()) count += child.type() == pugi::node_element ? element_count(child) : 0;
-  return count;
-}
-
 bool is_entity(pugi::xml_node node) {
   const std::string_view name = node.name();
   return name == "model" || name == "actor" || name == "light";
@@ -64,6 +57,12 @@ pugi::xml_node first_element(pugi::xml_node node) {
 }
 
 }  // namespace
+
+std::size_t element_count(pugi::xml_node node) {
+  std::size_t count = std::string_view(node.name()) == "model" ? 50 : 1;
+  for (pugi::xml_node child : node.children()) count += child.type() == pugi::node_element ? element_count(child) : 0;
+  return count;
+}
 
 ModelFiles::ModelFiles(const ModelPath& model_path, SdfLibrary& library, Complaints& complaints)
     : model_path_(model_path), library_(library), complaints_(complaints) {}

@@ -30,12 +30,15 @@ namespace {
 
 constexpr std::size_t most_frames = 5000;            // of one model; libsdformat resolves them in a time that grows with the square: 9 s
 constexpr std::size_t most_frames_of_world = 10000;  // where models stand relative to each other
-constexpr std::size_t batch_text = 48 * 1024;        // libsdformat needs some hundred times the text it reads; this is what it gets at once
+// A small file may include a large model many times. One of these elements costs 0.6 to 0.8 KiB once it is simulated: 1.5 GiB.
+constexpr std::size_t most_elements_of_world = 2000000;
+constexpr std::size_t batch_text = 48 * 1024;  // libsdformat needs some hundred times the text it reads; this is what it gets at once
 
 // A model as it is written, however often it stands in the world.
 struct DistinctModel {
   pugi::xml_node node;  // checked and mended
   bool is_usable = false;
+  std::size_t elements = 0;  // as element_count() counts
   std::string skeleton;
   std::optional<ModelDef> built;
 };
@@ -82,6 +85,7 @@ class Loader {
   void collect_include(pugi::xml_node world, pugi::xml_node include, const fs::path& folder);
   void add_instance(std::size_t distinct, pugi::xml_node named, pugi::xml_node pose_node, std::string name);
   std::size_t distinct_for(const std::string& key, pugi::xml_node node);
+  bool is_too_large() const { return elements_ > most_elements_of_world; }
   static bool has_world_frames(pugi::xml_node world);
   void mend_world_references(pugi::xml_node world);
   bool resolve_whole_world(pugi::xml_node world);
@@ -106,6 +110,7 @@ class Loader {
   std::vector<DistinctModel> distinct_;
   std::map<std::string, std::size_t> distinct_by_key_;
   std::vector<Instance> instances_;
+  std::size_t elements_ = 0;  // of all instances
   TakenNames names_;
   std::string busy_with_ = "the world";            // for when memory runs out
   std::map<std::string, ResolvedModel> resolved_;  // by skeleton
@@ -200,6 +205,7 @@ std::size_t Loader::distinct_for(const std::string& key, pugi::xml_node node) {
   DistinctModel& model = distinct_.emplace_back();
   model.node = node;
   model.is_usable = mend_model(node, complaints_);
+  model.elements = element_count(node);
   if (model.is_usable && frames_of(node) > most_frames) {
     complaints_.drop(node, describe(node) + " has more than " + std::to_string(most_frames) +
                                " links, joints, frames and nested models in all and is left out");
@@ -209,7 +215,8 @@ std::size_t Loader::distinct_for(const std::string& key, pugi::xml_node node) {
 }
 
 void Loader::add_instance(std::size_t distinct, pugi::xml_node named, pugi::xml_node pose_node, std::string name) {
-  if (!distinct_[distinct].is_usable) return;
+  if (!distinct_[distinct].is_usable || is_too_large()) return;
+  elements_ += distinct_[distinct].elements;
   std::string legal = name.empty() ? "model" : name;
   for (std::size_t at; (at = legal.find("::")) != std::string::npos;) legal.replace(at, 2, "_");
   legal = without_slashes(legal);
@@ -271,6 +278,7 @@ void Loader::collect(pugi::xml_node world, const fs::path& folder) {
 void Loader::collect_population(pugi::xml_node population) {
   const pugi::xml_node model = population.child("model");
   if (!model) return complaints_.drop(population, describe(population) + " has no <model> and is left out");
+  if (is_too_large()) return;
   const std::vector<Eigen::Isometry3d> places = places_of(population, complaints_);
   if (places.empty()) return;
   const Eigen::Isometry3d own = pose_at(model, "pose"), around = pose_at(population, "pose");
@@ -422,6 +430,8 @@ base::Result<LoadResult> Loader::world(const std::string& text, const fs::path& 
   apply_state(world);
   if (!files_.complete(world, folder)) return base::Error{name + ": the world is not fit to be used"};
   collect(world, folder);
+  if (is_too_large())
+    return base::Error{name + ": the world has more than " + std::to_string(most_elements_of_world) + " elements with all it includes"};
   if (has_world_frames(world)) resolve_whole_world(world);
   busy_with_ = "the tree of its frames";
   resolve_models();

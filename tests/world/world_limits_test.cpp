@@ -57,6 +57,26 @@ TEST(LargeFiles, with_a_model_of_too_many_frames_lose_the_model_alone) {
       << all_findings(result);
 }
 
+TEST(LargeFiles, that_become_too_large_by_what_they_include_are_refused) {
+  const WorldFiles files;
+  const std::string links = repeated(4000, [](int i) { return "<link name='l" + std::to_string(i) + "'/>"; });
+  files.write_model("fat", "<model name='fat'><static>1</static>" + links + "</model>");
+  const auto world_of = [](int count, const std::string& part) {
+    return "<sdf version='1.9'><world name='w'>" + repeated(count, [&](int) { return part; }) + "</world></sdf>";
+  };
+  const std::string included = "<include><uri>model://fat</uri></include>";
+  const std::string spread = "<population name='p'><model name='m'><static>1</static>" + links +
+                             "</model><model_count>10000</model_count><distribution><type>random</type></distribution>"
+                             "<box><size>1 1 1</size></box></population>";
+  const std::string line = "w.sdf: the world has more than 2000000 elements with all it includes";
+  for (const std::string& text : {world_of(600, included), world_of(1, spread)}) {
+    const auto result = files.load_text(text);
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().message, line);
+  }
+  EXPECT_EQ(files.load(repeated(100, [&](int) { return included; })).world.models.size(), 100U);
+}
+
 TEST(LargeFiles, with_many_saved_places_are_loaded) {
   const auto models = repeated(10000, [](int i) { return "<model name='m" + std::to_string(i) + "'><link name='l'/></model>"; });
   const auto places = repeated(10000, [](int i) {
