@@ -1,7 +1,13 @@
 #include "corba/call_watch.h"
 
+// Each needs the one before it.
+// clang-format off
 #include <omniORB4/CORBA.h>
 #include <omniORB4/omniInterceptors.h>
+#include <omniORB4/internal/giopStream.h>
+#include <omniORB4/internal/giopStrand.h>
+#include <omniORB4/internal/GIOP_S.h>
+// clang-format on
 
 #include <algorithm>
 #include <array>
@@ -69,27 +75,60 @@ bool is_of_the_runtime(std::string_view operation) {
   return has(of_the_runtime, operation);
 }
 
+// A service context of ours, "RTS" and 1: the moment of the tick that calls, as a CDR encapsulation. ORBs pass over contexts that they do
+// not know (CORBA 3.3 part 2, 9.3.1).
+constexpr CORBA::ULong context_of_tick = 0x52545301;
+constexpr CORBA::ULong encapsulation_size = 16;  // octet order, padding, unsigned long long
+
+_CORBA_Boolean say_moment(omni::omniInterceptors::clientSendRequest_T::info_T& request) {
+  const base::Tick* tick = base::tick_in_lock_step();
+  if (tick == nullptr || is_of_the_runtime(request.operation())) return true;
+  IOP::ServiceContext context;
+  context.context_id = context_of_tick;
+  context.context_data.length(encapsulation_size);
+  for (CORBA::ULong i = 0; i < encapsulation_size; ++i)
+    context.context_data[i] = i < 8 ? 0 : static_cast<CORBA::Octet>(tick->moment() >> (8 * (encapsulation_size - 1 - i)));
+  request.service_contexts.length(request.service_contexts.length() + 1);
+  request.service_contexts[request.service_contexts.length() - 1] = context;
+  return true;
+}
+
+// 0: of no tick, or of one that did not say so.
+std::uint64_t moment_of_caller(const IOP::ServiceContextList& contexts) {
+  for (CORBA::ULong at = 0; at < contexts.length(); ++at) {
+    if (contexts[at].context_id != context_of_tick || contexts[at].context_data.length() != encapsulation_size) continue;
+    std::uint64_t moment = 0;
+    for (CORBA::ULong i = 8; i < encapsulation_size; ++i) moment = moment << 8 | contexts[at].context_data[i];
+    return moment;
+  }
+  return 0;
+}
+
 _CORBA_Boolean look_at_call(omni::omniInterceptors::serverReceiveRequest_T::info_T& request) {
   const auto clock = base::lock_step_clock();
   const std::uint64_t moment = clock ? clock->moment() : 0;
   if (moment == 0) return true;
-  const auto what = chance_of_call(request.operation(), moment);
+  const auto what = chance_of_call(request.operation(), moment, moment_of_caller(request.giop_s.service_contexts()));
   if (!what.empty() && !clock->stands_still()) base::tell_of_chance("this process", what, clock->now());
   return true;
 }
 
 }  // namespace
 
-std::string chance_of_call(std::string_view operation, std::uint64_t moment) {
+std::string chance_of_call(std::string_view operation, std::uint64_t moment, std::uint64_t moment_of_caller) {
   if (moment == 0) return "";
   const auto by = " by another process (" + std::string(operation) + ")";
   if (has(changes_parameters, operation)) return "had the parameters of a component changed" + by;
   if (has(changes_states, operation)) return "had the state of a component or context changed" + by;
   if (has(changes_connections, operation)) return "had a connection made or ended" + by;
-  if (base::is_in_phase(moment) && !is_of_the_runtime(operation)) return "had a service called while a phase ran" + by;
+  if (base::is_in_phase(moment) && moment_of_caller != moment && !is_of_the_runtime(operation))
+    return "had a service called while a phase ran" + by;
   return "";
 }
 
-void watch_calls() { omniORB::getInterceptors()->serverReceiveRequest.add(&look_at_call); }
+void watch_calls() {
+  omniORB::getInterceptors()->clientSendRequest.add(&say_moment);
+  omniORB::getInterceptors()->serverReceiveRequest.add(&look_at_call);
+}
 
 }  // namespace corba

@@ -29,6 +29,12 @@ TEST(CallWatch, changes_from_outside_are_told_in_and_between_phases) {
 TEST(CallWatch, a_service_is_told_while_a_phase_runs) {
   EXPECT_EQ(chance_of_call("grasp", in_phase), "had a service called while a phase ran by another process (grasp)");
   EXPECT_EQ(chance_of_call("grasp", between), "");
+  EXPECT_NE(chance_of_call("grasp", in_phase, in_phase - 2), "");  // of a tick that is over: somebody else's word
+}
+
+TEST(CallWatch, a_service_that_a_tick_of_the_phase_calls_is_not_told) {
+  EXPECT_EQ(chance_of_call("grasp", in_phase, in_phase), "");
+  EXPECT_NE(chance_of_call("set_configuration_set_values", in_phase, in_phase), "");
 }
 
 TEST(CallWatch, samples_callbacks_and_questions_are_not_told) {

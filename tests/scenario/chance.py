@@ -126,8 +126,9 @@ def callers_of_one_phase():
         assert code == 1 and named in err, (code, out, err)
     code, out, err = run(text, *options, "D:exec_cxt.sim_time.phase=2", env={"CI": "true"})
     assert code == 0 and named in err, (code, out, err)
-    code, out, err = run(text, *options, "D:exec_cxt.sim_time.phase=3", "--strict")
-    assert code == 0, (code, out, err)
+    for processes in ([], ["--one-process-each"]):
+        code, out, err = run(text, *processes, *options, "D:exec_cxt.sim_time.phase=3", "--strict")
+        assert code == 0, (processes, code, out, err)
     # One client of two is no such thing: it calls one after the other.
     text = chance_system.system(chance_system.component("P", 10, provider), chance_system.component("Q", 10, provider), chance_system.component("C", 10, consumer),
                                 chance_system.service("P.Echo", "C.Echo", provider, consumer), chance_system.service("Q.Echo", "C.Echo", provider, consumer))
