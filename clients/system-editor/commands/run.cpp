@@ -29,7 +29,7 @@ Json to_json(const RunResult& result) {
   Json json{{"seed", result.seed},         {"passed", result.is_passed()}, {"problem", result.problem},
             {"logs", result.logs},         {"notes", result.notes},        {"state_hash", result.state_hash},
             {"run_hash", result.run_hash}, {"path", result.path_m},        {"simulated", result.simulated_s},
-            {"wall", result.wall_s},       {"expectations", Json::array()}};
+            {"wall", result.wall_s},       {"runs", result.runs},          {"expectations", Json::array()}};
   for (const auto& verdict : result.verdicts)
     json["expectations"].push_back({{"expectation", verdict.expectation}, {"problem", verdict.problem}, {"details", verdict.details}});
   return json;
@@ -44,6 +44,7 @@ RunResult from_json(const Json& json, std::uint64_t seed) {
   result.state_hash = json.value("state_hash", "");
   result.run_hash = json.value("run_hash", "");
   result.path_m = json.value("path", 0.0);
+  result.runs = json.value("runs", 1);
   result.simulated_s = json.value("simulated", 0.0);
   result.wall_s = json.value("wall", 0.0);
   for (const auto& entry : json.value("expectations", Json::array()))
@@ -51,7 +52,7 @@ RunResult from_json(const Json& json, std::uint64_t seed) {
   return result;
 }
 
-double times_real_time(const RunResult& result) { return result.wall_s > 0 ? result.simulated_s / result.wall_s : 0; }
+double times_real_time(const RunResult& result) { return result.wall_s > 0 ? result.runs * result.simulated_s / result.wall_s : 0; }
 
 void print_heading() {
   std::printf("%10s  %-6s  %11s  %9s  %9s  %-16s  %s\n", "seed", "result", "simulated", "speed", "path", "state", "unmet");
@@ -75,10 +76,11 @@ void report(Editor& editor, const RunResult& result, bool is_row) {
   } else if (is_row) {
     print_row(result);
   } else {
-    std::printf("%s  seed %llu  %.1f s simulated in %.1f s (%.1f x real time)  path %.2f m  state %s%s%s\n",
-                result.is_passed() ? "passed" : "FAILED", static_cast<unsigned long long>(result.seed), result.simulated_s, result.wall_s,
-                times_real_time(result), result.path_m, result.state_hash.empty() ? "-" : result.state_hash.c_str(),
-                result.run_hash.empty() ? "" : "  run ", result.run_hash.c_str());
+    std::printf("%s  seed %llu  %s%.1f s simulated in %.1f s (%.1f x real time)  path %.2f m  state %s%s%s\n",
+                result.is_passed() ? "passed" : "FAILED", static_cast<unsigned long long>(result.seed), result.runs > 1 ? "2 x " : "",
+                result.simulated_s, result.wall_s, times_real_time(result), result.path_m,
+                result.state_hash.empty() ? "-" : result.state_hash.c_str(), result.run_hash.empty() ? "" : "  run ",
+                result.run_hash.c_str());
   }
   std::fflush(stdout);
   const std::string seed = is_row ? "seed " + std::to_string(result.seed) + ": " : "";

@@ -75,10 +75,11 @@ struct RunResult {
   std::vector<std::string> notes;  // what is not as the world's file says
   std::vector<Verdict> verdicts;
   std::string state_hash;
-  std::string run_hash;  // of the hash log
-  double simulated_s = 0;
-  double wall_s = 0;
-  double path_m = 0;  // of the model that went farthest
+  std::string run_hash;    // of the hash log
+  int runs = 1;            // 2 with --twice
+  double simulated_s = 0;  // in each of them
+  double wall_s = 0;       // of all
+  double path_m = 0;       // of the model that went farthest
   bool is_passed() const;
 };
 

@@ -35,7 +35,7 @@ RunResult run_twice(CORBA::ORB_ptr orb, const RunOptions& options) {
   if (!result.problem.empty()) return result;
   const RunResult again = run_system(orb, second);
   result.wall_s += again.wall_s;
-  result.simulated_s += again.simulated_s;
+  result.runs = 2;
   result.verdicts.push_back(again.problem.empty() ? compare(first.hash_log, second.hash_log) : Verdict{verdict_name, again.problem});
   return result;
 }
