@@ -1,10 +1,12 @@
 // rtm-studio: a simulated world, a system of components and its signals in a browser. See --help.
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
+#include <filesystem>
 #include <iostream>
 
 #include "base/command_line.h"
 #include "base/text.h"
+#include "hall.h"
 #include "orb.h"
 #include "recorded_studio.h"
 #include "remote.h"
@@ -60,10 +62,12 @@ std::string url_of(const studio::WebOptions& options, const studio::WebServer& s
   return "http://" + host + ":" + std::to_string(server.port()) + "/?token=" + server.door().token();
 }
 
-int serve(boost::asio::io_context& loop, const studio::WebOptions& web, const studio::PageFiles& page, studio::WebHandlers handlers) {
-  const auto server = studio::WebServer::open(loop, web, page, std::move(handlers));
+int serve(boost::asio::io_context& loop, const Settings& settings, const studio::PageFiles& page, studio::WebHandlers first) {
+  std::error_code problem;  // a folder that is gone has no recordings
+  studio::Hall hall(loop, std::move(first), {std::filesystem::current_path(problem), settings.studio.is_read_only});
+  const auto server = studio::WebServer::open(loop, settings.web, page, hall.handlers());
   if (!server) return fail(server.error());
-  std::cout << url_of(web, **server) << std::endl;
+  std::cout << url_of(settings.web, **server) << std::endl;
   loop.run();
   return 0;
 }
@@ -73,7 +77,7 @@ int show_recording(boost::asio::io_context& loop, const Settings& settings, cons
     return fail({"recording " + base::in_quotes(settings.start.system) + ": has its world itself; leave --world out"});
   const auto recording = studio::RecordedStudio::open(loop, settings.start.system);
   if (!recording) return fail(recording.error());
-  return serve(loop, settings.web, page, (*recording)->handlers());
+  return serve(loop, settings, page, (*recording)->handlers());
 }
 
 int show_run(boost::asio::io_context& loop, Settings settings, const studio::PageFiles& page) {
@@ -89,7 +93,7 @@ int show_run(boost::asio::io_context& loop, Settings settings, const studio::Pag
     if (!started->name_server().empty()) settings.studio.name_server = started->name_server();
   }
   studio::Studio hub(loop, orb.get(), settings.studio);
-  return serve(loop, settings.web, page, hub.handlers());
+  return serve(loop, settings, page, hub.handlers());
 }
 
 int run(const Settings& settings) {

@@ -76,7 +76,11 @@ Result<Json> details(const RecordingFacts& facts, const std::string& path, Playh
 Result<std::unique_ptr<RecordedStudio>> RecordedStudio::open(boost::asio::io_context& loop, const std::string& file) {
   auto facts = RecordingFacts::read(file);
   if (!facts) return facts.error();
-  return std::unique_ptr<RecordedStudio>(new RecordedStudio(loop, std::make_shared<const RecordingFacts>(std::move(*facts))));
+  return of(loop, std::make_shared<const RecordingFacts>(std::move(*facts)));
+}
+
+std::unique_ptr<RecordedStudio> RecordedStudio::of(boost::asio::io_context& loop, std::shared_ptr<const RecordingFacts> facts) {
+  return std::unique_ptr<RecordedStudio>(new RecordedStudio(loop, std::move(facts)));
 }
 
 RecordedStudio::RecordedStudio(boost::asio::io_context& loop, std::shared_ptr<const RecordingFacts> facts)
@@ -106,10 +110,11 @@ void RecordedStudio::make_scene() {
     }
     boost::asio::post(loop_, [this, scene] { has_scene(scene); });
   };
-  (void)makers_->give(work);  // the first work of all: there is room
+  if (makers_->give(work)) ++jobs_;  // the first work of all: there is room
 }
 
 void RecordedStudio::has_scene(const Result<Scene>& scene) {
+  --jobs_;
   if (scene) {
     scene_ = *scene;
   } else {
@@ -287,9 +292,13 @@ void RecordedStudio::start(Guest& guest, std::int64_t id, Work work) {
     } catch (const std::exception& e) {
       result = Error{base::in_quotes(facts_->file) + ": " + e.what()};
     }
-    boost::asio::post(loop_, [this, viewer, id, result, news = std::move(news)] { finish(viewer, id, result, news); });
+    boost::asio::post(loop_, [this, viewer, id, result, news = std::move(news)] {
+      --jobs_;
+      finish(viewer, id, result, news);
+    });
   };
-  if (!reading_->give(job)) finish(guest.viewer->id(), id, Error{"too much is being done already; try again"}, {});
+  if (!reading_->give(job)) return finish(guest.viewer->id(), id, Error{"too much is being done already; try again"}, {});
+  ++jobs_;
 }
 
 void RecordedStudio::start_series(Guest& guest, std::int64_t id, SeriesOrder order) {
@@ -300,9 +309,13 @@ void RecordedStudio::start_series(Guest& guest, std::int64_t id, SeriesOrder ord
     } catch (const std::exception& e) {
       result = Error{base::in_quotes(facts->file) + ": " + e.what()};
     }
-    boost::asio::post(loop_, [this, viewer, id, result] { finish(viewer, id, result, {}); });
+    boost::asio::post(loop_, [this, viewer, id, result] {
+      --jobs_;
+      finish(viewer, id, result, {});
+    });
   };
-  if (!makers_->give(job)) finish(guest.viewer->id(), id, Error{"too much is being done already; try again"}, {});
+  if (!makers_->give(job)) return finish(guest.viewer->id(), id, Error{"too much is being done already; try again"}, {});
+  ++jobs_;
 }
 
 // What is shown comes before the reply, so that a page that asks again has seen it.

@@ -21,8 +21,12 @@ class RecordedStudio {
   // An error when the file is no recording.
   static base::Result<std::unique_ptr<RecordedStudio>> open(boost::asio::io_context& loop, const std::string& file);
 
+  static std::unique_ptr<RecordedStudio> of(boost::asio::io_context& loop, std::shared_ptr<const RecordingFacts> facts);
+
   // For the web server; used as long as the object lives.
   WebHandlers handlers();
+  // No work comes back to it: it may end.
+  bool is_idle() const { return jobs_ == 0; }
 
  private:
   struct Guest {
@@ -53,6 +57,7 @@ class RecordedStudio {
   const std::shared_ptr<const RecordingFacts> facts_;
   const std::string session_;
   std::map<std::uint64_t, Guest> guests_;
+  std::size_t jobs_ = 0;  // given to workers, and not back yet
   Scene scene_;
   std::string scene_problem_;                     // why there is none; empty while it is made
   std::vector<std::pair<bool, Answer>> waiting_;  // for the scene; true: with collisions

@@ -315,7 +315,7 @@ void Studio::finish_act(std::uint64_t viewer, std::int64_t id, const std::string
   if (touches == Plan::Touches::world) world_->look_now();
   const auto found = guests_.find(viewer);
   if (found == guests_.end()) return;
-  --found->second.open_requests;
+  if (found->second.open_requests > 0) --found->second.open_requests;  // 0: it has left and come back
   answer(found->second, id, result, command);
 }
 

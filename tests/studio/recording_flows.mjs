@@ -160,6 +160,44 @@ const flows = [
     await has_world(page);
     await rig.end(again);
   }],
+  ['a recording is opened from the page, seen by all, and closed', async ({ rig, browser }) => {
+    const studio = await rig.studio();
+    const page = await open(browser, studio.url), other = await open(browser, studio.url);
+    for (const one of [page, other]) await is_ready(one);
+    check(await page.evaluate(() => !window.studio.store.hello.recording), 'nothing is shown yet');
+    const ask = (name, args) => page.evaluate(([n, a]) => window.studio.wire.request(n, a).then(({ result }) => result, (error) => error.message), [name, args]);
+    for (const bad of ['/etc/passwd', '../../etc/passwd', 'nosuch.mcap', '.', '']) check((await ask('open_recording', { file: bad })).includes('in the folder that rtm-studio was started in'), `${bad}: ${await ask('open_recording', { file: bad })}`);
+    writeFileSync(join(rig.work, 'none.mcap'), 'hello');
+    check((await ask('open_recording', { file: 'none.mcap' })).includes('none.mcap'), 'no recording');
+    await page.locator('#open-recording').click();
+    await page.locator('#recordings button.link', { hasText: /^run\.mcap$/ }).click();
+    for (const one of [page, other]) {
+      await has_world(one);
+      await until('it is shown', () => one.evaluate(() => window.studio.store.hello.recording?.file === 'run.mcap' && window.studio.store.system.components.length === 3));
+    }
+    await scrub(page, 9);
+    await scrub(other, 2);
+    check(!near(await robot(page), await robot(other)), 'two places');
+    same(await page.locator('footer .command').textContent(), 'rtm-studio run.mcap', 'the command');
+    await page.keyboard.press('r');
+    await page.locator('#close-recording').click();
+    for (const one of [page, other]) {
+      await until('it is closed', () => one.evaluate(() => !window.studio.store.hello.recording && window.studio.store.system.components.length === 0));
+      await until('there is a now', async () => one.locator('#live').isVisible());
+      same(one.problems, [], 'problems');
+      await one.context().close();
+    }
+    await rig.end(studio);
+    const shut = await rig.studio('--read-only');
+    const looker = await open(browser, shut.url);
+    await is_ready(looker);
+    const said = await looker.evaluate(() => window.studio.wire.request('open_recording', { file: 'run.mcap' }).then(() => 'done', (error) => error.message));
+    check(said.includes('read-only'), said);
+    await looker.locator('#open-recording').click();
+    await until('it says so', async () => (await looker.locator('#recordings').textContent()).includes('read-only'));
+    await looker.context().close();
+    await rig.end(shut);
+  }],
   ['files that are none, damaged or without a world', async ({ rig, file, browser }) => {
     const bad = join(rig.work, 'bad.mcap'), cut = join(rig.work, 'cut.mcap');
     writeFileSync(bad, 'hello');

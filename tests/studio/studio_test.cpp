@@ -1,13 +1,18 @@
 // The parts of rtm-studio that need neither a socket nor a system.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <random>
+#include <set>
 
 #include "acts.h"
 #include "client_message.h"
 #include "door.h"
 #include "foxglove.h"
+#include "hall.h"
 #include "outbox.h"
 #include "pose_board.h"
 #include "signal_book.h"
@@ -308,6 +313,24 @@ TEST(Acts, of_a_simulator_say_what_one_would_type) {
   EXPECT_EQ(command("push", R"({"name":"r","force":[1,0,0],"seconds":2})"), "simctl -s 7 wrench r 1 0 0 --for 2");
   EXPECT_EQ(command("spawn", R"({"model":"../../etc"})"), "error: model \"../../etc\": expected the name of a model on the model path");
   EXPECT_EQ(command("spawn", R"({"model":"/tmp/x.sdf"})"), "error: model \"/tmp/x.sdf\": expected the name of a model on the model path");
+}
+
+TEST(Hall, only_what_is_in_the_folder_is_opened) {
+  namespace fs = std::filesystem;
+  std::string top = (fs::temp_directory_path() / "hall-XXXXXX").string();
+  ASSERT_NE(mkdtemp(top.data()), nullptr);
+  const fs::path folder = fs::path(top) / "mine", other = fs::path(top) / "other.mcap";
+  fs::create_directories(folder / "runs");
+  for (const auto& file : {folder / "a.mcap", folder / "runs/b.mcap", folder / "c.txt", other}) std::ofstream(file) << "x";
+  fs::create_symlink(other, folder / "link.mcap");
+  std::set<std::string> names;
+  for (const auto& one : studio::recordings_in(folder)) names.insert(one.at("file").get<std::string>());
+  EXPECT_EQ(names, (std::set<std::string>{"a.mcap", "link.mcap", "runs/b.mcap"}));
+  for (const std::string& name : {std::string("a.mcap"), std::string("runs/../a.mcap"), (folder / "runs/b.mcap").string()})
+    EXPECT_TRUE(studio::recording_in(folder, name).ok()) << name;
+  for (const std::string name : {"../other.mcap", "link.mcap", "runs", "", "/etc/passwd", "d.mcap"})
+    EXPECT_FALSE(studio::recording_in(folder, name).ok()) << name;
+  fs::remove_all(top);
 }
 
 }  // namespace

@@ -61,10 +61,13 @@ export class Bottom {
       this.speed.disabled = !can();
     }));
     on('hello', () => {
-      if (!recording() || window_box.value === '0') return;
-      window_box.prepend(h('option', { value: 0 }, 'all'));
-      window_box.value = '0';
-      this.plots.window = 0;
+      if (this.moment !== null) this.leave_the_past();
+      const all = window_box.querySelector('option[value="0"]');
+      if (recording() ? all : !all) return;
+      if (all) all.remove();
+      else window_box.prepend(h('option', { value: 0 }, 'all'));
+      window_box.value = all ? '30' : '0';
+      this.plots.window = Number(window_box.value);
     });
     on('log', once_a_frame(() => { if (settings.tab === 'logs') this.show_logs(); }));
     on('time', once_a_frame(() => { if (settings.tab === 'step') this.show_parts(); }));
@@ -97,12 +100,22 @@ export class Bottom {
 
   look(moment: number | null): void {
     if (recording()) return this.playback.seek(moment ?? this.history.last);
-    this.moment = moment;
-    this.live.setAttribute('aria-pressed', String(moment === null));
-    this.element.classList.toggle('past', moment !== null);
+    this.mark_moment(moment);
     this.history.show(moment);
     this.show_time();
     this.plots.draw();
+  }
+
+  private mark_moment(moment: number | null): void {
+    this.moment = moment;
+    this.live.setAttribute('aria-pressed', String(moment === null));
+    this.element.classList.toggle('past', moment !== null);
+  }
+
+  // What was looked back at is not shown any more.
+  private leave_the_past(): void {
+    this.mark_moment(null);
+    this.history.show(null);
   }
 
   private show_time(): void {
@@ -120,10 +133,9 @@ export class Bottom {
     this.clock.textContent = `${shown.toFixed(3)} s`;
     this.rate.textContent = time.paused ? 'paused' : `${time.rtf.toFixed(time.rtf < 10 ? 2 : 0)} × real time`;
     const run = whole ? 'Play' : 'Run';
-    if (whole) {
-      this.reset_button.title = 'To the beginning (Shift+R)';
-      this.reset_button.setAttribute('aria-label', 'To the beginning');
-    }
+    const reset = whole ? 'To the beginning' : 'Reset world and time';
+    this.reset_button.title = `${reset} (Shift+R)`;
+    this.reset_button.setAttribute('aria-label', reset);
     const late = (time.participants ?? []).filter((p) => p.late).map((p) => p.name);
     this.waits.textContent = this.playback.problem ? this.playback.problem : time.waiting_for > 0 ? `waits for ${time.waiting_for} to join` : late.length > 0 ? `waits for ${late.join(', ')}` : (time.participants?.length ?? 0) > 0 ? `lock step, ${time.participants!.length === 1 ? 'one takes part' : `${time.participants!.length} take part`}` : '';
     this.waits.classList.toggle('late', late.length > 0 || time.waiting_for > 0 || this.playback.problem !== '');

@@ -16,14 +16,20 @@ export class History {
   private moments: Moment[] = [];
   private octets = 0;
   private version = -1;
+  private was_recording = false;
 
   constructor(private readonly world: WorldView) {
     on(['states', 'system'], () => this.note_states());
     on('time', () => this.note_places());
     on('hello', () => {
       const whole = recording();
+      if (whole || this.was_recording) {
+        this.states.clear();
+        this.moments = [];
+        this.octets = 0;
+      }
+      this.was_recording = whole !== undefined;
       if (!whole) return;
-      this.states.clear();
       for (const [path, changes] of Object.entries(whole.states)) this.states.set(path, changes.map(([time, state]) => ({ time, state: (state === 'Finalized' ? 'Unknown' : state) as State })));
     });
   }

@@ -9,6 +9,7 @@ import { disconnect, Inspector, spawn_dialog } from './inspector';
 import { apply_theme, keep, linked, settings, to_link } from './settings';
 import { act, changed, component, on, read_only, select, selected_model, store, undo_last, wire } from './store';
 import { Playback, recording } from './playback';
+import { recordings_dialog } from './recordings_dialog';
 import { Tree } from './tree';
 import { WorldView } from './world';
 
@@ -51,6 +52,7 @@ const top_bar = h('header', { class: 'top' },
   })),
   button('Save the system as RTSProfile', { icon: 'save', id: 'save' }, () => save_profile()),
   button('Open an RTSProfile', { icon: 'open', id: 'open' }, () => profile_input.click()),
+  button('Open a recording', { icon: 'record', key: 'R', id: 'open-recording' }, () => recordings_dialog()),
   button('Copy a link to this view', { icon: 'link', id: 'copy-link' }, () => copy(location.href)),
   button('Light or dark', { icon: 'theme', id: 'theme' }, () => next_theme()),
   button('Keys', { icon: 'help', key: '?', id: 'help' }, () => show_keys()));
@@ -261,7 +263,7 @@ function show_tools(): void {
 const keys: [string, string][] = [
   ['Space', 'run or pause'], ['.', 'one step'], [',', 'of a recording: one step back'], ['Shift+R', 'reset world and time; of a recording: to its beginning'], ['/', 'search'], ['1 – 5', 'panels'], ['O', 'all of the world'], ['T', 'from above'], ['F', 'follow the robot'],
   ['L, S, H', 'laser fans, sonar cones, trails'], ['N, B, K, X', 'names, shapes that collide, contacts, frames'], ['M, P', 'move, push by dragging'], ['Insert', 'spawn a model'], ['G', 'drive the robot (arrows or W A S D)'], ['A, D, E', 'activate, deactivate, reset the selected component'], ['C', 'connect the selected port'], ['Delete', 'disconnect'],
-  ['Ctrl+Z', 'undo'], ['Escape', 'select nothing'], ['Arrows', 'in the world: turn (with Shift: move); in the system: next component; in the tree: rows'], ['[  ]', 'in the system: next port'], ['+  –', 'zoom'], ['?', 'this list'],
+  ['Ctrl+Z', 'undo'], ['Escape', 'select nothing'], ['Arrows', 'in the world: turn (with Shift: move); in the system: next component; in the tree: rows'], ['[  ]', 'in the system: next port'], ['+  –', 'zoom'], ['R', 'open a recording'], ['?', 'this list'],
 ];
 
 function show_keys(): void {
@@ -282,7 +284,7 @@ document.addEventListener('keydown', (event) => {
   const on_chosen = (name: string, word: string, state: string) => () => { if (chosen?.state === state && !read_only()) act(`${word} ${chosen.instance}`, name, { path: chosen.path }); };
   const table: { [key: string]: () => void } = {
     ' ': () => bottom.run_or_pause(), '.': () => bottom.step(), ',': () => bottom.step(-1), R: () => bottom.reset(), '/': () => { show_panel('tree', true); tree.search.focus(); tree.search.select(); }, '?': show_keys,
-    o: () => world.whole(), t: () => tools.top.click(), f: follow, l: () => toggle('lasers'), n: () => toggle('names'), k: () => toggle('contacts'), s: () => toggle('sonars'), h: () => toggle('trails'), b: () => toggle('collisions'), x: () => toggle('frames'), Insert: () => tools.spawn.click(), m: () => world.hands.set_tool('move'), p: () => world.hands.set_tool('push'), g: () => drive.toggle(),
+    o: () => world.whole(), t: () => tools.top.click(), f: follow, l: () => toggle('lasers'), n: () => toggle('names'), k: () => toggle('contacts'), s: () => toggle('sonars'), h: () => toggle('trails'), b: () => toggle('collisions'), x: () => toggle('frames'), Insert: () => tools.spawn.click(), m: () => world.hands.set_tool('move'), p: () => world.hands.set_tool('push'), g: () => drive.toggle(), r: () => recordings_dialog(),
     a: on_chosen('activate', 'Activate', 'Inactive'), d: on_chosen('deactivate', 'Deactivate', 'Active'), e: on_chosen('reset', 'Reset', 'Error'),
     c: () => document.getElementById('connect')?.click(), Delete: () => { if (store.selection?.kind === 'connection') disconnect(store.selection.id); }, Escape: () => select(null),
   };

@@ -13,6 +13,7 @@ export class Playback {
   speed = 1;
   problem = '';
   private shown = NaN;
+  private file: string | undefined = undefined; // that is shown; empty: a run
   private is_asked = false;
   private last = 0;
   private details_at = 0;
@@ -26,6 +27,13 @@ export class Playback {
 
   private begin(): void {
     const whole = recording();
+    if (this.file !== undefined && this.file !== (whole?.file ?? '')) {
+      this.moment = whole?.from ?? 0;
+      this.is_playing = false;
+      this.problem = '';
+      this.jumped();
+    }
+    this.file = whole?.file ?? '';
     if (!whole) return;
     this.is_asked = false;
     this.moment = Math.min(whole.to, Math.max(whole.from, this.moment));

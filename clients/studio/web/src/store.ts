@@ -148,6 +148,13 @@ export async function refresh_details(path: string): Promise<void> {
   } catch { /* it has gone meanwhile; the next event of the system says so */ }
 }
 
+// A recording is shown after a run, or the other way round: nothing that is known holds.
+function forget_show(): void {
+  Object.assign(store, { system: { revision: 0, problem: '', components: [], connections: [], managers: [] }, has_system: false, world: null, time: null, signals: [], logs: [], past_states: null, selection: null });
+  store.details.clear();
+  for (const topic of ['system', 'signals', 'log', 'selection'] as const) changed(topic);
+}
+
 wire.on('status', (status) => {
   if (status === 'lost' || status === 'forbidden') {
     store.has_system = false;
@@ -156,6 +163,7 @@ wire.on('status', (status) => {
   changed('status');
 });
 wire.on('hello', (hello) => {
+  if (store.hello && store.hello.recording?.file !== hello.recording?.file) forget_show();
   store.hello = hello;
   changed('hello');
 });

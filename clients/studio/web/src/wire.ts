@@ -98,9 +98,17 @@ export class Wire {
     setTimeout(() => this.connect(), Math.min(3000, 250 * this.tries));
   }
 
+  // What is shown is another now, and does not answer what the one before was asked.
+  private forget(): void {
+    for (const { reject } of this.open.values()) reject(new Refused('what is shown has changed'));
+    this.open.clear();
+    this.queued = [];
+  }
+
   private take(data: string | ArrayBuffer): void {
     if (typeof data !== 'string') return this.take_binary(data);
     const event = JSON.parse(data);
+    if (event.op === 'hello') this.forget();
     if (event.op !== 'reply') return this.tell(event.op, event);
     const waiting = this.open.get(event.id);
     this.open.delete(event.id);

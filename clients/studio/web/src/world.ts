@@ -96,7 +96,7 @@ export class WorldView {
 
   private world_key = '';
   private key_of(): string {
-    return `${store.world?.server_id}|${store.world?.name}|${settings.collisions}`;
+    return `${store.hello?.recording?.file}|${store.world?.server_id}|${store.world?.name}|${settings.collisions}`;
   }
 
   private async load(version: number): Promise<void> {
