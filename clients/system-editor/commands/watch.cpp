@@ -96,21 +96,25 @@ class Rates {
     const auto& context = *shown;
     const auto rate = base::format_number(context.rate) + " Hz";
     if (!context.properties.contains("statistics.cycles")) return rate;
-    // Waiting that takes less than the period changes nothing.
-    const bool waits = number(context.properties, "statistics.mean_waiting_time") * context.rate >= 1;
-    const Look now{number(context.properties, "statistics.cycles"), Clock::now()};
+    const auto now = look(context.properties);
     const auto before = std::exchange(looks_[component.path], now);
     const auto passed = std::chrono::duration<double>(now.time - before.time).count();
+    const bool has_both = before.time != Clock::time_point{} && now.cycles >= before.cycles && passed > 0;
+    // Of the cycles between two looks: those of another state, long ago, say nothing. The first look, and one at a context that stands
+    // still, has all that were; so has one after millions of cycles, because contexts tell their means in whole nanoseconds.
+    const Look since = has_both && now.cycles > before.cycles && now.cycles < 1e7 ? before : Look();
+    const auto mean = [&](double Look::*total) { return (now.*total - since.*total) / std::max(now.cycles - since.cycles, 1.0); };
+    // Waiting that takes less than the period changes nothing.
+    const bool waits = mean(&Look::waited) * context.rate >= 1;
     char more[120] = "";
     auto text = waits ? "at most " + rate : rate;
-    if (before.time != Clock::time_point{} && now.cycles >= before.cycles && passed > 0)
-      std::snprintf(more, sizeof more, "%s, %.1f done", waits ? "" : " asked", (now.cycles - before.cycles) / passed);
+    if (has_both) std::snprintf(more, sizeof more, "%s, %.1f done", waits ? "" : " asked", (now.cycles - before.cycles) / passed);
     text += more;
-    const double mean = number(context.properties, "statistics.mean_execution_time");
-    std::snprintf(more, sizeof more, ", %.3g ms each, %.3g at most", 1000 * mean,
+    const double worked = std::max(mean(&Look::worked), 0.0);
+    std::snprintf(more, sizeof more, ", %.3g ms each, %.3g at most", 1000 * worked,
                   1000 * number(context.properties, "statistics.max_execution_time"));
     text += more;
-    if (mean * context.rate >= 1) return text + ", longer than its period";
+    if (worked * context.rate >= 1) return text + ", longer than its period";
     if (waits) text += ", waits for data";
     std::snprintf(more, sizeof more, ", %.0f missed", number(context.properties, "statistics.missed_cycles"));
     return text + more;
@@ -120,8 +124,14 @@ class Rates {
   using Clock = std::chrono::steady_clock;
   struct Look {
     double cycles = 0;
+    double worked = 0, waited = 0;  // [s] in all of them
     Clock::time_point time;
   };
+  static Look look(const Properties& properties) {
+    const double cycles = number(properties, "statistics.cycles");
+    return {cycles, cycles * number(properties, "statistics.mean_execution_time"),
+            cycles * number(properties, "statistics.mean_waiting_time"), Clock::now()};
+  }
   std::map<std::string, Look> looks_;  // by the component's path
 };
 
