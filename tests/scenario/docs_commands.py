@@ -114,11 +114,9 @@ def free_port():
         return one.getsockname()[1]
 
 
-# Worlds with the number of the simulator that this page has.
+# Whatever needs the number of the simulator that this page has gets it from RTMSIM_SERVER_ID; saved systems name none.
 def prepare(folder, number):
     shutil.copytree(source / "worlds", folder / "worlds")
-    for system in (folder / "worlds/systems").glob("*.xml"):
-        system.write_text(system.read_text().replace('rts:name="server_id" rts:data="0"', f'rts:name="server_id" rts:data="{number}"'))
     (folder / "build").mkdir()
     (folder / "build/release").symlink_to(build)
     port = free_port()
