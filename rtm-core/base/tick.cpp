@@ -1,5 +1,7 @@
 #include "base/tick.h"
 
+#include <utility>
+
 namespace base {
 namespace {
 
@@ -19,5 +21,8 @@ Tick* tick_in_lock_step() {
 
 ScopedTick::ScopedTick(Tick& tick) : previous_(scoped_tick()) { scoped_tick() = &tick; }
 ScopedTick::~ScopedTick() { scoped_tick() = previous_; }
+
+OutsideTicks::OutsideTicks() : previous_(std::exchange(scoped_tick(), nullptr)) {}
+OutsideTicks::~OutsideTicks() { scoped_tick() = previous_; }
 
 }  // namespace base

@@ -55,4 +55,17 @@ class ScopedTick {
   Tick* previous_;
 };
 
+// For its life this thread is in no tick: for calls to a servant, which in the same process are made on the caller's thread and shall be
+// like those from another process.
+class OutsideTicks {
+ public:
+  OutsideTicks();
+  ~OutsideTicks();
+  OutsideTicks(const OutsideTicks&) = delete;
+  OutsideTicks& operator=(const OutsideTicks&) = delete;
+
+ private:
+  Tick* previous_;
+};
+
 }  // namespace base

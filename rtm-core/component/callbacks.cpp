@@ -6,6 +6,7 @@
 #include <exception>
 
 #include "base/text.h"
+#include "base/tick.h"
 #include "corba/orb.h"
 
 namespace RTC {
@@ -173,6 +174,7 @@ ReturnCode_t RTObject_impl::on_reset(ExecutionContextHandle_t exec_handle) {
 
 ReturnCode_t RTObject_impl::on_execute(ExecutionContextHandle_t exec_handle) {
   return callUser("onExecute", [&] {
+    if (base::tick_in_lock_step()) m_configsets.update();  // at the edge that all ticks of one time have in common
     m_actionListeners.preaction_[PRE_ON_EXECUTE].notify(exec_handle);
     bool reads = false, writes = false;
     {
@@ -192,7 +194,7 @@ ReturnCode_t RTObject_impl::on_state_update(ExecutionContextHandle_t exec_handle
   return callUser("onStateUpdate", [&] {
     m_actionListeners.preaction_[PRE_ON_STATE_UPDATE].notify(exec_handle);
     const ReturnCode_t code = onStateUpdate(exec_handle);
-    m_configsets.update();
+    if (!base::tick_in_lock_step()) m_configsets.update();
     m_actionListeners.postaction_[POST_ON_STATE_UPDATE].notify(exec_handle, code);
     return code;
   });

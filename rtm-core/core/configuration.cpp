@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "base/chance.h"
 #include "base/text.h"
+#include "base/tick.h"
 
 namespace rt {
 
@@ -17,14 +19,48 @@ const std::string* find_value(const Configuration::Set& set, std::string_view na
 
 }  // namespace
 
-Configuration::Configuration() { shared_.lock()->sets.push_back({"default", {}}); }
+Configuration::Configuration() { shared_.lock()->state.sets.push_back({"default", {}}); }
 
-Configuration::Set* Configuration::find(Data& data, std::string_view id) {
-  const auto it = std::find_if(data.sets.begin(), data.sets.end(), [&](const Set& set) { return set.id == id; });
-  return it == data.sets.end() ? nullptr : &*it;
+Configuration::Set* Configuration::find(State& state, std::string_view id) {
+  const auto it = std::find_if(state.sets.begin(), state.sets.end(), [&](const Set& set) { return set.id == id; });
+  return it == state.sets.end() ? nullptr : &*it;
 }
 
-const Configuration::Set* Configuration::find(const Data& data, std::string_view id) { return find(const_cast<Data&>(data), id); }
+const Configuration::Set* Configuration::find(const State& state, std::string_view id) { return find(const_cast<State&>(state), id); }
+
+std::optional<Configuration::Moment> Configuration::arrival_now() {
+  if (base::tick_in_lock_step()) return std::nullopt;
+  const auto clock = base::lock_step_clock();
+  if (!clock || clock->moment() == 0 || clock->stands_still()) return std::nullopt;
+  return Moment{clock->era(), clock->now()};
+}
+
+std::optional<Configuration::Moment> Configuration::tick_now() {
+  const base::Tick* tick = base::tick_in_lock_step();
+  const auto clock = tick ? base::lock_step_clock() : nullptr;
+  return clock ? std::optional(Moment{clock->era(), tick->time()}) : std::nullopt;
+}
+
+// What a tick sees, or the newest for who is in none.
+Configuration::State& Configuration::state_at(const std::optional<Moment>& tick, Data& data) {
+  if (data.arrival && tick && data.arrival->era == tick->era && data.arrival->time >= tick->time) return *data.before;
+  data.arrival.reset();
+  data.before.reset();
+  return data.state;
+}
+
+template <class Change>
+bool Configuration::change(Change change) {
+  const auto arrival = arrival_now();
+  auto data = shared_.lock();
+  if (arrival && data->arrival != arrival) {
+    data->before = data->state;
+    data->arrival = arrival;
+  } else if (!arrival && data->before) {
+    change(*data->before);
+  }
+  return change(data->state);
+}
 
 void Configuration::merge(Set& to, const Set& from) {
   std::unordered_map<std::string, std::size_t> known;
@@ -46,7 +82,7 @@ bool Configuration::bind(const std::string& name, const std::string& default_val
     for (const Parameter& parameter : data->parameters)
       if (parameter.name == name) return false;
     data->parameters.push_back({name, default_value, shared_assign});
-    const Set* active = find(*data, data->active);
+    const Set* active = find(data->state, data->state.active);
     initial = assignments(*data, active ? *active : Set{}, name, false);
   }
   run({}, initial);
@@ -103,13 +139,16 @@ std::optional<Configuration::Update> Configuration::run(const std::string& set, 
 }
 
 std::optional<Configuration::Update> Configuration::update() {
+  if (!has_changed()) return std::nullopt;  // as nearly always
+  const auto tick = tick_now();
   std::string id;
   std::vector<Assignment> list;
   {
     auto data = shared_.lock();
-    if (!data->changed || !data->is_active) return std::nullopt;
-    data->changed = false;
-    const Set* set = find(*data, data->active);
+    State& state = state_at(tick, *data);
+    if (!state.changed || !state.is_active) return std::nullopt;
+    state.changed = false;
+    const Set* set = find(state, state.active);
     if (!set) return std::nullopt;
     id = set->id;
     list = assignments(*data, *set, std::nullopt, true);
@@ -118,10 +157,11 @@ std::optional<Configuration::Update> Configuration::update() {
 }
 
 std::optional<Configuration::Update> Configuration::update_from(const std::string& id, const std::optional<std::string>& parameter) {
+  const auto tick = tick_now();
   std::vector<Assignment> list;
   {
     auto data = shared_.lock();
-    const Set* set = find(*data, id);
+    const Set* set = find(state_at(tick, *data), id);
     if (!set) return std::nullopt;
     list = assignments(*data, *set, parameter, false);
     if (parameter && list.empty()) return std::nullopt;
@@ -129,64 +169,69 @@ std::optional<Configuration::Update> Configuration::update_from(const std::strin
   return run(id, list);
 }
 
-std::string Configuration::active_id() const { return shared_.lock()->active; }
-bool Configuration::is_active() const { return shared_.lock()->is_active; }
-bool Configuration::has_changed() const { return shared_.lock()->changed; }
-bool Configuration::has(std::string_view id) const { return find(*shared_.lock(), id) != nullptr; }
-std::vector<Configuration::Set> Configuration::sets() const { return shared_.lock()->sets; }
+std::string Configuration::active_id() const { return shared_.lock()->state.active; }
+bool Configuration::is_active() const { return shared_.lock()->state.is_active; }
+bool Configuration::has_changed() const { return shared_.lock()->state.changed; }
+bool Configuration::has(std::string_view id) const { return find(shared_.lock()->state, id) != nullptr; }
+std::vector<Configuration::Set> Configuration::sets() const { return shared_.lock()->state.sets; }
 
 std::optional<Configuration::Set> Configuration::set(std::string_view id) const {
   const auto data = shared_.lock();
-  const Set* set = find(*data, id);
+  const Set* set = find(data->state, id);
   return set ? std::optional(*set) : std::nullopt;
 }
 
 void Configuration::load(const Set& set) {
-  auto data = shared_.lock();
-  Set* known = find(*data, set.id);
-  if (!known) known = &data->sets.emplace_back(Set{set.id, {}});
-  merge(*known, set);
-  data->changed = true;
+  change([&](State& state) {
+    Set* known = find(state, set.id);
+    if (!known) known = &state.sets.emplace_back(Set{set.id, {}});
+    merge(*known, set);
+    return state.changed = true;
+  });
 }
 
 bool Configuration::set_values(const Set& set) {
-  auto data = shared_.lock();
-  Set* known = find(*data, set.id);
-  if (!known) {
-    if (set.id.empty()) return false;
-    known = &data->sets.emplace_back(Set{set.id, {}});
-    data->added.push_back(set.id);
-  }
-  merge(*known, set);
-  data->changed = true;
-  data->is_active = false;
-  return true;
+  return change([&](State& state) {
+    Set* known = find(state, set.id);
+    if (!known) {
+      if (set.id.empty()) return false;
+      known = &state.sets.emplace_back(Set{set.id, {}});
+      state.added.push_back(set.id);
+    }
+    merge(*known, set);
+    state.changed = true;
+    state.is_active = false;
+    return true;
+  });
 }
 
 bool Configuration::add(const Set& set) {
   if (set.id.empty()) return false;
-  auto data = shared_.lock();
-  if (find(*data, set.id)) return false;
-  data->sets.push_back(set);
-  data->added.push_back(set.id);
-  return true;
+  return change([&](State& state) {
+    if (find(state, set.id)) return false;
+    state.sets.push_back(set);
+    state.added.push_back(set.id);
+    return true;
+  });
 }
 
 bool Configuration::remove(std::string_view id) {
-  auto data = shared_.lock();
-  if (id == data->active || std::erase(data->added, id) == 0) return false;
-  std::erase_if(data->sets, [&](const Set& set) { return set.id == id; });
-  return true;
+  return change([&](State& state) {
+    if (id == state.active || std::erase(state.added, id) == 0) return false;
+    std::erase_if(state.sets, [&](const Set& set) { return set.id == id; });
+    return true;
+  });
 }
 
 bool Configuration::activate(std::string_view id) {
   if (id.empty() || id.front() == '_') return false;
-  auto data = shared_.lock();
-  if (!find(*data, id)) return false;
-  data->active = id;
-  data->is_active = true;
-  data->changed = true;
-  return true;
+  return change([&](State& state) {
+    if (!find(state, id)) return false;
+    state.active = id;
+    state.is_active = true;
+    state.changed = true;
+    return true;
+  });
 }
 
 }  // namespace rt

@@ -1,7 +1,13 @@
 // The configuration sets of a component: named lists of parameters, one of them active, and the variables that take the values of the
 // active one. Any thread; variables are assigned without a lock on the thread that calls bind() or update().
+//
+// In lock step a change that comes from outside while time passes takes effect at the next edge between two ticks, the same for every
+// component: whoever runs a tick at time t, in whatever phase, takes what came before t. A change by a thread that itself runs a tick, and
+// one while time stands still, counts at once.
 #pragma once
 
+#include <chrono>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -42,7 +48,7 @@ class Configuration {
   std::vector<std::string> bound_names() const;
 
   // If something has changed since the last time and a set is active, assigns the parameters whose text has changed. Variables that the set
-  // does not name keep their values.
+  // does not name keep their values. In a tick in lock step: what came before it.
   std::optional<Update> update();
   // Assigns all parameters of that set, or the named one, whatever is active. Nothing when there is no such set or parameter.
   std::optional<Update> update_from(const std::string& set, const std::optional<std::string>& parameter = std::nullopt);
@@ -73,13 +79,25 @@ class Configuration {
     std::shared_ptr<const Assign> assign;
     std::optional<std::string> assigned{};  // the text that the variable was assigned last
   };
-  struct Data {
+  struct State {
     std::vector<Set> sets{};
     std::vector<std::string> added{};
-    std::vector<Parameter> parameters{};
     std::string active = "default";
     bool is_active = true;
     bool changed = true;
+  };
+  // Simulated time: of a tick, or at which something came from outside.
+  struct Moment {
+    std::uint64_t era = 0;
+    std::chrono::nanoseconds time{0};
+    bool operator==(const Moment&) const = default;
+  };
+  struct Data {
+    State state{};
+    std::vector<Parameter> parameters{};
+    // What came last from outside, and everything as it was before that: for ticks at the same time.
+    std::optional<Moment> arrival{};
+    std::optional<State> before{};
   };
   struct Assignment {
     std::string name;
@@ -88,8 +106,15 @@ class Configuration {
     std::string default_value;
   };
 
-  static Set* find(Data& data, std::string_view id);
-  static const Set* find(const Data& data, std::string_view id);
+  static Set* find(State& state, std::string_view id);
+  static const Set* find(const State& state, std::string_view id);
+  // Those of this thread; to be asked without the lock.
+  static std::optional<Moment> arrival_now();
+  static std::optional<Moment> tick_now();
+  static State& state_at(const std::optional<Moment>& tick, Data& data);
+  // Calls bool change(State&).
+  template <class Change>
+  bool change(Change change);
   static void merge(Set& to, const Set& from);
   static std::vector<Assignment> assignments(Data& data, const Set& set, const std::optional<std::string>& only, bool changed_only);
   static std::optional<Update> run(const std::string& set, const std::vector<Assignment>& assignments);

@@ -4,6 +4,7 @@
 #include <rtm/SystemLogger.h>
 
 #include "support/component_fixture.h"
+#include "support/lock_step.h"
 #include "support/orb_environment.h"
 
 namespace {
@@ -162,6 +163,38 @@ TEST_F(ComponentTest, takes_configuration_values_on_activation) {
   ASSERT_TRUE(probe->wait_for("onStateUpdate"));
   EXPECT_EQ(seen, 4);
   probe->deactivate(0);
+}
+
+// Whoever sets them, in whatever process: here the tick of another component of the same process.
+TEST_F(ComponentTest, takes_parameters_that_come_during_a_tick_in_lock_step_at_the_next_edge) {
+  const auto clock = std::make_shared<support::LockStep>();
+  base::set_lock_step_clock(clock);
+  probe->initialize();
+  const auto execute = [&](std::chrono::nanoseconds time) {
+    support::TickAt tick(clock->time = time);
+    const base::ScopedTick scope(tick);
+    probe->on_execute(0);
+    const double during = probe->gain;
+    probe->on_state_update(0);
+    EXPECT_EQ(probe->gain, during) << "after the callbacks";
+    return during;
+  };
+  EXPECT_EQ(execute(std::chrono::milliseconds(10)), 1.5);
+  {
+    support::TickAt of_another(clock->time);
+    const base::ScopedTick scope(of_another);
+    const SDOPackage::Configuration_var configuration = probe->get_configuration();
+    SDOPackage::ConfigurationSet values;
+    values.id = "default";
+    values.configuration_data.length(1);
+    values.configuration_data[0].name = "gain";
+    values.configuration_data[0].value <<= "4";
+    configuration->set_configuration_set_values(values);
+    configuration->activate_configuration_set("default");
+  }
+  EXPECT_EQ(execute(std::chrono::milliseconds(10)), 1.5);
+  EXPECT_EQ(execute(std::chrono::milliseconds(20)), 4);
+  base::set_lock_step_clock(nullptr);
 }
 
 TEST_F(ComponentTest, starts_and_stops_again_and_again) {

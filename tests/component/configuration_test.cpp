@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 
 #include "base/text.h"
+#include "support/lock_step.h"
 
 namespace rt {
 namespace {
 
+using support::LockStep;
+using support::TickAt;
 using testing::ElementsAre;
 
 Configuration::Assign to_int(int& variable) {
@@ -104,6 +107,86 @@ TEST_F(ConfigurationTest, only_added_sets_that_are_not_active_can_be_removed) {
   configuration.activate("default");
   EXPECT_TRUE(configuration.remove("slow"));
   EXPECT_FALSE(configuration.has("slow"));
+}
+
+struct ConfigurationInLockStep : ConfigurationTest {
+  ConfigurationInLockStep() {
+    base::set_lock_step_clock(clock);
+    tick(0);
+  }
+  ~ConfigurationInLockStep() override { base::set_lock_step_clock(nullptr); }
+  // The gain that a tick of that time sees.
+  int tick(int milliseconds) {
+    clock->time = std::chrono::milliseconds(milliseconds);
+    TickAt now(clock->time);
+    const base::ScopedTick scope(now);
+    configuration.update();
+    return gain;
+  }
+  void set(const char* value) {
+    configuration.set_values({"default", {{"gain", value}}});
+    configuration.activate("default");
+  }
+  const std::shared_ptr<LockStep> clock = std::make_shared<LockStep>();
+};
+
+// Early and late phases of one tick take it at the same edge, whenever in between it came.
+TEST_F(ConfigurationInLockStep, a_change_from_outside_is_for_later_ticks) {
+  EXPECT_EQ(tick(10), 1);
+  set("2");
+  EXPECT_EQ(tick(10), 1);
+  EXPECT_EQ(tick(20), 2);
+  set("3");
+  clock->time = std::chrono::milliseconds(30);
+  set("4");
+  EXPECT_EQ(tick(30), 3);
+  EXPECT_EQ(configuration.set("default")->values.front().second, "4");
+  EXPECT_EQ(tick(40), 4);
+}
+
+TEST_F(ConfigurationInLockStep, a_set_that_is_activated_at_a_later_time_waits_for_that) {
+  configuration.set_values({"default", {{"gain", "2"}}});
+  clock->time = std::chrono::milliseconds(10);
+  configuration.activate("default");
+  EXPECT_EQ(tick(10), 1);
+  EXPECT_EQ(tick(20), 2);
+}
+
+TEST_F(ConfigurationInLockStep, a_change_by_the_tick_itself_counts_at_once) {
+  set("2");
+  TickAt now(clock->time);
+  const base::ScopedTick scope(now);
+  configuration.activate("fast");
+  configuration.update();
+  EXPECT_EQ(gain, 9);
+}
+
+TEST_F(ConfigurationInLockStep, a_change_in_a_tick_leaves_what_came_from_outside_for_the_next) {
+  configuration.bind("offset", "0", [](const char*) { return true; });
+  set("2");
+  TickAt now(clock->time);
+  {
+    const base::ScopedTick scope(now);
+    configuration.set_values({"default", {{"offset", "1"}}});
+    configuration.activate("default");
+    configuration.update();
+  }
+  EXPECT_EQ(gain, 1);
+  EXPECT_EQ(tick(10), 2);
+}
+
+TEST_F(ConfigurationInLockStep, a_change_while_time_stands_still_is_for_the_next_tick_of_any_time) {
+  clock->is_paused = true;
+  set("2");
+  clock->is_paused = false;
+  EXPECT_EQ(tick(0), 2);
+}
+
+TEST_F(ConfigurationInLockStep, a_change_of_the_run_before_a_reset_does_not_wait_for_its_time) {
+  clock->time = std::chrono::seconds(50);
+  set("2");
+  ++clock->runs;
+  EXPECT_EQ(tick(0), 2);
 }
 
 TEST(Configuration, has_a_default_set_from_the_start) {

@@ -6,6 +6,7 @@
 #include <rtm/SdoServiceAdmin.h>
 
 #include "base/text.h"
+#include "base/tick.h"
 #include "corba/gate.h"
 #include "corba/nv_list.h"
 #include "core/key_limits.h"
@@ -31,6 +32,7 @@ class Inside {
 
  private:
   corba::Gate::Visit visit_;
+  const base::OutsideTicks outside_;
 };
 
 coil::Properties to_properties(const ConfigurationSet& set) {
