@@ -5,6 +5,7 @@
 
 #include "foxglove.h"
 #include "shm/client.h"
+#include "shown_picture.h"
 #include "views/jpeg.h"
 
 namespace studio {
@@ -15,6 +16,26 @@ using namespace std::chrono_literals;
 constexpr auto look_period = 20ms;
 constexpr auto return_period = 500ms;  // a camera that is away is looked for so often
 constexpr char picture_octet = static_cast<char>(0x83);
+
+// Of those that the encoder does not take as they are, as ROS calls them; empty: there is no picture in it.
+std::string_view encoding_of(shm::Format format) {
+  switch (format) {
+    case shm::Format::depth_float:
+      return "32FC1";
+    case shm::Format::mono16:
+      return "mono16";
+    case shm::Format::bayer_rggb8:
+      return "bayer_rggb8";
+    case shm::Format::bayer_bggr8:
+      return "bayer_bggr8";
+    case shm::Format::bayer_gbrg8:
+      return "bayer_gbrg8";
+    case shm::Format::bayer_grbg8:
+      return "bayer_grbg8";
+    default:
+      return "";
+  }
+}
 
 }  // namespace
 
@@ -35,13 +56,20 @@ class Pictures::Camera {
     if (!frame) return;
     sequence_ = frame->sequence();
     time_ = std::chrono::nanoseconds(frame->head().stamp.sim_time_ns);
-    if (!channels::Jpeg::takes(static_cast<shm::Format>(frame->head().format))) {
-      problem_ = "camera " + name_ + ": its pictures have a format that is not shown";
+    if (channels::Jpeg::takes(static_cast<shm::Format>(frame->head().format))) {
+      const auto octets = jpeg_.encode(*frame);
+      problem_ = octets ? "" : "camera " + name_ + ": a frame is cut short";
+      if (octets) picture_.assign(octets->begin(), octets->end());
       return;
     }
-    const auto octets = jpeg_.encode(*frame);
-    problem_ = octets ? "" : "camera " + name_ + ": a frame is cut short";
-    if (octets) picture_.assign(octets->begin(), octets->end());
+    const auto& head = frame->head();
+    auto jpeg = jpeg_of({head.width,
+                         head.height,
+                         head.stride,
+                         encoding_of(static_cast<shm::Format>(head.format)),
+                         {reinterpret_cast<const char*>(frame->data().data()), frame->data().size()}});
+    problem_ = jpeg ? "" : "camera " + name_ + ": " + jpeg.error().message;
+    if (jpeg) picture_ = std::move(*jpeg);
   }
 
   const std::string& problem() const { return problem_; }
@@ -54,10 +82,18 @@ class Pictures::Camera {
   }
 
  private:
+  base::Result<shm::Iface> open_as(const std::string& type, const std::string& name) const {
+    return shm::Iface::open(server_id_, type == "depth" ? shm::IfaceType::depth : shm::IfaceType::camera, name);
+  }
+
   bool open() {
     if (Clock::now() < next_try_) return false;
     next_try_ = Clock::now() + return_period;
-    auto found = shm::Iface::open(server_id_, shm::IfaceType::camera, name_);
+    const auto name = camera_name(name_);
+    auto found = open_as(name.types.front(), name.iface);
+    if (!found && name.types.size() > 1) {
+      if (auto other = open_as(name.types.back(), name.iface)) found = std::move(other);
+    }
     if (!found) return problem_ = found.error().message, false;
     if (const auto subscribed = found->subscribe(); !subscribed) return problem_ = subscribed.error().message, false;
     problem_.clear();

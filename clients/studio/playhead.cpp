@@ -1,10 +1,10 @@
 #include "playhead.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "base/text.h"
 #include "foxglove.h"
+#include "shown_picture.h"
 
 namespace studio {
 namespace {
@@ -27,26 +27,6 @@ Frame event(std::uint32_t watch, Json more) {
   Json event{{"op", "values"}, {"watch", watch}};
   event.update(more);
   return text_frame(to_text(event));
-}
-
-// The octets of the JPEG in a sensor_msgs/msg/CompressedImage of our writer: a stamp, two texts, and then they.
-std::optional<std::string_view> compressed_in(std::string_view octets) {
-  constexpr std::size_t head = 4, stamp = 8;
-  if (octets.size() < head + stamp || octets[1] != 1) return std::nullopt;
-  octets.remove_prefix(head);
-  std::size_t at = stamp;
-  std::string_view part;
-  for (int i = 0; i < 3; ++i) {
-    at = (at + 3) & ~std::size_t{3};
-    std::uint32_t length = 0;
-    if (at + sizeof length > octets.size()) return std::nullopt;
-    std::memcpy(&length, octets.data() + at, sizeof length);
-    at += sizeof length;
-    if (length > octets.size() - at) return std::nullopt;
-    part = octets.substr(at, length);
-    at += length;
-  }
-  return part;
 }
 
 }  // namespace
@@ -237,10 +217,8 @@ Result<std::string> Playhead::picture(std::uint32_t number, Channel channel) {
   const Newest& sample = *newest(channel);
   const auto& schema = reader_.channels().at(channel).schema;
   const auto found = reader_.schemas().find(schema);
-  const auto jpeg = found != reader_.schemas().end() && found->second.name == "sensor_msgs/msg/CompressedImage"
-                        ? compressed_in(sample.octets)
-                        : std::nullopt;
-  if (!jpeg) return Error{"its pictures were recorded in a form that is not shown; rtse recording export --png writes them"};
+  const auto jpeg = jpeg_in_message(found == reader_.schemas().end() ? "" : found->second.name, sample.octets);
+  if (!jpeg) return jpeg.error();
   std::string frame{recorded_picture_octet, 0, 0, 0};
   put_u32(frame, number);
   put_u64(frame, static_cast<std::uint64_t>(std::max<std::int64_t>((sample.time - facts_->zero).count(), 0)));
@@ -279,8 +257,9 @@ Result<Playhead::News> Playhead::watch(std::uint32_t number, const WatchOrder& o
 }
 
 Result<Playhead::News> Playhead::watch_picture(std::uint32_t number, const std::string& iface) {
-  for (const char* type : {"camera", "depth"}) {
-    const auto channel = channel_of(iface_topic(type, iface) + "/image");
+  const auto camera = camera_name(iface);
+  for (const auto& type : camera.types) {
+    const auto channel = channel_of(iface_topic(type, camera.iface) + "/image");
     if (!channel) continue;
     Watch watch;
     watch.channels = {*channel};

@@ -198,6 +198,28 @@ const flows = [
     await looker.context().close();
     await rig.end(shut);
   }],
+  ['depth and raw pictures are seen, live and recorded', async ({ rig, browser }) => {
+    const world = await rig.server('tests/worlds/every_device.sdf');
+    const studio = await rig.studio();
+    const page = await open(browser, studio.url);
+    await is_ready(page);
+    await has_world(page);
+    await page.locator('#tab-images').click();
+    const seen = () => until('both pictures', () => page.evaluate(() => [...document.querySelectorAll('.images img')].filter((image) => image.complete && image.naturalWidth > 8).length === 2));
+    await page.locator('.images button', { hasText: /^rig::eyes$/ }).click();
+    await page.evaluate(() => window.studio.bottom.show_image('depth:rig::eyes'));
+    await seen();
+    await rig.call('rtse', '--ns', rig.names, 'record', '--views', '--raw-pictures', '-o', join(rig.work, 'raw.mcap'), '-t', '1', '-s', String(rig.server_id));
+    await page.evaluate(() => { for (const image of document.querySelectorAll('.images img')) image.removeAttribute('src'); });
+    await page.evaluate(() => window.studio.wire.request('open_recording', { file: 'raw.mcap' }));
+    await until('it is shown', () => page.evaluate(() => window.studio.store.hello.recording?.file === 'raw.mcap'));
+    await scrub(page, await page.evaluate(() => window.studio.store.hello.recording.to));
+    await seen();
+    same(page.problems, [], 'problems');
+    await page.context().close();
+    await rig.end(studio);
+    await rig.end(world);
+  }],
   ['files that are none, damaged or without a world', async ({ rig, file, browser }) => {
     const bad = join(rig.work, 'bad.mcap'), cut = join(rig.work, 'cut.mcap');
     writeFileSync(bad, 'hello');

@@ -15,6 +15,8 @@
 #include "hall.h"
 #include "outbox.h"
 #include "pose_board.h"
+#include "ros/messages.h"
+#include "shown_picture.h"
 #include "signal_book.h"
 #include "signals.h"
 
@@ -331,6 +333,52 @@ TEST(Hall, only_what_is_in_the_folder_is_opened) {
   for (const std::string name : {"../other.mcap", "link.mcap", "runs", "", "/etc/passwd", "d.mcap"})
     EXPECT_FALSE(studio::recording_in(folder, name).ok()) << name;
   fs::remove_all(top);
+}
+
+// ---- pictures
+
+bool is_jpeg(const base::Result<std::string>& jpeg) { return jpeg && jpeg->starts_with("\xff\xd8\xff"); }
+
+TEST(ShownPicture, each_form_of_a_camera_becomes_a_jpeg) {
+  for (const std::string_view encoding :
+       {"rgb8", "bgr8", "rgba8", "bgra8", "mono8", "mono16", "32FC1", "bayer_rggb8", "bayer_bggr8", "bayer_gbrg8", "bayer_grbg8"}) {
+    const std::string data(7 * 4 * 5, '\x3f');
+    EXPECT_TRUE(is_jpeg(studio::jpeg_of({7, 5, 7 * 4, encoding, data}))) << encoding;
+    EXPECT_TRUE(is_jpeg(studio::jpeg_of({1, 1, 4, encoding, data}))) << encoding;
+    EXPECT_FALSE(studio::jpeg_of({7, 6, 7 * 4, encoding, data}).ok()) << encoding;
+    EXPECT_FALSE(studio::jpeg_of({7, 5, 6, encoding, data}).ok()) << encoding;
+    EXPECT_FALSE(studio::jpeg_of({0, 5, 28, encoding, data}).ok()) << encoding;
+    EXPECT_FALSE(studio::jpeg_of({0xffffffff, 0xffffffff, 0xffffffff, encoding, data}).ok()) << encoding;
+  }
+  EXPECT_FALSE(studio::jpeg_of({1, 1, 4, "points", "1234"}).ok());
+}
+
+TEST(ShownPicture, a_camera_is_named_with_its_type_or_without) {
+  EXPECT_EQ(studio::camera_name("depth:rig::eyes").types, (std::vector<std::string>{"depth"}));
+  EXPECT_EQ(studio::camera_name("depth:rig::eyes").iface, "rig::eyes");
+  EXPECT_EQ(studio::camera_name("depth::eyes").types, (std::vector<std::string>{"camera", "depth"}));
+  EXPECT_EQ(studio::camera_name("depth::eyes").iface, "depth::eyes");
+}
+
+TEST(ShownPicture, messages_are_read_and_damaged_ones_refused) {
+  const std::string pixels(2 * 2 * 3, 'x');
+  ros::Image image;
+  image.height = image.width = 2;
+  image.encoding = "rgb8";
+  image.step = 6;
+  image.data = {reinterpret_cast<const std::uint8_t*>(pixels.data()), pixels.size()};
+  const auto octets = ros::encode(image);
+  const std::string_view whole(octets.data(), octets.size());
+  const auto jpeg = studio::jpeg_in_message("sensor_msgs/msg/Image", whole);
+  ASSERT_TRUE(is_jpeg(jpeg));
+  for (std::size_t length = 0; length < whole.size(); ++length)
+    EXPECT_FALSE(studio::jpeg_in_message("sensor_msgs/msg/Image", whole.substr(0, length)).ok()) << length;
+  ros::CompressedImage packed_image;
+  packed_image.format = "jpeg";
+  packed_image.data = {reinterpret_cast<const std::uint8_t*>(jpeg->data()), jpeg->size()};
+  const auto packed = ros::encode(packed_image);
+  EXPECT_EQ(*studio::jpeg_in_message("sensor_msgs/msg/CompressedImage", {packed.data(), packed.size()}), *jpeg);
+  EXPECT_FALSE(studio::jpeg_in_message("RTC::CameraImage", whole).ok());
 }
 
 }  // namespace

@@ -4,7 +4,7 @@ import { History } from './history';
 import { Playback, recording } from './playback';
 import { Plots } from './plots';
 import { keep, settings } from './settings';
-import { act, on, read_only, selected_model, store, wire } from './store';
+import { act, iface_id, on, read_only, selected_model, store, wire } from './store';
 import { short_path } from './tree';
 import { watch_image } from './watches';
 import type { Participant } from './wire';
@@ -239,19 +239,20 @@ export class Bottom {
   private offer_images(_world?: WorldView): void {
     const cameras = store.world?.ifaces.filter((i) => /camera|rgbd|depth/.test(i.type)) ?? [];
     for (const [name, stop] of this.stops) {
-      if (cameras.some((c) => c.name === name)) continue;
+      if (cameras.some((c) => iface_id(c) === name)) continue;
       stop();
       this.stops.delete(name);
     }
     if (this.stops.size > 0) return;
-    put(this.images, cameras.length === 0 ? h('p', { class: 'hint' }, 'This world has no camera.') : h('div', { class: 'offers' }, cameras.map((c) => button(`Show the pictures of ${c.name}`, { icon: 'camera', label: c.name }, () => this.show_image(c.name)))));
+    put(this.images, cameras.length === 0 ? h('p', { class: 'hint' }, 'This world has no camera.') : h('div', { class: 'offers' }, cameras.map((c) => button(`Show the pictures of ${c.name}${c.type === 'depth' ? ', depth' : ''}`, { icon: 'camera', label: camera_label(iface_id(c)) }, () => this.show_image(iface_id(c))))));
   }
 
+  // `iface`: with its type, "depth:robot::eyes".
   show_image(iface: string): void {
     if (settings.tab !== 'images') this.show_tab('images');
     if (this.stops.has(iface)) return;
     if (this.stops.size === 0) put(this.images);
-    const image = h('img', { alt: `What ${iface} sees` });
+    const image = h('img', { alt: `What ${camera_label(iface)} sees` });
     const when = h('span', { class: 'more' });
     const end = () => {
       this.stops.get(iface)?.();
@@ -259,7 +260,7 @@ export class Bottom {
       figure.remove();
       if (this.stops.size === 0) this.offer_images();
     };
-    const figure = h('figure', null, image, h('figcaption', null, iface, ' ', when, button('Close', { icon: 'close', class: 'plain small' }, end)));
+    const figure = h('figure', null, image, h('figcaption', null, camera_label(iface), ' ', when, button('Close', { icon: 'close', class: 'plain small' }, end)));
     this.images.append(figure);
     let url = '';
     this.stops.set(iface, watch_image(iface, { hz: 10 }, (jpeg, time) => {
@@ -267,13 +268,15 @@ export class Bottom {
       url = URL.createObjectURL(jpeg);
       image.src = url;
       when.textContent = `${time.toFixed(2)} s`;
-    }));
+    }, (why) => { when.textContent = why; }));
   }
 
   selected(): string | undefined {
     return selected_model();
   }
 }
+
+const camera_label = (id: string): string => id.replace(/^camera:/, '').replace(/^depth:(.*)$/, '$1 depth');
 
 function bar(share: number): HTMLElement {
   const fill = h('i');

@@ -65,6 +65,7 @@ export class Diagram {
     const port = server.split(':')[1] ?? '2809';
     let text = '';
     if (wire.status !== 'open') text = store.system.components.length > 0 ? '' : link_problem();
+    else if (hello?.recording) text = store.has_system && system.components.length === 0 ? 'This recording has no components.' : '';
     else if (system.problem) text = `No naming service answers at ${server}. Start one with components: \`rtcd --with-naming -o corba.nameservers:localhost:${port} RTCLaser\`. It appears here by itself.`;
     else if (store.has_system && system.components.length === 0) text = `The naming service at ${server} knows no components. Start some: \`rtcd RTCLaser RTCPosition2d LaserObstacleAvoid\`, or create them in a manager of the tree.`;
     this.element.classList.toggle('stale', wire.status !== 'open' && wire.status !== 'connecting');

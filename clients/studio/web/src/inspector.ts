@@ -155,7 +155,7 @@ export class Inspector {
       this.title(iface.name, iface.type),
       iface.model ? h('p', null, 'of ', link_to(iface.model, { kind: 'model', id: iface.model })) : null,
       h('div', { class: 'acts' },
-        has_picture ? button('Show its pictures', { icon: 'camera', label: 'Pictures' }, () => this.parts.show_image(iface.name)) : null,
+        has_picture ? button('Show its pictures', { icon: 'camera', label: 'Pictures' }, () => this.parts.show_image(iface_id(iface))) : null,
         has_picture ? button('Look through it', { icon: 'follow', label: 'Look through' }, () => this.parts.world.look_through(iface.name)) : null,
         iface.type.startsWith('position') && !read_only() ? button('Drive by keys or stick', { icon: 'drive', label: 'Drive' }, () => this.parts.drive(iface.name)) : null),
       values,
@@ -392,7 +392,10 @@ function format(value: unknown): string {
   return Math.abs(value) < 1e-4 ? value.toExponential(1) : String(Number(value.toPrecision(6)));
 }
 
-export const image_iface = (topic: string): string | undefined => store.world?.ifaces.find((i) => topic.includes(`/${i.name.replaceAll('::', '/')}`) && /camera|rgbd|depth/.test(i.type))?.name;
+export function image_iface(topic: string): string | undefined {
+  const found = store.world?.ifaces.find((i) => /camera|rgbd|depth/.test(i.type) && topic === `/sim/${i.type}/${i.name.replaceAll('::', '/')}`) ?? store.world?.ifaces.find((i) => topic.includes(`/${i.name.replaceAll('::', '/')}`) && /camera|rgbd|depth/.test(i.type));
+  return found && iface_id(found);
+}
 
 export function polar(canvas: HTMLCanvasElement, ranges: number[], info: { [key: string]: unknown }): void {
   const draw = canvas.getContext('2d')!;

@@ -4,7 +4,7 @@ import type { Values } from './wire';
 
 interface Wanted { topic: string; members?: string[]; hz?: number }
 interface Watch { wanted: Wanted; take: (values: Values) => void }
-interface ImageWatch { iface: string; take: (jpeg: Blob, time: number) => void; options: object }
+interface ImageWatch { iface: string; take: (jpeg: Blob, time: number) => void; fail: (why: string) => void; options: object }
 
 const watches = new Map<number, Watch>();
 const images = new Map<number, ImageWatch>();
@@ -24,17 +24,20 @@ export function watch(wanted: Wanted, take: (values: Values) => void): () => voi
   };
 }
 
-export function watch_image(iface: string, options: object, take: ImageWatch['take']): () => void {
+export function watch_image(iface: string, options: object, take: ImageWatch['take'], fail: ImageWatch['fail']): () => void {
   const id = next++;
-  images.set(id, { iface, take, options });
-  if (wire.status === 'open' && store.hello) wire.request('watch_image', { watch: id, iface, ...options }).catch(() => {});
+  images.set(id, { iface, take, fail, options });
+  if (wire.status === 'open' && store.hello) wire.request('watch_image', { watch: id, iface, ...options }).catch((error) => fail(error.message));
   return () => {
     images.delete(id);
     if (wire.status === 'open') wire.request('unwatch', { watch: id }).catch(() => {});
   };
 }
 
-wire.on('values', (values) => watches.get(values.watch)?.take(values));
+wire.on('values', (values) => {
+  watches.get(values.watch)?.take(values);
+  if (values.error) images.get(values.watch)?.fail(values.error);
+});
 wire.on('image', ({ watch: id, jpeg, time }) => images.get(id)?.take(jpeg, time));
 on('hello', () => {
   for (const [id, wanted] of watches) ask(id, wanted);

@@ -1,0 +1,36 @@
+// Pictures of cameras as people can see them in a browser: JPEG of whatever a camera gives. Depth is grey, near bright and far dark, by the
+// farthest of the picture; what a mosaic of colour filters has of a colour stands for its four pixels; of 16 bits the upper eight are
+// shown. Functions; any thread.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.h"
+
+namespace studio {
+
+// Rows from top to bottom. `encoding` as in sensor_msgs/msg/Image: "rgb8", "bgr8", "rgba8", "bgra8", "mono8", "mono16", "32FC1",
+// "bayer_rggb8", ...
+struct RawPicture {
+  std::uint32_t width = 0, height = 0;
+  std::size_t stride = 0;  // octets from row to row
+  std::string_view encoding;
+  std::string_view data;
+};
+
+// "depth:robot::eyes" is the one of this type, "robot::eyes" the camera, or else the depth camera, of this name.
+struct CameraName {
+  std::vector<std::string> types;  // in which it is looked for
+  std::string iface;
+};
+CameraName camera_name(const std::string& text);
+
+base::Result<std::string> jpeg_of(const RawPicture& picture);
+
+// A message of this type in CDR with the low octet first, as recordings of ours have it: sensor_msgs/msg/CompressedImage or Image.
+base::Result<std::string> jpeg_in_message(std::string_view type, std::string_view octets);
+
+}  // namespace studio
