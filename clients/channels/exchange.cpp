@@ -68,7 +68,7 @@ class Outlet {
   }
 
   std::optional<base::Error> failure() const { return data_.lock()->failure; }
-  void on_failure(std::function<void()> told) {
+  void on_failure(const std::function<void()>& told) {
     bool has_failed = false;
     {
       auto data = data_.lock();
@@ -254,7 +254,7 @@ std::string_view cdr_head(bool is_little_endian) {
   return is_little_endian ? "\0\1\0\0"sv : "\0\0\0\0"sv;
 }
 
-void Exchange::on_failure(std::function<void()> told) {
+void Exchange::on_failure(const std::function<void()>& told) {
   std::vector<std::shared_ptr<Outlet>> outlets;
   {
     auto data = state_->data.lock();

@@ -62,7 +62,7 @@ class Exchange final {
   // What the first sink that failed said.
   std::optional<base::Error> failure() const;
   // Called once for each sink that fails, on its thread; also for those that came before. It must not wait, nor call the exchange.
-  void on_failure(std::function<void()> told);
+  void on_failure(const std::function<void()>& told);
 
  private:
   struct State;

@@ -99,7 +99,7 @@ class Definitions {
     std::string text = definitions.texts_.front().second;
     for (std::size_t i = 1; i < definitions.texts_.size(); ++i) {
       const auto& [name, own] = definitions.texts_[i];
-      text += std::string(80, '=') + "\nMSG: " + name + "\n" + own;
+      text.append(80, '=').append("\nMSG: ").append(name).append("\n").append(own);
     }
     return text;
   }
