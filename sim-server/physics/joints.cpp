@@ -102,11 +102,15 @@ std::optional<Line> line_of_gear(const Coupling& at) {
   return Line{at.anchor1 + direction.cross(at.axis1) * lever, direction};
 }
 
+int axis_count_of(const JointDef& def) {
+  return def.kind == Kind::gearbox ? 0 : static_cast<int>(std::min<std::size_t>(def.axes.size(), 2));
+}
+
 }  // namespace
 
 JointInstance::JointInstance(dWorldID world, const PhysicsDef& physics, const JointDef& def, std::uint32_t index,
                              const Eigen::Isometry3d& frame, dBodyID parent, dBodyID child)
-    : def_(&def), index_(index), world_(world), parent_(parent), child_(child) {
+    : def_(&def), axis_count_(axis_count_of(def)), index_(index), world_(world), parent_(parent), child_(child) {
   make(world, frame);
   const Eigen::Vector3d axis = frame.linear() * (def.axes.empty() ? Eigen::Vector3d(0, 0, 1) : def.axes[0].xyz);
   seat_on_parent_ = seat_on(parent, frame, axis), seat_on_child_ = seat_on(child, frame, axis);
@@ -116,10 +120,6 @@ JointInstance::JointInstance(dWorldID world, const PhysicsDef& physics, const Jo
     dJointSetFeedback(joint_.id(), feedback_.get());
   }
   for (int i = 0; i < axis_count(); ++i) set_axis(i, physics.step);
-}
-
-int JointInstance::axis_count() const {
-  return def_->kind == Kind::gearbox ? 0 : static_cast<int>(std::min<std::size_t>(def_->axes.size(), 2));
 }
 
 void JointInstance::make(dWorldID world, const Eigen::Isometry3d& frame) {

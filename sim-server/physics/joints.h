@@ -40,7 +40,7 @@ class JointInstance {
 
   std::uint32_t index() const { return index_; }  // in ModelDef::joints
   const JointDef& def() const { return *def_; }
-  int axis_count() const;
+  int axis_count() const { return axis_count_; }
   JointState state(int axis) const;
   // Force and torque that the joint put on the child in the last step, at the child's centre of mass; empty while it is not measured.
   std::optional<Wrench> load() const;
@@ -82,6 +82,7 @@ class JointInstance {
   void couple(dJointGroupID step_joints, double dt);
 
   const JointDef* def_;
+  int axis_count_;  // asked for in every step, when the definition, which is the model's own, is out of the cache
   std::uint32_t index_;
   dWorldID world_;
   dBodyID parent_, child_;
