@@ -69,6 +69,19 @@ base::Result<void> decompress_lz4(std::string_view octets, std::uint64_t size, s
   return {};
 }
 
+// Polynomials over two elements as CRC-32 has them: the highest bit is x^0.
+constexpr std::uint32_t crc_polynomial = 0xedb88320U;
+constexpr std::uint32_t one_octet = 0x00800000U;  // x^8
+
+std::uint32_t crc_product(std::uint32_t a, std::uint32_t b) {
+  std::uint32_t product = 0;
+  for (std::uint32_t bit = 0x80000000U; bit != 0; bit >>= 1U) {
+    if ((a & bit) != 0) product ^= b;
+    b = (b & 1U) != 0 ? (b >> 1U) ^ crc_polynomial : b >> 1U;
+  }
+  return product;
+}
+
 }  // namespace
 
 std::string_view to_text(Compression compression) {
@@ -93,28 +106,25 @@ Compressor::Compressor(Compression compression) : compression_(compression), con
 
 Compressor::~Compressor() = default;
 
-base::Result<void> Compressor::compress(std::string_view octets, std::string& out) {
+base::Result<std::string_view> Compressor::compress(std::string_view octets, std::string& room) {
   switch (compression_) {
     case Compression::none:
-      out.assign(octets);
-      return {};
+      return octets;
     case Compression::zstd: {
       if (!context_->zstd) return base::Error{"no memory to compress with"};
-      out.resize(ZSTD_compressBound(octets.size()));
-      const std::size_t size = ZSTD_compressCCtx(context_->zstd.get(), out.data(), out.size(), octets.data(), octets.size(), zstd_level);
+      room.resize(std::max(room.size(), ZSTD_compressBound(octets.size())));
+      const std::size_t size = ZSTD_compressCCtx(context_->zstd.get(), room.data(), room.size(), octets.data(), octets.size(), zstd_level);
       if (ZSTD_isError(size)) return base::Error{std::string("zstd: ") + ZSTD_getErrorName(size)};
-      out.resize(size);
-      return {};
+      return std::string_view(room).substr(0, size);
     }
     case Compression::lz4: {
-      out.resize(LZ4F_compressFrameBound(octets.size(), nullptr));
-      const std::size_t size = LZ4F_compressFrame(out.data(), out.size(), octets.data(), octets.size(), nullptr);
+      room.resize(std::max(room.size(), LZ4F_compressFrameBound(octets.size(), nullptr)));
+      const std::size_t size = LZ4F_compressFrame(room.data(), room.size(), octets.data(), octets.size(), nullptr);
       if (LZ4F_isError(size)) return base::Error{std::string("lz4: ") + LZ4F_getErrorName(size)};
-      out.resize(size);
-      return {};
+      return std::string_view(room).substr(0, size);
     }
   }
-  return {};
+  return octets;
 }
 
 base::Result<void> decompress(std::string_view name, std::string_view octets, std::uint64_t size, std::string& out) {
@@ -132,6 +142,16 @@ base::Result<void> decompress(std::string_view name, std::string_view octets, st
 // libdeflate takes a null pointer for the wish to begin anew.
 std::uint32_t crc32(std::uint32_t before, std::string_view octets) {
   return octets.empty() ? before : libdeflate_crc32(before, octets.data(), octets.size());
+}
+
+// Octets that follow multiply the polynomial of what came before by x to the power of eight times their number.
+std::uint32_t joined_crc32(std::uint32_t before, std::uint32_t crc, std::uint64_t size) {
+  std::uint32_t power = one_octet;
+  for (; size > 0; size >>= 1U) {
+    if ((size & 1U) != 0) before = crc_product(before, power);
+    power = crc_product(power, power);
+  }
+  return before ^ crc;
 }
 
 }  // namespace mcap

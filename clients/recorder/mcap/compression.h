@@ -19,8 +19,8 @@ class Compressor final {
   Compressor(const Compressor&) = delete;
   Compressor& operator=(const Compressor&) = delete;
   ~Compressor();
-  // Into `out`, whose room is used again. An error of the library names it.
-  base::Result<void> compress(std::string_view octets, std::string& out);
+  // What stands in the file: `octets` themselves without compression, else `room`, which is used again. An error of the library names it.
+  base::Result<std::string_view> compress(std::string_view octets, std::string& room);
 
  private:
   struct Context;
@@ -32,5 +32,7 @@ class Compressor final {
 base::Result<void> decompress(std::string_view name, std::string_view octets, std::uint64_t size, std::string& out);
 
 std::uint32_t crc32(std::uint32_t before, std::string_view octets);
+// Of `before` and then `size` octets whose own is `crc`, without a look at them.
+std::uint32_t joined_crc32(std::uint32_t before, std::uint32_t crc, std::uint64_t size);
 
 }  // namespace mcap

@@ -26,7 +26,9 @@ struct Writer::State {
   State(File file_, const WriterOptions& options_) : file(std::move(file_)), options(options_), compressor(options_.compression) {}
 
   base::Result<void> begin();
-  base::Result<void> append(std::string_view first, std::string_view second = {});
+  base::Result<void> append(std::string_view octets);
+  base::Result<void> append_chunk(std::string_view records, std::uint32_t records_crc);
+  base::Result<void> put_out(std::string_view first, std::string_view second = {});
   base::Result<void> close_chunk();
   void introduce(std::uint16_t channel);
   base::Result<void> finish();
@@ -48,11 +50,11 @@ struct Writer::State {
   Time last{0};
   std::vector<std::vector<IndexEntry>> indexes;  // of the open chunk, by channel
   std::vector<std::uint16_t> in_chunk;           // channels with messages in it
-  std::string compressed;
+  std::string room;                              // of the compressor
   std::string head;
 };
 
-base::Result<void> Writer::State::append(std::string_view first_part, std::string_view second) {
+base::Result<void> Writer::State::put_out(std::string_view first_part, std::string_view second) {
   if (failure) return *failure;
   const auto done = file.append(first_part, second);
   if (!done) {
@@ -61,8 +63,20 @@ base::Result<void> Writer::State::append(std::string_view first_part, std::strin
     return done;
   }
   written += first_part.size() + second.size();
-  crc = crc32(crc32(crc, first_part), second);
   return {};
+}
+
+base::Result<void> Writer::State::append(std::string_view octets) {
+  const auto done = put_out(octets);
+  if (done) crc = crc32(crc, octets);
+  return done;
+}
+
+// `head` and then the records. Each octet is looked at once for both sums.
+base::Result<void> Writer::State::append_chunk(std::string_view records, std::uint32_t records_crc) {
+  const auto done = put_out(head, records);
+  if (done) crc = joined_crc32(crc32(crc, head), records_crc, records.size());
+  return done;
 }
 
 base::Result<void> Writer::State::begin() {
@@ -88,28 +102,30 @@ void Writer::State::introduce(std::uint16_t channel) {
 
 base::Result<void> Writer::State::close_chunk() {
   if (chunk.empty()) return {};
-  const auto done = compressor.compress(chunk, compressed);
-  if (!done) return failure.emplace(done.error());
+  const auto packed = compressor.compress(chunk, room);
+  if (!packed) return failure.emplace(packed.error());
+  const std::uint32_t chunk_crc = crc32(0, chunk);
 
   ChunkEntry entry;
   entry.first = first;
   entry.last = last;
   entry.start = written;
   entry.compression = to_text(options.compression);
-  entry.compressed = compressed.size();
+  entry.compressed = packed->size();
   entry.uncompressed = chunk.size();
 
   head.clear();
   head.push_back(static_cast<char>(Opcode::chunk));
-  put(head, static_cast<std::uint64_t>(8 + 8 + 8 + 4 + 4 + entry.compression.size() + 8 + compressed.size()));
+  put(head, static_cast<std::uint64_t>(8 + 8 + 8 + 4 + 4 + entry.compression.size() + 8 + packed->size()));
   put(head, first);
   put(head, last);
   put(head, entry.uncompressed);
-  put(head, crc32(0, chunk));
+  put(head, chunk_crc);
   put_text(head, entry.compression);
   put(head, entry.compressed);
-  entry.length = head.size() + compressed.size();
-  if (const auto appended = append(head, compressed); !appended) return appended;
+  entry.length = head.size() + packed->size();
+  const std::uint32_t packed_crc = options.compression == Compression::none ? chunk_crc : crc32(0, *packed);
+  if (const auto appended = append_chunk(*packed, packed_crc); !appended) return appended;
 
   std::string index;
   std::sort(in_chunk.begin(), in_chunk.end());
