@@ -122,7 +122,10 @@ void WorldWatch::run() {
 
 void WorldWatch::attach() {
   auto found = shm::Requester::open(server_id_);
-  if (!found) return detach(found.error().message);
+  if (!found) {
+    const bool is_there = !shm::find_segments(server_id_).empty();
+    return detach(is_there ? found.error().message : "no simulator of number " + std::to_string(server_id_) + " runs");
+  }
   simulator_ = std::move(*found);
   seen_sample_ = 0;
   version_ = 0;

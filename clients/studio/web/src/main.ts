@@ -129,6 +129,7 @@ const status_bar = h('footer', { class: 'status' }, undo_button, act_text, act_c
 on('acts', () => {
   const last = store.acts[store.acts.length - 1];
   act_text.textContent = last?.error ? `${last.text}: ${last.error}` : last?.text ?? '';
+  act_text.title = act_text.textContent;
   status_bar.classList.toggle('failed', Boolean(last?.error));
   act_command.textContent = last?.command ?? '';
   act_command.title = last?.command ?? '';

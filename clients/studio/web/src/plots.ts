@@ -229,10 +229,11 @@ export class Plots {
   }
 }
 
-// Some room about the lines, and about one that is level.
+// Some room about the lines, and about one that is level but for rounding.
 function around(low: number | null, high: number | null): [number, number] {
   if (low === null || high === null) return [0, 1];
-  const room = high > low ? (high - low) * 0.08 : Math.abs(high) * 0.5 || 1;
+  const size = Math.max(Math.abs(low), Math.abs(high));
+  const room = high - low > 1e-9 + 1e-9 * size ? (high - low) * 0.08 : size > 1e-9 ? size * 0.5 : 1;
   return [low - room, high + room];
 }
 
