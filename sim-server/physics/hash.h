@@ -19,9 +19,8 @@ class StateHash {
   void add(const Eigen::Vector3d& v) { add(v.x()), add(v.y()), add(v.z()); }
   void add(const Eigen::Quaterniond& q) { add(q.w()), add(q.x()), add(q.y()), add(q.z()); }
   void add(std::string_view text) {
-    const std::size_t begin = words_.size();
-    words_.resize(begin + text.size());
-    for (std::size_t i = 0; i < text.size(); ++i) words_[begin + i] = static_cast<unsigned char>(text[i]);
+    const auto* octets = reinterpret_cast<const unsigned char*>(text.data());
+    words_.insert(words_.end(), octets, octets + text.size());
   }
   // For the next one, in the room of this one.
   void clear() { words_.clear(); }

@@ -36,9 +36,10 @@ class WorldHashes {
     std::uint32_t key = 0;
     std::uint64_t hash = 0;
     bool is_known = false;
+    std::vector<std::uint64_t> state{};  // as of the last entry
   };
   Leaf& leaf(std::vector<Leaf>& leaves, std::size_t index, std::string_view type, std::string_view name);
-  bool is_new(Leaf& leaf) const;
+  bool is_new(Leaf& leaf);
   void record_models(const Simulation& simulation);
   void record_devices(const Simulation& simulation);
 
