@@ -175,33 +175,37 @@ const flows = [
     await in_state(page, 'inactive', 3);
   }],
   ['the last minutes of a live run are scrolled back to', async ({ page, rig }) => {
-    const shown = () => page.evaluate((name) => window.studio.world.world.models.get(name).canonical.position.toArray(), robot);
-    const there = async () => JSON.parse(await rig.simctl('--json', 'pose', robot)).position;
-    const now = () => page.evaluate(() => window.studio.store.time.sim_time);
-    await page.locator('#activate-all').click();
-    await in_state(page, 'active', 3);
-    await drives(rig);
-    const then = await now(), place = await shown();
-    await until('it has gone on', async () => { const [x, y] = await there(); return (await now()) > then + 1.5 && Math.hypot(x - place[0], y - place[1]) > 0.2; });
-    await page.locator('#deactivate-all').click();
-    await in_state(page, 'inactive', 3);
+    const shown = () => page.evaluate((name) => [window.studio.store.time.sim_time, ...window.studio.world.world.models.get(name).canonical.position.toArray()], robot);
+    const far = async ([, x, y]) => { const [, a, b] = await shown(); return Math.hypot(a - x, b - y); };
     const look = (time) => page.locator('.scrub').evaluate((slider, to) => {
       slider.value = String(to);
       slider.dispatchEvent(new Event('input', { bubbles: true }));
     }, time);
-    await look(then);
-    const near = async (at, far) => { const [x, y] = await shown(); return Math.hypot(x - at[0], y - at[1]) < far; };
-    await until('it is where it was', () => near(place, 0.15));
+    const can_look = (time) => until(`${time} s are behind`, () => page.locator('.scrub').evaluate((slider, to) => Number(slider.max) > to + 0.5, time));
+    await page.locator('#activate-all').click();
+    await in_state(page, 'active', 3);
+    await drives(rig);
+    const then = await shown();
+    await can_look(then[0]);
+    await page.locator('#deactivate-all').click();
+    await in_state(page, 'inactive', 3);
+    const other = [0, 3.5, 3.5];
+    await rig.simctl('pose', robot, '3.5', '3.5', '0');
+    await until('it is somewhere else', async () => (await far(other)) < 0.5);
+    await can_look((await shown())[0]);
+    await look(then[0]);
+    await until('it is where it was', async () => (await far(then)) < 1.5);
     await in_state(page, 'active', 3);
     // What comes meanwhile is kept.
-    const before = await now();
-    await until('time goes on', () => page.locator('.scrub').evaluate((slider, to) => Number(slider.max) > to, before + 1));
-    await look(before + 0.6);
+    const before = await page.evaluate(() => window.studio.store.time.sim_time);
+    await can_look(before + 1);
+    await look(before + 1);
+    await until('it is somewhere else', async () => (await far(other)) < 0.5);
     await in_state(page, 'inactive', 3);
     check((await page.locator('#live').getAttribute('aria-pressed')) === 'false', 'not live');
     await page.locator('#live').click();
-    const at = await there();
-    await until('it is where it is', () => near(at, 0.02));
+    await until('now', async () => (await page.locator('#live').getAttribute('aria-pressed')) === 'true' && (await far(other)) < 0.5);
+    await rig.simctl('pose', robot, '-4.5', '-4.5', '0.785');
   }],
   ['selecting the robot marks its components', async ({ page }) => {
     await page.evaluate((id) => window.studio.select({ kind: 'model', id }), robot);
