@@ -110,7 +110,7 @@ void SimTimeContext::run_tick(const shm::Tick& tick) {
 
 void SimTimeContext::run(shm::Participant& participant) {
   shm::Tick tick;
-  while (threadRunning()) {
+  while (goes_on()) {
     switch (participant.wait(tick, longest_wait)) {
       case shm::Participant::State::tick:
         run_tick(tick);
@@ -132,7 +132,7 @@ void SimTimeContext::run(shm::Participant& participant) {
 }
 
 int SimTimeContext::svc() {
-  while (threadRunning()) {
+  while (goes_on()) {
     if (const auto participant = join()) {
       run(*participant);
       participant_.lock()->reset();  // ours is the last one, but for who interrupts it right now
@@ -155,9 +155,17 @@ void SimTimeContext::onWakeUp() {
   interrupt();
 }
 
+RTC::ReturnCode_t SimTimeContext::onStarted() {
+  is_to_stop_.store(false);
+  return RTC::PeriodicExecutionContext::onStarted();
+}
+
 RTC::ReturnCode_t SimTimeContext::onStopping() {
+  is_to_stop_.store(true);
   interrupt();
-  return RTC::PeriodicExecutionContext::onStopping();
+  const auto stopped = RTC::PeriodicExecutionContext::onStopping();
+  if (stopped != RTC::RTC_OK) is_to_stop_.store(false);  // a callback has not returned; the thread goes on behind it
+  return stopped;
 }
 
 RTC::ReturnCode_t SimTimeContext::onSetRate(double) {

@@ -24,6 +24,7 @@
 #include <rtm/PeriodicExecutionContext.h>
 #include <shm/lockstep.h>
 
+#include <atomic>
 #include <memory>
 #include <string>
 
@@ -40,6 +41,7 @@ class SimTimeContext : public RTC::PeriodicExecutionContext {
   int svc() override;
 
  protected:
+  RTC::ReturnCode_t onStarted() override;
   RTC::ReturnCode_t onStopping() override;
   RTC::ReturnCode_t onSetRate(double rate) override;
   void onWakeUp() override;
@@ -52,6 +54,7 @@ class SimTimeContext : public RTC::PeriodicExecutionContext {
   void run_tick(const shm::Tick& tick);
   std::vector<std::uint64_t> member_states() const;
   void interrupt();
+  bool goes_on() const { return !is_to_stop_.load() && threadRunning(); }
   void say_once(const std::string& line);
   std::string participant_name() const;
 
@@ -59,12 +62,13 @@ class SimTimeContext : public RTC::PeriodicExecutionContext {
   const std::shared_ptr<iface::SimulatorTime> simulator_time_ = std::make_shared<iface::SimulatorTime>();
   int server_id_ = 0;
   std::uint32_t phase_ = 1;
-  std::string participant_as_;     // empty: the owner's name
-  bool waits_for_members_ = true;  // in lock step, for ever; false: the option member_timeout says how long
-  SimTick tick_;                   // svc() only
-  std::string hash_log_;           // where it is still to be made
-  std::string said_;               // the last line, not to be said again
-  bool is_waiting_ = false;        // and has said so
+  std::string participant_as_;           // empty: the owner's name
+  bool waits_for_members_ = true;        // in lock step, for ever; false: the option member_timeout says how long
+  SimTick tick_;                         // svc() only
+  std::string hash_log_;                 // where it is still to be made
+  std::string said_;                     // the last line, not to be said again
+  bool is_waiting_ = false;              // and has said so
+  std::atomic<bool> is_to_stop_{false};  // true before the thread is interrupted, so that it does not wait once more
   base::Guarded<std::shared_ptr<shm::Participant>, base::Rank::context> participant_;
 };
 
