@@ -250,10 +250,10 @@ def looks_like_the_world(samples, moving):
     assert jointed
 
 
-def recorded_run(name, duration):
+def recorded_run(name, duration, *words):
     path = rig.path(name)
     done = json.loads(rig.rtse("--json", "run", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "--world", f"{rig.source}/worlds/obstacle_course.sdf",
-                               "--duration", str(duration), "--record", path).splitlines()[-1])
+                               "--duration", str(duration), "--record", path, *words).splitlines()[-1])
     return path, done["state_hash"]
 
 
@@ -373,6 +373,16 @@ def gone_to():
     done = subprocess.run([f"{rig.bin_dir}/rtse", "--json", "goto", path, "1"], input="n\nb 2\nt 0.5\nq\n", stdout=subprocess.PIPE, timeout=120, text=True)
     times = [json.loads(line)["time"] for line in done.stdout.splitlines()]
     assert times == [1, 1.1, 0.9, 0.5] and done.returncode == 0, done
+
+
+# The processes of others are started again from what the recording says, are named, and stand at the same moment.
+def gone_to_with_others():
+    os.environ["PATH"] = f"{rig.bin_dir}:{os.environ['PATH']}"
+    path, whole = recorded_run("run.mcap", 3, "--run-file", f"{rig.source}/worlds/systems/obstacle_avoidance.run.yaml")
+    there, stats = rig.rtse("--json", "goto", path, "3", "--then", f"{rig.bin_dir}/simctl --json stats").split("\n", 1)
+    processes = {process["what"]: process["pid"] for process in json.loads(there)["processes"]}
+    assert processes.get("process of LaserObstacleAvoid0", 0) > 0, processes
+    assert json.loads(stats)["hash"] == whole and json.loads(stats)["sim_time"] == 3, (stats, whole)
 
 
 # The run of a recording, again.
