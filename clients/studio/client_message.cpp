@@ -107,6 +107,17 @@ Result<ClientMessage> parse_message(std::string_view text) {
 
 std::string to_text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
+std::string reply_text(std::int64_t id, const Result<Json>& result, const std::string& command) {
+  Json reply{{"op", "reply"}, {"id", id}};
+  if (result) {
+    reply["result"] = *result;
+  } else {
+    reply["error"] = result.error().message;
+  }
+  if (!command.empty()) reply["command"] = command;
+  return to_text(reply);
+}
+
 Result<std::string> text_of(const Json& args, const std::string& key) {
   const Json& value = member(args, key);
   if (!value.is_string()) return expected(key, "a text");

@@ -43,6 +43,8 @@ base::Result<ClientMessage> parse_message(std::string_view text);
 
 // JSON as text for the wire; what is no UTF-8 becomes a replacement character.
 std::string to_text(const Json& json);
+// The text that answers the request `id`: a result or an error, and what one would have typed, if anything.
+std::string reply_text(std::int64_t id, const base::Result<Json>& result, const std::string& command = "");
 
 // ---- arguments of requests: the value, or an error that names it and says what was expected ----
 base::Result<std::string> text_of(const Json& args, const std::string& key);

@@ -166,14 +166,7 @@ void Hall::show(WebHandlers handlers) {
 void Hall::answer(std::uint64_t viewer, std::int64_t id, const Result<Json>& result, const std::string& command) {
   const auto found = viewers_.find(viewer);
   if (found == viewers_.end()) return;
-  Json reply{{"op", "reply"}, {"id", id}};
-  if (result) {
-    reply["result"] = *result;
-  } else {
-    reply["error"] = result.error().message;
-  }
-  if (!command.empty()) reply["command"] = command;
-  found->second->send(text_frame(to_text(reply)));
+  found->second->send(text_frame(reply_text(id, result, command)));
 }
 
 void Hall::clear_away() {

@@ -325,13 +325,7 @@ void RecordedStudio::finish(std::uint64_t viewer, std::int64_t id, const Result<
   Guest& guest = found->second;
   if (guest.open_requests > 0) --guest.open_requests;
   for (const auto& [key, frame] : news) guest.viewer->send_newest(key, frame);
-  Json reply{{"op", "reply"}, {"id", id}};
-  if (result) {
-    reply["result"] = *result;
-  } else {
-    reply["error"] = result.error().message;
-  }
-  guest.viewer->send(text_frame(to_text(reply)));
+  guest.viewer->send(text_frame(reply_text(id, result)));
 }
 
 }  // namespace studio

@@ -320,14 +320,7 @@ void Studio::finish_act(std::uint64_t viewer, std::int64_t id, const std::string
 }
 
 void Studio::answer(Guest& guest, std::int64_t id, const Result<Json>& result, const std::string& command) {
-  Json reply{{"op", "reply"}, {"id", id}};
-  if (result) {
-    reply["result"] = *result;
-  } else {
-    reply["error"] = result.error().message;
-  }
-  if (!command.empty()) reply["command"] = command;
-  guest.viewer->send(text_frame(to_text(reply)));
+  guest.viewer->send(text_frame(reply_text(id, result, command)));
 }
 
 bool Studio::fetch(const std::string& path, const std::string& query, const Answer& answer) {
