@@ -9,4 +9,8 @@ namespace base {
 // in. Empty when it is not there.
 std::string own_account_door();
 
+// What omniNames is started with besides. Of omniORB 4.2 several threads of one connection use memory that is free already when messages
+// come in fragments as it does not expect them; a naming service calls nobody, so nothing of it waits for a second thread.
+inline constexpr const char* one_thread_a_connection[] = {"-ORBmaxServerThreadPerConnection", "1"};
+
 }  // namespace base

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "corba/action_call.h"
+#include "corba/object_names.h"
 #include "corba/orb.h"
 #include "corba/remote_participant.h"
 #include "corba/return_code.h"
@@ -102,7 +103,10 @@ RTC::ReturnCode_t ExecutionContextBase::bindComponent(RTC::RTObject_impl* rtc) {
   member.owner = true;
   impl_->context.add(std::make_shared<Impl::Entry>(*this, std::move(member), std::make_shared<LocalParticipant>(counted, handle)));
   auto data = impl_->shared.lock();
-  if (CORBA::is_nil(data->owner)) data->owner = owner;
+  if (CORBA::is_nil(data->owner)) {
+    data->owner = owner;
+    corba::name_object_as(reference, owner);
+  }
   return RTC::RTC_OK;
 }
 
@@ -312,6 +316,7 @@ void destroyExecutionContext(ExecutionContextBase* context) {
   }
   RTC::ExecutionContextService_var reference = context->getObjRef();
   context->setObjRef(RTC::ExecutionContextService::_nil());
+  corba::forget_object(reference);
   try {
     PortableServer::POA_var poa = servant->_default_POA();
     PortableServer::ObjectId_var id = poa->reference_to_id(reference);

@@ -11,10 +11,12 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include "base/chance.h"
 #include "base/clock.h"
 #include "base/tick.h"
+#include "corba/object_names.h"
 
 namespace corba {
 namespace {
@@ -33,15 +35,13 @@ constexpr std::array changes_states = {std::string_view("activate_component"),
                                        std::string_view("set_rate"),
                                        std::string_view("start"),
                                        std::string_view("stop")};
-constexpr std::array changes_connections = {std::string_view("notify_connect"), std::string_view("notify_disconnect")};
+constexpr std::array changes_connections = {std::string_view("connect"), std::string_view("disconnect"), std::string_view("disconnect_all"),
+                                            std::string_view("notify_connect"), std::string_view("notify_disconnect")};
 // Of the runtime itself, besides those that begin with get_, on_, is_ or an underscore.
 constexpr std::array of_the_runtime = {std::string_view("put"),
                                        std::string_view("push"),
                                        std::string_view("pull"),
-                                       std::string_view("connect"),
-                                       std::string_view("disconnect"),
                                        std::string_view("initialize"),
-                                       std::string_view("disconnect_all"),
                                        std::string_view("update_status"),
                                        std::string_view("publish"),
                                        std::string_view("tick"),
@@ -109,7 +109,9 @@ _CORBA_Boolean look_at_call(omni::omniInterceptors::serverReceiveRequest_T::info
   const std::uint64_t moment = clock ? clock->moment() : 0;
   if (moment == 0) return true;
   const auto what = chance_of_call(request.operation(), moment, moment_of_caller(request.giop_s.service_contexts()));
-  if (!what.empty() && !clock->stands_still()) base::tell_of_chance("this process", what, clock->now());
+  if (what.empty() || clock->stands_still()) return true;
+  const std::span key(request.giop_s.key(), static_cast<std::size_t>(request.giop_s.keysize()));
+  base::tell_of_chance(name_of_object(std::as_bytes(key)), what, clock->now());
   return true;
 }
 
@@ -118,8 +120,8 @@ _CORBA_Boolean look_at_call(omni::omniInterceptors::serverReceiveRequest_T::info
 std::string chance_of_call(std::string_view operation, std::uint64_t moment, std::uint64_t moment_of_caller) {
   if (moment == 0) return "";
   const auto by = " by another process (" + std::string(operation) + ")";
-  if (has(changes_parameters, operation)) return "had the parameters of a component changed" + by;
-  if (has(changes_states, operation)) return "had the state of a component or context changed" + by;
+  if (has(changes_parameters, operation)) return "had its parameters changed" + by;
+  if (has(changes_states, operation)) return "had its state or a context changed" + by;
   if (has(changes_connections, operation)) return "had a connection made or ended" + by;
   if (base::is_in_phase(moment) && moment_of_caller != moment && !is_of_the_runtime(operation))
     return "had a service called while a phase ran" + by;

@@ -24,7 +24,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 // Leaving takes a port no time.
-constexpr auto patience = std::chrono::milliseconds(1000);
+constexpr auto farewell_limit = std::chrono::milliseconds(1000);
 // Of one of the calls by which a process that hangs is tried again; the end of the ORB waits for the last of them.
 constexpr auto attempt = std::chrono::milliseconds(300);
 // Between two of them, the longer the process has hung.
@@ -32,7 +32,7 @@ constexpr auto longest_pause = std::chrono::milliseconds(1000);
 constexpr auto longest_hang = std::chrono::minutes(10);
 constexpr auto longest_absence = std::chrono::hours(24);
 
-std::chrono::milliseconds patience_for_one() { return std::min(port_call_timeout(), patience); }
+std::chrono::milliseconds patience_for_one() { return std::min(port_call_timeout(), farewell_limit); }
 
 struct Message {
   RTC::PortService_var port;
@@ -48,7 +48,7 @@ struct Process {
   bool hangs = false;  // a call has taken its time-out
 };
 
-struct State {
+struct FarewellState {
   std::map<std::string, Process> processes;  // by address; each has a thread that tries
   int threads = 0;
   bool is_ending = true;  // also before the beginning
@@ -56,7 +56,7 @@ struct State {
 
 // The processes are for all ports, so this is a global. Never destroyed: ports may die after it otherwise.
 struct Farewells {
-  base::Guarded<State, base::Rank::registry> state;
+  base::Guarded<FarewellState, base::Rank::registry> state;
   std::condition_variable changed;
   static Farewells& instance() {
     static Farewells& table = *new Farewells;

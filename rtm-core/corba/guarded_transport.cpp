@@ -36,7 +36,7 @@ constexpr std::size_t reserved_files = 64;              // for everything that i
 
 class GuardedConnection;
 
-struct State {
+struct GateState {
   DoorSettings settings{};
   std::size_t most = most_connections;
   std::map<const omni::giopConnection*, GuardedConnection*> connections{};  // by the connection that is guarded
@@ -46,7 +46,7 @@ struct State {
 
 // The end points are those of the process. Never destroyed: connections may go after it otherwise.
 struct Doors {
-  base::Guarded<State, base::Rank::registry> state;
+  base::Guarded<GateState, base::Rank::registry> state;
   std::condition_variable gone;             // a connection
   std::atomic<std::size_t> in_progress{0};  // see GiopGate
   static Doors& instance() {

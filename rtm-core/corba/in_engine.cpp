@@ -12,6 +12,7 @@
 #include "corba/cdr.h"
 #include "corba/connector_keys.h"
 #include "corba/local_connections.h"
+#include "corba/object_names.h"
 #include "corba/out_engine.h"
 #include "corba/payload.h"
 
@@ -75,11 +76,7 @@ std::uint64_t ConnectionPlan::era() const { return clock ? clock->era() : 0; }
 
 std::uint64_t ConnectionPlan::moment() const { return clock ? clock->moment() : 0; }
 
-std::string port_text(const ConnectionPlan& plan) {
-  std::string text = "port " + plan.port;
-  if (const auto dot = text.rfind('.'); dot != std::string::npos) text[dot] = ':';
-  return text;
-}
+std::string port_text(const ConnectionPlan& plan) { return port_text(plan.port); }
 
 TypeOps with_codec(const TypeOps& ops, const std::shared_ptr<Codec>& codec) {
   TypeOps own = ops;

@@ -9,7 +9,7 @@ namespace {
 
 // The process is what the two ends have in common, so this is a global. Never destroyed: ports may die after it otherwise.
 template <class Connection>
-class Table {
+class Connections {
  public:
   void add(const std::string& id, const std::shared_ptr<Connection>& connection) { (*entries_.lock())[id] = connection; }
   void remove(const std::string& id) { entries_.lock()->erase(id); }
@@ -18,8 +18,8 @@ class Table {
     const auto it = entries->find(id);
     return it == entries->end() ? nullptr : it->second.lock();
   }
-  static Table& instance() {
-    static Table& table = *new Table;
+  static Connections& instance() {
+    static Connections& table = *new Connections;
     return table;
   }
 
@@ -30,14 +30,14 @@ class Table {
 }  // namespace
 
 void add_local(const std::string& id, const std::shared_ptr<InConnection>& connection) {
-  Table<InConnection>::instance().add(id, connection);
+  Connections<InConnection>::instance().add(id, connection);
 }
 void add_local(const std::string& id, const std::shared_ptr<OutConnection>& connection) {
-  Table<OutConnection>::instance().add(id, connection);
+  Connections<OutConnection>::instance().add(id, connection);
 }
-std::shared_ptr<InConnection> find_local_in(const std::string& id) { return Table<InConnection>::instance().find(id); }
-std::shared_ptr<OutConnection> find_local_out(const std::string& id) { return Table<OutConnection>::instance().find(id); }
-void remove_local_in(const std::string& id) { Table<InConnection>::instance().remove(id); }
-void remove_local_out(const std::string& id) { Table<OutConnection>::instance().remove(id); }
+std::shared_ptr<InConnection> find_local_in(const std::string& id) { return Connections<InConnection>::instance().find(id); }
+std::shared_ptr<OutConnection> find_local_out(const std::string& id) { return Connections<OutConnection>::instance().find(id); }
+void remove_local_in(const std::string& id) { Connections<InConnection>::instance().remove(id); }
+void remove_local_out(const std::string& id) { Connections<OutConnection>::instance().remove(id); }
 
 }  // namespace corba

@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "corba/farewell.h"
 #include "corba/nv_list.h"
+#include "corba/object_names.h"
 #include "corba/peer_watch.h"
 #include "core/key_limits.h"
 
@@ -55,6 +56,7 @@ void PortServant::deactivate() {
   // The reference stays, to recognise ourselves by.
   const RTC::PortService_var reference = RTC::PortService::_duplicate(state_.lock()->reference);
   if (!CORBA::is_nil(reference)) {
+    forget_object(reference);
     try {
       const PortableServer::POA_var poa = _default_POA();
       const PortableServer::ObjectId_var id = poa->servant_to_id(this);
@@ -117,12 +119,21 @@ RTC::PortService_ptr PortServant::reference() {
     if (!CORBA::is_nil(state->reference)) return state->reference.in();
     state->reference = RTC::PortService::_duplicate(made);
   }
+  name_object(made, port_text(port_name()));
   activated(made);
   return state_.lock()->reference.in();
 }
 
 std::string PortServant::port_name() const { return state_.lock()->name; }
-void PortServant::set_port_name(const std::string& name) { state_.lock()->name = name; }
+void PortServant::set_port_name(const std::string& name) {
+  RTC::PortService_var reference;
+  {
+    auto state = state_.lock();
+    state->name = name;
+    reference = RTC::PortService::_duplicate(state->reference);
+  }
+  name_object(reference, port_text(name));
+}
 void PortServant::set_owner(RTC::RTObject_ptr owner) { state_.lock()->owner = RTC::RTObject::_duplicate(owner); }
 void PortServant::set_reference(RTC::PortService_ptr reference) { state_.lock()->reference = RTC::PortService::_duplicate(reference); }
 

@@ -102,7 +102,7 @@ void RemoteParticipant::tell(rt::Action action, const CORBA::Exception& exceptio
     base::log(base::Level::error, name_, "component of another process has not answered {} within {} s; it is left alone until it is reset",
               callback, base::format_number(static_cast<double>(patience_->limit().count()) / 1000));
   } else if (is_gone) {
-    base::log(base::Level::error, name_, "component of another process is gone in {} ({}); it is left alone until it is reset", callback,
+    base::log(base::Level::error, name_, "{} in {} ({}); it is left alone until it is reset", gone_mark.substr(2), callback,
               to_text(exception));
   } else {
     base::log(base::Level::error, name_, "component of another process throws in {}: {}", callback, to_text(exception));

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "base/guarded.h"
 #include "base/result.h"
@@ -24,6 +25,9 @@
 #include "rtm/idl/RTCStub.h"
 
 namespace corba {
+
+// What the log says of a member whose process has ended, or whose object has gone; its name stands before it.
+inline constexpr std::string_view gone_mark = ": component of another process is gone";
 
 // A reference of its own to the same object, whose calls end after `timeout` and throw CORBA system exceptions; nil for nil.
 CORBA::Object_ptr impatient_copy(CORBA::Object_ptr object, std::chrono::milliseconds timeout);

@@ -1,12 +1,11 @@
 #include "corba/sample_room.h"
 
-#include <omniORB4/omniIOR.h>
-
 #include <map>
 #include <string>
 #include <string_view>
 
 #include "base/guarded.h"
+#include "corba/object_names.h"
 
 namespace corba {
 namespace {
@@ -19,25 +18,13 @@ base::Guarded<Rooms, base::Rank::registry>& rooms() {
   return all;
 }
 
-std::string key_of(CORBA::Object_ptr object) {
-  const omniIOR_var ior = object->_PR_getobj()->_getIOR();
-  for (CORBA::ULong i = 0; i < ior->iopProfiles().length(); ++i) {
-    const auto& profile = ior->iopProfiles()[i];
-    if (profile.tag != IOP::TAG_INTERNET_IOP) continue;
-    IIOP::ProfileBody body;
-    IIOP::unmarshalProfile(profile, body);
-    return {reinterpret_cast<const char*>(body.object_key.get_buffer()), body.object_key.length()};
-  }
-  return {};
-}
-
 }  // namespace
 
 struct SampleRoom::Key {
   std::string octets;
 };
 
-SampleRoom::SampleRoom(CORBA::Object_ptr object, std::size_t octets) : key_(std::make_unique<Key>(key_of(object))) {
+SampleRoom::SampleRoom(CORBA::Object_ptr object, std::size_t octets) : key_(std::make_unique<Key>(object_key(object))) {
   rooms().lock()->insert_or_assign(key_->octets, octets);
 }
 

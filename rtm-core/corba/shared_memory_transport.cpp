@@ -135,7 +135,7 @@ class Inlet {
   base::Guarded<State, base::Rank::connector> state_;
 };
 
-OpenRTM::PortStatus to_wire(rt::PortStatus status) {
+OpenRTM::PortStatus to_shared_status(rt::PortStatus status) {
   switch (status) {
     case rt::PortStatus::ok:
       return OpenRTM::PORT_OK;
@@ -169,12 +169,12 @@ class ReadingServant : public POA_OpenRTM::PortSharedMemory, public PortableServ
 };
 
 // The InPort of a push connection.
-class InServant final : public ReadingServant {
+class SharedInServant final : public ReadingServant {
  public:
-  InServant(std::shared_ptr<Receiver> receiver, rt::ByteOrder order) : ReadingServant(order), receiver_(std::move(receiver)) {}
+  SharedInServant(std::shared_ptr<Receiver> receiver, rt::ByteOrder order) : ReadingServant(order), receiver_(std::move(receiver)) {}
   OpenRTM::PortStatus put() override {
     auto sample = inlet.read(receiver_->pool());
-    return sample ? to_wire(receiver_->receive(std::move(*sample))) : OpenRTM::PORT_ERROR;
+    return sample ? to_shared_status(receiver_->receive(std::move(*sample))) : OpenRTM::PORT_ERROR;
   }
 
  private:
@@ -217,9 +217,9 @@ class SharedMemorySender final : public Sender {
 };
 
 // The OutPort of a pull connection.
-class OutServant final : public POA_OpenRTM::PortSharedMemory, public PortableServer::RefCountServantBase {
+class SharedOutServant final : public POA_OpenRTM::PortSharedMemory, public PortableServer::RefCountServantBase {
  public:
-  OutServant(std::shared_ptr<Source> source, const Line& line)
+  SharedOutServant(std::shared_ptr<Source> source, const Line& line)
       : source_(std::move(source)), line_(line), outlet_(line.shared_memory_size) {}
 
   void setInterface(OpenRTM::PortSharedMemory_ptr reader) override {
@@ -234,7 +234,7 @@ class OutServant final : public POA_OpenRTM::PortSharedMemory, public PortableSe
     if (!outlet_.has_reader()) return OpenRTM::PORT_ERROR;
     rt::Sample sample;
     const rt::PortStatus status = source_->give(sample);
-    if (status != rt::PortStatus::ok) return to_wire(status);
+    if (status != rt::PortStatus::ok) return to_shared_status(status);
     try {
       const Pieces pieces{{sample.block->octets()}, sample.block->size()};
       return outlet_.put(pieces, sample.order) ? OpenRTM::PORT_OK : OpenRTM::PORT_ERROR;
@@ -302,7 +302,7 @@ class SharedMemoryFetcher final : public Fetcher {
 };
 
 // nil if it is another interface or does not answer when asked for it.
-OpenRTM::PortSharedMemory_ptr narrow(CORBA::Object_ptr object, const Line& line) {
+OpenRTM::PortSharedMemory_ptr narrow_shared(CORBA::Object_ptr object, const Line& line) {
   limit_calls(object, std::min(line.call_timeout, port_call_timeout()));
   try {
     OpenRTM::PortSharedMemory_var narrowed = OpenRTM::PortSharedMemory::_narrow(object);
@@ -316,13 +316,13 @@ OpenRTM::PortSharedMemory_ptr narrow(CORBA::Object_ptr object, const Line& line)
 }  // namespace
 
 std::unique_ptr<Sender> make_shared_memory_sender(CORBA::Object_ptr in_port, const Line& line) {
-  const OpenRTM::PortSharedMemory_var port = narrow(in_port, line);
+  const OpenRTM::PortSharedMemory_var port = narrow_shared(in_port, line);
   if (CORBA::is_nil(port)) return nullptr;
   return std::make_unique<SharedMemorySender>(port.in(), line);
 }
 
 std::unique_ptr<Fetcher> make_shared_memory_fetcher(CORBA::Object_ptr out_port, const Line& line) {
-  const OpenRTM::PortSharedMemory_var port = narrow(out_port, line);
+  const OpenRTM::PortSharedMemory_var port = narrow_shared(out_port, line);
   if (CORBA::is_nil(port)) return nullptr;
   try {
     return std::make_unique<SharedMemoryFetcher>(port.in(), line);
@@ -332,11 +332,11 @@ std::unique_ptr<Fetcher> make_shared_memory_fetcher(CORBA::Object_ptr out_port, 
 }
 
 std::unique_ptr<Provider> make_shared_memory_in_provider(std::shared_ptr<Receiver> receiver, const Line& line) {
-  return std::make_unique<ActiveServant<OpenRTM::PortSharedMemory>>(new InServant(std::move(receiver), line.order));
+  return std::make_unique<ActiveServant<OpenRTM::PortSharedMemory>>(new SharedInServant(std::move(receiver), line.order));
 }
 
 std::unique_ptr<Provider> make_shared_memory_out_provider(std::shared_ptr<Source> source, const Line& line) {
-  return std::make_unique<ActiveServant<OpenRTM::PortSharedMemory>>(new OutServant(std::move(source), line));
+  return std::make_unique<ActiveServant<OpenRTM::PortSharedMemory>>(new SharedOutServant(std::move(source), line));
 }
 
 }  // namespace corba

@@ -20,4 +20,12 @@ bool is_protected_key(std::string_view key) {
   return key == "config_file" || key.ends_with(".config_file");
 }
 
+bool is_init_function(std::string_view module, std::string_view function, std::string_view prefix, std::string_view suffix) {
+  module = base::trim(module);
+  const auto open = module.find('(');
+  if (open != std::string_view::npos && module.ends_with(')')) function = module.substr(open + 1, module.size() - open - 2);
+  function = base::trim(function);
+  return function.empty() || (function.front() != '_' && function.starts_with(prefix) && function.ends_with(suffix));
+}
+
 }  // namespace rt

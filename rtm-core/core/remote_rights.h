@@ -18,4 +18,8 @@ RemoteRights parse_remote_rights(std::string_view text);
 // any key.
 bool is_protected_key(std::string_view key);
 
+// Whether the function that a caller names is one that makes a module known: the manager calls it, and the loader finds those of every
+// library below the module under their names as well (abort, exit). `module` may be "FILE(FUNCTION)"; no function is the usual one.
+bool is_init_function(std::string_view module, std::string_view function, std::string_view prefix, std::string_view suffix);
+
 }  // namespace rt

@@ -5,7 +5,7 @@
 
 namespace RTC {
 
-// ---------------------------------------------------------------------------------------------- the list
+// --- the list
 
 std::vector<ManagerImpl::Record> ManagerImpl::records() const {
   std::vector<Record> result;
@@ -98,7 +98,7 @@ std::vector<RTObject_impl*> Manager::getComponents() {
   return components;
 }
 
-// ---------------------------------------------------------------------------------------------- deletion
+// --- deletion
 
 void ManagerImpl::finalized(RTObject_impl* component) {
   std::uint64_t id = 0;

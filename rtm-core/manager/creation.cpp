@@ -55,7 +55,7 @@ bool is_directive(const std::string& key) { return key == "manager_name" || key 
 
 }  // namespace
 
-// ---------------------------------------------------------------------------------------------- factories
+// --- factories
 
 bool ManagerImpl::register_factory(const coil::Properties& profile, RtcNewFunc create_function, RtcDeleteFunc destroy) {
   const auto id = id_of(profile);
@@ -80,6 +80,20 @@ std::optional<ManagerImpl::RegisteredFactory> ManagerImpl::find_factory(const rt
   const auto locked = state.lock();
   for (const auto& registered : locked->factories) {
     if (rt::is_match(id, id_of(registered.factory->profile()))) return registered;
+  }
+  return std::nullopt;
+}
+
+// The place counts from here on: no other caller unloads a module between the look at its factory and the component that comes of it.
+std::optional<ManagerImpl::Record> ManagerImpl::take_place(const rt::ComponentId& id) {
+  auto locked = state.lock();
+  for (const auto& registered : locked->factories) {
+    if (!rt::is_match(id, id_of(registered.factory->profile()))) continue;
+    auto& record = locked->records[++locked->last_id];
+    record.id = locked->last_id;
+    record.factory = registered.factory;
+    record.module = registered.module;
+    return record;
   }
   return std::nullopt;
 }
@@ -110,7 +124,7 @@ std::vector<std::string> Manager::getModulesFactories() {
   return names;
 }
 
-// ---------------------------------------------------------------------------------------------- creation
+// --- creation
 
 // Start scripts that run twice work: what is asked for under a name that a component of the type has is that component.
 RTObject_impl* ManagerImpl::existing_component(const rt::ComponentArgument& argument, const coil::Properties& profile) const {
@@ -135,34 +149,29 @@ base::Result<RTObject_impl*> ManagerImpl::create(std::string argument) {
   const auto parsed = rt::parse_component_argument(argument);
   if (!parsed) return parsed.error();
 
-  auto source = find_factory(parsed->id);
-  if (!source && flag("manager.modules.search_auto", true)) {
+  auto place = take_place(parsed->id);
+  if (!place && flag("manager.modules.search_auto", true)) {
     const auto& name = parsed->id.implementation_id;
-    if (!modules->findFile(name).empty() && facade.load(name) == RTC_OK) source = find_factory(parsed->id);
+    if (!modules->findFile(name).empty() && facade.load(name) == RTC_OK) place = take_place(parsed->id);
   }
-  if (!source) {
+  if (!place) {
     return base::Error{"component " + base::in_quotes(argument) +
                        ": no factory of that type is registered and no module of that name is in " + value("manager.modules.load_path")};
   }
-  if (auto* existing = existing_component(*parsed, source->factory->profile())) {
+  if (auto* existing = existing_component(*parsed, place->factory->profile())) {
+    state.lock()->records.erase(place->id);
     RTC_INFO(("component %s exists already", base::in_quotes(manage(existing)->instance_name()).c_str()));
     return existing;
   }
-  auto* component = source->factory->create(&facade);
-  if (component == nullptr) return base::Error{"component " + base::in_quotes(argument) + ": its factory made none"};
-  std::uint64_t id = 0;
-  {
-    auto locked = state.lock();
-    id = ++locked->last_id;
-    auto& record = locked->records[id];
-    record.id = id;
-    record.component = component;
-    record.factory = source->factory;
-    record.module = source->module;
+  auto* component = place->factory->create(&facade);
+  if (component == nullptr) {
+    state.lock()->records.erase(place->id);
+    return base::Error{"component " + base::in_quotes(argument) + ": its factory made none"};
   }
-  auto result = finish_creation(id, *source, *parsed);
+  state.lock()->records[place->id].component = component;
+  auto result = finish_creation(*place, *parsed);
   if (!result) {
-    destroy(id);
+    destroy(place->id);
     return base::Error{"component " + base::in_quotes(argument) + ": " + result.error().message};
   }
   listeners.rtclifecycle_.call(&RTM::RtcLifecycleActionListener::postCreate, component);
@@ -275,12 +284,12 @@ std::vector<std::string> ManagerImpl::naming_names(const Managed& component, con
   return names;
 }
 
-base::Result<RTObject_impl*> ManagerImpl::finish_creation(std::uint64_t id, const RegisteredFactory& source,
-                                                          const rt::ComponentArgument& argument) {
+base::Result<RTObject_impl*> ManagerImpl::finish_creation(const Record& place, const rt::ComponentArgument& argument) {
+  const std::uint64_t id = place.id;
   const Held component = manage(state.lock()->records[id].component);
   // What counts more comes later: the manager's defaults, the type's specification, what rtc.conf and options set for all, rtc.conf on the
   // type, on the instance, the file that the argument names, the argument.
-  coil::Properties properties = source.factory->profile();
+  coil::Properties properties = place.factory->profile();
   component->set_properties(properties);
   bool numbered = false;
   const auto name = name_component(*component, argument, numbered);

@@ -60,7 +60,7 @@ std::vector<std::string> split_arguments(const std::string& text) {
 
 }  // namespace
 
-// ---------------------------------------------------------------------------------------------- start
+// --- start
 
 base::Result<void> ManagerImpl::start(const ManagerConfig& configuration, const ManagerOptions& given) {
   options = given;
@@ -235,7 +235,7 @@ void ManagerImpl::start_timer_tasks() {
   }
 }
 
-// ---------------------------------------------------------------------------------------------- activate
+// --- activate
 
 bool ManagerImpl::activate() {
   {
@@ -328,7 +328,7 @@ void ManagerImpl::look_after_number_of_components() {
   request_end();
 }
 
-// ---------------------------------------------------------------------------------------------- end
+// --- end
 
 bool ManagerImpl::is_ending() const {
   const auto phase = state.lock()->phase;

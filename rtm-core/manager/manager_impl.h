@@ -104,7 +104,9 @@ class ManagerImpl {
   // --- components (creation.cpp, components.cpp, connections.cpp, topics.cpp)
   bool register_factory(const coil::Properties& profile, RtcNewFunc create, RtcDeleteFunc destroy);
   std::optional<RegisteredFactory> find_factory(const rt::ComponentId& id) const;
-  // How many components of the module exist; without any, its factories are removed.
+  // The record of a component that is still to be made, with its factory; nothing when there is no factory of that type.
+  std::optional<Record> take_place(const rt::ComponentId& id);
+  // How many components of the module exist, or are being made; without any, its factories are removed.
   std::size_t forget_module(const std::string& module);
   base::Result<RTObject_impl*> create(std::string argument);
   void finalized(RTObject_impl* component);
@@ -183,7 +185,7 @@ class ManagerImpl {
   RTObject_impl* existing_component(const rt::ComponentArgument& argument, const coil::Properties& profile) const;
   base::Result<std::string> name_component(const Managed& component, const rt::ComponentArgument& argument, bool& numbered);
   std::vector<std::string> naming_names(const Managed& component, const coil::Properties& properties) const;
-  base::Result<RTObject_impl*> finish_creation(std::uint64_t id, const RegisteredFactory& source, const rt::ComponentArgument& argument);
+  base::Result<RTObject_impl*> finish_creation(const Record& place, const rt::ComponentArgument& argument);
   // Policies are called one at a time, user-written or not; one may ask the manager for anything, another component included.
   base::UsersTurn numbering_turn;
   static constexpr std::chrono::seconds numbering_patience{30};  // more than a policy that asks a naming service which hangs

@@ -124,7 +124,7 @@ void ManagerServant::deactivate() {
   }
 }
 
-// ---------------------------------------------------------------------------------------------- who may do what
+// --- who may do what
 
 // rtc.conf says it, and nobody over the wire.
 bool ManagerServant::may(rt::RemoteRights needed, const std::string& what) const {
@@ -138,18 +138,24 @@ void ManagerServant::refuse(const std::string& what, const std::string& why) con
   base::log(base::Level::warn, "manager", "{} asked for {}: refused, {}", corba::caller(), what, why);
 }
 
-// ---------------------------------------------------------------------------------------------- modules
+// --- modules
 
 // Whoever may put a file somewhere would be this account. A module of the load path was put there by somebody who is.
 RTC::ReturnCode_t ManagerServant::load_module(const char* pathname, const char* initfunc) {
   const std::string path(pathname);
   const std::string what = "the module " + base::in_quotes(path);
   if (!may(rt::RemoteRights::components, what)) return RTC::RTC_ERROR;
-  const bool is_said = !manager_.impl_->where("manager.modules.abs_path_allowed").empty() ||
-                       rt::parse_remote_rights(manager_.configValue("manager.remote_rights")) == rt::RemoteRights::everything;
+  const bool is_everything = rt::parse_remote_rights(manager_.configValue("manager.remote_rights")) == rt::RemoteRights::everything;
+  const bool is_said = !manager_.impl_->where("manager.modules.abs_path_allowed").empty() || is_everything;
   if (path.find('/') != std::string::npos && corba::doors_are_open() && !is_said) {
     refuse(what, "others than the own account may call and manager.modules.abs_path_allowed is not set");
     return RTC::RTC_ERROR;
+  }
+  const std::string suffix = manager_.configValue("manager.modules.init_func_suffix");
+  if (!is_everything &&
+      !rt::is_init_function(path, initfunc, manager_.configValue("manager.modules.init_func_prefix"), suffix.empty() ? "Init" : suffix)) {
+    refuse(what + " by the function " + base::in_quotes(initfunc), "no function that makes a module known has that name");
+    return RTC::BAD_PARAMETER;
   }
   return manager_.load(pathname, initfunc);
 }
@@ -193,7 +199,7 @@ RTM::ModuleProfileList* ManagerServant::get_factory_profiles() {
   return list._retn();
 }
 
-// ---------------------------------------------------------------------------------------------- components
+// --- components
 
 // Here, unless the argument names another manager: manager_address=host:port any, manager_name=instance name a slave. Slaves are also asked
 // for what cannot be made here.
@@ -277,7 +283,7 @@ RTC::RTCList* ManagerServant::get_components_by_name(const char* name) {
   return list._retn();
 }
 
-// ---------------------------------------------------------------------------------------------- settings
+// --- settings
 
 RTM::ManagerProfile* ManagerServant::get_profile() {
   RTM::ManagerProfile_var profile = new RTM::ManagerProfile;
@@ -319,7 +325,7 @@ RTC::ReturnCode_t ManagerServant::set_configuration(const char* name, const char
   return RTC::RTC_OK;
 }
 
-// ---------------------------------------------------------------------------------------------- the process
+// --- the process
 
 // Nothing happens, as tools know it from every manager: neither a copy nor a new start of a process with threads and devices is possible.
 RTC::ReturnCode_t ManagerServant::fork() { return RTC::RTC_OK; }

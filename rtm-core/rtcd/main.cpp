@@ -15,6 +15,7 @@
 
 #include "base/command_line.h"
 #include "base/text.h"
+#include "base/warm_start.h"
 #include "core/manager_arguments.h"
 #include "name_service.h"
 
@@ -131,7 +132,7 @@ int host(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return host(argc, argv);
+    return base::is_warm_start(argc, argv) ? base::make_processes(host) : host(argc, argv);
   } catch (const std::system_error& e) {
     fail(1, std::string("the system refuses what is needed, as threads or files: ") + e.what());
   } catch (const std::bad_alloc&) {

@@ -60,6 +60,7 @@ int main(int argc, char** argv) {
     for (const auto& key : profile.propertyNames()) std::cout << key << ": " << escaped(profile.getProperty(key)) << '\n';
     std::cout << "---\n";
   }
-  std::cout.flush();
-  _Exit(0);  // nothing of the module's own may run any more
+  const bool is_written = std::cout.flush().good();
+  if (!is_written) fail("the output cannot be written");
+  _Exit(is_written ? 0 : 1);  // nothing of the module's own may run any more
 }

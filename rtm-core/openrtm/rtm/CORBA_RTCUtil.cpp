@@ -66,7 +66,7 @@ coil::vstring connectors_of(const RTC::PortService_ptr port, Choose choose) {
 
 }  // namespace
 
-// ---------------------------------------------------------------------------------------------- components and contexts
+// --- components and contexts
 
 coil::Properties get_component_profile(const RTC::RTObject_ptr rtc) {
   if (CORBA::is_nil(rtc)) return {};
@@ -188,7 +188,7 @@ RTC::RTCList get_participants_rtc(const RTC::RTObject_ptr rtc) {
   });
 }
 
-// ---------------------------------------------------------------------------------------------- ports
+// --- ports
 
 coil::vstring get_port_names(const RTC::RTObject_ptr rtc) { return port_names(rtc, ""); }
 coil::vstring get_inport_names(const RTC::RTObject_ptr rtc) { return port_names(rtc, "DataInPort"); }
@@ -235,7 +235,7 @@ coil::vstring get_connector_ids(const RTC::RTObject_ptr rtc, const std::string& 
 coil::vstring get_connector_names_by_portref(const RTC::PortService_ptr port) { return get_connector_names(port); }
 coil::vstring get_connector_ids_by_portref(const RTC::PortService_ptr port) { return get_connector_ids(port); }
 
-// ---------------------------------------------------------------------------------------------- connections
+// --- connections
 
 RTC::ConnectorProfile_var create_connector(const std::string& name, const coil::Properties& given, const RTC::PortServiceList& ports) {
   coil::Properties properties;
@@ -365,7 +365,7 @@ ReturnCode_t disconnect_by_portname_connector_id(const std::string& port_name, c
 }
 ReturnCode_t disconnect_all_by_name(const std::string& port_name) { return disconnect_all(port_name); }
 
-// ---------------------------------------------------------------------------------------------- configuration
+// --- configuration
 
 coil::Properties get_configuration(const RTC::RTObject_ptr rtc, const std::string& set_name) {
   if (CORBA::is_nil(rtc)) return {};

@@ -109,7 +109,9 @@ std::optional<int> answerForItself(int argc, char** argv, const std::string& com
     }
     if (text.empty()) continue;
     std::cout << text << std::flush;
-    return EXIT_SUCCESS;
+    if (std::cout.good()) return EXIT_SUCCESS;
+    std::cerr << program << ": the output cannot be written\n";
+    return EXIT_FAILURE;
   }
   return std::nullopt;
 }

@@ -5,14 +5,10 @@
 #include "base/log.h"
 #include "corba/cdr.h"
 #include "corba/event_data.h"
+#include "openrtm/type_names.h"
 
 namespace RTC {
 namespace {
-
-template <std::size_t size>
-const char* name_of(const char* const (&names)[size], int type) {
-  return type >= 0 && static_cast<std::size_t>(type) < size ? names[type] : "";
-}
 
 template <class Call>
 ConnectorListenerStatus::Enum guarded(Call call) {

@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "corba/connector_keys.h"
 #include "corba/nv_list.h"
+#include "corba/object_names.h"
 #include "corba/port_servant.h"
 #include "corba/transport.h"
 
@@ -67,6 +68,7 @@ CorbaPort::CorbaPort(const char* name) : PortBase(name), state_(std::make_unique
 
 CorbaPort::~CorbaPort() {
   deactivateInterfaces();
+  for (const auto& provider : state_->providers) corba::forget_object(provider.reference);
   shut();
 }
 
@@ -104,6 +106,7 @@ void CorbaPort::activateInterfaces() {
   for (auto& provider : state_->providers) {
     if (std::exchange(provider.is_active, true)) continue;
     try {
+      corba::name_object(provider.reference, corba::port_text(getName()));
       provider.poa->activate_object_with_id(provider.id, provider.servant);
     } catch (const PortableServer::POA::ServantAlreadyActive&) {
     } catch (const PortableServer::POA::ObjectAlreadyActive&) {

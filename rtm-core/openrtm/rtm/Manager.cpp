@@ -89,7 +89,7 @@ ManagerImpl::~ManagerImpl() {
   if (life.joinable()) life.join();
 }
 
-// ---------------------------------------------------------------------------------------------- settings
+// --- settings
 
 std::string ManagerImpl::value(const std::string& key) const {
   const auto mine = config_turn.take();
@@ -105,7 +105,7 @@ std::string ManagerImpl::where(const std::string& key) const {
   return at == origins.end() ? std::string() : at->second + ": ";
 }
 
-// ---------------------------------------------------------------------------------------------- facade
+// --- facade
 
 Manager::Manager() : impl_(std::make_unique<ManagerImpl>(*this)) {}
 Manager::~Manager() = default;

@@ -78,7 +78,7 @@ RTC::ReturnCode_t PeriodicExecutionContext::onStarted() {
 RTC::ReturnCode_t PeriodicExecutionContext::onStopping() {
   m_svc = false;
   worker_->stop();
-  wakeLoop();
+  onWakeUp();  // also of derived classes, whose thread may wait for something else; from here on threadRunning() is false
   if (isSteppingThread()) return RTC::RTC_OK;  // the thread ends after this cycle
   if (!waitForCallbacks() && worker_->resume()) {
     m_svc = true;

@@ -1,14 +1,8 @@
 #include "rtm/PortConnectListener.h"
 
+#include "openrtm/type_names.h"
+
 namespace RTC {
-namespace {
-
-template <std::size_t size>
-const char* name_of(const char* const (&names)[size], int type) {
-  return type >= 0 && static_cast<std::size_t>(type) < size ? names[type] : "";
-}
-
-}  // namespace
 
 const char* PortConnectListener::toString(PortConnectListenerType type) {
   static const char* const names[] = {"ON_NOTIFY_CONNECT", "ON_NOTIFY_DISCONNECT", "ON_UNSUBSCRIBE_INTERFACES"};

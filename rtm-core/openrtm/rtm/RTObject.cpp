@@ -10,12 +10,14 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "corba/object_names.h"
 #include "corba/orb.h"
 #include "corba/remote_participant.h"
 
 namespace RTC {
 
 void deactivateServant(PortableServer::ServantBase& servant, CORBA::Object_ptr reference) {
+  corba::forget_object(reference);
   try {
     PortableServer::POA_var poa = servant._default_POA();
     PortableServer::ObjectId_var id = poa->reference_to_id(reference);
@@ -220,7 +222,17 @@ void RTObject_impl::setInstanceName(const char* instance_name) {
     m_properties["instance_name"] = profile_.instance_name;
   }
   rtclog.setName(profile_.instance_name.c_str());
-  const std::vector<Port> ports = impl_->shared.lock()->ports;
+  RTC::RTObject_var self;
+  SDOPackage::Configuration_var configuration;
+  std::vector<Port> ports;
+  {
+    auto data = impl_->shared.lock();
+    self = data->reference;
+    configuration = data->configuration_reference;
+    ports = data->ports;
+  }
+  corba::name_object(self, "component " + profile_.instance_name);
+  corba::name_object(configuration, "component " + profile_.instance_name);
   for (const Port& port : ports)
     if (port.local) port.local->setName(portNameOf(port.name).c_str());
   notifyObservers(Status::component_profile, profile_.instance_name);

@@ -28,6 +28,9 @@ void Destructor(AbstractClass*& object) {
 enum class FactoryReturn { OK, ERROR, ALREADY_EXISTS, NOT_FOUND, INVALID_ARG, UNKNOWN_ERROR };
 // Sources of 1.x compare with the number.
 constexpr bool operator==(FactoryReturn code, int number) { return static_cast<int>(code) == number; }
+constexpr bool operator==(int number, FactoryReturn code) { return code == number; }
+constexpr bool operator!=(FactoryReturn code, int number) { return !(code == number); }
+constexpr bool operator!=(int number, FactoryReturn code) { return !(code == number); }
 
 template <class AbstractClass, typename Identifier = std::string, typename Compare = std::less<Identifier>,
           typename CreatorType = std::function<AbstractClass*()>, typename DestructorType = std::function<void(AbstractClass*&)>>

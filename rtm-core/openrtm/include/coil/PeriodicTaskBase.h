@@ -38,8 +38,7 @@ class PeriodicTaskBase {
   virtual void signal() = 0;
   virtual bool setTask(TaskFuncBase* func, bool delete_in_dtor = true) = 0;
   virtual bool setTask(std::function<void()> func) = 0;
-  template <class O, class F>
-  requires std::is_invocable_v<F, O*>
+  template <class O, class F, std::enable_if_t<std::is_invocable_v<F, O*>, int> = 0>
   bool setTask(O* object, F function) {
     return setTask(std::function<void()>([object, function] { std::invoke(function, object); }));
   }

@@ -3,9 +3,8 @@
 
 #include <chrono>
 #include <cmath>
-#include <compare>
-#include <concepts>
 #include <ostream>
+#include <type_traits>
 
 namespace coil {
 
@@ -24,7 +23,7 @@ class TimeValue {
   constexpr double getDouble() const { return static_cast<double>(usec_) * 1e-6; }
   constexpr operator double() const { return getDouble(); }
   // A std::chrono duration made from this would otherwise take the whole seconds for its ticks.
-  template <std::integral T>
+  template <class T, std::enable_if_t<std::is_integral_v<T>, int> = 0>
   operator T() const = delete;
   constexpr operator std::chrono::nanoseconds() const { return std::chrono::microseconds(usec_); }
   constexpr operator std::chrono::microseconds() const { return std::chrono::microseconds(usec_); }
@@ -35,21 +34,37 @@ class TimeValue {
 
   TimeValue& operator=(double seconds) { return *this = TimeValue(seconds); }
   // Templates, so that an expression with a double is one of doubles.
-  template <std::same_as<TimeValue> T>
+  template <class T, std::enable_if_t<std::is_same_v<T, TimeValue>, int> = 0>
   friend constexpr TimeValue operator+(T a, T b) {
     return from(a.usec_ + b.usec_);
   }
-  template <std::same_as<TimeValue> T>
+  template <class T, std::enable_if_t<std::is_same_v<T, TimeValue>, int> = 0>
   friend constexpr TimeValue operator-(T a, T b) {
     return from(a.usec_ - b.usec_);
   }
-  template <std::same_as<TimeValue> T>
+  template <class T, std::enable_if_t<std::is_same_v<T, TimeValue>, int> = 0>
   friend constexpr bool operator==(T a, T b) {
     return a.usec_ == b.usec_;
   }
-  template <std::same_as<TimeValue> T>
-  friend constexpr auto operator<=>(T a, T b) {
-    return a.usec_ <=> b.usec_;
+  template <class T, std::enable_if_t<std::is_same_v<T, TimeValue>, int> = 0>
+  friend constexpr bool operator!=(T a, T b) {
+    return a.usec_ != b.usec_;
+  }
+  template <class T, std::enable_if_t<std::is_same_v<T, TimeValue>, int> = 0>
+  friend constexpr bool operator<(T a, T b) {
+    return a.usec_ < b.usec_;
+  }
+  template <class T, std::enable_if_t<std::is_same_v<T, TimeValue>, int> = 0>
+  friend constexpr bool operator>(T a, T b) {
+    return a.usec_ > b.usec_;
+  }
+  template <class T, std::enable_if_t<std::is_same_v<T, TimeValue>, int> = 0>
+  friend constexpr bool operator<=(T a, T b) {
+    return a.usec_ <= b.usec_;
+  }
+  template <class T, std::enable_if_t<std::is_same_v<T, TimeValue>, int> = 0>
+  friend constexpr bool operator>=(T a, T b) {
+    return a.usec_ >= b.usec_;
   }
 
   // In seconds.

@@ -1,17 +1,16 @@
 // Atomic arithmetic on plain integers, as the 1.x API has it. Each returns the value from before; sequentially consistent. Any thread.
 #pragma once
 
-#include <atomic>
 #include <type_traits>
 
 namespace coil {
 
 template <class T>
-T atomic_exchange_add(T* value, std::type_identity_t<T> amount) {
-  return std::atomic_ref<T>(*value).fetch_add(amount);
+T atomic_exchange_add(T* value, std::common_type_t<T> amount) {
+  return __atomic_fetch_add(value, amount, __ATOMIC_SEQ_CST);
 }
 template <class T>
-T atomic_add(T* value, std::type_identity_t<T> amount) {
+T atomic_add(T* value, std::common_type_t<T> amount) {
   return atomic_exchange_add(value, amount);
 }
 template <class T>

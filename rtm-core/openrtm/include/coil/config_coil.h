@@ -1,8 +1,8 @@
 // The macros that classic component sources use for symbols of shared libraries; nothing has to be marked here.
 #pragma once
 
-#if __cplusplus < 202002L
-#error "these headers need C++20: link OpenRTM::openrtm, or add the --cflags of rtm-config and set no older standard after them"
+#if __cplusplus < 201703L
+#error "these headers need C++17: link OpenRTM::openrtm, or add the --cflags of rtm-config and set no older standard after them"
 #endif
 
 #ifndef DLL_EXPORT

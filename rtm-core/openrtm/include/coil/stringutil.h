@@ -55,6 +55,13 @@ class ChangedString {
   friend bool operator==(const ChangedString& a, const ChangedString& b) { return a.value() == b.value(); }
   friend bool operator==(const ChangedString& a, const std::string& b) { return a.value() == b; }
   friend bool operator==(const ChangedString& a, const char* b) { return a.value() == b; }
+  friend bool operator==(const std::string& a, const ChangedString& b) { return b == a; }
+  friend bool operator==(const char* a, const ChangedString& b) { return b == a; }
+  friend bool operator!=(const ChangedString& a, const ChangedString& b) { return !(a == b); }
+  friend bool operator!=(const ChangedString& a, const std::string& b) { return !(a == b); }
+  friend bool operator!=(const ChangedString& a, const char* b) { return !(a == b); }
+  friend bool operator!=(const std::string& a, const ChangedString& b) { return !(b == a); }
+  friend bool operator!=(const char* a, const ChangedString& b) { return !(b == a); }
   friend bool operator<(const ChangedString& a, const std::string& b) { return a.value() < b; }
   friend std::string operator+(const ChangedString& a, const std::string& b) { return a.value() + b; }
   friend std::string operator+(const std::string& a, const ChangedString& b) { return a + b.value(); }
@@ -181,10 +188,10 @@ template <class T>
 struct IsDuration : std::false_type {};
 template <class R, class P>
 struct IsDuration<std::chrono::duration<R, P>> : std::true_type {};
+template <class T, class = void>
+struct IsReadable : std::false_type {};
 template <class T>
-concept Readable = requires(std::istream& in, T& value) {
-  in >> value;
-};
+struct IsReadable<T, std::void_t<decltype(std::declval<std::istream&>() >> std::declval<T&>())>> : std::true_type {};
 }  // namespace detail
 
 // Converts text to a value; false, and the value as it was, if it cannot be read. Durations are read as seconds, vectors as comma lists,
@@ -202,7 +209,7 @@ bool stringTo(To& val, const char* str) {
     if (!detail::read_seconds(seconds, str)) return false;
     val = std::chrono::duration_cast<To>(std::chrono::duration<double>(seconds));
     return true;
-  } else if constexpr (detail::IsVector<To>::value && !detail::Readable<To>) {
+  } else if constexpr (detail::IsVector<To>::value && !detail::IsReadable<To>::value) {
     To values;
     for (const std::string& part : split(str, ",", true)) {
       typename To::value_type value{};

@@ -13,7 +13,8 @@ namespace RTC {
 
 using UniqueId = ExecutionContextHandle_t;
 
-enum class PreComponentActionListenerType : std::uint8_t {
+// 2.x writes the values with the name of their type, 1.x without.
+enum PreComponentActionListenerType : std::uint8_t {
   PRE_ON_INITIALIZE,
   PRE_ON_FINALIZE,
   PRE_ON_STARTUP,
@@ -28,7 +29,7 @@ enum class PreComponentActionListenerType : std::uint8_t {
   PRE_ON_RATE_CHANGED,
   PRE_COMPONENT_ACTION_LISTENER_NUM
 };
-enum class PostComponentActionListenerType : std::uint8_t {
+enum PostComponentActionListenerType : std::uint8_t {
   POST_ON_INITIALIZE,
   POST_ON_FINALIZE,
   POST_ON_STARTUP,
@@ -43,9 +44,9 @@ enum class PostComponentActionListenerType : std::uint8_t {
   POST_ON_RATE_CHANGED,
   POST_COMPONENT_ACTION_LISTENER_NUM
 };
-enum class PortActionListenerType : std::uint8_t { ADD_PORT, REMOVE_PORT, PORT_ACTION_LISTENER_NUM };
-enum class ExecutionContextActionListenerType : std::uint8_t { EC_ATTACHED, EC_DETACHED, EC_ACTION_LISTENER_NUM };
-enum class PreFsmActionListenerType : std::uint8_t {
+enum PortActionListenerType : std::uint8_t { ADD_PORT, REMOVE_PORT, PORT_ACTION_LISTENER_NUM };
+enum ExecutionContextActionListenerType : std::uint8_t { EC_ATTACHED, EC_DETACHED, EC_ACTION_LISTENER_NUM };
+enum PreFsmActionListenerType : std::uint8_t {
   PRE_ON_INIT,
   PRE_ON_ENTRY,
   PRE_ON_DO,
@@ -53,7 +54,7 @@ enum class PreFsmActionListenerType : std::uint8_t {
   PRE_ON_STATE_CHANGE,
   PRE_FSM_ACTION_LISTENER_NUM
 };
-enum class PostFsmActionListenerType : std::uint8_t {
+enum PostFsmActionListenerType : std::uint8_t {
   POST_ON_INIT,
   POST_ON_ENTRY,
   POST_ON_DO,
@@ -62,13 +63,6 @@ enum class PostFsmActionListenerType : std::uint8_t {
   POST_FSM_ACTION_LISTENER_NUM
 };
 
-// 1.x writes the values without the name of their type.
-using enum PreComponentActionListenerType;
-using enum PostComponentActionListenerType;
-using enum PortActionListenerType;
-using enum ExecutionContextActionListenerType;
-using enum PreFsmActionListenerType;
-using enum PostFsmActionListenerType;
 using PreCompActionListenerType = PreComponentActionListenerType;
 using PostCompActionListenerType = PostComponentActionListenerType;
 using ECActionListenerType = ExecutionContextActionListenerType;

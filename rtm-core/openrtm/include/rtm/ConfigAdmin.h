@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace rt {
@@ -44,8 +45,7 @@ class ConfigAdmin {
   bool bindParameter(const char* param_name, VarType& var, const char* def_val, bool (*trans)(VarType&, const char*) = coil::stringTo) {
     return bind(param_name, def_val, [&var, trans](const char* text) { return trans(var, text); });
   }
-  template <typename VarType, typename Function>
-  requires std::is_invocable_r_v<bool, Function, VarType&, const char*>
+  template <typename VarType, typename Function, std::enable_if_t<std::is_invocable_r_v<bool, Function, VarType&, const char*>, int> = 0>
   bool bindParameter(const char* param_name, VarType& var, const char* def_val, Function trans) {
     return bind(param_name, def_val, [&var, trans](const char* text) { return trans(var, text); });
   }

@@ -9,19 +9,15 @@
 
 namespace RTC {
 
-enum class ConfigurationParamListenerType : std::uint8_t { ON_UPDATE_CONFIG_PARAM, CONFIG_PARAM_LISTENER_NUM };
-enum class ConfigurationSetListenerType : std::uint8_t { ON_SET_CONFIG_SET, ON_ADD_CONFIG_SET, CONFIG_SET_LISTENER_NUM };
-enum class ConfigurationSetNameListenerType : std::uint8_t {
+// 2.x writes the values with the name of their type, 1.x without.
+enum ConfigurationParamListenerType : std::uint8_t { ON_UPDATE_CONFIG_PARAM, CONFIG_PARAM_LISTENER_NUM };
+enum ConfigurationSetListenerType : std::uint8_t { ON_SET_CONFIG_SET, ON_ADD_CONFIG_SET, CONFIG_SET_LISTENER_NUM };
+enum ConfigurationSetNameListenerType : std::uint8_t {
   ON_UPDATE_CONFIG_SET,
   ON_REMOVE_CONFIG_SET,
   ON_ACTIVATE_CONFIG_SET,
   CONFIG_SET_NAME_LISTENER_NUM
 };
-
-// 1.x writes the values without the name of their type.
-using enum ConfigurationParamListenerType;
-using enum ConfigurationSetListenerType;
-using enum ConfigurationSetNameListenerType;
 
 class ConfigurationParamListener {
  public:

@@ -141,8 +141,8 @@ class ExecutionContextBase {
   virtual RTC::LifeCycleState onGetComponentState(RTC::LifeCycleState state) const { return state; }
   virtual RTC::ExecutionKind onGetKind(RTC::ExecutionKind kind) const { return kind; }
   virtual RTC::ExecutionContextProfile* onGetProfile(RTC::ExecutionContextProfile*& profile) { return profile; }
-  // A member asks for a transition, or the rate has changed; for contexts whose thread may sleep longer than a period. Called without a
-  // lock.
+  // A member asks for a transition, the rate has changed, or a periodic context is to stop; for contexts whose thread may sleep longer than
+  // a period. Called without a lock.
   virtual void onWakeUp() {}
 
   // Simulated contexts return their own; it is the current clock (base/clock.h) of components while they are called.

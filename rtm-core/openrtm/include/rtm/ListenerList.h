@@ -27,7 +27,8 @@ class ListenerList {
     std::lock_guard lock(mutex_);
     if (!listeners_) return;
     auto changed = std::make_shared<std::vector<Entry>>(*listeners_);
-    std::erase_if(*changed, [&](const Entry& entry) { return entry.get() == listener; });
+    changed->erase(std::remove_if(changed->begin(), changed->end(), [&](const Entry& entry) { return entry.get() == listener; }),
+                   changed->end());
     old = std::move(listeners_);
     if (!changed->empty()) listeners_ = std::move(changed);
   }

@@ -5,6 +5,7 @@
 #include <coil/Properties.h>
 #include <coil/stringutil.h>
 
+#include <algorithm>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -94,7 +95,8 @@ class ListenerHolder {
     std::vector<std::shared_ptr<Listener>> before;  // a listener that is deleted is deleted without the lock
     const std::scoped_lock lock(mutex_);
     before = listeners_;
-    std::erase_if(listeners_, [&](const auto& held) { return held.get() == listener; });
+    listeners_.erase(std::remove_if(listeners_.begin(), listeners_.end(), [&](const auto& held) { return held.get() == listener; }),
+                     listeners_.end());
   }
 
   // Calls one member function of every listener; arguments are handed on by reference.

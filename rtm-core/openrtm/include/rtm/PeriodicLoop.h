@@ -125,6 +125,7 @@ class LoopMembers {
       return before;
     }
     bool operator==(const iterator& other) const { return is_end() || other.is_end() ? is_end() == other.is_end() : at_ == other.at_; }
+    bool operator!=(const iterator& other) const { return !(*this == other); }
 
    private:
     bool is_end() const { return !members_ || at_ >= members_->size(); }

@@ -25,6 +25,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <type_traits>
 #include <vector>
 
 namespace SDOPackage {
@@ -147,8 +148,7 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
     prepareBinding();
     return m_configsets.bindParameter(param_name, var, def_val, trans);
   }
-  template <typename VarType, typename Function>
-  requires std::is_invocable_r_v<bool, Function, VarType&, const char*>
+  template <typename VarType, typename Function, std::enable_if_t<std::is_invocable_r_v<bool, Function, VarType&, const char*>, int> = 0>
   bool bindParameter(const char* param_name, VarType& var, const char* def_val, Function trans) {
     prepareBinding();
     return m_configsets.bindParameter(param_name, var, def_val, trans);

@@ -12,7 +12,9 @@
 
 namespace rtm_sim {
 template <class... Exceptions>
-requires(!(std::is_function_v<Exceptions> || ...)) constexpr bool throws_nothing() { return sizeof...(Exceptions) == 0; }
+constexpr std::enable_if_t<!(std::is_function_v<Exceptions> || ...), bool> throws_nothing() {
+  return sizeof...(Exceptions) == 0;
+}
 }  // namespace rtm_sim
 
 #define throw(...) noexcept(::rtm_sim::throws_nothing<__VA_ARGS__>())
