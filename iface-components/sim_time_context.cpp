@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::chrono::milliseconds longest_wait{100};
 constexpr std::chrono::milliseconds retry_period{100};
-constexpr std::int64_t highest_phase = 15;
+constexpr std::int64_t highest_phase = 15, highest_turn = 9999;
 constexpr std::chrono::seconds usual_patience{1};
 
 }  // namespace
@@ -39,6 +39,7 @@ void SimTimeContext::init(coil::Properties& properties) {
   waits_for_members_ = properties.getProperty("member_timeout").empty();
   hash_log_ = properties.getProperty("sim_time.hash_log");
   phase_ = static_cast<std::uint32_t>(number("sim_time.phase", highest_phase, phase_));
+  turn_ = static_cast<std::uint32_t>(number("sim_time.turn", highest_turn, turn_));
   participant_as_ = properties.getProperty("sim_time.participant");
 }
 
@@ -65,6 +66,7 @@ std::shared_ptr<shm::Participant> SimTimeContext::join() {
   shm::ParticipantOptions options;
   options.name = participant_name();
   options.phase = phase_;
+  options.turn = turn_;
   options.period = getPeriod();
   auto joined = shm::Participant::join(static_cast<std::uint32_t>(server_id_), options);
   if (!joined) {
@@ -110,7 +112,7 @@ void SimTimeContext::run_tick(const shm::Tick& tick) {
 
 void SimTimeContext::run(shm::Participant& participant) {
   shm::Tick tick;
-  while (goes_on()) {
+  while (threadRunning()) {
     switch (participant.wait(tick, longest_wait)) {
       case shm::Participant::State::tick:
         run_tick(tick);
@@ -132,7 +134,7 @@ void SimTimeContext::run(shm::Participant& participant) {
 }
 
 int SimTimeContext::svc() {
-  while (goes_on()) {
+  while (threadRunning()) {
     if (const auto participant = join()) {
       run(*participant);
       participant_.lock()->reset();  // ours is the last one, but for who interrupts it right now
@@ -153,19 +155,6 @@ void SimTimeContext::interrupt() {
 void SimTimeContext::onWakeUp() {
   RTC::PeriodicExecutionContext::onWakeUp();
   interrupt();
-}
-
-RTC::ReturnCode_t SimTimeContext::onStarted() {
-  is_to_stop_.store(false);
-  return RTC::PeriodicExecutionContext::onStarted();
-}
-
-RTC::ReturnCode_t SimTimeContext::onStopping() {
-  is_to_stop_.store(true);
-  interrupt();
-  const auto stopped = RTC::PeriodicExecutionContext::onStopping();
-  if (stopped != RTC::RTC_OK) is_to_stop_.store(false);  // a callback has not returned; the thread goes on behind it
-  return stopped;
 }
 
 RTC::ReturnCode_t SimTimeContext::onSetRate(double) {

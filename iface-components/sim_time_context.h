@@ -4,6 +4,8 @@
 // A component asks for it with `exec_cxt.periodic.type: SimTimeContext` (and `manager.modules.preload: SimTimeContext.so`). Options:
 //   exec_cxt.sim_time.server_id   which simulator; default: $RTMSIM_SERVER_ID, else 0
 //   exec_cxt.sim_time.phase       0 sensors, 1 clients (default), 2 actuators: phases run in order inside a tick
+//   exec_cxt.sim_time.turn        within the phase (0): higher turns are called when lower ones have finished; for components of others,
+//                                 which hold at once what is sent to them (shm/lockstep.h)
 //   exec_cxt.sim_time.participant under which name it takes part in the lock step; default: that of its owner
 //   exec_cxt.sim_time.hash_log    folder: a hash log of what the components read and write (base/hash_log.h) goes into a new file there
 //   exec_cxt.member_timeout       how long a member of another process may take for a callback [s of real time]; default: 1, in lock step
@@ -24,7 +26,6 @@
 #include <rtm/PeriodicExecutionContext.h>
 #include <shm/lockstep.h>
 
-#include <atomic>
 #include <memory>
 #include <string>
 
@@ -41,8 +42,6 @@ class SimTimeContext : public RTC::PeriodicExecutionContext {
   int svc() override;
 
  protected:
-  RTC::ReturnCode_t onStarted() override;
-  RTC::ReturnCode_t onStopping() override;
   RTC::ReturnCode_t onSetRate(double rate) override;
   void onWakeUp() override;
   const base::Clock& contextClock() const override { return clock_; }
@@ -54,21 +53,19 @@ class SimTimeContext : public RTC::PeriodicExecutionContext {
   void run_tick(const shm::Tick& tick);
   std::vector<std::uint64_t> member_states() const;
   void interrupt();
-  bool goes_on() const { return !is_to_stop_.load() && threadRunning(); }
   void say_once(const std::string& line);
   std::string participant_name() const;
 
   iface::SimClock clock_;  // the time of the tick that runs
   const std::shared_ptr<iface::SimulatorTime> simulator_time_ = std::make_shared<iface::SimulatorTime>();
   int server_id_ = 0;
-  std::uint32_t phase_ = 1;
-  std::string participant_as_;           // empty: the owner's name
-  bool waits_for_members_ = true;        // in lock step, for ever; false: the option member_timeout says how long
-  SimTick tick_;                         // svc() only
-  std::string hash_log_;                 // where it is still to be made
-  std::string said_;                     // the last line, not to be said again
-  bool is_waiting_ = false;              // and has said so
-  std::atomic<bool> is_to_stop_{false};  // true before the thread is interrupted, so that it does not wait once more
+  std::uint32_t phase_ = 1, turn_ = 0;
+  std::string participant_as_;     // empty: the owner's name
+  bool waits_for_members_ = true;  // in lock step, for ever; false: the option member_timeout says how long
+  SimTick tick_;                   // svc() only
+  std::string hash_log_;           // where it is still to be made
+  std::string said_;               // the last line, not to be said again
+  bool is_waiting_ = false;        // and has said so
   base::Guarded<std::shared_ptr<shm::Participant>, base::Rank::context> participant_;
 };
 

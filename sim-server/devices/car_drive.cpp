@@ -21,7 +21,7 @@ struct Wheel {
   double x = 0, y = 0;
 };
 
-struct Settings {
+struct CarSettings {
   std::vector<Wheel> driven;
   std::vector<Wheel> steered;             // by their steering joints
   double wheel_base = 1, separation = 1;  // [m]
@@ -40,7 +40,7 @@ Wheel place_of(const ModelDef& model, std::uint32_t joint) {
 }
 
 // Wheels and steering joints, from the middle between the wheels in the rear.
-base::Result<void> find_wheels(const ModelDef& model, const PluginDef& plugin, Settings& s) {
+base::Result<void> find_wheels(const ModelDef& model, const PluginDef& plugin, CarSettings& s) {
   std::vector<std::uint32_t> driven, steered;
   std::string missing;
   const bool is_of_ros = plugin.parameters.child("rear_left_joint") != nullptr;
@@ -75,9 +75,9 @@ base::Result<void> find_wheels(const ModelDef& model, const PluginDef& plugin, S
   return {};
 }
 
-base::Result<Settings> settings_of(const ModelDef& model, const PluginDef& plugin) {
+base::Result<CarSettings> car_settings_of(const ModelDef& model, const PluginDef& plugin) {
   const ParameterNode& p = plugin.parameters;
-  Settings s;
+  CarSettings s;
   if (auto found = find_wheels(model, plugin, s); !found) return found.error();
   s.radius = p.number_of({"wheel_radius", "wheelRadius"}).value_or(wheel_radius(model, s.driven[0].joint));
   if (!(s.wheel_base > 0) || !(s.separation > 0) || !(s.radius > 0)) {
@@ -97,7 +97,7 @@ base::Result<Settings> settings_of(const ModelDef& model, const PluginDef& plugi
 
 class Car final : public DriveTrain {
  public:
-  Car(Physics& physics, ModelId model, Settings settings) : physics_(physics), model_(model), settings_(std::move(settings)) {
+  Car(Physics& physics, ModelId model, CarSettings settings) : physics_(physics), model_(model), settings_(std::move(settings)) {
     read_angles();
   }
 
@@ -185,7 +185,7 @@ class Car final : public DriveTrain {
 
   Physics& physics_;
   ModelId model_;
-  Settings settings_;
+  CarSettings settings_;
   double speed_ = 0, curvature_ = 0;  // that the motors follow [m/s], [1/m]
   std::vector<double> angles_;        // of the driven wheels
 };
@@ -193,7 +193,7 @@ class Car final : public DriveTrain {
 }  // namespace
 
 MadeTrain make_car(Physics& physics, ModelId model, const PluginDef& plugin) {
-  auto settings = settings_of(physics.def(model), plugin);
+  auto settings = car_settings_of(physics.def(model), plugin);
   if (!settings) return settings.error();
   return std::unique_ptr<DriveTrain>(new Car(physics, model, std::move(*settings)));
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <variant>
 
 namespace sim {
 
@@ -19,14 +20,39 @@ void add_joints(const ModelDef& model, const PluginDef& plugin, std::initializer
   }
 }
 
-double wheel_radius(const ModelDef& model, std::uint32_t joint) {
+namespace {
+
+// The first ball or cylinder of the wheel that a joint turns; null: none.
+const CollisionDef* tyre_of(const ModelDef& model, std::uint32_t joint) {
   const LinkDef* wheel = model.link(model.joints[joint].child);
-  if (wheel == nullptr) return 0;
+  if (wheel == nullptr) return nullptr;
   for (const auto& collision : wheel->collisions) {
-    if (const auto* sphere = std::get_if<SphereShape>(&collision.geometry)) return sphere->radius;
-    if (const auto* cylinder = std::get_if<CylinderShape>(&collision.geometry)) return cylinder->radius;
+    if (std::holds_alternative<SphereShape>(collision.geometry) || std::holds_alternative<CylinderShape>(collision.geometry))
+      return &collision;
   }
-  return 0;
+  return nullptr;
+}
+
+}  // namespace
+
+double wheel_radius(const ModelDef& model, std::uint32_t joint) {
+  const CollisionDef* tyre = tyre_of(model, joint);
+  if (tyre == nullptr) return 0;
+  const auto* sphere = std::get_if<SphereShape>(&tyre->geometry);
+  return sphere != nullptr ? sphere->radius : std::get<CylinderShape>(tyre->geometry).radius;
+}
+
+Eigen::Vector3d wheel_place(const ModelDef& model, std::uint32_t joint) {
+  constexpr double beside = 1e-6;  // [m]
+  const JointDef& def = model.joints[joint];
+  const Eigen::Vector3d place = def.pose_in_model.translation();
+  const CollisionDef* tyre = tyre_of(model, joint);
+  if (tyre == nullptr || def.axes.empty()) return place;
+  const Eigen::Vector3d axle = (def.pose_in_model.linear() * def.axes[0].xyz).normalized();
+  const Eigen::Vector3d middle = (model.link(def.child)->pose * tyre->pose).translation();
+  const double along = axle.dot(middle - place), off = axle.cross(middle - place).norm();
+  const bool is_on_axle = off < 0.05 * wheel_radius(model, joint);
+  return is_on_axle && std::abs(along) > beside ? Eigen::Vector3d(place + along * axle) : place;
 }
 
 double torque_of(const ModelDef& model, std::uint32_t joint) {

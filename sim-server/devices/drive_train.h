@@ -49,6 +49,9 @@ void add_joints(const ModelDef& model, const PluginDef& plugin, std::initializer
                 std::vector<std::uint32_t>& joints, std::string& missing);
 // Of the round collision of the wheel that a joint turns [m]; 0 without one.
 double wheel_radius(const ModelDef& model, std::uint32_t joint);
+// The middle of that wheel, in the model [m]: joints of models lie beside their wheels. The joint's place when there is no such collision
+// on its axis.
+Eigen::Vector3d wheel_place(const ModelDef& model, std::uint32_t joint);
 // What a joint's own limit allows [N m].
 double torque_of(const ModelDef& model, std::uint32_t joint);
 // gz-sim turns wheels as told whatever it takes; in Gazebo classic they have a torque, 5 N m when nothing is said.

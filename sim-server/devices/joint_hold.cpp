@@ -14,20 +14,19 @@
 namespace sim {
 namespace {
 
-using Kind = JointDef::Kind;
-
 constexpr double gain = 10;           // [1/s]: velocity for each unit that is missing
 constexpr double hardly_any = 1e-4;   // [rad] or [m]: not worth keeping a model awake for
 constexpr double usual_velocity = 2;  // [rad/s] or [m/s] towards a target
 
 bool is_driveable(const JointDef& joint) {
-  return joint.axes.size() == 1 && joint.kind != Kind::fixed && joint.kind != Kind::ball && joint.kind != Kind::gearbox;
+  return joint.axes.size() == 1 && joint.kind != JointDef::Kind::fixed && joint.kind != JointDef::Kind::ball &&
+         joint.kind != JointDef::Kind::gearbox;
 }
 
 JointHold hold_of(const ModelDef& model, ModelId id, std::uint32_t joint) {
   const AxisDef& axis = model.joints[joint].axes[0];
   JointHold hold{{id, joint}};
-  hold.turns = model.joints[joint].kind == Kind::revolute || model.joints[joint].kind == Kind::continuous;
+  hold.turns = model.joints[joint].kind == JointDef::Kind::revolute || model.joints[joint].kind == JointDef::Kind::continuous;
   hold.target = axis.initial_position;
   hold.most = std::isfinite(axis.velocity) && axis.velocity > 0 ? axis.velocity : usual_velocity;
   hold.effort = torque_of(model, joint);

@@ -13,7 +13,7 @@
 namespace sim {
 namespace {
 
-struct Settings {
+struct PairSettings {
   bool is_skid = false;
   std::vector<std::uint32_t> left, right;  // joints
   double separation = 0;                   // between left and right wheels [m]
@@ -35,7 +35,7 @@ double torque_of_joints(const ModelDef& model, const std::vector<std::uint32_t>&
 }
 
 double wheel_separation(const ModelDef& model, std::uint32_t left, std::uint32_t right) {
-  const Eigen::Vector3d between = model.joints[left].pose_in_model.translation() - model.joints[right].pose_in_model.translation();
+  const Eigen::Vector3d between = wheel_place(model, left) - wheel_place(model, right);
   return between.head<2>().norm();
 }
 
@@ -44,7 +44,7 @@ bool is_skid_of_classic(const PluginDef& plugin) {
   return base::to_lower(plugin.filename).find("skidsteerdriveplugin") != std::string::npos;
 }
 
-void add_joints_by_name(const ModelDef& model, const PluginDef& plugin, Settings& s) {
+void add_joints_by_name(const ModelDef& model, const PluginDef& plugin, PairSettings& s) {
   for (const auto& [side, names] :
        {std::pair{&s.left, std::array{"left_front", "left_rear"}}, {&s.right, std::array{"right_front", "right_rear"}}}) {
     for (const char* name : names) {
@@ -53,9 +53,9 @@ void add_joints_by_name(const ModelDef& model, const PluginDef& plugin, Settings
   }
 }
 
-base::Result<Settings> settings_of(const ModelDef& model, const PluginDef& plugin) {
+base::Result<PairSettings> pair_settings_of(const ModelDef& model, const PluginDef& plugin) {
   const ParameterNode& p = plugin.parameters;
-  Settings s;
+  PairSettings s;
   s.is_skid = kind_of(plugin) == PluginKind::skid_steer_drive;
   std::string missing;
   add_joints(
@@ -97,7 +97,7 @@ base::Result<Settings> settings_of(const ModelDef& model, const PluginDef& plugi
 
 class WheelPairs final : public DriveTrain {
  public:
-  WheelPairs(Physics& physics, ModelId model, Settings settings) : physics_(physics), model_(model), settings_(std::move(settings)) {
+  WheelPairs(Physics& physics, ModelId model, PairSettings settings) : physics_(physics), model_(model), settings_(std::move(settings)) {
     read_angles();
   }
 
@@ -175,7 +175,7 @@ class WheelPairs final : public DriveTrain {
 
   Physics& physics_;
   ModelId model_;
-  Settings settings_;
+  PairSettings settings_;
   std::array<double, 2> wheels_{0, 0};  // speed of the rims that the motors follow now [m/s]: left, right
   std::vector<double> left_angles_, right_angles_;
 };
@@ -183,7 +183,7 @@ class WheelPairs final : public DriveTrain {
 }  // namespace
 
 MadeTrain make_wheel_pairs(Physics& physics, ModelId model, const PluginDef& plugin) {
-  auto settings = settings_of(physics.def(model), plugin);
+  auto settings = pair_settings_of(physics.def(model), plugin);
   if (!settings) return settings.error();
   return std::unique_ptr<DriveTrain>(new WheelPairs(physics, model, std::move(*settings)));
 }

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "base/text.h"
+#include "physics/joined_sets.h"
 
 namespace sim {
 namespace {
@@ -22,11 +23,6 @@ std::optional<std::uint32_t> index_of_link(const ModelDef& model, const std::str
 
 // A fixed joint that measures its load stays a joint.
 bool is_weld(const JointDef& joint) { return joint.kind == JointDef::Kind::fixed && !joint.provide_feedback && joint.sensors.empty(); }
-
-std::uint32_t root(std::vector<std::uint32_t>& parents, std::uint32_t i) {
-  while (parents[i] != i) i = parents[i] = parents[parents[i]];
-  return i;
-}
 
 bool is_sound(const LinkDef& link) {
   return link.pose.matrix().allFinite() && (!link.start_pose || link.start_pose->matrix().allFinite()) && link.start_linear.allFinite() &&

@@ -74,7 +74,24 @@ void ContactGroups::keep_energies() {
     if (!group.has_mesh) continue;
     members_[i].energy = members_[i].model->energy(physics_.gravity).sum();
     group.is_exempt = group.is_exempt || members_[i].model->is_driven();
+    note_pushes(i);
   }
+}
+
+void ContactGroups::note_pushes(std::uint32_t member) {
+  const ModelInstance& model = *members_[member].model;
+  for (std::uint32_t k = 0; k < model.body_count(); ++k) {
+    const dBodyID body = model.body(k);
+    if (body == nullptr) continue;
+    const Eigen::Vector3d force = ode::vector(dBodyGetForce(body)), torque = ode::vector(dBodyGetTorque(body));
+    if (force.isZero(0) && torque.isZero(0)) continue;
+    pushes_.push_back({body, member, force, torque, ode::vector(dBodyGetLinearVel(body)), ode::vector(dBodyGetAngularVel(body))});
+  }
+}
+
+double ContactGroups::Push::work(double dt) const {
+  const Eigen::Vector3d way = ode::vector(dBodyGetLinearVel(body)) + linear, turn = ode::vector(dBodyGetAngularVel(body)) + angular;
+  return dt / 2 * (force.dot(way) + torque.dot(turn));
 }
 
 void ContactGroups::limit_energies() {
@@ -89,9 +106,11 @@ void ContactGroups::slow_down_what_gained() {
     group.gained += now.sum() - members_[i].energy;
     group.motion += now.motion;
   }
+  for (const Push& push : pushes_) members_[root(push.member)].work += push.work(physics_.step);
   for (std::uint32_t i = 0; i < members_.size(); ++i) {
     const Member& group = members_[root(i)];
-    if (group.gained > 0 && group.motion > 0) members_[i].model->slow_down(std::sqrt(std::max(1 - group.gained / group.motion, 0.0)));
+    const double too_much = group.gained - std::max(group.work, 0.0);
+    if (too_much > 0 && group.motion > 0) members_[i].model->slow_down(std::sqrt(std::max(1 - too_much / group.motion, 0.0)));
   }
 }
 
@@ -109,6 +128,7 @@ void ContactGroups::settle() {
 
 void ContactGroups::clear() {
   members_.clear();
+  pushes_.clear();
   has_mesh_ = false;
   contacts_ = 0;
 }

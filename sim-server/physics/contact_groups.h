@@ -1,8 +1,8 @@
 // Models that touch in a step make a group: the unit that a solver is chosen for, that falls asleep as one, and that gains no energy from
 // contacts of meshes. A model that touches nothing that moves is a group of its own. Private to physics/. One thread at a time.
 //
-// A group in which a mesh is touched, and in which nothing drives, pulls or springs, has no more energy after the step than before; where
-// it would, all its velocities become smaller by one factor, which leaves joints as they are.
+// A group in which a mesh is touched, and in which no motor and no spring works, has no more energy after the step than before and what
+// forces on its bodies have done; where it would, all its velocities become smaller by one factor, which leaves joints as they are.
 #pragma once
 
 #include <cstdint>
@@ -46,12 +46,22 @@ class ContactGroups {
     bool has_many_joints = false, has_trees_only = true;
     std::uint32_t contacts = 0, moving_contacts = 0;
     double gained = 0, motion = 0;  // [J] by the step; that it moves with now
+    double work = 0;                // [J] of the forces on its bodies
   };
+  // On one body, for the step.
+  struct Push {
+    dBodyID body = nullptr;
+    std::uint32_t member = 0;
+    Eigen::Vector3d force, torque, linear, angular;  // velocities before the step
+    double work(double dt) const;                    // [J] after it
+  };
+  void note_pushes(std::uint32_t member);
   std::uint32_t root(std::uint32_t i);
   void slow_down_what_gained();
 
   const PhysicsDef& physics_;
   std::vector<Member> members_;
+  std::vector<Push> pushes_;
   bool has_mesh_ = false;
   std::uint32_t contacts_ = 0;
 };

@@ -396,13 +396,8 @@ Energy ModelInstance::energy(const Eigen::Vector3d& gravity) const {
 }
 
 bool ModelInstance::is_driven() const {
-  const auto is_still = [](const dReal* v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; };
-  for (const auto& handle : bodies_) {
-    const dBodyID body = handle.id();
-    if (body == nullptr) continue;
-    if (dBodyIsKinematic(body) != 0 || !is_still(dBodyGetForce(body)) || !is_still(dBodyGetTorque(body))) return true;
-  }
-  return has_moving_drive();
+  const auto is_kinematic = [](const ode::Body& body) { return body.id() != nullptr && dBodyIsKinematic(body.id()) != 0; };
+  return std::any_of(bodies_.begin(), bodies_.end(), is_kinematic) || has_moving_drive();
 }
 
 bool ModelInstance::has_stand_ins() const {

@@ -82,7 +82,7 @@ class ModelInstance {
   bool has_stand_ins() const;
   // A motor is to turn a joint.
   bool has_moving_drive() const;
-  // Motors, forces on its bodies for the next step or its own way of moving may give it energy.
+  // Motors or its own way of moving may give it energy.
   bool is_driven() const;
   // All its velocities times `factor`.
   void slow_down(double factor);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "physics/joined_sets.h"
 #include "physics/neighbours.h"
 #include "physics/shard.h"
 
@@ -17,11 +18,6 @@ constexpr std::size_t most_shards = 16;
 constexpr double same_event = 1;  // [s] between two times that a model leaves the numbers
 
 bool is_sane(const Eigen::Vector3d& v, double limit) { return v.allFinite() && v.cwiseAbs().maxCoeff() <= limit; }
-
-std::uint32_t root(std::vector<std::uint32_t>& parents, std::uint32_t i) {
-  while (parents[i] != i) i = parents[i] = parents[parents[i]];
-  return i;
-}
 
 }  // namespace
 

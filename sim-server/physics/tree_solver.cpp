@@ -27,7 +27,7 @@ Vector6 wrench_at(const Eigen::Vector3d& line, const Eigen::Vector3d& arm) { ret
 
 Vector6 velocity_of(dBodyID body) { return wrench(ode::vector(dBodyGetLinearVel(body)), ode::vector(dBodyGetAngularVel(body))); }
 
-std::pair<Eigen::Vector3d, Eigen::Vector3d> across(const Eigen::Vector3d& axis) {
+std::pair<Eigen::Vector3d, Eigen::Vector3d> plane_of(const Eigen::Vector3d& axis) {
   dVector3 p, q;
   const dVector3 n = {axis.x(), axis.y(), axis.z()};
   dPlaneSpace(n, p, q);
@@ -132,7 +132,7 @@ void TreeSolver::add_joint(Node& node) {
     const Eigen::Vector3d turned = (off.w() < 0 ? -2.0 : 2.0) * off.vec();
     for (int i = 0; i < 3; ++i) turn_row(Eigen::Vector3d::Unit(i), correction * turned[i]);
   }
-  const auto [p, q] = across(on_child.axis);
+  const auto [p, q] = plane_of(on_child.axis);
   const Eigen::Vector3d child_arm = on_child.place - on_child.middle, parent_arm = on_child.place - on_parent.middle;
   if (type == dJointTypeHinge) {
     const Eigen::Vector3d lean = on_child.axis.cross(on_parent.axis);
@@ -205,7 +205,7 @@ void TreeSolver::add_contact(const MadeContact& made) {
   }
   const auto normal_row = static_cast<int>(rows_.size());
   add_contact_row(touch, normal, push);
-  auto [first, second] = across(normal);
+  auto [first, second] = plane_of(normal);
   if (has(dContactFDir1)) first = ode::vector(made.contact.fdir1), second = normal.cross(first);
   const auto rub = [&](const Eigen::Vector3d& line, double mu, bool has_slip, double slip, bool is_of_normal) {
     if (!(mu > 0)) return;

@@ -99,6 +99,16 @@ std::string tree_text(const Simulation& simulation, const std::string& model) {
   for (ModelId id = 0; id < physics.model_slots(); ++id) {
     if (physics.exists(id) && (model.empty() || physics.def(id).name == model)) models.push_back(model_tree(physics, id));
   }
+  Json actors = Json::array();
+  for (const auto& actor : simulation.world().actors) {
+    if (model.empty()) actors.push_back({{"name", actor.name}});
+  }
+  return text({{"models", models}, {"actors", actors}});
+}
+
+std::string models_text(const ModelPath& path) {
+  Json models = Json::array();
+  for (const auto& name : path.models()) models.push_back({{"name", name}});
   return text({{"models", models}});
 }
 

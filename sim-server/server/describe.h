@@ -6,6 +6,7 @@
 
 #include "server/simulation.h"
 #include "shm/lockstep.h"
+#include "world/model_path.h"
 
 namespace sim {
 
@@ -23,6 +24,8 @@ std::string list_text(Simulation& simulation);
 // {"models": [{"name", "static", "pose", "links": [...], "joints": [...], "plugins": [...]}]}; of one model, or of all when `model` is
 // empty.
 std::string tree_text(const Simulation& simulation, const std::string& model);
+// {"models": [{"name"}]}: those of the model path.
+std::string models_text(const ModelPath& path);
 std::string stats_text(Simulation& simulation, const LoopState& loop);
 // {"model", "total", "contacts": [{"link", "other", "position", "normal", "depth"}]}: those of the last step.
 std::string contacts_text(const Simulation& simulation, ModelId model);

@@ -13,10 +13,10 @@
 #include "base/guarded.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "base/warm_start.h"
 #include "render/assets.h"
 #include "render/scene.h"
 #include "server/server_loop.h"
-#include "server/warm_start.h"
 #include "shm/segment.h"
 #include "shm/specs.h"
 #include "world/world_loader.h"
@@ -264,7 +264,10 @@ int serve(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // For rtse alone, so --help is silent about it.
-  if (argc == 2 && std::string_view(argv[1]) == "--warm") return sim::make_servers(serve);
+  if (base::is_warm_start(argc, argv)) {
+    // The specification of SDFormat is read with the first world: more than half of a start, with the libraries.
+    static_cast<void>(sim::load_world_text("<sdf version='1.6'><world name='none'/></sdf>", "/", "none", sim::ModelPath{}));
+    return base::make_processes(serve);
+  }
   return serve(argc, argv);
 }

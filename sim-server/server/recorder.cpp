@@ -49,14 +49,17 @@ void Recorder::record(std::chrono::nanoseconds time, const Physics& physics) {
   record_contacts(seconds, physics);
   if (!schedule_.is_due(time)) return;
   schedule_.done(time);
+  bool is_empty = true;
   for (ModelId id = 0; id < physics.model_slots(); ++id) {
     if (!physics.exists(id) || physics.is_static(id)) continue;
+    is_empty = false;
     const Eigen::Isometry3d pose = physics.model_pose(id);
     const Eigen::Vector3d p = pose.translation();
     const Eigen::Quaterniond q(pose.linear());
     file_ << fmt::format("{:.3f} {} {} {} {} {} {} {} {}\n", seconds, as_word(physics.def(id).name), p.x(), p.y(), p.z(), q.w(), q.x(),
                          q.y(), q.z());
   }
+  if (is_empty) file_ << fmt::format("# {:.3f} nothing moves\n", seconds);
   file_.flush();  // who reads along, or after a kill, finds whole lines
   if (!file_) base::log(base::Level::error, "sim-server", "record {}: {}; recording stops", path_, std::strerror(errno));
 }

@@ -3,6 +3,8 @@
 //   # rtm-sim record 1, world NAME
 //   # time model x y z qw qx qy qz      (s, m, unit quaternion; world frame)
 //   0.100 pioneer2dx 0 0 0 1 0 0 0
+// when no model moves, a line that says so, as who reads along sees how far it is:
+//   # 0.200 nothing moves
 // and one line, in the step in which it happens, when two models begin to touch:
 //   contact 3.217 pioneer2dx box_4
 #pragma once

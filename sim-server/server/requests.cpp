@@ -33,7 +33,7 @@ bool is_one_of(const shm::Request& request) {
 bool leaves_the_world_alone(const shm::Request& request) {
   return is_one_of<shm::PauseRequest, shm::RunRequest, shm::GetPoseRequest, shm::GetVelocityRequest, shm::ListRequest, shm::TreeRequest,
                    shm::StatsRequest, shm::SetRtfRequest, shm::ContactsRequest, shm::DropParticipantRequest, shm::ExportRequest,
-                   shm::PosesRequest, shm::FaultsRequest>(request);
+                   shm::PosesRequest, shm::FaultsRequest, shm::ModelsRequest>(request);
 }
 
 // How long a request that needs the world to stand between two steps waits for a tick to end. Clients wait for ten seconds.
@@ -128,6 +128,11 @@ struct ServerLoop::Handler {
     if (!request.model.empty() && !physics.find(request.model)) return no_model(request.model);
     shm::Reply reply;
     reply.text = tree_text(simulation, request.model);
+    return reply;
+  }
+  shm::Reply operator()(const shm::ModelsRequest&) {
+    shm::Reply reply;
+    reply.text = models_text(loop.is_shared() ? loop.model_path_.confined() : loop.model_path_);
     return reply;
   }
   shm::Reply operator()(const shm::SpawnRequest& request) {

@@ -81,6 +81,7 @@ base::Result<void> Simulation::make_devices_of(ModelId model, std::vector<std::s
 }
 
 void Simulation::sort_devices() {
+  ++arrangement_;
   std::stable_sort(devices_.begin(), devices_.end(), [](const auto& a, const auto& b) { return a->model() < b->model(); });
   followers_.clear();
   shares_.clear();

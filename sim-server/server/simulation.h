@@ -77,6 +77,8 @@ class Simulation {
   RenderWorld& pictures() { return *pictures_; }
   const WorldDef& world() const { return *world_; }
   const std::vector<std::unique_ptr<Device>>& devices() const { return devices_; }
+  // Another number when models and devices have come or gone: while it is the same, each id and index names the same one.
+  std::uint64_t arrangement() const { return arrangement_; }
   Device* device(std::string_view iface_name);
   const std::vector<Trail>& trails() const { return trails_; }  // by ModelId
   // Devices that have worked since the last call.
@@ -107,8 +109,9 @@ class Simulation {
   std::unique_ptr<RenderWorld> pictures_;
   std::unique_ptr<DeviceWorld> device_world_;
   std::vector<std::unique_ptr<Device>> devices_;  // by model, then as made
-  std::vector<Device*> followers_;                // those that follow the steps
-  std::vector<std::size_t> shares_;               // of the followers; where each ends
+  std::uint64_t arrangement_ = 0;
+  std::vector<Device*> followers_;   // those that follow the steps
+  std::vector<std::size_t> shares_;  // of the followers; where each ends
   WorkerPool::Pace commands_pace_;
   std::vector<JointHold> holds_;
   std::vector<Device*> due_;

@@ -43,15 +43,24 @@ base::Result<WorldHashes> WorldHashes::open(const std::string& path, std::chrono
   return WorldHashes(path, std::move(*log), 1e9 / static_cast<double>(period.count()));
 }
 
-WorldHashes::Leaf& WorldHashes::leaf(std::vector<Leaf>& leaves, std::size_t index, std::string_view type, std::string_view name) {
+WorldHashes::Leaf& WorldHashes::leaf(std::vector<Leaf>& leaves, std::size_t index) {
   if (index >= leaves.size()) leaves.resize(index + 1);
-  Leaf& leaf = leaves[index];
+  return leaves[index];
+}
+
+void WorldHashes::name(Leaf& leaf, std::string_view type, std::string_view name) {
   if (leaf.type != type || leaf.name != name) {
     leaf = {std::string(type), std::string(name)};
     leaf.key = type.empty() ? log_.key({base::HashKey::Kind::model, 0, leaf.name, "pose"})
                             : log_.key({base::HashKey::Kind::device, 0, leaf.type + " " + leaf.name, ""});
   }
-  return leaf;
+  leaf.is_named = true;
+}
+
+void WorldHashes::look_at_names_again(std::uint64_t arrangement) {
+  if (std::exchange(arrangement_, arrangement) == arrangement) return;
+  for (auto* leaves : {&models_, &devices_})
+    for (Leaf& leaf : *leaves) leaf.is_named = false;
 }
 
 // Of the leaf whose state is in state_: it is another one than before. To compare costs a tenth of a hash, and what rests, or keeps nothing
@@ -70,7 +79,8 @@ void WorldHashes::record_models(const Simulation& simulation) {
     if (!physics.exists(id)) continue;
     state_.clear();
     physics.add_place_and_parts_to(state_, id);
-    Leaf& model = leaf(models_, id, "", physics.def(id).name);
+    Leaf& model = leaf(models_, id);
+    if (!model.is_named) name(model, "", physics.def(id).name);
     if (is_new(model)) log_.add(model.key, model.hash, octets_of(physics.model_pose(id)));
   }
 }
@@ -80,8 +90,8 @@ void WorldHashes::record_devices(const Simulation& simulation) {
   for (std::size_t i = 0; i < devices.size(); ++i) {
     state_.clear();
     devices[i]->add_to(state_);
-    const auto& iface = devices[i]->iface();
-    Leaf& device = leaf(devices_, i, shm::to_text(iface.type()), iface.name());
+    Leaf& device = leaf(devices_, i);
+    if (const auto& iface = devices[i]->iface(); !device.is_named) name(device, shm::to_text(iface.type()), iface.name());
     if (is_new(device)) log_.add(device.key, device.hash);
   }
 }
@@ -89,6 +99,7 @@ void WorldHashes::record_devices(const Simulation& simulation) {
 void WorldHashes::record(const Simulation& simulation) {
   if (!schedule_.is_due(simulation.time())) return;
   schedule_.done(simulation.time());
+  look_at_names_again(simulation.arrangement());
   log_.begin_tick(simulation.resets(), simulation.time());
   record_models(simulation);
   record_devices(simulation);

@@ -36,9 +36,12 @@ class WorldHashes {
     std::uint32_t key = 0;
     std::uint64_t hash = 0;
     bool is_known = false;
+    bool is_named = false;               // type and name are those of this arrangement of the world
     std::vector<std::uint64_t> state{};  // as of the last entry
   };
-  Leaf& leaf(std::vector<Leaf>& leaves, std::size_t index, std::string_view type, std::string_view name);
+  Leaf& leaf(std::vector<Leaf>& leaves, std::size_t index);
+  void name(Leaf& leaf, std::string_view type, std::string_view name);
+  void look_at_names_again(std::uint64_t arrangement);
   bool is_new(Leaf& leaf);
   void record_models(const Simulation& simulation);
   void record_devices(const Simulation& simulation);
@@ -48,6 +51,7 @@ class WorldHashes {
   Schedule schedule_;
   StateHash state_;  // of one leaf after the other
   std::vector<Leaf> models_, devices_;
+  std::uint64_t arrangement_ = 0;
 };
 
 }  // namespace sim

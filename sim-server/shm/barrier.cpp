@@ -33,11 +33,13 @@ struct Barrier::State {
     std::uint64_t owner = 0;
     std::shared_ptr<const Watched> watched;
     std::string name;
-    std::uint32_t phase = 0;
+    std::uint32_t phase = 0, turn = 0;
     std::int64_t period = 0, next_due = 0;
     std::uint32_t go = 0;
     std::uint64_t missed = 0;
     bool is_hanging = false;
+
+    auto order() const { return std::pair(phase, turn); }
   };
 
   State(const Segment& s, Server& srv, BarrierOptions o) : segment(s), server(srv), options(std::move(o)) {}
@@ -45,8 +47,8 @@ struct Barrier::State {
   const Segment& segment;
   Server& server;
   BarrierOptions options;
-  std::vector<Member> members;  // by phase, then in the order of joining
-  std::vector<Member*> due;     // of the phase that runs; kept, so that no tick has to make room
+  std::vector<Member> members;  // by phase and turn, then in the order of joining
+  std::vector<Member*> due;     // of the turn that runs; kept, so that no tick has to make room
   std::uint32_t seen_epoch = 0;
   std::uint64_t seen_deaths = 0;
   std::uint32_t seen_attention = 0;  // of requests and the like, which are served while a tick waits
@@ -76,7 +78,8 @@ struct Barrier::State {
   void drop(const Member& member, std::uint32_t why);
   void release(Member& member, std::int64_t now, std::uint64_t steps);
   void wake(std::span<Member* const> group);
-  bool run_phase(std::span<Member*> group, std::int64_t now, std::uint64_t steps);
+  bool run_turn(std::span<Member*> group, std::int64_t now, std::uint64_t steps);
+  void end_phase();
   bool wait_for(std::span<Member*> group);
   bool look_for_end(std::span<Member*> group, nanoseconds limit) const;
   bool all_done(std::span<Member*> group) const {
@@ -113,6 +116,7 @@ void Barrier::State::take_in(std::size_t index) {
   member.owner = load(slot.owner);
   member.name = name_of(slot);
   member.phase = slot.phase;
+  member.turn = slot.turn;
   member.period = load(slot.period_ns);
   const bool is_good = member.phase <= max_phase && member.period > 0 && member.period < longest_period && member.owner != 0;
   member.watched = server.watch().watch(mark_of(slot));
@@ -126,7 +130,7 @@ void Barrier::State::take_in(std::size_t index) {
   wake_participant(control(), index);
   if (!is_good) return;
   const auto place =
-      std::upper_bound(members.begin(), members.end(), member.phase, [](std::uint32_t phase, const Member& m) { return phase < m.phase; });
+      std::upper_bound(members.begin(), members.end(), member, [](const Member& a, const Member& b) { return a.order() < b.order(); });
   tell(BarrierEvent::Kind::joined, *members.insert(place, std::move(member)));
 }
 
@@ -287,7 +291,7 @@ void Barrier::State::wake_ahead(std::int64_t step) {
   if (std::exchange(has_looked_ahead, true)) return;
   due.clear();
   for (Member& member : members) {
-    if (!due.empty() && member.phase != due[0]->phase) break;
+    if (!due.empty() && member.order() != due[0]->order()) break;
     if (member.next_due < earliest_due + step) due.push_back(&member);
   }
   free.look(steady_clock::now());
@@ -307,7 +311,12 @@ void Barrier::State::learn_ahead(std::span<Member* const> group) {
               std::all_of(group.begin(), group.end(), [this](const Member* m) { return load(slot(*m).sleeping) == 0; }));
 }
 
-bool Barrier::State::run_phase(std::span<Member*> group, std::int64_t now, std::uint64_t steps) {
+// Of a phase in which nobody was due nothing is counted.
+void Barrier::State::end_phase() {
+  if (moment % 2 == 1) pass_moment();
+}
+
+bool Barrier::State::run_turn(std::span<Member*> group, std::int64_t now, std::uint64_t steps) {
   if (!options.is_lockstep) {
     for (Member* member : group) {
       if (is_done(*member)) {
@@ -322,13 +331,11 @@ bool Barrier::State::run_phase(std::span<Member*> group, std::int64_t now, std::
   }
   // Whoever counts down to one or below wakes the server, which then looks at all `done` words itself: the count is only a hint, so
   // that a participant that died between the two costs nothing but an extra look.
-  pass_moment();  // odd
+  if (moment % 2 == 0) pass_moment();  // the first turn of its phase
   store(control().pending, static_cast<std::int32_t>(group.size()), std::memory_order_seq_cst);
   for (Member* member : group) release(*member, now, steps);
   wake(group);
-  const bool is_over = wait_for(group);
-  pass_moment();
-  return is_over;
+  return wait_for(group);
 }
 
 bool Barrier::tick(nanoseconds now, std::uint64_t steps) {
@@ -343,15 +350,16 @@ bool Barrier::tick(nanoseconds now, std::uint64_t steps) {
   bool is_complete = true, has_begun = false;
   state.is_ticking = true;
   while (begin < state.members.size() && is_complete) {
-    const std::uint32_t phase = state.members[begin].phase;
+    const auto order = state.members[begin].order();
     std::size_t end = begin;
     state.due.clear();
-    for (; end < state.members.size() && state.members[end].phase == phase; ++end) {
+    for (; end < state.members.size() && state.members[end].order() == order; ++end) {
       if (state.members[end].owner != 0 && state.members[end].next_due <= now.count()) state.due.push_back(&state.members[end]);
     }
     const std::span<State::Member*> group(state.due);
     if (!group.empty() && !std::exchange(has_begun, true)) state.learn_ahead(group);
-    if (!group.empty()) is_complete = state.run_phase(group, now.count(), steps);
+    if (!group.empty()) is_complete = state.run_turn(group, now.count(), steps);
+    if (!is_complete || end == state.members.size() || state.members[end].phase != order.first) state.end_phase();
     for (const auto* member : group) state.has_gone = state.has_gone || member->owner == 0;
     begin = end;
   }

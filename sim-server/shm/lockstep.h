@@ -11,10 +11,10 @@
 // `active`, `dropped`, `free`. The server keeps private copies of everything it needs; what a client scribbles can at worst make its own
 // tick count as finished, or cost the server one waiting slice (10 ms).
 //
-// A tick at time t: for each phase in ascending order the server releases all participants of that phase that are due (go = tick
-// number) and wakes them with one system call, and waits until each has stored done = go. Nobody else is woken: sleepers share a futex word
-// and are told apart by its bit sets. Due times are the multiples of the period since time 0,
-// so they do not depend on when somebody joined; a tick happens at the first step at or after the due time, without drift.
+// A tick at time t: for each phase in ascending order, and within it for each turn, the server releases all participants of that phase and
+// turn that are due (go = tick number) and wakes them with one system call, and waits until each has stored done = go. Nobody else is
+// woken: sleepers share a futex word and are told apart by its bit sets. Due times are the multiples of the period since time 0, so they do
+// not depend on when somebody joined; a tick happens at the first step at or after the due time, without drift.
 //
 // Failures:
 //   dies at any point                  its slot is taken back at once (pid watch); the tick goes on without it
@@ -25,7 +25,8 @@
 //   joins without end                  refused when all slots are taken, with a message
 //
 // The beginnings and ends of phases are counted (`moment`, odd while a phase runs), for the rule by which data is delivered: what is
-// written in a phase is read in later ones (base/tick.h).
+// written in a phase is read in later ones (base/tick.h). All turns of a phase are one moment: turns are for those who cannot keep that
+// rule, because they hold what they get at once.
 //
 // Participants sleep on a few shared futex words told apart by bits, so that one system call wakes a whole phase.
 #pragma once
@@ -102,6 +103,7 @@ struct ParticipantOptions {
   std::string name;
   std::uint32_t phase = 1;  // 0 sensors, 1 clients, 2 actuators; at most 15
   std::chrono::nanoseconds period = std::chrono::milliseconds(10);
+  std::uint32_t turn = 0;  // within the phase: higher ones begin when lower ones have finished
 };
 
 struct Tick {

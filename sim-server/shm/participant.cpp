@@ -86,6 +86,7 @@ base::Result<void> Participant::Impl::take_slot(const ParticipantOptions& option
     store(candidate.pid_namespace, mark.pid_namespace);
     store(candidate.start_time, mark.start_time);
     candidate.phase = options.phase;
+    candidate.turn = options.turn;
     store(candidate.period_ns, static_cast<std::int64_t>(options.period.count()));
     set_text(candidate.name, options.name);
     store(candidate.done, 0U);

@@ -15,7 +15,7 @@
 namespace shm {
 namespace {
 
-constexpr std::chrono::milliseconds slice{100};
+constexpr std::chrono::milliseconds board_slice{100};
 
 char* request_text(const Segment& segment, std::size_t index) {
   return reinterpret_cast<char*>(segment.at(AreaIndex::requests, index) + sizeof(RequestSlot));
@@ -282,9 +282,9 @@ base::Result<void> Requester::State::exchange(std::uint64_t id, std::chrono::ste
       const bool is_ours = word(mine.state).compare_exchange_strong(asked, RTMSIM_SLOT_IDLE, std::memory_order_acq_rel);
       // A server that is just writing its reply gets another second.
       if (is_ours || left < -std::chrono::seconds(1)) return fail("did not answer in time");
-      left = slice;
+      left = board_slice;
     }
-    futex_wait(mine.state, seen, std::min<std::chrono::nanoseconds>(left, slice));
+    futex_wait(mine.state, seen, std::min<std::chrono::nanoseconds>(left, board_slice));
   }
 }
 

@@ -17,7 +17,7 @@ constexpr std::uint32_t flag_1 = 1, flag_2 = 2, flag_3 = 4;
 constexpr std::int64_t max_steps = 1'000'000'000;
 constexpr std::uint32_t max_pixels = 8192;
 
-constexpr std::array<std::string_view, 26> names = {"",           "pause",          "run",
+constexpr std::array<std::string_view, 27> names = {"",           "pause",          "run",
                                                     "step",       "reset",          "get-pose",
                                                     "set-pose",   "get-velocity",   "set-velocity",
                                                     "wrench",     "list",           "tree",
@@ -25,7 +25,7 @@ constexpr std::array<std::string_view, 26> names = {"",           "pause",      
                                                     "statistics", "reset-odometry", "set-motors",
                                                     "set-rtf",    "contacts",       "drop-participant",
                                                     "export",     "poses",          "fault",
-                                                    "end-faults", "faults"};
+                                                    "end-faults", "faults",         "models"};
 static_assert(std::variant_size_v<Request> == names.size() - 1);
 
 void put_pose(RequestBody& body, const Pose& pose) {
@@ -117,6 +117,7 @@ struct Encoder {
     raw.text = r.kind;
   }
   void operator()(const FaultsRequest& r) { name(r.iface); }
+  void operator()(const ModelsRequest&) {}
 };
 
 class Decoder {
@@ -335,6 +336,8 @@ base::Result<Request> Decoder::decode() {
       return end_faults();
     case RTMSIM_REQUEST_FAULTS:
       return Request(FaultsRequest{name_});
+    case RTMSIM_REQUEST_MODELS:
+      return Request(ModelsRequest{});
     default:
       return fail("unknown kind");
   }

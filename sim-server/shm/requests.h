@@ -104,11 +104,12 @@ struct EndFaultsRequest {
 struct FaultsRequest {
   std::string iface;  // empty = all
 };
+struct ModelsRequest {};
 
 using Request = std::variant<PauseRequest, RunRequest, StepRequest, ResetRequest, GetPoseRequest, SetPoseRequest, GetVelocityRequest,
                              SetVelocityRequest, WrenchRequest, ListRequest, TreeRequest, SpawnRequest, DeleteRequest, ScreenshotRequest,
                              StatsRequest, ResetOdometryRequest, SetMotorsRequest, SetRtfRequest, ContactsRequest, DropParticipantRequest,
-                             ExportRequest, PosesRequest, FaultRequest, EndFaultsRequest, FaultsRequest>;
+                             ExportRequest, PosesRequest, FaultRequest, EndFaultsRequest, FaultsRequest, ModelsRequest>;
 
 enum class RequestStatus : std::uint32_t {
   ok = RTMSIM_STATUS_OK,

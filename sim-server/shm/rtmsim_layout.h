@@ -439,7 +439,8 @@ enum {
                                 values 0 = amount, else the usual one; values 1 = simulated seconds, 0 = until it is ended. One of its kind
                                 that is on gives way */
   RTMSIM_REQUEST_END_FAULTS = 24, /* name = iface or empty for all; text = kind or empty for all; reply count = faults that have ended */
-  RTMSIM_REQUEST_FAULTS = 25      /* name = iface or empty for all; reply text: JSON, those that are on or still to come */
+  RTMSIM_REQUEST_FAULTS = 25,     /* name = iface or empty for all; reply text: JSON, those that are on or still to come */
+  RTMSIM_REQUEST_MODELS = 26      /* reply text: JSON, the models of the model path, which SPAWN takes as model://NAME */
 };
 
 /* Views of a screenshot. Without TOP and FOLLOW the camera's pose is in values; none given: one that shows the whole world. */
@@ -537,7 +538,8 @@ typedef struct {
   char name[64];
   uint32_t state; /* [atomic] RTMSIM_PARTICIPANT_* */
   uint32_t error; /* why the server refused or dropped it: RTMSIM_DROPPED_* */
-  uint8_t reserved0[24];
+  uint32_t turn;  /* within its phase: the higher ones begin when the lower ones have finished; written before it asks to join */
+  uint8_t reserved0[20];
   /* written by the server */
   uint32_t go;     /* [atomic] number of the tick to do; 0 = none yet */
   uint32_t resets; /* [atomic] of the world */

@@ -205,6 +205,14 @@ void tree(Control& control, const std::string& model) {
   }
 }
 
+void models(Control& control) {
+  const auto reply = control.ask(shm::ModelsRequest{});
+  if (!reply) return;
+  const auto json = Json::parse(reply->text, nullptr, false);
+  if (control.json() || !json.is_object()) return control.print(json);
+  for (const auto& model : json.value("models", Json::array())) std::cout << model.value("name", "?") << '\n';
+}
+
 void dump(Control& control, const std::string& name) {
   const auto iface = control.open(name);
   if (!iface) return;

@@ -6,6 +6,7 @@
 
 #include "base/command_line.h"
 #include "base/text.h"
+#include "base/warm_start.h"
 #include "offers.h"
 #include "shm/fault_kinds.h"
 #include "simctl.h"
@@ -53,6 +54,8 @@ void add_looks(base::Command& app, Work& work) {
   auto model = option_value<std::string>();
   tree->add_option("MODEL", *model, "One model only");
   tree->callback([&work, model] { work = [model](Control& c) { simctl::tree(c, *model); }; });
+
+  add_simple(app, work, "models", "Show which models of the model path can be spawned, as model://NAME", simctl::models);
 
   auto* clean = app.add_subcommand("clean", "Remove what crashed servers have left in shared memory; with -s, what that one has");
   clean->callback([&app, &work] {
@@ -275,9 +278,7 @@ void add_pictures(base::Command& app, Work& work) {
   });
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int control(int argc, char** argv) {
   base::Command app{"simctl: show and control a running simulation"};
   base::add_standard_options(app, "simctl", RTMSIM_VERSION);
   app.require_subcommand(1);
@@ -295,7 +296,11 @@ int main(int argc, char** argv) {
   add_fault(app, work);
   add_pictures(app, work);
   if (const auto end = base::parse_command_line(app, "simctl", argc, argv, simctl::offers)) return *end;
-  Control control(server_id, json);
-  work(control);
-  return control.failed() ? 1 : 0;
+  Control server(server_id, json);
+  work(server);
+  return server.failed() ? 1 : 0;
 }
+
+}  // namespace
+
+int main(int argc, char** argv) { return base::is_warm_start(argc, argv) ? base::make_processes(control) : control(argc, argv); }

@@ -80,6 +80,7 @@ void echo(Control& control, const std::string& name, int count);
 void stats(Control& control);
 void participants(Control& control);
 void tree(Control& control, const std::string& model);
+void models(Control& control);
 void dump(Control& control, const std::string& name);
 void clean(Control& control, bool is_of_one_server);
 // PNG frames into a folder, or an mp4 when ffmpeg is installed.

@@ -12,6 +12,7 @@
 #include "world/iface_names.h"
 #include "world/plugin_kind.h"
 #include "world/repairs.h"
+#include "world/shape_inertia.h"
 #include "world/xml_file.h"
 #include "world/xml_values.h"
 
@@ -231,6 +232,16 @@ class ModelBuilder {
       context_.complaints.warn(gripper, "grippers are not simulated; " + describe_in_context(gripper) + " is ignored");
   }
 
+  // One line for all links of the model: many robots give no inertia at all.
+  void tell_of_inertias() const {
+    if (weighed_ == 0) return;
+    const std::string others =
+        weighed_ == 1 ? ""
+                      : ", and so for " + std::to_string(weighed_ - 1) + (weighed_ == 2 ? " other link" : " other links") + " of the model";
+    context_.complaints.note(first_weighed_, "<inertial> of " + describe_in_context(first_weighed_.parent()) +
+                                                 " has a mass and no <inertia>; that of its collisions is taken" + others);
+  }
+
  private:
   // The pose of something in a link: its own, or that of the frame that stands for it.
   Eigen::Isometry3d pose_in_link(pugi::xml_node node, const Eigen::Isometry3d& raw, const Eigen::Isometry3d& link,
@@ -282,12 +293,23 @@ class ModelBuilder {
     }
     if (const pugi::xml_node inertial = node.child("inertial"); inertial.attribute(automatic_mark) && !model_.is_static) {
       take_automatic_inertia(link, inertial, context_);
+    } else if (inertial.child("mass") && !inertial.child("inertia") && !model_.is_static) {
+      take_inertia_of_shapes(link, inertial);
     }
     for (const char* kind : {"projector", "audio_sink", "audio_source", "battery", "particle_emitter"}) {
       for (pugi::xml_node child : node.children(kind))
         context_.complaints.warn(child, describe_in_context(child) + " is not simulated and ignored");
     }
     model_.links.push_back(std::move(link));
+  }
+
+  // The specification's 1 kg m^2 makes a wheel of 0.1 kg turn like one of 100 kg.
+  void take_inertia_of_shapes(LinkDef& link, pugi::xml_node inertial) {
+    const std::optional<Eigen::Matrix3d> inertia = inertia_of_shapes(link.collisions, link.mass, context_.triangles);
+    if (!inertia) return;
+    std::string why;
+    link.inertia = mended_inertia(*inertia, link.mass, why);
+    if (weighed_++ == 0) first_weighed_ = inertial;
   }
 
   // Lasers of gz-sim see the visuals: where collisions are silent about their reflection, that of the nearest visual counts.
@@ -462,6 +484,8 @@ class ModelBuilder {
 
   ModelDef& model_;
   BuildContext& context_;
+  std::size_t weighed_ = 0;  // links whose inertia is that of their shapes
+  pugi::xml_node first_weighed_;
 };
 
 }  // namespace
@@ -490,7 +514,9 @@ ModelDef build_model(pugi::xml_node node, const ResolvedModel& resolved, BuildCo
   model.allow_auto_disable = bool_at(node, "allow_auto_disable", true);
   model.enable_wind = bool_at(node, "enable_wind", false);
   model.source = context.complaints.place_of(node).text();
-  ModelBuilder(model, context).add(node, resolved, {}, Eigen::Isometry3d::Identity());
+  ModelBuilder builder(model, context);
+  builder.add(node, resolved, {}, Eigen::Isometry3d::Identity());
+  builder.tell_of_inertias();
   model.canonical_link = resolved.canonical_link;
   if (!model.link(model.canonical_link) && !model.links.empty()) model.canonical_link = model.links.front().name;
   name_ifaces(model, context.complaints);

@@ -6,6 +6,7 @@
 #include "world/complaints.h"
 #include "world/materials.h"
 #include "world/sdf_library.h"
+#include "world/triangles.h"
 #include "world/world_def.h"
 
 namespace sim {
@@ -13,6 +14,7 @@ namespace sim {
 struct BuildContext {
   Complaints& complaints;
   Materials& materials;
+  TriangleCache triangles = {};  // of meshes that are weighed
 };
 
 // Attribute on visuals, collisions, sensors and lights whose pose is relative to a named frame: the frame of the model that stands for the

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <set>
 
 #include "base/text.h"
 
@@ -184,6 +185,21 @@ std::optional<fs::path> ModelPath::find(std::string_view uri, const fs::path& fo
   std::error_code problem;
   const fs::path real = fs::canonical(*found, problem);
   return !problem && holds(real) ? std::optional(real) : std::nullopt;
+}
+
+std::vector<std::string> ModelPath::models() const {
+  std::set<std::string> names;
+  for (const fs::path& place : folders_) {
+    for (const fs::path& folder : {place, place / "models"}) {
+      for (const fs::path& model : folders_in(folder)) {
+        if (names.size() >= most_listed) break;
+        const std::string name = model.filename().string();
+        const bool is_model = is_there(model / "model.config") || is_there(model / "model.sdf");
+        if (is_model && find("model://" + name, {})) names.insert(name);
+      }
+    }
+  }
+  return {names.begin(), names.end()};
 }
 
 std::optional<fs::path> ModelPath::look_for(std::string_view uri, const fs::path& folder) const {

@@ -34,6 +34,11 @@ class ModelPath {
   // then in the caches), absolute and relative paths. The file or folder exists; empty when none does.
   std::optional<std::filesystem::path> find(std::string_view uri, const std::filesystem::path& folder) const;
 
+  // Every NAME that find("model://NAME") gives a model for: folders with a model.config or model.sdf, sorted, each once. At most
+  // `most_listed` of them; unreadable folders have none. Fuel caches are not looked into.
+  static constexpr std::size_t most_listed = 10'000;
+  std::vector<std::string> models() const;
+
  private:
   std::optional<std::filesystem::path> look_for(std::string_view uri, const std::filesystem::path& folder) const;
   bool holds(const std::filesystem::path& found) const;

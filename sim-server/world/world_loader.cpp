@@ -16,6 +16,7 @@
 #include "world/model_files.h"
 #include "world/population.h"
 #include "world/repairs.h"
+#include "world/saved_state.h"
 #include "world/sdf_library.h"
 #include "world/taken_names.h"
 #include "world/unseen_models.h"
@@ -77,9 +78,6 @@ class Loader {
   const std::string& busy_with() const { return busy_with_; }
 
  private:
-  void apply_state(pugi::xml_node world);
-  void collect_saved_links(pugi::xml_node saved, const std::string& model, const std::string& scope);
-  void move_to_saved_places(ModelDef& model) const;
   void collect(pugi::xml_node world, const fs::path& folder);
   void collect_population(pugi::xml_node population);
   void collect_include(pugi::xml_node world, pugi::xml_node include, const fs::path& folder);
@@ -98,12 +96,7 @@ class Loader {
   SdfLibrary library_;
   ModelFiles files_;
   Materials materials_;
-  struct SavedLink {
-    std::string link;                       // with its scope
-    std::optional<Eigen::Isometry3d> pose;  // in the world
-    Eigen::Vector3d linear{0, 0, 0}, angular{0, 0, 0};
-  };
-  std::multimap<std::string, SavedLink> saved_links_;  // by model, in the order of the file
+  SavedState saved_;
   pugi::xml_document holder_;
   pugi::xml_node copies_;
   std::vector<std::unique_ptr<pugi::xml_document>> documents_;
@@ -116,88 +109,6 @@ class Loader {
   std::map<std::string, ResolvedModel> resolved_;  // by skeleton
   std::optional<ResolvedWorld> whole_;             // when the world's own frames had to be resolved
 };
-
-namespace {
-
-// How a saved state calls this child of the world.
-std::string called_name(pugi::xml_node entity) {
-  if (std::string_view(entity.name()) != "include") return entity.attribute("name").value();
-  if (std::string given = text_of(entity.child("name")); !given.empty()) return given;
-  const std::string uri = text_of(entity.child("uri"));
-  return uri.substr(uri.rfind('/') + 1);  // from the start when there is no slash
-}
-
-// Whether a saved state speaks of this child of the world.
-bool is_called(pugi::xml_node entity, std::string_view kind, std::string_view name) {
-  const std::string_view own_kind = entity.name();
-  return (own_kind == "include" || own_kind == kind) && name == called_name(entity);
-}
-
-}  // namespace
-
-// Files that Gazebo classic saved hold the models as they were made and, apart from them, what was added, taken away and moved since.
-void Loader::apply_state(pugi::xml_node world) {
-  for (pugi::xml_node state = world.child("state"); state; state = world.child("state")) {
-    for (pugi::xml_node added : state.child("insertions").children()) world.append_copy(added);
-    for (pugi::xml_node removed : state.child("deletions").children("name")) {
-      const std::string name = text_of(removed);
-      for (pugi::xml_node entity = world.first_child(), next; entity; entity = next) {
-        next = entity.next_sibling();
-        if (is_called(entity, "model", name) || is_called(entity, "light", name)) world.remove_child(entity);
-      }
-    }
-    std::multimap<std::string, pugi::xml_node> called;
-    for (pugi::xml_node entity : world.children()) called.emplace(called_name(entity), entity);
-    for (pugi::xml_node saved : state.children()) {
-      const std::string_view kind = saved.name();
-      const pugi::xml_node pose = saved.child("pose");
-      if ((kind != "model" && kind != "light") || !pose || !parse_pose(pose)) continue;
-      const auto [first, last] = called.equal_range(saved.attribute("name").value());
-      for (auto entry = first; entry != last; ++entry) {
-        pugi::xml_node entity = entry->second;
-        if (!is_called(entity, kind, entry->first)) continue;
-        entity.remove_child("pose");
-        pugi::xml_node moved = entity.append_copy(pose);
-        moved.remove_attribute("relative_to");
-      }
-      if (kind == "model") collect_saved_links(saved, saved.attribute("name").value(), {});
-    }
-    world.remove_child(state);
-  }
-}
-
-// Links of a state have their poses and velocities in the world.
-void Loader::collect_saved_links(pugi::xml_node saved, const std::string& model, const std::string& scope) {
-  const auto named = [&](pugi::xml_node node) { return (scope.empty() ? "" : scope + "::") + node.attribute("name").value(); };
-  for (pugi::xml_node link : saved.children("link")) {
-    SavedLink out{named(link), parse_pose(link.child("pose")), {}, {}};
-    const auto velocity = parse_numbers(text_of(link.child("velocity")));
-    if (velocity && velocity->size() == 6) {
-      out.linear = Eigen::Vector3d(velocity->data());
-      out.angular = Eigen::Vector3d(velocity->data() + 3);
-    }
-    const bool is_usable = (!out.pose || out.pose->matrix().allFinite()) && out.linear.allFinite() && out.angular.allFinite() &&
-                           (!out.pose || out.pose->translation().cwiseAbs().maxCoeff() < 1e9) && out.linear.cwiseAbs().maxCoeff() < 1000 &&
-                           out.angular.cwiseAbs().maxCoeff() < 1000;
-    if (is_usable) saved_links_.emplace(model, std::move(out));
-  }
-  for (pugi::xml_node inner : saved.children("model")) collect_saved_links(inner, model, named(inner));
-}
-
-void Loader::move_to_saved_places(ModelDef& model) const {
-  const auto [first, last] = saved_links_.equal_range(model.name);
-  for (auto entry = first; entry != last; ++entry) {
-    const SavedLink& saved = entry->second;
-    const auto link = std::find_if(model.links.begin(), model.links.end(), [&](const LinkDef& l) { return l.name == saved.link; });
-    if (link == model.links.end()) continue;
-    if (saved.pose) {
-      const Eigen::Isometry3d place = model.pose.inverse() * *saved.pose;
-      if (!place.isApprox(link->pose, 1e-6)) link->start_pose = place;
-    }
-    link->start_linear = saved.linear;
-    link->start_angular = saved.angular;
-  }
-}
 
 std::size_t Loader::distinct_for(const std::string& key, pugi::xml_node node) {
   const auto [found, is_new] = distinct_by_key_.emplace(key, distinct_.size());
@@ -408,7 +319,7 @@ void Loader::build_instances(WorldDef& world) {
       const auto placed = whole_->models.find(instance.name);
       if (placed != whole_->models.end()) model.pose = placed->second.pose;
     }
-    move_to_saved_places(model);
+    saved_.move(model);
     world.models.push_back(std::move(model));
   }
 }
@@ -427,7 +338,7 @@ base::Result<LoadResult> Loader::world(const std::string& text, const fs::path& 
     return base::Error{name + ": a <world> is expected in it" + hint};
   }
   if (world.next_sibling("world")) complaints_.drop(world.next_sibling("world"), "only the first <world> of a file is loaded");
-  apply_state(world);
+  saved_.apply(world);
   if (!files_.complete(world, folder)) return base::Error{name + ": the world is not fit to be used"};
   collect(world, folder);
   if (is_too_large())

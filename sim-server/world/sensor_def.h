@@ -1,0 +1,143 @@
+// The constant description of a sensor: what it measures, how often, with which noise. The rules of world_def.h hold: names resolved,
+// numbers finite and within bounds; m, rad, s. Values: any thread may read a shared one.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "world/pixel_format.h"
+#include "world/plugin_def.h"
+
+namespace sim {
+
+struct NoiseDef {
+  enum class Kind { none, gaussian, gaussian_quantized };
+  Kind kind = Kind::none;
+  double mean = 0, stddev = 0;
+  double bias_mean = 0, bias_stddev = 0;
+  double dynamic_bias_stddev = 0, dynamic_bias_correlation_time = 0;
+  double precision = 0;  // gaussian_quantized: step of the output
+};
+
+struct ScanDef {
+  int samples = 1;
+  double resolution = 1;  // simulated rays per returned sample
+  double min_angle = 0, max_angle = 0;
+};
+
+// Planar or layered range finder.
+struct RayDef {
+  ScanDef horizontal, vertical;
+  double range_min = 0, range_max = 10;
+  double range_resolution = 0;  // 0: none
+  NoiseDef noise;
+  std::uint32_t visibility_mask = 0xffffffff;
+};
+
+// Brown's distortion.
+struct DistortionDef {
+  double k1 = 0, k2 = 0, k3 = 0, p1 = 0, p2 = 0;
+  Eigen::Vector2d center{0.5, 0.5};
+};
+struct LensDef {
+  std::string type = "gnomonical";  // stereographic, gnomonical, equidistant, equisolid_angle, orthographic, custom
+  bool scale_to_fov = true;
+  double cutoff_angle = 1.5707963267948966;
+  int environment_texture_size = 256;
+  double c1 = 1, c2 = 1, c3 = 0, f = 1;  // custom
+  std::string function = "tan";          // custom: sin, tan, id
+};
+struct CameraDef {
+  std::string name;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // in the sensor; looks along +x, z up
+  double horizontal_fov = 1.047;
+  int width = 320, height = 240;
+  PixelFormat format = PixelFormat::rgb8;  // of the colours; depth is always float
+  double near_clip = 0.1, far_clip = 100;
+  std::optional<std::pair<double, double>> depth_clip;  // depth and rgbd cameras
+  NoiseDef noise;
+  std::optional<DistortionDef> distortion;
+  std::optional<LensDef> lens;  // empty: pinhole
+  std::uint32_t visibility_mask = 0xffffffff;
+};
+// One camera, or several taken at the same time (multicamera).
+struct CameraSetDef {
+  std::vector<CameraDef> cameras;
+};
+
+struct SonarDef {
+  double range_min = 0, range_max = 5;
+  double radius = 0.5;  // of the cone at range_max
+};
+struct ImuDef {
+  enum class Reference { world, enu, ned, nwu, custom };  // what the orientation is told against
+  Reference reference = Reference::world;
+  Eigen::Matrix3d custom_axes = Eigen::Matrix3d::Identity();      // columns: axes of a custom frame in the world
+  std::array<NoiseDef, 3> angular_velocity, linear_acceleration;  // x, y, z
+  bool has_orientation = true;
+};
+struct GpsDef {
+  NoiseDef horizontal_position, vertical_position, horizontal_velocity, vertical_velocity;
+};
+struct ContactDef {
+  std::vector<std::string> collisions;  // names within the sensor's link; all exist
+};
+struct ForceTorqueDef {
+  enum class Frame { child, parent, sensor };
+  std::string joint;  // name in the model when the sensor stands in a joint; empty otherwise
+  Frame frame = Frame::child;
+  bool measures_parent_to_child = false;
+  std::array<NoiseDef, 3> force, torque;
+};
+struct AltimeterDef {
+  NoiseDef vertical_position, vertical_velocity;
+};
+struct MagnetometerDef {
+  std::array<NoiseDef, 3> field;
+};
+struct AirPressureDef {
+  NoiseDef pressure;
+  double reference_altitude = 0;
+};
+
+enum class SensorKind {
+  ray,  // ray, gpu_ray, lidar, gpu_lidar
+  camera,
+  depth_camera,
+  rgbd_camera,
+  multi_camera,
+  contact,
+  imu,
+  gps,  // gps, navsat
+  sonar,
+  force_torque,
+  altimeter,
+  magnetometer,
+  air_pressure,
+};
+std::string_view to_text(SensorKind kind);  // as the table of sensor_builder.cpp says it
+
+struct SensorDef {
+  std::string name;
+  std::string scope;  // nested model it stands in, as in PluginDef
+  std::string iface;  // what its iface is called after the model's name, see iface_names.h; empty: scope and name
+  SensorKind kind = SensorKind::ray;
+  std::string type;                                        // as written: "gpu_lidar"
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // in the link
+  double update_rate = 0;                                  // [Hz]; 0: every step
+  bool always_on = false;
+  bool visualize = false;
+  std::string topic;
+  std::variant<RayDef, CameraSetDef, ContactDef, ImuDef, GpsDef, SonarDef, ForceTorqueDef, AltimeterDef, MagnetometerDef, AirPressureDef>
+      data;
+  std::vector<PluginDef> plugins;
+};
+
+}  // namespace sim
