@@ -13,6 +13,7 @@
 #include "command.h"
 #include "hunt/hunt.h"
 #include "run/interrupt.h"
+#include "run/shell_word.h"
 
 namespace campaign {
 namespace {
@@ -48,7 +49,8 @@ nlohmann::ordered_json to_json(const Find& find) {
 
 void tell(const Find& find, std::size_t number) {
   std::printf("find %zu after %.0f s, case %zu: %s\n  %s\n  rtse sweep %s --row 1 --state %s%s\n", number, find.after_s, find.case_number,
-              find.problem.c_str(), text_of(find.tried).c_str(), find.file.c_str(), find.state_hash.empty() ? "-" : find.state_hash.c_str(),
+              find.problem.c_str(), text_of(find.tried).c_str(), shell_word(find.file).c_str(),
+              find.state_hash.empty() ? "-" : find.state_hash.c_str(),
               find.is_repeatable ? "" : "\n  it was not the same when it was run again");
   std::fflush(stdout);
 }

@@ -123,7 +123,7 @@ void tell(Editor& editor, const SweepResult& result, const SweepCall& call) {
   constexpr std::size_t enough = 10;
   for (std::size_t i = 0; i < result.failed.size() && i < enough; ++i) {
     std::fprintf(stderr, "rtse: row %zu: %s\nrtse:   again: rtse sweep %s --row %zu\n", result.failed[i].number,
-                 result.failed[i].problem.c_str(), call.plan.c_str(), result.failed[i].number);
+                 result.failed[i].problem.c_str(), shell_word(call.plan).c_str(), result.failed[i].number);
   }
   if (p.failed > enough) std::fprintf(stderr, "rtse: and %zu more; rtse results %s\n", p.failed - enough, results.c_str());
   if (p.failed > 0) editor.set_failed();
@@ -134,7 +134,7 @@ void tell(Editor& editor, const SweepResult& result, const SweepCall& call) {
 }
 
 // "3", "1..20".
-std::optional<std::pair<std::size_t, std::size_t>> parse_rows(const std::string& text) {
+std::optional<std::pair<std::size_t, std::size_t>> parse_row_range(const std::string& text) {
   const auto dots = text.find("..");
   const auto first = base::parse_integer(text.substr(0, dots));
   const auto last = dots == std::string::npos ? first : base::parse_integer(text.substr(dots + 2));
@@ -155,9 +155,9 @@ void print_commands(const Campaign& campaign, const SweepCall& call) {
 SweepOptions options_of(const Editor& editor, const SweepCall& call) {
   SweepOptions options;
   options.results = results_of(call);
-  options.kept = call.keep.empty() ? fs::path(options.results).replace_extension(".runs").string() : call.keep;
+  options.kept = fs::absolute(call.keep.empty() ? fs::path(options.results).replace_extension(".runs") : fs::path(call.keep)).string();
   options.jobs = call.jobs;
-  if (const auto rows = parse_rows(call.rows)) std::tie(options.first_row, options.last_row) = *rows;
+  if (const auto rows = parse_row_range(call.rows)) std::tie(options.first_row, options.last_row) = *rows;
   options.records = call.records;
   options.fails_fast = call.fails_fast;
   options.call_limit = editor.limit();
@@ -191,6 +191,8 @@ void sweep_plan(Editor& editor, const SweepCall& call) {
   if (call.engine == "parallel") return print_commands(*campaign, call);
   if (call.row > 0) return run_one(editor, *campaign, call);
   const auto options = options_of(editor, call);
+  if (options.last_row > campaign->rows())
+    return editor.fail({"--rows " + call.rows + ": the plan has " + std::to_string(campaign->rows()) + " rows"});
   if (!call.task.empty()) {
     if (const auto done = run_task(editor.orb(), *campaign, options, *parse_task(call.task)); !done) editor.fail(done.error());
     return;
@@ -241,7 +243,7 @@ void add_sweep(base::Command& app, editor::Chosen& chosen) {
                   ->check(base::number_between(1, 1e6));
   command->add_option("--state", call->state, "With --row: fail when the state at the end is another")->needs(row);
   command->add_option("--rows", call->rows, "Only the rows FIRST..LAST")->excludes(row)->check([](const std::string& text) {
-    return parse_rows(text) ? std::string() : "expected N or FIRST..LAST, got " + base::in_quotes(text);
+    return parse_row_range(text) ? std::string() : "expected N or FIRST..LAST, got " + base::in_quotes(text);
   });
   add_engines(*command, *call);
   auto* audit = command->add_option("--audit", call->audit, "Run this fraction of the stored rows again and compare, as 5% or 0.05")

@@ -10,6 +10,7 @@
 
 #include "base/text.h"
 #include "remote.h"
+#include "results/disk_room.h"
 #include "run/interrupt.h"
 #include "run/warm_program.h"
 
@@ -19,7 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t generation = 8;  // cases that are tried before what they reached counts
+constexpr const char* verdict_mark = "; ";  // after each expectation of a signature
+constexpr std::size_t generation = 8;       // cases that are tried before what they reached counts
+
+Result<void> room_for(const HuntOptions& options, std::uintmax_t least) { return check_room({options.folder, temporary_folder()}, least); }
 
 class Hunt {
  public:
@@ -69,7 +73,7 @@ class Hunt {
     options.duration_s = tried.duration_s;
     options.checks_invariants = true;
     options.draws = false;
-    options.warm_simulator = warm_ ? &*warm_ : nullptr;
+    options.warm = &warm_;
     auto outcome = run_row(orb_, campaign_, tried.row, options);
     std::error_code ignored;
     fs::remove_all(options.folder, ignored);
@@ -82,6 +86,10 @@ class Hunt {
     for (const auto& feature : outcome.features) is_new |= features_.insert(feature).second;
     if (is_new && outcome.is_passed()) corpus_.push_back(tried);
     const auto kind = signature(outcome);
+    if (const auto room = outcome.problem.empty() ? Result<void>() : room_for(options_, room_to_go_on); !room) {
+      problem_ = room.error().message;
+      return;
+    }
     if (!outcome.is_passed() && signatures_.insert(kind).second) {
       Find find;
       find.case_number = result_.cases;
@@ -97,6 +105,18 @@ class Hunt {
 
   bool still_breaks(const HuntCase& tried, const std::string& kind) {
     return !editor::is_interrupted() && signature(run(tried, "shrinking")) == kind;
+  }
+
+  // Whether it is not simply too short for what is expected: a path that is long enough, a place that is reached.
+  bool means_something(const HuntCase& shorter, const std::string& kind) {
+    if (shorter.deeds() == 0) {
+      const bool is_verdict = kind.ends_with(verdict_mark);
+      return !is_verdict || kind.starts_with("never: ") || kind.starts_with("no component ends") || kind.starts_with("no NaN");
+    }
+    auto quiet = shorter;
+    quiet.faults.clear();
+    quiet.events.clear();
+    return !still_breaks(quiet, kind);
   }
 
   // Fewer deeds, then simpler numbers, then a shorter run.
@@ -120,7 +140,7 @@ class Hunt {
     for (double part : {0.25, 0.5, 0.75}) {
       auto simpler = best;
       simpler.duration_s = std::max(0.5, std::round(best.duration_s * part * 10) / 10);
-      if (simpler.duration_s < best.duration_s && try_it(std::move(simpler))) break;
+      if (simpler.duration_s < best.duration_s && means_something(simpler, kind) && try_it(std::move(simpler))) break;
     }
     return best;
   }
@@ -169,7 +189,7 @@ class Hunt {
   std::vector<HuntCase> corpus_;
   std::set<std::string> features_, signatures_;
   HuntResult result_;
-  const std::optional<editor::WarmProgram> warm_ = editor::WarmProgram::start_simulator();
+  const editor::WarmPrograms warm_;
   std::string problem_;  // why nothing can be found
   Clock::time_point began_ = Clock::now();
 };
@@ -187,7 +207,7 @@ std::string signature(const Outcome& outcome) {
   if (!outcome.problem.empty()) return without_numbers(outcome.problem.substr(0, outcome.problem.find(" at ")));
   std::string all;
   for (const auto& verdict : outcome.verdicts) {
-    if (!verdict.problem.empty()) all += verdict.expectation + "; ";
+    if (!verdict.problem.empty()) all += verdict.expectation + verdict_mark;
   }
   return all;
 }
@@ -197,6 +217,7 @@ Result<HuntResult> hunt(CORBA::ORB_ptr orb, const Campaign& campaign, const Hunt
   std::error_code error;
   fs::create_directories(options.folder, error);
   if (error) return Error{"folder " + base::in_quotes(options.folder) + ": " + error.message()};
+  if (const auto room = room_for(options, room_to_begin); !room) return room.error();
   auto result = Hunt(orb, campaign, options, show).go();
   fs::remove(options.folder, error);  // when it is empty
   return result;

@@ -32,7 +32,8 @@ std::string parameter(const editor::SavedComponent& component, const std::string
 std::vector<HuntTarget> targets_of(const editor::SavedSystem& system) {
   std::vector<HuntTarget> targets;
   for (const auto& connector : system.connectors) {
-    if (connector.is_data) targets.push_back({Object::connector, connector.id, {}});
+    const bool is_push = connector.is_data && !base::equal_ignoring_case(connector.dataflow_type, "pull");
+    if (is_push) targets.push_back({Object::connector, connector.id, {}});
   }
   for (const auto& component : system.components) {
     const auto device = parameter(component, "device_id");
@@ -156,11 +157,35 @@ HuntCase CaseMaker::changed(const HuntCase& from, Random& random) {
   return made;
 }
 
+namespace {
+
+// Of a shorter run than the plan's: what it does not get to cannot be meant.
+void shorten(std::vector<Condition>& conditions, double duration_s) {
+  std::erase_if(conditions, [&](const Condition& condition) { return condition.after_s > duration_s; });
+  for (auto& condition : conditions) {
+    if (condition.within_s.value_or(0) <= duration_s) continue;
+    condition.within_s.reset();
+    auto node = YAML::Load(condition.text);
+    node.remove("within");
+    YAML::Emitter flow;
+    flow << YAML::Flow << node;
+    condition.text = flow.c_str();
+  }
+}
+
+}  // namespace
+
 Deeds deeds_of(const Campaign& campaign, const HuntCase& tried) {
   const auto& plan = campaign.plan();
   Deeds deeds{plan.events, plan.faults, plan.never, plan.eventually};
   deeds.events.insert(deeds.events.end(), tried.events.begin(), tried.events.end());
   deeds.faults.insert(deeds.faults.end(), tried.faults.begin(), tried.faults.end());
+  const double end_s = tried.duration_s;
+  std::erase_if(deeds.events,
+                [&](const Event& event) { return event.at_s.value_or(0) > end_s || (event.when && event.when->after_s > end_s); });
+  std::erase_if(deeds.faults, [&](const Fault& fault) { return fault.at_s >= end_s; });
+  shorten(deeds.never, end_s);
+  shorten(deeds.eventually, end_s);
   return deeds;
 }
 

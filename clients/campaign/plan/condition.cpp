@@ -2,6 +2,8 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <utility>
+
 #include "base/text.h"
 #include "plan/grammar.h"
 
@@ -33,6 +35,7 @@ Condition to_condition(const YAML::Node& node) {
   condition.within_s = number(node, "within");
   if (node["port"]) {
     if (!node["member"] || (!condition.min && !condition.max)) fail_at(node, "a condition on a port needs member, and min or max");
+    if (condition.min && condition.max && *condition.min > *condition.max) fail_at(node["max"], "max must not be less than min");
   } else if (node["component"]) {
     condition.kind = Condition::Kind::state;
     if (!node["is"]) fail_at(node, "a condition on a component needs is");
@@ -40,6 +43,8 @@ Condition to_condition(const YAML::Node& node) {
     if (!node["region"] == !node["touches"]) fail_at(node, "a condition on a model needs region or touches");
     condition.kind = node["region"] ? Condition::Kind::region : Condition::Kind::touches;
     for (std::size_t i = 0; node["region"] && i < 4; ++i) condition.region[i] = *base::parse_number(node["region"][i].Scalar());
+    if (condition.region[0] > condition.region[2]) std::swap(condition.region[0], condition.region[2]);
+    if (condition.region[1] > condition.region[3]) std::swap(condition.region[1], condition.region[3]);
   }
   return condition;
 }

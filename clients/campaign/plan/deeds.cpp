@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "base/text.h"
 #include "plan/grammar.h"
@@ -55,7 +56,8 @@ std::string flow_text(const YAML::Node& node) {
   return flow.c_str();
 }
 
-std::vector<std::string> numbers_of(const YAML::Node& node, const char* what, std::initializer_list<std::size_t> sizes) {
+std::vector<std::string> numbers_of(const YAML::Node& node, const char* what, std::initializer_list<std::size_t> sizes,
+                                    const char* expected) {
   std::vector<std::string> numbers;
   for (const auto& one : node) {
     const auto number = base::parse_number(one.Scalar());
@@ -63,7 +65,8 @@ std::vector<std::string> numbers_of(const YAML::Node& node, const char* what, st
     numbers.push_back(base::format_number(*number));
   }
   if (std::ranges::find(sizes, numbers.size()) == sizes.end())
-    fail_at(node, std::string(what) + " has " + std::to_string(numbers.size()) + " numbers; see docs/campaigns.md");
+    fail_at(node, std::string(what) + " must be " + expected + ", got " + std::to_string(numbers.size()) +
+                      (numbers.size() == 1 ? " number" : " numbers"));
   return numbers;
 }
 
@@ -85,21 +88,23 @@ constexpr std::array event_rows = {
     EventRow{"command", Event::Kind::command},
 };
 
+constexpr const char* pose_words = "x y yaw, x y z yaw or x y z roll pitch yaw";
+
 void read_details(const YAML::Node& what, Event& event) {
   switch (event.kind) {
     case Event::Kind::spawn:
       event.target = word(what, "model");
       event.name = word(what, "name");
-      if (what["pose"]) event.numbers = numbers_of(what["pose"], "pose", {3, 4, 6});
+      if (what["pose"]) event.numbers = numbers_of(what["pose"], "pose", {3, 4, 6}, pose_words);
       break;
     case Event::Kind::push:
       event.target = word(what, "model");
-      event.numbers = numbers_of(what["force"], "force", {3, 6});
+      event.numbers = numbers_of(what["force"], "force", {3, 6}, "3 numbers of a force or 6 of a force and a torque");
       if (what["for"]) event.duration_s = *base::parse_number(what["for"].Scalar());
       break;
     case Event::Kind::pose:
       event.target = word(what, "model");
-      event.numbers = numbers_of(what["to"], "to", {3, 4, 6});
+      event.numbers = numbers_of(what["to"], "to", {3, 4, 6}, pose_words);
       break;
     case Event::Kind::set:
       event.target = word(what, "component");
@@ -139,6 +144,13 @@ std::string Fault::text() const {
   text += ", " + std::string(to_text(object)) + ": \"" + target + "\", is: " + std::string(to_text(kind));
   if (usual_amount(kind)) text += ", amount: " + base::format_number(amount);
   return text + "}";
+}
+
+void set_spawned(Event& event, const std::string& file) {
+  event.target = file;
+  auto node = YAML::Load(event.text);
+  node["spawn"]["model"] = file;
+  event.text = flow_text(node);
 }
 
 Event to_event(const YAML::Node& node) {
@@ -189,6 +201,10 @@ Fault to_fault(const YAML::Node& node) {
   if (row.amount && (fault.amount < row.least || fault.amount > row.most))
     fail_at(node["amount"], "amount of " + std::string(row.name) + " must be from " + base::format_number(row.least) + " to " +
                                 base::format_number(row.most) + ", got " + base::format_number(fault.amount));
+  const bool is_count = fault.kind == Fault::Kind::latency || fault.kind == Fault::Kind::delay;
+  if (is_count && fault.amount != std::floor(fault.amount))
+    fail_at(node["amount"],
+            "amount of " + std::string(row.name) + " must be a whole number of samples, got " + base::format_number(fault.amount));
   return fault;
 }
 

@@ -63,6 +63,9 @@ std::vector<Fault::Kind> faults_of(Fault::Object object);
 // What the amount is without one in the plan; nothing: it has none.
 std::optional<double> usual_amount(Fault::Kind kind);
 
+// Sets the file of a spawn, in its text too.
+void set_spawned(Event& event, const std::string& file);
+
 // Of nodes that fit the shapes. Throw PlanError.
 Event to_event(const YAML::Node& node);
 Fault to_fault(const YAML::Node& node);

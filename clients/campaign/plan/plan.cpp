@@ -117,13 +117,36 @@ std::vector<Measure> to_measures(const YAML::Node& node) {
   return measures;
 }
 
-HuntSpace to_hunt(const YAML::Node& node) {
+// What would not happen, or not be looked at, in any run.
+void check_in_run(const YAML::Node& node, const char* key, double time, bool is_end_too, const Plan& plan) {
+  if (time < plan.duration_s || (is_end_too && time == plan.duration_s)) return;
+  fail_at(node[key] ? node[key] : node, std::string(key) + (is_end_too ? " must not be more than" : " must be less than") +
+                                            " the duration of " + base::format_number(plan.duration_s) + " s, got " +
+                                            base::format_number(time));
+}
+
+Condition to_condition_in_run(const YAML::Node& node, const Plan& plan) {
+  auto condition = to_condition(node);
+  check_in_run(node, "after", condition.after_s, true, plan);
+  if (condition.within_s) check_in_run(node, "within", *condition.within_s, true, plan);
+  if (condition.within_s && *condition.within_s < condition.after_s) fail_at(node["within"], "within must not be less than after");
+  return condition;
+}
+
+Event to_event_in_run(const YAML::Node& node, const Plan& plan) {
+  auto event = to_event(node);
+  if (event.at_s) check_in_run(node, "at", *event.at_s, true, plan);
+  if (event.when) event.when = to_condition_in_run(node["when"], plan);
+  return event;
+}
+
+HuntSpace to_hunt(const YAML::Node& node, const Plan& plan) {
   HuntSpace hunt;
   if (!node || !node.IsMap()) return hunt;
   hunt.most = count(node, "most", 3);
   if (hunt.most < 1 || hunt.most > 100) fail_at(node["most"], "most must be from 1 to 100");
   hunt.seed = count(node, "seed", 1);
-  for (const auto& entry : node["events"]) hunt.events.push_back(to_event(entry));
+  for (const auto& entry : node["events"]) hunt.events.push_back(to_event_in_run(entry, plan));
   for (const auto& entry : node["faults"]) {
     HuntTarget target;
     int objects = 0;
@@ -188,6 +211,19 @@ void read_variation(const YAML::Node& root, Plan& plan) {
   }
 }
 
+void read_deeds(const YAML::Node& root, Plan& plan) {
+  for (const auto& entry : root["events"]) {
+    plan.events.push_back(to_event_in_run(entry, plan));
+    if (!plan.events.back().at_s && !plan.events.back().when) fail_at(entry, "an event needs at or when");
+  }
+  for (const auto& entry : root["faults"]) {
+    plan.faults.push_back(to_fault(entry));
+    check_in_run(entry, "at", plan.faults.back().at_s, false, plan);
+  }
+  for (const auto& entry : root["never"]) plan.never.push_back(to_condition_in_run(entry, plan));
+  for (const auto& entry : root["eventually"]) plan.eventually.push_back(to_condition_in_run(entry, plan));
+}
+
 Plan to_plan(const YAML::Node& root, const std::string& file) {
   check_shape(root, plan_shape, "plan");
   Plan plan;
@@ -199,14 +235,8 @@ Plan to_plan(const YAML::Node& root, const std::string& file) {
   read_expect(root["expect"], plan);
   read_variation(root, plan);
   plan.measures = to_measures(root["measure"]);
-  for (const auto& entry : root["events"]) {
-    plan.events.push_back(to_event(entry));
-    if (!plan.events.back().at_s && !plan.events.back().when) fail_at(entry, "an event needs at or when");
-  }
-  for (const auto& entry : root["faults"]) plan.faults.push_back(to_fault(entry));
-  for (const auto& entry : root["never"]) plan.never.push_back(to_condition(entry));
-  for (const auto& entry : root["eventually"]) plan.eventually.push_back(to_condition(entry));
-  plan.hunt = to_hunt(root["hunt"]);
+  read_deeds(root, plan);
+  plan.hunt = to_hunt(root["hunt"], plan);
   plan.properties = words(root["properties"]);
   for (const auto& path : words(root["module_path"])) plan.module_paths.push_back(in_folder(plan, path));
   for (const auto& path : words(root["resource_path"])) plan.resource_paths.push_back(in_folder(plan, path));
@@ -231,6 +261,7 @@ Result<Plan> read_plan(const std::string& file) {
   };
   std::ifstream in(file);
   std::ostringstream text;
+  if (in && in.peek() == std::ifstream::traits_type::eof()) return fail(0, 0, "is empty");
   if (!in || !(text << in.rdbuf())) return fail(0, 0, "cannot be read");
   if (text.str().size() > (16U << 20U)) return fail(0, 0, "is larger than 16 MiB");
   try {

@@ -2,13 +2,18 @@
 
 #include <sqlite3.h>
 
+#include <filesystem>
+
 #include "base/text.h"
+#include "results/disk_room.h"
 
 namespace campaign {
 namespace {
 
 Error problem(const std::string& file, sqlite3* database) {
-  return Error{"results " + base::in_quotes(file) + ": " + (database ? sqlite3_errmsg(database) : "no memory")};
+  const auto room = check_room({std::filesystem::path(file).parent_path().string()}, room_to_go_on);
+  return Error{"results " + base::in_quotes(file) + ": " + (database ? sqlite3_errmsg(database) : "no memory") +
+               (room ? "" : "; " + room.error().message)};
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // The page of a campaign's results: data as JSON in a page whose script draws it. It needs no other file and no network.
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -28,9 +29,19 @@ std::string base64(const std::string& octets) {
   return text;
 }
 
-std::string picture_of(const ResultRow& row) {
-  std::ifstream in(row.run->folder + "/picture.png", std::ios::binary);
-  if (row.run->folder.empty() || !in) return "";
+// Of a row that failed: where its files are, also when they were moved together with the results.
+std::string files_of(const Results& results, const ResultRow& row) {
+  namespace fs = std::filesystem;
+  const fs::path stored = row.run->folder;
+  if (stored.empty()) return "";
+  const auto beside = fs::path(results.file).replace_extension(".runs") / stored.filename();
+  std::error_code ignored;  // then it stays where it was
+  return !fs::exists(stored, ignored) && fs::exists(beside, ignored) ? beside.string() : stored.string();
+}
+
+std::string picture_in(const std::string& folder) {
+  std::ifstream in(folder + "/picture.png", std::ios::binary);
+  if (folder.empty() || !in) return "";
   const std::string octets((std::istreambuf_iterator<char>(in)), {});
   return "data:image/png;base64," + base64(octets);
 }
@@ -63,12 +74,16 @@ Json failed_json(const Results& results) {
   for (const auto& row : results.rows) {
     if (!row.run || row.run->is_passed) continue;
     if (failed.size() == most_failed) break;
-    Json json{{"row", row.number},           {"seed", row.seed},
-              {"problem", row.run->problem}, {"state", row.run->state_hash},
-              {"folder", row.run->folder},   {"again", command_again(results, row)},
+    const auto folder = files_of(results, row);
+    Json json{{"row", row.number},
+              {"seed", row.seed},
+              {"problem", row.run->problem},
+              {"state", row.run->state_hash},
+              {"folder", folder},
+              {"again", command_again(results, row)},
               {"values", row.values}};
     if (pictures < most_pictures) {
-      if (auto picture = picture_of(row); !picture.empty()) {
+      if (auto picture = picture_in(folder); !picture.empty()) {
         json["picture"] = std::move(picture);
         ++pictures;
       }

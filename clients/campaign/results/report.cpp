@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "run/run_files.h"
+#include "run/shell_word.h"
 
 namespace campaign {
 namespace {
@@ -65,7 +66,7 @@ void print_groups(std::ostream& out, const Results& results, const std::string& 
 }  // namespace
 
 std::string command_again(const Results& results, const ResultRow& row) {
-  return "rtse sweep " + results.plan_file + " --row " + std::to_string(row.number);
+  return "rtse sweep " + shell_word(results.plan_file) + " --row " + std::to_string(row.number);
 }
 
 void print_tables(std::ostream& out, const Results& results, const std::vector<std::string>& by) {

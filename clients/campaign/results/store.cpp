@@ -1,5 +1,7 @@
 #include "results/store.h"
 
+#include <filesystem>
+
 #include "base/text.h"
 
 namespace campaign {
@@ -64,9 +66,10 @@ Result<void> Store::make_statements() {
 }
 
 Result<void> Store::begin_rows(const Plan& plan) {
+  const auto file = plan.file.empty() ? std::string() : std::filesystem::absolute(plan.file).lexically_normal().string();
   if (const auto begun = database_.execute("BEGIN IMMEDIATE; DELETE FROM rows; DELETE FROM parameters;"); !begun) return begun;
   for (const auto& [name, value] : {std::pair<std::string, std::string>("plan", plan.text),
-                                    {"plan_file", plan.file},
+                                    {"plan_file", file},
                                     {"system", plan.system},
                                     {"world", plan.world},
                                     {"duration", base::format_number(plan.duration_s)}}) {

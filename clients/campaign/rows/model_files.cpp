@@ -33,7 +33,8 @@ ModelFiles::ModelFiles(const fs::path& world_folder, const std::vector<std::stri
   };
   add(world_folder);
   for (const auto& path : resource_paths) add(path);
-  for (const char* variable : {"RTMSIM_RESOURCE_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "GAZEBO_MODEL_PATH"}) {
+  for (const char* variable :
+       {"RTMSIM_RESOURCE_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "GAZEBO_MODEL_PATH", "GAZEBO_RESOURCE_PATH"}) {
     const char* list = std::getenv(variable);
     for (const auto& path : base::split_list(list != nullptr ? list : "", ':')) add(path);
   }
@@ -49,7 +50,7 @@ std::optional<fs::path> ModelFiles::find(const std::string& uri, const fs::path&
   while (name.starts_with("/") && uri.starts_with("model:///")) name.erase(0, 1);
   if (name.empty()) return std::nullopt;
   if (fs::path(name).is_absolute()) return is_there(name) ? std::optional(fs::path(name)) : std::nullopt;
-  if (is_there(at / name)) return at / name;
+  if (!at.empty() && is_there(at / name)) return at / name;
   for (const auto& folder : folders_) {
     if (is_there(folder / name)) return folder / name;
   }
@@ -102,6 +103,17 @@ void ModelFiles::walk(pugi::xml_node node, const fs::path& at, const std::functi
   for (auto child : node.children()) {
     if (const std::string kind = child.name(); kind == "model" || kind == "include") walk(child, at, visit);
   }
+}
+
+bool ModelFiles::add_model(const std::string& uri, std::set<std::string>& files) const {
+  auto place = find(uri, fs::path());
+  std::error_code error;
+  if (place && fs::is_directory(*place, error)) place = model_in(*place);
+  if (!place || !fs::is_regular_file(*place, error)) return false;
+  files.insert(fs::absolute(*place).string());
+  pugi::xml_document document;
+  if (document.load_file(place->c_str())) add_files(document, place->parent_path(), files);
+  return true;
 }
 
 void ModelFiles::add_files(pugi::xml_node node, const fs::path& at, std::set<std::string>& files) const {

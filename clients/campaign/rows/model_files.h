@@ -39,6 +39,8 @@ class ModelFiles {
   // The models in a <model> or <include>, itself first, with the folder of the file that each stands in.
   void walk(pugi::xml_node node, const std::filesystem::path& at,
             const std::function<void(pugi::xml_node model, const std::filesystem::path& folder)>& visit) const;
+  // Adds the files of what a path or an URI means, a folder or a file. False: there is none.
+  bool add_model(const std::string& uri, std::set<std::string>& files) const;
   // The files that a <model> or <include> is made of, with its meshes and textures.
   void add_files(pugi::xml_node node, const std::filesystem::path& at, std::set<std::string>& files) const;
 

@@ -67,7 +67,8 @@ Result<RowMaker> RowMaker::make(const Plan& plan, const WorldFile& world) {
   maker.models_ = world.models();
   for (const auto& scatter : plan.scatters) {
     for (const auto& name : scatter.models) {
-      if (!maker.models_.contains(name)) return Error{"scatter: the world has no model " + base::in_quotes(name)};
+      if (!maker.models_.contains(name))
+        return Error{"plan " + base::in_quotes(plan.file) + ": scatter: the world has no model " + base::in_quotes(name)};
     }
   }
   return maker;

@@ -29,7 +29,8 @@ Result<std::vector<double>> numbers(const std::string& path, const std::string& 
     if (!number) return Error{path + ": must hold finite numbers, got " + base::in_quotes(value)};
     all.push_back(*number);
   }
-  if (all.size() != count) return Error{path + ": must be " + std::to_string(count) + " numbers, got " + base::in_quotes(value)};
+  if (all.size() != count)
+    return Error{path + ": must be " + (count == 1 ? "a number" : std::to_string(count) + " numbers") + ", got " + base::in_quotes(value)};
   return all;
 }
 
@@ -46,7 +47,8 @@ Result<void> set_pose(pugi::xml_node node, const std::string& path, const std::s
   values.resize(6);
   if (part.empty()) {
     const auto count = base::split_list(value, ' ').size();
-    const auto given = numbers(path, value, count == 3 ? 3 : 6);
+    if (count != 3 && count != 6) return Error{path + ": must be x y yaw or x y z roll pitch yaw, got " + base::in_quotes(value)};
+    const auto given = numbers(path, value, count);
     if (!given) return given.error();
     values = count == 3 ? std::vector<double>{(*given)[0], (*given)[1], values[2], 0, 0, (*given)[2]} : *given;
     pose.remove_attribute("relative_to");
@@ -194,6 +196,7 @@ std::string WorldFile::State::model_names() const {
     if (std::string(node.name()) == "model") names.emplace_back(node.attribute("name").value());
     if (std::string(node.name()) == "include") names.push_back(files.name_of(node, folder()));
   }
+  std::erase(names, "");  // includes of lights
   if (names.size() > 12) names = {names.begin(), names.begin() + 12}, names.emplace_back("...");
   return names.empty() ? "none" : base::join(names, ", ");
 }
@@ -320,6 +323,7 @@ std::map<std::string, StandingModel> WorldFile::models() const {
     const std::string kind = node.name();
     if (kind != "model" && kind != "include") continue;
     const auto name = kind == "model" ? node.attribute("name").value() : state_->files.name_of(node, state_->folder());
+    if (std::string(name).empty()) continue;  // what is included is no model: a light
     StandingModel model;
     model.pose = to_pose(numbers_in(node.child("pose").text().get()));
     const auto opened = kind == "include" ? state_->files.open(node, state_->folder()) : std::nullopt;

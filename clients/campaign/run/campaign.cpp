@@ -11,8 +11,8 @@
 #include "rows/content_hash.h"
 #include "run/child_process.h"
 #include "run/deed_checks.h"
-#include "run/expectations.h"
-#include "run/run_system.h"
+#include "run/spawned_models.h"
+#include "run/subject_checks.h"
 
 namespace campaign {
 namespace fs = std::filesystem;
@@ -134,8 +134,11 @@ bool can_be_started(const std::string& name) {
 }
 
 Result<Campaign> Campaign::prepare(Plan plan) {
+  const auto spawned = find_spawned(plan);
   Campaign campaign(std::move(plan));
   if (const auto good = campaign.check_files(); !good) return good.error();
+  if (!spawned) return spawned.error();
+  campaign.spawned_files_ = *spawned;
   auto system = editor::read_system(campaign.plan().system);
   if (!system) return system.error();
   campaign.system_ = std::move(*system);
@@ -143,7 +146,7 @@ Result<Campaign> Campaign::prepare(Plan plan) {
   if (!world) return world.error();
   campaign.models_ = world->models();
   if (const auto good = campaign.check_axes(); !good) return good.error();
-  if (const auto good = campaign.check_subjects(); !good) return good.error();
+  if (const auto good = check_subjects(campaign.plan(), campaign.system(), campaign.models()); !good) return good.error();
   if (const auto good = check_deeds(campaign.plan(), campaign.system(), campaign.models()); !good) return good.error();
   if (const auto good = check_iface_faults(campaign.plan()); !good) return good.error();
   auto rows = RowMaker::make(campaign.plan(), *world);
@@ -173,12 +176,6 @@ Result<void> Campaign::check_files() const {
         return Error{"plan " + base::in_quotes(plan_->file) + ": there is no folder " + base::in_quotes(path)};
     }
   }
-  for (const auto& text : plan_->properties) {
-    if (const auto property = editor::parse_property(text); !property) return property.error();
-  }
-  if (!plan_->expectations.empty()) {
-    if (const auto good = editor::read_expectations(plan_->expectations); !good) return good.error();
-  }
   return {};
 }
 
@@ -198,45 +195,12 @@ Result<void> Campaign::check_axes() const {
     }
     for (const auto& value : values) {
       if (axis.path == "seed") {
-        const auto seed = base::parse_number(value);
+        const auto seed = base::parse_integer(value);
         if (!seed || *seed < 0 || *seed > 1e18) return fail({"seed: must be a whole number from 0 to 1e18, got " + base::in_quotes(value)});
         continue;
       }
       auto system = system_;
       if (const auto set = world ? world->set(axis.path, value) : set_in_system(system, axis.path, value); !set) return fail(set.error());
-    }
-  }
-  return {};
-}
-
-// Models, components and ports that measures and conditions are about.
-Result<void> Campaign::check_subjects() const {
-  const auto fail = [&](const std::string& what) { return Error{"plan " + base::in_quotes(plan_->file) + ": " + what}; };
-  const auto check_model = [&](const std::string& where, const std::string& model) -> Result<void> {
-    if (model.empty() || model == "any" || models_.contains(model)) return {};
-    return fail(where + ": the world has no model " + base::in_quotes(model) +
-                "; models: " + names_in(models_, [](const auto& one) { return one.first; }));
-  };
-  const auto check_port = [&](const std::string& where, const std::string& port) -> Result<void> {
-    if (port.empty() || system_.component(port.substr(0, port.find(':')))) return {};
-    return fail(where + ": port " + base::in_quotes(port) + ": the system has no such component; components: " + component_names(system_));
-  };
-  for (const auto& measure : plan_->measures) {
-    auto models = measure.to;
-    models.push_back(measure.model);
-    for (const auto& model : models) {
-      if (const auto good = check_model("measure", model); !good) return good;
-    }
-    if (const auto good = check_port("measure", measure.port); !good) return good;
-    if (measure.kind == Measure::Kind::value) {
-      if (const auto path = editor::member_path(measure.member); !path) return fail("measure: " + path.error().message);
-    }
-  }
-  for (const auto* conditions : {&plan_->never, &plan_->eventually}) {
-    for (const auto& condition : *conditions) {
-      const std::string where = conditions == &plan_->never ? "never" : "eventually";
-      if (const auto good = check_port(where, condition.port); !good) return good;
-      if (const auto good = check_model(where, condition.model); !good) return good;
     }
   }
   return {};
@@ -250,6 +214,7 @@ Result<void> Campaign::hash_everything() {
   if (!world) return world.error();
   auto files = world->files();
   files.insert(plan_->system);
+  files.insert(spawned_files_.begin(), spawned_files_.end());
   if (!plan_->expectations.empty()) files.insert(plan_->expectations);
   for (const auto& file : files) {
     if (const auto added = hash.add_file(file); !added) return added;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <set>
 #include <string>
 
 #include "plan/plan.h"
@@ -42,12 +43,12 @@ class Campaign {
   explicit Campaign(Plan plan) : plan_(std::make_unique<const Plan>(std::move(plan))) {}
   Result<void> check_files() const;
   Result<void> check_axes() const;
-  Result<void> check_subjects() const;
   Result<void> hash_everything();
 
   std::unique_ptr<const Plan> plan_;
   editor::SavedSystem system_;
   std::map<std::string, StandingModel> models_;
+  std::set<std::string> spawned_files_;
   std::unique_ptr<RowMaker> rows_;
   std::string base_key_;
 };

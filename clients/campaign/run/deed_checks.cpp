@@ -8,6 +8,8 @@
 #include "base/text.h"
 #include "run/child_process.h"
 #include "run/deeds_runner.h"
+#include "run/expectations.h"
+#include "run/subject_checks.h"
 
 namespace campaign {
 namespace {
@@ -18,9 +20,17 @@ class DeedChecks {
  public:
   DeedChecks(const Plan& plan, const editor::SavedSystem& system, const std::map<std::string, StandingModel>& models)
       : plan_(plan), system_(system) {
-    for (const auto& [name, model] : models) models_.insert(name);
+    for (const auto& [name, model] : models) {
+      models_.insert(name);
+      if (model.is_static) static_.insert(name);
+    }
     for (const auto* events : {&plan.events, &plan.hunt.events}) {
-      for (const auto& event : *events) spawns_ = spawns_ || event.kind == Event::Kind::spawn;
+      for (const auto& event : *events) {
+        if (event.kind != Event::Kind::spawn) continue;
+        if (event.name.empty()) has_unnamed_ = true;
+        if (!event.name.empty()) models_.insert(event.name);
+        static_.erase(event.name);
+      }
     }
   }
 
@@ -29,8 +39,8 @@ class DeedChecks {
     for (const auto& event : plan_.hunt.events) check_event("hunt: events", event);
     for (const auto& fault : plan_.faults) check_target("faults", fault.object, fault.target);
     for (const auto& target : plan_.hunt.targets) check_target("hunt: faults", target.object, target.name);
-    for (const auto& condition : plan_.never) check_component("never", condition.component);
-    for (const auto& condition : plan_.eventually) check_component("eventually", condition.component);
+    for (const auto& condition : plan_.never) check_condition("never", condition);
+    for (const auto& condition : plan_.eventually) check_condition("eventually", condition);
     return problem_.empty() ? Result<void>() : Error{problem_};
   }
 
@@ -61,9 +71,19 @@ class DeedChecks {
     fail(where, "the system has no connection " + base::in_quotes(name) + "; connections: " + listed(names));
   }
 
-  // Of a model or a link in it, or of an iface. What is spawned may have any name.
+  void check_faulty_connection(const std::string& where, const std::string& name) {
+    check_connection(where, name);
+    for (const auto& connector : system_.connectors) {
+      if (connector.id != name && connector.name != name) continue;
+      if (!connector.is_data || base::equal_ignoring_case(connector.dataflow_type, "pull"))
+        fail(where, "connection " + base::in_quotes(name) + " carries " + (connector.is_data ? "data by pull" : "service calls") +
+                        "; only data that are pushed can be dropped, delayed, doubled or reordered");
+    }
+  }
+
+  // Of a model or a link in it, or of an iface. What is spawned without a name may have any.
   void check_model(const std::string& where, const std::string& name) {
-    if (name.empty() || name == "any" || spawns_ || models_.contains(name.substr(0, name.find("::")))) return;
+    if (name.empty() || name == "any" || has_unnamed_ || models_.contains(name.substr(0, name.find("::")))) return;
     fail(where, "the world has no model " + base::in_quotes(name) + "; models: " + listed(models_));
   }
 
@@ -79,15 +99,26 @@ class DeedChecks {
     fail(where, "component " + event.target + " has no parameter " + base::in_quotes(event.name) + "; parameters: " + listed(known));
   }
 
-  void check_event(const std::string& where, const Event& event) {
-    if (event.when) {
-      check_component(where, event.when->component);
-      check_component(where, event.when->port.substr(0, event.when->port.find(':')));
-      check_model(where, event.when->model);
+  void check_condition(const std::string& where, const Condition& condition) {
+    check_component(where, condition.component);
+    check_component(where, condition.port.substr(0, condition.port.find(':')));
+    if (!condition.port.empty()) {
+      if (const auto problem = port_problem(system_, condition.port); !problem.empty()) fail(where, problem);
+      if (const auto path = editor::member_path(condition.member); !path) fail(where, path.error().message);
     }
+    check_model(where, condition.model);
+    check_model(where, condition.touched);
+  }
+
+  void check_event(const std::string& where, const Event& event) {
+    if (event.when) check_condition(where, *event.when);
     switch (event.kind) {
       case Event::Kind::remove:
+        return check_model(where, event.target);
       case Event::Kind::push:
+        if (!has_unnamed_ && static_.contains(event.target.substr(0, event.target.find("::"))))
+          fail(where, "model " + base::in_quotes(event.target) + " is static and cannot be pushed");
+        return check_model(where, event.target);
       case Event::Kind::pose:
         return check_model(where, event.target);
       case Event::Kind::set:
@@ -111,7 +142,7 @@ class DeedChecks {
       case Fault::Object::actuator:
         return check_model(where, name);
       case Fault::Object::connector:
-        return check_connection(where, name);
+        return check_faulty_connection(where, name);
       case Fault::Object::component:
         return check_component(where, name);
       case Fault::Object::naming:
@@ -121,8 +152,8 @@ class DeedChecks {
 
   const Plan& plan_;
   const editor::SavedSystem& system_;
-  std::set<std::string> models_;
-  bool spawns_ = false;
+  std::set<std::string> models_, static_;
+  bool has_unnamed_ = false;  // something that is spawned has the name that stands in its file
   std::string problem_;
 };
 

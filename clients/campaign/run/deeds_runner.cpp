@@ -41,6 +41,11 @@ std::map<std::string, std::string> texts_of(const std::vector<Fault>& faults, Ob
 
 }  // namespace
 
+bool is_missing(const editor::RunScene& scene, const std::string& model) {
+  const auto models = scene.simulator.models();
+  return !models.empty() && std::ranges::find(models, model.substr(0, model.find("::"))) == models.end();
+}
+
 DeedsRunner::DeedsRunner(Deeds deeds, std::uint64_t seed, double duration_s)
     : deeds_(std::move(deeds)), seed_(seed), duration_s_(duration_s) {}
 
@@ -195,7 +200,8 @@ Result<bool> DeedsRunner::is_true(editor::RunScene& scene, const Condition& cond
   }
   const bool is_region = condition.kind == Condition::Kind::region;
   const auto said = scene.simulator.simctl({"--json", is_region ? "pose" : "contacts", condition.model}, call_limit);
-  if (!said) return said.error();
+  // Of a model that has gone, or is still to come, nothing is true.
+  if (!said) return is_missing(scene, condition.model) ? Result<bool>(false) : said.error();
   const auto json = Json::parse(*said, nullptr, false);
   if (!json.is_object()) return Error{"simctl: did not answer as expected"};
   if (is_region) {

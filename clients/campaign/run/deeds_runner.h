@@ -65,6 +65,8 @@ class DeedsRunner {
   std::map<std::size_t, double> fulfilled_;  // eventually -> when [s]
 };
 
+// Whether the world has no such model, or none that a link's name begins with. False, too, when the simulator does not answer.
+bool is_missing(const editor::RunScene& scene, const std::string& model);
 // One event, now.
 Result<void> carry_out_event(editor::RunScene& scene, const Event& event);
 

@@ -28,14 +28,23 @@ Result<void> spawn(editor::RunScene& scene, const Event& event) {
   std::vector<std::string> words{"spawn", event.target};
   if (!event.name.empty()) words.insert(words.end(), {"--name", event.name});
   if (!event.numbers.empty()) words.insert(words.end(), {"--pose", base::join(event.numbers, " ")});
-  return simctl(scene, words);
+  const auto done = simctl(scene, words);
+  const bool is_there = !done && !event.name.empty() && scene.simulator.models().size() > 0 && !is_missing(scene, event.name);
+  return is_there ? Result<void>() : done;  // spawned already
+}
+
+// Of a model that has gone, or is still to come: nothing happens.
+Result<void> change_model(editor::RunScene& scene, const std::string& model, const std::vector<std::string>& words,
+                          const std::vector<std::string>& numbers = {}) {
+  const auto done = simctl(scene, words, numbers);
+  return done || !is_missing(scene, model) ? done : Result<void>();
 }
 
 Result<void> push(editor::RunScene& scene, const Event& event) {
   std::vector<std::string> words{"wrench"};
   if (event.duration_s > 0) words.insert(words.end(), {"--for", base::format_number(event.duration_s)});
   words.insert(words.end(), {"--", event.target});
-  return simctl(scene, words, event.numbers);
+  return change_model(scene, event.target, words, event.numbers);
 }
 
 Result<editor::ComponentView> component(editor::RunScene& scene, const std::string& instance, editor::Detail detail) {
@@ -63,6 +72,7 @@ Result<void> set(editor::RunScene& scene, const Event& event) {
   return editor::use_set(*view, id);
 }
 
+// What is connected already, or not any more, is left as it is.
 Result<void> connection(editor::RunScene& scene, const Event& event) {
   const auto& connectors = scene.system.connectors;
   const auto saved = std::ranges::find_if(connectors, [&](const auto& one) { return one.id == event.target || one.name == event.target; });
@@ -72,6 +82,8 @@ Result<void> connection(editor::RunScene& scene, const Event& event) {
   };
   const auto source = port(saved->source);
   if (!source) return source.error();
+  const bool is_there = std::ranges::any_of(source->port.connectors, [&](const auto& one) { return one.id == saved->id; });
+  if (is_there == (event.kind == Event::Kind::connect)) return {};
   if (event.kind == Event::Kind::disconnect) return editor::disconnect_connector(source->port, saved->id);
   const auto target = port(saved->target);
   if (!target) return target.error();
@@ -79,11 +91,7 @@ Result<void> connection(editor::RunScene& scene, const Event& event) {
 }
 
 Result<void> command(editor::RunScene& scene, const Event& event) {
-  const auto said = editor::output_of({{"sh", "-c", event.target},
-                                       {{"RTMSIM_RECORD", scene.place.file("record.txt")},
-                                        {"RTMSIM_SERVER_ID", scene.simulator.id()},
-                                        {"RTCTREE_NAMESERVERS", scene.naming}},
-                                       ""},
+  const auto said = editor::output_of(editor::shell_call(event.target, scene.place.file("record.txt"), scene.simulator.id(), scene.naming),
                                       command_limit);
   return said ? Result<void>() : said.error();
 }
@@ -95,11 +103,11 @@ Result<void> carry_out_event(editor::RunScene& scene, const Event& event) {
     case Event::Kind::spawn:
       return spawn(scene, event);
     case Event::Kind::remove:
-      return simctl(scene, {"delete", event.target});
+      return change_model(scene, event.target, {"delete", event.target});
     case Event::Kind::push:
       return push(scene, event);
     case Event::Kind::pose:
-      return simctl(scene, {"pose", "--", event.target}, event.numbers);
+      return change_model(scene, event.target, {"pose", "--", event.target}, event.numbers);
     case Event::Kind::set:
       return set(scene, event);
     case Event::Kind::activate:

@@ -5,7 +5,9 @@
 #include <fstream>
 
 #include "base/text.h"
+#include "run/interrupt.h"
 #include "run/row_script.h"
+#include "run/warm_program.h"
 
 namespace campaign {
 namespace fs = std::filesystem;
@@ -26,7 +28,7 @@ editor::RunOptions options_of(const Campaign& campaign, const Row& row, const Ro
   run.resource_paths = plan.resource_paths;
   run.keep = options.folder;
   run.quiet = true;
-  run.warm_simulator = options.warm_simulator;
+  run.warm = options.warm;
   if (options.records) run.record = options.folder + "/run.mcap";
   return run;
 }
@@ -52,17 +54,7 @@ Result<void> write_files(const Plan& plan, const std::optional<WorldFile>& world
   return {};
 }
 
-}  // namespace
-
-bool Outcome::is_passed() const { return first_problem().empty(); }
-
-std::string Outcome::first_problem() const {
-  if (!problem.empty()) return problem;
-  const auto unmet = std::ranges::find_if(verdicts, [](const auto& verdict) { return !verdict.problem.empty(); });
-  return unmet == verdicts.end() ? "" : unmet->expectation + ": " + unmet->problem;
-}
-
-Outcome run_row(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, const RowRunOptions& options) {
+Outcome run_once(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, const RowRunOptions& options) {
   Outcome outcome;
   const auto world = campaign.world_of(row);
   if (!world) {
@@ -100,6 +92,28 @@ Outcome run_row(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, co
   std::error_code ignored;  // files that stay do no harm
   if (outcome.is_passed() && !options.keeps_files) fs::remove_all(options.folder, ignored);
   return outcome;
+}
+
+}  // namespace
+
+bool Outcome::is_passed() const { return first_problem().empty(); }
+
+std::string Outcome::first_problem() const {
+  if (!problem.empty()) return problem;
+  const auto unmet = std::ranges::find_if(verdicts, [](const auto& verdict) { return !verdict.problem.empty(); });
+  return unmet == verdicts.end() ? "" : unmet->expectation + ": " + unmet->problem;
+}
+
+Outcome run_row(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, const RowRunOptions& options) {
+  const auto warm = options.warm != nullptr ? options.warm->count() : 0;
+  auto outcome = run_once(orb, campaign, row, options);
+  if (outcome.problem.empty() || warm == 0 || options.warm->count() == warm || editor::is_interrupted()) return outcome;
+  // Who made a program of it was killed and took that along: that says nothing about the row.
+  std::error_code ignored;
+  fs::remove_all(options.folder, ignored);
+  auto alone = options;
+  alone.warm = nullptr;
+  return run_once(orb, campaign, row, alone);
 }
 
 }  // namespace campaign

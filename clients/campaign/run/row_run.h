@@ -23,7 +23,7 @@ struct RowRunOptions {
   bool checks_invariants = false;      // also when the plan does not ask for it
   bool draws = true;                   // a picture of a run that fails, if the plan has pictures
   bool records = false;                // run.mcap in the folder
-  const editor::WarmProgram* warm_simulator = nullptr;
+  const editor::WarmPrograms* warm = nullptr;
 };
 
 struct Outcome {

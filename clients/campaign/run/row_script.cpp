@@ -45,6 +45,11 @@ void RowScript::end(editor::RunScene* scene, const editor::Seen& seen, editor::R
       const auto count = value == seen.values.end() ? 0 : value->second.not_numbers;
       result.verdicts.push_back({"no NaN from " + port, count == 0 ? "" : std::to_string(count) + " numbers were NaN"});
     }
+    for (const auto& watched : watched_) {
+      const auto value = seen.values.find(watched.port + " " + watched.member);
+      if (value == seen.values.end() || value->second.samples > 0 || value->second.problem.empty() || watched.member.empty()) continue;
+      result.verdicts.push_back({watched.port + " has " + watched.member, value->second.problem});
+    }
     measures_ =
         take_measures(campaign_.plan().measures, seen, world_ ? world_->models() : campaign_.models(), scene->place.file("record.txt"), 0);
   }

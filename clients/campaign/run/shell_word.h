@@ -1,4 +1,4 @@
-// Text as one word of a shell's command line. Any thread.
+// Text as one word of a shell's command line, in quotes where it needs them. Any thread.
 #pragma once
 
 #include <string>
@@ -6,6 +6,8 @@
 namespace campaign {
 
 inline std::string shell_word(const std::string& text) {
+  constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:=@%+,-";
+  if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) return text;
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
   return quoted + "'";

@@ -4,7 +4,9 @@
 
 #include "base/text.h"
 #include "remote.h"
+#include "results/disk_room.h"
 #include "run/interrupt.h"
+#include "run/row_locks.h"
 #include "run/tally.h"
 #include "run/warm_program.h"
 
@@ -12,22 +14,30 @@ namespace campaign {
 namespace fs = std::filesystem;
 namespace {
 
-void work(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepOptions& options, const editor::WarmProgram* warm, Tally& tally,
-          const Tally::Todo& todo) {
-  if (editor::is_interrupted() || tally.is_stopped()) return;
+void run_todo(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepOptions& options, const editor::WarmPrograms* warm, Tally& tally,
+              const Tally::Todo& todo) {
   const auto row = campaign.row(todo.number);
   if (!row) return;  // list_rows() has made it already
   const auto key = campaign.key(*row);
+  if (tally.was_stored(todo, key)) return;
   const auto folder = options.kept + "/" + folder_name(todo.number, key) + (todo.is_audit ? "-audit" : "");
   std::error_code ignored;
   fs::remove_all(folder, ignored);  // of a call that was killed
-  const auto outcome =
-      run_row(orb, campaign, *row, {.folder = folder, .keeps_files = false, .records = options.records, .warm_simulator = warm});
-  if (editor::is_interrupted() && !outcome.problem.empty()) {
+  const auto outcome = run_row(orb, campaign, *row, {.folder = folder, .keeps_files = false, .records = options.records, .warm = warm});
+  const auto room = outcome.problem.empty() ? Result<void>() : check_room({options.kept, temporary_folder()}, room_to_go_on);
+  if (!room) tally.give_up(room.error().message);
+  if (!room || (editor::is_interrupted() && !outcome.problem.empty())) {
     fs::remove_all(folder, ignored);
     return;
   }
   tally.take(todo, key, outcome, outcome.is_passed() ? "" : folder);
+}
+
+void work(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepOptions& options, const editor::WarmPrograms* warm, Tally& tally,
+          const RowLocks& locks, const Tally::Todo& todo) {
+  if (editor::is_interrupted() || tally.is_stopped() || !locks.take(todo.number)) return;
+  run_todo(orb, campaign, options, warm, tally, todo);
+  locks.give_back(todo.number);
 }
 
 }  // namespace
@@ -38,24 +48,26 @@ Result<void> make_kept(const SweepOptions& options) {
   std::error_code error;
   fs::create_directories(options.kept, error);
   if (error) return Error{"folder " + base::in_quotes(options.kept) + ": " + error.message()};
-  constexpr std::uintmax_t least_space = 32U << 20U;
-  if (const auto space = fs::space(options.kept, error); !error && space.available < least_space)
-    return Error{"folder " + base::in_quotes(options.kept) + ": the disk has less than 32 MiB left"};
-  return {};
+  return check_room({options.kept, fs::path(options.results).parent_path().string()}, room_to_begin);
 }
 
 Result<SweepResult> sweep(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepOptions& options,
                           const std::function<void(const Progress&)>& show) {
   if (const auto made = make_kept(options); !made) return made.error();
+  if (const auto room = check_room({temporary_folder()}, room_to_begin); !room) return room.error();
   auto store = Store::open(options.results);
   if (!store) return store.error();
   Tally tally(campaign, options, std::move(*store), show);
   if (const auto listed = tally.list_rows(); !listed) return listed.error();
   const auto& todo = tally.todo();
-  const auto warm = todo.size() > 1 ? editor::WarmProgram::start_simulator() : std::nullopt;
-  editor::in_parallel(
-      todo.size(), options.call_limit, [&](std::size_t i) { work(orb, campaign, options, warm ? &*warm : nullptr, tally, todo[i]); },
-      static_cast<std::size_t>(options.jobs));
+  const auto warm = todo.size() > 1 ? std::make_optional<editor::WarmPrograms>() : std::nullopt;
+  {
+    const RowLocks locks(options.kept);
+    editor::in_parallel(
+        todo.size(), options.call_limit,
+        [&](std::size_t i) { work(orb, campaign, options, warm ? &*warm : nullptr, tally, locks, todo[i]); },
+        static_cast<std::size_t>(options.jobs));
+  }
   std::error_code ignored;
   fs::remove(options.kept, ignored);  // when it is empty
   return tally.result();

@@ -30,7 +30,7 @@ Result<void> Tally::list_rows() {
     } else if (keys.insert(key).second) {
       todo_.push_back({number, "", false});
     } else {
-      ++result_.progress.done;  // its twin is run
+      ++twins_[key];
     }
   }
   if (const auto ended = store_.end_rows(); !ended) return ended;
@@ -45,6 +45,11 @@ void Tally::take_stored(std::size_t number, const std::string& key, const Stored
   ++(run.is_passed ? progress.passed : progress.failed);
   if (!run.is_passed && result_.failed.size() < most_failed_told) result_.failed.push_back({number, run.problem});
   if (Random(options_.results.size(), key).uniform() < options_.audit) todo_.push_back({number, run.state_hash, true});
+}
+
+void Tally::give_up(const std::string& problem) {
+  const auto mine = telling_.take();
+  if (problem_.empty()) problem_ = problem;
 }
 
 bool Tally::is_stopped() {
@@ -65,9 +70,28 @@ void Tally::add(const Todo& todo, const std::string& key, const Outcome& outcome
     return;
   }
   if (const auto added = store_.add_run(key, outcome, folder); !added && problem_.empty()) problem_ = added.error().message;
-  ++progress.done;
-  ++(outcome.is_passed() ? progress.passed : progress.failed);
+  const auto twins = twins_.find(key);
+  const std::size_t rows = 1 + (twins == twins_.end() ? 0 : twins->second);
+  progress.done += rows;
+  (outcome.is_passed() ? progress.passed : progress.failed) += rows;
   if (!outcome.is_passed() && result_.failed.size() < most_failed_told) result_.failed.push_back({todo.number, outcome.first_problem()});
+}
+
+bool Tally::was_stored(const Todo& todo, const std::string& key) {
+  const auto mine = telling_.take();
+  if (todo.is_audit) return false;
+  const auto run = store_.run(key);
+  if (!run || !*run) return false;
+  auto& progress = result_.progress;
+  const auto twins = twins_.find(key);
+  const std::size_t rows = 1 + (twins == twins_.end() ? 0 : twins->second);
+  progress.done += rows;
+  progress.stored += rows;
+  ((*run)->is_passed ? progress.passed : progress.failed) += rows;
+  if (!(*run)->is_passed && result_.failed.size() < most_failed_told) result_.failed.push_back({todo.number, (*run)->problem});
+  ++ended_;
+  show_(progress);
+  return true;
 }
 
 void Tally::take(const Todo& todo, const std::string& key, const Outcome& outcome, const std::string& folder) {

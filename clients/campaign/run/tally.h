@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -30,12 +31,16 @@ class Tally {
   Result<void> list_rows();
   const std::vector<Todo>& todo() const { return todo_; }
   // Stores what has come out of a row, and shows how far the sweep is. `folder`: of the row's files; empty: there are none.
+  // Whether another process has stored it since; counts it then. Not for audits.
+  bool was_stored(const Todo& todo, const std::string& key);
   void take(const Todo& todo, const std::string& key, const Outcome& outcome, const std::string& folder);
   // Stores what has come out of a row that this call has not asked for, unless it is stored already. Neither counted nor shown.
   void keep(const std::string& key, const Outcome& outcome, const std::string& folder);
+  // Rows cannot be run any more, for this reason.
+  void give_up(const std::string& problem);
   // Nothing more should be begun.
   bool is_stopped();
-  // When all has ended. The error: the results could not be written.
+  // When all has ended. The error: the results could not be written, or it was given up.
   Result<SweepResult> result();
 
  private:
@@ -49,9 +54,10 @@ class Tally {
   const std::function<void(const Progress&)>& show_;
   base::Turn<> telling_;  // one result at a time
   std::vector<Todo> todo_;
+  std::map<std::string, std::size_t> twins_;  // by key: rows that are not run, since one of todo_ is the same
   std::size_t ended_ = 0;
   SweepResult result_;
-  std::string problem_;  // of the store
+  std::string problem_;  // why this ends before all rows have run
   Clock::time_point began_ = Clock::now();
 };
 

@@ -9,6 +9,7 @@
 #include "base/guarded.h"
 #include "base/text.h"
 #include "remote.h"
+#include "results/disk_room.h"
 #include "run/interrupt.h"
 #include "run/warm_program.h"
 #include "slurm/slurm_sweep.h"
@@ -43,6 +44,10 @@ class Part {
     if (Clock::now() - synced_ < sync_period) return;
     if (fdatasync(handle_) != 0 && problem_.empty()) problem_ = "file " + base::in_quotes(file_) + ": cannot be written";
     synced_ = Clock::now();
+  }
+  void give_up(const std::string& problem) {
+    const auto mine = turn_.take();
+    if (problem_.empty()) problem_ = problem;
   }
   std::string problem() {
     const auto mine = turn_.take();
@@ -102,7 +107,7 @@ Result<void> run_task(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepO
   if (!rows) return rows.error();
   Part part(shared.part(place.attempt, place.task));
   const Scratch scratch;
-  const auto warm = rows->size() > 1 ? editor::WarmProgram::start_simulator() : std::nullopt;
+  const auto warm = rows->size() > 1 ? std::make_optional<editor::WarmPrograms>() : std::nullopt;
   const auto work = [&](std::size_t number) {
     if (editor::is_interrupted() || !part.problem().empty()) return;
     const auto row = campaign.row(number);
@@ -110,10 +115,11 @@ Result<void> run_task(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepO
     const auto key = campaign.key(*row);
     const auto name = folder_name(number, key);
     const auto folder = scratch.folder() / name;
-    auto outcome =
-        run_row(orb, campaign, *row,
-                {.folder = folder.string(), .keeps_files = false, .records = options.records, .warm_simulator = warm ? &*warm : nullptr});
+    auto outcome = run_row(orb, campaign, *row,
+                           {.folder = folder.string(), .keeps_files = false, .records = options.records, .warm = warm ? &*warm : nullptr});
     if (editor::is_interrupted() && !outcome.problem.empty()) return;
+    const auto room = outcome.problem.empty() ? Result<void>() : check_room({options.kept, temporary_folder()}, room_to_go_on);
+    if (!room) return part.give_up(room.error().message);
     std::string kept;
     if (!outcome.is_passed()) {
       kept = options.kept + "/" + name;

@@ -1,0 +1,20 @@
+// Whether the disks that a campaign writes to have room. A row that fails for want of it says nothing about its system. Any thread.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+
+namespace campaign {
+
+inline constexpr std::uintmax_t room_to_begin = 32U << 20U, room_to_go_on = 1U << 20U;  // [octets]
+
+// The error names the first folder whose disk has less.
+base::Result<void> check_room(const std::vector<std::string>& folders, std::uintmax_t least);
+
+// Where the temporary files of runs are.
+std::string temporary_folder();
+
+}  // namespace campaign

@@ -1,0 +1,15 @@
+// The models that events of a plan spawn: where they are. Any thread.
+#pragma once
+
+#include <set>
+#include <string>
+
+#include "plan/plan.h"
+
+namespace campaign {
+
+// Sets the events' relative paths to whole ones: of the plan's folder, else of the one that rtse is called in. Returns all files that the
+// models are made of; an error for a model that nobody finds.
+Result<std::set<std::string>> find_spawned(Plan& plan);
+
+}  // namespace campaign

@@ -1,0 +1,18 @@
+// Whether what a plan measures and expects is there: models, components, ports. Any thread.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "plan/plan.h"
+#include "profile/rts_profile.h"
+#include "rows/world_file.h"
+
+namespace campaign {
+
+// A port is there when the profile lists it, or lists none of its component. What is spawned may have any name.
+Result<void> check_subjects(const Plan& plan, const editor::SavedSystem& system, const std::map<std::string, StandingModel>& models);
+// That of a condition or a measure, COMPONENT:PORT; empty: good. The problem says what is there.
+std::string port_problem(const editor::SavedSystem& system, const std::string& port);
+
+}  // namespace campaign
