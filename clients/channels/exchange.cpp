@@ -51,7 +51,7 @@ class Outlet {
       changed_.notify_one();
       if (!data.wait_for(room_, options_.patience, has_room)) return false;
     }
-    if (data->failure || data->is_ending) return false;
+    if (data->failure || data->is_ending) return true;  // nobody is there who could miss it; failure() says why
     const bool was_urgent = is_urgent(*data);
     data->queue.push_back(sample);
     data->octets += size;
@@ -159,12 +159,15 @@ class Outlet {
 
 }  // namespace
 
+using Outlets = std::vector<std::shared_ptr<Outlet>>;
+using SharedOutlets = std::shared_ptr<const Outlets>;  // a new one when a sink comes, so that whoever puts need not copy it
+
 struct Exchange::State {
   struct Data {
     std::vector<SharedChannel> channels;   // by id - 1
     std::vector<std::uint32_t> sequences;  // likewise: of the next sample
     std::vector<std::uint64_t> dropped;
-    std::vector<std::shared_ptr<Outlet>> outlets;
+    SharedOutlets outlets = std::make_shared<const Outlets>();
     std::function<void()> told;  // of failures
   };
   base::Guarded<Data, base::Rank::connector> data;
@@ -178,7 +181,9 @@ void Exchange::attach(std::shared_ptr<Sink> sink, const QueueOptions& options) {
   auto data = state_->data.lock();
   outlet->on_failure(data->told);
   for (std::size_t i = 0; i < data->channels.size(); ++i) outlet->announce(static_cast<ChannelId>(i + 1), data->channels[i]);
-  data->outlets.push_back(std::move(outlet));
+  auto outlets = *data->outlets;
+  outlets.push_back(std::move(outlet));
+  data->outlets = std::make_shared<const Outlets>(std::move(outlets));
 }
 
 base::Result<ChannelId> Exchange::open(Channel channel) {
@@ -188,7 +193,7 @@ base::Result<ChannelId> Exchange::open(Channel channel) {
   data->sequences.push_back(0);
   data->dropped.push_back(0);
   const auto id = static_cast<ChannelId>(data->channels.size());
-  for (const auto& outlet : data->outlets) outlet->announce(id, data->channels.back());
+  for (const auto& outlet : *data->outlets) outlet->announce(id, data->channels.back());
   return id;
 }
 
@@ -203,7 +208,7 @@ void Exchange::put(ChannelId channel, Time log_time, std::span<const char> head,
 // Samples of one channel are put by one thread at a time, so their numbers are in the order of each queue.
 void Exchange::put(ChannelId channel, Time log_time, std::vector<char>&& octets) {
   Sample sample{channel, 0, log_time, base::SystemClock().now(), std::move(octets)};
-  std::vector<std::shared_ptr<Outlet>> outlets;
+  SharedOutlets outlets;
   {
     auto data = state_->data.lock();
     if (channel == 0 || channel > data->channels.size()) return;
@@ -212,20 +217,20 @@ void Exchange::put(ChannelId channel, Time log_time, std::vector<char>&& octets)
   }
   const auto shared = std::make_shared<const Sample>(std::move(sample));
   std::uint64_t dropped = 0;
-  for (const auto& outlet : outlets) dropped += outlet->put(shared) ? 0 : 1;
+  for (const auto& outlet : *outlets) dropped += outlet->put(shared) ? 0 : 1;
   if (dropped > 0) state_->data.lock()->dropped[channel - 1u] += dropped;
 }
 
 void Exchange::close(ChannelId channel) {
   const auto outlets = state_->data.lock()->outlets;
-  for (const auto& outlet : outlets) outlet->close(channel);
+  for (const auto& outlet : *outlets) outlet->close(channel);
 }
 
 bool Exchange::drain(std::chrono::milliseconds limit) {
   const auto deadline = std::chrono::steady_clock::now() + limit;
   const auto outlets = state_->data.lock()->outlets;
   bool is_done = true;
-  for (const auto& outlet : outlets) {
+  for (const auto& outlet : *outlets) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
     is_done = outlet->drain(std::max(left, std::chrono::milliseconds(0))) && is_done;
   }
@@ -242,8 +247,8 @@ std::map<std::string, std::uint64_t> Exchange::dropped() const {
 }
 
 std::optional<base::Error> Exchange::failure() const {
-  const auto outlets = state_->data.snapshot().outlets;
-  for (const auto& outlet : outlets) {
+  const auto outlets = state_->data.lock()->outlets;
+  for (const auto& outlet : *outlets) {
     if (auto failure = outlet->failure()) return failure;
   }
   return std::nullopt;
@@ -255,13 +260,13 @@ std::string_view cdr_head(bool is_little_endian) {
 }
 
 void Exchange::on_failure(const std::function<void()>& told) {
-  std::vector<std::shared_ptr<Outlet>> outlets;
+  SharedOutlets outlets;
   {
     auto data = state_->data.lock();
     data->told = told;
     outlets = data->outlets;
   }
-  for (const auto& outlet : outlets) outlet->on_failure(told);
+  for (const auto& outlet : *outlets) outlet->on_failure(told);
 }
 
 }  // namespace channels

@@ -23,8 +23,8 @@ namespace {
 using namespace std::chrono_literals;
 using ValueKind = Expression::Value::Kind;
 
-constexpr std::uint32_t last_phase = 15;
-constexpr auto call_limit = 5s;
+constexpr std::uint32_t watch_phase = 15;  // the last one
+constexpr auto watch_limit = 5s;
 
 std::uint32_t number_of(const std::string& simulator) { return static_cast<std::uint32_t>(base::parse_integer(simulator).value_or(0)); }
 
@@ -131,7 +131,7 @@ std::optional<double> BreakWatch::State::look_up(const Expression::Value& value,
 
 void BreakWatch::State::run() {
   const omni_thread::ensure_self known_to_the_orb;  // time-outs per thread need it
-  const editor::CallLimit limited(call_limit);
+  const editor::CallLimit limited(watch_limit);
   while (!is_ending.load(std::memory_order_relaxed)) {
     shm::Tick tick;
     const auto what = participant.wait(tick, 100ms);
@@ -157,13 +157,13 @@ base::Result<std::unique_ptr<BreakWatch>> BreakWatch::start(CORBA::ORB_ptr orb, 
                                                             const Expression& condition) {
   const auto period = tick_of(system.simulator(), system.step());
   if (!period) return period.error();
-  auto participant = shm::Participant::join(number_of(system.simulator()), {.name = "break", .phase = last_phase, .period = *period});
+  auto participant = shm::Participant::join(number_of(system.simulator()), {.name = "break", .phase = watch_phase, .period = *period});
   if (!participant) return participant.error();
-  const editor::Editor editor(orb, system.naming(), false, std::chrono::milliseconds(call_limit));
+  const editor::Editor editor(orb, system.naming(), false, std::chrono::milliseconds(watch_limit));
   auto state = std::make_unique<State>(condition, editor, std::move(*participant));
   state->simulator = number_of(system.simulator());
   if (const auto done = state->prepare(orb); !done) return done.error();
-  const auto deadline = std::chrono::steady_clock::now() + call_limit;
+  const auto deadline = std::chrono::steady_clock::now() + watch_limit;
   for (shm::Tick tick; !state->participant.is_active();) {
     if (std::chrono::steady_clock::now() > deadline) return base::Error{"break: the simulator does not take it into the lock step"};
     (void)state->participant.wait(tick, 5ms);

@@ -125,16 +125,16 @@ base::Result<void> Stand::then() {
 base::Result<bool> Stand::obey(const std::string& line) {
   const auto words = base::split_list(line, ' ');
   const std::string verb = words.empty() ? "n" : words[0];
-  const auto number = words.size() > 1 ? base::parse_number(words[1]) : std::nullopt;
+  const double number = words.size() > 1 ? base::parse_number(words[1]).value_or(-1) : 1;  // less than 0: none that means something
+  constexpr double most = 1e9;                                                             // ticks, or seconds
   if (verb == "q" || verb == "quit") return true;
-  if ((verb == "n" || verb == "next") && (words.size() < 2 || (number && *number >= 1))) {
-    const auto done = go_on(tick_ * std::llround(number.value_or(1)));
+  if ((verb == "n" || verb == "next") && number >= 1 && number <= most) {
+    const auto done = go_on(tick_ * std::llround(number));
     return done ? base::Result<bool>(false) : done.error();
   }
-  const bool is_back = (verb == "b" || verb == "back") && (words.size() < 2 || (number && *number >= 1));
-  if (is_back || ((verb == "t" || verb == "to") && number && *number >= 0)) {
-    const double given = number.value_or(1);
-    const double to = is_back ? std::max(0.0, now() - given * static_cast<double>(tick_) * system_->step()) : given;
+  const bool is_back = (verb == "b" || verb == "back") && number >= 1;
+  if (is_back || ((verb == "t" || verb == "to") && words.size() > 1 && number >= 0 && number <= most)) {
+    const double to = is_back ? std::max(0.0, now() - number * static_cast<double>(tick_) * system_->step()) : number;
     if (to < now()) {
       wish_ = to;
       return true;

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "base/command_line.h"
 #include "base/text.h"
@@ -75,6 +76,30 @@ base::Result<void> add_route(Editor& editor, const mcap::Reader& reader, const s
   auto tap = editor::Tap::connect(editor.orb(), port->port, {{"rtmsim.play.topic", recorded.topic}}, {});
   if (!tap) return tap.error();
   routes[*channel].targets.push_back(std::move(*tap));
+  return {};
+}
+
+// "COMPONENT:PORT=INPORT" for each InPort that a recorded port was connected to, once.
+std::set<std::string> recorded_links(const mcap::Reader& reader) {
+  std::set<std::string> links;
+  for (const auto& [id, channel] : reader.channels()) {
+    for (const auto& [key, value] : channel.metadata) {
+      if (!key.starts_with("connector") || !key.ends_with(".inports")) continue;
+      for (const auto& inport : base::split_list(value)) links.insert(channel.topic + "=" + inport);
+    }
+  }
+  return links;
+}
+
+// Without links each recorded port goes where it went; InPorts that are not there now are told.
+base::Result<void> add_recorded_routes(Editor& editor, const mcap::Reader& reader, Routes& routes) {
+  const auto links = recorded_links(reader);
+  if (links.empty())
+    return base::Error{"recording: does not say which InPorts its channels were connected to; expected COMPONENT:PORT=INPORT"};
+  for (const auto& link : links) {
+    if (const auto added = add_route(editor, reader, link, routes); !added) std::cerr << "rtse: " << added.error().message << '\n';
+  }
+  if (routes.empty()) return base::Error{"recording: none of the InPorts that its channels were connected to is there"};
   return {};
 }
 
@@ -184,20 +209,28 @@ void play(Editor& editor, const PlayOptions& options) {
   for (const auto& link : options.links) {
     if (const auto added = add_route(editor, *reader, link, routes); !added) return editor.fail(added.error());
   }
+  if (options.links.empty()) {
+    if (const auto added = add_recorded_routes(editor, *reader, routes); !added) return editor.fail(added.error());
+  }
   editor::catch_interrupts();
   const editor::CallLimit limited(editor.limit());
+  const auto sent = [&] {
+    std::uint64_t sum = 0;
+    for (const auto& [channel, route] : routes) sum += route.sent;
+    return sum;
+  };
   for (bool goes_on = true; goes_on;) {
     auto pace =
         options.by_simulation ? SimulatedPace::join(options.server_id) : base::Result<std::unique_ptr<Pace>>(std::make_unique<WallPace>());
     if (!pace) return editor.fail(pace.error());
-    goes_on = play_once(editor, *reader, options, routes, **pace) && options.loop;
+    const bool is_over = play_once(editor, *reader, options, routes, **pace);
+    if (is_over && sent() == 0) return editor.fail({"recording: has no sample of these channels in the time that is to be played"});
+    goes_on = is_over && options.loop;
   }
-  std::uint64_t sent = 0;
-  for (const auto& [channel, route] : routes) sent += route.sent;
   if (editor.json())
-    editor.print(Json{{"sent", sent}});
+    editor.print(Json{{"sent", sent()}});
   else
-    std::cout << "sent " << sent << " samples\n";
+    std::cout << "sent " << sent() << " samples\n";
 }
 
 }  // namespace
@@ -206,7 +239,8 @@ void add_play(base::Command& app, editor::Chosen& chosen) {
   auto* command = app.add_subcommand("play", "Send a recording into InPorts of a running system, as fast as it was recorded");
   auto options = std::make_shared<PlayOptions>();
   command->add_option("FILE", options->file, "The recording")->required();
-  command->add_option("LINK", options->links, "What goes where: COMPONENT:PORT=INPORT, e.g. RTCLaser0:range=MyFilter0:in")->required();
+  command->add_option("LINK", options->links,
+                      "What goes where: COMPONENT:PORT=INPORT, e.g. RTCLaser0:range=MyFilter0:in; default: where it went in the recording");
   command->add_option("-r,--rate", options->rate, "So many times as fast")->check(base::number_between(1e-3, 1e6))->capture_default_str();
   command->add_flag("--loop", options->loop, "Start over at the end, until stopped");
   command->add_option("--from", options->from_s, "From this time on [s]")->seconds_between(0.0, 1e10);

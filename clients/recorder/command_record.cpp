@@ -183,6 +183,7 @@ std::map<std::string, std::map<std::string, std::string>> lockstep_facts(const R
 }
 
 void report(Editor& editor, const RecordOptions& options, const McapSink& sink, const channels::Exchange& exchange) {
+  if (const auto failure = exchange.failure()) return editor.fail({failure->message + "; what came before is in it"});
   for (const auto& [topic, count] : exchange.dropped()) {
     editor.fail(
         {"record: " + std::to_string(count) + " samples of " + topic + " were dropped, they came faster than they could be written"});
@@ -320,13 +321,12 @@ void record(Editor& editor, const RecordOptions& options) {
       if (const auto kept = keep_hashes(exchange, options.hashes); !kept) editor.fail(kept.error());
     }
     if (!exchange.drain(std::chrono::seconds(30))) editor.fail({"record: the file took no more samples for 30 s; the last ones are lost"});
-    if (const auto failure = exchange.failure()) editor.fail(*failure);
-    if (sinks->last) {
+    if (sinks->last && !exchange.failure()) {
       if (const auto done = sinks->last->hand_on(); !done) editor.fail(done.error());
     }
     report(editor, options, *sinks->file, exchange);
   }
-  if (const auto closed = sinks->file->close(); !closed) editor.fail(closed.error());
+  if (const auto closed = sinks->file->close(); !closed && !editor.failed()) editor.fail(closed.error());
 }
 
 }  // namespace

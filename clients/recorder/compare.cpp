@@ -4,8 +4,10 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 
+#include "base/text.h"
 #include "mcap/mcap.h"
 #include "sample_text.h"
 #include "selection.h"
@@ -74,6 +76,17 @@ class Moments {
   std::optional<Entry> ahead_;
 };
 
+// ", tick 571" of a port in lock step, whose channel says how long a tick is.
+std::string tick_text(Side& side, const std::string& topic, mcap::Time time) {
+  for (const auto& [id, channel] : side.reader().channels()) {
+    const auto period = channel.topic == topic ? channel.metadata.find("period_ns") : channel.metadata.end();
+    if (period == channel.metadata.end()) continue;
+    const auto ns = base::parse_integer(period->second).value_or(0);
+    if (ns > 0) return ", tick " + std::to_string(time.count() / static_cast<std::uint64_t>(ns));
+  }
+  return "";
+}
+
 base::Result<Json> value_of(Side& side, const Entry& entry) {
   for (const auto& [id, channel] : side.reader().channels()) {
     if (channel.topic == entry.topic) return side.values().of({id, 0, entry.time, entry.time, entry.octets});
@@ -102,8 +115,9 @@ void compare(editor::Editor& editor, const CompareOptions& options) {
   Moments first(*sides[0]);
   Moments second(*sides[1]);
   std::uint64_t samples = 0;
-  const auto differ = [&](mcap::Time time, const std::string& what) {
-    const std::string place = "time " + seconds_text(time) + " s: " + what;
+  const auto differ = [&](mcap::Time time, const std::string& topic, const std::string& how) {
+    const std::string what = topic + " " + how;
+    const std::string place = "time " + seconds_text(time) + " s" + tick_text(*sides[0], topic, time) + ": " + what;
     if (editor.json())
       editor.print(Json{{"equal", false}, {"time", seconds(time)}, {"difference", what}});
     else
@@ -123,11 +137,11 @@ void compare(editor::Editor& editor, const CompareOptions& options) {
           i < b->size() && (i >= a->size() || std::pair((*b)[i].time, (*b)[i].topic) <= std::pair((*a)[i].time, (*a)[i].topic));
       if (!in_first || !in_second) {
         const Entry& entry = in_first ? (*a)[i] : (*b)[i];
-        return differ(entry.time, entry.topic + " has a sample in " + (in_first ? options.first : options.second) + " only");
+        return differ(entry.time, entry.topic, "has a sample in " + (in_first ? options.first : options.second) + " only");
       }
       ++samples;
       if (const auto what = difference(options.tolerated, *sides[0], *sides[1], (*a)[i], (*b)[i]))
-        return differ((*a)[i].time, (*a)[i].topic + " " + *what);
+        return differ((*a)[i].time, (*a)[i].topic, *what);
     }
   }
   if (editor.json())

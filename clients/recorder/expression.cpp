@@ -20,7 +20,7 @@ using Node = Expression::Node;
 using Value = Expression::Value;
 using NodePointer = std::shared_ptr<const Node>;
 
-constexpr int deepest = 64;
+constexpr int deepest_nesting = 64;
 
 class Parser {
  public:
@@ -50,7 +50,7 @@ class Parser {
 
   // Conditions joined by ||, each of conditions joined by &&.
   base::Result<NodePointer> joined(int depth, bool by_and = false) {
-    if (depth > deepest) return wrong("it is nested too deep");
+    if (depth > deepest_nesting) return wrong("it is nested too deep");
     auto node = std::make_shared<Node>();
     node->kind = by_and ? Node::Kind::all : Node::Kind::any;
     do {
@@ -62,7 +62,7 @@ class Parser {
   }
 
   base::Result<NodePointer> single(int depth) {
-    if (depth > deepest) return wrong("it is nested too deep");
+    if (depth > deepest_nesting) return wrong("it is nested too deep");
     skip();
     if (at_ + 1 < text_.size() && text_[at_] == '!' && text_[at_ + 1] != '=') {
       ++at_;

@@ -62,7 +62,7 @@ base::Result<void> McapSink::begin_file(channels::Time begun) {
   auto writer = make_(is_one ? path_ : numbered(path_, files_));
   if (!writer) return writer.error();
   writer_.emplace(std::move(*writer));
-  ids_.clear();
+  ids_.assign(ids_.size(), 0);
   schemas_.clear();
   first_.reset();
   for (const auto& [id, channel] : channels_) {
@@ -72,11 +72,16 @@ base::Result<void> McapSink::begin_file(channels::Time begun) {
     sample.log_time = std::max(sample.log_time, begun);
     if (const auto written = write(sample); !written) return written;
   }
+  if (!latched_.empty()) {
+    if (const auto flushed = writer_->flush(); !flushed) return flushed;
+  }
+  begun_with_ = writer_->size();
   return {};
 }
 
+// A file has at least as much of its own as what every one begins with.
 bool McapSink::is_full(const channels::Sample& sample) const {
-  if (split_.octets > 0 && writer_->size() >= split_.octets) return true;
+  if (split_.octets > 0 && writer_->size() >= std::max(split_.octets, 2 * begun_with_)) return true;
   return split_.time.count() > 0 && first_ && sample.log_time - *first_ >= split_.time;
 }
 
@@ -90,6 +95,7 @@ base::Result<void> McapSink::add(channels::ChannelId id, const channels::Channel
   }
   const auto added = writer_->add_channel(known, channel.topic, channel.encoding, channel.metadata);
   if (!added) return added.error();
+  if (ids_.size() <= id) ids_.resize(id + std::size_t{1});
   ids_[id] = *added;
   return {};
 }
@@ -106,8 +112,7 @@ base::Result<void> McapSink::take(const channels::Sample& sample) {
   if (!first_) first_ = sample.log_time;
   if (const auto channel = channels_.find(sample.channel); channel != channels_.end() && channel->second.is_latched())
     latched_.insert_or_assign(sample.channel, sample);
-  const auto done = write(sample);
-  return done ? rest() : done;
+  return write(sample);
 }
 
 base::Result<void> McapSink::write(const channels::Sample& sample) {

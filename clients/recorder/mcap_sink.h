@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "exchange.h"
 #include "mcap/mcap.h"
@@ -50,11 +51,12 @@ class McapSink final : public channels::Sink {
   const NewFile make_;
   std::optional<mcap::Writer> writer_;
   std::size_t files_ = 0;
-  std::uint64_t samples_ = 0;  // in the files before
+  std::uint64_t begun_with_ = 0;  // [octets] of what stands in every file, in this one
+  std::uint64_t samples_ = 0;     // in the files before
   std::optional<channels::Time> first_;
   std::map<channels::ChannelId, channels::Channel> channels_;             // those that every file gets
   std::map<channels::ChannelId, channels::Sample> latched_;               // the latest of those, of channels that hold
-  std::map<channels::ChannelId, std::uint16_t> ids_;                      // in the file
+  std::vector<std::uint16_t> ids_;                                        // in the file, by channel
   std::map<std::pair<std::string, std::string>, std::uint16_t> schemas_;  // by name and text
   std::chrono::steady_clock::time_point flushed_ = std::chrono::steady_clock::now();
 };

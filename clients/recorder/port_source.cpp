@@ -2,10 +2,33 @@
 
 #include <utility>
 
+#include "base/text.h"
 #include "idl_text.h"
+#include "remote.h"
 #include "value_codec.h"
 
 namespace recorder {
+
+namespace {
+
+// The InPorts of a connection, "COMPONENT:PORT" with commas between: as ports are called in their profiles.
+std::string inports_of(const editor::PortView& port, const editor::ConnectorView& connector) {
+  std::vector<std::string> names;
+  for (CORBA::ULong i = 0; i < connector.ports.length(); ++i) {
+    std::string name;
+    // One that is gone is not among them.
+    (void)editor::remote("port", [&] {
+      if (CORBA::is_nil(connector.ports[i]) || connector.ports[i]->_is_equivalent(port.object)) return;
+      RTC::PortProfile_var profile = connector.ports[i]->get_port_profile();
+      name = profile->name.in();
+    });
+    const auto dot = name.find('.');
+    if (dot != std::string::npos) names.push_back(name.replace(dot, 1, ":"));
+  }
+  return base::join(names, ",");
+}
+
+}  // namespace
 
 channels::Channel channel_of(const editor::ComponentView& component, const editor::PortView& port) {
   channels::Channel channel;
@@ -28,6 +51,7 @@ channels::Channel channel_of(const editor::ComponentView& component, const edito
     const std::string prefix = "connector" + std::to_string(i) + ".";
     channel.metadata[prefix + "id"] = connector.id;
     channel.metadata[prefix + "name"] = connector.name;
+    channel.metadata[prefix + "inports"] = inports_of(port, connector);
     for (const auto& [key, value] : connector.properties) {
       if (!key.ends_with("_ior") && !key.ends_with("_ref")) channel.metadata[prefix + key] = value;
     }

@@ -10,6 +10,7 @@
 
 #include "base/guarded.h"
 #include "base/text.h"
+#include "read_ahead.h"
 #include "remote.h"
 #include "shm/lockstep.h"
 #include "tap.h"
@@ -51,13 +52,12 @@ std::uint32_t phase_of(const mcap::Channel& channel) {
 
 class Player {
  public:
-  Player(CORBA::ORB_ptr orb, editor::RunningSystem& system, const ReplayOptions& options, mcap::Reader inputs, mcap::Reader outputs)
+  Player(CORBA::ORB_ptr orb, editor::RunningSystem& system, const ReplayOptions& options, mcap::Reader recording)
       : orb_(orb),
         system_(system),
         options_(options),
-        inputs_(std::move(inputs)),
-        expected_(std::move(outputs)),
-        values_(expected_),
+        recording_(std::move(recording)),
+        values_(recording_),
         within_ticks_(options.life.part(true)),
         between_ticks_(options.life.part(false)) {}
   ~Player() {
@@ -77,6 +77,7 @@ class Player {
   base::Result<void> feed(std::chrono::nanoseconds now);
   base::Result<void> feed_rest();
   base::Result<void> look_ahead(std::chrono::nanoseconds now);
+  void expect(const ReadAhead::Sample& sample, std::chrono::nanoseconds now);
   base::Result<void> judge(std::chrono::nanoseconds now);
   base::Result<void> make_steps();
   void complain(Output& output, std::uint64_t tick, std::chrono::nanoseconds time, const std::string& what);
@@ -86,7 +87,7 @@ class Player {
   CORBA::ORB_ptr orb_;
   editor::RunningSystem& system_;
   const ReplayOptions& options_;
-  mcap::Reader inputs_, expected_;
+  mcap::Reader recording_;
   SampleValues values_;
   LifePlayer within_ticks_;   // of the thread
   LifePlayer between_ticks_;  // of who makes the steps
@@ -94,13 +95,10 @@ class Player {
   std::vector<std::unique_ptr<Output>> outputs_;
   // What came since it was judged last: place of the output, octets with their head.
   base::Guarded<std::vector<std::pair<std::size_t, std::string>>, base::Rank::buffer> arrived_;
-  struct Waiting {
-    std::uint16_t channel;
-    mcap::Time time;
-    std::string data;
-  };
-  std::optional<Waiting> next_input_, next_expected_;
-  std::vector<Waiting> behind_;  // of this tick, for after the component's
+  std::optional<ReadAhead> ahead_;  // of inputs and, when they are compared, outputs
+  std::optional<ReadAhead::Sample> next_;
+  std::deque<ReadAhead::Sample> due_;      // inputs of this tick
+  std::vector<ReadAhead::Sample> behind_;  // likewise, for after the component's
   std::optional<shm::Participant> before_, after_;
   std::uint32_t phase_ = 1;
   std::chrono::nanoseconds period_{0};
@@ -121,7 +119,7 @@ base::Result<void> Player::connect() {
     if (const auto begun = life->begin(*component); !begun) return begun;
   }
   std::map<std::string, std::uint16_t> topics;
-  for (const auto& [id, channel] : inputs_.channels()) topics.emplace(channel.topic, id);
+  for (const auto& [id, channel] : recording_.channels()) topics.emplace(channel.topic, id);
   for (const auto& link : options_.links) {
     const auto* port = component->port(link.port);
     const auto channel = topics.find(link.topic);
@@ -130,7 +128,7 @@ base::Result<void> Player::connect() {
     if (!tap) return tap.error();
     Input& input = by_channel_[channel->second];
     input.topic = link.topic;
-    input.comes_before = phase_of(inputs_.channels().at(channel->second)) < phase_;
+    input.comes_before = phase_of(recording_.channels().at(channel->second)) < phase_;
     input.targets.push_back(std::move(*tap));
   }
   mcap::Query wanted{.channels = {0}};  // none but these
@@ -140,7 +138,7 @@ base::Result<void> Player::connect() {
     output->result.topic = "/" + options_.component + "/" + port.name;
     if (const auto channel = topics.find(output->result.topic); channel != topics.end()) {
       output->channel = channel->second;
-      wanted.channels.push_back(channel->second);
+      if (options_.compares) wanted.channels.push_back(channel->second);
     }
     auto tap =
         editor::Tap::connect(orb_, port, {}, [this, place = outputs_.size()](std::span<const unsigned char> payload, bool is_little) {
@@ -152,10 +150,10 @@ base::Result<void> Player::connect() {
     output->tap = std::move(*tap);
     outputs_.push_back(std::move(output));
   }
-  expected_.seek(std::move(wanted));
-  mcap::Query sent{.channels = {0}};
-  for (const auto& [channel, input] : by_channel_) sent.channels.push_back(channel);
-  inputs_.seek(std::move(sent));
+  for (const auto& [channel, input] : by_channel_) wanted.channels.push_back(channel);
+  auto reader = mcap::Reader::open(options_.file);
+  if (!reader) return reader.error();
+  ahead_.emplace(std::move(*reader), std::move(wanted));
   return {};
 }
 
@@ -245,28 +243,39 @@ base::Result<void> Player::send(Input& input, std::string_view data) {
   return {};
 }
 
-base::Result<void> Player::feed(std::chrono::nanoseconds now) {
+// What the recording has up to this tick: inputs that are due, and outputs to be compared.
+base::Result<void> Player::look_ahead(std::chrono::nanoseconds now) {
   const mcap::Time limit(static_cast<std::uint64_t>(now.count()));
   for (;;) {
-    if (!next_input_) {
-      const auto message = inputs_.next();
-      if (!message) return message.error();
-      if (!message->has_value()) return {};
-      next_input_ = Waiting{(*message)->channel, (*message)->log_time, std::string((*message)->data)};
+    if (!next_) {
+      auto sample = ahead_->next();
+      if (!sample) return sample.error();
+      if (!sample->has_value()) return {};
+      next_ = std::move(*sample);
     }
-    if (next_input_->time > limit) return {};
-    Waiting input = std::move(*std::exchange(next_input_, std::nullopt));
-    Input& target = by_channel_.at(input.channel);
-    if (input.time == limit && !(before_ && target.comes_before)) {
-      behind_.push_back(std::move(input));
-    } else if (const auto sent = send(target, input.data); !sent) {
-      return sent;
-    }
+    if (next_->time > limit) return {};
+    if (options_.compares) expect(*next_, now);
+    if (by_channel_.contains(next_->channel)) due_.push_back(std::move(*next_));
+    next_.reset();
   }
 }
 
+base::Result<void> Player::feed(std::chrono::nanoseconds now) {
+  if (const auto done = look_ahead(now); !done) return done;
+  const mcap::Time limit(static_cast<std::uint64_t>(now.count()));
+  for (; !due_.empty(); due_.pop_front()) {
+    Input& target = by_channel_.at(due_.front().channel);
+    if (due_.front().time == limit && !(before_ && target.comes_before)) {
+      behind_.push_back(std::move(due_.front()));
+    } else if (const auto sent = send(target, due_.front().data); !sent) {
+      return sent;
+    }
+  }
+  return {};
+}
+
 base::Result<void> Player::feed_rest() {
-  for (const Waiting& input : std::exchange(behind_, {})) {
+  for (const ReadAhead::Sample& input : std::exchange(behind_, {})) {
     if (const auto sent = send(by_channel_.at(input.channel), input.data); !sent) return sent;
   }
   return {};
@@ -274,22 +283,11 @@ base::Result<void> Player::feed_rest() {
 
 // ---- outputs ----
 
-base::Result<void> Player::look_ahead(std::chrono::nanoseconds now) {
-  const mcap::Time limit(static_cast<std::uint64_t>(now.count()));
-  for (;;) {
-    if (!next_expected_) {
-      const auto message = expected_.next();
-      if (!message) return message.error();
-      if (!message->has_value()) return {};
-      next_expected_ = Waiting{(*message)->channel, (*message)->log_time, std::string((*message)->data)};
-    }
-    if (next_expected_->time > limit) return {};
-    for (const auto& output : outputs_) {
-      if (output->channel != next_expected_->channel) continue;
-      output->expected.push_back({now, result_.ticks, next_expected_->data});
-      ++output->result.recorded;
-    }
-    next_expected_.reset();
+void Player::expect(const ReadAhead::Sample& sample, std::chrono::nanoseconds now) {
+  for (const auto& output : outputs_) {
+    if (output->channel != sample.channel) continue;
+    output->expected.push_back({now, result_.ticks, sample.data});
+    ++output->result.recorded;
   }
 }
 
@@ -319,9 +317,6 @@ std::optional<std::string> Player::differ(const Output& output, const std::strin
 base::Result<void> Player::judge(std::chrono::nanoseconds now) {
   std::vector<std::pair<std::size_t, std::string>> sent;
   std::swap(sent, *arrived_.lock());
-  if (options_.compares) {
-    if (const auto done = look_ahead(now); !done) return done;
-  }
   if (!has_stood_.exchange(false, std::memory_order_relaxed)) miss(now);
   for (auto& [place, octets] : sent) {
     Output& output = *outputs_[place];
@@ -370,7 +365,7 @@ base::Result<ReplayResult> Player::run() {
     before_.reset();
     after_.reset();
   });
-  result_.simulated_s = std::chrono::duration<double>(inputs_.statistics().last).count();
+  result_.simulated_s = std::chrono::duration<double>(recording_.statistics().last).count();
   const auto began = WallClock::now();
   const auto made = make_steps();
   result_.wall_s = std::chrono::duration<double>(WallClock::now() - began).count();
@@ -387,11 +382,9 @@ base::Result<ReplayResult> Player::run() {
 }  // namespace
 
 base::Result<ReplayResult> replay(CORBA::ORB_ptr orb, editor::RunningSystem& system, const ReplayOptions& options) {
-  auto inputs = mcap::Reader::open(options.file);
-  if (!inputs) return inputs.error();
-  auto outputs = mcap::Reader::open(options.file);
-  if (!outputs) return outputs.error();
-  return Player(orb, system, options, std::move(*inputs), std::move(*outputs)).run();
+  auto recording = mcap::Reader::open(options.file);
+  if (!recording) return recording.error();
+  return Player(orb, system, options, std::move(*recording)).run();
 }
 
 }  // namespace recorder

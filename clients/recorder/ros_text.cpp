@@ -16,7 +16,7 @@ using Field = RosDefinition::Field;
 using RosKind = RosDefinition::Kind;
 using Message = RosDefinition::Message;
 
-constexpr int deepest = 32;                       // messages in each other
+constexpr int deepest_message = 32;               // messages in each other
 constexpr std::size_t most_definitions = 10'000;  // in one text
 
 base::Error wrong(const std::string& what) { return base::Error{"ros2msg: " + what}; }
@@ -124,7 +124,7 @@ class Decoder {
 
   // Empty when the octets end too early.
   std::optional<Json> message(std::size_t place, int depth) {
-    if (depth > deepest) return std::nullopt;
+    if (depth > deepest_message) return std::nullopt;
     Json json = Json::object();
     // A message without members has one octet.
     if (messages_[place].fields.empty() && !cdr_.number<std::uint8_t>()) return std::nullopt;
@@ -266,7 +266,7 @@ base::Result<RosDefinition> RosDefinition::parse(std::string_view text) {
 base::Result<Json> RosDefinition::decode(std::string_view octets) const {
   if (octets.size() < 4) return wrong("a sample has no octets that say their order");
   auto value = Decoder(messages_, Cdr(octets.substr(4), octets[1] == 1)).message(0, 0);
-  if (!value) return wrong("a sample ends too early, or is deeper than " + std::to_string(deepest) + " messages");
+  if (!value) return wrong("a sample ends too early, or is deeper than " + std::to_string(deepest_message) + " messages");
   return std::move(*value);
 }
 

@@ -31,25 +31,54 @@ concept Message = requires {
 template <class T>
 concept Number = std::is_arithmetic_v<T> || std::is_same_v<T, Byte>;
 
+// How many octets come.
+class Measure {
+ public:
+  std::size_t size() const { return size_; }
+  void fill(std::size_t count) { size_ += count; }
+  void append(const void*, std::size_t count) { size_ += count; }
+
+ private:
+  std::size_t size_ = 0;
+};
+
+// The octets themselves; room is made once.
+class Octets {
+ public:
+  explicit Octets(std::size_t size) { octets_.reserve(size); }
+  std::size_t size() const { return octets_.size(); }
+  void fill(std::size_t count) { octets_.resize(octets_.size() + count); }
+  void append(const void* from, std::size_t count) {
+    const auto* octets = static_cast<const char*>(from);
+    octets_.insert(octets_.end(), octets, octets + count);
+  }
+  std::vector<char> take() { return std::move(octets_); }
+
+ private:
+  std::vector<char> octets_;
+};
+
+// A visitor of fields().
+template <class Out>
 class Encoder {
  public:
-  Encoder() : octets_(channels::cdr_head(true).begin(), channels::cdr_head(true).end()) {}
+  explicit Encoder(Out out) : out_(std::move(out)) { out_.append(channels::cdr_head(true).data(), head_size); }
 
   template <class T>
   void operator()(std::string_view, const T& value) {
     put(value);
   }
-  std::vector<char> take() { return std::move(octets_); }
+  Out& out() { return out_; }
 
  private:
   template <Number T>
   void put(const T& value) {
     align(sizeof value);
-    append(&value, sizeof value);
+    out_.append(&value, sizeof value);
   }
   void put(const std::string& text) {
     put(static_cast<std::uint32_t>(text.size() + 1));
-    append(text.c_str(), text.size() + 1);
+    out_.append(text.c_str(), text.size() + 1);
   }
   template <Message T>
   void put(const T& message) {
@@ -73,20 +102,18 @@ class Encoder {
     if constexpr (Number<T> && !std::is_same_v<T, bool>) {
       if (values.empty()) return;
       align(sizeof(T));
-      append(values.data(), values.size_bytes());
+      out_.append(values.data(), values.size_bytes());
     } else {
       for (const T& value : values) put(value);
     }
   }
   // Counted from behind the head.
-  void align(std::size_t size) { octets_.resize((octets_.size() - head_size + size - 1) / size * size + head_size); }
-  void append(const void* from, std::size_t size) {
-    const auto* octets = static_cast<const char*>(from);
-    octets_.insert(octets_.end(), octets, octets + size);
+  void align(std::size_t size) {
+    if (const auto rest = (out_.size() - head_size) & (size - 1); rest != 0) out_.fill(size - rest);  // sizes are powers of two
   }
 
   static constexpr std::size_t head_size = 4;
-  std::vector<char> octets_;
+  Out out_;
 };
 
 // The definition of a message and those that it needs, each once, its own first.
@@ -171,9 +198,11 @@ class Definitions {
 
 template <Message T>
 std::vector<char> encode(const T& message) {
-  Encoder encoder;
+  Encoder measured{Measure()};
+  T::fields(message, measured);
+  Encoder encoder{Octets(measured.out().size())};
   T::fields(message, encoder);
-  return encoder.take();
+  return encoder.out().take();
 }
 
 template <Message T>

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "views/iface_view.h"
+#include "views/shapes.h"
 
 namespace channels {
 
@@ -41,7 +42,7 @@ ModelFrames frames_of(const Json& json) {
   return model;
 }
 
-constexpr std::chrono::seconds answer_limit{3};
+constexpr std::chrono::seconds answer_limit{3}, export_limit{60};
 constexpr std::size_t per_link = 7, per_joint = 4;
 
 shm::Pose link_pose(const float* p) { return {p[0], p[1], p[2], p[3], p[4], p[5], p[6]}; }
@@ -60,6 +61,7 @@ base::Result<void> Limbs::learn() {
   const auto tree = Json::parse(reply->text, nullptr, false);
   if (!tree.is_object()) return base::Error{"simulator: what it says of its models is no JSON"};
   models_.clear();
+  actor_frames_.clear();
   link_count_ = joint_count_ = 0;
   try {
     for (const auto& model : tree.value("models", Json::array())) models_.push_back(frames_of(model));
@@ -70,15 +72,25 @@ base::Result<void> Limbs::learn() {
     link_count_ += model.links.size();
     joint_count_ += model.joints;
   }
+  has_actors_ = !tree.value("actors", Json::array()).empty();
   if (!has_moving()) return {};  // and the simulator need not make a scene
   const auto now = simulator_->ask(shm::PosesRequest{}, answer_limit);
   if (!now) return now.error();
-  if (now->status == shm::RequestStatus::ok) version_ = now->values[0];
+  if (now->status != shm::RequestStatus::ok) return {};
+  if (has_actors_) {
+    // Their bones are known to those who draw them alone. A world that cannot be drawn has no frames of actors.
+    const auto scene = simulator_->ask(shm::ExportRequest{}, export_limit);
+    if (!scene) return scene.error();
+    const auto names = links_in(scene->text);
+    has_actors_ = scene->status == shm::RequestStatus::ok && names && names->size() >= link_count_;
+    if (has_actors_) actor_frames_.assign(names->begin() + static_cast<std::ptrdiff_t>(link_count_), names->end());
+  }
+  version_ = now->values[0];
   return {};
 }
 
 bool Limbs::has_moving() const {
-  return std::ranges::any_of(models_, [](const ModelFrames& model) { return !model.is_rigid; });
+  return has_actors_ || std::ranges::any_of(models_, [](const ModelFrames& model) { return !model.is_rigid; });
 }
 
 bool Limbs::read() {
@@ -89,7 +101,8 @@ bool Limbs::read() {
   const auto joints = static_cast<std::size_t>(std::max(reply->values[1], 0.0));
   if (links < link_count_ || joints != joint_count_ || reply->text.size() != (links * per_link + joints * per_joint) * sizeof(float))
     return false;
-  links_.resize(link_count_ * per_link);
+  if (links != link_count_ + actor_frames_.size() && has_actors_) return false;
+  links_.resize(links * per_link);
   joints_.resize(joint_count_ * per_joint);
   std::memcpy(links_.data(), reply->text.data(), links_.size() * sizeof(float));
   std::memcpy(joints_.data(), reply->text.data() + links * per_link * sizeof(float), joints_.size() * sizeof(float));
@@ -107,6 +120,8 @@ void Limbs::add_transforms(const shm::Stamp& stamp, const std::map<std::string, 
     for (std::size_t i = 0; i < model.links.size(); ++i)
       transforms.push_back(transform_of(stamp, model.name, model.links[i].frame, product(to_model, link_pose(links + i * per_link))));
   }
+  for (const auto& frame : actor_frames_)
+    transforms.push_back(transform_of(stamp, world_frame, frame, link_pose(std::exchange(first, first + per_link))));
 }
 
 ros::JointState Limbs::joints_of(std::size_t model, const shm::Stamp& stamp) const {

@@ -45,7 +45,7 @@ class Limbs {
   bool has_moving() const;
   // Where they are now; also within a tick. False when models have come or gone since learn(), or nobody answers.
   bool read();
-  // Of models whose links move on them; `places`: where the models are in the world, by name.
+  // Of models whose links move on them; `places`: where the models are in the world, by name. Of actors all, in the world.
   void add_transforms(const shm::Stamp& stamp, const std::map<std::string, shm::Pose>& places,
                       std::vector<ros::TransformStamped>& transforms) const;
   // Of a model by its place; positions [rad or m] and velocities of its axes.
@@ -57,7 +57,9 @@ class Limbs {
   std::vector<ModelFrames> models_;
   double version_ = -1;  // of the simulator's scene
   std::size_t link_count_ = 0, joint_count_ = 0;
-  std::vector<float> links_, joints_;  // seven of each, four of each
+  bool has_actors_ = false;
+  std::vector<std::string> actor_frames_;  // each actor's, and those of its bones
+  std::vector<float> links_, joints_;      // seven of each, four of each
 };
 
 }  // namespace channels

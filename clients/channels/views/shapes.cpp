@@ -136,15 +136,36 @@ void limit_size(std::vector<ros::Marker>& markers) {
   if (sum > most_shapes) std::erase_if(markers, [&](const ros::Marker& marker) { return size(marker) > largest; });
 }
 
+// The JSON before the octets.
+base::Result<std::string_view> text_in(std::string_view glb) {
+  if (glb.size() < head_size + chunk_head_size || !glb.starts_with("glTF")) return wrong();
+  const std::size_t size = u32_at(glb, head_size);
+  const std::size_t at = head_size + chunk_head_size;
+  if (size > glb.size() - at) return wrong();
+  return glb.substr(at, size);
+}
+
 }  // namespace
 
+base::Result<std::vector<std::string>> links_in(std::string_view glb) {
+  const auto text = text_in(glb);
+  if (!text) return text.error();
+  std::vector<std::string> names;
+  try {
+    const auto json = Json::parse(*text);
+    for (const auto& link : json.at("scenes").at(0).at("extras").at("links"))
+      names.push_back(json.at("nodes").at(link.get<std::size_t>()).value("name", ""));
+  } catch (const Json::exception&) {
+    return wrong();
+  }
+  return names;
+}
+
 base::Result<std::vector<ros::Marker>> markers_in(std::string_view glb) {
-  if (glb.size() < head_size + chunk_head_size || !glb.starts_with("glTF")) return wrong();
-  const std::size_t json_size = u32_at(glb, head_size);
-  const std::size_t json_at = head_size + chunk_head_size;
-  if (json_size > glb.size() - json_at) return wrong();
-  const auto json = Json::parse(glb.substr(json_at, json_size), nullptr, false);
-  auto octets = glb.substr(json_at + json_size);
+  const auto text = text_in(glb);
+  if (!text) return text.error();
+  const auto json = Json::parse(*text, nullptr, false);
+  auto octets = glb.substr(head_size + chunk_head_size + text->size());
   octets.remove_prefix(std::min(octets.size(), chunk_head_size));
   try {
     auto markers = Reader(json, octets).read();

@@ -19,6 +19,9 @@ inline constexpr std::size_t most_shapes = std::size_t{64} << 20;
 // Of glTF 2.0 binary as the simulator writes it. The stamps are 0, the ids count within each model (`ns`).
 base::Result<std::vector<ros::Marker>> markers_in(std::string_view glb);
 
+// The frames of all links of the scene, in its order: those of models, then each actor and its bones.
+base::Result<std::vector<std::string>> links_in(std::string_view glb);
+
 base::Result<std::vector<ros::Marker>> shapes_of(std::uint32_t server_id);
 
 }  // namespace channels

@@ -58,6 +58,9 @@ struct Shown {
   std::vector<bool> wanted;
   Due due;
   std::uint64_t last = 0;
+  // What was taken and is not told yet: its sample is in the iface's own buffer, a frame is held.
+  std::optional<shm::Stamp> taken{};
+  std::optional<shm::HeldFrame> frame{};
 
   bool is_wanted() const { return std::ranges::find(wanted, true) != wanted.end(); }
 };
@@ -66,7 +69,10 @@ struct Shown {
 struct Truth {
   shm::Iface iface;
   std::string model;
+  bool is_taken = false;
 };
+
+bool is_gone(const shm::Iface& iface) { return shm::load(iface.segment().header().state) != RTMSIM_STATE_LIVE; }
 
 // The joints of a model.
 struct Joints {
@@ -99,34 +105,44 @@ struct WorldSource::State {
   const WorldSourceOptions options;
   shm::Iface simulation;
   std::map<std::pair<shm::IfaceType, std::string>, Shown> shown;
-  std::map<std::string, Truth> truths;   // by name of the iface
-  std::map<std::string, Joints> joints;  // by model
+  std::vector<Shown*> chosen;                         // of these, those that are wanted: looked at in each tick
+  bool is_one_gone = false;                           // of the chosen, or a truth
+  std::chrono::steady_clock::time_point next_look{};  // at all of them
+  std::map<std::string, Truth> truths;                // by name of the iface
+  std::map<std::string, Joints> joints;               // by model
   Limbs limbs;
   std::pair<std::uint32_t, std::uint32_t> listed{};
   ChannelId clock = 0, tf = 0, tf_static = 0, shapes = 0;
   bool says_clock = false, says_tf = false;
   Due pose_due, second_due{1s};
   std::uint64_t clock_seen = 0;
+  std::optional<shm::Stamp> poses_taken;  // of poses that are taken and not told yet
+  bool are_limbs_taken = false;
   std::optional<shm::Participant> participant;
   nanoseconds period{0};
   std::thread thread;
 
-  bool wants_from_start(const std::string& topic) const {
-    return options.wants_all && std::ranges::none_of(options.excluded, [&](const std::string& pattern) {
+  bool is_excluded(const std::string& topic) const {
+    return options.wants_all && std::ranges::any_of(options.excluded, [&](const std::string& pattern) {
              return ::fnmatch(pattern.c_str(), topic.c_str(), 0) == 0;
            });
   }
+  // 0: there is none, and nobody wants it.
   ChannelId open_channel(Channel channel) {
-    const bool is_wanted = wants_from_start(channel.topic);
+    if (is_excluded(channel.topic)) return 0;
     const auto id = exchange.open(std::move(channel));
     if (!id) return 0;
-    if (is_wanted) {
+    if (options.wants_all) {
       auto data = shared.lock();
       data->wanted.insert(*id);
       data->repeated.insert(*id);
       data->is_changed = true;
     }
     return *id;
+  }
+
+  void close_channel(ChannelId id) {
+    if (id != 0) exchange.close(id);
   }
 
   void open_common();
@@ -142,10 +158,13 @@ struct WorldSource::State {
   }
   void say_static();
   void say_shapes();
+  void take(Shown& one);
+  void take_poses();
+  void take();
   void say_poses(const shm::Stamp& now);
   void say_limbs(const shm::Stamp& now, const std::map<std::string, shm::Pose>& places, ros::TFMessage& message);
   void say_samples();
-  void collect();
+  void say();
   bool is_ending() const { return shared.lock()->is_ending; }
   bool join();
   void leave();
@@ -181,11 +200,11 @@ void WorldSource::State::show(const shm::SegmentName& name) {
 
 // True when something had.
 bool WorldSource::State::drop_gone() {
-  const auto is_gone = [](const shm::Iface& iface) { return shm::load(iface.segment().header().state) != RTMSIM_STATE_LIVE; };
   std::size_t count = std::erase_if(truths, [&](const auto& entry) { return is_gone(entry.second.iface); });
   count += std::erase_if(shown, [&](const auto& entry) {
     if (!is_gone(entry.second.iface)) return false;
-    for (const ChannelId id : entry.second.ids) exchange.close(id);
+    for (const ChannelId id : entry.second.ids) close_channel(id);
+    std::erase(chosen, &entry.second);
     return true;
   });
   return count > 0;
@@ -195,7 +214,7 @@ void WorldSource::State::show_joints() {
   const auto& models = limbs.models();
   std::erase_if(joints, [&](const auto& entry) {
     const bool is_there = std::ranges::any_of(models, [&](const ModelFrames& model) { return model.name == entry.first; });
-    if (!is_there) exchange.close(entry.second.id);
+    if (!is_there) close_channel(entry.second.id);
     return !is_there;
   });
   for (std::size_t i = 0; i < models.size(); ++i) {
@@ -212,8 +231,11 @@ void WorldSource::State::look() {
   if (!simulation.read()) return;
   const auto& sample = simulation.sample<shm::SimulationSample>();
   const std::pair now{sample.ifaces, sample.models};
-  const bool is_one_gone = drop_gone();
-  if (!is_one_gone && now == listed && now != std::pair{0U, 0U}) return;
+  if (const auto moment = std::chrono::steady_clock::now(); is_one_gone || moment >= next_look) {
+    next_look = moment + look_period;
+    is_one_gone = drop_gone();
+  }
+  if (!std::exchange(is_one_gone, false) && now == listed && now != std::pair{0U, 0U}) return;
   listed = now;
   for (const auto& found : shm::find_segments(options.server_id)) {
     if (found.is_readable && found.is_alive && found.name.type != shm::IfaceType::simulation) show(found.name);
@@ -241,6 +263,10 @@ void WorldSource::State::take_wishes() {
   for (auto& [key, one] : shown) {
     for (std::size_t i = 0; i < one.ids.size(); ++i) one.wanted[i] = wanted.contains(one.ids[i]);
   }
+  chosen.clear();
+  for (auto& [key, one] : shown) {
+    if (one.is_wanted()) chosen.push_back(&one);
+  }
   for (auto& [model, one] : joints) one.is_wanted = wanted.contains(one.id);
   says_clock = wanted.contains(clock);
   says_tf = wanted.contains(tf);
@@ -266,9 +292,7 @@ void WorldSource::State::subscribe() {
 void WorldSource::State::choose_period() {
   double rate = says_tf || says_clock || says_joints() ? options.pose_rate : 0;
   if (options.each_second) rate = std::max(rate, 1.0);
-  for (const auto& [key, one] : shown) {
-    if (one.is_wanted()) rate = std::max(rate, one.view->rate > 0 ? one.view->rate : options.pose_rate);
-  }
+  for (const Shown* one : chosen) rate = std::max(rate, one->view->rate > 0 ? one->view->rate : options.pose_rate);
   const auto chosen = rate > 0 ? period_of(rate) : nanoseconds(0);
   if (chosen == period) return;
   period = chosen;
@@ -304,12 +328,51 @@ void WorldSource::State::say_shapes() {
   exchange.put(shapes, now, ros::encode(message));
 }
 
-void WorldSource::State::say_limbs(const shm::Stamp& now, const std::map<std::string, shm::Pose>& places, ros::TFMessage& message) {
-  if (!limbs.has_moving() || !(says_tf || says_joints())) return;
-  if (!limbs.read()) {
-    listed = {};  // models have come or gone
-    return;
+// A tick lasts until what there is has been taken: copies of samples, and frames that nobody writes over. Messages are made of it when the
+// simulator goes on already.
+void WorldSource::State::take(Shown& one) {
+  is_one_gone = is_one_gone || is_gone(one.iface);
+  if (one.iface.sequence() == one.last) return;
+  shm::Stamp stamp{};
+  if (shm::has_frames(one.iface.type())) {
+    auto frame = one.iface.hold();
+    if (!frame || frame->sequence() == one.last) return;
+    stamp = frame->head().stamp;
+    one.frame = std::move(frame);
+  } else {
+    if (!one.iface.read()) return;
+    std::memcpy(&stamp, one.iface.sample_data().data(), sizeof stamp);
+    if (one.view->rate == 0 && !one.due.is_due(nanoseconds(stamp.sim_time_ns))) return;
   }
+  one.last = stamp.sequence;
+  one.taken = stamp;
+}
+
+void WorldSource::State::take_poses() {
+  for (auto& [name, truth] : truths) {
+    const bool has_gone = says_tf && is_gone(truth.iface);
+    is_one_gone = is_one_gone || has_gone;
+    truth.is_taken = says_tf && !has_gone && truth.iface.read();
+  }
+  are_limbs_taken = limbs.has_moving() && (says_tf || says_joints()) && limbs.read();
+  if (!are_limbs_taken && limbs.has_moving() && (says_tf || says_joints())) listed = {};  // models have come or gone
+}
+
+void WorldSource::State::take() {
+  for (Shown* one : chosen) take(*one);
+  if (!simulation.read()) return;
+  const auto& sample = simulation.sample<shm::SimulationSample>();
+  if (std::exchange(clock_seen, sample.stamp.sequence) == sample.stamp.sequence) return;
+  const nanoseconds now(sample.stamp.sim_time_ns);
+  if (pose_due.is_due(now) || sample.paused != 0) {
+    poses_taken = sample.stamp;
+    take_poses();
+  }
+  if (options.each_second && second_due.is_due(now)) options.each_second(now);
+}
+
+void WorldSource::State::say_limbs(const shm::Stamp& now, const std::map<std::string, shm::Pose>& places, ros::TFMessage& message) {
+  if (!are_limbs_taken) return;
   limbs.add_transforms(now, places, message.transforms);
   for (const auto& [model, one] : joints) {
     if (one.is_wanted) exchange.put(one.id, nanoseconds(now.sim_time_ns), ros::encode(limbs.joints_of(one.model, now)));
@@ -322,49 +385,34 @@ void WorldSource::State::say_poses(const shm::Stamp& now) {
   ros::TFMessage message;
   std::map<std::string, shm::Pose> places;
   for (auto& [name, truth] : truths) {
-    if (!says_tf || !truth.iface.read()) continue;
+    if (!truth.is_taken) continue;
     const auto& sample = truth.iface.sample<shm::TruthSample>();
     if (sample.stamp.valid == 0) continue;
     message.transforms.push_back(transform_of(sample.stamp, world_frame, truth.model, sample.pose));
-    places.emplace(truth.model, sample.pose);
+    if (are_limbs_taken) places.emplace(truth.model, sample.pose);
   }
   say_limbs(now, places, message);
-  if (!message.transforms.empty()) exchange.put(tf, time, ros::encode(message));
+  if (says_tf && !message.transforms.empty()) exchange.put(tf, time, ros::encode(message));
 }
 
 void WorldSource::State::say_samples() {
   std::vector<Said> said;
-  for (auto& [key, one] : shown) {
-    if (!one.is_wanted() || one.iface.sequence() == one.last) continue;
-    shm::Stamp stamp{};
+  for (Shown* each : chosen) {
+    Shown& one = *each;
+    const auto stamp = std::exchange(one.taken, std::nullopt);
+    if (!stamp) continue;
     said.clear();
-    if (shm::has_frames(one.iface.type())) {
-      const auto frame = one.iface.hold();
-      if (!frame || frame->sequence() == one.last) continue;
-      stamp = frame->head().stamp;
-      one.last = stamp.sequence;
-      one.view->tell(one.iface, &*frame, one.wanted, said);
-    } else {
-      if (!one.iface.read()) continue;
-      std::memcpy(&stamp, one.iface.sample_data().data(), sizeof stamp);
-      if (one.view->rate == 0 && !one.due.is_due(nanoseconds(stamp.sim_time_ns))) continue;
-      one.last = stamp.sequence;
-      one.view->tell(one.iface, nullptr, one.wanted, said);
-    }
+    one.view->tell(one.iface, one.frame ? &*one.frame : nullptr, one.wanted, said);
+    one.frame.reset();
     for (Said& what : said) {
-      if (one.wanted[what.channel]) exchange.put(one.ids[what.channel], nanoseconds(stamp.sim_time_ns), std::move(what.octets));
+      if (one.wanted[what.channel]) exchange.put(one.ids[what.channel], nanoseconds(stamp->sim_time_ns), std::move(what.octets));
     }
   }
 }
 
-void WorldSource::State::collect() {
+void WorldSource::State::say() {
   say_samples();
-  if (!simulation.read()) return;
-  const auto& sample = simulation.sample<shm::SimulationSample>();
-  if (std::exchange(clock_seen, sample.stamp.sequence) == sample.stamp.sequence) return;
-  const nanoseconds now(sample.stamp.sim_time_ns);
-  if (pose_due.is_due(now) || sample.paused != 0) say_poses(sample.stamp);
-  if (options.each_second && second_due.is_due(now)) options.each_second(now);
+  if (const auto now = std::exchange(poses_taken, std::nullopt)) say_poses(*now);
 }
 
 // ---- the thread ----
@@ -393,15 +441,17 @@ void WorldSource::State::wait() {
       auto data = shared.lock();
       data.wait_for(changed, period > nanoseconds(0) ? glance_period : look_period, [&] { return data->is_changed || data->is_ending; });
     }
-    return collect();
+    take();
+    return say();
   }
   if (period > nanoseconds(0) && join()) {
     const auto what = participant->wait(tick, look_period);
     if (what == shm::Participant::State::dropped || what == shm::Participant::State::closed) leave();
     if (what == shm::Participant::State::closed) is_live.store(false, std::memory_order_relaxed);
     // In ticks alone, so that the same run says the same.
-    if (what == shm::Participant::State::tick) collect();
+    if (what == shm::Participant::State::tick) take();
     if (participant) participant->finish();
+    say();
   } else {
     auto data = shared.lock();
     data.wait_for(changed, look_period, [&] { return data->is_changed || data->is_ending; });

@@ -30,7 +30,7 @@ struct WorldSourceOptions {
   Pictures pictures = Pictures::jpeg;
   bool takes_part = true;             // in the lock step; else it looks sixty times a second of the wall clock, and the newest samples win
   bool wants_all = false;             // else nothing until want()
-  std::vector<std::string> excluded;  // with wants_all: topics that fit one of these patterns are not wanted
+  std::vector<std::string> excluded;  // with wants_all: topics that fit one of these patterns have no channel
   std::function<void(Time)> each_second{};  // of simulated time; called on the source's thread, of one that takes part within its tick
 };
 

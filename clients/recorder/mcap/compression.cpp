@@ -12,7 +12,9 @@ namespace mcap {
 
 namespace {
 
-constexpr int zstd_level = 1;  // recordings are written while a robot runs; higher levels cost ten times the time for a tenth of the size
+// Recordings are written while a robot runs, so time counts. Scans, odometry and poses of a hundred robots: 1565 MB/s to 0.41 of the size;
+// level 1 gives 0.36 at a third of the speed, lz4 0.42 at 1210 MB/s.
+constexpr int zstd_level = -5;
 constexpr std::size_t first_room = 1 << 20;  // [octets]
 
 // Grows as octets really come, so that a length that lies costs nothing.

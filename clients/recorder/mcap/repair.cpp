@@ -46,7 +46,7 @@ base::Result<Repair> repair(const std::string& from, const std::string& to) {
   if (std::rename(whole.c_str(), to.c_str()) != 0) {
     return give_up({base::in_quotes(to) + ": cannot be written: " + std::strerror(errno)});
   }
-  return Repair{index->summary.statistics.messages, *size - index->data_end, index->damage};
+  return Repair{index->summary.statistics.messages, index->has_data_end ? 0 : *size - index->data_end, index->damage};
 }
 
 }  // namespace mcap

@@ -220,7 +220,7 @@ class Scanner {
         note(index_, at(file_, offset, "the last record is cut off; what stands before it is read"));
         return {};
       }
-      if ((*head)->opcode == Opcode::data_end || (*head)->opcode == Opcode::footer) return {};
+      if ((*head)->opcode == Opcode::data_end || (*head)->opcode == Opcode::footer) return index_.has_data_end = true, base::Result<void>();
       if (const auto done = take(**head, offset); !done) return done;
       offset += record_head + (*head)->length;
     }
@@ -264,7 +264,7 @@ class Scanner {
     const auto message = take_message(octets_);
     if (!message) return note(index_, at(file_, offset, "a message is shorter than any is; it is left out")), base::Result<void>();
     index_.loose.push_back({message->log_time, offset, head.length});
-    count(index_.summary.statistics, *message);
+    count(index_.summary.statistics, *message, index_.summary.statistics.messages_of[message->channel]);
     return {};
   }
 
@@ -289,7 +289,7 @@ class Scanner {
       entry.last = has_messages ? std::max(entry.last, message->log_time) : message->log_time;
       has_messages = true;
       channels.insert(message->channel);
-      count(index_.summary.statistics, *message);
+      count(index_.summary.statistics, *message, index_.summary.statistics.messages_of[message->channel]);
     });
     if (!walked) note(index_, at(file_, offset, "in the chunk: " + walked.error().message));
     if (!result) return result;

@@ -28,6 +28,7 @@ struct Index {
   std::vector<LooseMessage> loose;  // in the order of the file
   std::optional<std::string> damage;
   std::uint64_t data_end = 0;  // [octets] where the last whole record of the data ends
+  bool has_data_end = false;   // and a record says so: what follows is no data
 };
 
 // Schemas and channels together [octets]; more is refused, since every one of them is kept in memory.

@@ -6,12 +6,12 @@
 
 namespace mcap {
 
-void count(Statistics& statistics, const Message& message) {
+void count(Statistics& statistics, const Message& message, std::uint64_t& of_channel) {
   const bool is_first = statistics.messages == 0;
   statistics.first = is_first ? message.log_time : std::min(statistics.first, message.log_time);
   statistics.last = is_first ? message.log_time : std::max(statistics.last, message.log_time);
   ++statistics.messages;
-  ++statistics.messages_of[message.channel];
+  ++of_channel;
 }
 
 std::string end_of_file(const Summary& summary, std::uint64_t start, std::uint32_t crc) {

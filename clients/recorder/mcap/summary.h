@@ -19,7 +19,8 @@ struct Summary {
   std::vector<MetadataPlace> metadata;
 };
 
-void count(Statistics& statistics, const Message& message);
+// `of_channel`: the channel's place in statistics.messages_of.
+void count(Statistics& statistics, const Message& message, std::uint64_t& of_channel);
 
 // All that follows the data: the end of the data, the summary with its offsets, the footer. `start`: octets before it; `crc`: of these.
 std::string end_of_file(const Summary& summary, std::uint64_t start, std::uint32_t crc);

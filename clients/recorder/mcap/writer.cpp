@@ -49,6 +49,7 @@ struct Writer::State {
   Time first{0};
   Time last{0};
   std::vector<std::vector<IndexEntry>> indexes;  // of the open chunk, by channel
+  std::vector<std::uint64_t*> counts;            // in the statistics, by channel; null: no message yet
   std::vector<std::uint16_t> in_chunk;           // channels with messages in it
   std::string room;                              // of the compressor
   std::string head;
@@ -106,6 +107,7 @@ base::Result<void> Writer::State::close_chunk() {
   if (!packed) return failure.emplace(packed.error());
   const std::uint32_t chunk_crc = crc32(0, chunk);
 
+  if (in_chunk.empty()) first = last = Time(0);  // channels alone: the format has no other times for a chunk without messages
   ChunkEntry entry;
   entry.first = first;
   entry.last = last;
@@ -132,7 +134,8 @@ base::Result<void> Writer::State::close_chunk() {
   for (const std::uint16_t channel : in_chunk) {
     entry.index_offsets.emplace_back(channel, written + index.size());
     auto& entries = indexes[channel];
-    std::stable_sort(entries.begin(), entries.end(), [](const IndexEntry& a, const IndexEntry& b) { return a.time < b.time; });
+    const auto is_earlier = [](const IndexEntry& a, const IndexEntry& b) { return a.time < b.time; };
+    if (!std::is_sorted(entries.begin(), entries.end(), is_earlier)) std::stable_sort(entries.begin(), entries.end(), is_earlier);
     index.push_back(static_cast<char>(Opcode::message_index));
     put(index, static_cast<std::uint64_t>(2 + 4 + 16 * entries.size()));
     put(index, channel);
@@ -178,6 +181,7 @@ base::Result<Writer> Writer::create(const std::string& path, const WriterOptions
   auto state = std::make_unique<State>(std::move(*file), options);
   state->is_schema_introduced.resize(1);
   state->indexes.resize(1);
+  state->counts.resize(1);
   state->is_introduced.resize(1);
   if (const auto done = state->begin(); !done) return done.error();
   return Writer(std::move(state));
@@ -207,6 +211,7 @@ base::Result<std::uint16_t> Writer::add_channel(std::uint16_t schema, std::strin
   summary.channels[id] = Channel{id, schema, std::move(topic), std::move(encoding), std::move(metadata)};
   state_->is_introduced.push_back(false);
   state_->indexes.emplace_back();
+  state_->counts.push_back(nullptr);
   ++summary.statistics.channels;
   return id;
 }
@@ -234,7 +239,9 @@ base::Result<void> Writer::write(const Message& message) {
   put(chunk, message.publish_time);
   chunk.append(message.data);
 
-  count(state.summary.statistics, message);
+  auto& counted = state.counts[message.channel];
+  if (counted == nullptr) counted = &state.summary.statistics.messages_of[message.channel];
+  count(state.summary.statistics, message, *counted);
   return chunk.size() >= state.options.chunk_size ? state.close_chunk() : base::Result<void>();
 }
 
