@@ -7,7 +7,7 @@ namespace studio {
 const Act* find_act(std::string_view name) {
   static const std::vector<Act> all = [] {
     std::vector<Act> acts;
-    for (const auto& some : {system_acts(), manager_acts(), world_acts()}) acts.insert(acts.end(), some.begin(), some.end());
+    for (const auto& some : {system_acts(), manager_acts(), world_acts(), look_acts()}) acts.insert(acts.end(), some.begin(), some.end());
     return acts;
   }();
   const auto found = std::find_if(all.begin(), all.end(), [&](const Act& act) { return act.name == name; });

@@ -44,5 +44,6 @@ std::string shell_line(const std::vector<std::string>& words);
 std::vector<Act> system_acts();
 std::vector<Act> manager_acts();
 std::vector<Act> world_acts();
+std::vector<Act> look_acts();
 
 }  // namespace studio

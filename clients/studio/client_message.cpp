@@ -107,6 +107,8 @@ Result<ClientMessage> parse_message(std::string_view text) {
 
 std::string to_text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
+std::string values_key(std::uint32_t watch) { return "values." + std::to_string(watch); }
+
 std::string reply_text(std::int64_t id, const Result<Json>& result, const std::string& command) {
   Json reply{{"op", "reply"}, {"id", id}};
   if (result) {

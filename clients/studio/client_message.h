@@ -17,6 +17,9 @@ using Json = nlohmann::ordered_json;
 
 inline constexpr std::size_t most_message = 1 << 20;     // octets of a frame
 inline constexpr std::size_t most_subscriptions = 1024;  // of a viewer
+inline constexpr std::size_t most_open_requests = 32;    // of a viewer
+inline constexpr std::size_t most_watches = 512;         // signals that all viewers watch
+inline constexpr std::size_t most_members = 256;         // of a watch
 
 // Of foxglove.websocket.v1.
 struct Subscribe {
@@ -45,6 +48,9 @@ base::Result<ClientMessage> parse_message(std::string_view text);
 std::string to_text(const Json& json);
 // The text that answers the request `id`: a result or an error, and what one would have typed, if anything.
 std::string reply_text(std::int64_t id, const base::Result<Json>& result, const std::string& command = "");
+
+// What the newest values of a watch are called while they wait for a slow viewer.
+std::string values_key(std::uint32_t watch);
 
 // ---- arguments of requests: the value, or an error that names it and says what was expected ----
 base::Result<std::string> text_of(const Json& args, const std::string& key);

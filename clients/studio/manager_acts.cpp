@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "profile/rts_profile.h"
 #include "run/child_process.h"
+#include "run/time_members.h"
 
 namespace studio {
 namespace {
@@ -22,6 +23,7 @@ using Touches = Plan::Touches;
 
 constexpr std::chrono::seconds program_limit{30};
 constexpr std::size_t most_places = 10000;
+constexpr int highest_phase = editor::highest_phase;
 
 std::vector<std::string> rtse_words(const ActContext& context, const std::vector<std::string>& words, bool json) {
   std::vector<std::string> all{editor::own_program("rtse"), "--ns", context.name_server};
@@ -137,11 +139,61 @@ Result<Plan> delete_component(const ActContext& context, const Json& args) {
   return plan(context, {"mgr", "delete", *instance, "-m", *path});
 }
 
+Result<Plan> unload_module(const ActContext& context, const Json& args) {
+  const auto path = text_of(args, "manager"), file = text_of(args, "file");
+  if (!path) return path.error();
+  if (!file) return file.error();
+  if (file->starts_with('-')) return Error{"file " + base::in_quotes(*file) + ": expected the name of a module"};
+  return plan(context, {"mgr", "unload", *file, "-m", *path});
+}
+
+// ---- components, by what only rtse does
+
+// All connections of a component, or of a port.
+Result<Plan> disconnect_all(const ActContext& context, const Json& args) {
+  const auto path = text_of(args, "path");
+  if (!path) return path.error();
+  return plan(context, {"dis", *path});
+}
+
+Result<Plan> inject(const ActContext& context, const Json& args) {
+  const auto port = text_of(args, "port"), value = text_of(args, "value");
+  if (!port) return port.error();
+  if (!value) return value.error();
+  if (value->empty() || value->starts_with('-')) return Error{"value: expected JSON, or RTC.TYPE({time}, ...)"};
+  return plan(context, {"inject", *port, *value}, Touches::nothing);
+}
+
+// A component that runs takes part in the time of this studio's simulator.
+Result<Plan> join_time(const ActContext& context, const Json& args) {
+  const auto path = text_of(args, "path");
+  if (!path) return path.error();
+  const double phase = number_or(args, "phase", 1), rate = number_or(args, "rate", 0);
+  if (phase < 0 || phase > highest_phase || phase != std::floor(phase))
+    return Error{"phase: expected a whole number from 0 to " + std::to_string(highest_phase)};
+  std::vector<std::string> words{"join", *path, "-s", std::to_string(context.server_id), "-p", base::format_number(phase)};
+  if (args.contains("rate")) {
+    if (!(rate >= 1e-6 && rate <= 1e6)) return Error{"rate: expected 1e-6 to 1e6 Hz"};
+    words.insert(words.end(), {"-r", base::format_number(rate)});
+  }
+  if (flag_of(args, "tick")) words.emplace_back("--tick");
+  return plan(context, words);
+}
+
+Result<Plan> leave_time(const ActContext& context, const Json& args) {
+  const auto path = text_of(args, "path");
+  if (!path) return path.error();
+  return plan(context, {"leave", *path});
+}
+
 Result<Plan> forget(const ActContext& context, const Json& args) {
   const auto path = text_of(args, "path");
   if (!path) return path.error();
   return plan(context, {"del", *path});
 }
+
+// All names whose objects are gone.
+Result<Plan> forget_dead(const ActContext& context, const Json&) { return plan(context, {"del", "-z"}); }
 
 // ---- whole systems
 
@@ -257,6 +309,24 @@ Result<Plan> open_profile(const ActContext& context, const Json& args) {
   return with_profile(context, args, words);
 }
 
+// A line for each difference of what runs to what was saved; none: it is the same.
+Result<Plan> check_profile(const ActContext& context, const Json& args) {
+  const auto xml = text_of(args, "xml");
+  if (!xml) return xml.error();
+  return Plan{rtse_line(context, {"check", "system.xml"}), [context, xml = *xml]() -> Result<Json> {
+                const auto file = ScratchFile::with(xml);
+                if (!file) return file.error();
+                auto check = editor::ChildProcess::start({rtse_words(context, {"check", file->name()}, false), {}, ""});
+                if (!check) return check.error();
+                if (!check->wait(program_limit)) return Error{"rtse check: has not ended after 30 s"};
+                Json lines = Json::array();
+                for (const auto& line : base::split_list(check->said(), '\n'))
+                  lines.push_back(line.starts_with("rtse: ") ? line.substr(6) : line);
+                if (check->exit_code() != 0 && lines.empty()) return Error{"rtse check: " + check->how_it_ended()};
+                return Json{{"differences", check->exit_code() == 0 ? Json::array() : std::move(lines)}};
+              }};
+}
+
 Result<Plan> teardown(const ActContext& context, const Json& args) { return with_profile(context, args, {"teardown"}); }
 Result<Plan> start_system(const ActContext& context, const Json& args) { return with_profile(context, args, {"start"}); }
 Result<Plan> stop_system(const ActContext& context, const Json& args) { return with_profile(context, args, {"stop"}); }
@@ -268,7 +338,14 @@ std::vector<Act> manager_acts() {
           {"load_module", false, load_module},
           {"create", false, create},
           {"delete_component", false, delete_component},
+          {"unload_module", false, unload_module},
+          {"disconnect_all", false, disconnect_all},
+          {"inject", false, inject},
+          {"join_time", false, join_time},
+          {"leave_time", false, leave_time},
           {"forget", false, forget},
+          {"forget_dead", false, forget_dead},
+          {"check_profile", true, check_profile},
           {"save_profile", true, save_profile},
           {"open_profile", false, open_profile},
           {"teardown", false, teardown},

@@ -17,11 +17,8 @@ using namespace std::chrono_literals;
 constexpr nanoseconds longest_stride = 2s;  // what is farther is jumped to
 constexpr nanoseconds first_span = 1s;      // before a moment in which its samples are looked for at first
 constexpr int span_growth = 8;
-constexpr std::size_t most_watches = 512;
 constexpr std::size_t most_sonars = 64;  // of a ring
 constexpr char recorded_picture_octet = static_cast<char>(0x83);
-
-std::string values_key(std::uint32_t watch) { return "values." + std::to_string(watch); }
 
 Frame event(std::uint32_t watch, Json more) {
   Json event{{"op", "values"}, {"watch", watch}};
@@ -42,6 +39,10 @@ Playhead::Playhead(std::shared_ptr<const RecordingFacts> facts, mcap::Reader rea
   for (const auto& [id, channel] : reader_.channels()) topics_[channel.topic] = id;
   tf_ = channel_of("/tf");
   tf_static_ = channel_of("/tf_static");
+  // One message says what the scene has: nothing came or went.
+  const auto shapes = channel_of("/sim/shapes");
+  const auto& counts = reader_.statistics().messages_of;
+  if (const auto count = shapes ? counts.find(*shapes) : counts.end(); count != counts.end() && count->second > 1) shapes_ = shapes;
 }
 
 std::optional<Playhead::Channel> Playhead::channel_of(const std::string& topic) const {
@@ -52,13 +53,14 @@ std::optional<Playhead::Channel> Playhead::channel_of(const std::string& topic) 
 void Playhead::set_scene(std::shared_ptr<const RecordedScene> scene) {
   scene_ = std::move(scene);
   shown_tf_ = shown_static_ = 0;
+  shown_shapes_.reset();
 }
 
 // ---- reading ----
 
 std::vector<Playhead::Channel> Playhead::wanted() const {
   std::set<Channel> all;
-  for (const auto& channel : {tf_, tf_static_}) {
+  for (const auto& channel : {tf_, tf_static_, shapes_}) {
     if (channel) all.insert(*channel);
   }
   for (const auto& [number, watch] : watches_) all.insert(watch.channels.begin(), watch.channels.end());
@@ -141,6 +143,7 @@ Result<Playhead::News> Playhead::look(nanoseconds time, bool is_whole) {
   if (const auto moved = move(time); !moved) return moved.error();
   if (is_whole) {
     shown_tf_ = shown_static_ = seen_poses_ = 0;
+    shown_shapes_.reset();
     for (auto& [number, watch] : watches_) watch.shown = UINT64_MAX;
   }
   News news;
@@ -151,9 +154,37 @@ Result<Playhead::News> Playhead::look(nanoseconds time, bool is_whole) {
   return news;
 }
 
+Result<void> Playhead::read_first_shapes() {
+  if (std::exchange(has_first_shapes_, true)) return {};
+  reader_.seek({{*shapes_}});
+  is_reading_on_ = false;
+  const auto message = reader_.next();
+  if (!message) return message.error();
+  if (!message->has_value()) return {};
+  const auto value = values_.of(**message);
+  if (!value) return value.error();
+  late_.begin(*value);
+  return {};
+}
+
+// True when other models are there than a moment ago.
+Result<bool> Playhead::show_late(News& news) {
+  const Newest* sample = shapes_ ? newest(*shapes_) : nullptr;
+  if (sample == nullptr || sample->time == shown_shapes_) return false;
+  if (const auto read = read_first_shapes(); !read) return read.error();
+  const auto value = value_of(*shapes_);
+  if (!value) return value.error();
+  late_.take(*value, *scene_);
+  shown_shapes_ = sample->time;
+  news.push_back({"late", text_frame(to_text(late_.event(*scene_)))});
+  return true;
+}
+
 Result<void> Playhead::show_poses(News& news) {
   if (!scene_) return {};
-  bool is_other = false;
+  const auto has_others = show_late(news);
+  if (!has_others) return has_others.error();
+  bool is_other = *has_others;
   for (const auto& [channel, shown] : {std::pair(tf_static_, &shown_static_), std::pair(tf_, &shown_tf_)}) {
     const Newest* sample = channel ? newest(*channel) : nullptr;
     if (sample == nullptr || sample->number == *shown) continue;
@@ -164,7 +195,7 @@ Result<void> Playhead::show_poses(News& news) {
     is_other = true;
   }
   if (!is_other) return {};
-  board_.update(scene_->version, now_ - facts_->zero, places_.of(*scene_));
+  board_.update(scene_->version, now_ - facts_->zero, places_.of(*scene_, late_.frames()));
   if (auto frame = board_.frame_since(seen_poses_)) news.push_back({"poses", binary_frame(std::move(*frame))});
   return {};
 }

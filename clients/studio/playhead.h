@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "late_models.h"
 #include "mcap/mcap.h"
 #include "outbox.h"
 #include "pose_board.h"
@@ -65,6 +66,8 @@ class Playhead {
   void take(const mcap::Message& message);
   const Newest* newest(Channel channel) const;
   base::Result<Json> value_of(Channel channel);
+  base::Result<void> read_first_shapes();
+  base::Result<bool> show_late(News& news);
   base::Result<void> show_poses(News& news);
   base::Result<void> show(std::uint32_t number, Watch& watch, News& news);
   base::Result<std::string> picture(std::uint32_t number, Channel channel);
@@ -78,10 +81,14 @@ class Playhead {
   std::chrono::nanoseconds now_{-1};
   bool is_reading_on_ = false;  // the reader stands behind `now_`, for what is wanted
   std::optional<Channel> tf_, tf_static_;
+  std::optional<Channel> shapes_;  // where models come or go
   std::uint64_t taken_ = 0, shown_tf_ = 0, shown_static_ = 0, seen_poses_ = 0;
   std::optional<std::pair<Channel, Newest>> ahead_;  // read, and later than `now_`
   std::shared_ptr<const RecordedScene> scene_;
   RecordedPlaces places_;
+  LateModels late_;
+  bool has_first_shapes_ = false;
+  std::optional<std::chrono::nanoseconds> shown_shapes_;  // their time
   PoseBoard board_;
 };
 

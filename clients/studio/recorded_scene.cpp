@@ -129,12 +129,17 @@ bool RecordedPlaces::is_placed(const std::string& name, PoseNumbers& pose) const
   return true;
 }
 
-std::vector<float> RecordedPlaces::of(const RecordedScene& scene) const {
+std::vector<float> RecordedPlaces::of(const RecordedScene& scene, const std::vector<std::string>& more) const {
   std::vector<float> numbers;
-  numbers.reserve(scene.links.size() * 7);
+  numbers.reserve((scene.links.size() + more.size()) * 7);
   for (std::size_t i = 0; i < scene.links.size(); ++i) {
     PoseNumbers pose{};
     if (!is_placed(scene.links[i], pose)) pose = scene.poses[i];
+    numbers.insert(numbers.end(), pose.begin(), pose.end());
+  }
+  for (const auto& frame : more) {
+    PoseNumbers pose{0, 0, 0, 1, 0, 0, 0};
+    (void)is_placed(frame, pose);  // one that is not placed yet stands in the middle
     numbers.insert(numbers.end(), pose.begin(), pose.end());
   }
   return numbers;

@@ -35,8 +35,8 @@ class RecordedPlaces {
  public:
   // A message of tf2_msgs/msg/TFMessage.
   void take(const Json& message);
-  // Seven numbers for each link of the scene; links that nobody tells of stay as the scene has them.
-  std::vector<float> of(const RecordedScene& scene) const;
+  // Seven numbers for each link of the scene, and then for each of these frames; links that nobody tells of stay as the scene has them.
+  std::vector<float> of(const RecordedScene& scene, const std::vector<std::string>& more = {}) const;
 
  private:
   struct Frame {

@@ -17,10 +17,8 @@ using base::Error;
 using base::Result;
 
 constexpr std::size_t maker_threads = 2;
-constexpr std::size_t most_open_requests = 32;  // of a viewer
-constexpr std::size_t most_members = 256;       // of a watch
-constexpr std::size_t most_points = 20000;      // of a line of a plot
-constexpr double step_s = 0.02;                 // in which poses are recorded
+constexpr std::size_t most_points = 20000;  // of a line of a plot
+constexpr double step_s = 0.02;             // in which poses are recorded
 
 const Json& component_at(const RecordingFacts& facts, const std::string& path) {
   static const Json nothing;

@@ -17,7 +17,7 @@ using base::Error;
 using base::Result;
 using std::chrono::nanoseconds;
 
-constexpr std::size_t most_lines = 5000;               // of logs that a page is given
+constexpr std::size_t most_log_lines = 5000;           // of logs that a page is given
 constexpr std::size_t most_states = 100000;            // changes of state, of all components
 constexpr const char* path_of_unsaved = "/recorded/";  // of a component that no profile names
 
@@ -222,7 +222,7 @@ class Facts {
       const auto message = reader_.next();
       if (!message) return message.error();
       if (!message->has_value()) return {};
-      if ((*message)->channel == logs_ && facts_.lines.size() >= most_lines) {
+      if ((*message)->channel == logs_ && facts_.lines.size() >= most_log_lines) {
         ++facts_.lines_left_out;
         continue;
       }

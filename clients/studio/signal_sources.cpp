@@ -1,4 +1,6 @@
 // Ifaces and OutPorts as sources of signals.
+#include <algorithm>
+#include <cmath>
 #include <deque>
 #include <optional>
 
@@ -17,6 +19,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto source_return_period = 500ms;  // a source that is away is looked for so often
 constexpr std::size_t most_samples_waiting = 256;
+constexpr double farthest_stamp = 1000;                   // [s] from now: what is farther is of another clock
 constexpr std::size_t most_octets_of_samples = 16 << 20;  // of samples of a port that wait
 
 // Without a lease for subscribing it shows what others have the sensor measure.
@@ -56,7 +59,7 @@ class IfaceSource final : public SignalSource {
     const auto& stamp = iface_->sample<shm::Stamp>();
     if (stamp.sequence == seen_) return {};
     seen_ = stamp.sequence;
-    return {{static_cast<double>(stamp.sim_time_ns) / 1e9, simctl::sample_json(*iface_)}};
+    return {{static_cast<double>(stamp.sim_time_ns) / 1e9, simctl::sample_json(*iface_), {}}};
   }
 
   std::vector<SignalSample> take_frame() {
@@ -64,7 +67,7 @@ class IfaceSource final : public SignalSource {
     const auto frame = iface_->hold();
     if (!frame) return {};
     seen_ = frame->sequence();
-    return {{static_cast<double>(frame->head().stamp.sim_time_ns) / 1e9, simctl::frame_json(*frame)}};
+    return {{static_cast<double>(frame->head().stamp.sim_time_ns) / 1e9, simctl::frame_json(*frame), {}}};
   }
 
   const std::uint32_t server_id_;
@@ -102,6 +105,7 @@ class PortTap : public std::enable_shared_from_this<PortTap> {
   struct Octets {
     std::vector<unsigned char> payload;
     bool is_little_endian = true;
+    Clock::time_point arrived = Clock::now();
   };
   struct Data {
     std::unique_ptr<editor::Tap> tap;
@@ -177,8 +181,8 @@ class PortSource final : public SignalSource {
     for (const auto& one : octets) {
       auto value = editor::decode(type, one.payload, one.is_little_endian);
       if (!value) continue;
-      const double time = time_of(*value).value_or(now());
-      samples.push_back({time, std::move(*value)});
+      const auto stamp = time_of(*value);
+      samples.push_back({stamp.value_or(now()), std::move(*value), stamp ? latency_of(*stamp, one.arrived) : std::nullopt});
     }
     return samples;
   }
@@ -216,6 +220,20 @@ class PortSource final : public SignalSource {
       old.reset();
     }
     tap.connect(settings, path);
+  }
+
+  // Stamps are of simulated time or of the wall clock: of the one that they are near to.
+  std::optional<double> latency_of(double stamp, Clock::time_point arrived) {
+    const double since = std::chrono::duration<double>(Clock::now() - arrived).count();
+    const double simulated = now();
+    if (clock_) {
+      const auto& sample = clock_->sample<shm::SimulationSample>();
+      const double latency = simulated - (sample.paused != 0 ? 0 : since * sample.rtf_reached) - stamp;
+      if (std::abs(latency) < farthest_stamp) return std::max(latency, 0.0);
+    }
+    const double wall = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+    const double latency = wall - since - stamp;
+    return std::abs(latency) < farthest_stamp ? std::optional(std::max(latency, 0.0)) : std::nullopt;
   }
 
   double now() {

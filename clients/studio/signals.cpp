@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "client_message.h"
 
 namespace studio {
 namespace {
@@ -13,8 +14,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto signals_period = 10ms;
-constexpr std::size_t most_watches = 512;
 constexpr std::size_t most_samples = 256;  // of an event
+constexpr auto rate_period = 1s;
 
 }  // namespace
 
@@ -111,6 +112,7 @@ void Signals::take_orders() {
 }
 
 void Signals::add(Watch& watch, const SignalSample& sample) {
+  watch.latency = sample.latency;
   if (watch.order.members.empty()) {
     watch.times = {sample.time};
     watch.whole = sample.value;
@@ -122,25 +124,35 @@ void Signals::add(Watch& watch, const SignalSample& sample) {
   watch.rows.push_back(std::move(row));
 }
 
+void Signals::Rate::count(std::size_t samples, Clock::time_point now) {
+  counted += samples;
+  const std::chrono::duration<double> passed = now - since;
+  if (passed < rate_period) return;
+  hz = static_cast<double>(counted) / passed.count();
+  counted = 0;
+  since = now;
+}
+
 void Signals::gather() {
   for (auto& [topic, from] : sources_) {
     auto samples = from.source->take();
+    from.rate.count(samples.size(), Clock::now());
     if (!from.source->problem().empty()) from.last.reset();
     for (auto& [key, watch] : watches_) {
       if (watch.order.topic != topic) continue;
       if (std::exchange(watch.is_new, false) && samples.empty() && from.last) add(watch, *from.last);
       for (const auto& sample : samples) add(watch, sample);
-      flush(key, watch, *from.source);
+      flush(key, watch, from);
     }
     if (!samples.empty()) from.last = std::move(samples.back());
   }
 }
 
-void Signals::flush(const WatchKey& key, Watch& watch, SignalSource& source) {
+void Signals::flush(const WatchKey& key, Watch& watch, Source& from) {
   const auto now = Clock::now();
   if (now < watch.next) return;
   Json event{{"op", "values"}, {"watch", key.watch}};
-  if (auto problem = source.problem(); problem != watch.told_problem) {
+  if (auto problem = from.source->problem(); problem != watch.told_problem) {
     watch.told_problem = std::move(problem);
     if (!watch.told_problem.empty()) return event["error"] = watch.told_problem, tell_(key, to_text(event));
   }
@@ -154,6 +166,8 @@ void Signals::flush(const WatchKey& key, Watch& watch, SignalSource& source) {
   event["t"] = std::exchange(watch.times, {});
   if (watch.order.members.empty()) {
     event["value"] = std::exchange(watch.whole, {});
+    if (from.rate.hz) event["rate"] = *from.rate.hz;
+    if (watch.latency) event["latency"] = *watch.latency;
   } else {
     event["v"] = std::exchange(watch.rows, Json::array());
   }

@@ -45,6 +45,7 @@ struct SignalSettings {
 struct SignalSample {
   double time = 0;
   Json value;
+  std::optional<double> latency{};  // [s] from its time stamp until it was here, by the clock of the stamp
 };
 
 // Where samples of one topic come from. The thread of the signals only, except where said.
@@ -92,17 +93,26 @@ class Signals {
     Json rows = Json::array();
     Json whole;
     std::string told_problem;
+    std::optional<double> latency;
     bool is_new = true;
+  };
+  // How many samples a second have come, over the last one or two.
+  struct Rate {
+    void count(std::size_t samples, Clock::time_point now);
+    std::size_t counted = 0;
+    Clock::time_point since = Clock::now();
+    std::optional<double> hz;
   };
   struct Source {
     std::unique_ptr<SignalSource> source;
     std::optional<SignalSample> last;  // for those who begin to watch while nothing comes
+    Rate rate;
   };
   void run();
   void take_orders();
   void gather();
   static void add(Watch& watch, const SignalSample& sample);
-  void flush(const WatchKey& key, Watch& watch, SignalSource& source);
+  void flush(const WatchKey& key, Watch& watch, Source& from);
 
   const SignalSettings settings_;
   Workers& workers_;

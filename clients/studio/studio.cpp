@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/asio/post.hpp>
+#include <utility>
 
 #include "base/id.h"
 #include "base/log.h"
@@ -17,17 +18,14 @@ using base::Error;
 using base::Result;
 
 constexpr std::size_t worker_threads = 8;
-constexpr std::size_t most_open_requests = 32;  // of a viewer
-constexpr std::size_t most_members = 256;       // of a watch
 constexpr std::chrono::milliseconds tend_period{100};
-constexpr unsigned tends_per_look = 10;  // for channels, whose simulator may have come back
+constexpr std::size_t most_in_line = 256;  // acts that wait for one about the same component or model
+constexpr unsigned tends_per_look = 10;    // for channels, whose simulator may have come back
 
 constexpr const char* poses_key = "poses";
 constexpr const char* lines_key = "logs";
 constexpr const char* clock_key = "clock";
 std::string channel_key(std::uint32_t subscription) { return "channel." + std::to_string(subscription); }
-std::string values_key(std::uint32_t watch) { return "values." + std::to_string(watch); }
-
 std::string advertise(channels::ChannelId id, const channels::Channel& channel) {
   return to_text({{"op", "advertise"},
                   {"channels", Json::array({{{"id", id},
@@ -143,6 +141,7 @@ void Studio::handle(Guest& guest, const Request& request) {
     asked.is_dry = true;
     if (!asked.args.is_object()) return answer(guest, request.id, Error{"args: expected an object"});
   }
+  if (asked.name == "members") asked.args["topic"] = book_.source_of(text_or(asked.args, "topic", ""));
   if (const Act* act = find_act(asked.name)) return start_act(guest, asked, *act);
   handle_here(guest, asked);
 }
@@ -292,7 +291,9 @@ void Studio::start_act(Guest& guest, const Request& request, const Act& act) {
   if (request.is_dry) return answer(guest, request.id, Json::object(), plan->command);
   if (!act.is_reading && options_.is_read_only) return answer(guest, request.id, read_only(), plan->command);
   if (guest.open_requests >= most_open_requests) return answer(guest, request.id, Error{"32 requests are not answered yet"}, plan->command);
-  const auto work = [this, viewer = guest.viewer->id(), id = request.id, plan = std::move(*plan)] {
+  // What is done to the same component or model is done in the order in which it was asked for: values are read, changed and written back.
+  const auto subject = act.is_reading ? std::string() : text_or(request.args, "path", text_or(request.args, "model", ""));
+  const auto work = [this, subject, viewer = guest.viewer->id(), id = request.id, plan = std::move(*plan)] {
     Result<Json> result = Error{"it failed in a way that nobody has foreseen"};
     try {
       result = plan.run();
@@ -301,16 +302,43 @@ void Studio::start_act(Guest& guest, const Request& request, const Act& act) {
     } catch (const std::exception& e) {
       result = Error{e.what()};
     }
-    boost::asio::post(loop_, [this, viewer, id, command = plan.command, touches = plan.touches, result = std::move(result)] {
-      finish_act(viewer, id, command, touches, result);
+    boost::asio::post(loop_, [this, subject, viewer, id, command = plan.command, touches = plan.touches, result = std::move(result)] {
+      finish_act(subject, viewer, id, command, touches, result);
     });
   };
-  if (!workers_->give(work)) return answer(guest, request.id, Error{"too much is being done already; try again"});
+  if (!give(subject, work)) return answer(guest, request.id, Error{"too much is being done already; try again"});
   ++guest.open_requests;
 }
 
-void Studio::finish_act(std::uint64_t viewer, std::int64_t id, const std::string& command, Plan::Touches touches,
-                        const Result<Json>& result) {
+// Behind what is under way about the same subject, which is given to the workers when that is done. False: too much waits.
+bool Studio::give(const std::string& subject, std::function<void()> work) {
+  if (subject.empty()) return workers_->give(std::move(work));
+  if (const auto line = lines_.find(subject); line != lines_.end()) {
+    if (line->second.size() >= most_in_line) return false;
+    line->second.push_back(std::move(work));
+    return true;
+  }
+  if (!workers_->give(std::move(work))) return false;
+  lines_.try_emplace(subject);
+  return true;
+}
+
+// What waits longest about this subject. When the workers have too much, tend() tries again.
+void Studio::give_next(const std::string& subject) {
+  const auto line = lines_.find(subject);
+  if (line == lines_.end()) return;
+  if (line->second.empty()) {
+    lines_.erase(line);
+  } else if (workers_->give(line->second.front())) {
+    line->second.pop_front();
+  } else {
+    stalled_.push_back(subject);
+  }
+}
+
+void Studio::finish_act(const std::string& subject, std::uint64_t viewer, std::int64_t id, const std::string& command,
+                        Plan::Touches touches, const Result<Json>& result) {
+  give_next(subject);
   if (touches == Plan::Touches::system) system_->look_now();
   if (touches == Plan::Touches::world) world_->look_now();
   const auto found = guests_.find(viewer);
@@ -405,6 +433,7 @@ void Studio::tell_clock(std::chrono::nanoseconds time) {
 
 void Studio::tend() {
   drives_.tend();
+  for (const auto& subject : std::exchange(stalled_, {})) give_next(subject);
   if (++tended_ % tends_per_look == 0) {
     const bool is_asked =
         std::any_of(guests_.begin(), guests_.end(), [](const auto& guest) { return !guest.second.viewer->speaks_studio(); });

@@ -4,9 +4,12 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "acts.h"
 #include "channel_book.h"
@@ -57,7 +60,9 @@ class Studio {
   base::Result<Json> start_pictures(const Guest& guest, const Json& args);
   base::Result<Json> end_watch(const Guest& guest, const Json& args);
   void start_act(Guest& guest, const Request& request, const Act& act);
-  void finish_act(std::uint64_t guest, std::int64_t id, const std::string& command, Plan::Touches touches,
+  bool give(const std::string& subject, std::function<void()> work);
+  void give_next(const std::string& subject);
+  void finish_act(const std::string& subject, std::uint64_t guest, std::int64_t id, const std::string& command, Plan::Touches touches,
                   const base::Result<Json>& result);
   void answer(Guest& guest, std::int64_t id, const base::Result<Json>& result, const std::string& command = "");
   bool fetch(const std::string& path, const std::string& query, const Answer& answer);
@@ -90,6 +95,8 @@ class Studio {
   SignalBook book_;
   Drives drives_;
   unsigned tended_ = 0;
+  std::map<std::string, std::deque<std::function<void()>>> lines_;  // by what acts are about: one is under way, these wait for it
+  std::vector<std::string> stalled_;                                // of lines_: the workers had too much for their next
   boost::asio::steady_timer timer_;
   std::unique_ptr<SystemWatch> system_;
   std::unique_ptr<WorldWatch> world_;

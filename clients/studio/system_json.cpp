@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "base/text.h"
+#include "run/time_members.h"
 
 namespace studio {
 namespace {
@@ -60,6 +61,7 @@ Json component_json(const ComponentView& component) {
           {"composite", component.category.starts_with("composite.")},
           {"members", component.members},
           {"active_set", component.active_set},
+          {"in_simulated_time", editor::simulated_context(component) != nullptr},
           {"contexts", contexts},
           {"ports", ports}};
 }

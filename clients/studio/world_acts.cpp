@@ -115,6 +115,10 @@ Result<Plan> tree(const ActContext& context, const Json& args) {
   return plan(context, shm::TreeRequest{model}, words, json_of, Touches::nothing);
 }
 
+Result<Plan> models(const ActContext& context, const Json&) {
+  return plan(context, shm::ModelsRequest{}, {"models"}, json_of, Touches::nothing);
+}
+
 Result<Plan> contacts(const ActContext& context, const Json& args) {
   const auto model = text_of(args, "model");
   if (!model) return model.error();
@@ -247,6 +251,7 @@ std::vector<Act> world_acts() {
           {"reset_world", false, reset_world},
           {"speed", false, speed},
           {"tree", true, tree},
+          {"models", true, models},
           {"contacts", true, contacts},
           {"set_pose", false, set_pose},
           {"push", false, push},

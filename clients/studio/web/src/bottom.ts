@@ -1,5 +1,6 @@
 // Time: run, pause, step, speed; the line of the last minutes; under it plots, logs, pictures and where a step's time goes.
-import { button, h, icon, once_a_frame, put } from './dom';
+import { button, h, icon, once_a_frame, put, unless_pressed } from './dom';
+import { Contexts } from './contexts';
 import { History } from './history';
 import { Playback, recording } from './playback';
 import { Plots } from './plots';
@@ -29,14 +30,18 @@ export class Bottom {
   private readonly log_list = h('div', { class: 'log', role: 'log', tabindex: 0, 'aria-label': 'Logs' });
   private readonly images = h('div', { class: 'images' });
   private readonly parts = h('div', { class: 'parts', tabindex: 0, role: 'region', 'aria-label': 'Where time goes' });
+  private readonly contexts: Contexts;
   private stops = new Map<string, () => void>();
   private moment: number | null = null;
+  // What was asked for and is not told yet: the next press means the opposite of it, and not of what is shown.
+  private wanted_paused: boolean | undefined = undefined;
+  private wanted_speed: number | undefined = undefined;
   // What a step is: one of the simulator, or until this participant's next tick.
   private readonly step_box = h('select', { id: 'step-what', 'aria-label': 'What a step is', hidden: true }, h('option', { value: '' }, 'one step'));
 
   constructor(world: WorldView, private readonly history: History, private readonly playback: Playback) {
     this.plots = new Plots(() => this.moment ?? store.time?.sim_time ?? 0, (moment) => this.look(moment));
-    const can = () => wire.status === 'open' && (recording() !== undefined || (!read_only() && store.world?.present));
+    const can = () => wire.status === 'open' && (recording() !== undefined || (!read_only() && store.world?.present && store.time !== null));
     const step_button = button('Step', { icon: 'step', key: '.', id: 'step' }, () => this.step());
     this.reset_button = button('Reset world and time', { icon: 'reset', key: 'Shift+R', id: 'reset' }, () => this.reset());
     // Enter by itself too: a browser does not tell of a change to what stood there before somebody else had changed it.
@@ -46,7 +51,9 @@ export class Bottom {
         if (rtf > 0) this.playback.speed = rtf;
         return;
       }
-      if (this.speed.value !== '' && rtf >= 0 && rtf !== store.time?.rtf_wanted) act('Set the speed', 'speed', { rtf });
+      if (this.speed.value === '' || !(rtf >= 0) || rtf === (this.wanted_speed ?? store.time?.rtf_wanted)) return;
+      this.wanted_speed = rtf;
+      act('Set the speed', 'speed', { rtf }).then((result) => this.forget_wish(result, () => { if (this.wanted_speed === rtf) this.wanted_speed = undefined; }));
     };
     this.speed.addEventListener('change', set_speed);
     this.speed.addEventListener('keydown', (event) => { if (event.key === 'Enter') set_speed(); });
@@ -55,12 +62,18 @@ export class Bottom {
     this.element.append(this.transport, h('div', { class: 'line-of-time' }, this.band, this.scrub), this.tabs, this.body);
     this.scrub.addEventListener('input', () => this.look(Number(this.scrub.value) >= Number(this.scrub.max) - 1e-6 ? null : Number(this.scrub.value)));
     this.log_filter.addEventListener('input', () => this.show_logs());
+    on('time', () => {
+      if (store.time?.paused === this.wanted_paused) this.wanted_paused = undefined;
+      if (store.time?.rtf_wanted === this.wanted_speed) this.wanted_speed = undefined;
+    });
+    on('status', () => { this.wanted_paused = this.wanted_speed = undefined; });
     on(['time', 'world', 'status', 'hello'], once_a_frame(() => {
       this.show_time();
       for (const b of [this.run_button, step_button, this.reset_button]) b.disabled = !can();
       this.speed.disabled = !can();
     }));
     on('hello', () => {
+      this.show_range();  // at once: a hand may be on the slider before the first frame
       if (this.moment !== null) this.leave_the_past();
       const all = window_box.querySelector('option[value="0"]');
       if (recording() ? all : !all) return;
@@ -69,8 +82,9 @@ export class Bottom {
       window_box.value = all ? '30' : '0';
       this.plots.window = Number(window_box.value);
     });
-    on('log', once_a_frame(() => { if (settings.tab === 'logs') this.show_logs(); }));
-    on('time', once_a_frame(() => { if (settings.tab === 'step') this.show_parts(); }));
+    on('log', once_a_frame(() => { if (settings.tab === 'logs') unless_pressed(this.log_list, () => this.show_logs()); }));
+    on('time', once_a_frame(() => { if (settings.tab === 'step') unless_pressed(this.parts, () => this.show_parts()); }));
+    this.contexts = new Contexts(() => unless_pressed(this.parts, () => this.show_parts()), () => settings.tab === 'step' && this.parts.offsetParent !== null);
     on('world', () => this.offer_images(world));
     on('scene', () => { if (this.moment !== null) this.look(null); });
     on('selection', () => { if (settings.tab === 'logs') this.show_logs(); });
@@ -81,8 +95,15 @@ export class Bottom {
   run_or_pause(): void {
     if (recording()) return this.playback.play_or_stop();
     if (read_only()) return;
-    store.time?.paused === false ? act('Pause', 'pause', {}) : act('Run', 'run', {});
+    const pause = (this.wanted_paused ?? store.time?.paused) === false;
+    this.wanted_paused = pause;
+    (pause ? act('Pause', 'pause', {}) : act('Run', 'run', {})).then((result) => this.forget_wish(result, () => { if (this.wanted_paused === pause) this.wanted_paused = undefined; }));
     this.look(null);
+  }
+  // A refused one at once; one that was granted when it must have been told, also if somebody else has wished otherwise since.
+  private forget_wish(result: unknown, forget: () => void): void {
+    if (result) setTimeout(forget, 1000);
+    else forget();
   }
   step(way = 1): void {
     if (recording()) return this.playback.step(way);
@@ -143,11 +164,15 @@ export class Bottom {
     this.run_button.setAttribute('aria-label', time.paused ? run : 'Pause');
     this.run_button.title = `${time.paused ? run : 'Pause'} (Space)`;
     if (document.activeElement !== this.speed) this.speed.value = String(Number(time.rtf_wanted.toPrecision(4)));
-    this.scrub.min = String(this.history.first);
-    this.scrub.max = String(Math.max(this.history.last, this.history.first + 0.001));
-    this.scrub.value = String(shown);
+    this.show_range();
+    this.scrub.value = String(whole ? this.playback.moment : shown); // where the hand has put it, also before that is shown
     this.scrub.setAttribute('aria-valuetext', `${shown.toFixed(1)} s`);
     this.draw_band();
+  }
+
+  private show_range(): void {
+    this.scrub.min = String(this.history.first);
+    this.scrub.max = String(Math.max(this.history.last, this.history.first + 0.001));
   }
 
   private offer_steps(participants: Participant[]): void {
@@ -228,8 +253,9 @@ export class Bottom {
     const { time } = store;
     const parts = time?.parts ?? [];
     const all = Math.max(1e-9, parts.reduce((sum, p) => sum + p.total_ms, 0));
-    put(this.parts, parts.length === 0 ? h('p', { class: 'hint' }, recording() ? 'A recording does not say where the time of a step went.' : 'No simulator: nothing takes time.') : h('div', { class: 'columns' },
-      h('table', null, h('caption', null, 'Where a step\'s time goes'), h('thead', null, h('tr', null, ['part', 'calls', 'mean', 'worst', 'share'].map((t) => h('th', { scope: 'col' }, t)))), h('tbody', null, parts.map((p) => h('tr', null, h('th', { scope: 'row' }, p.name), h('td', null, p.calls), h('td', null, `${((p.total_ms * 1000) / Math.max(1, p.calls)).toFixed(1)} µs`), h('td', null, `${p.max_us.toFixed(0)} µs`), h('td', null, bar(p.total_ms / all), `${((100 * p.total_ms) / all).toFixed(0)} %`))))),
+    const contexts = this.contexts.table();
+    put(this.parts, parts.length === 0 && !contexts ? h('p', { class: 'hint' }, recording() ? 'A recording does not say where the time of a step went.' : 'No simulator: nothing takes time.') : h('div', { class: 'columns' },
+      parts.length === 0 ? null : h('table', null, h('caption', null, 'Where a step\'s time goes'), h('thead', null, h('tr', null, ['part', 'calls', 'mean', 'worst', 'share'].map((t) => h('th', { scope: 'col' }, t)))), h('tbody', null, parts.map((p) => h('tr', null, h('th', { scope: 'row' }, p.name), h('td', null, p.calls), h('td', null, `${((p.total_ms * 1000) / Math.max(1, p.calls)).toFixed(1)} µs`), h('td', null, `${p.max_us.toFixed(0)} µs`), h('td', null, bar(p.total_ms / all), `${((100 * p.total_ms) / all).toFixed(0)} %`))))), contexts,
       (time?.participants?.length ?? 0) > 0 ? h('table', null, h('caption', null, 'Who takes part in lock step'), h('thead', null, h('tr', null, ['name', 'phase', 'rate', 'ticks', 'missed', 'mean', 'worst', ''].map((t) => h('th', { scope: 'col' }, t)))), h('tbody', null, time!.participants!.map((p) => h('tr', { class: p.late ? 'late' : undefined }, h('th', { scope: 'row' }, p.name), h('td', null, p.phase), h('td', null, `${p.rate} Hz`), h('td', null, p.ticks), h('td', null, p.missed), h('td', null, `${p.mean_us.toFixed(0)} µs`), h('td', null, `${p.max_us.toFixed(0)} µs`),
         h('td', null, p.late ? button(`Let time go on without ${p.name}`, { label: 'Drop' }, () => act(`Drop ${p.name}`, 'drop_participant', { name: p.name })) : null))))) : null));
   }

@@ -30,12 +30,17 @@ export function connect_dialog(from: string, to?: string): void {
     return out;
   };
   const args = () => ({ ports: [from, choice.value], name: name.value, properties: values() });
+  // Answers to earlier questions say nothing any more.
+  let commands = 0, choices = 0;
   const show_command = async () => {
+    const number = ++commands;
+    let text = '';
     try {
-      command.textContent = (await wire.request('connect', args(), true)).command ?? '';
+      text = (await wire.request('connect', args(), true)).command ?? '';
     } catch (error) {
-      command.textContent = (error as { command?: string }).command ?? '';
+      text = (error as { command?: string }).command ?? '';
     }
+    if (number === commands) command.textContent = text;
   };
   const field = (option: Option, i: number) => {
     const id = `connect-p${i}`;
@@ -48,16 +53,21 @@ export function connect_dialog(from: string, to?: string): void {
     return [h('label', { for: id, title: option.meaning }, key), input];
   };
   const refresh = async () => {
+    const number = ++choices;
     name.value = `${name_of_port(from)}_${name_of_port(choice.value || from)}`;
     problem.textContent = '';
+    put(fields, h('p', { class: 'hint' }, 'Asking the ports …'));
     try {
       const { result } = await wire.request('connection_options', { ports: [from, choice.value] });
+      if (number !== choices) return;
       problem.textContent = result.problem ?? '';
       const options: Option[] = result.properties ?? [];
       const main = options.filter((o) => usual_keys.includes(o.key)), rest = options.filter((o) => !usual_keys.includes(o.key));
       put(fields, h('div', { class: 'grid' }, main.map(field)),
         rest.length > 0 ? h('details', null, h('summary', null, `${rest.length} more properties`), h('div', { class: 'grid' }, rest.map((o, i) => field(o, i + main.length)))) : null);
     } catch (error) {
+      if (number !== choices) return;
+      put(fields);
       problem.textContent = (error as Error).message;
     }
     show_command();

@@ -1,5 +1,5 @@
 // The system as RTSystemEditor draws it: boxes with ports, lines between them; live.
-import { button, h, once_a_frame, put, s, with_code } from './dom';
+import { button, h, once_a_frame, put, s, unless_pressed, with_code } from './dom';
 import { connect_dialog } from './connect_dialog';
 import { arrange, Place } from './diagram_layout';
 import { keep, settings } from './settings';
@@ -28,7 +28,7 @@ export class Diagram {
   private slid = { x: 0, y: 0 };
   private has_panned = false; // by a person: the view stays
 
-  private redraw = once_a_frame(() => this.build());
+  private redraw = once_a_frame(() => unless_pressed(this.canvas, () => this.build()));
   frames = 0;
 
   constructor() {
@@ -76,7 +76,7 @@ export class Diagram {
     const ins = one.ports.filter((p) => p.kind === 'in'), outs = one.ports.filter((p) => p.kind === 'out'), services = one.ports.filter((p) => p.kind === 'service');
     const long = (ports: Port[]) => Math.max(0, ...ports.map((p) => p.name.length)) * letter;
     const service_width = services.reduce((sum, p) => sum + Math.max(30, p.name.length * 5.6 + 16), 8);
-    const width = Math.ceil(Math.max(118, one.instance.length * 7.2 + 40, one.type.length * 5.8 + 70, long(ins) + long(outs) + 48, service_width));
+    const width = Math.ceil(Math.max(118, one.instance.length * 7.2 + 40, type_text(one).length * 5.8 + 70, long(ins) + long(outs) + 48, service_width));
     const height = head + Math.max(1, Math.max(ins.length, outs.length)) * row + 6 + (services.length > 0 ? 22 : 0);
     const state = shown_state(one);
     const mark = s('path', { class: 'shape', d: state_shape(state), transform: 'translate(8 8) scale(1.1)' });
@@ -84,7 +84,7 @@ export class Diagram {
     const element = s('g', { class: `box ${state_class(state)}${one.composite ? ' composite' : ''}`, 'data-path': one.path },
       one.composite ? s('rect', { class: 'outer', x: -3, y: -3, width: width + 6, height: height + 6, rx: 5 }) : null,
       s('rect', { class: 'frame', width, height, rx: 3 }), s('path', { class: 'band', d: `M0 3a3 3 0 0 1 3-3h${width - 6}a3 3 0 0 1 3 3v21H0z` }), mark,
-      s('text', { class: 'name', x: 24, y: 17 }, one.instance), s('text', { class: 'type', x: 9, y: 32 }, one.type), rate,
+      s('text', { class: 'name', x: 24, y: 17 }, one.instance), s('text', { class: 'type', x: 9, y: 32 }, type_text(one)), rate,
       s('title', null, `${one.instance} (${one.type}) is ${state_words[state] ?? state}${one.problem ? `: ${one.problem}` : ''}`));
     const shape: Shape = { element, width, height, ports: new Map(), component: one, mark, rate, is_out: false };
     ins.forEach((port, i) => this.add_port(shape, port, 0, head + 9 + i * row));
@@ -279,6 +279,7 @@ export class Diagram {
   }
 
   positions(): { [path: string]: number[] } {
+    this.redraw.now();
     const out: { [path: string]: number[] } = {};
     for (const [path, shape] of this.shapes) {
       const { x, y } = this.places.get(path)!;
@@ -394,6 +395,7 @@ export class Diagram {
 
   private key(event: KeyboardEvent): void {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
+    this.redraw.now();
     const arrows: { [key: string]: [number, number] } = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
     const now = store.selection;
     const path = now?.kind === 'component' ? now.id : now?.kind === 'port' ? component_of_port(now.id) : '';
@@ -457,7 +459,15 @@ export const short_type = (type: string): string => type.replace(/^IDL:/, '').re
 function rate_text(one: Component): string {
   const context = one.contexts[0];
   if (!context) return '';
-  return `${Number(context.rate.toPrecision(4))} Hz${context.running ? '' : ' stopped'}`;
+  const more = one.contexts.length > 1 ? ` +${one.contexts.length - 1}` : '';
+  return `${Number(context.rate.toPrecision(4))} Hz${context.running ? '' : ' stopped'}${more}`;
+}
+
+// With the members of a composite component.
+function type_text(one: Component): string {
+  const members = one.composite ? one.members ?? [] : [];
+  const shown = members.slice(0, 3).join(', ') + (members.length > 3 ? ` and ${members.length - 3} more` : '');
+  return shown ? `${one.type} of ${shown}` : one.type;
 }
 
 function curve(from: { x: number; y: number; kind: string }, to: { x: number; y: number; kind: string }): string {

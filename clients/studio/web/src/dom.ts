@@ -103,17 +103,50 @@ export function button(does: string, options: ButtonOptions, act: (event: MouseE
   return element;
 }
 
+export interface FrameWork {
+  (): void;
+  now: () => void; // what waits for the frame: for keys and clicks, which mean what is known and not what was drawn last
+}
+
 // Calls once for any number of requests within a frame.
-export function once_a_frame(work: () => void): () => void {
+export function once_a_frame(work: () => void): FrameWork {
   let asked = false;
-  return () => {
+  const go = () => {
+    if (!asked) return;
+    asked = false;
+    work();
+  };
+  const ask = () => {
     if (asked) return;
     asked = true;
-    requestAnimationFrame(() => {
-      asked = false;
-      work();
-    });
+    requestAnimationFrame(go);
   };
+  return Object.assign(ask, { now: go });
+}
+
+// What is under a finger is not made anew: the click would fall on nothing. It is done when the finger is lifted.
+let pressed: Node | null = null;
+const put_off = new Map<Element, () => void>();
+
+function press(event: Event): void {
+  pressed = event.target as Node;
+}
+function let_go(): void {
+  setTimeout(() => { // the click comes first
+    pressed = null;
+    const works = [...put_off.values()];
+    put_off.clear();
+    for (const work of works) work();
+  });
+}
+document.addEventListener('pointerdown', press, true);
+document.addEventListener('dragstart', press, true);
+for (const end of ['pointerup', 'pointercancel', 'dragend']) document.addEventListener(end, let_go, true);
+addEventListener('blur', let_go);
+
+export function unless_pressed(element: Element, work: () => void): void {
+  if (pressed && element.contains(pressed)) put_off.set(element, work);
+  else work();
 }
 
 // `words` in backquotes become code.

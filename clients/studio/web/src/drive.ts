@@ -13,6 +13,8 @@ export class Drive {
   private keys = new Set<string>();
   private at = { x: 0, y: 0 };
   private timer = 0;
+  private is_asked = false;
+  private sent = '';
 
   constructor() {
     this.stick.append(this.knob);
@@ -70,9 +72,17 @@ export class Drive {
     return is_3d ? [forward, 0, up, 0, 0, turn] : [forward, 0, turn];
   }
 
+  // One at a time: a server that is late gets the newest next, and not all that was wanted meanwhile.
   private send(): void {
-    wire.request('drive', { iface: this.iface, velocity: this.velocity() }).catch((error) => {
+    if (this.is_asked || !this.iface) return;
+    this.is_asked = true;
+    const { iface } = this, velocity = this.velocity();
+    this.sent = String(velocity);
+    wire.request('drive', { iface, velocity }).catch((error) => {
       this.text.textContent = error.message;
+    }).finally(() => {
+      this.is_asked = false;
+      if (String(this.velocity()) !== this.sent) this.send();
     });
   }
 

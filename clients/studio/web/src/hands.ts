@@ -9,12 +9,14 @@ export type Tool = 'look' | 'move' | 'push';
 // What they reach into.
 export interface Reach { canvas: HTMLCanvasElement; eye: Eye; world: WorldScene | null; redraw(): void; follow(model: string): void }
 
-interface Drag { model: Model; at: Vector3; offset: Vector3; from: number[]; yaw: number; last: number; turn: { x: number; yaw: number; place: Vector3 } | null }
+interface Drag { model: Model; at: Vector3; seen: Vector3; offset: Vector3; from: number[]; yaw: number; last: number; turn: { x: number; yaw: number; place: Vector3 } | null }
 
 export class Hands {
   tool: Tool = 'look';
   private readonly arrow = new Line(new BufferGeometry(), new LineBasicMaterial({ color: 0xe0452a, depthTest: false, transparent: true }));
   private drag: Drag | null = null;
+  private placing: Promise<void> = Promise.resolve();
+  private is_placing = false;
 
   constructor(private readonly view: Reach, scene: Scene) {
     this.arrow.renderOrder = 10;
@@ -51,7 +53,7 @@ export class Hands {
     select({ kind: 'model', id: model.name });
     const x = new Vector3(1, 0, 0).applyQuaternion(model.canonical.getWorldQuaternion(new Quaternion()));
     this.drag = {
-      model, from: [...model.canonical.position.toArray(), ...wxyz(model.canonical.quaternion)], at: hit.point.clone(), offset: model.canonical.position.clone().sub(hit.point), yaw: Math.atan2(x.y, x.x), last: 0, turn: null,
+      model, from: [...model.canonical.position.toArray(), ...wxyz(model.canonical.quaternion)], at: hit.point.clone(), seen: hit.point.clone(), offset: model.canonical.position.clone().sub(hit.point), yaw: Math.atan2(x.y, x.x), last: 0, turn: null,
     };
     this.view.canvas.setPointerCapture(event.pointerId);
     return true;
@@ -60,8 +62,10 @@ export class Hands {
   private go_on(event: PointerEvent, is_end: boolean): void {
     const { drag } = this;
     if (!drag) return;
-    const point = this.on_plane(event, drag.at.z);
-    if (!point) return;
+    const seen = this.on_plane(event, drag.at.z);
+    if (!seen && !is_end) return;
+    const point = seen ?? drag.seen.clone(); // let go over the sky: where it was last
+    drag.seen = point.clone();
     if (this.tool === 'push') {
       this.arrow.visible = !is_end;
       this.arrow.geometry.setAttribute('position', new BufferAttribute(new Float32Array([...drag.at.toArray(), ...point.toArray()]), 3));
@@ -71,8 +75,12 @@ export class Hands {
       const place = this.turned(drag, event) ?? point.add(drag.offset);
       const args = { model: drag.model.name, planar: [place.x, place.y, drag.yaw] };
       const { from, model: { name } } = drag;
-      if (is_end) act(`Move ${name}`, 'set_pose', args, () => ({ text: `Put ${name} back`, name: 'set_pose', args: { model: name, pose: from } }));
-      else wire.request('set_pose', args).catch(() => {});
+      // One at a time: requests are carried out in any order, and the last place is the one that counts.
+      if (is_end) act(`Move ${name}`, 'set_pose', args, () => ({ text: `Put ${name} back`, name: 'set_pose', args: { model: name, pose: from } }), this.placing);
+      else if (!this.is_placing) {
+        this.is_placing = true;
+        this.placing = wire.request('set_pose', args).then(() => {}, () => {}).finally(() => { this.is_placing = false; });
+      }
     }
     if (is_end) this.drag = null;
     this.view.redraw();
@@ -108,6 +116,11 @@ export class Hands {
       if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4 || event.button !== 0) return;
       const hit = this.hit(event);
       select(hit ? { kind: 'model', id: hit.model } : null);
+    });
+    this.view.canvas.addEventListener('pointercancel', () => {
+      this.drag = null;
+      this.arrow.visible = false;
+      this.view.redraw();
     });
     this.view.canvas.addEventListener('dblclick', (event) => {
       const hit = this.hit(event);

@@ -1,9 +1,10 @@
 // What is selected, in full, and what can be done with it.
 import { Euler, Quaternion } from 'three';
-import { button, h, put } from './dom';
+import { button, h, put, unless_pressed } from './dom';
 import { connect_dialog } from './connect_dialog';
 import { short_type } from './diagram';
 import { ask_text, open_dialog } from './dialog';
+import { inject_dialog, join_dialog } from './rtse_dialogs';
 import { state_class, state_mark, state_words } from './states';
 import {
   Act, act, component, component_of_port, components_of, connection, connections_of, iface_id, is_selected, model_of, name_of_port, on, port_of, read_only, refresh_details, select, store, wire,
@@ -28,10 +29,13 @@ export class Inspector {
   private facts_shown = '';
   private stop: (() => void) | null = null;
   private live: (() => void) | null = null;
+  private ask_again: (() => void) | null = null; // what was asked of a server that has gone, or was not there yet
 
   constructor(private readonly parts: Parts) {
-    on(['selection', 'system', 'details', 'world', 'signals', 'hello', 'status'], () => this.show());
-    on('states', () => this.show());
+    on('selection', () => this.show());
+    on(['system', 'details', 'world', 'signals', 'hello', 'status', 'states'], () => unless_pressed(this.element, () => this.show()));
+    this.element.addEventListener('focusout', () => setTimeout(() => unless_pressed(this.element, () => this.show())));
+    on('hello', () => this.ask_again?.());
     on('time', () => this.live?.());
     wire.on('poses', () => this.live?.());
     this.show();
@@ -40,9 +44,8 @@ export class Inspector {
   private show(): void {
     const now = store.selection;
     const key = now ? `${now.kind}:${now.id}` : '';
-    // What somebody types in is not taken away.
-    const typing = this.element.contains(document.activeElement) && document.activeElement instanceof HTMLInputElement && document.activeElement.type !== 'checkbox';
-    if (typing && key === this.shown) return;
+    // What somebody types in is not taken away, and a list that is open not shut.
+    if (key === this.shown && this.element.contains(document.activeElement) && is_edited(document.activeElement!)) return;
     if (key !== this.shown) {
       this.stop?.();
       this.stop = null;
@@ -54,10 +57,11 @@ export class Inspector {
     if (is_same && facts === this.facts_shown) return;
     this.facts_shown = facts;
     this.live = null;
+    if (!is_same) this.ask_again = null;
     this.shown = key;
     const scroll = this.element.scrollTop;
     const focused = is_same ? (document.activeElement as HTMLElement | null)?.id : '';
-    const show = { model: () => this.model(now!.id), component: () => this.component(now!.id), port: () => this.port(now!.id), connection: () => this.connection(now!.id), signal: () => this.signal(now!.id, is_same), manager: () => this.manager(now!.id, is_same), iface: () => this.iface(now!.id, is_same) };
+    const show = { model: () => this.model(now!.id, is_same), component: () => this.component(now!.id), port: () => this.port(now!.id), connection: () => this.connection(now!.id), signal: () => this.signal(now!.id, is_same), manager: () => this.manager(now!.id, is_same), iface: () => this.iface(now!.id, is_same) };
     const content = now ? show[now.kind]() : this.nothing();
     if (content) put(this.element, content);
     if (is_same) this.element.scrollTop = scroll;
@@ -88,8 +92,13 @@ export class Inspector {
 
   // ---- worlds ----
 
-  private model(name: string): Content {
+  private moving: HTMLElement[] = [];
+  private readonly links = h('div', { class: 'links' });
+
+  private model(name: string, is_same: boolean): Content {
     const { world } = this.parts;
+    if (!is_same) this.follow_model(name);
+    else if (!this.stop) this.follow_velocity(name); // a model that has just come is told before its ifaces
     const model = world.world?.models.get(name);
     const ifaces = store.world?.ifaces.filter((i) => i.model === name && i.type !== 'truth') ?? [];
     const drive = ifaces.find((i) => i.type === 'position2d' || i.type === 'position3d');
@@ -107,6 +116,7 @@ export class Inspector {
       numbers.forEach((element, i) => { element.textContent = i < 3 ? `${fixed(values[i], 3)} m` : `${fixed((values[i] * 180) / Math.PI, 1)}°`; });
     };
     this.live();
+    ['velocity', 'turning'].forEach((label, i) => pose.append(h('dt', null, label), this.moving[i]));
     const can = !read_only();
     return [
       this.title(name, model?.is_static ? 'thing' : ifaces.length > 0 ? 'robot' : 'model'),
@@ -121,7 +131,34 @@ export class Inspector {
       h('ul', { class: 'list' }, ifaces.map((i) => h('li', null, link_to(i.name.replace(`${name}::`, ''), { kind: 'iface', id: iface_id(i) }), h('span', { class: 'more' }, i.type)))),
       components_of(name).length > 0 ? h('h3', null, 'Components') : null,
       h('ul', { class: 'list' }, components_of(name).map((path) => h('li', null, state_mark(component(path)?.state), link_to(component(path)?.instance ?? path, { kind: 'component', id: path })))),
+      this.links,
     ];
+  }
+
+  // Its velocity while it is selected, and once what it is made of.
+  private follow_model(name: string): void {
+    this.moving = [h('dd', null, '–'), h('dd', null, '–')];
+    this.follow_velocity(name);
+    put(this.links);
+    if (store.hello?.recording) return;
+    const ask = () => wire.request('tree', { model: name }).then(({ result }) => {
+      if (is_selected('model', name)) put(this.links, tree_of(result.models?.[0]));
+    }, () => {});
+    ask();
+    this.ask_again = ask;
+  }
+
+  private follow_velocity(name: string): void {
+    const truth = store.world?.ifaces.find((i) => i.type === 'truth' && (i.model === name || i.info?.model === name));
+    if (truth) {
+      this.stop = watch({ topic: iface_id(truth), hz: 5 }, ({ value }) => {
+        const velocity = (value as { velocity?: number[] } | undefined)?.velocity;
+        if (velocity?.length !== 6) return;
+        const text = (from: number, factor: number, digits: number) => velocity.slice(from, from + 3).map((v) => fixed(v * factor, digits)).join('  ');
+        this.moving[0].textContent = `${text(0, 1, 2)} m/s`;
+        this.moving[1].textContent = `${text(3, 180 / Math.PI, 1)} °/s`;
+      });
+    }
   }
 
   private put_model(name: string): void {
@@ -169,14 +206,27 @@ export class Inspector {
     const signal = store.signals.find((x) => x.topic === topic);
     if (!signal) return [this.title(topic, 'signal'), h('p', { class: 'hint' }, 'It is not there now.')];
     const values = h('div', null, h('p', { class: 'hint' }, 'Waiting for a sample …'));
+    const rate = h('p', { class: 'hint rate' });
+    if (signal.kind !== 'image' && !store.hello?.recording) {
+      wire.request('members', { topic }).then(({ result }) => {
+        if (values.dataset.shape !== undefined || !is_selected('signal', topic)) return;
+        values.append(h('dl', { class: 'values' }, ((result?.members ?? []) as { path: string; type: string }[]).slice(0, 60).map(({ path, type }) => [
+          h('dt', null, type === 'text' ? null : button(`Plot ${path}`, { icon: 'plot', class: 'plain small' }, () => this.parts.plot(topic, path)), path), h('dd', null, '–')])));
+      }, () => {});
+    }
     if (signal.kind === 'image') put(values, button('Show its pictures', { icon: 'camera', label: 'Pictures' }, () => this.parts.show_image(image_iface(signal.topic) ?? signal.topic)));
-    else this.stop = watch({ topic, hz: 5 }, (sample) => this.sample(values, topic, sample));
+    else {
+      this.stop = watch({ topic, hz: 5 }, (sample) => {
+        rate.textContent = [sample.rate === undefined ? '' : `${Number(sample.rate.toPrecision(3))} a second`, sample.latency === undefined ? '' : `${(sample.latency * 1000).toFixed(1)} ms after its stamp`].filter(Boolean).join(', ');
+        this.sample(values, topic, sample);
+      });
+    }
     return [
       this.title(signal_name(signal), signal.kind === 'iface' ? signal.type : signal.kind),
       h('p', { class: 'hint' }, topic, signal.kind === 'port' ? `, ${short_type(signal.type)}` : ''),
       signal.model ? h('p', null, 'of ', link_to(signal.model, { kind: 'model', id: signal.model })) : null,
       signal.component ? h('p', null, 'of ', link_to(short_path(signal.component), { kind: 'component', id: signal.component })) : null,
-      values,
+      rate, values,
     ];
   }
 
@@ -216,7 +266,10 @@ export class Inspector {
       can ? h('div', { class: 'acts' },
         does('Activate', 'activate', one.state === 'Inactive', false, () => ({ text: `Deactivate ${one.instance}`, name: 'deactivate', args: { path } })),
         does('Deactivate', 'deactivate', one.state === 'Active', false, () => ({ text: `Activate ${one.instance}`, name: 'activate', args: { path } })),
-        does('Reset', 'reset', one.state === 'Error'), does('Exit', 'exit', true, true)) : null,
+        does('Reset', 'reset', one.state === 'Error'), does('Exit', 'exit', true, true),
+        one.in_simulated_time ? does('Leave', 'leave_time', true) : button(`Let ${one.instance} take part in simulated time`, { label: 'Join …', id: 'act-join_time' }, () => join_dialog(one)),
+        store.system.connections.some((c) => c.ports.some((p) => component_of_port(p) === path)) ? does('Disconnect all', 'disconnect_all', true) : null,
+        one.problem ? does('Forget', 'forget', true, true) : null) : null,
       h('h3', null, 'Contexts'),
       one.contexts.map((context) => this.context(path, context)),
       h('h3', null, 'Ports'),
@@ -233,9 +286,9 @@ export class Inspector {
 
   private context(path: string, context: { index: number; kind: string; rate: number; running: boolean; owned: boolean; type?: string }): HTMLElement {
     const id = `rate-${context.index}`;
-    const rate = h('input', { id, type: 'number', min: 0.001, step: 'any', value: context.rate, class: 'number', disabled: read_only() });
-    rate.addEventListener('change', () => act(`Set the rate of ${short_path(path)}`, 'set_rate', { path, context: context.index, rate: Number(rate.value) },
-      () => ({ text: `Set the rate of ${short_path(path)} back`, name: 'set_rate', args: { path, context: context.index, rate: context.rate } })));
+    const rate = h('input', { id, type: 'number', min: 0.001, step: 'any', value: context.rate, class: 'number', disabled: read_only(), 'data-known': String(context.rate) });
+    rate.addEventListener('change', () => { rate.dataset.known = rate.value; act(`Set the rate of ${short_path(path)}`, 'set_rate', { path, context: context.index, rate: Number(rate.value) },
+      () => ({ text: `Set the rate of ${short_path(path)} back`, name: 'set_rate', args: { path, context: context.index, rate: context.rate } })); });
     return h('div', { class: 'line' }, h('label', { for: id }, `${context.index}${context.owned ? '' : ' (joined)'}`), rate, h('span', null, 'Hz'), h('span', { class: 'more' }, context.running ? 'runs' : 'stopped'),
       read_only() ? null : button(context.running ? `Stop context ${context.index}` : `Start context ${context.index}`, { label: context.running ? 'Stop' : 'Start', id: `context-${context.index}` },
         () => act(`${context.running ? 'Stop' : 'Start'} a context of ${short_path(path)}`, context.running ? 'stop_context' : 'start_context', { path, context: context.index })));
@@ -258,8 +311,9 @@ export class Inspector {
     const id = `conf-${set}-${i}`;
     const change = async (text: string) => {
       if (text === value.value) return;
-      await act(`Set ${value.name} of ${short_path(path)}`, 'set_configuration', { path, set, values: { [value.name]: text } },
+      const done = await act(`Set ${value.name} of ${short_path(path)}`, 'set_configuration', { path, set, values: { [value.name]: text } },
         () => ({ text: `Set ${value.name} of ${short_path(path)} back`, name: 'set_configuration', args: { path, set, values: { [value.name]: value.value } } }));
+      if (!done) document.getElementById(id)?.setAttribute('aria-invalid', 'true'); // what is typed stays, to be mended
       await refresh_details(path);
     };
     const title = [value.type, value.constraint].filter(Boolean).join(', ');
@@ -275,6 +329,8 @@ export class Inspector {
       this.title(port.name, { in: 'InPort', out: 'OutPort', service: 'service port' }[port.kind]),
       h('p', null, 'of ', link_to(component(path)?.instance ?? path, { kind: 'component', id: path }), port.data_type ? `, ${short_type(port.data_type)}` : ''),
       h('div', { class: 'acts' }, read_only() ? null : button('Connect this port', { icon: 'link', label: 'Connect …', key: 'C', id: 'connect' }, () => connect_dialog(id)),
+        port.kind === 'in' && !read_only() ? button('Write a value to this port', { label: 'Write …', id: 'inject' }, () => inject_dialog(id, port.data_type)) : null,
+        connections_of(id).length > 1 && !read_only() ? button('Cut all connections of this port', { label: 'Disconnect all', id: 'disconnect-all' }, () => act(`Disconnect all of ${port.name}`, 'disconnect_all', { path: id })) : null,
         signal ? button('Show its values', { icon: 'plot', label: 'Values' }, () => select({ kind: 'signal', id: signal.topic })) : null),
       connections_of(id).length > 0 ? h('h3', null, 'Connections') : null,
       h('ul', { class: 'list' }, connections_of(id).map((c) => h('li', null, link_to(c.name || c.ports.map(name_of_port).join(' – '), { kind: 'connection', id: c.id }),
@@ -300,14 +356,19 @@ export class Inspector {
   private manager(path: string, is_same: boolean): Content | null {
     if (is_same && this.stop) return null;
     const body = h('div', null, h('p', { class: 'hint' }, 'Asking …'));
+    let asked = 0;
     const refresh = async () => {
+      const number = ++asked;
+      let content: Content;
       try {
-        put(body, this.manager_body(path, (await wire.request('manager', { path })).result, refresh));
+        content = this.manager_body(path, (await wire.request('manager', { path })).result, refresh);
       } catch (error) {
-        put(body, h('p', { class: 'problem' }, (error as Error).message));
+        content = [h('p', { class: 'problem' }, (error as Error).message)];
       }
+      if (number === asked) unless_pressed(body, () => put(body, content));
     };
     refresh();
+    this.ask_again = refresh;
     this.stop = () => {};
     return [this.title(short_path(path), 'manager'), body];
   }
@@ -325,6 +386,9 @@ export class Inspector {
       h('ul', { class: 'list' }, (info.components ?? []).map((c: any) => h('li', null, h('span', null, c.instance), h('span', { class: 'more' }, c.type),
         can ? button(`Delete ${c.instance}`, { icon: 'close', class: 'plain small' }, () => act(`Delete ${c.instance}`, 'delete_component', { manager, instance: c.instance }).then(refresh)) : null))),
       h('h3', null, 'Can create'), h('ul', { class: 'list' }, types.map((type) => h('li', null, h('span', null, type), can ? button(`Create ${type}`, { icon: 'plus', class: 'plain small' }, () => act(`Create ${type}`, 'create', { manager, type }).then(refresh)) : null))),
+      (info.loaded ?? []).length > 0 ? h('h3', null, 'Loaded') : null,
+      h('ul', { class: 'list' }, (info.loaded ?? []).map((file: string) => h('li', null, h('span', { title: file }, file.split('/').pop() ?? file),
+        can ? button(`Unload ${file}`, { icon: 'close', class: 'plain small' }, () => act(`Unload ${file}`, 'unload_module', { manager, file }).then(refresh)) : null))),
       (info.loadable ?? []).length > 0 ? h('h3', null, 'Can load') : null,
       h('ul', { class: 'list' }, (info.loadable ?? []).map((l: any) => h('li', null, h('span', null, l.type || l.file), can ? button(`Load ${l.file}`, { icon: 'plus', class: 'plain small' }, () => act(`Load ${l.file}`, 'load_module', { manager, file: l.file }).then(refresh)) : null))),
     ];
@@ -343,18 +407,22 @@ export function disconnect(id: string): void {
 // What `__widget__` and `__constraints__` ask for.
 function control(value: ConfigValue, id: string, change: (text: string) => void): HTMLElement {
   const disabled = read_only();
+  const send = (field: HTMLInputElement) => {
+    field.dataset.known = field.value;
+    change(field.value);
+  };
   const [kind, step] = (value.widget ?? '').split('.');
   const range = /^\s*([-+\d.e]+)\s*<=?\s*x\s*<=?\s*([-+\d.e]+)\s*$/i.exec(value.constraint ?? '');
   const options = /^\s*\(?(.*?)\)?\s*$/.exec(value.constraint ?? '')?.[1].split(',').map((o) => o.trim()).filter(Boolean) ?? [];
   if ((kind === 'slider' || kind === 'spin') && (range || kind === 'spin')) {
-    const number = h('input', { id, type: 'number', value: value.value, step: kind === 'slider' || !step ? 'any' : step, min: range?.[1], max: range?.[2], disabled, onchange: () => change(number.value) });
+    const number = h('input', { id, type: 'number', value: value.value, 'data-known': value.value, step: kind === 'slider' || !step ? 'any' : step, min: range?.[1], max: range?.[2], disabled, onchange: () => send(number) });
     if (kind === 'spin') return number;
     const [low, high] = [Number(range![1]), Number(range![2])];
-    const slider = h('input', { type: 'range', min: low, max: high, step: (high - low) / Math.max(1, Number(step) || 100), value: value.value, 'aria-label': value.name, disabled, oninput: () => { number.value = slider.value; }, onchange: () => change(slider.value) });
+    const slider = h('input', { type: 'range', min: low, max: high, step: (high - low) / Math.max(1, Number(step) || 100), value: value.value, 'aria-label': value.name, disabled, 'data-known': value.value, oninput: () => { number.value = slider.value; }, onchange: () => send(slider) });
     return h('span', { class: 'slider' }, slider, number);
   }
   if (kind === 'radio' && options.length > 0) {
-    const select_box = h('select', { id, disabled, onchange: () => change(select_box.value) }, [...new Set([value.value, ...options])].map((o) => h('option', { value: o, selected: o === value.value }, o)));
+    const select_box = h('select', { id, disabled, onpointerdown: () => { select_box.dataset.open = ''; }, onchange: () => { delete select_box.dataset.open; change(select_box.value); } }, [...new Set([value.value, ...options])].map((o) => h('option', { value: o, selected: o === value.value }, o)));
     return select_box;
   }
   if ((kind === 'checkbox' || kind === 'ordered_list') && options.length > 0) {
@@ -362,12 +430,27 @@ function control(value: ConfigValue, id: string, change: (text: string) => void)
     const boxes = options.map((o) => h('input', { type: 'checkbox', checked: chosen.includes(o), disabled, 'aria-label': `${value.name}: ${o}`, onchange: () => change(options.filter((_, i) => boxes[i].checked).join(',')) }));
     return h('span', { class: 'choices', id }, options.map((o, i) => h('label', null, boxes[i], ` ${o}`)));
   }
-  const input = h('input', { id, value: value.value, disabled, onchange: () => change(input.value) });
+  const input = h('input', { id, value: value.value, 'data-known': value.value, disabled, onchange: () => send(input) });
   return input;
+}
+
+// What stands in it is not what was shown, which `data-known` says; or its list is open.
+function is_edited(element: Element): boolean {
+  if (element instanceof HTMLSelectElement) return element.dataset.open !== undefined;
+  return element instanceof HTMLInputElement && element.dataset.known !== undefined && element.value !== element.dataset.known;
 }
 
 function link_to(text: string, selection: { kind: any; id: string }): HTMLElement {
   return h('button', { type: 'button', class: 'link', onclick: () => select(selection) }, text);
+}
+
+// What a model is made of, as `simctl tree` tells it.
+function tree_of(model: any): Content {
+  if (!model) return [];
+  const list = (title: string, all: any[], more: (one: any) => string) => (all?.length ? h('details', null, h('summary', null, `${all.length} ${title}${all.length === 1 ? '' : 's'}`),
+    h('ul', { class: 'list' }, all.slice(0, 200).map((one) => h('li', null, h('span', null, one.name), h('span', { class: 'more' }, more(one)))))) : null);
+  return [list('link', model.links, (l) => (typeof l.mass === 'number' ? `${format(l.mass)} kg` : '')), list('joint', model.joints, (j) => [j.type, j.parent && j.child ? `${j.parent} – ${j.child}` : ''].filter(Boolean).join(', ')),
+    list('plugin', model.plugins, (p) => p.filename ?? '')];
 }
 
 function table(rows: [string, string][]): HTMLElement | null {
@@ -423,10 +506,22 @@ export function polar(canvas: HTMLCanvasElement, ranges: number[], info: { [key:
 }
 
 export function spawn_dialog(): void {
-  const model = h('input', { id: 'spawn-model', list: 'spawn-models', autocomplete: 'off' }), name = h('input', { id: 'spawn-name' }), pose = h('input', { id: 'spawn-pose', value: '0 0 0' });
+  const model = h('input', { id: 'spawn-model', list: 'spawn-models', autocomplete: 'off', autofocus: true }), name = h('input', { id: 'spawn-name' }), pose = h('input', { id: 'spawn-pose', value: '0 0 0' });
   const hints = h('datalist', { id: 'spawn-models' });
-  wire.request('models').then(({ result }) => put(hints, (result.models ?? []).map((m: any) => h('option', { value: m.name }, m.description ?? '')))).catch(() => {});
-  open_dialog('Spawn a model', h('div', { class: 'grid' }, h('label', { for: 'spawn-model' }, 'Model'), model, h('label', { for: 'spawn-name' }, 'Name (or empty)'), name, h('label', { for: 'spawn-pose' }, 'X Y YAW [m, rad]'), pose, hints), 'Spawn', () => {
+  const list = h('ul', { class: 'list models', 'aria-label': 'Models of the model path' }, h('li', { class: 'more' }, 'Looking for models …'));
+  let names: string[] = [];
+  const show = () => {
+    const words = names.includes(model.value) ? '' : model.value.trim().toLowerCase();
+    const found = names.filter((n) => n.toLowerCase().includes(words));
+    put(list, found.length === 0 ? h('li', { class: 'more' }, names.length === 0 ? 'The model path of the simulator has none: see its option --resource-path' : 'None is called so') : found.slice(0, 300).map((n) => h('li', { class: n === model.value ? 'chosen' : undefined }, h('button', { type: 'button', class: 'link', onclick: () => { model.value = n; show(); } }, n))));
+  };
+  model.addEventListener('input', show);
+  wire.request('models').then(({ result }) => {
+    names = (result.models ?? []).map((m: { name: string }) => m.name);
+    put(hints, names.map((n) => h('option', { value: n })));
+    show();
+  }, (error) => put(list, h('li', { class: 'problem' }, (error as Error).message)));
+  open_dialog('Spawn a model', h('div', { class: 'grid' }, h('label', { for: 'spawn-model' }, 'Model'), h('div', null, model, list), h('label', { for: 'spawn-name' }, 'Name (or empty)'), name, h('label', { for: 'spawn-pose' }, 'X Y YAW [m, rad]'), pose, hints), 'Spawn', () => {
     const [x, y, yaw] = pose.value.split(/[\s,]+/).map(Number);
     const args: { [key: string]: unknown } = { model: model.value.trim(), pose: [x || 0, y || 0, 0, Math.cos((yaw || 0) / 2), 0, 0, Math.sin((yaw || 0) / 2)] };
     if (name.value.trim()) args.name = name.value.trim();

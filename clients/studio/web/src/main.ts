@@ -9,6 +9,7 @@ import { disconnect, Inspector, spawn_dialog } from './inspector';
 import { apply_theme, keep, linked, settings, to_link } from './settings';
 import { act, changed, component, on, read_only, select, selected_model, store, undo_last, wire } from './store';
 import { Playback, recording } from './playback';
+import { profile_dialog } from './profile_dialog';
 import { recordings_dialog } from './recordings_dialog';
 import { Tree } from './tree';
 import { WorldView } from './world';
@@ -53,7 +54,7 @@ const top_bar = h('header', { class: 'top' },
   button('Save the system as RTSProfile', { icon: 'save', id: 'save' }, () => save_profile()),
   button('Open an RTSProfile', { icon: 'open', id: 'open' }, () => profile_input.click()),
   button('Open a recording', { icon: 'record', key: 'R', id: 'open-recording' }, () => recordings_dialog()),
-  button('Copy a link to this view', { icon: 'link', id: 'copy-link' }, () => copy(location.href)),
+  button('Copy a link to this view', { icon: 'link', id: 'copy-link' }, () => copy_link()),
   button('Light or dark', { icon: 'theme', id: 'theme' }, () => next_theme()),
   button('Keys', { icon: 'help', key: '?', id: 'help' }, () => show_keys()));
 
@@ -62,15 +63,24 @@ profile_input.addEventListener('change', async () => {
   const file = profile_input.files?.[0];
   profile_input.value = '';
   if (!file) return;
-  const result = await act(`Open ${file.name}`, 'open_profile', { xml: await file.text(), states: false });
-  if (result?.positions) diagram.place_all(result.positions);
+  profile_dialog(file.name, await file.text(), (positions) => diagram.place_all(positions));
 });
 
 async function save_profile(): Promise<void> {
   const result = await act('Save the system', 'save_profile', { positions: diagram.positions() });
-  if (!result?.xml) return;
-  const url = URL.createObjectURL(new Blob([result.xml], { type: 'application/xml' }));
-  h('a', { href: url, download: `${store.world?.name || 'system'}.xml` }).click();
+  if (result?.xml) download(new Blob([result.xml], { type: 'application/xml' }), `${store.world?.name || 'system'}.xml`);
+}
+
+async function save_picture(): Promise<void> {
+  const { width, height, ...eye } = world.eye_pose();
+  const scale = Math.min(devicePixelRatio, 4096 / Math.max(width, height));
+  const result = await act('Save a picture', 'screenshot', { ...eye, width: Math.round(width * scale), height: Math.round(height * scale), collisions: settings.collisions });
+  if (result?.png) download(new Blob([Uint8Array.from(atob(result.png), (c) => c.charCodeAt(0))], { type: 'image/png' }), `${store.world?.name || 'world'}.png`);
+}
+
+function download(content: Blob, name: string): void {
+  const url = URL.createObjectURL(content);
+  h('a', { href: url, download: name }).click();
   setTimeout(() => URL.revokeObjectURL(url), 10000);
 }
 
@@ -96,6 +106,7 @@ const tools: { [name: string]: HTMLButtonElement } = {
   frames: button('Frames of the selected model, or of all that moves', { icon: 'frames', key: 'X', pressed: settings.frames }, () => toggle('frames')),
   move: button('Move models by dragging; with Ctrl they turn', { icon: 'move', key: 'M', pressed: false }, () => world.hands.set_tool('move')),
   push: button('Push models by dragging', { icon: 'push', key: 'P', pressed: false }, () => world.hands.set_tool('push')),
+  picture: button('Save a picture of this view, drawn by the simulator', { icon: 'camera' }, () => save_picture()),
   spawn: button('Spawn a model', { icon: 'plus', key: 'Insert' }, () => spawn_dialog()),
 };
 
@@ -139,6 +150,13 @@ on('acts', () => {
   undo_button.title = undo ? `${undo.text} (Ctrl+Z)` : 'Nothing to undo';
 });
 
+// Of now: the address bar is written once a second.
+function copy_link(): void {
+  write_link();
+  write_link.now();
+  copy(location.href);
+}
+
 async function copy(text: string): Promise<void> {
   try {
     await navigator.clipboard.writeText(text);
@@ -151,7 +169,7 @@ async function copy(text: string): Promise<void> {
 // ---- panels ----
 
 const world_panel = h('section', { class: 'panel world-panel', 'aria-label': 'World' },
-  h('div', { class: 'bar', role: 'toolbar', 'aria-label': 'World' }, h('h2', null, 'World'), tools.whole, tools.top, tools.follow, camera_box, h('span', { class: 'gap' }), tools.lasers, tools.sonars, tools.trails, tools.names, tools.collisions, tools.contacts, tools.frames, h('span', { class: 'spring' }), tools.move, tools.push, tools.spawn),
+  h('div', { class: 'bar', role: 'toolbar', 'aria-label': 'World' }, h('h2', null, 'World'), tools.whole, tools.top, tools.follow, camera_box, h('span', { class: 'gap' }), tools.lasers, tools.sonars, tools.trails, tools.names, tools.collisions, tools.contacts, tools.frames, h('span', { class: 'spring' }), tools.picture, tools.move, tools.push, tools.spawn),
   world.element, drive.element);
 const system_panel = h('section', { class: 'panel system-panel', 'aria-label': 'System' },
   h('div', { class: 'bar', role: 'toolbar', 'aria-label': 'System' }, h('h2', null, 'System'), h('span', { class: 'counts' }), h('span', { class: 'spring' }),
@@ -247,7 +265,8 @@ function show_head(): void {
   counts.textContent = store.system.components.length > 0 ? `${errors > 0 ? `${errors} in error, ` : ''}${store.system.components.length} component${store.system.components.length === 1 ? '' : 's'}` : '';
   document.title = `${store.world?.present ? `${store.world.name} – ` : ''}rtm-studio`;
   for (const id of ['save', 'open', 'activate-all', 'deactivate-all']) (document.getElementById(id) as HTMLButtonElement | null)?.toggleAttribute('disabled', status !== 'open' || (read_only() && (id !== 'save' || whole !== undefined)));
-  for (const tool of [tools.move, tools.push, tools.spawn]) tool.disabled = read_only() || !store.world?.present;
+  for (const tool of [tools.move, tools.push, tools.spawn]) tool.disabled = status !== 'open' || read_only() || !store.world?.present;
+  tools.picture.disabled = status !== 'open' || !store.world?.present || whole !== undefined;
 }
 
 function show_tools(): void {
@@ -256,7 +275,7 @@ function show_tools(): void {
   for (const name of overlays) tools[name].setAttribute('aria-pressed', String(settings[name]));
   for (const name of ['move', 'push'] as const) tools[name].setAttribute('aria-pressed', String(world.hands.tool === name));
   const cameras = world.cameras();
-  if (camera_box.options.length !== cameras.length + 1) put(camera_box, h('option', { value: '' }, 'own eye'), cameras.map((c) => h('option', { value: c }, c)));
+  if ([...camera_box.options].slice(1).map((o) => o.value).join('\n') !== cameras.join('\n')) put(camera_box, h('option', { value: '' }, 'own eye'), cameras.map((c) => h('option', { value: c }, c)));
   camera_box.hidden = cameras.length === 0;
   camera_box.value = world.eye.mode === 'sensor' ? world.eye.what : '';
 }
@@ -282,11 +301,12 @@ document.addEventListener('keydown', (event) => {
     return;
   }
   const chosen = store.selection?.kind === 'component' ? component(store.selection.id) : undefined;
-  const on_chosen = (name: string, word: string, state: string) => () => { if (chosen?.state === state && !read_only()) act(`${word} ${chosen.instance}`, name, { path: chosen.path }); };
+  // Whatever state the page knows of: it may be late, and the component says itself what it cannot do.
+  const on_chosen = (name: string, word: string) => () => { if (chosen && !read_only()) act(`${word} ${chosen.instance}`, name, { path: chosen.path }); };
   const table: { [key: string]: () => void } = {
     ' ': () => bottom.run_or_pause(), '.': () => bottom.step(), ',': () => bottom.step(-1), R: () => bottom.reset(), '/': () => { show_panel('tree', true); tree.search.focus(); tree.search.select(); }, '?': show_keys,
     o: () => world.whole(), t: () => tools.top.click(), f: follow, l: () => toggle('lasers'), n: () => toggle('names'), k: () => toggle('contacts'), s: () => toggle('sonars'), h: () => toggle('trails'), b: () => toggle('collisions'), x: () => toggle('frames'), Insert: () => tools.spawn.click(), m: () => world.hands.set_tool('move'), p: () => world.hands.set_tool('push'), g: () => drive.toggle(), r: () => recordings_dialog(),
-    a: on_chosen('activate', 'Activate', 'Inactive'), d: on_chosen('deactivate', 'Deactivate', 'Active'), e: on_chosen('reset', 'Reset', 'Error'),
+    a: on_chosen('activate', 'Activate'), d: on_chosen('deactivate', 'Deactivate'), e: on_chosen('reset', 'Reset'),
     c: () => document.getElementById('connect')?.click(), Delete: () => { if (store.selection?.kind === 'connection') disconnect(store.selection.id); }, Escape: () => select(null),
   };
   panel_names.forEach(([panel], i) => { table[String(i + 1)] = () => { show_only(panel); show_panel(panel, !settings.panels[panel]); }; });
@@ -325,10 +345,7 @@ lay_out();
 show_only('world');
 changed('acts');
 show_head();
-if (linked.eye) {
-  world.eye.restore(linked.eye);
-  world.mark_restored();
-}
+if (linked.eye) world.restore(linked.eye);
 if (linked.selection) select(linked.selection);
 if (typeof linked.moment === 'number') playback.moment = linked.moment;
 wire.connect();

@@ -5,7 +5,7 @@ export type EyeMode = 'orbit' | 'top' | 'follow' | 'sensor' | 'fixed';
 export interface EyeState { mode: EyeMode; target: number[]; azimuth: number; elevation: number; distance: number; span: number; what?: string }
 
 // From the camera of three.js (looks along -z, y up) to ours (looks along x, z up).
-const to_ours = new Quaternion(0.5, -0.5, -0.5, 0.5);
+export const to_ours = new Quaternion(0.5, -0.5, -0.5, 0.5);
 
 export class Eye {
   readonly perspective = new PerspectiveCamera(57.3, 1, 0.05, 500);
@@ -29,6 +29,9 @@ export class Eye {
     this.listen();
   }
 
+  get angle(): number {
+    return this.fov;
+  }
   get camera(): Camera {
     return this.mode === 'top' ? this.parallel : this.perspective;
   }
@@ -77,7 +80,8 @@ export class Eye {
   restore(state: EyeState): void {
     this.target.fromArray(state.target);
     Object.assign(this, { azimuth: state.azimuth, elevation: state.elevation, distance: state.distance, span: state.span });
-    this.mode = state.mode === 'top' ? 'top' : 'orbit';
+    this.mode = ['top', 'follow', 'sensor'].includes(state.mode) ? state.mode : 'orbit';
+    this.what = state.what ?? '';
     this.moved();
   }
 

@@ -3,6 +3,7 @@
 import { changed, on, refresh_details, store, wire } from './store';
 import type { Recording, State } from './wire';
 
+const longest_frame = 250; // [ms] a later one plays on more slowly, and skips nothing: frames stop where nobody sees the page
 const details_period = 500; // [ms] so often parameters of the selected component are asked for
 
 export const recording = (): Recording | undefined => store.hello?.recording;
@@ -15,6 +16,8 @@ export class Playback {
   private shown = NaN;
   private file: string | undefined = undefined; // that is shown; empty: a run
   private is_asked = false;
+  private asked = 0; // how many; an answer to an earlier one says nothing
+  private wants_whole = true; // whatever was shown before
   private last = 0;
   private details_at = 0;
   private details_timer = 0;
@@ -36,6 +39,7 @@ export class Playback {
     this.file = whole?.file ?? '';
     if (!whole) return;
     this.is_asked = false;
+    this.asked += 1;
     this.moment = Math.min(whole.to, Math.max(whole.from, this.moment));
     store.logs = [];
     this.look(true);
@@ -76,30 +80,34 @@ export class Playback {
     const whole = recording();
     if (!whole || !this.is_playing) return;
     const now = performance.now();
-    this.moment = Math.min(whole.to, this.moment + ((now - this.last) / 1000) * this.speed);
+    this.moment = Math.min(whole.to, this.moment + (Math.min(now - this.last, longest_frame) / 1000) * this.speed);
     this.last = now;
     this.look();
     if (this.moment >= whole.to) return this.stop();
     requestAnimationFrame(() => this.go_on());
   }
 
-  // `is_whole`: whatever was shown before.
   private look(is_whole = false): void {
+    if (is_whole) this.wants_whole = true;
     if (!recording() || wire.status !== 'open') return;
-    if (is_whole) this.shown = NaN;
-    if (this.is_asked || this.shown === this.moment) return;
+    if (this.is_asked || (!this.wants_whole && this.shown === this.moment)) return;
     this.is_asked = true;
-    const time = this.moment;
-    wire.request('look', { time, whole: Number.isNaN(this.shown) }).then(() => this.has_shown(time, ''), (error) => this.has_shown(time, (error as Error).message));
+    const time = this.moment, number = ++this.asked, whole = this.wants_whole;
+    this.wants_whole = false;
+    const has = (problem: string) => {
+      if (number !== this.asked) return;
+      if (problem && whole) this.wants_whole = true;
+      this.has_shown(time, problem);
+    };
+    wire.request('look', { time, whole }).then(() => has(''), (error) => has((error as Error).message));
   }
 
   private has_shown(time: number, problem: string): void {
-    const is_stale = Number.isNaN(this.shown) && this.is_asked === false;
     this.is_asked = false;
     this.problem = problem;
-    if (!is_stale) this.shown = time;
+    this.shown = time;
     this.publish();
-    if (!problem) this.look();
+    if (!problem || time !== this.moment) this.look();
   }
 
   private publish(): void {

@@ -1,6 +1,6 @@
 // What the page knows and shows. Parts change it and hear of changes; nobody else keeps a copy.
 import { Wire } from './wire';
-import type { Component, ComponentDetail, Connection, Hello, LogLine, Signal, State, System, TimeEvent, WorldEvent } from './wire';
+import type { Component, ComponentDetail, Connection, Hello, Late, LogLine, Signal, State, System, TimeEvent, WorldEvent } from './wire';
 
 export type Kind = 'model' | 'component' | 'port' | 'connection' | 'signal' | 'manager' | 'iface';
 export interface Selection { kind: Kind; id: string }
@@ -21,6 +21,7 @@ export const store = {
   system: { revision: 0, problem: '', components: [], connections: [], managers: [] } as System,
   has_system: false,
   world: null as WorldEvent | null,
+  late: null as Late | null,
   time: null as TimeEvent | null,
   signals: [] as Signal[],
   details: new Map<string, ComponentDetail>(),
@@ -105,10 +106,23 @@ export const iface_id = (iface: { type: string; name: string }): string => `${if
 
 export const read_only = (): boolean => store.hello?.read_only ?? false;
 
-// Does something to the system or the world, and remembers it with the command that would have done the same.
-export async function act(text: string, name: string, args: object, undo?: (result: any) => Act['undo']): Promise<any> {
+// Acts that can be undone and are not answered yet: undo means the last of them, too.
+const under_way = new Set<Promise<unknown>>();
+
+// Does something to the system or the world, and remembers it with the command that would have done the same. `after`: what has to be over.
+export function act(text: string, name: string, args: object, undo?: (result: any) => Act['undo'], after?: Promise<void>): Promise<any> {
+  const doing = carry_out(text, name, args, undo, after);
+  if (undo) {
+    under_way.add(doing);
+    doing.finally(() => under_way.delete(doing));
+  }
+  return doing;
+}
+
+async function carry_out(text: string, name: string, args: object, undo?: (result: any) => Act['undo'], after?: Promise<void>): Promise<any> {
   const done: Act = { text };
   try {
+    if (after) await after;
     const reply = await wire.request(name, args);
     done.command = reply.command;
     done.undo = undo?.(reply.result);
@@ -125,6 +139,7 @@ export async function act(text: string, name: string, args: object, undo?: (resu
 }
 
 export async function undo_last(): Promise<void> {
+  await Promise.allSettled([...under_way]);
   for (let i = store.acts.length - 1; i >= 0; --i) {
     const undo = store.acts[i].undo;
     if (!undo) continue;
@@ -141,16 +156,31 @@ function ask_details(): void {
   for (const { path } of missing) refresh_details(path);
 }
 
+// Replies come in any order: one to an earlier question says nothing new.
+let asked_details = 0;
+const answered_details = new Map<string, number>();
+
 export async function refresh_details(path: string): Promise<void> {
+  const number = ++asked_details;
   try {
-    store.details.set(path, (await wire.request('component', { path })).result);
+    const { result } = await wire.request('component', { path });
+    if (number < (answered_details.get(path) ?? 0)) return;
+    answered_details.set(path, number);
+    store.details.set(path, result);
     changed('details');
   } catch { /* it has gone meanwhile; the next event of the system says so */ }
 }
 
+// Others change parameters, too, and nobody tells of it: of the component that is looked at they are asked for.
+setInterval(() => {
+  const now = store.selection;
+  const path = now?.kind === 'component' ? now.id : undefined;
+  if (path && wire.status === 'open' && !store.hello?.recording && !document.hidden && component(path)) refresh_details(path);
+}, 2000);
+
 // A recording is shown after a run, or the other way round: nothing that is known holds.
 function forget_show(): void {
-  Object.assign(store, { system: { revision: 0, problem: '', components: [], connections: [], managers: [] }, has_system: false, world: null, time: null, signals: [], logs: [], past_states: null, selection: null });
+  Object.assign(store, { system: { revision: 0, problem: '', components: [], connections: [], managers: [] }, has_system: false, world: null, late: null, time: null, signals: [], logs: [], past_states: null, selection: null });
   store.details.clear();
   for (const topic of ['system', 'signals', 'log', 'selection'] as const) changed(topic);
 }
@@ -181,8 +211,21 @@ wire.on('states', ({ states, rates }) => {
   }
   changed('states');
 });
+let models_at_first: WorldEvent['models'] = [];
+function put_late(): void {
+  const { late, world } = store;
+  if (!late || !world) return;
+  world.models = [...models_at_first.filter((m) => !late.gone.includes(m.name)), ...late.models.map(({ name }) => ({ name, static: false }))];
+}
 wire.on('world', (world) => {
   store.world = world;
+  models_at_first = world.models;
+  put_late();
+  changed('world');
+});
+wire.on('late', (late) => {
+  store.late = late;
+  put_late();
   changed('world');
 });
 wire.on('time', (time) => {

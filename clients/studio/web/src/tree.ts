@@ -1,5 +1,5 @@
 // Everything by name: robots with their ifaces, components with their ports, managers, signals. One search for all.
-import { h, icon, once_a_frame, put } from './dom';
+import { h, icon, once_a_frame, put, unless_pressed } from './dom';
 import { state_mark, state_words } from './states';
 import { changed, iface_id, is_selected, on, select, Selection, selected_model, shown_state, store, wire, components_of } from './store';
 
@@ -15,7 +15,7 @@ export class Tree {
   private open = new Map<string, boolean>();
   private rows: { row: Row; level: number; parent: string; element: HTMLElement; is_open: boolean; has_children: boolean }[] = [];
   private focus_key = '';
-  private refresh = once_a_frame(() => this.build());
+  private refresh = once_a_frame(() => unless_pressed(this.list, () => this.build()));
 
   constructor() {
     this.element.append(h('div', { class: 'search' }, this.search), this.list);
@@ -23,6 +23,7 @@ export class Tree {
     this.search.addEventListener('input', this.refresh);
     this.search.addEventListener('keydown', (event) => {
       if (event.key !== 'ArrowDown' && event.key !== 'Enter') return;
+      this.refresh.now();
       (this.rows.find((r) => r.row.selection)?.element ?? this.rows[0]?.element)?.focus();
       event.preventDefault();
     });

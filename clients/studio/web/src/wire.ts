@@ -4,7 +4,7 @@ export interface Port { name: string; kind: 'in' | 'out' | 'service'; data_type:
 export interface Context { index: number; owned: boolean; kind: string; rate: number; running: boolean; state: string; type?: string; properties?: Record<string, string> }
 export interface Component {
   path: string; instance: string; type: string; category?: string; vendor?: string; version?: string; description?: string; problem?: string;
-  state: State; composite?: boolean; members?: string[]; active_set?: string; contexts: Context[]; ports: Port[];
+  state: State; composite?: boolean; members?: string[]; active_set?: string; in_simulated_time?: boolean; contexts: Context[]; ports: Port[];
 }
 export interface ConfigValue { name: string; value: string; type?: string; widget?: string; constraint?: string }
 export interface ComponentDetail extends Component { properties?: Record<string, string>; sets?: { id: string; active: boolean; values: ConfigValue[] }[] }
@@ -28,7 +28,9 @@ export interface Recording {
   file: string; from: number; to: number; step: number; damage: string; states: Record<string, [number, string][]>; lines: [number, string, string, string][]; lines_left_out: number;
 }
 export interface Hello { version: string; read_only: boolean; name_server: string; server_id: number; recording?: Recording }
-export interface Values { watch: number; t: number[]; v?: unknown[][]; value?: unknown; error?: string }
+// Of a recorded moment: models that the scene of the beginning does not have, with the triangles of their links, and those that are there no more.
+export interface Late { version: number; models: { name: string; links: { name: string; parts: { color: number[]; points: number[] }[] }[] }[]; gone: string[] }
+export interface Values { rate?: number; latency?: number; watch: number; t: number[]; v?: unknown[][]; value?: unknown; error?: string }
 
 export interface Poses { version: number; time: number; all: boolean; count: number; view: DataView }
 
@@ -47,6 +49,7 @@ interface Events {
   logs: { lines: LogLine[] };
   signals: { signals: Signal[] };
   values: Values;
+  late: Late;
   poses: Poses;
   image: { watch: number; time: number; jpeg: Blob };
 }
@@ -58,6 +61,7 @@ export class Wire {
   private queued: string[] = [];
   private listeners: { [op: string]: ((event: any) => void)[] } = {};
   private tries = 0;
+  private is_greeted = false; // on this socket
   status: Events['status'] = 'connecting';
 
   on<K extends keyof Events>(op: K, work: (event: Events[K]) => void): void {
@@ -78,6 +82,7 @@ export class Wire {
     const socket = new WebSocket(`${scheme}://${location.host}/ws`, ['rtmsim.studio.v1']);
     socket.binaryType = 'arraybuffer';
     this.socket = socket;
+    this.is_greeted = false;
     socket.onopen = () => {
       this.tries = 0;
       this.set('open');
@@ -93,8 +98,9 @@ export class Wire {
     this.socket = null;
     this.set(this.status === 'forbidden' ? 'forbidden' : 'lost');
     this.tries += 1;
-    // A server that is there and does not want this page has another token.
-    fetch('./', { method: 'HEAD' }).then(({ status }) => this.set(status === 401 || status === 403 ? 'forbidden' : 'lost'), () => this.set('lost'));
+    // A server that is there and does not want this page has another token. The answer may come when the connection is there again.
+    const say = (status: Events['status']) => { if (this.status !== 'open') this.set(status); };
+    fetch('./', { method: 'HEAD' }).then(({ status }) => say(status === 401 || status === 403 ? 'forbidden' : 'lost'), () => say('lost'));
     setTimeout(() => this.connect(), Math.min(3000, 250 * this.tries));
   }
 
@@ -108,7 +114,11 @@ export class Wire {
   private take(data: string | ArrayBuffer): void {
     if (typeof data !== 'string') return this.take_binary(data);
     const event = JSON.parse(data);
-    if (event.op === 'hello') this.forget();
+    // What was asked before the first one is answered all the same.
+    if (event.op === 'hello') {
+      if (this.is_greeted) this.forget();
+      this.is_greeted = true;
+    }
     if (event.op !== 'reply') return this.tell(event.op, event);
     const waiting = this.open.get(event.id);
     this.open.delete(event.id);

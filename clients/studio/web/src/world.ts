@@ -7,9 +7,10 @@ import { button, h, put, with_code } from './dom';
 import { Model, read_world, WorldScene } from './glb';
 import { Hands } from './hands';
 import { Labels } from './labels';
+import { Latecomers } from './latecomers';
 import { Marker } from './marker';
 import { linear, place_lights } from './material';
-import { Eye } from './orbit';
+import { Eye, EyeState, to_ours } from './orbit';
 import { Ranges } from './ranges';
 import { settings } from './settings';
 import { changed, link_problem, on, selected_model, store, wire } from './store';
@@ -36,6 +37,7 @@ export class WorldView {
   private dirty = true;
   private shadows_dirty = true;
   private loading = -1;
+  private loads = 0; // how many were begun
   private failed_version = -1;
   private bounds = new Box3();
   private restored = false;
@@ -61,6 +63,7 @@ export class WorldView {
     on('selection', () => this.redraw());
     on('settings', () => this.apply_settings());
     wire.on('poses', (poses) => this.take(poses));
+    wire.on('late', () => this.show_late());
     const loop = () => {
       requestAnimationFrame(loop);
       const now = performance.now();
@@ -86,6 +89,7 @@ export class WorldView {
     if (!this.renderer) return;
     if (wire.status !== 'open') return this.say(`${link_problem()}${this.world ? ' This is what was last seen.' : ''}`);
     if (!world || !world.present) {
+      this.failed_version = -1;
       const why = world?.problem || 'No simulator runs.';
       if (store.hello?.recording) return this.say(`${capital(why)} ${world?.is_coming ? '' : 'The rest of the recording can be looked at.'}`);
       return this.say(`${capital(why)} Start one: \`sim-server worlds/obstacle_course.sdf${store.hello?.server_id ? ` -s ${store.hello.server_id}` : ''}\`. It appears here by itself.`);
@@ -103,21 +107,22 @@ export class WorldView {
     if (this.loading === version && this.world_key === this.key_of()) return;
     if (this.failed_version === version && this.world_key === this.key_of()) return;
     this.loading = version;
-    const key = this.key_of();
-    this.world_key = key;
+    this.world_key = this.key_of();
+    const number = ++this.loads;
     try {
       const world = await this.fetch_world(version);
-      if (key !== this.world_key) return;
+      if (number !== this.loads) return; // a newer one is on its way
       this.show(world);
       this.say('');
     } catch (error) {
+      if (number !== this.loads) return;
       this.failed_version = version;
       this.say(`The world cannot be shown: ${(error as Error).message}`, button('Try again', { label: 'Try again' }, () => {
         this.failed_version = -1;
         this.load(store.world?.version ?? 0);
       }));
     } finally {
-      this.loading = -1;
+      if (number === this.loads) this.loading = -1;
     }
   }
 
@@ -141,11 +146,22 @@ export class WorldView {
     this.scene.background = linear(world.look.background);
     this.measure();
     this.daylight.set(world, this.bounds);
+    this.latecomers.begin(world);
+    this.show_late();
     if (this.pending && this.pending.version === world.version) this.apply(this.pending);
     this.apply_settings();
     if (is_first && !this.restored) this.whole();
+    else this.look_again();
     changed('settings');
     changed('scene');
+    this.shadows_dirty = true;
+    this.redraw();
+  }
+
+  private readonly latecomers = new Latecomers();
+  private show_late(): void {
+    if (!this.world || store.late?.version !== this.world.version) return;
+    this.latecomers.show(this.world, store.late);
     this.shadows_dirty = true;
     this.redraw();
   }
@@ -286,6 +302,16 @@ export class WorldView {
     this.cost = cost < 6 ? 0 : Math.min(cost, 500);
   }
 
+  // The eye as `simctl screenshot` has it: place and orientation of one that looks along x with z up, and its angle or, from above, its width.
+  eye_pose(): { pose: number[]; span: number; top: boolean; width: number; height: number } {
+    this.eye.update();
+    const { camera, target, span, mode } = this.eye;
+    const { clientWidth: width, clientHeight: height } = this.element;
+    if (mode === 'top') return { pose: [target.x, target.y, 0, 1, 0, 0, 0], span, top: true, width, height };
+    const turn = camera.quaternion.clone().multiply(to_ours.clone().invert());
+    return { pose: [...camera.position.toArray(), turn.w, turn.x, turn.y, turn.z], span: this.eye.angle, top: false, width, height };
+  }
+
   // ---- views ----
 
   // Obliquely from the south-west, as near as all corners fit into the picture.
@@ -334,8 +360,20 @@ export class WorldView {
     return [...new Set(this.world?.sensors.filter((s) => s.fov !== undefined).map((s) => s.iface))];
   }
 
-  mark_restored(): void {
+  // As a link holds it; what it follows or looks through is found when the world is there.
+  restore(state: EyeState): void {
+    this.eye.restore(state);
     this.restored = true;
+  }
+
+  // The parts of another scene are others: what was followed is looked for anew.
+  private look_again(): void {
+    const { eye } = this;
+    if (eye.mode === 'sensor' && eye.what) this.look_through(eye.what);
+    if (eye.mode !== 'follow') return;
+    const canonical = this.world?.models.get(eye.what)?.canonical ?? null;
+    if (canonical) eye.set_mode('follow', eye.what, canonical);
+    else eye.set_mode('orbit');
   }
 }
 
