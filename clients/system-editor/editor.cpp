@@ -1,6 +1,5 @@
 #include "editor.h"
 
-#include <cstdio>
 #include <cstdlib>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -8,7 +7,6 @@
 #include "base/text.h"
 
 namespace editor {
-namespace {}  // namespace
 
 Editor::Editor(CORBA::ORB_ptr orb, std::string server, bool json, std::chrono::milliseconds limit)
     : orb_(CORBA::ORB::_duplicate(orb)), server_(std::move(server)), json_(json), limit_(limit) {
@@ -56,7 +54,7 @@ Result<Editor::Port> Editor::port(const std::string& path, bool with_connectors)
 
 void Editor::fail(const Error& error) {
   std::cout.flush();
-  std::fprintf(stderr, "rtse: %s\n", error.message.c_str());
+  std::cerr << "rtse: " + error.message + "\n";
   failed_ = true;
   if (problem_.empty()) problem_ = error.message;
 }

@@ -12,7 +12,7 @@
 namespace editor {
 namespace {
 
-constexpr std::chrono::milliseconds patience{500};
+constexpr std::chrono::milliseconds offer_limit{500};
 constexpr std::chrono::seconds patience_with_modules{5};  // a manager looks into each file of its load path
 
 // The value of an option that stands before.
@@ -154,7 +154,7 @@ std::optional<std::vector<base::Offer>> names_offered(const std::string& value, 
   if (std::ranges::find(asked, value) == asked.end()) return std::nullopt;
   try {
     const Orb orb;
-    const Editor editor(orb.get(), option_value(before, "--ns", default_server()), false, patience);
+    const Editor editor(orb.get(), option_value(before, "--ns", default_server()), false, offer_limit);
     return offered(editor, value, before, current);
   } catch (const std::runtime_error&) {
     return std::nullopt;  // no ORB can be had; the command itself will say why

@@ -1,5 +1,7 @@
 #include "program.h"
 
+#include <unistd.h>
+
 #include <iostream>
 #include <memory>
 
@@ -45,6 +47,7 @@ int run_program(const std::vector<AddCommand>& commands, int argc, char** argv) 
       ->capture_default_str();
   Chosen chosen;
   for (const AddCommand add : commands) add(app, chosen);
+  const TerminalGuard output(std::cout, STDOUT_FILENO), errors(std::cerr, STDERR_FILENO);
   const auto words = words_of(argc, argv);
   std::vector<const char*> arguments;
   for (const auto& word : words) arguments.push_back(word.c_str());

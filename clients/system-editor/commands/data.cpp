@@ -25,8 +25,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
-std::atomic<bool> interrupted{false};
-void interrupt(int) { interrupted.store(true, std::memory_order_relaxed); }
+std::atomic<bool> ended_by_user{false};
+void end_by_user(int) { ended_by_user.store(true, std::memory_order_relaxed); }
 
 struct Sample {
   std::size_t port;
@@ -88,14 +88,14 @@ void print_ports(Editor& editor, const PrintOptions& options) {
     if (!tap) return editor.fail(tap.error());
     taps.push_back(std::move(*tap));
   }
-  std::signal(SIGINT, interrupt);
-  std::signal(SIGTERM, interrupt);
+  std::signal(SIGINT, end_by_user);
+  std::signal(SIGTERM, end_by_user);
   const auto end = options.timeout_s > 0
                        ? Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.timeout_s))
                        : Clock::time_point::max();
   auto next_line = Clock::now();
   int printed = 0;
-  while (!interrupted.load(std::memory_order_relaxed) && !base::output_is_closed() && Clock::now() < end &&
+  while (!ended_by_user.load(std::memory_order_relaxed) && !base::output_is_closed() && Clock::now() < end &&
          (options.count <= 0 || printed < options.count)) {
     Sample sample;
     {
@@ -124,7 +124,7 @@ void print_ports(Editor& editor, const PrintOptions& options) {
   taps.clear();
   if (const auto dropped = queue.content.lock()->dropped; dropped > 0)
     editor.fail({"print: " + std::to_string(dropped) + " samples were dropped, they came faster than they could be written"});
-  if (options.count > 0 && printed < options.count && !base::output_is_closed() && !interrupted.load(std::memory_order_relaxed)) {
+  if (options.count > 0 && printed < options.count && !base::output_is_closed() && !ended_by_user.load(std::memory_order_relaxed)) {
     editor.fail({"print: got " + std::to_string(printed) + " of " + std::to_string(options.count) + " samples in " +
                  base::format_number(options.timeout_s) + " s"});
   }
@@ -155,17 +155,17 @@ void inject(Editor& editor, const InjectOptions& options) {
   }
   auto tap = Tap::connect(editor.orb(), port->port, {}, {});
   if (!tap) return editor.fail(tap.error());
-  std::signal(SIGINT, interrupt);
+  std::signal(SIGINT, end_by_user);
   const CallLimit limited(editor.limit());
   auto next = Clock::now();
   bool is_first = true;
-  for (int i = 0; (options.count <= 0 || i < options.count) && !interrupted.load(std::memory_order_relaxed); ++i) {
+  for (int i = 0; (options.count <= 0 || i < options.count) && !ended_by_user.load(std::memory_order_relaxed); ++i) {
     for (const auto& payload : payloads) {
       if (std::exchange(is_first, false) == false) {
         next += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / options.rate));
         std::this_thread::sleep_until(next);
       }
-      if (interrupted.load(std::memory_order_relaxed)) break;
+      if (ended_by_user.load(std::memory_order_relaxed)) break;
       const auto sent = (*tap)->put(payload);
       if (!sent) return editor.fail({"port " + port->port.full_name + ": " + sent.error().message});
     }

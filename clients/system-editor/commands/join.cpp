@@ -29,7 +29,7 @@ constexpr int highest_server = 9999;
 
 struct JoinOptions {
   std::vector<std::string> components;
-  int phase = 1;
+  int phase = 1, turn = 0;
   double rate = 0;  // [Hz]; 0: that of the component's own context
   std::string server_id;
   bool ticks = false;  // its own context instead
@@ -94,7 +94,12 @@ Result<Joining> look_at(const Editor& editor, const std::string& path, const Joi
   }
   if (!(rate > 0)) return Error{"component " + component->path + ": has no context with a rate to take over; name one with --rate"};
   const auto how = options.ticks ? TimeMember::How::tick : TimeMember::How::member;
-  return Joining{component->path, {component->instance, options.phase, base::format_number(rate), how}};
+  if (options.ticks && ticks_on_its_own(*component))
+    std::cerr
+        << "rtse: component " << component->path
+        << ": its context, an ExtTrigExecutionContext, runs it on a thread of its own after each tick, which nobody can wait for; join it "
+           "as a member (without --tick)\n";
+  return Joining{component->path, {component->instance, options.phase, base::format_number(rate), how, options.turn}};
 }
 
 Result<void> await_proxies(const Editor& editor, const ProgramApart& host, const std::vector<Joining>& all) {
@@ -194,6 +199,9 @@ void add_join(base::Command& app, Chosen& chosen) {
   join->add_option("COMPONENT", options->components, "Components; they join in this order")->required();
   join->add_option("-p,--phase", options->phase, "Order inside a tick: 0 sensors, 1 clients, 2 actuators")
       ->check(base::integer_between(0, highest_phase))
+      ->capture_default_str();
+  join->add_option("--turn", options->turn, "Order inside the phase: who reads from the others of its phase comes before them")
+      ->check(base::integer_between(0, highest_turn))
       ->capture_default_str();
   join->add_option("-r,--rate", options->rate, "Ticks per simulated second; default: the rate of the component's own context")
       ->check(base::number_between(1e-6, 1e6));

@@ -1,8 +1,10 @@
 // ls, tree, cat.
 #include <algorithm>
 #include <cstdlib>
+#include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "base/text.h"
 #include "command.h"
@@ -82,6 +84,11 @@ const ComponentView* view_of(const Entry& entry, const std::vector<ComponentView
   return nullptr;
 }
 
+void print_row(std::string_view state, std::string_view rate, std::string_view ports_in_use, std::string_view name) {
+  std::cout << std::left << std::setw(10) << state << ' ' << std::setw(10) << rate << ' ' << std::setw(14) << ports_in_use << ' ' << name
+            << '\n';
+}
+
 void print_long(const Entry& entry, const ComponentView* component) {
   std::string state = "-";
   std::string rate = "-";
@@ -93,7 +100,7 @@ void print_long(const Entry& entry, const ComponentView* component) {
     if (const auto* context = component->shown_context()) rate = base::format_number(context->rate) + " Hz";
     counts = port_counts(*component);
   }
-  std::printf("%-10s %-10s %-14s %s\n", state.c_str(), rate.c_str(), counts.c_str(), display(entry).c_str());
+  print_row(state, rate, counts, display(entry));
 }
 
 void list_level(const Editor& editor, const Entry& entry, const ListOptions& options, const std::vector<ComponentView>& components,
@@ -105,7 +112,7 @@ void list_level(const Editor& editor, const Entry& entry, const ListOptions& opt
     shown.push_back(&entry);
   }
   if (options.recurse && !editor.json()) std::cout << entry.path() << ":\n";
-  if (options.is_long && !editor.json() && !shown.empty()) std::printf("%-10s %-10s %-14s %s\n", "STATE", "RATE", "IN OUT SERVICE", "NAME");
+  if (options.is_long && !editor.json() && !shown.empty()) print_row("STATE", "RATE", "IN OUT SERVICE", "NAME");
   for (const auto* child : shown) {
     const auto* component = view_of(*child, components);
     if (editor.json()) {
@@ -116,7 +123,6 @@ void list_level(const Editor& editor, const Entry& entry, const ListOptions& opt
       std::cout << display(*child) << '\n';
     }
   }
-  std::fflush(stdout);
   if (!options.recurse) return;
   for (const auto* child : shown) {
     if (child->kind != EntryKind::context) continue;

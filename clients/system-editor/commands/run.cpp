@@ -23,7 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::chrono::seconds ending_limit{60};  // of a run that was interrupted
+constexpr std::chrono::seconds interrupted_limit{60};  // of a run that was interrupted
 
 Json to_json(const RunResult& result) {
   Json json{{"seed", result.seed},         {"passed", result.is_passed()}, {"problem", result.problem},
@@ -84,7 +84,7 @@ void report(Editor& editor, const RunResult& result, bool is_row) {
   }
   std::fflush(stdout);
   const std::string seed = is_row ? "seed " + std::to_string(result.seed) + ": " : "";
-  for (const auto& note : result.notes) std::fprintf(stderr, "rtse: %s%s\n", seed.c_str(), note.c_str());
+  for (const auto& note : result.notes) std::cerr << "rtse: " + seed + note + "\n";
   if (!result.problem.empty()) editor.fail({seed + result.problem});
   for (const auto& verdict : result.verdicts) {
     if (!verdict.problem.empty()) editor.fail({seed + verdict.expectation + ": " + verdict.problem});
@@ -131,7 +131,7 @@ RunResult run_apart(const RunOptions& options, std::uint64_t seed) {
   // A run that is interrupted takes its processes down and says so itself.
   if (child->wait_or_interrupt(std::chrono::hours(24 * 365)) == Ending::interrupted) {
     child->terminate();
-    child->wait(ending_limit);
+    child->wait(interrupted_limit);
   }
   const auto lines = base::split_list(child->said(), '\n');
   for (const auto& line : lines) {

@@ -1,6 +1,5 @@
 // save, load, start, stop, teardown: whole systems, as RTSProfile files.
 #include <algorithm>
-#include <cstdio>
 #include <ctime>
 #include <iostream>
 #include <map>
@@ -194,8 +193,8 @@ void tell_unknown_keys(const ComponentView& component, const SavedComponent& sav
   }
   const auto names = known.empty() ? "none" : base::join(std::vector<std::string>(known.begin(), known.end()), ", ");
   for (const auto& [key, sets] : unknown) {
-    std::fprintf(stderr, "rtse: component %s has no parameter %s (in set %s of the profile); parameters: %s\n", component.path.c_str(),
-                 key.c_str(), base::join(sets, ", ").c_str(), names.c_str());
+    std::cerr << "rtse: component " + component.path + " has no parameter " + key + " (in set " + base::join(sets, ", ") +
+                     " of the profile); parameters: " + names + "\n";
   }
 }
 

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <utility>
@@ -201,16 +202,32 @@ Result<std::string> output_of(const ChildProcess& ended) {
 
 Result<std::string> output_of(const ProgramCall& call, std::chrono::milliseconds limit) {
   auto started = ChildProcess::start(call);
-  if (!started) return started.error();
-  switch (started->wait_or_interrupt(limit)) {
+  return started ? output_of(*started, limit) : started.error();
+}
+
+Result<std::string> output_of(ChildProcess& started, std::chrono::milliseconds limit) {
+  switch (started.wait_or_interrupt(limit)) {
     case Ending::ended:
-      return output_of(*started);
+      return output_of(started);
     case Ending::interrupted:
       return Error{"interrupted"};
     case Ending::timed_out:
       break;
   }
-  return Error{"program " + started->program() + ": did not end within " + std::to_string(limit.count() / 1000) + " s"};
+  return Error{"program " + started.program() + ": did not end within " + std::to_string(limit.count() / 1000) + " s"};
+}
+
+ProgramCall shell_call(const std::string& line, const std::string& record, const std::string& server_id, const std::string& naming) {
+  std::error_code ignored;  // without a folder of ours the path is as it was
+  const auto folder = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path().string();
+  const char* path = std::getenv("PATH");
+  const std::string usual = path != nullptr ? path : "/usr/local/bin:/usr/bin:/bin";
+  return {{"sh", "-c", line},
+          {{"PATH", folder.empty() ? usual : folder + ":" + usual},
+           {"RTMSIM_RECORD", record},
+           {"RTMSIM_SERVER_ID", server_id},
+           {"RTCTREE_NAMESERVERS", naming}},
+          ""};
 }
 
 std::string own_program(const std::string& name) {

@@ -66,8 +66,14 @@ class ChildProcess {
 
 // Runs a program to its end, at most `limit`, and returns what it wrote. An error when it fails: the last line it wrote.
 base::Result<std::string> output_of(const ProgramCall& call, std::chrono::milliseconds limit);
-// The same of one that was started by the caller and has ended.
+// The same of one that was started by the caller.
+base::Result<std::string> output_of(ChildProcess& started, std::chrono::milliseconds limit);
+// The same of one that has ended.
 base::Result<std::string> output_of(const ChildProcess& ended);
+
+// A command line of the user's for a run: sh finds the programs beside this one before those of the path, and in its environment the run's
+// RTMSIM_RECORD, RTMSIM_SERVER_ID and RTCTREE_NAMESERVERS.
+ProgramCall shell_call(const std::string& line, const std::string& record, const std::string& server_id, const std::string& naming);
 
 // One of our own programs: beside this one, else from the path.
 std::string own_program(const std::string& name);

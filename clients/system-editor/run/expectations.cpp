@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <functional>
 #include <iomanip>
 #include <set>
 #include <sstream>
@@ -238,15 +239,18 @@ std::string problem_of(const Expectation& e, const Seen& seen) {
 
 }  // namespace
 
-Result<std::vector<Expectation>> read_expectations(const std::string& file) {
+namespace {
+
+// `place` is what a message begins with, by the line of an expectation, 0: of the whole.
+Result<std::vector<Expectation>> to_expectations(const std::function<std::vector<YAML::Node>()>& load,
+                                                 const std::function<std::string(int)>& place) {
   int line = 0;
   try {
-    const auto documents = YAML::LoadAllFromFile(file);
-    if (documents.size() > 1)
-      return Error{"file " + base::in_quotes(file) + ": holds " + std::to_string(documents.size()) + " YAML documents, expected one"};
+    const auto documents = load();
+    if (documents.size() > 1) return Error{place(0) + "holds " + std::to_string(documents.size()) + " YAML documents, expected one"};
     auto root = documents.empty() ? YAML::Node() : documents.front();
     if (root.IsMap() && root["expect"]) root = root["expect"];
-    if (!root.IsSequence()) return Error{"file " + base::in_quotes(file) + ": must hold a list of expectations"};
+    if (!root.IsSequence()) return Error{place(0) + "must hold a list of expectations"};
     std::vector<Expectation> expectations;
     for (const auto& entry : root) {
       line = entry.Mark().line + 1;
@@ -255,12 +259,23 @@ Result<std::vector<Expectation>> read_expectations(const std::string& file) {
     }
     return expectations;
   } catch (const ValueFailure& failure) {
-    return Error{"file " + base::in_quotes(file) + ":" + std::to_string(line) + ": " + failure.message};
+    return Error{place(line) + failure.message};
   } catch (const YAML::BadFile&) {
-    return Error{"file " + base::in_quotes(file) + ": cannot be read"};
+    return Error{place(0) + "cannot be read"};
   } catch (const YAML::Exception& e) {
-    return Error{"file " + base::in_quotes(file) + ":" + std::to_string(e.mark.line + 1) + ": is no YAML: " + e.msg};
+    return Error{place(e.mark.line + 1) + "is no YAML: " + e.msg};
   }
+}
+
+}  // namespace
+
+Result<std::vector<Expectation>> read_expectations(const std::string& file) {
+  return to_expectations([&] { return YAML::LoadAllFromFile(file); },
+                         [&](int line) { return "file " + base::in_quotes(file) + (line > 0 ? ":" + std::to_string(line) : "") + ": "; });
+}
+
+Result<std::vector<Expectation>> parse_expectations(const std::string& text, const std::string& what) {
+  return to_expectations([&] { return YAML::LoadAll(text); }, [&](int) { return what + ": "; });
 }
 
 Result<Record> read_record(const std::string& file, double end) {
@@ -271,7 +286,14 @@ Result<Record> read_record(const std::string& file, double end) {
     std::istringstream words(line);
     std::string first;
     words >> first;
-    if (first == "#" || first.empty()) continue;
+    if (first.empty()) continue;
+    if (first == "#") {
+      double moment = 0;  // in which nothing moved, if it begins with a number
+      if (!(words >> moment)) continue;
+      if (moment < record.last || moment > end) break;
+      record.last = moment;
+      continue;
+    }
     if (first == "contact") {
       RecordedContact contact;
       words >> contact.time >> std::quoted(contact.model) >> std::quoted(contact.other);

@@ -39,6 +39,8 @@ struct Expectation {
 
 // The error names the file, the line and what was expected there.
 base::Result<std::vector<Expectation>> read_expectations(const std::string& file);
+// Of a text that stands elsewhere: errors begin with what it is of.
+base::Result<std::vector<Expectation>> parse_expectations(const std::string& text, const std::string& what);
 
 struct RecordedPose {
   double time, x, y, z;
@@ -50,7 +52,7 @@ struct RecordedContact {
 struct Record {
   std::map<std::string, std::vector<RecordedPose>> poses;
   std::vector<RecordedContact> contacts;
-  double last = 0;  // [s], of the last pose
+  double last = 0;  // [s], of the last pose, or of the last moment in which nothing moved
 };
 // What sim-server --record writes, until `end` [s] or a reset of the world.
 base::Result<Record> read_record(const std::string& file, double end);

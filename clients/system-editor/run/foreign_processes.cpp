@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "base/text.h"
+#include "run/call_order.h"
 #include "run/same_math.h"
 
 namespace editor {
@@ -43,6 +44,21 @@ void use_context(SavedSystem& system, const std::string& instance, const std::st
   }
 }
 
+// True: it was to be sent by a thread of the sender's.
+bool send_at_once(SavedConnector& connector) {
+  auto type = connector.subscription_type, dataflow = connector.dataflow_type;
+  for (const auto& [key, value] : connector.properties) {
+    if (key == "dataport.subscription_type") type = value;
+    if (key == "dataport.dataflow_type") dataflow = value;
+  }
+  if (dataflow == "pull" || (type != "new" && type != "periodic")) return false;
+  connector.subscription_type = "flush";
+  for (auto& [key, value] : connector.properties) {
+    if (key == "dataport.subscription_type") value = "flush";
+  }
+  return true;
+}
+
 const ForeignComponent* find(const std::vector<ForeignProcess>& processes, const std::string& instance) {
   for (const auto& process : processes) {
     for (const auto& component : process.components) {
@@ -54,8 +70,7 @@ const ForeignComponent* find(const std::vector<ForeignProcess>& processes, const
 
 }  // namespace
 
-Result<void> ForeignProcesses::read(const RunOptions& options, const SavedSystem& system,
-                                    const std::vector<ComponentProperty>& properties) {
+Result<void> ForeignProcesses::read(const RunOptions& options, const SavedSystem& system, std::vector<ComponentProperty>& properties) {
   if (!options.run_file.empty()) {
     auto processes = read_run_file(options.run_file);
     if (!processes) return processes.error();
@@ -89,7 +104,29 @@ Result<void> ForeignProcesses::read(const RunOptions& options, const SavedSystem
   if (!options.start.empty() && open_.empty())
     return Error{"command " + base::in_quotes(shortened(options.start.front())) +
                  ": there is a module for each component of the system; name those of the process in a run file"};
+  if (!empty()) order_calls(system, properties);
   return {};
+}
+
+void ForeignProcesses::order_calls(const SavedSystem& system, std::vector<ComponentProperty>& properties) {
+  const auto order = call_order(system, [&](const std::string& instance) {
+    const auto member = std::ranges::find(members_, instance, &TimeMember::instance);
+    if (member != members_.end()) return CalledComponent{true, member->phase};
+    const auto chosen = std::ranges::find_if(properties, [&](const auto& one) { return one.instance == instance && one.key == phase_key; });
+    const auto phase = chosen == properties.end() ? std::nullopt : base::parse_integer(chosen->value);
+    return CalledComponent{false, phase ? std::optional(static_cast<int>(*phase)) : std::nullopt};
+  });
+  in_a_circle_ = order.in_a_circle;
+  for (auto& member : members_) {
+    member.turn = order.turn_of(member.instance);
+    if (member.how == TimeMember::How::clock && member.turn > 0)
+      chances_.push_back("component " + member.instance +
+                         ": OpenHRP's clock ticks it together with those of its phase to whom it sends: give it another phase");
+  }
+  for (const auto& component : system.components) {
+    if (const int turn = order.turn_of(component.instance); turn > 0 && !has(component.instance))
+      properties.push_back({component.instance, turn_key, std::to_string(turn)});
+  }
 }
 
 bool ForeignProcesses::has(const std::string& instance) const {
@@ -159,13 +196,16 @@ std::vector<std::string> ForeignProcesses::creations(const std::string& server_i
   return all;
 }
 
-Result<void> ForeignProcesses::join(const Editor& editor, SavedSystem& system) const {
+Result<void> ForeignProcesses::join(const Editor& editor, SavedSystem& system) {
   for (const auto& member : members_) {
     if (member.how == TimeMember::How::clock) continue;
     const auto path = member.instance + ".rtc";
     if (const auto joined = join_time(editor, path, proxy_name(member.instance) + ".rtc", member.how); !joined) return joined;
     const auto view = editor.component(path, {.contexts = true});
     if (!view) return view.error();
+    if (member.how == TimeMember::How::tick && ticks_on_its_own(*view))
+      chances_.push_back("component " + member.instance +
+                         ": its context, an ExtTrigExecutionContext, runs it on a thread of its own after each tick: join it as a member");
     if (const auto* context = simulated_context(*view)) use_context(system, member.instance, std::to_string(context->handle));
   }
   return {};
@@ -200,11 +240,12 @@ void ForeignProcesses::terminate() {
   for (auto& one : running_) one.process.terminate();
 }
 
-std::vector<std::string> ForeignProcesses::set_stamps(SavedSystem& system) const {
-  std::vector<std::string> stamped, differing;
+std::vector<std::string> ForeignProcesses::set_links(SavedSystem& system) const {
+  std::vector<std::string> stamped, differing, flushed;
   for (auto& connector : system.connectors) {
     if (!connector.is_data || !has(connector.source.instance)) continue;
     const auto link = connector.source.port_name + " to " + connector.target.port_name;
+    if (send_at_once(connector)) flushed.push_back(link);
     const bool is_said = std::ranges::any_of(connector.properties, [](const auto& one) { return one.first.ends_with("timestamp_policy"); });
     if (has(connector.target.instance)) {
       differing.push_back(link);
@@ -214,6 +255,12 @@ std::vector<std::string> ForeignProcesses::set_stamps(SavedSystem& system) const
     }
   }
   std::vector<std::string> notes;
+  if (!flushed.empty())
+    notes.push_back("sent within the tick (subscription type flush), as a thread of a component of others belongs to none: " +
+                    base::join(flushed, ", "));
+  if (!in_a_circle_.empty())
+    notes.push_back("between components of one phase that are connected in a circle, so read in the tick in which it is sent: " +
+                    base::join(in_a_circle_, ", "));
   if (!stamped.empty())
     notes.push_back("stamped with simulated time by the receiver (timestamp_policy on_received): " + base::join(stamped, ", "));
   if (!differing.empty())

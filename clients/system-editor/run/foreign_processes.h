@@ -26,8 +26,8 @@ class ForeignProcesses {
   explicit ForeignProcesses(const Workplace& place) : place_(place) {}
 
   // Which components of the system come from where: those that the run file names, and with --start all others of whose type there is no
-  // module. Each must be in the system, with a rate; `properties` may choose its phase.
-  Result<void> read(const RunOptions& options, const SavedSystem& system, const std::vector<ComponentProperty>& properties);
+  // module. Each must be in the system, with a rate; `properties` may choose its phase, and get the turns of our own (call_order.h).
+  Result<void> read(const RunOptions& options, const SavedSystem& system, std::vector<ComponentProperty>& properties);
   bool empty() const { return processes_.empty(); }
   bool has(const std::string& instance) const;
   // In the order of the system.
@@ -40,7 +40,7 @@ class ForeignProcesses {
   std::vector<std::string> creations(const std::string& server_id) const;
   std::vector<std::string> proxies() const;
   // Brings them into simulated time, once they and their proxies are there. In `system` their states are then those in these contexts.
-  Result<void> join(const Editor& editor, SavedSystem& system) const;
+  Result<void> join(const Editor& editor, SavedSystem& system);
   // An error that names the components of a process that has ended, and how.
   Result<void> check();
   // Where a component comes from, and what its process says, for messages.
@@ -50,8 +50,11 @@ class ForeignProcesses {
   void terminate();
   void end() { running_.clear(); }
 
-  // Links into our ports get stamps of simulated time, unless the system says otherwise. What there is to say of stamps.
-  std::vector<std::string> set_stamps(SavedSystem& system) const;
+  // Links into our ports get stamps of simulated time, unless the system says otherwise, and links from components of others send at once
+  // (flush), as a thread of theirs belongs to no tick. What there is to say of that.
+  std::vector<std::string> set_links(SavedSystem& system) const;
+  // What depends on chance because it cannot be ordered; known after join().
+  const std::vector<std::string>& chances() const { return chances_; }
 
  private:
   struct Running {
@@ -60,11 +63,13 @@ class ForeignProcesses {
     std::string log;
   };
   std::vector<std::string> components_of(const ForeignProcess& process) const;
+  void order_calls(const SavedSystem& system, std::vector<ComponentProperty>& properties);
 
   const Workplace& place_;
   std::vector<ForeignProcess> processes_;
   std::vector<std::string> open_;  // those of --start, of whom nobody knows from which process
   std::vector<TimeMember> members_;
+  std::vector<std::string> in_a_circle_, chances_;
   std::vector<Running> running_;
 };
 

@@ -17,7 +17,7 @@ using base::Error;
 using base::Result;
 
 constexpr double longest_wait_s = 3600;
-constexpr std::size_t largest_file = std::size_t{1} << 20;
+constexpr std::size_t largest_run_file = std::size_t{1} << 20;
 
 struct FailureAt {
   std::string what;
@@ -49,7 +49,7 @@ double number_of(const YAML::Node& node, const std::string& what, double above, 
   return *number;
 }
 
-ForeignComponent component_of(const YAML::Node& node) {
+ForeignComponent foreign_component_of(const YAML::Node& node) {
   ForeignComponent component;
   if (node.IsScalar()) {
     component.instance = text_of(node, "component");
@@ -96,7 +96,7 @@ ForeignProcess process_of(const YAML::Node& node, const std::filesystem::path& b
   const auto components = node["components"];
   if (!components || !components.IsSequence() || components.size() == 0)
     throw FailureAt{"process needs the list of its components", components ? components.Mark() : node.Mark()};
-  for (std::size_t i = 0; i < components.size(); ++i) process.components.push_back(component_of(components[i]));
+  for (std::size_t i = 0; i < components.size(); ++i) process.components.push_back(foreign_component_of(components[i]));
   return process;
 }
 
@@ -134,7 +134,7 @@ Result<std::vector<ForeignProcess>> read_run_file(const std::string& file) {
   std::ostringstream text;
   text << stream.rdbuf();
   if (!stream) return Error{"run file " + file + ": cannot be read"};
-  if (text.str().size() > largest_file) return Error{"run file " + file + ": is larger than 1 MiB"};
+  if (text.str().size() > largest_run_file) return Error{"run file " + file + ": is larger than 1 MiB"};
   return parse_run_file(text.str(), file);
 }
 

@@ -3,11 +3,15 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
+#include <string_view>
 
 #include "base/text.h"
+#include "corba/remote_participant.h"
 #include "run/same_math.h"
 #include "run/time_members.h"
+#include "run/warm_program.h"
 
 namespace editor {
 namespace {
@@ -70,8 +74,8 @@ Result<void> RunHosts::start(const std::vector<std::string>& creations, const Me
                               .empty_file = configuration,
                               .options = more,
                               .creations = creations};
-  auto started = ChildProcess::start(
-      {host_words(settings), {{"RTMSIM_SERVER_ID", simulator_.id()}, {"TMPDIR", place_.scratch("tmp")}, same_math()}, log});
+  auto started = start_program(
+      options_.warm, {host_words(settings), {{"RTMSIM_SERVER_ID", simulator_.id()}, {"TMPDIR", place_.scratch("tmp")}, same_math()}, log});
   if (!started) return started.error();
   hosts_.push_back({std::move(*started), members, names, log});
   return {};
@@ -106,6 +110,28 @@ Result<void> RunHosts::check() {
                  (host.process.exit_code() < 128 ? ": " + telling_line(host.log) : complaint(host.log))};
   }
   return {};
+}
+
+std::string RunHosts::gone_member() {
+  constexpr std::string_view ticked = ": the context that was ticked is gone";  // sim_time_proxy.cpp
+  std::error_code error;
+  for (auto& host : hosts_) {
+    const auto size = host.members.empty() ? std::filesystem::file_size(host.log, error) : 0;
+    if (error || size <= host.looked_at) continue;
+    std::string text(size - host.looked_at, '\0');
+    std::ifstream file(host.log, std::ios::binary);
+    file.seekg(static_cast<std::streamoff>(host.looked_at));
+    file.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(text.rfind('\n') + 1);  // nothing of a line that is being written
+    host.looked_at += text.size();
+    for (const auto& line : base::split_list(text, '\n')) {
+      const auto at = std::min(line.find(corba::gone_mark), line.find(ticked));
+      if (at == std::string::npos) continue;
+      const auto begin = line.rfind(' ', at == 0 ? 0 : at - 1);
+      return line.substr(begin == std::string::npos ? 0 : begin + 1);
+    }
+  }
+  return "";
 }
 
 bool RunHosts::has(const std::string& instance) const { return host_of(hosts_, instance) != hosts_.end(); }

@@ -36,6 +36,9 @@ class RunHosts {
 
   // An error that names the components of one that has ended, how, and when.
   Result<void> check();
+  // A member of others of whom the contexts say that it has gone, with what they say: "Alien: component of another process is gone ...".
+  // Empty: nobody. Looks only at what has been said since the last time.
+  std::string gone_member();
   bool has(const std::string& instance) const;
   std::vector<RunningSystem::Process> processes() const;
   std::vector<std::string> logs() const;
@@ -53,6 +56,7 @@ class RunHosts {
     Members members;
     std::string components;  // their names
     std::string log;
+    std::uintmax_t looked_at = 0;  // octets of the log
   };
   Result<void> start(const std::vector<std::string>& creations, const Members& members, const std::string& names);
   std::string creation(const SavedComponent& component) const;

@@ -13,7 +13,7 @@ namespace editor {
 namespace {
 
 // What waits in its queue is written first.
-constexpr std::chrono::seconds ending_limit{40};
+constexpr std::chrono::seconds recorder_limit{40};
 
 }  // namespace
 
@@ -43,7 +43,7 @@ base::Result<void> RunRecorder::start(const RecorderCall& call, const Wait& wait
 }
 
 bool RunRecorder::await_word(const char* word) {
-  const auto deadline = std::chrono::steady_clock::now() + ending_limit;
+  const auto deadline = std::chrono::steady_clock::now() + recorder_limit;
   while (said().find(word) == std::string::npos) {
     if (!process_->is_running() || std::chrono::steady_clock::now() > deadline) return false;
     process_->wait(std::chrono::milliseconds(5));  // its end comes by itself, its words must be looked for
@@ -57,14 +57,14 @@ void RunRecorder::end() {
   if (takes_hashes_) {
     (void)await_word("waiting for hashes");
   } else {
-    (void)process_->wait(ending_limit);
+    (void)process_->wait(recorder_limit);
   }
 }
 
 base::Result<void> RunRecorder::finish() {
   if (!process_) return {};
   if (takes_hashes_ && process_->is_running()) ::kill(process_->pid(), SIGTERM);  // a second time, which says that they are there
-  const bool has_ended = process_->wait(ending_limit);
+  const bool has_ended = process_->wait(recorder_limit);
   const bool is_good = has_ended && process_->exit_code() == 0;
   const auto lines = base::split_list(said(), '\n');
   const std::string how = has_ended ? process_->how_it_ended() : "does not end";

@@ -14,18 +14,17 @@
 namespace editor {
 namespace {
 
-using Json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr auto call_limit = 5s;
 constexpr auto look_period = 100ms;  // at the processes: one that dies is named within it
-constexpr std::chrono::milliseconds shortest_ask_period = 500ms, longest_ask_period = 2s;  // for the time, while steps are made
-constexpr auto long_time = 1s;                                                             // without a step: somebody is named
-constexpr int lowest_server = 5000, highest_server = 9999;                                 // those below are for people and their scripts
+constexpr std::chrono::milliseconds shortest_ask_period = 1s, longest_ask_period = 2s;  // for the time, while steps are made
+constexpr auto long_time = 1s;                                                          // without a step: somebody is named
+constexpr int lowest_server = 5000, highest_server = 9999;                              // those below are for people and their scripts
 const std::string log_name = "sim-server.log";
 
-Json parsed(const Result<std::string>& text) { return text ? Json::parse(*text, nullptr, false) : Json(); }
+nlohmann::json parsed(const Result<std::string>& text) { return text ? nlohmann::json::parse(*text, nullptr, false) : nlohmann::json(); }
 
 }  // namespace
 
@@ -50,7 +49,7 @@ Result<void> RunSimulator::try_start(const Wait& wait_until) {
   if (hashes_.is_wanted()) call.words.insert(call.words.end(), {"--hash-log", hashes_.world_part()});
   for (const auto& path : options_.resource_paths) call.words.insert(call.words.end(), {"--resource-path", path});
   call.words.insert(call.words.end(), options_.simulator_options.begin(), options_.simulator_options.end());
-  auto started = options_.warm_simulator != nullptr ? options_.warm_simulator->start(call) : ChildProcess::start(call);
+  auto started = start_program(options_.warm, call);
   if (!started) return started.error();
   process_.emplace(std::move(*started));
   return wait_until("simulator", [&] {
@@ -86,12 +85,13 @@ std::vector<std::string> RunSimulator::notes() const {
 Result<std::string> RunSimulator::simctl(const std::vector<std::string>& words, std::chrono::milliseconds limit) const {
   ProgramCall call{{own_program("simctl"), "-s", id_}, {}, ""};
   call.words.insert(call.words.end(), words.begin(), words.end());
-  return output_of(call, limit);
+  auto started = start_program(options_.warm, call);
+  return started ? output_of(*started, limit) : started.error();
 }
 
-Json RunSimulator::statistics(std::chrono::milliseconds limit) const {
+nlohmann::json RunSimulator::statistics(std::chrono::milliseconds limit) const {
   auto json = parsed(simctl({"--json", "stats"}, limit));
-  return json.is_object() ? json : Json::object();
+  return json.is_object() ? json : nlohmann::json::object();
 }
 
 // Of the simulator with our id, whoever's it is.
@@ -102,21 +102,21 @@ std::optional<pid_t> RunSimulator::owner() const {
 }
 
 std::optional<double> RunSimulator::time() const {
-  const auto stats = process_ ? statistics(call_limit) : Json::object();
+  const auto stats = process_ ? statistics(call_limit) : nlohmann::json::object();
   return stats.contains("sim_time") ? std::optional(stats.value("sim_time", 0.0)) : std::nullopt;
 }
 
 std::set<std::string> RunSimulator::participants() const {
   std::set<std::string> names;
   const auto json = parsed(simctl({"--json", "participants"}, call_limit));
-  for (const auto& participant : json.is_array() ? json : Json::array()) names.insert(participant.value("name", ""));
+  for (const auto& participant : json.is_array() ? json : nlohmann::json::array()) names.insert(participant.value("name", ""));
   return names;
 }
 
 std::map<std::string, std::int64_t> RunSimulator::phases() const {
   std::map<std::string, std::int64_t> phases;
   const auto json = parsed(simctl({"--json", "participants"}, call_limit));
-  for (const auto& participant : json.is_array() ? json : Json::array())
+  for (const auto& participant : json.is_array() ? json : nlohmann::json::array())
     phases[participant.value("name", "")] = participant.value("phase", std::int64_t{0});
   return phases;
 }
@@ -124,14 +124,15 @@ std::map<std::string, std::int64_t> RunSimulator::phases() const {
 std::vector<std::string> RunSimulator::models() const {
   std::vector<std::string> names;
   const auto json = parsed(simctl({"--json", "tree"}, call_limit));
-  for (const auto& model : json.is_object() ? json.value("models", Json::array()) : Json::array()) names.push_back(model.value("name", ""));
+  for (const auto& model : json.is_object() ? json.value("models", nlohmann::json::array()) : nlohmann::json::array())
+    names.push_back(model.value("name", ""));
   return names;
 }
 
 Result<void> RunSimulator::make_steps(std::int64_t steps, const std::function<Result<void>()>& alive) {
   ProgramCall call{{own_program("simctl"), "-s", id_, "step", std::to_string(steps)}, {}, ""};
   if (options_.in_real_time) call.words.push_back("--paced");
-  auto stepping = ChildProcess::start(call);
+  auto stepping = start_program(options_.warm, call);
   if (!stepping) return stepping.error();
   std::uint64_t last = 0;
   auto moved = Clock::now();
@@ -161,7 +162,7 @@ Result<void> RunSimulator::make_steps(std::int64_t steps, const std::function<Re
 std::vector<std::string> RunSimulator::late() const {
   const auto json = parsed(simctl({"--json", "participants"}, 1s));
   std::vector<std::string> late;
-  for (const auto& participant : json.is_array() ? json : Json::array()) {
+  for (const auto& participant : json.is_array() ? json : nlohmann::json::array()) {
     if (participant.value("late", false)) late.push_back(participant.value("name", "?"));
   }
   return late;

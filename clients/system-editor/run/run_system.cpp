@@ -6,20 +6,17 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
-#include <set>
 #include <thread>
 
 #include "base/text.h"
 #include "commands/system.h"
-#include "run/chance_report.h"
-#include "run/child_process.h"
 #include "run/foreign_processes.h"
 #include "run/interrupt.h"
 #include "run/port_values.h"
 #include "run/run_files.h"
 #include "run/run_hashes.h"
 #include "run/run_hosts.h"
+#include "run/run_judge.h"
 #include "run/run_naming.h"
 #include "run/run_options.h"
 #include "run/run_recorder.h"
@@ -33,8 +30,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-constexpr auto call_limit = 5s;
-constexpr auto command_limit = 60s;  // of a command of the user's
+constexpr auto editor_limit = 5s;
+constexpr auto end_of_process = 300ms;  // from the break of its connections until it can be waited for
 
 // Everything of one run. Its end takes the processes down, the components before the simulator before the naming service.
 class Run final : public RunningSystem {
@@ -61,7 +58,7 @@ class Run final : public RunningSystem {
     if (!hashes_.is_wanted()) keep_recording();
     const auto warnings = hosts_.warnings();
     result_.notes.insert(result_.notes.end(), warnings.begin(), warnings.end());
-    if (options_.script) options_.script->end(scene_ ? &*scene_ : nullptr, seen_, result_);
+    if (options_.script) options_.script->end(scene_ ? &*scene_ : nullptr, judge_.seen(), result_);
     stop();
     keep_hashes();
     if (hashes_.is_wanted()) keep_recording();
@@ -106,26 +103,7 @@ class Run final : public RunningSystem {
       if (const auto altered = options_.script->alter(system_); !altered) return altered;
     }
     if (const auto known = foreign_.read(options_, system_, properties_); !known) return known;
-    if (options_.expectations.empty()) return {};
-    auto expectations = read_expectations(options_.expectations);
-    if (!expectations) return expectations.error();
-    expectations_ = std::move(*expectations);
-    return {};
-  }
-
-  Result<void> judge_all() {
-    auto record = read_record(place_.file("record.txt"), options_.duration_s + simulator_.step() / 2);
-    if (!record) return record.error();
-    constexpr double record_period = 0.1;  // [s]
-    if (!record->poses.empty() && record->last < options_.duration_s - record_period - simulator_.step()) {
-      return fail("the record of the run ends at " + base::format_number(record->last) + " s, by a reset or a full disk" +
-                  complaint(place_.file("sim-server.log")));
-    }
-    seen_.record = std::move(*record);
-    const auto verdicts = judge(expectations_, seen_);
-    result_.verdicts.insert(result_.verdicts.end(), verdicts.begin(), verdicts.end());
-    for (const auto& [model, poses] : seen_.record.poses) result_.path_m = std::max(result_.path_m, path_length(poses));
-    return {};
+    return judge_.read();
   }
 
   static Result<void> fail(const std::string& what) { return Error{what}; }
@@ -163,11 +141,22 @@ class Run final : public RunningSystem {
   Result<void> check_children() {
     if (const auto alive = naming_.check(); !alive) return alive;
     if (const auto alive = simulator_.check(); !alive) return alive;
-    if (const auto alive = foreign_.check(); !alive) {
-      const auto time = simulator_.time();
-      return fail(alive.error().message + (time && *time > 0 ? ", at " + base::format_number(*time) + " s" : ""));
-    }
+    if (const auto alive = foreign_.check(); !alive) return at_this_time(alive.error().message);
+    if (const auto gone = hosts_.gone_member(); !gone.empty()) return tell_of_end(gone);
     return hosts_.check();
+  }
+
+  // Somebody's member has gone. How its process has ended is said where that was the command itself, a moment later.
+  Result<void> tell_of_end(const std::string& gone) {
+    for (const auto end = Clock::now() + end_of_process; Clock::now() < end; std::this_thread::sleep_for(20ms)) {
+      if (const auto alive = foreign_.check(); !alive) return at_this_time(alive.error().message);
+    }
+    return at_this_time("component " + gone);
+  }
+
+  Result<void> at_this_time(const std::string& problem) {
+    const auto time = simulator_.time();
+    return fail(problem + (time && *time > 0 ? ", at " + base::format_number(*time) + " s" : ""));
   }
 
   RunSimulator::Wait wait() {
@@ -269,10 +258,10 @@ class Run final : public RunningSystem {
       }
     }
     const auto file = place_.file("system.xml");
-    const auto stamps = foreign_.set_stamps(system_);
-    result_.notes.insert(result_.notes.end(), stamps.begin(), stamps.end());
+    const auto links = foreign_.set_links(system_);
+    result_.notes.insert(result_.notes.end(), links.begin(), links.end());
     if (const auto written = write_system(system_, file); !written) return written;
-    editor_.emplace(orb_, naming_.address(), false, std::chrono::milliseconds(call_limit));
+    editor_.emplace(orb_, naming_.address(), false, std::chrono::milliseconds(editor_limit));
     load(*editor_, {.file = file});
     if (!editor_->failed() && !foreign_.empty()) {
       if (const auto joined = foreign_.join(*editor_, system_); !joined) return joined;
@@ -361,6 +350,21 @@ class Run final : public RunningSystem {
                 " s");
   }
 
+  // What can be seen only while everything still runs.
+  Result<void> look() {
+    judge_.take_values(ports_.end());
+    naming_.set_running(true);  // what is judged now is found by it
+    if (const auto answer = naming_.ask(); !answer) return answer;
+    return judge_.look(*editor_, foreign_.chances(), result_);
+  }
+
+  Result<void> run_commands() {
+    if (const auto done = judge_.run_commands(naming_.address()); !done) return done;
+    return check_children();
+  }
+
+  Result<void> judge_all() { return judge_.judge(result_); }
+
   // The ends of all logs, for a report.
   std::string last_words() const { return last_lines(place_.file("sim-server.log")) + hosts_.last_words() + foreign_.last_words(); }
 
@@ -373,7 +377,7 @@ class Run final : public RunningSystem {
   }
 
   Result<void> listen() {
-    if (const auto listening = ports_.listen(orb_, *editor_, expectations_); !listening || !options_.script) return listening;
+    if (const auto listening = ports_.listen(orb_, *editor_, judge_.expectations()); !listening || !options_.script) return listening;
     return ports_.listen(orb_, *editor_, options_.script->watched());
   }
 
@@ -411,82 +415,6 @@ class Run final : public RunningSystem {
     return check_children();
   }
 
-  // What can be seen only while everything still runs.
-  Result<void> look() {
-    seen_.values = ports_.end();
-    naming_.set_running(true);  // what is judged now is found by it
-    if (const auto answer = naming_.ask(); !answer) return answer;
-    const auto stats = simulator_.statistics(call_limit);
-    if (!stats.contains("hash")) return fail("sim-server: does not answer");
-    result_.state_hash = stats["hash"].is_string() ? stats["hash"].get<std::string>() : stats["hash"].dump();
-    if (!options_.picture.empty()) {
-      const auto file = std::filesystem::absolute(options_.picture).string();
-      const auto drawn = simulator_.simctl({"screenshot", file, "--top", "--scans", "--size", "900x900"}, 60s);
-      if (!drawn) result_.verdicts.push_back({"picture " + options_.picture, drawn.error().message});
-    }
-    seen_.models = simulator_.models();
-    for (const auto& component : system_.components) {
-      const auto view = editor_->component(component.instance + ".rtc", {.contexts = true});
-      seen_.states[component.instance] = view ? state_text(view->state()) : "gone";
-      if (view) providers_.merge(providers_of(*view));
-    }
-    check_states();
-    check_chances();
-    return {};
-  }
-
-  // What a next run may do otherwise: a failure when the run is to be strict, a note for each in a CI job.
-  void check_chances() {
-    if (!options_.strict && !std::getenv("CI")) return;
-    auto chances = chances_in(hosts_.logs());
-    const auto phases = simulator_.phases();
-    for (auto& pair : services_of_one_phase(system_, phases)) chances.push_back(std::move(pair));
-    for (auto& pair : callers_of_one_phase(system_, phases, providers_)) chances.push_back(std::move(pair));
-    if (options_.strict) {
-      result_.verdicts.push_back({"nothing depends on chance", base::join(chances, "; ")});
-    } else {
-      for (const auto& chance : chances) result_.notes.push_back("depends on chance: " + chance);
-    }
-  }
-
-  // A component that has ended in an error, or has gone, is no success, whether somebody has asked for its state or not.
-  void check_states() {
-    std::string problem;
-    for (const auto& [component, state] : seen_.states) {
-      const bool is_judged = std::ranges::any_of(expectations_, [&](const Expectation& expectation) {
-        return expectation.kind == Expectation::Kind::state && expectation.component == component;
-      });
-      if (options_.script && options_.script->excuses(component)) continue;
-      if (!is_judged && (state == "Error" || state == "gone")) problem += (problem.empty() ? "" : ", ") + component + " is " + state;
-    }
-    result_.verdicts.push_back({"no component ends in an error", problem});
-  }
-
-  // The user's commands, while the world stands still at the end.
-  Result<void> run_commands() {
-    for (const auto& expectation : expectations_) {
-      if (expectation.kind != Expectation::Kind::command) continue;
-      auto& seen = seen_.commands[expectation.command];
-      auto started = ChildProcess::start({{"sh", "-c", expectation.command},
-                                          {{"RTMSIM_RECORD", place_.file("record.txt")},
-                                           {"RTMSIM_SERVER_ID", simulator_.id()},
-                                           {"RTCTREE_NAMESERVERS", naming_.address()}},
-                                          ""});
-      if (!started) return started.error();
-      const auto ending = started->wait_or_interrupt(command_limit);
-      if (ending == Ending::interrupted) return fail("run: interrupted");
-      const auto lines = base::split_list(started->said(), '\n');
-      seen.text = lines.empty() ? "" : printable(lines.back());
-      seen.output = tail_of(lines);
-      if (ending == Ending::ended) {
-        seen.exit_code = started->exit_code();
-      } else {
-        seen.text = "it did not end within " + std::to_string(command_limit.count()) + " s";
-      }
-    }
-    return check_children();
-  }
-
   // Ends components first, so that they can say good-bye to the naming service.
   void stop() {
     naming_.set_running(true);
@@ -504,10 +432,7 @@ class Run final : public RunningSystem {
   Workplace place_;
   RunNaming naming_;
   SavedSystem system_;
-  std::vector<Expectation> expectations_;
   std::vector<ComponentProperty> properties_;
-  Seen seen_;
-  std::set<std::string> providers_;  // full names of ports
   RunResult result_;
   RunHashes hashes_;
   RunSimulator simulator_;
@@ -515,6 +440,7 @@ class Run final : public RunningSystem {
   ForeignProcesses foreign_;
   RunRecorder recorder_{place_};
   std::optional<Editor> editor_;
+  RunJudge judge_{options_, place_, system_, simulator_, hosts_};
   PortValues ports_;
   std::optional<RunScene> scene_;  // of a script
 };

@@ -18,7 +18,7 @@
 namespace editor {
 
 class RunScript;
-class WarmProgram;
+class WarmPrograms;
 
 // A system that is wired and active and stands before its first step, in the hands of who drives it.
 class RunningSystem {
@@ -62,7 +62,7 @@ struct RunOptions {
   std::string keep;          // folder for logs and the record; empty: a temporary one, removed at the end
   bool quiet = false;        // no progress line
   std::vector<std::string> simulator_options{};  // more words for sim-server
-  const WarmProgram* warm_simulator = nullptr;   // that makes the simulator; null: it is started alone
+  const WarmPrograms* warm = nullptr;            // that make what is started; null: everything is started alone
   RunScript* script = nullptr;                   // see run_script.h; null: nothing happens but the run
   // Makes the steps instead of the run; nothing is judged then.
   std::function<Result<void>(RunningSystem&)> driver{};

@@ -85,8 +85,8 @@ std::string proxy_name(const std::string& instance) { return instance + "_time";
 std::string proxy_creation(const TimeMember& member, const std::string& server_id) {
   return proxy_type + "?instance_name=" + proxy_name(member.instance) +
          "&exec_cxt.periodic.type=SimTimeContext&exec_cxt.periodic.rate=" + member.rate +
-         "&exec_cxt.sim_time.phase=" + std::to_string(member.phase) + "&exec_cxt.sim_time.server_id=" + server_id +
-         "&exec_cxt.sim_time.participant=" + member.instance;
+         "&exec_cxt.sim_time.phase=" + std::to_string(member.phase) + "&" + turn_key + "=" + std::to_string(member.turn) +
+         "&exec_cxt.sim_time.server_id=" + server_id + "&exec_cxt.sim_time.participant=" + member.instance;
 }
 
 std::string clock_creation(int phase, const std::string& server_id) {
@@ -110,9 +110,14 @@ std::vector<std::string> module_paths(const std::vector<std::string>& before) {
 
 std::vector<std::string> host_words(const HostSettings& settings) {
   const auto paths = module_paths(settings.module_paths);
-  std::vector<std::string> options = {"corba.nameservers:" + settings.naming,      "manager.modules.load_path:" + base::join(paths, ","),
-                                      "manager.modules.preload:SimTimeContext.so", "exec_cxt.periodic.type:SimTimeContext",
-                                      "manager.instance_name:" + settings.name,    "logger.log_level:INFO"};
+  // In lock step the real time that a call takes decides nothing: who watches the run gives up a tick that does not end.
+  std::vector<std::string> options = {"corba.call_timeout:3600",
+                                      "corba.nameservers:" + settings.naming,
+                                      "manager.modules.load_path:" + base::join(paths, ","),
+                                      "manager.modules.preload:SimTimeContext.so",
+                                      "exec_cxt.periodic.type:SimTimeContext",
+                                      "manager.instance_name:" + settings.name,
+                                      "logger.log_level:INFO"};
   options.insert(options.end(), settings.options.begin(), settings.options.end());
   std::vector<std::string> words = {own_program("rtcd"), "-f", settings.empty_file};
   for (const auto& option : options) words.insert(words.end(), {"-o", option});
@@ -123,6 +128,11 @@ std::vector<std::string> host_words(const HostSettings& settings) {
 const ContextView* simulated_context(const ComponentView& component) {
   const auto it = std::ranges::find_if(component.contexts, [](const auto& context) { return !context.is_owned && is_simulated(context); });
   return it == component.contexts.end() ? nullptr : &*it;
+}
+
+bool ticks_on_its_own(const ComponentView& component) {
+  const auto own = std::ranges::find_if(component.contexts, [](const auto& context) { return context.is_owned; });
+  return own != component.contexts.end() && property(own->properties, "type") == "ExtTrigExecutionContext";
 }
 
 Result<void> join_time(const Editor& editor, const std::string& path, const std::string& proxy, TimeMember::How how) {

@@ -11,7 +11,8 @@
 
 namespace editor {
 
-inline constexpr int highest_phase = 15;
+inline constexpr int highest_phase = 15, highest_turn = 9999;
+inline constexpr const char* turn_key = "exec_cxt.sim_time.turn";
 
 struct TimeMember {
   // member: the context of its proxy calls it. tick: the proxy ticks the component's own context, one that is ticked from outside. clock:
@@ -21,6 +22,7 @@ struct TimeMember {
   int phase = 1;
   std::string rate{};  // [Hz]; of simulated time
   How how = How::member;
+  int turn = 0;  // within the phase (call_order.h)
 };
 std::optional<TimeMember::How> parse_how(const std::string& text);
 
@@ -48,6 +50,9 @@ std::vector<std::string> module_paths(const std::vector<std::string>& before);
 
 // The context on simulated time in which a component of another process takes part; nullptr when there is none.
 const ContextView* simulated_context(const ComponentView& component);
+
+// Its own context is one that runs it after tick(), not in it.
+bool ticks_on_its_own(const ComponentView& component);
 
 // Brings a component into the context of its proxy. Where it was active in contexts of its own it is deactivated there and activated here;
 // these contexts run on. With `tick` its own first context is ticked instead, and its state there stays. A component that takes part

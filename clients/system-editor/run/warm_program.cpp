@@ -2,12 +2,14 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <signal.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
-#include <chrono>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <string>
@@ -21,7 +23,7 @@ namespace {
 using base::Error;
 using base::Result;
 
-constexpr int patience = 10'000;  // [ms] for a process to be made
+constexpr int answer_limit = 5'000;  // [ms] for a process to be made
 
 struct Descriptor {
   int number = -1;
@@ -65,22 +67,30 @@ bool send_with(int line, const std::string& text, int output, int watcher) {
 
 }  // namespace
 
-std::optional<WarmProgram> WarmProgram::start_simulator() {
+std::optional<WarmProgram> WarmProgram::start(const std::string& name, std::map<std::string, std::string> environment) {
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) return std::nullopt;
   Descriptor ours(ends[0]), theirs(ends[1]);
-  ProgramCall call{{own_program("sim-server"), "--warm"}, {same_math()}, ""};
+  ProgramCall call{{own_program(name), "--warm"}, std::move(environment), ""};
   call.input = theirs.number;
   auto started = ChildProcess::start(call);
   if (!started) return std::nullopt;
-  return WarmProgram(std::move(*started), ours.release());
+  return WarmProgram(std::move(*started), call.words.front(), ours.release());
 }
 
 WarmProgram::~WarmProgram() {
-  if (program_) close(line_);  // it ends by itself then
+  if (!program_) return;
+  close(line_);  // it ends by itself then
+  if (*is_silent_) kill(program_->pid(), SIGKILL);
 }
 
-Result<ChildProcess> WarmProgram::start(const ProgramCall& call) const {
+bool WarmProgram::is_there() const {
+  pollfd end{line_, 0, 0};  // a line whose other end is closed hangs up
+  return poll(&end, 1, 0) == 0;
+}
+
+Result<ChildProcess> WarmProgram::make(const ProgramCall& call) const {
+  if (*is_silent_ || !call.folder.empty() || call.input >= 0) return ChildProcess::start(call);
   const bool collects = call.output.empty();
   Descriptor output(collects ? memfd_create("output", MFD_CLOEXEC)
                              : open(call.output.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600));
@@ -92,10 +102,35 @@ Result<ChildProcess> WarmProgram::start(const ProgramCall& call) const {
   close(watcher.release());  // theirs alone: its end is theirs
   pollfd event{watched.number, POLLIN, 0};
   int pid = 0;
-  if (poll(&event, 1, patience) <= 0 || read(watched.number, &pid, sizeof pid) != sizeof pid) return ChildProcess::start(call);
+  const int answers = poll(&event, 1, answer_limit);
+  if (answers == 0 && !is_silent_->exchange(true))
+    std::fprintf(stderr, "rtse: %s --warm: has not answered for %d s; what it should make is started without it\n",
+                 std::filesystem::path(path_).filename().c_str(), answer_limit / 1000);
+  if (answers <= 0 || read(watched.number, &pid, sizeof pid) != sizeof pid) return ChildProcess::start(call);
   ChildProcess made(pid, collects ? output.release() : -1, std::filesystem::path(call.words[0]).filename().string(), call.ends_as_group);
   made.watched_ = watched.release();
   return made;
+}
+
+WarmPrograms::WarmPrograms() {
+  // What decides how they calculate is read when they are loaded.
+  for (const auto& [name, environment] :
+       {std::pair<const char*, std::map<std::string, std::string>>{"sim-server", {same_math()}}, {"rtcd", {same_math()}}, {"simctl", {}}}) {
+    if (auto started = WarmProgram::start(name, environment)) programs_.push_back(std::move(*started));
+  }
+}
+
+Result<ChildProcess> WarmPrograms::make(const ProgramCall& call) const {
+  const auto program = std::ranges::find_if(programs_, [&](const WarmProgram& one) { return one.path() == call.words.front(); });
+  return program == programs_.end() ? ChildProcess::start(call) : program->make(call);
+}
+
+std::size_t WarmPrograms::count() const {
+  return static_cast<std::size_t>(std::ranges::count_if(programs_, [](const WarmProgram& one) { return one.is_there(); }));
+}
+
+Result<ChildProcess> start_program(const WarmPrograms* warm, const ProgramCall& call) {
+  return warm != nullptr ? warm->make(call) : ChildProcess::start(call);
 }
 
 }  // namespace editor

@@ -1,9 +1,14 @@
-// A sim-server that has done the first half of its start and makes others by forking: for who starts many, one after the other. What it
-// makes runs as if it had been started alone, to the bit. See sim-server/server/warm_start.h. Any thread.
+// Programs that have done the first part of their start and make others by forking: for who starts many, one after the other. What they
+// make runs as if it had been started alone, to the bit. See base/warm_start.h. Any thread.
 #pragma once
 
+#include <atomic>
+#include <cstddef>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "run/child_process.h"
 
@@ -11,19 +16,41 @@ namespace editor {
 
 class WarmProgram {
  public:
-  // To be called by a thread that outlives it: the kernel ends the program when that thread ends. Nothing when it cannot be started, which
-  // is no loss but of time.
-  static std::optional<WarmProgram> start_simulator();
+  // One of our own programs. To be called by a thread that outlives it: the kernel ends the program when that thread ends. Nothing when it
+  // cannot be started, which is no loss but of time.
+  static std::optional<WarmProgram> start(const std::string& name, std::map<std::string, std::string> environment);
   WarmProgram(WarmProgram&&) noexcept = default;
   ~WarmProgram();
 
-  // As ChildProcess::start(call), whose first word is the program; by that when it cannot be made here.
-  base::Result<ChildProcess> start(const ProgramCall& call) const;
+  // As ChildProcess::start(call), whose first word is the program; by that when it cannot be made here. A program that is asked and says
+  // nothing for five seconds is not asked again.
+  base::Result<ChildProcess> make(const ProgramCall& call) const;
+  // False when it has ended; the kernel has told what it made to end, too, before any of that has ended.
+  bool is_there() const;
+  const std::string& path() const { return path_; }
 
  private:
-  WarmProgram(ChildProcess program, int line) : program_(std::make_unique<ChildProcess>(std::move(program))), line_(line) {}
+  WarmProgram(ChildProcess program, std::string path, int line)
+      : program_(std::make_unique<ChildProcess>(std::move(program))), path_(std::move(path)), line_(line) {}
   std::unique_ptr<ChildProcess> program_;
+  std::string path_;
+  std::unique_ptr<std::atomic<bool>> is_silent_ = std::make_unique<std::atomic<bool>>(false);
   int line_;
 };
+
+// Those that every run starts: the simulator, hosts of components, and simctl.
+class WarmPrograms {
+ public:
+  WarmPrograms();
+  // As ChildProcess::start(call), by the one whose program it is.
+  base::Result<ChildProcess> make(const ProgramCall& call) const;
+  std::size_t count() const;  // of those that are there
+
+ private:
+  std::vector<WarmProgram> programs_;
+};
+
+// By the warm programs, if there are some.
+base::Result<ChildProcess> start_program(const WarmPrograms* warm, const ProgramCall& call);
 
 }  // namespace editor

@@ -15,7 +15,7 @@ namespace {
 using base::Error;
 using base::Result;
 
-std::string_view local(std::string_view name) {
+std::string_view local_part(std::string_view name) {
   const auto colon = name.find(':');
   return colon == std::string_view::npos ? name : name.substr(colon + 1);
 }
@@ -23,7 +23,7 @@ std::string_view local(std::string_view name) {
 // xsi:type says what kind of element it is, not what type a port has.
 std::string attribute(const pugi::xml_node& node, std::string_view name, const std::string& otherwise = "") {
   for (const auto& candidate : node.attributes()) {
-    if (local(candidate.name()) == name && !std::string_view(candidate.name()).starts_with("xsi:")) return candidate.value();
+    if (local_part(candidate.name()) == name && !std::string_view(candidate.name()).starts_with("xsi:")) return candidate.value();
   }
   return otherwise;
 }
@@ -71,7 +71,7 @@ void add_service(NewComponent& component, const std::string& port, const pugi::x
 NewParameter parameter_of(const pugi::xml_node& node) {
   NewParameter parameter{attribute(node, "name"), attribute(node, "type", "double"), attribute(node, "defaultValue")};
   for (const auto& property : node.children()) {
-    if (local(property.name()) == "Properties" && attribute(property, "name") == "__widget__")
+    if (local_part(property.name()) == "Properties" && attribute(property, "name") == "__widget__")
       parameter.widget = attribute(property, "value", parameter.widget);
   }
   return parameter;
@@ -80,7 +80,7 @@ NewParameter parameter_of(const pugi::xml_node& node) {
 // "OnReset" with implemented="true" -> onReset, for the callbacks that are not always written.
 void add_actions(NewComponent& component, const pugi::xml_node& actions) {
   for (const auto& node : actions.children()) {
-    auto name = std::string(local(node.name()));
+    auto name = std::string(local_part(node.name()));
     if (name.empty()) continue;
     name.front() = 'o';
     const bool is_further = std::ranges::find(further_actions(), name) != further_actions().end();
@@ -101,10 +101,10 @@ Result<NewComponent> read_rtc_xml(const std::string& file) {
   if (const auto parsed = document.load_file(file.c_str()); !parsed)
     return Error{"file " + base::in_quotes(file) + ": is no XML: " + parsed.description()};
   const auto root = document.document_element();
-  if (local(root.name()) != "RtcProfile") return Error{"file " + base::in_quotes(file) + ": holds no RtcProfile element"};
+  if (local_part(root.name()) != "RtcProfile") return Error{"file " + base::in_quotes(file) + ": holds no RtcProfile element"};
   NewComponent component;
   for (const auto& node : root.children()) {
-    const auto kind = local(node.name());
+    const auto kind = local_part(node.name());
     if (kind == "BasicInfo") {
       component.name = attribute(node, "name");
       component.description = attribute(node, "description", component.description);
@@ -121,11 +121,11 @@ Result<NewComponent> read_rtc_xml(const std::string& file) {
       add_data_port(component, node, file);
     } else if (kind == "ServicePorts") {
       for (const auto& interface : node.children()) {
-        if (local(interface.name()) == "ServiceInterface") add_service(component, attribute(node, "name"), interface, file);
+        if (local_part(interface.name()) == "ServiceInterface") add_service(component, attribute(node, "name"), interface, file);
       }
     } else if (kind == "ConfigurationSet") {
       for (const auto& parameter : node.children()) {
-        if (local(parameter.name()) == "Configuration") component.parameters.push_back(parameter_of(parameter));
+        if (local_part(parameter.name()) == "Configuration") component.parameters.push_back(parameter_of(parameter));
       }
     }
   }

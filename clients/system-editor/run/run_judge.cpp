@@ -1,0 +1,115 @@
+#include "run/run_judge.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/text.h"
+#include "run/chance_report.h"
+#include "run/child_process.h"
+#include "run/run_script.h"
+
+namespace editor {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto command_limit = 60s;  // of a command of the user's
+constexpr auto look_limit = 5s;      // of a request for the simulator's statistics
+
+}  // namespace
+
+Result<void> RunJudge::read() {
+  if (options_.expectations.empty()) return {};
+  auto expectations = read_expectations(options_.expectations);
+  if (!expectations) return expectations.error();
+  expectations_ = std::move(*expectations);
+  return {};
+}
+
+Result<void> RunJudge::look(const Editor& editor, const std::vector<std::string>& chances, RunResult& result) {
+  const auto stats = simulator_.statistics(look_limit);
+  if (!stats.contains("hash")) return Error{"sim-server: does not answer"};
+  result.state_hash = stats["hash"].is_string() ? stats["hash"].get<std::string>() : stats["hash"].dump();
+  if (!options_.picture.empty()) {
+    const auto file = std::filesystem::absolute(options_.picture).string();
+    const auto drawn = simulator_.simctl({"screenshot", file, "--top", "--scans", "--size", "900x900"}, 60s);
+    if (!drawn) result.verdicts.push_back({"picture " + options_.picture, drawn.error().message});
+  }
+  seen_.models = simulator_.models();
+  for (const auto& component : system_.components) {
+    const auto view = editor.component(component.instance + ".rtc", {.contexts = true});
+    seen_.states[component.instance] = view ? state_text(view->state()) : "gone";
+    if (view) providers_.merge(providers_of(*view));
+  }
+  check_states(result);
+  check_chances(chances, result);
+  return {};
+}
+
+// What a next run may do otherwise: a failure when the run is to be strict, a note for each in a CI job.
+void RunJudge::check_chances(const std::vector<std::string>& known, RunResult& result) const {
+  if (!options_.strict && !std::getenv("CI")) return;
+  auto chances = chances_in(hosts_.logs());
+  chances.insert(chances.end(), known.begin(), known.end());
+  const auto phases = simulator_.phases();
+  for (auto& pair : services_of_one_phase(system_, phases)) chances.push_back(std::move(pair));
+  for (auto& pair : callers_of_one_phase(system_, phases, providers_)) chances.push_back(std::move(pair));
+  if (options_.strict) {
+    result.verdicts.push_back({"nothing depends on chance", base::join(chances, "; ")});
+  } else {
+    for (const auto& chance : chances) result.notes.push_back("depends on chance: " + chance);
+  }
+}
+
+// A component that has ended in an error, or has gone, is no success, whether somebody has asked for its state or not.
+void RunJudge::check_states(RunResult& result) const {
+  std::string problem;
+  for (const auto& [component, state] : seen_.states) {
+    const bool is_judged = std::ranges::any_of(expectations_, [&](const Expectation& expectation) {
+      return expectation.kind == Expectation::Kind::state && expectation.component == component;
+    });
+    if (options_.script && options_.script->excuses(component)) continue;
+    if (!is_judged && (state == "Error" || state == "gone")) problem += (problem.empty() ? "" : ", ") + component + " is " + state;
+  }
+  result.verdicts.push_back({"no component ends in an error", problem});
+}
+
+Result<void> RunJudge::run_commands(const std::string& naming) {
+  for (const auto& expectation : expectations_) {
+    if (expectation.kind != Expectation::Kind::command) continue;
+    auto& seen = seen_.commands[expectation.command];
+    auto started = ChildProcess::start(shell_call(expectation.command, place_.file("record.txt"), simulator_.id(), naming));
+    if (!started) return started.error();
+    const auto ending = started->wait_or_interrupt(command_limit);
+    if (ending == Ending::interrupted) return Error{"run: interrupted"};
+    const auto lines = base::split_list(started->said(), '\n');
+    seen.text = lines.empty() ? "" : printable(lines.back());
+    seen.output = tail_of(lines);
+    if (ending == Ending::ended) {
+      seen.exit_code = started->exit_code();
+    } else {
+      seen.text = "it did not end within " + std::to_string(command_limit.count()) + " s";
+    }
+  }
+  return {};
+}
+
+Result<void> RunJudge::judge(RunResult& result) {
+  auto record = read_record(place_.file("record.txt"), options_.duration_s + simulator_.step() / 2);
+  if (!record) return record.error();
+  constexpr double record_period = 0.1;  // [s]
+  if (record->last < options_.duration_s - record_period - simulator_.step()) {
+    return Error{"the record of the run ends at " + base::format_number(record->last) + " s, by a reset or a full disk" +
+                 complaint(place_.file("sim-server.log"))};
+  }
+  seen_.record = std::move(*record);
+  const auto verdicts = editor::judge(expectations_, seen_);
+  result.verdicts.insert(result.verdicts.end(), verdicts.begin(), verdicts.end());
+  for (const auto& [model, poses] : seen_.record.poses) result.path_m = std::max(result.path_m, path_length(poses));
+  return {};
+}
+
+}  // namespace editor

@@ -1,0 +1,55 @@
+// The verdict on a run: what was expected, what was seen, and what the two give. In the order of the calls: `read` before anything starts,
+// `look` while the world stands still at the end and every process lives, `run_commands` then, and `judge` last. One thread.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "editor.h"
+#include "profile/rts_profile.h"
+#include "run/expectations.h"
+#include "run/run_files.h"
+#include "run/run_hosts.h"
+#include "run/run_simulator.h"
+#include "run/run_system.h"
+
+namespace editor {
+
+class RunJudge {
+ public:
+  // All of these outlive it.
+  RunJudge(const RunOptions& options, const Workplace& place, const SavedSystem& system, RunSimulator& simulator, const RunHosts& hosts)
+      : options_(options), place_(place), system_(system), simulator_(simulator), hosts_(hosts) {}
+
+  // The file of expectations, if there is one.
+  Result<void> read();
+  const std::vector<Expectation>& expectations() const { return expectations_; }
+  // What was seen on ports, by "port member".
+  void take_values(std::map<std::string, SeenValue> values) { seen_.values = std::move(values); }
+  // What can be seen only while everything still runs: states, poses, the picture, the hash. Fails when the simulator does not answer.
+  // `chances`: what is known already to depend on chance.
+  Result<void> look(const Editor& editor, const std::vector<std::string>& chances, RunResult& result);
+  // The user's commands. Fails after an interrupt, and when a command cannot be started; its exit code is for the verdict.
+  Result<void> run_commands(const std::string& naming);
+  // The record against the expectations. Fails when the record does not reach to the end of the run.
+  Result<void> judge(RunResult& result);
+  const Seen& seen() const { return seen_; }
+
+ private:
+  void check_chances(const std::vector<std::string>& known, RunResult& result) const;
+  void check_states(RunResult& result) const;
+
+  const RunOptions& options_;
+  const Workplace& place_;
+  const SavedSystem& system_;
+  RunSimulator& simulator_;
+  const RunHosts& hosts_;
+  std::vector<Expectation> expectations_;
+  Seen seen_;
+  std::set<std::string> providers_;  // full names of ports
+};
+
+}  // namespace editor
