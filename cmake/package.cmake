@@ -100,7 +100,7 @@ foreach(program ${package_programs} ${package_component_programs})
     COMMAND $<TARGET_FILE:${program}> --man > ${page}
     COMMAND $<TARGET_FILE:${program}> --completion bash > ${bash}
     COMMAND $<TARGET_FILE:${program}> --completion zsh > ${zsh}
-    DEPENDS ${program} VERBATIM)
+    DEPENDS ${program} openrtm VERBATIM)  # which has the words that all programs of components share
   list(APPEND package_pages ${page})
   install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
   install(FILES ${bash} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
