@@ -12,7 +12,7 @@ foreach(script_and_cases
   list(POP_FRONT cases script)
   foreach(case ${cases})
     add_test(NAME player.${case}
-      COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/${script}.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+      COMMAND ${judged} python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/${script}.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
     set_tests_properties(player.${case} PROPERTIES LABELS integration TIMEOUT 300)
   endforeach()
 endforeach()
@@ -24,7 +24,7 @@ endforeach()
 
 foreach(case identity configure meters_and_depths storm)
   add_test(NAME player.${case}
-    COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/player_devices.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+    COMMAND ${judged} python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/player_devices.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(player.${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
 
@@ -40,3 +40,5 @@ foreach(case leader losses late_gateway wrong_servers)
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/follow.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(follow.${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
+# What a client of Player may send that it should not: part of the campaigns.
+set_tests_properties(player.bad_input player.storm PROPERTIES LABELS "integration;campaign")

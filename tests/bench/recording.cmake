@@ -2,6 +2,6 @@
 add_custom_target(recording_bench
   COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/recording_bench.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR}
   USES_TERMINAL)
-add_dependencies(recording_bench rtse rtse-recorder rtcd sim-server simctl)
 add_executable(mcap_bench mcap_bench.cpp)
 target_link_libraries(mcap_bench PRIVATE mcap rtmsim_settings)
+add_dependencies(recording_bench rtse rtse-recorder rtcd sim-server simctl mcap_bench)

@@ -3,9 +3,15 @@
 phase by every subscription type and by pull. Each run's whole hash log is compared with the first run's; half of the runs are made under load, with the
 priorities and processors of all their processes shuffled all the time. Prints n of n, and the first difference of each run that differs.
 
-usage: repeatability.py [BUILD_DIR] [--runs N] [--duration S] [--load N]      (default: build/release, 20 runs of 20 s, load of 20 processes)
+Load: so many processes that only burn time. --together: so many runs at once, which hold each other up, the shuffled ones among the others; then all are made
+under load, and only as many processes burn time as are missing for --load. A thousand runs want --together 20. --for: no run begins after so many seconds;
+what has been made is counted.
+
+usage: repeatability.py [BUILD_DIR] [--runs N] [--duration S] [--load N] [--together N] [--for S]
+       (default: build/release, 20 runs of 20 s, load of 20, one at a time, without end)
 """
 import argparse
+import concurrent.futures
 import os
 import pathlib
 import random
@@ -25,6 +31,8 @@ parser.add_argument("build", nargs="?", default=str(source / "build/release"))
 parser.add_argument("--runs", type=int, default=20)
 parser.add_argument("--duration", type=float, default=20)
 parser.add_argument("--load", type=int, default=20)
+parser.add_argument("--together", type=int, default=1)
+parser.add_argument("--for", type=float, default=float("inf"), dest="limit")
 options = parser.parse_args()
 build = pathlib.Path(options.build).resolve()
 rtse = str(build / "bin/rtse")
@@ -78,8 +86,7 @@ def shuffle(pid, ends):
 
 def run(folder, name, loaded):
     words = [rtse, "run", "system.xml", "--world", "world.sdf", "--module-path", str(build / "lib"), "--duration", str(options.duration), "--seed", "7",
-             "--one-process-each", "--hash-log", name, "--strict", "--hang-timeout", "300"]
-    hogs = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(options.load if loaded else 0)]
+             "--one-process-each", "--hash-log", name, "--strict", "--hang-timeout", "600", "--start-timeout", "600"]
     began = time.monotonic()
     process = subprocess.Popen(words, cwd=folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     ends = threading.Event()
@@ -87,33 +94,59 @@ def run(folder, name, loaded):
     if loaded:
         shuffler.start()
     try:
-        out, err = process.communicate(timeout=3600)
+        _, err = process.communicate(timeout=3600)
     finally:
         ends.set()
-        for hog in hogs:
-            hog.send_signal(signal.SIGKILL)
-            hog.wait()
     if loaded:
         shuffler.join()
-    if process.returncode != 0:
-        print(f"run {name}: {err.strip()}", flush=True)
-    return process.returncode == 0, time.monotonic() - began
+    return ("" if process.returncode == 0 else err.strip()), time.monotonic() - began
 
 
-with tempfile.TemporaryDirectory() as folder:
+# True: it is the same run as the first one.
+def is_same(folder, number, loaded):
+    name = f"{number}.hashlog"
+    problem, took = run(folder, name, loaded)
+    said = problem
+    if not problem:
+        compared = subprocess.run([rtse, "diff", "0.hashlog", name], cwd=folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        problem, said = compared.returncode != 0, (compared.stdout or compared.stderr).strip()
+    print(f"run {number}{', shuffled' if loaded else ''}, {took:.0f} s: {said}", flush=True)
+    if number > 0:
+        (pathlib.Path(folder) / name).unlink(missing_ok=True)
+    return not problem
+
+
+class Load:
+    def __init__(self, count):
+        self.count = count
+
+    def __enter__(self):
+        self.hogs = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(self.count)]
+
+    def __exit__(self, *_):
+        for hog in self.hogs:
+            hog.send_signal(signal.SIGKILL)
+            hog.wait()
+
+
+with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(options.together) as pool:
     place = pathlib.Path(folder)
     (place / "system.xml").write_text(the_system())
     (place / "world.sdf").write_text(the_world())
-    same = 0
-    for i in range(options.runs):
-        loaded = i % 2 == 1
-        good, took = run(folder, f"{i}.hashlog", loaded)
-        if good:
-            compared = subprocess.run([rtse, "diff", "0.hashlog", f"{i}.hashlog"], cwd=folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-            good = compared.returncode == 0
-            print(f"run {i}{' under load' if loaded else ''}, {took:.0f} s: {(compared.stdout or compared.stderr).strip()}", flush=True)
-        same += good
-        if i > 0:
-            (place / f"{i}.hashlog").unlink(missing_ok=True)
-    print(f"{same} of {options.runs} runs are the same ({options.duration:g} s simulated each)")
+    began = time.monotonic()
+
+    # Nothing: it was not made, for want of time.
+    def make(number):
+        if time.monotonic() - began > options.limit:
+            return None
+        is_shuffled = number % 2 == 1
+        with Load(options.load if is_shuffled and options.together == 1 else 0):
+            return is_same(folder, number, is_shuffled), is_shuffled
+
+    verdicts = [(is_same(folder, 0, False), False)]
+    with Load(max(0, options.load - options.together) if options.together > 1 else 0):
+        verdicts += [verdict for verdict in pool.map(make, range(1, options.runs)) if verdict]
+    same = sum(is_good for is_good, _ in verdicts)
+    print(f"{same} of {len(verdicts)} runs are the same ({options.duration:g} s simulated each), {sum(was for _, was in verdicts)} of them with shuffled priorities and "
+          f"processors, after {time.monotonic() - began:.0f} s")
     sys.exit(0 if same == options.runs else 1)

@@ -11,7 +11,10 @@ import sys
 import tempfile
 import time
 
-watchdog = 60
+# Programs with sanitizers take several times as much of both (no_report.py).
+sanitized = "RTMSIM_SANITIZED" in os.environ
+watchdog = 300 if sanitized else 60
+memory_factor = 4 if sanitized else 1
 
 
 def message(kind, body, more=False, minor=2):
@@ -47,10 +50,27 @@ def listening_ports(pid):
     return [int(row[1].split(":")[1], 16) for row in rows if row[3] == "0A" and f"socket:[{row[9]}]" in sockets]
 
 
+def name_server(above):
+    """The process of omniNames that this one, or one below it, has started."""
+    for entry in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open(f"/proc/{entry}/stat") as stat, open(f"/proc/{entry}/cmdline") as words:
+                parent, command = int(stat.read().rsplit(")", 1)[1].split()[1]), words.read()
+        except OSError:
+            continue
+        if parent != above:
+            continue
+        if "-datadir" in command:
+            return int(entry)
+        if found := name_server(int(entry)):
+            return found
+    return None
+
+
 class Host:
     """An rtcd; with `wrapper` a program before it, as valgrind. Ended by pid."""
 
-    def __init__(self, bin_dir, lib_dir, *options, wrapper=(), files=None):
+    def __init__(self, bin_dir, lib_dir, *options, wrapper=(), files=None, **environment):
         bin_dir, lib_dir = os.path.abspath(bin_dir), os.path.abspath(lib_dir)
         self.folder = tempfile.TemporaryDirectory()
         with socket.socket() as probe:
@@ -64,7 +84,7 @@ class Host:
             if files:
                 resource.setrlimit(resource.RLIMIT_NOFILE, (files, files))
 
-        self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=self.log, stderr=self.log, cwd=self.folder.name, preexec_fn=prepare)
+        self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=self.log, stderr=self.log, cwd=self.folder.name, preexec_fn=prepare, env={**os.environ, **environment})
         until = time.monotonic() + watchdog
         while not self.answers():
             if self.process.poll() is not None or time.monotonic() > until:
@@ -75,20 +95,20 @@ class Host:
         with open(self.log.name, errors="replace") as log:
             return log.read()
 
-    def connect(self, timeout=10):
-        return socket.create_connection(("127.0.0.1", self.port), timeout=timeout)
+    def connect(self, timeout=10, port=None):
+        return socket.create_connection(("127.0.0.1", port or self.port), timeout=timeout)
 
-    # One whole request is answered.
-    def answers(self, timeout=10):
+    # One whole request is answered; at another port by what it has started.
+    def answers(self, timeout=10, port=None):
         try:
-            with self.connect(timeout) as stream:
+            with self.connect(timeout, port) as stream:
                 stream.sendall(locate(7))
                 return stream.recv(12)[:4] == b"GIOP"
         except OSError:
             return False
 
-    def memory(self):
-        with open(f"/proc/{self.process.pid}/status") as status:
+    def memory(self, pid=None):
+        with open(f"/proc/{pid or self.process.pid}/status") as status:
             return next(int(line.split()[1]) for line in status if line.startswith("VmHWM:")) // 1024  # [MiB]
 
     def end(self):

@@ -1,6 +1,7 @@
 # Who is let in, and what idle or lying connections cost: doors.py BIN_DIR LIB_DIR [unittest arguments]. What needs a second account is skipped unless run by root.
 import os
 import resource
+import signal
 import socket
 import struct
 import subprocess
@@ -9,7 +10,7 @@ import tempfile
 import time
 import unittest
 
-from attacker import Host, head, listening_ports, locate, message
+from attacker import Host, head, listening_ports, locate, message, name_server
 
 sys.path.append(os.path.join(os.path.dirname(__file__), "../scenario"))
 from system import System
@@ -127,6 +128,28 @@ class Doors(unittest.TestCase):
             stream.close()
         self.assertEqual(ask_as(0, port, root), "GIOP")
 
+    def test_what_a_killed_keeper_of_names_leaves_behind_goes_with_the_next_start(self):
+        with tempfile.TemporaryDirectory() as folder:
+            def start():
+                with socket.socket() as probe:
+                    probe.bind(("127.0.0.1", 0))
+                    port = probe.getsockname()[1]
+                return self.host("--with-naming", "-o", f"corba.nameservers:127.0.0.1:{port}", "-o", "corba.unix_socket:NO", TMPDIR=folder)
+
+            names = name_server(start().process.pid)
+            with open(f"/proc/{names}/stat") as stat:
+                keeper = int(stat.read().rsplit(")", 1)[1].split()[1])
+            left = os.listdir(folder)
+            self.assertEqual([name[:11] for name in left], ["rtcd-names-"])
+            os.kill(keeper, signal.SIGKILL)
+            until = time.monotonic() + 60
+            while os.path.exists(f"/proc/{names}/fd") and time.monotonic() < until:  # it ends with its keeper
+                time.sleep(0.01)
+            self.assertEqual(os.listdir(folder), left)
+            start()
+            self.assertNotIn(left[0], os.listdir(folder))
+            self.assertEqual(len(os.listdir(folder)), 1)
+
     def test_who_sends_no_whole_request_is_sent_away(self):
         host = self.host()
         with host.connect(timeout=30) as silent, host.connect(timeout=30) as slow:
@@ -155,12 +178,13 @@ class Doors(unittest.TestCase):
         self.assertNotIn("terminate", done.stderr)
 
     def test_output_to_a_full_device_is_a_failure(self):
-        for program in ["rtcd", "rtse", "simctl", "sim-server"]:
+        for program, *words in (["rtcd", "--help"], ["rtse", "--help"], ["simctl", "--help"], ["sim-server", "--help"], ["player-gateway", "--help"], ["rtm-studio", "--help"], ["follow", "--help"],
+                                ["rtse", "record", "--help"], ["rtse", "sweep", "--help"], ["SinkAllComp", "--help"], ["rtcprof", f"{lib_dir}/SinkAll.so"]):
             if not os.path.exists(f"{bin_dir}/{program}"):
                 continue
             with open("/dev/full", "w") as full:
-                done = subprocess.run([f"{bin_dir}/{program}", "--help"], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
-            self.assertEqual((program, done.returncode), (program, 1))
+                done = subprocess.run([f"{bin_dir}/{program}", *words], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
+            self.assertEqual((program, words, done.returncode), (program, words, 1))
             self.assertIn("cannot be written", done.stderr)
 
     def test_fragments_are_put_together(self):

@@ -1,14 +1,18 @@
 # Requests in fragments of every kind, many connections at the same time: fragments.py BIN_DIR LIB_DIR [--messages N] [--seconds T] [--seed S] [--valgrind]
-# omniORB 4.2 dies of 1,400 of them when they reach it. Ends well when rtcd still answers, has ended with 0 and has not taken much memory.
+# omniORB 4.2 dies of 1,400 of them when they reach it. Half of the connections lead to rtcd, half to the naming service that it has started. Ends well when both still answer, rtcd has ended with 0 and
+# neither has taken much memory. With --valgrind both run under it.
 import argparse
+import os
 import re
 import shutil
+import socket
 import struct
 import sys
+import tempfile
 import threading
 import time
 
-from attacker import Host, check, head, locate, message, pad, seeded
+from attacker import Host, check, head, locate, memory_factor, message, name_server, pad, seeded
 
 parser = argparse.ArgumentParser()
 parser.add_argument("bin_dir")
@@ -21,7 +25,7 @@ parser.add_argument("--valgrind", action="store_true")
 options = parser.parse_args()
 random = seeded(options.seed)
 
-keys = [b"manager", b"INIT", b"nobody", b"\xff\x00\x00\x00"]
+keys = [b"manager", b"NameService", b"INIT", b"nobody", b"\xff\x00\x00\x00"]
 operations = ["get_profile", "set_configuration", "create_component", "get_components", "nonsense", "put", "_is_a", "_non_existent"]
 
 
@@ -50,8 +54,9 @@ def burst(rng):
 
 
 class Attack(threading.Thread):
-    def __init__(self, host, seed, count):
+    def __init__(self, host, port, seed, count):
         super().__init__(daemon=True)
+        self.port, self.patience = port, 30 if port == host.port else 0.3  # the naming service waits for the rest of what never comes
         self.host, self.rng, self.left, self.sent, self.closed = host, __import__("random").Random(seed), count, 0, 0
 
     def goes_on(self):
@@ -60,10 +65,11 @@ class Attack(threading.Thread):
     def run(self):
         while self.goes_on() and self.host.process.poll() is None:
             try:
-                with self.host.connect() as stream:
+                with socket.create_connection(("127.0.0.1", self.port), timeout=10) as stream:
                     self.talk(stream)
             except OSError:
                 self.closed += 1
+                self.left -= 1
 
     def talk(self, stream):
         reader = threading.Thread(target=self.drain, args=(stream,), daemon=True)
@@ -81,7 +87,7 @@ class Attack(threading.Thread):
             stream.shutdown(1)
         except OSError:
             pass
-        reader.join(30)
+        reader.join(self.patience)
 
     @staticmethod
     def drain(stream):
@@ -93,23 +99,34 @@ class Attack(threading.Thread):
 
 
 wrapper = ()
+found = tempfile.TemporaryDirectory()
 if options.valgrind:
-    wrapper = (shutil.which("valgrind") or "valgrind", "--error-exitcode=99", "-q", "--num-callers=20",
+    wrapper = (shutil.which("valgrind") or "valgrind", "--error-exitcode=99", "-q", "--num-callers=20", "--trace-children=yes", f"--log-file={found.name}/%p",
                "--undef-value-errors=no")  # omniORB sends gaps of alignment as they are
-host = Host(options.bin_dir, options.lib_dir, wrapper=wrapper)
+with socket.socket() as probe:
+    probe.bind(("127.0.0.1", 0))
+    names_port = probe.getsockname()[1]
+host = Host(options.bin_dir, options.lib_dir, "--with-naming", "-o", f"corba.nameservers:127.0.0.1:{names_port}", wrapper=wrapper)
+names = name_server(host.process.pid)
 until = options.seconds and time.monotonic() + options.seconds
 messages = sys.maxsize if until else options.messages
-attacks = [Attack(host, random.randrange(1 << 30), messages // options.connections) for _ in range(options.connections)]
+attacks = [Attack(host, names_port if i % 2 else host.port, random.randrange(1 << 30), messages // options.connections) for i in range(options.connections)]
 for attack in attacks:
     attack.start()
 for attack in attacks:
     attack.join()
 check(host.process.poll() is None, "rtcd has died", host)
 check(host.answers(), "rtcd does not answer any more", host)
+check(host.answers(port=names_port) and name_server(host.process.pid) == names, "the naming service has died, or does not answer any more", host)
 memory = host.memory()
+check(options.valgrind or host.memory(names) < 400 * memory_factor, f"the naming service has taken {host.memory(names)} MiB", host)
 code = host.end()
-found = [line for line in host.text().splitlines() if line.startswith("==")]  # of valgrind and the sanitizers
-check(code == 0, "\n".join([f"rtcd has ended with {code}", *found[:200]]), host)
-check(options.valgrind or memory < 400, f"rtcd has taken {memory} MiB", host)
+reports = []
+for name in os.listdir(found.name):
+    with open(f"{found.name}/{name}", errors="replace") as file:
+        reports += file.read().splitlines()
+reports += [line for line in host.text().splitlines() if line.startswith("==")]  # of sanitizers
+check(code == 0 and not reports, "\n".join([f"rtcd has ended with {code}", *reports[:200]]), host)
+check(options.valgrind or memory < 400 * memory_factor, f"rtcd has taken {memory} MiB", host)
 check(not re.search("Invalid (read|write)|ERROR: AddressSanitizer|runtime error:|WARNING: ThreadSanitizer", host.text()), "something was found", host)
 print(f"{sum(a.sent for a in attacks)} messages, {sum(a.closed for a in attacks)} connections refused, {memory} MiB at most")

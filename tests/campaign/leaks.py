@@ -12,11 +12,11 @@ arguments.add_argument("--seconds", type=float)
 arguments.add_argument("--seed", type=int)
 given = arguments.parse_args()
 bin_dir, lib_dir, source = given.folders
-from attacker import listening_ports, locate, seeded
+from attacker import listening_ports, locate, sanitized, seeded
 from driving import Driving, System
 
 box = "<sdf version='1.9'><model name='box'><pose>3 3 1 0 0 0</pose><link name='l'><collision name='c'><geometry><box><size>.1 .1 .1</size></box></geometry></collision></link></model></sdf>"
-few = 16  # [MiB] that heaps of many threads may come to, whatever the number of rounds
+few = 320 if sanitized else 16  # [MiB] that heaps of many threads may come to, whatever the number of rounds
 each_round = 16 / 1024  # [MiB]
 choice = seeded(given.seed)
 

@@ -66,9 +66,32 @@ TEST_F(Plans, say_line_and_column_of_what_is_wrong) {
             ":5:28: a fault of a sensor must be off, stuck, bias, noise, missing, latency, dropout");
   EXPECT_EQ(error(start_ + "faults:\n  - {at: 1, connector: x, is: drop, amount: 2}\n"),
             ":5:45: amount of drop must be from 0 to 1, got 2");
+  EXPECT_EQ(error(start_ + "faults:\n  - {at: 1, connector: x, is: delay, amount: 1.5}\n"),
+            ":5:46: amount of delay must be a whole number of samples, got 1.5");
   EXPECT_EQ(error(start_ + "vary:\n  seed: [1]\nrepeat: 2\n"), ":5:3: seed varies already by repeat; expected one of the two");
+  EXPECT_EQ(error(start_ + "events:\n  - {at: 1, pose: {model: robot, to: [1, 2]}}\n"),
+            ":5:38: to must be x y yaw, x y z yaw or x y z roll pitch yaw, got 2 numbers");
+  EXPECT_EQ(error(start_ + "events:\n  - {at: 1, push: {model: robot, force: [1]}}\n"),
+            ":5:41: force must be 3 numbers of a force or 6 of a force and a torque, got 1 number");
+  EXPECT_EQ(error(start_ + "never:\n  - {port: 'A0:out', member: data, min: 2, max: 1}\n"), ":5:49: max must not be less than min");
   EXPECT_EQ(error("{"), ":1:1: is no YAML: end of map flow not found");
   EXPECT_EQ(error(start_ + "duration: 6\n"), ":4:1: plan has duration twice");
+}
+
+// What comes after the end, or is not looked at before it, would be silent.
+TEST_F(Plans, refuse_what_happens_in_no_run) {
+  EXPECT_EQ(error(start_ + "events:\n  - {at: 5.1, delete: robot}\n"), ":5:10: at must not be more than the duration of 5 s, got 5.1");
+  EXPECT_EQ(error(start_ + "events:\n  - {at: 5, delete: robot}\n"), "none");
+  EXPECT_EQ(error(start_ + "faults:\n  - {at: 5, naming: gone}\n"), ":5:10: at must be less than the duration of 5 s, got 5");
+  EXPECT_EQ(error(start_ + "eventually:\n  - {component: A0, is: Error, within: 6}\n"),
+            ":5:40: within must not be more than the duration of 5 s, got 6");
+  EXPECT_EQ(error(start_ + "never:\n  - {component: A0, is: Error, after: 6}\n"),
+            ":5:39: after must not be more than the duration of 5 s, got 6");
+  EXPECT_EQ(error(start_ + "events:\n  - {when: {component: A0, is: Error, after: 6}, delete: robot}\n"),
+            ":5:46: after must not be more than the duration of 5 s, got 6");
+  EXPECT_EQ(error(start_ + "eventually:\n  - {component: A0, is: Error, after: 2, within: 1}\n"),
+            ":5:50: within must not be less than after");
+  EXPECT_EQ(error(start_ + "hunt:\n  events: [{at: 6, delete: robot}]\n"), ":5:17: at must not be more than the duration of 5 s, got 6");
 }
 
 TEST(PlanSchema, is_the_one_that_is_published) {

@@ -19,9 +19,8 @@ constexpr std::uint64_t between = 8, in_phase = 9;
 TEST(CallWatch, changes_from_outside_are_told_in_and_between_phases) {
   for (const std::uint64_t moment : {between, in_phase}) {
     EXPECT_EQ(chance_of_call("set_configuration_set_values", moment),
-              "had the parameters of a component changed by another process (set_configuration_set_values)");
-    EXPECT_EQ(chance_of_call("activate_component", moment),
-              "had the state of a component or context changed by another process (activate_component)");
+              "had its parameters changed by another process (set_configuration_set_values)");
+    EXPECT_EQ(chance_of_call("activate_component", moment), "had its state or a context changed by another process (activate_component)");
     EXPECT_EQ(chance_of_call("notify_disconnect", moment), "had a connection made or ended by another process (notify_disconnect)");
   }
 }

@@ -4,7 +4,8 @@
 #include <gtest/gtest.h>
 #include <rtm/NVUtil.h>
 
-#include <fstream>
+#include <thread>
+#include <utility>
 
 #include "manager/rtcd_fixture.h"
 
@@ -21,6 +22,17 @@ TEST(RemoteRights, keys_that_name_programs_files_and_doors_are_protected) {
                           "manager.modulesque", "loggers", "corbaloc", "my_config_file"}) {
     EXPECT_FALSE(rt::is_protected_key(key)) << key;
   }
+}
+
+TEST(RemoteRights, a_caller_names_no_function_but_those_that_make_modules_known) {
+  for (const auto& [module, function] : std::vector<std::pair<std::string, std::string>>{
+           {"A.so", ""}, {"A.so", "AInit"}, {"A.so", " AInit "}, {"A.so(AInit)", ""}, {"A.so(OtherInit)", "abort"}})
+    EXPECT_TRUE(rt::is_init_function(module, function, "", "Init")) << module << " " << function;
+  for (const auto& [module, function] : std::vector<std::pair<std::string, std::string>>{
+           {"A.so", "abort"}, {"A.so", "_exit"}, {"A.so", "_ZInit"}, {"A.so(system)", "AInit"}, {"A.so( exit )", ""}, {"A.so", "Initial"}})
+    EXPECT_FALSE(rt::is_init_function(module, function, "", "Init")) << module << " " << function;
+  EXPECT_TRUE(rt::is_init_function("A.so", "my_A_start", "my_", "_start"));
+  EXPECT_FALSE(rt::is_init_function("A.so", "AInit", "my_", "_start"));
 }
 
 class RemoteRightsOf : public Rtcd {
@@ -58,6 +70,28 @@ TEST_F(RemoteRightsOf, a_caller_sets_no_protected_key_and_the_log_says_who_tried
   EXPECT_FALSE(can_create("SinkAll?config_file=/etc/hostname"));
   EXPECT_TRUE(can_create("SinkAll"));
   EXPECT_NE(rtcd_->output().find("giop:"), std::string::npos) << "where the caller is";
+}
+
+// The loader finds the functions of the C library through every module.
+TEST_F(RemoteRightsOf, a_function_that_a_caller_names_does_not_end_the_process) {
+  start({});
+  for (const char* function : {"abort", "exit", "_exit", "raise", "pause"}) {
+    EXPECT_EQ(manager_->load_module("SinkAll.so", function), RTC::BAD_PARAMETER) << function;
+    EXPECT_EQ(manager_->load_module(("SinkAll.so(" + std::string(function) + ")").c_str(), ""), RTC::BAD_PARAMETER) << function;
+  }
+  EXPECT_EQ(manager_->load_module("SinkAll.so", "SinkAllInit"), RTC::RTC_OK) << rtcd_->output();
+}
+
+// Who makes components of a module, and who takes it out of memory, may be different callers at the same time.
+TEST_F(RemoteRightsOf, a_module_stays_while_a_component_of_it_is_being_made) {
+  start({"-o", "manager.shutdown_auto:NO"});
+  ASSERT_EQ(manager_->load_module("Hangs.so", "HangsInMakingInit"), RTC::RTC_OK) << rtcd_->output();
+  bool is_made = false;
+  std::thread maker([&] { is_made = can_create("HangsInMaking"); });
+  EXPECT_TRUE(eventually([&] { return rtcd_->output().find("being made") != std::string::npos; }));
+  EXPECT_EQ(manager_->unload_module("Hangs"), RTC::PRECONDITION_NOT_MET);
+  maker.join();
+  EXPECT_TRUE(is_made) << rtcd_->output();
 }
 
 TEST_F(RemoteRightsOf, a_manager_may_be_for_looking_only) {

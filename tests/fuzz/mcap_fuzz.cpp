@@ -1,5 +1,6 @@
-// Octets of a recording: whatever comes is read to its end or refused with a line; memory stays bounded. Mutates good files; prints its
-// seed. mcap_fuzz [--runs N] [--seed N]
+// Octets of a recording: whatever comes is read to its end or refused with a line; memory stays bounded. Mutates good files, half of them
+// without the sums that would tell a mutated one at once; prints its seed. mcap_fuzz [--runs N] [--seed N]. Built with -DRTMSIM_LIBFUZZER
+// (clang) it is a target of libFuzzer over the same check.
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -10,6 +11,7 @@
 #include <fstream>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mcap/mcap.h"
@@ -38,6 +40,21 @@ std::string make_recording(const std::string& path, mcap::Compression compressio
   return octets_of(path);
 }
 
+// Sums of zero are none: chunks and the summary are believed then.
+std::string without_sums(std::string octets) {
+  constexpr std::size_t magic = 8, head = 9, sum_of_chunk = 24, end = 12;
+  for (std::size_t at = magic; at + head < octets.size();) {
+    std::uint64_t length = 0;
+    std::memcpy(&length, octets.data() + at + 1, sizeof length);
+    constexpr char chunk = 6;
+    if (octets[at] == chunk) std::memset(octets.data() + at + head + sum_of_chunk, 0, 4);
+    at += head + length;
+  }
+  std::memset(octets.data() + octets.size() - end, 0, 4);
+  return octets;
+}
+
+#ifndef RTMSIM_LIBFUZZER
 void mutate(std::string& octets, std::mt19937& random) {
   const auto below = [&](std::size_t end) { return end == 0 ? 0 : random() % end; };
   for (std::size_t i = below(6) + 1; i > 0; --i) {
@@ -62,6 +79,8 @@ void mutate(std::string& octets, std::mt19937& random) {
   }
 }
 
+#endif
+
 // The number of messages and errors; ends, since each error costs one chunk.
 std::size_t read_all(const std::string& path) {
   auto reader = mcap::Reader::open(path);
@@ -79,8 +98,41 @@ std::size_t read_all(const std::string& path) {
   }
 }
 
+std::vector<std::string> good_files(const std::string& path) {
+  std::vector<std::string> files = {make_recording(path, mcap::Compression::zstd, 200), make_recording(path, mcap::Compression::lz4, 400),
+                                    make_recording(path, mcap::Compression::none, 100),
+                                    make_recording(path, mcap::Compression::none, 1 << 20)};
+  for (std::size_t i = 0, count = files.size(); i < count; ++i) files.push_back(without_sums(files[i]));
+  return files;
+}
+
+std::size_t check(const std::string& path, std::string_view octets, bool is_repaired) {
+  std::ofstream(path, std::ios::binary | std::ios::trunc) << octets;
+  const auto answers = read_all(path);
+  if (is_repaired) (void)mcap::repair(path, path + ".again");
+  return answers;
+}
+
 }  // namespace
 
+#ifdef RTMSIM_LIBFUZZER
+extern "C" int LLVMFuzzerTestOneInput(const char* data, std::size_t size) {
+  static const std::string path = (fs::temp_directory_path() / ("mcap_fuzz_" + std::to_string(getpid()) + ".mcap")).string();
+  (void)check(path, {data, size}, size % 8 == 0);
+  return 0;
+}
+
+// What it begins with when its folder is empty.
+extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
+  const fs::path folder = *argc > 1 ? (*argv)[*argc - 1] : "";
+  if (!fs::is_directory(folder) || !fs::is_empty(folder)) return 0;
+  int number = 0;
+  for (const auto& octets : good_files((folder / "good").string()))
+    std::ofstream(folder / std::to_string(++number), std::ios::binary) << octets;
+  fs::remove(folder / "good");
+  return 0;
+}
+#else
 int main(int argc, char** argv) {
   unsigned long runs = 20000;
   unsigned long seed = std::random_device{}();
@@ -92,17 +144,13 @@ int main(int argc, char** argv) {
   const fs::path folder = fs::temp_directory_path() / ("mcap_fuzz_" + std::to_string(getpid()));
   fs::create_directory(folder);
   const std::string path = (folder / "file.mcap").string();
-  const std::vector<std::string> seeds = {
-      make_recording(path, mcap::Compression::zstd, 200), make_recording(path, mcap::Compression::lz4, 400),
-      make_recording(path, mcap::Compression::none, 100), make_recording(path, mcap::Compression::none, 1 << 20)};
+  const auto seeds = good_files(path);
   std::mt19937 random(static_cast<std::mt19937::result_type>(seed));
   std::size_t answers = 0;
   for (unsigned long run = 0; run < runs; ++run) {
     std::string octets = seeds[random() % seeds.size()];
     mutate(octets, random);
-    std::ofstream(path, std::ios::binary | std::ios::trunc) << octets;
-    answers += read_all(path);
-    if (run % 8 == 0) (void)mcap::repair(path, path + ".again");
+    answers += check(path, octets, run % 8 == 0);
   }
   fs::remove_all(folder);
   rusage usage{};
@@ -110,3 +158,4 @@ int main(int argc, char** argv) {
   std::printf("%lu files, %zu messages and errors, %ld MiB at most\n", runs, answers, usage.ru_maxrss / 1024);
   return 0;
 }
+#endif

@@ -1,8 +1,13 @@
 # MCAP files: the octets of a recording, mutated. A user's bound: 10^6 runs under the asan preset.
 add_executable(mcap_fuzz mcap_fuzz.cpp)
 target_link_libraries(mcap_fuzz PRIVATE mcap rtmsim_settings)
-add_test(NAME fuzz.mcap COMMAND mcap_fuzz --runs 20000)
-set_tests_properties(fuzz.mcap PROPERTIES LABELS fuzz TIMEOUT 300)
+if(RTMSIM_LIBFUZZER)
+  target_compile_definitions(mcap_fuzz PRIVATE RTMSIM_LIBFUZZER)
+  target_link_options(mcap_fuzz PRIVATE -fsanitize=fuzzer)
+else()
+  add_test(NAME fuzz.mcap COMMAND mcap_fuzz --runs 20000)
+  set_tests_properties(fuzz.mcap PROPERTIES LABELS fuzz TIMEOUT 300)
+endif()
 
 # Definitions and samples of ROS 2, and conditions.
 add_executable(ros_fuzz ros_fuzz.cpp)

@@ -1,7 +1,9 @@
 # What rtse hunt finds in twenty small faulty components, and that it leaves their right twins alone:
-#   hunt.py BIN_DIR LIB_DIR SOURCE_DIR [--cases N] [--twin-cases N] [--only KIND] [--plain]
-# Prints a row for each kind. --plain: beside it what rtse sweep finds with seeds alone, in as many runs.
+#   hunt.py BIN_DIR LIB_DIR SOURCE_DIR [--cases N] [--twin-cases N] [--repeats N] [--only KIND] [--plain]
+# Prints a row for each kind. --plain: beside it what rtse sweep finds with seeds alone, in as many runs. --repeats: runs the plan of each find
+# so often, and counts the runs that break it in the same state. --cases 0: only the twins.
 import argparse
+import concurrent.futures
 import json
 import pathlib
 import subprocess
@@ -16,6 +18,7 @@ parser.add_argument("source")
 parser.add_argument("--cases", type=int, default=64)
 parser.add_argument("--twin-cases", type=int, default=8)
 parser.add_argument("--only", action="append")
+parser.add_argument("--repeats", type=int, default=0)
 parser.add_argument("--plain", action="store_true")
 parser.add_argument("-j", "--jobs", type=int, default=2)
 arguments = parser.parse_args()
@@ -68,17 +71,35 @@ def rtse(*words):
         sys.exit(f"{words}: {done.stderr}")
 
 
-found = alarms = 0
+# Of the plan of a find: how many of so many runs break it, and end in its state.
+def repeats(find):
+    def once(number):
+        words = ["sweep", find["plan"], "--row", "1", "--state", find["state"] or "-", "--keep", str(folder / f"again-{number}")]
+        done = subprocess.run([f"{arguments.bin_dir}/rtse", "--json", *words], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        said = json.loads(done.stdout)
+        return not said["passed"] and said["state"] == find["state"]
+    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+        return sum(pool.map(once, range(arguments.repeats)))
+
+
+found = alarms = same = twin_runs = 0
 began = time.monotonic()
 kinds = [kind for kind in KINDS if not arguments.only or kind in arguments.only]
 for kind in kinds:
-    hunted = rtse("hunt", plan(kind, "YES"), "--finds", 1, "--cases", arguments.cases, "-j", arguments.jobs, "--budget", "10m")
+    hunted = {"finds": [], "cases": 0}
+    if arguments.cases > 0:
+        hunted = rtse("hunt", plan(kind, "YES"), "--finds", 1, "--cases", arguments.cases, "-j", arguments.jobs, "--budget", "10m")
     find = hunted["finds"][0] if hunted["finds"] else None
     found += find is not None
     row = f"{kind:36} " + (f"case {find['case']:3}, {find['after']:4.0f} s, {find['deeds']} deeds, {'repeats' if find['repeatable'] else 'DOES NOT REPEAT'}: {find['what']}"
                            if find else f"NOT FOUND in {hunted['cases']} cases")
+    if find and arguments.repeats:
+        again = repeats(find)
+        same += again
+        row += f"\n  again: {again} of {arguments.repeats}"
     if arguments.twin_cases:
-        twin = rtse("hunt", plan(kind, "NO"), "--finds", 1, "--cases", arguments.twin_cases, "-j", arguments.jobs, "--budget", "10m")
+        twin = rtse("hunt", plan(kind, "NO"), "--finds", 1, "--cases", arguments.twin_cases, "-j", arguments.jobs, "--budget", "2h")
+        twin_runs += twin["cases"]
         alarms += len(twin["finds"])
         row += "".join(f"\n  FALSE ALARM of the twin: {alarm['problem']}; {alarm['what']}" for alarm in twin["finds"])
     if arguments.plain and find:
@@ -87,6 +108,6 @@ for kind in kinds:
         path.write_text(text)
         row += f"\n  seeds alone: {rtse('sweep', path, '-j', arguments.jobs)['failed']} of {find['case']} runs fail"
     print(row, flush=True)
-print(f"{found} of {len(kinds)} found, {alarms} false alarms, {time.monotonic() - began:.0f} s")
+print(f"{found} of {len(kinds)} found, {same} of {found * arguments.repeats} runs again, {alarms} false alarms in {twin_runs} runs, {time.monotonic() - began:.0f} s")
 subprocess.run(["rm", "-rf", str(folder)], check=False)
 sys.exit(0 if alarms == 0 else 1)

@@ -1,7 +1,9 @@
-// Hangs: a component whose onExecute never returns. For tests of how a process ends, and of modules that fail.
+// Hangs: a component whose onExecute never returns; HangsInMaking: one that takes its time to be made. For tests of how a process ends, and
+// of modules that fail or go.
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/Manager.h>
 
+#include <chrono>
 #include <iostream>
 #include <semaphore>
 #include <stdexcept>
@@ -19,6 +21,14 @@ class Hangs : public RTC::DataFlowComponentBase {
   std::binary_semaphore never_{0};
 };
 
+class HangsInMaking : public RTC::DataFlowComponentBase {
+ public:
+  explicit HangsInMaking(RTC::Manager* manager) : RTC::DataFlowComponentBase(manager) {
+    std::cout << "being made" << std::endl;
+    static_cast<void>(std::binary_semaphore(0).try_acquire_for(std::chrono::seconds(2)));
+  }
+};
+
 static const char* const hangs_spec[] = {
     "implementation_id", "Hangs",   "type_name", "Hangs",    "description", "Never returns", "category", "test", "vendor",
     "rtm-sim",           "version", "1.0.0",     "language", "C++",         "lang_type",     "compile",  ""};
@@ -28,8 +38,14 @@ DLL_EXPORT void HangsInit(RTC::Manager* manager) {
   coil::Properties profile(hangs_spec);
   manager->registerFactory(profile, RTC::Create<Hangs>, RTC::Delete<Hangs>);
 }
+DLL_EXPORT void HangsInMakingInit(RTC::Manager* manager) {
+  coil::Properties profile(hangs_spec);
+  profile.setProperty("implementation_id", "HangsInMaking");
+  profile.setProperty("type_name", "HangsInMaking");
+  manager->registerFactory(profile, RTC::Create<HangsInMaking>, RTC::Delete<HangsInMaking>);
+}
 // Registers the component and then fails.
-DLL_EXPORT void HangsFail(RTC::Manager* manager) {
+DLL_EXPORT void HangsFailInit(RTC::Manager* manager) {
   HangsInit(manager);
   throw std::runtime_error("no licence");
 }

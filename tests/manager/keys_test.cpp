@@ -47,7 +47,7 @@ std::vector<std::string> addresses_of(RTC::Manager* manager, CORBA::Object_ptr o
   return result;
 }
 
-// ---------------------------------------------------------------------------------------------- corba
+// --- corba
 
 TEST(Keys, corba_endpoints_and_endpoint_are_where_it_listens_and_are_read_back) {
   const auto first = std::to_string(support::free_port());
@@ -104,7 +104,7 @@ TEST(Keys, manager_name_is_the_object_key) {
   EXPECT_FALSE(CORBA::is_nil(narrowed));
 }
 
-// ---------------------------------------------------------------------------------------------- naming
+// --- naming
 
 TEST(Keys, naming_formats_may_be_several_with_every_escape) {
   support::NamingService names;
@@ -144,7 +144,7 @@ TEST(Keys, manager_nameservers_are_further_managers_to_ask) {
   EXPECT_TRUE(eventually([&] { return manager->getNaming()->string_to_component("Far").length() == 1; })) << other.output();
 }
 
-// ---------------------------------------------------------------------------------------------- logger
+// --- logger
 
 TEST(Keys, logger_settings_shape_every_line) {
   support::TemporaryFolder folder;
@@ -182,7 +182,7 @@ TEST(Keys, logger_colours_clock_and_silence) {
   RTC::setLogSettings({});
 }
 
-// ---------------------------------------------------------------------------------------------- manager
+// --- manager
 
 TEST(Keys, manager_cpu_affinity_binds_every_thread) {
   cpu_set_t before;
@@ -210,9 +210,9 @@ TEST(Keys, manager_cpu_affinity_binds_every_thread) {
 TEST(Keys, module_paths_suffixes_and_functions) {
   support::TemporaryFolder folder;
   std::filesystem::copy_file(modules + "/FailOnRequest.so", folder.path() / "Renamed.module");
-  Started manager({"manager.modules.load_path:/nonexistent", "manager.modules.C++.load_paths:" + folder.path().string(),
-                   "manager.modules.C++.suffixes:module,so", "manager.modules.init_func_prefix:FailOn",
-                   "manager.modules.init_func_suffix:Init"});
+  Started manager({"manager.modules.load_path:" + (folder.path() / "missing").string(),
+                   "manager.modules.C++.load_paths:" + folder.path().string(), "manager.modules.C++.suffixes:module,so",
+                   "manager.modules.init_func_prefix:FailOn", "manager.modules.init_func_suffix:Init"});
   EXPECT_EQ(manager->load("Renamed"), RTC::RTC_ERROR);  // it has no FailOnRenamedInit
   EXPECT_EQ(manager->load("Renamed(FailOnRequestInit)"), RTC::RTC_OK);
   const auto loadable = manager->getLoadableModules();
@@ -301,7 +301,7 @@ TEST(Keys, local_services_are_made_when_they_are_enabled) {
   EXPECT_FALSE(RTM::LocalServiceAdmin::instance().getServiceProfile("local", profile));
 }
 
-// ---------------------------------------------------------------------------------------------- components
+// --- components
 
 TEST(Keys, contexts_and_ports_start_from_the_manager_s_settings) {
   Started manager({"exec_cxt.periodic.rate:40", "exec_cxt.sync_transition:NO", "exec_cxt.transition_timeout:3", "exec_cxt.cpu_affinity:0",
@@ -355,7 +355,7 @@ TEST(Keys, sdo_services_are_those_that_are_enabled) {
   EXPECT_EQ(profiles->length(), 0u);
 }
 
-// ---------------------------------------------------------------------------------------------- what is wrong
+// --- what is wrong
 
 TEST(Keys, everything_wrong_in_a_file_is_said_with_its_line) {
   support::TemporaryFolder folder;

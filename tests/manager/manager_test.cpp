@@ -298,7 +298,7 @@ TEST(CorbaNaming, binds_lists_and_clears) {
   manager.shutdown();
 }
 
-// ---------------------------------------------------------------------------------------------- the log
+// --- the log
 
 std::string lines_of(const RTC::LogSettings& settings, const std::function<void(RTC::Logger&)>& speak) {
   std::stringbuf lines;

@@ -160,7 +160,7 @@ TEST_F(Rtcd, the_manager_answers_every_operation) {
   EXPECT_EQ(NVUtil::toString(profile->properties, "pid"), std::to_string(rtcd.pid()));
 
   EXPECT_EQ(manager->load_module("NoSuchModule", ""), RTC::BAD_PARAMETER);
-  EXPECT_EQ(manager->load_module("FailOnRequest.so", "NoSuchFunction"), RTC::RTC_ERROR);
+  EXPECT_EQ(manager->load_module("FailOnRequest.so", "NoSuchInit"), RTC::RTC_ERROR);
   EXPECT_EQ(manager->load_module("FailOnRequest.so", "FailOnRequestInit"), RTC::RTC_OK);
   EXPECT_EQ(manager->load_module("FailOnRequest", ""), RTC::RTC_OK);
   RTM::ModuleProfileList_var list = manager->get_loaded_modules();
@@ -308,8 +308,9 @@ TEST_F(Rtcd, says_what_is_wrong_in_a_file_with_its_line) {
 }
 
 TEST_F(Rtcd, wrong_command_lines_are_one_line_and_exit_code_2) {
+  support::TemporaryFolder folder;
   for (const auto& bad : std::vector<std::vector<std::string>>{
-           {"-p", "x"}, {"-f", "/nonexistent"}, {"--bad"}, {"-o", "x"}, {"-o", "manager.is_master:perhaps"}}) {
+           {"-p", "x"}, {"-f", (folder.path() / "missing").string()}, {"--bad"}, {"-o", "x"}, {"-o", "manager.is_master:perhaps"}}) {
     std::vector<std::string> words{program};
     words.insert(words.end(), bad.begin(), bad.end());
     support::Process rtcd(words);

@@ -127,7 +127,7 @@ TEST_F(Servant, a_module_that_is_cut_short_or_fails_is_refused) {
     EXPECT_EQ(manager->load_module(file.c_str(), "FailOnRequestInit"), RTC::RTC_ERROR) << size;
   }
   std::filesystem::remove(file);
-  for (int i = 0; i < 2; ++i) EXPECT_EQ(manager->load_module("Hangs.so", "HangsFail"), RTC::RTC_ERROR) << "each time";
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(manager->load_module("Hangs.so", "HangsFailInit"), RTC::RTC_ERROR) << "each time";
   RTM::ModuleProfileList_var list = manager->get_factory_profiles();
   EXPECT_EQ(values_of(list, "implementation_id"), Strings{"PeriodicECSharedComposite"}) << "what it registered has gone";
   EXPECT_EQ(manager->load_module("Hangs.so", ""), RTC::RTC_OK);

@@ -1,6 +1,8 @@
 // Many things at once: what lies still sleeps and wakes again, each group that touches has its own solver, and crowds stay within bounds.
 #include <gtest/gtest.h>
 
+#include <ctime>
+
 #include "support/heavy_worlds.h"
 #include "support/physics_fixture.h"
 
@@ -107,6 +109,20 @@ TEST(Crowd, hundreds_in_one_place_touch_only_so_many_and_come_apart) {
   for (int i = 0; i < 60; ++i) all.extend(f.position("box" + std::to_string(i)));
   EXPECT_GT(all.sizes().maxCoeff(), 0.3);
   EXPECT_GT(all.min().z(), 0);
+}
+
+TEST(Crowd, in_one_place_costs_a_time_that_grows_with_its_number) {
+  const auto cost = [](int count) {
+    std::vector<ModelDef> models{ground()};
+    for (int i = 0; i < count; ++i) models.push_back(body("box" + std::to_string(i), BoxShape{{0.3, 0.3, 0.3}}, at(0, 0, 0.15), 2));
+    PhysicsFixture f(world_of(std::move(models)));
+    f.run(0.002);
+    const std::clock_t start = std::clock();
+    f.run(0.01);
+    return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  };
+  const double few = cost(60), many = cost(240);
+  EXPECT_LT(many, 8 * few) << "of processor time: " << few << " s and " << many << " s";
 }
 
 TEST(Crowd, more_neighbours_than_count_are_told_once) {

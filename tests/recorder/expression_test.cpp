@@ -59,7 +59,7 @@ TEST(Expression, what_is_wrong_is_named_with_its_place) {
     EXPECT_NE(expression.error().message.find(says), std::string::npos) << text << ": " << expression.error().message;
   }
   EXPECT_FALSE(Expression::parse(std::string(100000, '(')));
-  EXPECT_FALSE(Expression::parse(std::string(100000, '!') + "1 < 2"));
+  EXPECT_FALSE(Expression::parse(std::string(100000, '!').append("1 < 2")));
 }
 
 TEST(SampleDifference, names_the_first_member_and_both_values) {

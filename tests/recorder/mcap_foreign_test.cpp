@@ -53,5 +53,17 @@ TEST_F(Foreign, a_file_with_chunks_and_summary_is_read) { expect_all("chunks.mca
 TEST_F(Foreign, a_file_without_chunks_is_read) { expect_all("no_chunks.mcap"); }
 TEST_F(Foreign, a_file_without_any_index_is_read) { expect_all("bare.mcap"); }
 
+TEST_F(Foreign, reads_our_file_whose_last_chunk_has_channels_alone) {
+  const std::string file = folder_ + "/ours.mcap";
+  auto writer = Writer::create(file);
+  ASSERT_TRUE(writer) << writer.error().message;
+  const auto schema = writer->add_schema("numbers", "jsonschema", "{}");
+  const auto channel = writer->add_channel(*schema, "/a", "json");
+  ASSERT_TRUE(writer->write({*channel, 0, Time(5), Time(5), "{}"}) && writer->flush());
+  ASSERT_TRUE(writer->add_channel(*schema, "/silent", "json") && writer->close());
+  const std::string command = "node " + std::string(paths::source_dir) + "/tests/foreign/read.mjs " + file + " > " + folder_ + "/read";
+  EXPECT_EQ(std::system(command.c_str()), 0) << command;
+}
+
 }  // namespace
 }  // namespace mcap

@@ -159,6 +159,10 @@ TEST_P(Single, what_a_killed_writer_had_flushed_is_read_and_repaired) {
   EXPECT_EQ(again->statistics().messages_of.at(1), 10U);
   EXPECT_EQ(again->attachments().size(), 1U);
   EXPECT_EQ(read().size(), 20U);
+  const auto whole = repair(path_, path_);
+  ASSERT_TRUE(whole) << whole.error().message;
+  EXPECT_EQ(whole->octets_lost, 0U) << "the summary is made anew, and nothing is lost";
+  EXPECT_FALSE(whole->damage.has_value());
 }
 
 TEST_P(Single, a_file_that_is_cut_anywhere_is_read_up_to_there) {

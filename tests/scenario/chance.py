@@ -77,7 +77,7 @@ def first_difference():
 # A change from outside is told while time passes, once, and not while it stands still: that is where the script of a run makes its changes, and
 # where whoever looks on says good-bye.
 def changed_from_outside():
-    told = "depends on chance: this process had the parameters of a component changed by another process (set_configuration_set_values)"
+    told = "depends on chance: component Relay0 had its parameters changed by another process (set_configuration_set_values)"
     with System(bin_dir, lib_dir) as s:
         s.naming()
         s.server(empty, "--lockstep", "--paused", "--rtf", "0")
@@ -97,6 +97,10 @@ def changed_from_outside():
             s.rtse("conf", "Relay0", "set", "stamp", value)
         s.until("what is told", lambda: told in s.log(host))
         assert s.log(host).count(told) == 1, s.log(host)
+        s.rtse("con", "Relay0:out", "Relay0:in")
+        s.rtse("deact", "Relay0")
+        for told in ("port Relay0:out had a connection made or ended by another process (connect)", "component Relay0 had its state or a context changed by another process (deactivate_component)"):
+            s.until(told, lambda: f"depends on chance: {told}" in s.log(host))
         s.kill(stepping)
 
 

@@ -1,6 +1,7 @@
 # The system editor at work on living, hung and dead processes, one case per run: editor.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
 import json
 import os
+import select
 import signal
 import subprocess
 import sys
@@ -182,6 +183,27 @@ def why_not():
     refused("mgr", "create", "NoSuchType", says='no type "NoSuchType"')
     refused("mgr", "unload", "SinkAll.so", says="components of it are there")
     refused("inject", "SinkAll0:float", "1e39", says="at most 3.4e38")
+
+
+# A name can be a command for a terminal: it is shown there, not carried out. Programs get the octets as they are.
+def names_of_others():
+    try:
+        terminal, line = os.openpty()
+    except OSError as why:
+        print(f"skipped: no pseudo-terminal: {why}")
+        sys.exit(77)
+    name = "evil\x1b[31m"
+    up("SourceAll", "SinkAll")
+    rig.rtse("con", "SourceAll0:long", "SinkAll0:long", "-n", name)
+    assert name in rig.rtse("cat", "SourceAll0:long")
+    for words in (["cat", "SourceAll0:long"], ["cat", "-l", "SourceAll0:long"], ["cat", name]):
+        process = subprocess.Popen([f"{rig.bin_dir}/rtse", "--ns", rig.names, *words], stdout=line, stderr=line)
+        said, end = b"", time.monotonic() + 60
+        while select.select([terminal], [], [], 0.1)[0] or process.poll() is None:
+            assert time.monotonic() < end, f"{words} has not ended"
+            if select.select([terminal], [], [], 0)[0]:
+                said += os.read(terminal, 65536)
+        assert b"evil\\x1b[31m" in said and b"\x1b" not in said, said
 
 
 # Deactivating means that time stands still. A simulator that is gone cannot go on; one that is slow is waited for.

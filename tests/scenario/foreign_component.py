@@ -2,13 +2,15 @@
 """A component of another make, in a process of its own: an ORB and contexts that share no line with the product (../ports/giop.py). It
 behaves as those of OpenRTM-aist do towards contexts of others, and knows nothing of simulated time.
 
-    foreign_component.py NAME [--names HOST:PORT] [--source] [--journal FILE] [--fault KIND@N] [--context periodic|triggered|logical] [--clock PERIOD]
+    foreign_component.py NAME [--names HOST:PORT] [--source] [--journal FILE] [--fault KIND@N] [--context periodic|triggered|logical|afterwards] [--clock PERIOD]
+                         [--late MS@N]
 
 It is bound as NAME.rtc in the root of the naming service. InPort `in` and OutPort `out` carry RTC::TimedLong: with --source it counts its
 calls, else it sends on what came, plus one. --fault: in its Nth on_execute it sleeps so many ms ("300@5"; "300@*" in each), or does what the
 word says: fail, throw, die, hang, or meet: it waits until as many components have done so as the files of that name tell ("meet/PATH@5"). The
 journal gets a line "callback handle value" for each call, and "tick seconds value" for each tick of its own context, when that is one that is
-ticked. --clock: it subscribes that to the ClockGenerator, with its period in seconds, and unsubscribes at the end.
+ticked; `afterwards`: one that is ticked, and calls the component on a thread of its own. --late: it answers so many ms after it
+has got its Nth sample. --clock: it subscribes that to the ClockGenerator, with its period in seconds, and unsubscribes at the end.
 """
 import argparse
 import os
@@ -34,13 +36,21 @@ def strings(idl, **properties):
 class Port(ForeignPort):
     def __init__(self, idl, orb, side, name, owner):
         super().__init__(orb, side)
-        self.idl, self.name, self.owner = idl, name, owner
+        self.idl, self.name, self.owner, self.count = idl, name, owner, 0
 
     def profile(self):
         kind = "DataInPort" if self.side == "in" else "DataOutPort"
         return self.idl.struct("RTC::PortProfile", name=f"{self.owner.name}.{self.name}", interfaces=[], port_ref=self.ior, connector_profiles=[], owner=None,
                                properties=strings(self.idl, port__port_type=kind, dataport__data_type="IDL:RTC/TimedLong:1.0", dataport__interface_type="corba_cdr",
-                                                  dataport__dataflow_type="push", dataport__subscription_type="flush"))
+                                                  dataport__dataflow_type="push", dataport__subscription_type="flush,new"))
+
+    # A sample.
+    def serve(self, operation, data, out):
+        super().serve(operation, data, out)
+        late, _, at = self.owner.options.late.partition("@")
+        self.count += 1
+        if at == str(self.count):
+            time.sleep(float(late) / 1000)
 
     def call(self, operation, data, out):
         if operation == "get_port_profile":
@@ -48,14 +58,21 @@ class Port(ForeignPort):
         else:
             super().call(operation, data, out)
 
-    # To everybody who is connected.
+    # To everybody who is connected; where the connection asks for `new` on a thread, some time later.
     def send(self, octets):
-        for target, names in list(self.targets.values()):
-            assert self.orb.invoke(target, names[2], lambda out: out.octets(octets)).ulong() == PORT_OK
+        for connector, (target, names) in list(self.targets.items()):
+            if self.find(connector).get("dataport.subscription_type") == "new":
+                threading.Timer(0.005, self.send_to, [target, names, octets]).start()
+            else:
+                self.send_to(target, names, octets)
+
+    def send_to(self, target, names, octets):
+        assert self.orb.invoke(target, names[2], lambda out: out.octets(octets)).ulong() == PORT_OK
 
 
 # The component's own context: as each component has one. A thread calls the component while it is active here.
 class OwnContext:
+    kind = "PeriodicExecutionContext"
     interface = "RTC::ExecutionContextService"
 
     def __init__(self, idl, orb, component, rate):
@@ -101,7 +118,7 @@ class OwnContext:
 
     def get_profile(self):
         return self.idl.struct("RTC::ExecutionContextProfile", kind="PERIODIC", rate=self.rate, owner=self.component.servant.ior, participants=[],
-                               properties=strings(self.idl, type="PeriodicExecutionContext", name="own"))
+                               properties=strings(self.idl, type=self.kind, name="own"))
 
 
 # Ticked from outside: each cycle runs in the call, as with SynchExtTriggerEC.
@@ -118,6 +135,14 @@ class TriggeredContext(OwnContext):
             self.cycle()
 
 
+# As OpenRTM-aist's ExtTrigExecutionContext.
+class AfterwardsContext(TriggeredContext):
+    kind = "ExtTrigExecutionContext"
+
+    def tick(self):
+        threading.Thread(target=super().tick, daemon=True).start()
+
+
 class LogicalContext(TriggeredContext):
     interface = "OpenRTM::LogicalTimeTriggeredEC"
 
@@ -130,7 +155,7 @@ class Component:
         self.journal = open(options.journal, "a", buffering=1) if options.journal else None
         self.into, self.out = Port(idl, orb, "in", "in", self), Port(idl, orb, "out", "out", self)
         self.servant = Servant(idl, orb, "OpenRTM::DataFlowComponent", self)
-        self.own = {"periodic": OwnContext, "triggered": TriggeredContext, "logical": LogicalContext}[options.context](idl, orb, self, 20.0)
+        self.own = {"periodic": OwnContext, "triggered": TriggeredContext, "logical": LogicalContext, "afterwards": AfterwardsContext}[options.context](idl, orb, self, 20.0)
 
     def note(self, callback, handle):
         if self.journal:
@@ -259,7 +284,8 @@ def main():
     parser.add_argument("--source", action="store_true")
     parser.add_argument("--journal", default="")
     parser.add_argument("--fault", default="")
-    parser.add_argument("--context", default="periodic", choices=["periodic", "triggered", "logical"])
+    parser.add_argument("--late", default="")
+    parser.add_argument("--context", default="periodic", choices=["periodic", "triggered", "logical", "afterwards"])
     parser.add_argument("--clock", type=float, default=0)
     parser.add_argument("--active", action="store_true")
     options = parser.parse_args()

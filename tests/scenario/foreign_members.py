@@ -92,7 +92,7 @@ def join_and_leave():
 
 
 # A system for `rtse run`: instances with their types, links "From.out" -> "Alien.in".
-def profile(path, components, links):
+def profile(path, components, links, subscription="flush"):
     head = ('<?xml version="1.0" encoding="UTF-8"?><rts:RtsProfile xmlns:rts="http://www.openrtp.org/namespaces/rts" xmlns:rtsExt="http://www.openrtp.org/namespaces/rts_ext" '
             'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" rts:id="RTSystem:rtm-sim:Mixed:1" rts:version="0.2">')
     text = head
@@ -108,7 +108,7 @@ def profile(path, components, links):
             return (f'<rts:{tag} xsi:type="rtsExt:target_port_ext" rts:componentId="RTC:any:test:{components[name][0]}:1.0.0" rts:instanceName="{name}" rts:portName="{port}">'
                     f'<rtsExt:Properties rtsExt:name="COMPONENT_PATH_ID" rtsExt:value="localhost/{name}.rtc"/></rts:{tag}>')
         text += (f'<rts:DataPortConnectors xsi:type="rtsExt:dataport_connector_ext" rts:connectorId="link{n}" rts:name="link{n}" rts:dataType="IDL:RTC/TimedLong:1.0" '
-                 f'rts:interfaceType="corba_cdr" rts:dataflowType="push" rts:subscriptionType="flush">{end("sourceDataPort", a)}{end("targetDataPort", b)}</rts:DataPortConnectors>')
+                 f'rts:interfaceType="corba_cdr" rts:dataflowType="push" rts:subscriptionType="{subscription}">{end("sourceDataPort", a)}{end("targetDataPort", b)}</rts:DataPortConnectors>')
     with open(path, "w") as file:
         file.write(text + "</rts:RtsProfile>")
     return path
@@ -195,6 +195,56 @@ def faulty():
                 assert "on_aborting 1000" in calls and calls.count("on_error 1000") > 5, (fault, calls)
             if fault == "die@3":
                 assert "killed by signal 9" in err, err
+        # It is told at once, by its own name and the time, where the command lives on.
+        for options in ("--fault die@3", "--fault die@3 --context triggered --active"):
+            system = r.system()
+            with open(f"{r.path}/run.yaml", "w") as out:
+                how = "tick" if "triggered" in options else "member"
+                out.write(f"processes:\n  - command: {r.command(options)}; sleep 1000\n    components:\n      - {{name: Alien, join: {how}}}\n")
+            done = subprocess.run([f"{bin_dir}/rtse", "run", system, "--world", empty, "--module-path", lib_dir, "--duration", "1000000", "--run-file", f"{r.path}/run.yaml"],
+                                  text=True, capture_output=True, timeout=120)
+            assert done.returncode == 1 and "component Alien" in done.stderr and "is gone" in done.stderr, done
+
+
+def late_receiver():
+    # Who takes a sample only after longer than any usual time-out of a call is waited for, and gets the next ones.
+    with Run() as r:
+        seen = []
+        for late in ("", "--late 11000@3"):
+            code, err, read, calls = r.run(start=r.start(late), duration="0.5")
+            assert code == 0, (code, err)
+            seen.append((read, calls))
+        assert len(set(seen)) == 1 and seen[0][0].count("\n") == 6, seen
+
+
+def one_phase():
+    # Links of one phase: what is sent is read in the next tick by components of others, too, and whatever the link says of who sends.
+    with Run() as r:
+        for kind, names in (("flush", ("Alien", "Other")), ("new", ("Alien", "Other")), ("flush", ("Other", "Alien"))):
+            first, second = names
+            r.count += 1
+            journal = f"{r.path}/To-{r.count}.txt"
+            components = {"From": ("Relay", {"source": 1}), "To": ("Relay", {"journal": journal, "stamp": 0}), "Alien": ("Foreign", {}), "Other": ("Foreign", {})}
+            system = profile(f"{r.path}/system.xml", components, [("From.out", f"{first}.in"), (f"{first}.out", f"{second}.in"), (f"{second}.out", "To.in")], kind)
+            starts = [word for name in names for word in ("--start", r.command(name=name))]
+            done = subprocess.run([f"{bin_dir}/rtse", "run", system, "--world", empty, "--module-path", lib_dir, "--duration", "0.7", "--strict", *starts],
+                                  text=True, capture_output=True, timeout=120)
+            assert done.returncode == 0, done
+            assert ("sent within the tick" in done.stderr) == (kind == "new"), done.stderr
+            # Three links, so three ticks: what is stamped 0.2 is read at 0.3.
+            seen = [(round(float(at) * 10), int(value)) for at, value in (line.split() for line in r.read(f"To-{r.count}.txt").splitlines())]
+            assert seen == [(n - 1, n) for n in range(3, 8)], (kind, names, seen)
+
+
+def one_phase_in_a_circle():
+    # Whoever is called first, it is the same one each time, and the run says so.
+    with Run() as r:
+        components = {"From": ("Relay", {"source": 1}), "Alien": ("Foreign", {}), "Other": ("Foreign", {})}
+        system = profile(f"{r.path}/system.xml", components, [("From.out", "Alien.in"), ("Alien.out", "Other.in"), ("Other.out", "Alien.in")])
+        starts = [word for name in ("Alien", "Other") for word in ("--start", r.command(name=name))]
+        done = subprocess.run([f"{bin_dir}/rtse", "run", system, "--world", empty, "--module-path", lib_dir, "--duration", "1", "--strict", "--twice", *starts],
+                              text=True, capture_output=True, timeout=120)
+        assert done.returncode == 0 and "connected in a circle" in done.stderr, done
 
 
 def wrong_start():
@@ -220,6 +270,36 @@ def wrong_start():
             with open(file, "w") as out:
                 out.write(text)
             assert len(refused(system, why, "--run-file", file).splitlines()) == 1, text
+
+
+def ticked_together():
+    # Contexts of two processes that are ticked from outside are ticked at the same time: each waits in its callback for the other.
+    with Run() as r:
+        for how, options in (("tick", ""), ("clock", "--clock 0.1")):
+            system = r.system(Alien=("Foreign", {}), Other=("Foreign", {}))
+            meeting = f"{r.path}/{how}"
+            os.mkdir(meeting)
+            with open(f"{r.path}/run.yaml", "w") as out:
+                out.write("processes:\n")
+                for name in ("Alien", "Other"):
+                    command = r.command(f"--context triggered --active --fault meet{meeting}@2", options, name=name)
+                    out.write(f"  - command: {command}\n    components:\n      - {{name: {name}, join: {how}}}\n")
+            done = subprocess.run([f"{bin_dir}/rtse", "run", system, "--world", empty, "--module-path", lib_dir, "--duration", "0.5", "--run-file", f"{r.path}/run.yaml"],
+                                  text=True, capture_output=True, timeout=120)
+            assert done.returncode == 0, (how, done)
+            for name in ("Alien", "Other"):
+                assert r.read(f"{name}-{r.count}.journal").count("on_execute 0") == 6, (how, r.read(f"{name}-{r.count}.journal"))
+
+
+def ticked_afterwards():
+    # A context that runs its component on a thread of its own after tick() cannot be waited for: a strict run says so.
+    with Run() as r:
+        system = r.system()
+        with open(f"{r.path}/run.yaml", "w") as out:
+            out.write(f"processes:\n  - command: {r.command('--context afterwards --active')}\n    components:\n      - {{name: Alien, join: tick}}\n")
+        done = subprocess.run([f"{bin_dir}/rtse", "run", system, "--world", empty, "--module-path", lib_dir, "--duration", "0.5", "--strict", "--run-file", f"{r.path}/run.yaml"],
+                              text=True, capture_output=True, timeout=120)
+        assert done.returncode == 1 and "component Alien: its context, an ExtTrigExecutionContext, runs it on a thread of its own" in done.stderr, done
 
 
 def ticked():

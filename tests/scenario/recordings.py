@@ -2,6 +2,8 @@
 import base64
 import json
 import os
+import re
+import resource
 import signal
 import subprocess
 import sys
@@ -107,6 +109,26 @@ def same_run():
     assert hashes[0] == hashes[1] and int(hashes[0], 16) != 0, hashes
 
 
+# The same, and a component that answers the same to the bit when it is replayed, as often as RECORDING_REPEATS says, with both processors busy.
+def repeated():
+    count = int(os.environ.get("RECORDING_REPEATS", "3"))
+    run = ["--json", "run", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "-w", f"{rig.source}/worlds/obstacle_course.sdf", "-d", "5"]
+    burners = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(2)]
+    try:
+        expected = json.loads(rig.rtse(*run).splitlines()[-1])["state_hash"]
+        for n in range(count):
+            more = ["--one-process-each"] if n % 2 else []
+            made = json.loads(rig.rtse(*run, "--record", file, *more).splitlines()[-1])["state_hash"]
+            assert made == expected, (n, made, expected)
+            again = json.loads(rig.rtse("--json", "replay", file, "--into", "LaserObstacleAvoid0", "--compare"))["outputs"]
+            assert [o["different"] for o in again] == [0] and again[0]["samples"] == again[0]["recorded"] == 51, (n, again)
+            print(f"{n + 1} of {count} the same", flush=True)
+    finally:
+        for burner in burners:
+            burner.kill()
+            burner.wait()
+
+
 # A recorder that is killed costs the system nothing, and its file has what came before.
 def killed():
     up()
@@ -122,6 +144,27 @@ def killed():
     assert kept >= 30, kept
     done = rig.try_rtse("recording", "info", file)
     assert done.returncode == 0 and done.stderr == "", done
+
+
+# A full disk ends the recorder with one line; the file has what came before, and the system goes on.
+def full_disk():
+    up()
+
+    def small():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (400000, 400000))  # several chunks: one is written each second
+    process = subprocess.Popen([f"{rig.bin_dir}/rtse", "--ns", rig.names, "record", "-s", str(rig.server_id), "-o", file, "RTCLaser0:range"],
+                               stderr=subprocess.PIPE, text=True, preexec_fn=small)
+    assert process.stderr.readline().startswith("recording ")
+    for _ in range(100):
+        if process.poll() is None:
+            seconds(4)
+    err = process.communicate(timeout=60)[1]
+    assert process.returncode == 1 and err.count("\n") == 1 and "cannot be written: File too large; what came before is in it" in err, err
+    kept = json.loads(rig.try_rtse("--json", "recording", "info", file).stdout)["samples"]
+    repaired = rig.rtse("recording", "repair", file)
+    assert kept > 0 and repaired == f"{kept} samples kept, 0 octets lost\n", (kept, repaired)
+    seconds(1)
 
 
 # Two runs are equal sample by sample; another parameter is found at its first effect.
@@ -140,7 +183,7 @@ def compared():
         rig.simctl("reset")
     assert rig.rtse("recording", "compare", files[0], files[1]).startswith("equal: ")
     done = rig.try_rtse("recording", "compare", files[0], files[2])
-    assert done.returncode == 1 and "/LaserObstacleAvoid0/velocity data.vx:" in done.stdout, done
+    assert done.returncode == 1 and re.match(r"first difference at time [\d.]+ s, tick \d+: /LaserObstacleAvoid0/velocity data.vx: \S+ and \S+\n", done.stdout), done
 
 
 # What was recorded drives another component, as if its peer were there.
@@ -152,6 +195,13 @@ def played():
     sent = len(lines("cat", file))
     done = rig.try_rtse("play", file, "LaserObstacleAvoid0:velocity=RTCPosition2d0:velocity", "--rate", "1000")
     assert done.returncode == 0 and f"sent {sent} samples" in done.stdout, done
+    # Where it went in the run, without being told; the connection says what it is. What is not there is named.
+    looped = subprocess.Popen([f"{rig.bin_dir}/rtse", "--ns", rig.names, "play", file, "--loop", "--rate", "100"], stdout=subprocess.PIPE, text=True)
+    await_("the InPort has a connection that plays", lambda: "rtmsim.play.topic" in rig.rtse("cat", "-l", "RTCPosition2d0:velocity"))
+    looped.send_signal(signal.SIGINT)
+    assert re.fullmatch(r"sent \d+ samples\n", looped.communicate(timeout=60)[0]) and looped.returncode == 0
+    done = rig.try_rtse("play", file, "--from", "1000", "--loop")
+    assert done.returncode == 1 and "has no sample of these channels in the time that is to be played" in done.stderr, done
     # The same by simulated time: it takes part, and ends when time has come to its last sample.
     player = subprocess.Popen([f"{rig.bin_dir}/rtse", "--ns", rig.names, "play", file, "LaserObstacleAvoid0:velocity=RTCPosition2d0:velocity",
                                "--sim-time", "-s", str(rig.server_id)], stdout=subprocess.PIPE, text=True)
@@ -166,7 +216,8 @@ def played():
 def kept():
     up()
     processes = []
-    for name, *words in (("split.mcap", "--split", "1s"), ("few.mcap", "--rate", "2"), ("last.mcap", "--last", "1000ms")):
+    for name, *words in (("split.mcap", "--split", "1s"), ("few.mcap", "--rate", "2"), ("last.mcap", "--last", "1000ms"),
+                         ("small.mcap", "--split", "20k", "--views")):
         processes.append(subprocess.Popen([f"{rig.bin_dir}/rtse", "--ns", rig.names, "record", "-s", str(rig.server_id), "-o", rig.path(name),
                                            "RTCLaser0:range", *words], stderr=subprocess.PIPE, text=True))
         assert processes[-1].stderr.readline().startswith("recording ")
@@ -185,6 +236,9 @@ def kept():
     assert len(few) == len({int(t * 2 + 1e-9) for t in whole}) and all(b - a > 0.39 for a, b in zip(few, few[1:])), few
     last = times("last.mcap")
     assert last == [t for t in whole if t >= whole[-1] - 1 - 1e-9], last
+    # What every file begins with is larger than a part is to be: each has as much of its own.
+    small = [name for name in os.listdir(rig.work) if name.startswith("small-")]
+    assert 1 < len(small) < 20, small
 
 
 # `rtse run` records from before the first step on; two runs are equal, and equal to the run without.
@@ -308,6 +362,17 @@ def lives():
     assert done["changes"] >= 3 and done["outputs"][0]["different"] == 0 and done["outputs"][0]["recorded"] > 40, done
     other = rig.try_rtse("replay", file, "--into", "LaserObstacleAvoid0", "--compare", "--set", "speed_gain=0.001")
     assert other.returncode == 1 and "(2.1 s): data.vx: 0.4 and 0.2" in other.stderr, other
+
+
+# What is excluded has no channel either.
+def excluded():
+    up()
+    process = recording("--all", "--exclude", "RTCLaser*:*", "--exclude", "/sim/laser/*", "--exclude", "/tf")
+    seconds(1)
+    ended(process)
+    topics = {c["topic"]: c["samples"] for c in json.loads(rig.rtse("--json", "recording", "info", file))["channels"]}
+    assert not [t for t in topics if t in ("/RTCLaser0/range", "/tf") or t.startswith("/sim/laser/")], topics
+    assert topics["/LaserObstacleAvoid0/velocity"] > 0 and topics["/clock"] > 0 and topics["/tf_static"] == 1, topics
 
 
 # A ring is for those who look for what went wrong: of a run that passes nothing is kept.

@@ -226,7 +226,8 @@ def odds_and_ends():
             code, out, err = place.run(system, world, *words)
             assert code == 2 and len(err.splitlines()) == 1, (words, code, err)
         os.mkfifo(place.path / "pipe")
-        mistakes = {("--module-path", "/nonexistent"): "module path \"/nonexistent\"", ("--resource-path", "/nonexistent"): "resource path", ("--junit", system): "something else too",
+        missing = f"{place.path}/missing"
+        mistakes = {("--module-path", missing): f"module path \"{missing}\"", ("--resource-path", missing): "resource path", ("--junit", system): "something else too",
                     ("--picture", str(place.path / "pipe")): "no regular file", ("--picture", f"{place.path}/same", "--junit", f"{place.path}/same"): "something else too"}
         for words, why in mistakes.items():
             code, out, err = place.run(system, world, *words)
@@ -248,8 +249,8 @@ def odds_and_ends():
         with open("/dev/full", "w") as full:
             done = subprocess.run([rtse, "run", system, "--world", world, "--duration", "1", "--module-path", lib_dir], text=True, stdout=full, stderr=subprocess.PIPE, env=place.environment)
         assert done.returncode == 1 and "standard output" in done.stderr, done
-        code, out, err = place.run(system, world, "--picture", "/nonexistent/p.png")
-        assert code == 1 and "/nonexistent" in err, err
+        code, out, err = place.run(system, world, "--picture", f"{missing}/p.png")
+        assert code == 1 and missing in err, err
 
 
 def child_of(process, program):

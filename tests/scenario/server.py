@@ -29,6 +29,7 @@ def requests():
     box = "<sdf version='1.9'><model name='crate'><link name='l'><collision name='c'><geometry><box><size>.3 .3 .3</size></box></geometry></collision></link></model></sdf>"
     assert read("spawn", box, "--name", "crate", "--pose", "-1", "-1", "0.15", "0")["name"] == "crate"
     near(position("crate"), (-1, -1, 0.15))
+    assert {"name": "sick_lms200"} in read("models")["models"], "what can be spawned by its name"
     assert read("spawn", "sick_lms200", "--pose", "0", "0", "3", "0")["name"] == "sick_lms200"  # by its name alone
     ok("delete", "sick_lms200")
     refused("spawn", box, "--name", "crate", says="crate")

@@ -99,6 +99,7 @@ TEST(FaultyWorlds, name_each_wrong_thing_in_one_line_with_its_place) {
                   HasSubstr("signs.world:7: model \"https://fuel.gazebosim.org/1.0/OpenRobotics/models/Depot\" is not found"),
                   HasSubstr("signs.world:8: model \"__default__\" is not found"),
                   HasSubstr("signs.world:9: model \"model://nowhere\" is not found"),
+                  HasSubstr("signs.world:9: <inertial> of link \"l\" of model \"half\" has a mass and no <inertia>"),
                   HasSubstr("signs.world:10: model \"model://nowhere\" is not found"), HasSubstr("signs.world:11: unknown element <torus>"),
                   HasSubstr("signs.world:11: shapes from images are not simulated"),
                   HasSubstr("signs.world:11: collision \"d\" of link \"l\" of model \"odd\" has no shape")));

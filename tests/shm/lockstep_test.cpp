@@ -98,6 +98,31 @@ TEST(Barrier, phases_run_in_order_and_the_members_of_one_phase_together) {
   for (auto& thread : threads) thread.join();
 }
 
+TEST(Barrier, turns_of_a_phase_run_in_order_and_are_one_moment) {
+  BarrierFixture f;
+  std::mutex mutex;
+  std::vector<std::pair<std::string, std::uint64_t>> order;
+  std::vector<std::thread> threads;
+  for (const auto& [name, phase, turn] :
+       {std::tuple("c", 1U, 2U), std::tuple("d", 2U, 0U), std::tuple("b", 1U, 1U), std::tuple("a", 1U, 0U)}) {
+    auto participant = Participant::join(f.id, {.name = name, .phase = phase, .period = 10ms, .turn = turn});
+    ASSERT_TRUE(participant) << participant.error().message;
+    threads.push_back(run(std::move(*participant), [&, name = std::string(name)](const Tick& tick) {
+      const std::lock_guard lock(mutex);
+      order.emplace_back(name, tick.moment);
+    }));
+  }
+  std::vector<std::pair<std::string, std::uint64_t>> expected;
+  for (std::uint64_t n = 0; n < 50; ++n) {
+    f.barrier->tick(std::chrono::milliseconds(10 * n), 0);
+    for (const char* name : {"a", "b", "c"}) expected.emplace_back(name, 4 * n + 1);
+    expected.emplace_back("d", 4 * n + 3);
+  }
+  EXPECT_EQ(order, expected);
+  f.barrier.reset();
+  for (auto& thread : threads) thread.join();
+}
+
 TEST(Barrier, who_joins_late_is_due_at_the_next_multiple) {
   BarrierFixture f;
   f.barrier->tick(95ms, 0);

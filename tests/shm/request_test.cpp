@@ -49,6 +49,7 @@ TEST(Requests, all_kinds_survive_the_way_to_bytes_and_back) {
   EXPECT_EQ(there_and_back(SetRtfRequest{2.5}).rtf, 2.5);
   EXPECT_TRUE(there_and_back(ExportRequest{true}).with_collisions);
   there_and_back(PosesRequest{});
+  there_and_back(ModelsRequest{});
   const auto fault = there_and_back(FaultRequest{"robot::laser", "bias", -1.5, 2});
   EXPECT_EQ(fault.iface, "robot::laser");
   EXPECT_EQ(fault.kind, "bias");

@@ -93,7 +93,7 @@ TEST(FreeProcessors, are_there_when_nobody_else_wants_to_run) {
 }
 
 TEST(FreeProcessors, are_not_there_when_the_kernel_does_not_say) {
-  FreeProcessors free("/nonexistent", 2);
+  FreeProcessors free("/proc/nowhere", 2);
   free.look(std::chrono::steady_clock::now());
   EXPECT_FALSE(free.are_there_for(1));
 }

@@ -21,7 +21,8 @@ function frame(data) {
 
 export class Mock {
   constructor({ page, glb, answer }) {
-    Object.assign(this, { page, glb, answer, first: [], sockets: new Set(), asked: [] });
+    // `holds`: which requests are answered late, by release(); `holds_file`: the same of paths.
+    Object.assign(this, { page, glb, answer, first: [], sockets: new Set(), asked: [], held: [], holds: () => false, holds_file: () => false });
     this.server = createServer((request, reply) => this.serve(request, reply));
     this.server.on('upgrade', (request, socket) => this.welcome(request, socket));
   }
@@ -38,6 +39,8 @@ export class Mock {
 
   async serve(request, reply) {
     const path = new URL(request.url, 'http://x').pathname;
+    if (this.holds_file(request.method, path)) await new Promise((resolve) => this.held.push({ message: { name: path }, go: resolve }));
+    if (this.refuses) return void reply.writeHead(403).end();
     try {
       const file = path === '/world.glb' ? this.glb : join(this.page, normalize(path === '/' ? '/index.html' : path));
       const content = await readFile(file);
@@ -81,7 +84,19 @@ export class Mock {
       reply.error = error.message;
     }
     if (reply.error) delete reply.result;
-    socket.write(frame(JSON.stringify(reply)));
+    const go = () => socket.write(frame(JSON.stringify(reply)));
+    if (this.holds(message)) this.held.push({ message, go });
+    else go();
+  }
+
+  // The answer that waits longest, or the one at `at`.
+  release(at = 0) {
+    const [{ go }] = this.held.splice(at, 1);
+    go();
+  }
+  release_all() {
+    this.holds = this.holds_file = () => false;
+    while (this.held.length > 0) this.release();
   }
 
   // To everybody, and to those who come later.

@@ -32,6 +32,13 @@ function answer(mock) {
     if (name === 'manager') return { result: { components: [{ instance: 'RTCLaser0', type: 'RTCLaser' }], loaded: [], loadable: [{ file: 'RTCCamera.so', type: 'RTCCamera' }], factories: [{ type: 'RTCLaser' }] } };
     if (name === 'create') return { error: 'no component of type Nonsense' };
     if (name === 'save_profile') return { result: { xml: '<rts/>' } };
+    if (name === 'models') return { result: { models: [{ name: 'cow' }, { name: 'pioneer2dx' }, { name: 'pioneer2dx_with_camera' }] } };
+    if (name === 'spawn') return { result: { name: args.name ?? args.model } };
+    if (name === 'check_profile') return { result: { differences: ['connection range: is not there'] } };
+    if (name === 'members') return { result: { members: [{ path: 'tm.sec', type: 'number' }, { path: 'data.vx', type: 'number' }], zero: { tm: { sec: 0, nsec: 0 }, data: { vx: 0, vy: 0, va: 0 } } } };
+    if (name === 'tree') return { result: { models: [{ name: args.model, links: [{ name: 'chassis', mass: 9 }, { name: 'left_wheel', mass: 1 }], joints: [{ name: 'left', type: 'revolute' }], plugins: [] }] } };
+    if (name === 'statistics') return { result: { contexts: [{ path: laser, rate: 100, running: true, cycles: 1000 + 100 * mock.asked.length, missed: 3, mean_ms: 0.2, max_ms: 4, wait_ms: 0 }] } };
+    if (name === 'screenshot') return { result: { png: 'iVBORw0KGgo=' }, command: 'simctl screenshot world.png' };
     return {};
   };
 }
@@ -238,6 +245,64 @@ const flows = [
     await until('set', () => asked(mock, 'set_configuration').some((m) => m.args.values.max_turn === '75'));
     await page.locator('.inspector .choices input').nth(1).check();
     await until('both days', () => asked(mock, 'set_configuration').some((m) => m.args.values.days === 'mon,tue'));
+  }],
+  ['a component joins simulated time and leaves it; all of its connections are cut', async ({ page, mock }) => {
+    await choose(page, 'component', avoid);
+    await page.locator('#act-join_time').click();
+    await page.locator('#join-phase').selectOption('2');
+    await page.locator('#join-rate').fill('50');
+    await page.locator('dialog[open] button.main').click();
+    await until('join', () => asked(mock, 'join_time').length === 1);
+    same(asked(mock, 'join_time')[0].args, { path: avoid, phase: 2, rate: 50 }, 'how');
+    mock.say({ ...demo_system(), components: demo_system().components.map((c) => ({ ...c, in_simulated_time: c.path === avoid })) });
+    await page.locator('#act-leave_time').click();
+    await until('leave', () => asked(mock, 'leave_time').at(-1)?.args.path === avoid);
+    await page.locator('#act-disconnect_all').click();
+    await until('cut', () => asked(mock, 'disconnect_all').at(-1)?.args.path === avoid);
+    mock.say(demo_system());
+  }],
+  ['a value is written to a port, beginning with zeros of its type', async ({ page, mock }) => {
+    await choose(page, 'port', `${host}/RTCPosition2d0.rtc:velocity`);
+    await page.locator('#inject').click();
+    await until('the zeros', async () => (await page.locator('#inject-value').inputValue()).includes('"vx": 0'));
+    await page.locator('#inject-value').fill('{"data": {"vx": 0.2}}');
+    await page.locator('dialog[open] button.main').click();
+    await until('inject', () => asked(mock, 'inject').length === 1);
+    same(asked(mock, 'inject')[0].args, { port: `${host}/RTCPosition2d0.rtc:velocity`, value: '{"data":{"vx":0.2}}' }, 'what');
+  }],
+  ['a model is chosen from the list and spawned', async ({ page, mock }) => {
+    await page.locator('.world canvas').focus();
+    await page.keyboard.press('Insert');
+    await until('the list', async () => (await page.locator('.models button').count()) === 3);
+    await page.locator('#spawn-model').fill('pio');
+    await until('those that fit', async () => (await page.locator('.models button').count()) === 2);
+    await page.locator('.models button', { hasText: /^pioneer2dx$/ }).click();
+    await page.locator('dialog[open] button.main').click();
+    await until('spawn', () => asked(mock, 'spawn').at(-1)?.args.model === 'pioneer2dx');
+  }],
+  ['a profile is loaded, started, stopped, torn down or compared', async ({ page, mock }) => {
+    for (const [way, name] of [['Load', 'open_profile'], ['Start', 'start_system'], ['Stop', 'stop_system'], ['Tear down', 'teardown'], ['Compare', 'check_profile']]) {
+      await page.locator('input[type=file]').setInputFiles({ name: 'a.xml', mimeType: 'text/xml', buffer: Buffer.from('<rts/>') });
+      await page.locator('dialog[open] .way', { has: page.locator(`strong:text-is("${way}")`) }).click();
+      await page.locator('dialog[open] button.main').click();
+      await until(name, () => asked(mock, name).at(-1)?.args.xml === '<rts/>');
+    }
+    await page.locator('.differences li', { hasText: 'connection range' }).waitFor();
+    await page.locator('dialog[open] button.main').click();
+  }],
+  ['a model is shown with its links, a picture of the view is saved', async ({ page, mock }) => {
+    await choose(page, 'model', 'pioneer2dx');
+    await page.locator('.links summary', { hasText: '2 links' }).click();
+    await page.locator('.links li', { hasText: 'left_wheel' }).waitFor();
+    const [saved] = await Promise.all([page.waitForEvent('download'), page.locator('button[aria-label^="Save a picture"]').click()]);
+    same(saved.suggestedFilename(), 'world.png', 'file');
+    check(asked(mock, 'screenshot')[0].args.pose.length === 7, 'the eye');
+  }],
+  ['what contexts do is told while it is looked at', async ({ page, mock }) => {
+    await page.locator('#tab-step').click();
+    await until('a row', async () => (await page.locator('.contexts tbody tr').textContent()).includes('RTCLaser0'));
+    await page.locator('#tab-plots').click();
+    await until('no more', async () => { const count = asked(mock, 'statistics').length; await new Promise((resolve) => setTimeout(resolve, 1500)); return asked(mock, 'statistics').length === count; });
   }],
   ['a refusal is one line that stays', async ({ page }) => {
     await choose(page, 'manager', `${host}/rtcd.mgr`);

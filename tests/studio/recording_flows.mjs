@@ -1,7 +1,7 @@
 // A recording in the page: made by rtse run, opened by rtm-studio without anything that runs. recording_flows.mjs BIN_DIR SOURCE_DIR LIB_DIR
 import { execFile } from 'node:child_process';
-import { readFileSync, writeFileSync } from 'node:fs';
-import { join } from 'node:path';
+import { readFileSync, statSync, writeFileSync } from 'node:fs';
+import { join, relative } from 'node:path';
 import { promisify } from 'node:util';
 import { check, has_world, is_ready, open, Rig, run, same, until } from './rig.mjs';
 
@@ -56,6 +56,15 @@ const flows = [
     same(await page.locator('.diagram .edge').count(), 2, 'connections');
     check(await page.locator('#activate-all').isDisabled(), 'nothing can be done to it');
   }],
+  ['the time line is as long as the recording before the first frame is drawn', async ({ browser, url }) => {
+    const page = await open(browser);
+    await page.addInitScript(() => { window.requestAnimationFrame = () => 0; });
+    await page.goto(url);
+    await until('hello', () => page.evaluate(() => window.studio?.store.hello !== undefined));
+    const range = await page.locator('.scrub').evaluate((slider) => [Number(slider.min), Number(slider.max)]);
+    check(range[0] < 0.2 && range[1] > 11.8, `from ${range[0]} to ${range[1]}`);
+    await page.context().close();
+  }],
   ['the time line moves the robot to where it was', async ({ page, rig, file }) => {
     for (const time of [11.5, 3, 7.25]) {
       const wanted = await recorded_place(rig, file, time);
@@ -73,6 +82,8 @@ const flows = [
     await until('the end', async () => (await moment(page)) >= 11.999);
     await until('it stops', () => page.evaluate(() => !window.studio.playback.is_playing));
     check(!near(await robot(page), before), 'the robot has moved');
+    await page.locator('#speed').fill('1');
+    await page.keyboard.press('Enter');
     await page.locator('#run').click();
     await until('from the beginning', async () => { const now = await moment(page); return now > 0.2 && now < 11; });
     await page.locator('#run').click();
@@ -219,6 +230,50 @@ const flows = [
     await page.context().close();
     await rig.end(studio);
     await rig.end(world);
+  }],
+  ['models that came and went are seen when they were there, and actors where they were', async ({ rig, browser }) => {
+    const file = join(rig.work, 'late.sdf');
+    const box = '<geometry><box><size>0.4 0.4 0.4</size></box></geometry>';
+    writeFileSync(file, readFileSync(join(source, 'tests/worlds/followers.sdf'), 'utf8').replaceAll('models/crate', join(source, 'tests/worlds/models/crate'))
+      .replace('<real_time_factor>0<', '<real_time_factor>1<').replace('<model name="ball">', `<model name="first"><static>true</static><pose>4 4 0.2 0 0 0</pose><link name="l"><visual name="v">${box}</visual></link></model><model name="ball">`));
+    const world = await rig.server(relative(source, file), '-u');
+    // The recorder looks for models by the wall clock, and says what it finds: a second is enough.
+    const at = (seconds) => rig.simctl('step', String(seconds * 250), '--paced');
+    const recorder = rig.start('rtse', ['--ns', rig.names, 'record', '--views', '-o', join(rig.work, 'late.mcap'), '-s', String(rig.server_id)]);
+    const size = () => statSync(join(rig.work, 'late.mcap')).size;
+    await until('it records', async () => size() > 1000);
+    await at(1);
+    await rig.simctl('spawn', join(source, 'tests/worlds/models/crate/model.sdf'), '--name', 'late', '--pose', '1 3 2');
+    await at(3);
+    await rig.simctl('delete', 'first');
+    await at(3);
+    await rig.end(recorder, 'SIGINT');
+    await rig.end(world);
+    const studio = rig.start('rtm-studio', [join(rig.work, 'late.mcap'), '-p', '0', ...(process.env.STUDIO_PAGE ? ['--page', process.env.STUDIO_PAGE] : [])]);
+    const page = await open(browser, await until('rtm-studio', () => /http:\/\/\S+/.exec(studio.log())?.[0]));
+    await is_ready(page);
+    await has_world(page);
+    const seen = () => page.evaluate(() => {
+      const { models } = window.studio.world.world;
+      return ['first', 'late'].filter((name) => models.get(name)?.group.visible).join(' ');
+    });
+    const place = (name) => page.evaluate((wanted) => window.studio.world.world.links.find((link) => link.name === wanted)?.getWorldPosition(window.studio.world.eye.target.clone()).toArray(), name);
+    const { from } = await page.evaluate(() => window.studio.store.hello.recording);
+    // Back, too: what has come is gone again, and what has gone is there.
+    for (const [time, wanted] of [[0.5, 'first'], [3.8, 'first late'], [6.8, 'late'], [0.6, 'first'], [3.9, 'first late']]) {
+      await scrub(page, from + time);
+      await until(`${wanted} at ${time} s`, async () => (await seen()) === wanted);
+      same(await page.evaluate(() => window.studio.store.world.models.map((m) => m.name).filter((n) => n === 'first' || n === 'late').sort().join(' ')), wanted, 'tree');
+    }
+    const [link] = await page.evaluate(() => window.studio.world.world.models.get('late').links.map((one) => one.name));
+    await until('it falls to where it was', async () => { const [x, y, z] = await place(link); return Math.abs(x - 1) < 0.2 && Math.abs(y - 3) < 0.2 && z < 2; });
+    if (process.env.STUDIO_PICTURES) await page.screenshot({ path: join(process.env.STUDIO_PICTURES, 'late-model.png') });
+    const walked = async (time) => { await scrub(page, from + time); await until('the actor', async () => Math.abs((await place('person'))[1] - time) < 0.1); };
+    await walked(2.5);
+    await walked(0.5);
+    same(page.problems, [], 'problems');
+    await page.context().close();
+    await rig.end(studio);
   }],
   ['files that are none, damaged or without a world', async ({ rig, file, browser }) => {
     const bad = join(rig.work, 'bad.mcap'), cut = join(rig.work, 'cut.mcap');

@@ -13,6 +13,7 @@
 #include "door.h"
 #include "foxglove.h"
 #include "hall.h"
+#include "late_models.h"
 #include "outbox.h"
 #include "pose_board.h"
 #include "ros/messages.h"
@@ -315,6 +316,64 @@ TEST(Acts, of_a_simulator_say_what_one_would_type) {
   EXPECT_EQ(command("push", R"({"name":"r","force":[1,0,0],"seconds":2})"), "simctl -s 7 wrench r 1 0 0 --for 2");
   EXPECT_EQ(command("spawn", R"({"model":"../../etc"})"), "error: model \"../../etc\": expected the name of a model on the model path");
   EXPECT_EQ(command("spawn", R"({"model":"/tmp/x.sdf"})"), "error: model \"/tmp/x.sdf\": expected the name of a model on the model path");
+}
+
+TEST(Acts, of_a_picture_say_which_view) {
+  const auto command = [&](const char* args) {
+    const auto plan = studio::find_act("screenshot")->plan({.server_id = 7}, Json::parse(args));
+    return plan ? plan->command : "error: " + plan.error().message;
+  };
+  EXPECT_EQ(command(R"({"pose":[1,2,3,1,0,0,0],"span":1.2,"collisions":true})"),
+            "simctl -s 7 screenshot world.png --size 800x600 --from '1 2 3 0 0 0' --span 1.2 --show collisions");
+  EXPECT_EQ(command(R"({"pose":[1,2,0,1,0,0,0],"span":9,"top":true,"width":300,"height":200})"),
+            "simctl -s 7 screenshot world.png --size 300x200 --top --span 9");
+  EXPECT_EQ(command(R"({"pose":[1,2,0,1,0,0,0],"width":5000})"), "error: width, height: expected 1 to 4096");
+}
+
+TEST(Acts, of_components_say_what_one_would_type) {
+  const studio::ActContext context{.name_server = "127.0.0.1:2809", .server_id = 7};
+  const auto command = [&](const char* name, const char* args) {
+    const auto plan = studio::find_act(name)->plan(context, Json::parse(args));
+    return plan ? plan->command : "error: " + plan.error().message;
+  };
+  const std::string rtse = "rtse --ns 127.0.0.1:2809 ";
+  EXPECT_EQ(command("join_time", R"({"path":"/a.rtc","phase":2,"rate":50})"), rtse + "join /a.rtc -s 7 -p 2 -r 50");
+  EXPECT_EQ(command("join_time", R"({"path":"/a.rtc","phase":1.5})"), "error: phase: expected a whole number from 0 to 15");
+  EXPECT_EQ(command("leave_time", R"({"path":"/a.rtc"})"), rtse + "leave /a.rtc");
+  EXPECT_EQ(command("disconnect_all", R"({"path":"/a.rtc:in"})"), rtse + "dis /a.rtc:in");
+  EXPECT_EQ(command("inject", R"({"port":"/a.rtc:in","value":"{\"data\":1}"})"), rtse + "inject /a.rtc:in '{\"data\":1}'");
+  EXPECT_EQ(command("inject", R"({"port":"/a.rtc:in","value":"--count=0"})"), "error: value: expected JSON, or RTC.TYPE({time}, ...)");
+  EXPECT_EQ(command("unload_module", R"({"manager":"/m.mgr","file":"A.so"})"), rtse + "mgr unload A.so -m /m.mgr");
+}
+
+Json marker(const char* model, const char* frame, int type = 11) {
+  const Json corner{{"x", 1}, {"y", 0.00001}, {"z", 0}};
+  return {{"ns", model},
+          {"type", type},
+          {"header", {{"frame_id", frame}}},
+          {"points", Json::array({corner, corner, corner})},
+          {"color", {{"r", 1}, {"g", 0}, {"b", 0}, {"a", 1}}}};
+}
+Json markers(Json::array_t list) { return {{"markers", std::move(list)}}; }
+
+TEST(LateModels, are_those_that_the_scene_does_not_have_and_those_that_have_gone) {
+  studio::RecordedScene scene;
+  scene.version = 3;
+  scene.models = Json::array({{{"name", "box"}}, {{"name", "robot"}}, {{"name", "shapeless"}}});
+  studio::LateModels late;
+  const Json first = markers({marker("", "", 0), marker("box", "box::l"), marker("robot", "robot::l")});
+  late.begin(first);
+  late.take(first, scene);
+  EXPECT_EQ(late.event(scene), Json::parse(R"({"op":"late","version":3,"models":[],"gone":[]})"));
+  late.take(markers({marker("robot", "robot::l"), marker("new", "new::b"), marker("new", "new::a"), marker("new", "new::b")}), scene);
+  const auto event = late.event(scene);
+  EXPECT_EQ(event["gone"], Json::array({"box"}));
+  EXPECT_EQ(late.frames(), (std::vector<std::string>{"new::a", "new::b"}));
+  ASSERT_EQ(event["models"].size(), 1u);
+  EXPECT_EQ(event["models"][0]["links"][1]["parts"].size(), 2u);
+  EXPECT_EQ(event["models"][0]["links"][0]["parts"][0]["points"], Json::array({1, 0, 0, 1, 0, 0, 1, 0, 0}));
+  late.take(first, scene);
+  EXPECT_TRUE(late.frames().empty());
 }
 
 TEST(Hall, only_what_is_in_the_folder_is_opened) {

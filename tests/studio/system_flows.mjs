@@ -270,12 +270,18 @@ const flows = [
   ['models are spawned and deleted', async ({ page, rig }) => {
     await page.evaluate(() => window.studio.world.whole());
     await page.locator('button[aria-label="Spawn a model"]').click();
-    await page.locator('#spawn-model').fill('pioneer2dx');
+    await until('models to choose from', () => page.locator('#spawn-models option[value="pioneer2dx"]').count());
+    await page.locator('#spawn-model').fill('pioneer');
+    await page.locator('.models button', { hasText: /^pioneer2dx$/ }).click();
     await page.locator('#spawn-name').fill('second');
     await page.locator('#spawn-pose').fill('3 3 0');
     await page.locator('dialog[open] button.main').click();
     await until('in the world', () => page.evaluate(() => window.studio.world.world.models.has('second')));
     await page.evaluate(() => window.studio.select({ kind: 'model', id: 'second' }));
+    await page.locator('.links summary', { hasText: /^\d links$/ }).click();
+    await page.locator('.links li', { hasText: 'chassis' }).first().waitFor();
+    await until('its velocity', async () => /^-?0\.\d\d .* m\/s$/.test(await page.locator('.inspector dt:text-is("velocity") + dd').textContent()));
+    if (process.env.STUDIO_PICTURES) await page.screenshot({ path: join(process.env.STUDIO_PICTURES, 'model.png') });
     await page.locator('.inspector button:has-text("Delete")').click();
     await until('gone', () => page.evaluate(() => !window.studio.world.world.models.has('second')));
     void rig;
@@ -291,6 +297,53 @@ const flows = [
     await page.locator('#act-exit').click();
     await boxes(page, 3);
   }],
+  ['a signal has members before its first sample, then a rate; a value is written by hand', async ({ page, rig }) => {
+    const signal = (name) => until(name, () => page.evaluate((end) => window.studio.store.signals.find((x) => x.kind === 'port' && x.topic.endsWith(end))?.topic, name));
+    const velocity = await signal('LaserObstacleAvoid0/velocity');
+    await page.evaluate((id) => window.studio.select({ kind: 'signal', id }), velocity);
+    await page.locator('.inspector button[aria-label="Plot data.vx"]').waitFor();
+    const { zero } = await page.evaluate((topic) => window.studio.wire.request('members', { topic }).then(({ result }) => result), velocity);
+    same(zero, { tm: { sec: 0, nsec: 0 }, data: { vx: 0, vy: 0, va: 0 } }, 'zeros');
+    const error = await page.evaluate(() => window.studio.wire.request('members', { topic: '/nobody.rtc:x' }).then(() => 'done', (e) => e.message));
+    check(error.includes('nobody'), error);
+    await choose(page, 'RTCPosition2d0');
+    await page.locator('#act-disconnect_all').click();
+    await edges(page, 1);
+    await page.locator('#act-activate').click();
+    await in_state(page, 'active', 1);
+    await page.evaluate((id) => window.studio.select({ kind: 'port', id }), `${await path_of(page, 'RTCPosition2d0')}:velocity`);
+    await page.locator('#inject').click();
+    await until('zeros', async () => (await page.locator('#inject-value').inputValue()).includes('"vx": 0'));
+    if (process.env.STUDIO_PICTURES) await page.screenshot({ path: join(process.env.STUDIO_PICTURES, 'inject.png') });
+    await page.locator('#inject-value').fill('{"data": {"vx": 0.2}}');
+    await page.locator('dialog[open] button.main').click();
+    await until('it was written', async () => (await page.locator('footer .command').textContent()).includes(' inject '));
+    await drives(rig);
+    const odometry = await signal('RTCPosition2d0/odometry');
+    await page.evaluate((id) => window.studio.select({ kind: 'signal', id }), odometry);
+    await until('its rate', async () => /^\d.* a second, \d.* ms after its stamp$/.test(await page.locator('.inspector .rate').textContent()));
+    await page.locator('#tab-step').click();
+    await until('what its context has done', async () => (await page.locator('.contexts tbody tr', { hasText: 'RTCPosition2d0' }).locator('td').nth(1).textContent()).endsWith(' Hz'));
+    if (process.env.STUDIO_PICTURES) await page.screenshot({ path: join(process.env.STUDIO_PICTURES, 'step.png') });
+    await page.locator('#tab-plots').click();
+    await choose(page, 'RTCPosition2d0');
+    await page.locator('#act-deactivate').click();
+    await in_state(page, 'inactive', 3);
+    await drag(page, 'LaserObstacleAvoid0:velocity', 'RTCPosition2d0:velocity');
+    await edges(page, 2);
+  }],
+  ['a picture of the view is that of the simulator', async ({ page, rig }) => {
+    const [saved] = await Promise.all([page.waitForEvent('download'), page.locator('button[aria-label^="Save a picture"]').click()]);
+    const png = readFileSync(await saved.path());
+    const box = await page.evaluate(() => { const { clientWidth, clientHeight } = window.studio.world.element; return [clientWidth, clientHeight]; });
+    same([png.toString('latin1', 1, 4), png.readUInt32BE(16), png.readUInt32BE(20)], ['PNG', ...box], 'picture');
+    if (process.env.STUDIO_PICTURES) writeFileSync(join(process.env.STUDIO_PICTURES, 'saved.png'), png);
+    // The command draws the same.
+    const command = await until('the command', async () => { const text = await page.locator('footer .command').textContent(); return text.includes(' screenshot ') && text; });
+    const words = [...command.matchAll(/'([^']*)'|(\S+)/g)].map(([, quoted, bare]) => quoted ?? bare);
+    await rig.call('simctl', ...words.slice(1));
+    same([readFileSync(join(rig.work, 'world.png')).readUInt32BE(16)], [box[0]], 'its picture');
+  }],
   ['saved, torn down and opened again', async ({ page, rig }) => {
     const at = () => page.evaluate(() => Object.fromEntries(Object.entries(window.studio.diagram.positions()).map(([path, [x, y]]) => [path, [x, y]])));
     await page.evaluate(() => {
@@ -303,10 +356,22 @@ const flows = [
     writeFileSync(file, readFileSync(await download.path()));
     same([...readFileSync(file, 'utf8').matchAll(/<rtsExt:Location rtsExt:x="(-?\d+)" rtsExt:y="(-?\d+)"/g)].map(([, x, y]) => [Number(x), Number(y)]).sort(), Object.values(placed).sort(), 'places in the file');
     await page.evaluate(() => window.studio.diagram.arrange());
-    await rig.rtse('check', file);
-    await rig.rtse('teardown', file);
+    const choose_way = async (way) => {
+      await page.locator('input[type=file]').setInputFiles(file);
+      await page.locator('dialog[open] .way', { has: page.locator(`strong:text-is("${way}")`) }).click();
+      if (process.env.STUDIO_PICTURES) await page.screenshot({ path: join(process.env.STUDIO_PICTURES, 'profile.png') });
+      await page.locator('dialog[open] button.main').click();
+    };
+    await choose_way('Compare');
+    await page.locator('dialog[open] p', { hasText: 'What runs is what was saved' }).waitFor();
+    await page.locator('dialog[open] button.main').click();
+    await choose_way('Tear down');
     await edges(page, 0);
-    await page.locator('input[type=file]').setInputFiles(file);
+    await choose_way('Compare');
+    await until('what is missing', async () => (await page.locator('.differences li', { hasText: 'range' }).count()) > 0);
+    if (process.env.STUDIO_PICTURES) await page.screenshot({ path: join(process.env.STUDIO_PICTURES, 'compared.png') });
+    await page.locator('dialog[open] button.main').click();
+    await choose_way('Load');
     await edges(page, 2);
     await until('boxes are where they were saved', async () => JSON.stringify(await at()) === JSON.stringify(placed));
     await page.locator('#activate-all').click();
@@ -355,6 +420,32 @@ const flows = [
     // With the same port and the token that this page has.
     shared.studio = await rig.studio('-p', url.port);
     await until('another token: it asks for the new URL', () => page.evaluate(() => window.studio.wire.status !== 'open'));
+  }],
+  ['a component joins simulated time and leaves it', async ({ browser }) => {
+    const rig = new Rig(bin, source, lib);
+    await rig.claim();
+    try {
+      await rig.naming();
+      await rig.server('worlds/obstacle_course.sdf', '--lockstep');
+      rig.host('LaserObstacleAvoid');
+      const studio = await rig.studio();
+      const page = await open(browser, studio.url);
+      await is_ready(page);
+      const members = async () => JSON.parse(await rig.simctl('--json', 'participants'));
+      await choose(page, 'LaserObstacleAvoid0');
+      await page.locator('#act-join_time').click();
+      await page.locator('#join-rate').fill('20');
+      if (process.env.STUDIO_PICTURES) await page.screenshot({ path: join(process.env.STUDIO_PICTURES, 'join.png') });
+      await page.locator('dialog[open] button.main').click();
+      await until('it takes part', async () => { const [one] = await members(); return one?.rate === 20 && one.phase === 1; });
+      await page.locator('#act-leave_time').click();
+      await until('it has left', async () => (await members()).length === 0);
+      await page.locator('#act-join_time').waitFor();
+      same(page.problems, [], 'problems');
+      await page.context().close();
+    } finally {
+      await rig.end_all();
+    }
   }],
   ['in lock step a step goes to the next tick of a participant', async ({ browser }) => {
     const rig = new Rig(bin, source, lib);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -152,22 +153,20 @@ inline std::vector<std::pair<Outline, Outline>> drop_pairs() {
           {wedge_outline(0.2, 0.2), ring_outline(0.05, 0.09, 0.04)}};
 }
 
-inline std::vector<Drop> all_drops() {
+inline std::vector<Drop> drops_of(const Outline& lower, const Outline& upper) {
   std::vector<Drop> drops;
-  for (const auto& [lower, upper] : drop_pairs()) {
-    for (const double height : {-0.5, 0.05, 0.3}) {
-      for (const bool is_tilted : {false, true}) {
-        for (const bool is_fixed : {false, true}) {
-          Drop drop{"", lower, upper, height, 0, 0, 0, is_fixed};
-          if (height < 0) drop.height = -0.5 * (Turned(upper).high - Turned(upper).low);
-          if (is_tilted) drop.roll = 0.35, drop.pitch = -0.2, drop.aside = 0.04;
-          drop.name = upper.name + " on " + lower.name +
-                      (height < 0     ? " buried"
-                       : height > 0.1 ? " 30cm"
-                                      : " 5cm") +
-                      (is_tilted ? " tilted" : "") + (is_fixed ? " fixed" : "");
-          drops.push_back(drop);
-        }
+  for (const double height : {-0.5, 0.05, 0.3}) {
+    for (const bool is_tilted : {false, true}) {
+      for (const bool is_fixed : {false, true}) {
+        Drop drop{"", lower, upper, height, 0, 0, 0, is_fixed};
+        if (height < 0) drop.height = -0.5 * (Turned(upper).high - Turned(upper).low);
+        if (is_tilted) drop.roll = 0.35, drop.pitch = -0.2, drop.aside = 0.04;
+        drop.name = upper.name + " on " + lower.name +
+                    (height < 0     ? " buried"
+                     : height > 0.1 ? " 30cm"
+                                    : " 5cm") +
+                    (is_tilted ? " tilted" : "") + (is_fixed ? " fixed" : "");
+        drops.push_back(drop);
       }
     }
   }
@@ -190,7 +189,8 @@ inline double energy_of(const Physics& physics, ModelId model) {
   return def.mass * (9.8 * centre.z() + 0.5 * physics.point_velocity(link, centre).squaredNorm()) + 0.5 * turn.dot(def.inertia * turn);
 }
 
-inline DropResult drop(const Drop& drop, double seconds) {
+// `before_step` may push.
+inline DropResult drop(const Drop& drop, double seconds, const std::function<void(Physics&)>& before_step = {}) {
   const WorldFiles files;
   const Turned lower(drop.lower), upper(drop.upper);
   Eigen::Isometry3d pose = tilted(drop.aside, 0.6 * drop.aside, 0, drop.roll, drop.pitch);
@@ -206,6 +206,7 @@ inline DropResult drop(const Drop& drop, double seconds) {
   DropResult result;
   result.lowest = 1;
   while (static_cast<double>(f.physics.steps()) * 0.001 < seconds) {
+    if (before_step) before_step(f.physics);
     f.physics.step();
     result.gain = std::max(result.gain, energy() / start - 1);
     result.lowest = std::min(result.lowest, f.position("upper").z());

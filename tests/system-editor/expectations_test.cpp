@@ -126,7 +126,7 @@ TEST_F(ExpectationsTest, what_cannot_be_judged_is_refused_with_its_line) {
   EXPECT_NE(refusal("- path_length: {model: robot, min: far}").find("far"), std::string::npos);
   EXPECT_NE(refusal("- reach: {model: robot, region: [1, 2]}").find("region"), std::string::npos);
   EXPECT_NE(refusal("just text").find("list"), std::string::npos);
-  EXPECT_FALSE(read_expectations("/nonexistent.yaml").ok());
+  EXPECT_FALSE(read_expectations("/proc/nowhere.yaml").ok());
 }
 
 TEST_F(ExpectationsTest, records_are_read_whole_or_refused) {
@@ -139,6 +139,13 @@ TEST_F(ExpectationsTest, records_are_read_whole_or_refused) {
   ASSERT_TRUE(quoted.ok());
   EXPECT_EQ(quoted->poses.begin()->first, "my \"big\" box");
   EXPECT_EQ(quoted->contacts.at(0).other, "my box");
+}
+
+TEST_F(ExpectationsTest, a_record_goes_on_when_the_last_moving_model_has_gone) {
+  const auto record = read_record(file("# rtm-sim record 1, world w\n# time model x\n0.1 robot 1 2 3 1 0 0 0\n# 0.2 nothing moves\n"), 10);
+  ASSERT_TRUE(record.ok());
+  EXPECT_EQ(record->last, 0.2);
+  EXPECT_EQ(record->poses.at("robot").size(), 1U);
 }
 
 TEST_F(ExpectationsTest, a_record_ends_with_the_run_and_with_a_reset) {

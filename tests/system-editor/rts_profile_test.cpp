@@ -91,7 +91,7 @@ TEST(RtsProfile, broken_files_are_refused_with_their_line) {
   expect_error(parse_xml("<rts:RtsProfile rts:version=\"9\"/>", "f.xml"), "9");
   expect_error(parse_yaml("a: [", "f.yaml"), "f.yaml:");
   expect_error(parse_yaml("a: 1", "f.yaml"), "rtsProfile");
-  expect_error(read_system("/nonexistent.xml"), "nonexistent");
+  expect_error(read_system("/proc/nowhere.xml"), "nowhere");
 }
 
 }  // namespace

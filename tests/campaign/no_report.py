@@ -1,0 +1,36 @@
+# Runs a command whose programs were built with sanitizers: no_report.py COMMAND [WORD...]. What address, leak, undefined-behaviour and thread sanitizers of all processes below it find is collected, whatever the
+# processes do with their output and exit codes; one report, and the command has failed. Its exit code is handed on else.
+import glob
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+
+tests = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+longest = 20_000  # characters of reports that are shown
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chmod(folder, 0o777)  # some programs run as another account
+    common = f"log_path={folder}/report:log_exe_name=1:print_stacktrace=1"
+    settings = {
+        # A library that is loaded before all others is not ours to order. A process that is told to end by a signal and one that dies are told apart by the tests.
+        "ASAN_OPTIONS": f"verify_asan_link_order=0:handle_segv=1:detect_stack_use_after_return=1:{common}",
+        "LSAN_OPTIONS": f"suppressions={tests}/lsan.supp:print_suppressions=0:{common}",
+        "UBSAN_OPTIONS": common,
+        "TSAN_OPTIONS": f"suppressions={tests}/tsan.supp:print_suppressions=0:{common}",
+    }
+    # What was set outside counts, but for where reports go.
+    environment = {**os.environ, "RTMSIM_SANITIZED": "1", **{name: f"{os.environ.get(name, '')}:{words}".strip(":") for name, words in settings.items()}}
+    command = subprocess.Popen(sys.argv[1:], env=environment)
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda number, _: command.send_signal(number))
+    code = command.wait()
+    reports = []
+    for path in sorted(glob.glob(f"{folder}/report*")):
+        with open(path, errors="replace") as file:
+            reports.append(f"--- {os.path.basename(path)}\n{file.read()}")
+if reports:
+    print("\n".join(reports)[:longest], file=sys.stderr)
+    sys.exit(f"no_report: {len(reports)} processes were reported on")
+sys.exit(code if code >= 0 else 128 - code)

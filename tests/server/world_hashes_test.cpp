@@ -1,0 +1,93 @@
+// The world's part of a hash log, in worlds whose models come and go.
+#include "server/world_hashes.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "support/naming_service.h"
+#include "support/simulation_fixture.h"
+
+namespace sim {
+namespace {
+
+using namespace test;
+using namespace std::chrono_literals;
+
+class HashesOfTheWorld : public ::testing::Test {
+ protected:
+  // The names of the leaves of each tick that was recorded.
+  std::vector<std::set<std::string>> leaves() {
+    EXPECT_TRUE(hashes.finish());
+    auto reader = base::HashLogReader::open(path);
+    if (!reader) throw std::runtime_error(reader.error().message);
+    std::vector<std::set<std::string>> all;
+    base::HashTick tick;
+    while (true) {
+      const auto next = reader->next(tick);
+      if (!next) throw std::runtime_error(next.error().message);
+      if (!*next) return all;
+      all.emplace_back();
+      for (const auto& entry : tick.entries) all.back().insert(reader->keys().at(entry.key).text());
+    }
+  }
+  void record() { hashes.record(*f.simulation); }
+  void step() {
+    f.simulation->step(f.times);
+    f.simulation->sense(f.times);
+  }
+  static WorldDef world() {
+    WorldDef world;
+    world.models = {ground(), pioneer("first", at(0, 0, 0)), pioneer("second", at(3, 0, 0))};
+    return world;
+  }
+  static std::set<std::string> robot(const std::string& name) {
+    return {"model " + name, "device laser " + name + "::laser", "device position2d " + name + "::position2d", "device truth " + name};
+  }
+  static std::set<std::string> with_ground(std::set<std::string> leaves) {
+    leaves.insert("model ground");
+    return leaves;
+  }
+  static std::set<std::string> robots(const std::string& a, const std::string& b) {
+    auto both = robot(a);
+    both.merge(robot(b));
+    return both;
+  }
+
+  SimulationFixture f{world()};
+  support::TemporaryFolder folder;
+  const std::string path = (folder.path() / "world.hashlog").string();
+  WorldHashes hashes = WorldHashes::open(path, 1ns).value();
+};
+
+TEST_F(HashesOfTheWorld, have_the_devices_of_a_robot_under_its_name_when_one_before_it_is_gone) {
+  record();
+  f.simulation->remove(1);
+  step();
+  record();
+  const auto all = leaves();
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[0], with_ground(robots("first", "second")));
+  for (const auto& leaf : all[1]) EXPECT_EQ(robot("second").count(leaf), 1U) << leaf;
+  EXPECT_EQ(all[1].count("model second"), 1U);
+}
+
+TEST_F(HashesOfTheWorld, have_a_model_under_its_name_in_the_place_of_one_of_the_run_before) {
+  std::vector<std::string> notes;
+  ASSERT_TRUE(f.simulation->spawn(pioneer("early", at(6, 0, 0)), notes));
+  record();
+  ASSERT_TRUE(f.simulation->reset(notes));
+  hashes.restart();
+  ASSERT_TRUE(f.simulation->spawn(pioneer("late", at(6, 0, 0)), notes));
+  record();
+  const auto all = leaves();
+  ASSERT_EQ(all.size(), 2U);
+  auto before = with_ground(robots("first", "second"));
+  before.merge(robot("early"));
+  EXPECT_EQ(all[0], before);
+  EXPECT_EQ(all[1].count("model late"), 1U);
+  EXPECT_EQ(all[1].count("model early"), 0U);
+}
+
+}  // namespace
+}  // namespace sim
