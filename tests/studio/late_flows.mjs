@@ -105,19 +105,24 @@ const flows = [
   flow('a click holds on what is drawn anew meanwhile', async ({ mock, page }) => {
     const late = time({ participants: [{ name: 'RTCLaser0', pid: 1, phase: 0, rate: 100, ticks: 5, missed: 0, mean_us: 3, max_us: 9, active: true, late: true }] });
     await has_world(page);
+    // What was said before is there and drawn: where things are is where they stay.
+    const settled = async () => {
+      await page.evaluate(() => window.studio.wire.request('models'));
+      await two_frames(page);
+    };
     const press = async (locator, meanwhile) => {
-      const box = await locator.boundingBox();
+      await locator.waitFor();
+      await settled();
+      const box = await until('it is drawn', () => locator.boundingBox());
       await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
       await page.mouse.down();
       meanwhile();
-      await two_frames(page);
-      await page.evaluate(() => window.studio.wire.request('models'));
-      await two_frames(page);
+      await settled();
       await page.mouse.up();
     };
     const others = (state) => () => mock.say({ ...demo_system(), revision: 2, components: demo_system().components.map((c) => ({ ...c, state })) });
     await press(page.locator(`.tree li[data-key="component:${laser}"] .label`), others('Inactive'));
-    await until('chosen in the tree', () => page.evaluate((p) => window.studio.store.selection?.id === p, laser));
+    await until('chosen in the tree', () => page.evaluate((p) => window.studio.store.selection?.id === p && window.studio.store.details.has(p), laser));
     await press(page.locator('#act-exit'), others('Error'));
     await until('exit', () => asked(mock, 'exit').length === 1);
     await until('and then it is drawn', async () => (await page.locator('.inspector .state').textContent()).includes('error'));
