@@ -4,6 +4,7 @@
 import json
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import sys
@@ -278,6 +279,32 @@ def has_moved(process):
 
 
 # A naming service that hangs is named, whenever it does, and nothing else is blamed.
+# Where somebody looks on, the line of progress is written and costs the run nothing: all steps are one request, as without.
+def progress():
+    with Place() as place:
+        calls = place.path / "simctl.calls"
+        for name, text in (("rtse", None), ("simctl", f'#!/bin/sh\necho "$@" >> {calls}\nexec {bin_dir}/simctl "$@"\n')):
+            shutil.copy(rtse, place.path / name) if text is None else place.write(name, text)
+            (place.path / name).chmod(0o755)
+        system = place.relays(First={"source": 1})
+        environment = {**place.environment, "PATH": f"{bin_dir}:{os.environ['PATH']}", "LD_LIBRARY_PATH": lib_dir}
+        ours, theirs = os.openpty()
+        process = subprocess.Popen([place.path / "rtse", "run", system, "--world", empty, "--module-path", lib_dir, "--duration", "5", "--realtime"],
+                                   stdout=subprocess.DEVNULL, stderr=theirs, env=environment, cwd=place.path)
+        os.close(theirs)
+        seen = b""
+        try:
+            while piece := os.read(ours, 4096):
+                seen += piece
+        except OSError:
+            pass  # nobody has the other end any more
+        os.close(ours)
+        assert process.wait(timeout=watchdog) == 0, seen
+        assert b" of 5.0 s" in seen, seen
+        steps = [line for line in calls.read_text().splitlines() if " step " in line]
+        assert len(steps) == 1, steps
+
+
 def hung_naming():
     with Place() as place:
         for moment in ("start", "drive"):

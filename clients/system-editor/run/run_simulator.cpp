@@ -129,7 +129,8 @@ std::vector<std::string> RunSimulator::models() const {
   return names;
 }
 
-Result<void> RunSimulator::make_steps(std::int64_t steps, const std::function<Result<void>()>& alive) {
+Result<void> RunSimulator::make_steps(std::int64_t steps, const std::function<Result<void>()>& alive,
+                                      const std::function<void(double)>& passed) {
   ProgramCall call{{own_program("simctl"), "-s", id_, "step", std::to_string(steps)}, {}, ""};
   if (options_.in_real_time) call.words.push_back("--paced");
   auto stepping = start_program(options_.warm, call);
@@ -152,7 +153,10 @@ Result<void> RunSimulator::make_steps(std::int64_t steps, const std::function<Re
     const auto now = stats.value("steps", last);
     last_time_ = stats.value("sim_time", last_time_);
     const bool has_moved = std::exchange(last, now) != now;
-    if (has_moved) moved = Clock::now();
+    if (has_moved) {
+      moved = Clock::now();
+      passed(last_time_);
+    }
     ask_period = has_moved ? std::min(2 * ask_period, longest_ask_period) : shortest_ask_period;
     if (Clock::now() - moved > long_time && !std::exchange(is_told, true)) std::fprintf(stderr, "rtse: %s\n", who_waits().c_str());
     if (Clock::now() - moved > std::chrono::duration<double>(options_.hang_timeout_s)) return Error{who_hangs()};

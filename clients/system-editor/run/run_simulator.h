@@ -50,8 +50,10 @@ class RunSimulator {
   std::map<std::string, std::int64_t> phases() const;  // of the participants
   std::vector<std::string> models() const;
 
-  // So many steps; given up when `alive` has something to say, or when time stands still for longer than a tick may take.
-  Result<void> make_steps(std::int64_t steps, const std::function<Result<void>()>& alive);
+  // So many steps; given up when `alive` has something to say, or when time stands still for longer than a tick may take. `passed` is told
+  // the simulated time [s], about once a second of real time.
+  Result<void> make_steps(
+      std::int64_t steps, const std::function<Result<void>()>& alive, const std::function<void(double)>& passed = [](double) {});
 
  private:
   Result<void> try_start(const Wait& wait_until);

@@ -393,13 +393,16 @@ class Run final : public RunningSystem {
   Result<void> drive() {
     if (options_.driver) return options_.driver(*this);
     auto left = static_cast<std::int64_t>(std::llround(options_.duration_s / simulator_.step()));
-    const auto second = std::max<std::int64_t>(1, std::llround(1 / simulator_.step()));
     const bool shows = !options_.quiet && isatty(2);
-    const auto piece = shows ? second : left;  // each costs a program's start
+    const auto show = [&](double now) {
+      if (shows) std::fprintf(stderr, "\r%6.1f of %.1f s", now, options_.duration_s);
+    };
     for (std::int64_t done = 0; left > 0;) {
       const auto stop = options_.script ? options_.script->next_stop(done).value_or(done + left) : done + left;
-      const auto steps = std::min({left, piece, stop - done});
-      if (const auto stepped = simulator_.make_steps(steps, [this] { return check_children(); }); !stepped) {
+      const auto steps = std::min(left, stop - done);
+      if (const auto stepped = simulator_.make_steps(
+              steps, [this] { return check_children(); }, show);
+          !stepped) {
         result_.simulated_s = simulator_.time().value_or(result_.simulated_s);
         return stepped;
       }
@@ -409,7 +412,6 @@ class Run final : public RunningSystem {
       if (options_.script && stop == done) {
         if (const auto acted = options_.script->act(*scene_, done); !acted) return acted;
       }
-      if (shows) std::fprintf(stderr, "\r%6.1f of %.1f s", result_.simulated_s, options_.duration_s);
     }
     if (shows) std::fprintf(stderr, "\r                         \r");
     return check_children();
