@@ -1,8 +1,21 @@
 #include "sim_time_proxy.h"
 
 #include <base/clock.h>
+#include <base/text.h>
 
+#include <algorithm>
 #include <utility>
+
+#include "served_objects.h"
+
+namespace {
+
+constexpr std::chrono::seconds start_limit{60};   // of who makes the proxy and then lets somebody join
+constexpr std::chrono::seconds longest_pause{2};  // between two looks at who is served
+constexpr std::chrono::seconds long_time{1};      // for a tick
+constexpr std::chrono::milliseconds look_period = std::chrono::milliseconds(long_time) / 4;
+
+}  // namespace
 
 // clang-format off
 static const char* const simtimeproxy_spec[] = {
@@ -23,7 +36,62 @@ static const char* const simtimeproxy_spec[] = {
 
 RTC::ReturnCode_t SimTimeProxy::onInitialize() {
   bindParameter("ticks", ticks_, "");
+  const std::string limit = getProperties().getProperty("sim_time_proxy.alone_limit");
+  if (limit.empty()) return RTC::RTC_OK;
+  const auto seconds = base::parse_number(limit);
+  if (!seconds || !(*seconds > 0)) {
+    RTC_ERROR(("sim_time_proxy.alone_limit must be a number of seconds above 0, got %s", base::in_quotes(limit).c_str()));
+    return RTC::RTC_ERROR;
+  }
+  alone_limit_ = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(*seconds));
+  patience_ = std::max<std::chrono::nanoseconds>(*alone_limit_, start_limit);
+  served_at_ = Clock::now();
+  watch_ = std::thread([this] { watch(); });
   return RTC::RTC_OK;
+}
+
+SimTimeProxy::~SimTimeProxy() {
+  watched_.lock()->is_ending = true;
+  ending_.notify_all();
+  if (watch_.joinable()) watch_.join();
+}
+
+void SimTimeProxy::watch() {
+  for (;;) {
+    bool is_late = false;
+    {
+      auto watched = watched_.lock();
+      if (watched.wait_for(ending_, look_period, [&] { return watched->is_ending; })) return;
+      is_late = watched->tick_since && !watched->is_told && Clock::now() - *watched->tick_since >= long_time;
+      watched->is_told = watched->is_told || is_late;
+    }
+    if (is_late)
+      RTC_WARN(("the context that is ticked has not returned from tick() for %d s; it is waited for", static_cast<int>(long_time.count())));
+    if (!alone_limit_ || !is_alone()) continue;
+    RTC_INFO(("whom this proxy served has gone: it ends"));
+    exit();
+    return;
+  }
+}
+
+bool SimTimeProxy::serves_somebody() {
+  const CORBA::ORB_var orb = RTC::Manager::instance().getORB();
+  const RTC::ExecutionContext_var context = get_context(0);
+  std::vector<std::string> served;
+  if (!CORBA::is_nil(context)) served = iface::members_of(orb, context);
+  if (auto ticked = watched_.lock()->ticked; !ticked.empty()) served.push_back(std::move(ticked));
+  return std::ranges::any_of(served, [&](const std::string& reference) { return !iface::is_gone(orb, reference); });
+}
+
+// For longer than it may be.
+bool SimTimeProxy::is_alone() {
+  const auto now = Clock::now();
+  if (now < next_look_) return false;
+  next_look_ = now + std::min<std::chrono::nanoseconds>(*alone_limit_ / 4, longest_pause);
+  if (!serves_somebody()) return now - served_at_ > patience_;
+  served_at_ = now;
+  patience_ = *alone_limit_;
+  return false;
 }
 
 RTC::ReturnCode_t SimTimeProxy::onActivated(RTC::UniqueId) {
@@ -36,18 +104,32 @@ RTC::ReturnCode_t SimTimeProxy::onActivated(RTC::UniqueId) {
     return RTC::RTC_ERROR;
   }
   ticked_ = std::move(*found);
+  watched_.lock()->ticked = ticks_;
+  if (!watch_.joinable()) watch_ = std::thread([this] { watch(); });
   return RTC::RTC_OK;
 }
 
 RTC::ReturnCode_t SimTimeProxy::onDeactivated(RTC::UniqueId) {
   ticked_.reset();
+  watched_.lock()->ticked.clear();
   return RTC::RTC_OK;
+}
+
+iface::TickedContext::Answer SimTimeProxy::tick(std::string& why) {
+  {
+    auto watched = watched_.lock();
+    watched->tick_since = Clock::now();
+    watched->is_told = false;
+  }
+  const auto answer = ticked_->tick(base::current_clock().now(), why);
+  watched_.lock()->tick_since.reset();
+  return answer;
 }
 
 RTC::ReturnCode_t SimTimeProxy::onExecute(RTC::UniqueId) {
   if (!ticked_) return RTC::RTC_OK;
   std::string why;
-  switch (ticked_->tick(base::current_clock().now(), why)) {
+  switch (tick(why)) {
     case iface::TickedContext::Answer::done:
       return RTC::RTC_OK;
     case iface::TickedContext::Answer::threw:

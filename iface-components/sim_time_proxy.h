@@ -4,32 +4,62 @@
 //
 // The usual way, for any component: it becomes a member of the context (add_component), which calls its callbacks in each tick. The proxy
 // itself then does nothing and stays inactive. The other way, for one whose own context must stay: configuration `ticks`, the reference of
-// that context, which the proxy ticks while it is active (ticked_context.h). What that throws is passed over and said once; when it is gone
-// the proxy ends in its error state, and a log line says so.
+// that context, which the proxy ticks while it is active (ticked_context.h). What that throws is passed over and said once, and so is a
+// tick that takes longer than a second; when it is gone the proxy ends in its error state, and a log line says so.
 //
-// Threads: those of every component.
+// Property sim_time_proxy.alone_limit [s]: a proxy that serves nobody any more, since the component's process has ended or the object has
+// gone, exits after so long, and the last one takes its host with it. Who started it may be gone, and so may the simulator and the naming
+// service. One that has not served anybody yet is given the time of a start. Default: it stays.
+//
+// Threads: those of every component; the watch looks at long ticks, and asks after who is served.
 #pragma once
 
+#include <base/guarded.h>
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/Manager.h>
 
+#include <chrono>
+#include <condition_variable>
 #include <optional>
 #include <string>
+#include <thread>
 
 #include "ticked_context.h"
 
 class SimTimeProxy : public RTC::DataFlowComponentBase {
  public:
   explicit SimTimeProxy(RTC::Manager* manager) : RTC::DataFlowComponentBase(manager) {}
+  ~SimTimeProxy() override;
   RTC::ReturnCode_t onInitialize() override;
   RTC::ReturnCode_t onActivated(RTC::UniqueId ec_id) override;
   RTC::ReturnCode_t onDeactivated(RTC::UniqueId ec_id) override;
   RTC::ReturnCode_t onExecute(RTC::UniqueId ec_id) override;
 
  private:
+  using Clock = std::chrono::steady_clock;
+  struct Watched {
+    std::string ticked;  // reference of the context that is ticked; empty: none
+    std::optional<Clock::time_point> tick_since{};
+    bool is_told = false;  // that this tick takes long
+    bool is_ending = false;
+  };
+  void watch();
+  bool is_alone();
+  bool serves_somebody();
+  iface::TickedContext::Answer tick(std::string& why);
+
   std::string ticks_;
   std::optional<iface::TickedContext> ticked_;
   std::string said_;
+
+  // Of the watch alone, once that runs.
+  std::optional<std::chrono::nanoseconds> alone_limit_;
+  std::chrono::nanoseconds patience_{0};
+  Clock::time_point served_at_, next_look_;
+
+  base::Guarded<Watched, base::Rank::buffer> watched_;
+  std::condition_variable ending_;
+  std::thread watch_;
 };
 
 extern "C" {

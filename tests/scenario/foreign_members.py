@@ -28,15 +28,21 @@ class Mixed(System):
         self.until(f"component {name}", lambda: process.poll() is None and "ready" in self.log(process))
         return process
 
-    # With the hosts that `rtse join` has left running.
-    def end(self):
+    # The hosts that `rtse join` has left running.
+    def time_hosts(self):
+        hosts = []
         for pid in filter(str.isdigit, os.listdir("/proc")):
             try:
                 words = open(f"/proc/{pid}/cmdline").read().split("\0")
             except OSError:
                 continue  # it has ended meanwhile
             if f"corba.nameservers:{self.names}" in words and any(word.startswith("SimTimeProxy?") for word in words):
-                os.kill(int(pid), signal.SIGKILL)
+                hosts.append(int(pid))
+        return hosts
+
+    def end(self):
+        for pid in self.time_hosts():
+            os.kill(pid, signal.SIGKILL)
         return super().end()
 
     # The values that a relay of ours has written: "time value".
@@ -320,6 +326,48 @@ def ticked():
             assert [line[1] for line in journal if line[0] == "on_execute"] == ["0"] * 6, journal
 
 
+def ticked_by_hand():
+    # Without a run: `join --tick` ticks the context of a component that runs already, `leave` ends that, and the host with it.
+    with Mixed(bin_dir, lib_dir) as s:
+        s.chain("--context", "triggered", "--active")
+        s.rtse("join", "Alien", "--tick", "--phase", "1", "--rate", "100", "--server-id", s.server_id)
+        assert {p["name"]: p["phase"] for p in s.participants()} == {"From": 0, "To": 2, "Alien": 1}
+        s.rtse("act", "From", "To")
+        s.simctl("step", "500")
+        assert s.calls("Alien").count(["tick", "-1.000000"]) == s.calls("Alien").count(["on_execute", "0"]) == 51, s.calls("Alien")
+        assert [value for _, value in s.values("To")] == list(range(2, 53)), s.values("To")
+        s.rtse("leave", "Alien")
+        s.until("the end of the host", lambda: not s.time_hosts() and len(s.participants()) == 2)
+        s.simctl("step", "100")
+        assert s.calls("Alien").count(["tick", "-1.000000"]) == 51, s.calls("Alien")
+
+
+def faulty_ticked():
+    # As members, so those whose own context is ticked: who is slow makes no difference, who throws is ticked all the same, who hangs is named.
+    with Run() as r:
+        def run(fault, *options):
+            r.count += 1
+            system = profile(f"{r.path}/system.xml", {"From": ("Relay", {"source": 1}), "To": ("Relay", {"journal": f"{r.path}/To-{r.count}.txt", "stamp": 0}), "Alien": ("Foreign", {})},
+                             [("From.out", "Alien.in"), ("Alien.out", "To.in")])
+            with open(f"{r.path}/run.yaml", "w") as out:
+                command = r.command("--context triggered --active", f"--fault {fault}" if fault else "")
+                out.write(f"processes:\n  - command: {command}\n    components:\n      - {{name: Alien, join: tick}}\n")
+            done = subprocess.run([f"{bin_dir}/rtse", "run", system, "--world", empty, "--module-path", lib_dir, "--duration", "0.5", "--property", "From:exec_cxt.sim_time.phase=0",
+                                   "--property", "To:exec_cxt.sim_time.phase=2", "--run-file", f"{r.path}/run.yaml", *options], text=True, capture_output=True, timeout=120)
+            return done.returncode, done.stderr, r.read(f"To-{r.count}.txt"), r.read(f"Alien-{r.count}.journal")
+
+        seen = []
+        for fault in ("", "300@*", "1500@3"):
+            code, err, read, calls = run(fault)
+            assert code == 0 and ("it is waited for" in err) == ("1500" in fault), (fault, code, err)
+            seen.append((read, calls))
+        assert len(set(seen)) == 1 and seen[0][1].count("on_execute 0") == 6, seen
+        code, err, read, calls = run("throw@3")
+        assert code == 0 and "throws" in err and calls.count("tick ") == 6 and calls.count("on_execute 0") == 5, (code, err, calls)
+        code, err, read, calls = run("hang@3", "--hang-timeout", "1")
+        assert code == 1 and "Alien: has not ended its tick" in err, (code, err)
+
+
 def together():
     # Members of one phase in two processes are called at the same time: each waits in its callback for the other.
     with Run() as r:
@@ -412,6 +460,25 @@ def host_dies():
         s.rtse("join", "Alien", "--rate", "100", "--server-id", s.server_id)
         assert len(s.participants()) == 3
         s.rtse("leave", "Alien")
+
+
+def forgotten():
+    # Nobody says `leave`: the hosts of the contexts end all the same when those whom they serve have gone, and with them everybody else.
+    with Mixed(bin_dir, lib_dir) as s:
+        names = s.naming()
+        server = s.server(empty, "--lockstep", "--paused", "--rtf", "0")
+        aliens = [s.foreign("Alien"), s.foreign("Ticked", "--context", "triggered"), s.foreign("Other")]
+        s.rtse("wait", "Alien", "Ticked", "Other", "--state", "any", "--timeout", "60")
+        s.rtse("join", "Alien", "Other", "--rate", "100", "--server-id", s.server_id)
+        s.rtse("join", "Ticked", "--tick", "--rate", "100", "--server-id", s.server_id)
+        s.simctl("step", "100")
+        hosts = s.time_hosts()
+        assert len(hosts) == 2, hosts
+        server.terminate()
+        server.wait(60)
+        for process in (names, *aliens):
+            s.kill(process)
+        s.until("the end of the hosts", lambda: not s.time_hosts())
 
 
 if __name__ == "__main__":

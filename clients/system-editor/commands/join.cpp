@@ -1,6 +1,7 @@
 // join, leave: components that run already, of any maker, take part in the simulated time of a simulator.
 //
 // The contexts in which they are called live in a host of their own, an rtcd that outlives this command and ends with the last proxy in it.
+// A proxy goes by `leave`, and by itself when its component has gone.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -26,6 +27,8 @@ using namespace std::chrono_literals;
 constexpr auto start_limit = 30s;
 constexpr auto participant_limit = 10s;
 constexpr int highest_server = 9999;
+// [s]; a proxy that has nobody to serve any more ends after so long, whether somebody says `leave` or not.
+const std::string alone_limit = "&sim_time_proxy.alone_limit=10";
 
 struct JoinOptions {
   std::vector<std::string> components;
@@ -148,7 +151,7 @@ void join(Editor& editor, const JoinOptions& options) {
   for (const auto& path : options.components) {
     auto one = look_at(editor, path, options);
     if (!one) return editor.fail(one.error());
-    settings.creations.push_back(proxy_creation(one->member, options.server_id));
+    settings.creations.push_back(proxy_creation(one->member, options.server_id) + alone_limit);
     all.push_back(std::move(*one));
   }
   const auto host = ProgramApart::start(host_words(settings), options.log);
