@@ -16,7 +16,7 @@ endforeach()
 
 # Runs that depend on nothing, and planted races that are found.
 rtmsim_component(Chance scenario/chance.cpp)
-foreach(case links_of_one_phase twice first_difference changed_from_outside service_of_one_phase callers_of_one_phase same_on_every_processor race_of_a_thread race_of_the_clock race_of_an_address)
+foreach(case links_of_one_phase twice first_difference changed_from_outside sample_between_ticks service_of_one_phase callers_of_one_phase same_on_every_processor race_of_a_thread race_of_the_clock race_of_an_address)
   add_test(NAME chance.${case}
     COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/scenario/chance.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(chance.${case} PROPERTIES LABELS integration TIMEOUT 300)
