@@ -5,12 +5,12 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "corba/naming.h"
 
 namespace editor {
 namespace {
 
 constexpr CORBA::ULong listed_at_once = 256;
-constexpr int deepest_context = 16;  // contexts may be bound in a circle
 
 EntryKind kind_of(const CosNaming::Binding& binding) {
   const std::string kind = binding.binding_name[0].kind.in();
@@ -36,7 +36,12 @@ std::vector<CosNaming::Binding> bindings_of(CosNaming::NamingContext_ptr context
   return all;
 }
 
-void read_context(Entry& entry, CosNaming::NamingContext_ptr context, int depth) {
+void read_context(Entry& entry, CosNaming::NamingContext_ptr context, corba::ContextWalk& walk) {
+  const corba::ContextWalk::Stay stay(walk, context);
+  if (!stay) {
+    entry.problem = "is one of those around it, or too deep or one of too many";
+    return;
+  }
   for (const auto& binding : bindings_of(context)) {
     Entry child;
     child.kind = kind_of(binding);
@@ -46,9 +51,9 @@ void read_context(Entry& entry, CosNaming::NamingContext_ptr context, int depth)
     child.segments.push_back(child.name());
     try {
       child.object = context->resolve(binding.binding_name);
-      if (child.kind == EntryKind::context && depth < deepest_context) {
+      if (child.kind == EntryKind::context) {
         const auto inner = CosNaming::NamingContext::_narrow(child.object);
-        if (!CORBA::is_nil(inner)) read_context(child, inner, depth + 1);
+        if (!CORBA::is_nil(inner)) read_context(child, inner, walk);
       }
     } catch (const CosNaming::NamingContext::NotFound&) {
       continue;  // unbound since it was listed
@@ -152,7 +157,8 @@ Result<NamingTree> NamingTree::read(CORBA::ORB_ptr orb, const std::string& serve
   const auto reached = remote("name server " + server, [&] {
     tree.root_.object = orb->string_to_object(url.c_str());
     context = CosNaming::NamingContext::_narrow(tree.root_.object);
-    if (!CORBA::is_nil(context)) read_context(tree.root_, context, 0);
+    corba::ContextWalk walk;
+    if (!CORBA::is_nil(context)) read_context(tree.root_, context, walk);
   });
   if (!reached) {
     return Error{reached.error().message + "; start one with: omniNames -start, or name another with --ns HOST:PORT"};

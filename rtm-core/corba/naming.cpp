@@ -130,18 +130,11 @@ namespace {
 
 using Fits = std::function<bool(const CosNaming::NameComponent&)>;
 
-void find_below(CosNaming::NamingContext_ptr root, const CosNaming::Name& where, const Fits& fits, std::size_t max_names,
+void find_below(CosNaming::NamingContext_ptr context, const CosNaming::Name& where, const Fits& fits, std::size_t max_names, ContextWalk& walk,
                 std::vector<CosNaming::Name>& found) {
-  constexpr CORBA::ULong max_depth = 20;
   constexpr CORBA::ULong at_once = 1000;
-  CosNaming::NamingContext_var context;
-  if (where.length() == 0) {
-    context = CosNaming::NamingContext::_duplicate(root);
-  } else {
-    CORBA::Object_var object = root->resolve(where);
-    context = CosNaming::NamingContext::_narrow(object);
-    if (CORBA::is_nil(context)) return;
-  }
+  const ContextWalk::Stay stay(walk, context);
+  if (!stay) return;
   CosNaming::BindingList_var list;
   CosNaming::BindingIterator_var more;
   context->list(at_once, list, more);
@@ -152,9 +145,10 @@ void find_below(CosNaming::NamingContext_ptr root, const CosNaming::Name& where,
       name.length(where.length() + 1);
       name[where.length()] = binding.binding_name[binding.binding_name.length() - 1];
       if (binding.binding_type == CosNaming::ncontext) {
-        if (name.length() > max_depth) continue;
         try {
-          find_below(root, name, fits, max_names, found);
+          CORBA::Object_var object = context->resolve(binding.binding_name);
+          CosNaming::NamingContext_var below = CosNaming::NamingContext::_narrow(object);
+          if (!CORBA::is_nil(below)) find_below(below, name, fits, max_names, walk, found);
         } catch (const CORBA::Exception&) {  // a dead or foreign context hides nothing else
           continue;
         }
@@ -169,9 +163,25 @@ void find_below(CosNaming::NamingContext_ptr root, const CosNaming::Name& where,
 
 }  // namespace
 
+ContextWalk::Stay::Stay(ContextWalk& walk, CosNaming::NamingContext_ptr context) {
+  constexpr std::size_t deepest = 20, most = 10'000;
+  if (walk.around_.size() >= deepest || walk.entered_ >= most) return;
+  for (const auto& outer : walk.around_) {
+    if (outer->_is_equivalent(context)) return;
+  }
+  ++walk.entered_;
+  walk.around_.emplace_back(CosNaming::NamingContext::_duplicate(context));
+  walk_ = &walk;
+}
+
+ContextWalk::Stay::~Stay() {
+  if (walk_) walk_->around_.pop_back();
+}
+
 std::vector<CosNaming::Name> find_names(CosNaming::NamingContext_ptr root, const Fits& fits, std::size_t max_names) {
   std::vector<CosNaming::Name> found;
-  find_below(root, {}, fits, max_names, found);
+  ContextWalk walk;
+  find_below(root, {}, fits, max_names, walk, found);
   return found;
 }
 

@@ -29,6 +29,27 @@ base::Result<CosNaming::NamingContext_var> root_context(CORBA::ORB_ptr orb, std:
 void rebind_recursive(CosNaming::NamingContext_ptr root, const CosNaming::Name& name, CORBA::Object_ptr object,
                       std::vector<CosNaming::Name>* made = nullptr);
 
+// What a walk through contexts has entered: anybody may bind them in circles, or so often that the paths through a few are beyond number.
+class ContextWalk {
+ public:
+  // The stay in a context. None when it is one of those around it, when it would be the 21st, or when ten thousand have been entered.
+  class Stay {
+   public:
+    Stay(ContextWalk& walk, CosNaming::NamingContext_ptr context);
+    ~Stay();
+    Stay(const Stay&) = delete;
+    Stay& operator=(const Stay&) = delete;
+    explicit operator bool() const { return walk_ != nullptr; }
+
+   private:
+    ContextWalk* walk_ = nullptr;
+  };
+
+ private:
+  std::vector<CosNaming::NamingContext_var> around_;
+  std::size_t entered_ = 0;
+};
+
 // Every name below the context whose last component fits; at most `max_names`. CosNaming and system exceptions pass.
 std::vector<CosNaming::Name> find_names(CosNaming::NamingContext_ptr root, const std::function<bool(const CosNaming::NameComponent&)>& fits,
                                         std::size_t max_names = 10'000);

@@ -298,6 +298,24 @@ TEST(CorbaNaming, binds_lists_and_clears) {
   manager.shutdown();
 }
 
+TEST(CorbaNaming, clears_contexts_in_a_circle) {
+  support::NamingService names;
+  auto& manager = started();
+  RTC::CorbaNaming naming(manager.getORB(), names.address().c_str());
+  CosNaming::NamingContext_ptr root = naming.getRootContext();
+  CosNaming::NamingContext_var a = naming.bindNewContext("a.cxt");
+  for (const char* name : {"up.cxt", "again.cxt"}) {
+    naming.bindContext(name, root);
+    naming.bindContext((std::string("a.cxt/") + name).c_str(), root);
+    naming.bindContext((std::string("a.cxt/") + name + "a").c_str(), a);
+  }
+  naming.clearAll();
+  CosNaming::BindingList_var list;
+  naming.list("", list);
+  EXPECT_EQ(list->length(), 0u);
+  manager.shutdown();
+}
+
 // --- the log
 
 std::string lines_of(const RTC::LogSettings& settings, const std::function<void(RTC::Logger&)>& speak) {

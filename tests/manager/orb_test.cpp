@@ -272,5 +272,22 @@ TEST(Naming, names_are_found_below_the_root) {
   ASSERT_EQ(found.size(), 2u);
 }
 
+// Two circles through each of two contexts are 2^20 paths, were they followed.
+TEST(Naming, contexts_in_a_circle_are_walked_once) {
+  support::NamingService names;
+  auto orb = started();
+  CORBA::Object_var object = make_object(*orb);
+  auto root = root_context(orb->orb(), names.address(), 5s);
+  rebind_recursive(root->in(), *parse_name("a.cxt/X0.rtc"), object);
+  CORBA::Object_var inner = (*root)->resolve(*parse_name("a.cxt"));
+  CosNaming::NamingContext_var a = CosNaming::NamingContext::_narrow(inner);
+  for (const auto* text : {"up.cxt", "again.cxt"}) {
+    a->bind_context(*parse_name(text), root->in());
+    (*root)->bind_context(*parse_name(text), root->in());
+  }
+  const auto found = find_names(root->in(), [](const auto& component) { return std::string_view(component.id) == "X0"; });
+  ASSERT_EQ(found.size(), 1u);
+}
+
 }  // namespace
 }  // namespace corba

@@ -133,7 +133,12 @@ CosNaming::NamingContext_ptr CorbaNaming::bindNewContext(const CosNaming::Name& 
 CosNaming::NamingContext_ptr CorbaNaming::bindNewContext(const char* name, bool force) { return bindNewContext(name_of(name), force); }
 void CorbaNaming::destroy(CosNaming::NamingContext_ptr context) { context->destroy(); }
 
-void CorbaNaming::destroyRecursive(CosNaming::NamingContext_ptr context) {
+namespace {
+
+// False for a context that is bound again further down: there it is only taken out, and it goes when the walk is back at it.
+bool destroy_below(CosNaming::NamingContext_ptr context, corba::ContextWalk& walk) {
+  const corba::ContextWalk::Stay stay(walk, context);
+  if (!stay) return false;
   CosNaming::BindingList_var bindings;
   CosNaming::BindingIterator_var more;
   constexpr CORBA::ULong at_once = 1000;
@@ -141,21 +146,29 @@ void CorbaNaming::destroyRecursive(CosNaming::NamingContext_ptr context) {
   for (bool has_more = true; has_more;) {
     for (CORBA::ULong i = 0; i < bindings->length(); ++i) {
       const auto& binding = bindings[i];
+      CosNaming::NamingContext_var below;
       if (binding.binding_type == CosNaming::ncontext) {
         CORBA::Object_var object = context->resolve(binding.binding_name);
-        CosNaming::NamingContext_var below = CosNaming::NamingContext::_narrow(object);
-        if (!CORBA::is_nil(below)) {
-          destroyRecursive(below);
-          context->unbind(binding.binding_name);
-          below->destroy();
-          continue;
-        }
+        below = CosNaming::NamingContext::_narrow(object);
       }
       context->unbind(binding.binding_name);
+      if (CORBA::is_nil(below)) continue;
+      try {
+        if (destroy_below(below, walk)) below->destroy();
+      } catch (const CORBA::OBJECT_NOT_EXIST&) {  // it was bound twice
+      }
     }
     has_more = !CORBA::is_nil(more) && more->next_n(at_once, bindings);
   }
   if (!CORBA::is_nil(more)) more->destroy();
+  return true;
+}
+
+}  // namespace
+
+void CorbaNaming::destroyRecursive(CosNaming::NamingContext_ptr context) {
+  corba::ContextWalk walk;
+  destroy_below(context, walk);
 }
 
 void CorbaNaming::clearAll() { destroyRecursive(root_); }
