@@ -130,8 +130,8 @@ namespace {
 
 using Fits = std::function<bool(const CosNaming::NameComponent&)>;
 
-void find_below(CosNaming::NamingContext_ptr context, const CosNaming::Name& where, const Fits& fits, std::size_t max_names, ContextWalk& walk,
-                std::vector<CosNaming::Name>& found) {
+void find_below(CosNaming::NamingContext_ptr context, const CosNaming::Name& where, const Fits& fits, std::size_t max_names,
+                ContextWalk& walk, std::vector<CosNaming::Name>& found) {
   constexpr CORBA::ULong at_once = 1000;
   const ContextWalk::Stay stay(walk, context);
   if (!stay) return;
