@@ -7,6 +7,11 @@ foreach(case views excluded whole_run same_run killed full_disk compared played 
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/recordings.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(recordings.${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
+foreach(case bombs letters pictures names)
+  add_test(NAME hostile_recordings.${case}
+    COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/hostile_recordings.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+  set_tests_properties(hostile_recordings.${case} PROPERTIES LABELS integration TIMEOUT 300)
+endforeach()
 # By hand: RECORDING_REPEATS=100 python3 tests/scenario/recordings.py repeated build/release/bin build/release/lib .
 
 # The format as others read and write it: libraries from npm.

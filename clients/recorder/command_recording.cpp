@@ -1,8 +1,5 @@
 // recording info, ls, cat, export, compare, repair.
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 #include <iostream>
 #include <map>
@@ -17,8 +14,8 @@
 #include "compare.h"
 #include "mcap/mcap.h"
 #include "output.h"
-#include "picture_export.h"
 #include "recorder_commands.h"
+#include "sample_export.h"
 #include "sample_text.h"
 #include "selection.h"
 
@@ -27,23 +24,6 @@ namespace recorder {
 namespace {
 
 using editor::Editor;
-
-// Calls `take` with each message of the selection until it says false; broken chunks are told and passed over.
-void for_each(Editor& editor, mcap::Reader& reader, const Selection& selection, const std::function<bool(const mcap::Message&)>& take) {
-  auto query = query_of(reader, selection);
-  if (!query) return editor.fail(query.error());
-  reader.seek(std::move(*query));
-  for (int n = 0; selection.count <= 0 || n < selection.count;) {
-    const auto message = reader.next();
-    if (!message) {
-      editor.fail(message.error());
-      continue;
-    }
-    if (!message->has_value() || base::output_is_closed()) return;
-    if (!take(**message)) return;
-    ++n;
-  }
-}
 
 // ---- info, ls ----
 
@@ -160,7 +140,7 @@ void list(Editor& editor, const std::string& file, bool with_run) {
   }
 }
 
-// ---- cat, export ----
+// ---- cat ----
 
 void cat(Editor& editor, const Selection& selection) {
   auto reader = open(editor, selection.file);
@@ -174,129 +154,10 @@ void cat(Editor& editor, const Selection& selection) {
       return true;
     }
     const std::string& topic = reader->channels().at(message.channel).topic;
-    std::cout << Json{{"time", seconds(message.log_time)}, {"topic", topic}, {"sequence", message.sequence}, {"value", *value}}.dump()
+    std::cout << json_text({{"time", seconds(message.log_time)}, {"topic", topic}, {"sequence", message.sequence}, {"value", *value}})
               << '\n';
     return true;
   });
-}
-
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + '"';
-}
-
-struct ExportOptions {
-  Selection selection;
-  std::string folder;
-  bool png = false;
-};
-
-std::string file_name_of(const std::string& topic) {
-  std::string name = topic.substr(topic.starts_with("/") ? 1 : 0);
-  for (char& c : name) {
-    if (c == '/' || c == '\0') c = '.';
-  }
-  return name.empty() || name.starts_with(".") ? "_" + name : name;
-}
-
-// A table: time and the members of the first sample are its columns.
-class Table {
- public:
-  Table(const std::filesystem::path& file, const Json& first) : file_(file), out_(file) {
-    out_ << "time";
-    for (const auto& [name, value] : members_of(first)) {
-      columns_.push_back(name);
-      out_ << ',' << quoted(name);
-    }
-    out_ << '\n';
-  }
-  void add(mcap::Time time, const Json& value) {
-    std::map<std::string, Json> members;
-    for (auto& [name, member] : members_of(value)) members[name] = std::move(member);
-    out_ << seconds_text(time);
-    for (const std::string& column : columns_) {
-      const auto member = members.find(column);
-      out_ << ',';
-      if (member != members.end()) out_ << (member->second.is_string() ? quoted(member->second.get<std::string>()) : member->second.dump());
-    }
-    out_ << '\n';
-  }
-  base::Result<void> close() {
-    out_.close();
-    if (out_.fail()) return base::Error{base::in_quotes(file_.string()) + ": cannot be written"};
-    return {};
-  }
-
- private:
-  std::filesystem::path file_;
-  std::ofstream out_;
-  std::vector<std::string> columns_;
-};
-
-void export_tables(Editor& editor, const ExportOptions& options) {
-  auto reader = open(editor, options.selection.file);
-  if (!reader) return;
-  std::error_code error;
-  std::filesystem::create_directories(options.folder, error);
-  if (error) return editor.fail({base::in_quotes(options.folder) + ": cannot be made: " + error.message()});
-  std::map<std::uint16_t, std::unique_ptr<Table>> tables;
-  std::set<std::uint16_t> unreadable;
-  SampleValues values(*reader);
-  for_each(editor, *reader, options.selection, [&](const mcap::Message& message) {
-    const auto value = values.of(message);
-    if (!value) {
-      if (unreadable.insert(message.channel).second) editor.fail(value.error());
-      return true;
-    }
-    auto& table = tables[message.channel];
-    const std::string& topic = reader->channels().at(message.channel).topic;
-    if (!table) table = std::make_unique<Table>(std::filesystem::path(options.folder) / (file_name_of(topic) + ".csv"), *value);
-    table->add(message.log_time, *value);
-    return true;
-  });
-  for (auto& [id, table] : tables) {
-    if (const auto done = table->close(); !done) return editor.fail(done.error());
-  }
-  if (!editor.json()) std::cout << tables.size() << " tables in " << options.folder << '\n';
-}
-
-// FOLDER/CHANNEL/000001.png, ... of each channel that has pictures.
-void export_pictures(Editor& editor, const ExportOptions& options) {
-  auto reader = open(editor, options.selection.file);
-  if (!reader) return;
-  std::map<std::uint16_t, std::uint64_t> written;
-  std::set<std::uint16_t> unreadable;
-  SampleValues values(*reader);
-  const auto type_of = [&](std::uint16_t channel) {
-    const auto schema = reader->schemas().find(reader->channels().at(channel).schema);
-    return schema == reader->schemas().end() ? std::string() : schema->second.name;
-  };
-  for_each(editor, *reader, options.selection, [&](const mcap::Message& message) {
-    if (!has_pictures(type_of(message.channel)) || unreadable.contains(message.channel)) return true;
-    const std::string& topic = reader->channels().at(message.channel).topic;
-    const auto fail = [&](const base::Error& error) {
-      editor.fail({"channel " + base::in_quotes(topic) + ": " + error.message});
-      unreadable.insert(message.channel);
-      return true;
-    };
-    const auto value = values.of(message);
-    if (!value) return fail(value.error());
-    const auto picture = picture_of(type_of(message.channel), *value);
-    if (!picture) return fail(picture.error());
-    const auto folder = std::filesystem::path(options.folder) / file_name_of(topic);
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    char name[32];
-    std::snprintf(name, sizeof name, "%06llu.png", static_cast<unsigned long long>(++written[message.channel]));
-    const auto done = write_png(*picture, (folder / name).string());
-    return done ? true : fail(done.error());
-  });
-  std::uint64_t pictures = 0;
-  for (const auto& [channel, count] : written) pictures += count;
-  if (pictures == 0 && !editor.failed()) editor.fail({base::in_quotes(options.selection.file) + ": has no pictures in these channels"});
-  if (!editor.json()) std::cout << pictures << " pictures in " << options.folder << '\n';
 }
 
 // ---- repair ----

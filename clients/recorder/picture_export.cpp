@@ -4,6 +4,7 @@
 #include <turbojpeg.h>
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <memory>
 
@@ -53,7 +54,7 @@ base::Result<Picture> checked(Picture picture) {
   const auto wrong = base::Error{"a picture of " + std::to_string(picture.width) + " x " + std::to_string(picture.height) + " pixels in " +
                                  std::to_string(picture.pixels.size()) + " octets"};
   if (picture.width == 0 || picture.height == 0 || std::uint64_t{picture.width} * picture.height > most_pixels) return wrong;
-  if (picture.stride < std::size_t{bytes_of(picture.kind)} * picture.width) return wrong;
+  if (picture.stride < std::size_t{bytes_of(picture.kind)} * picture.width || picture.stride > INT32_MAX) return wrong;
   if (picture.pixels.size() < picture.stride * (picture.height - 1) + std::size_t{bytes_of(picture.kind)} * picture.width) return wrong;
   return picture;
 }
@@ -90,7 +91,7 @@ base::Result<Picture> from_component(const Json& sample) {
   const Json& content = image.contains("image") ? image["image"] : image;
   if (!content.contains("pixels") || !content["pixels"].is_array()) return base::Error{"its samples have no pixels"};
   std::string octets;
-  for (const auto& one : content["pixels"]) octets += static_cast<char>(one.is_number() ? one.get<int>() : 0);
+  for (const auto& one : content["pixels"]) octets += static_cast<char>(one.is_number_integer() ? one.get<std::uint64_t>() & 0xffU : 0);
   const auto format = content.value("format", "");
   if (format.find("jpeg") != std::string::npos || format.find("JPEG") != std::string::npos) return from_jpeg(octets);
   const auto bits = content.value("bpp", 0);
@@ -107,9 +108,13 @@ bool has_pictures(const std::string& type) {
 }
 
 base::Result<Picture> picture_of(const std::string& type, const Json& sample) {
-  if (type == "sensor_msgs/msg/Image") return from_image(sample);
-  if (type == "sensor_msgs/msg/CompressedImage") return from_jpeg(from_base64(sample.value("data", "")));
-  return from_component(sample);
+  try {
+    if (type == "sensor_msgs/msg/Image") return from_image(sample);
+    if (type == "sensor_msgs/msg/CompressedImage") return from_jpeg(from_base64(sample.value("data", "")));
+    return from_component(sample);
+  } catch (const Json::exception&) {
+    return base::Error{"its samples say " + base::in_quotes(type) + " and have members of other types"};
+  }
 }
 
 base::Result<void> write_png(const Picture& picture, const std::string& file) {

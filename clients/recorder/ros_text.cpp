@@ -1,5 +1,6 @@
 #include "ros_text.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <optional>
@@ -16,8 +17,9 @@ using Field = RosDefinition::Field;
 using RosKind = RosDefinition::Kind;
 using Message = RosDefinition::Message;
 
-constexpr int deepest_message = 32;               // messages in each other
-constexpr std::size_t most_definitions = 10'000;  // in one text
+constexpr int deepest_message = 32;                  // messages in each other
+constexpr std::size_t most_definitions = 10'000;     // in one text
+constexpr std::size_t of_message = 2, of_field = 3;  // what a message and its name for a field cost beside the values
 
 base::Error wrong(const std::string& what) { return base::Error{"ros2msg: " + what}; }
 
@@ -120,11 +122,12 @@ std::string base64(std::string_view octets) {
 
 class Decoder {
  public:
-  Decoder(const std::vector<Message>& messages, Cdr cdr) : messages_(messages), cdr_(cdr), values_left_(4 * cdr.left() + 1000) {}
+  Decoder(const std::vector<Message>& messages, Cdr cdr)
+      : messages_(messages), cdr_(cdr), values_left_(std::min(16 * cdr.left() + 1000, most_values)) {}
 
   // Empty when the octets end too early.
   std::optional<Json> message(std::size_t place, int depth) {
-    if (depth > deepest_message) return std::nullopt;
+    if (depth > deepest_message || !charge(of_message + of_field * messages_[place].fields.size())) return std::nullopt;
     Json json = Json::object();
     // A message without members has one octet.
     if (messages_[place].fields.empty() && !cdr_.number<std::uint8_t>()) return std::nullopt;
@@ -137,6 +140,12 @@ class Decoder {
   }
 
  private:
+  // False when it is too much.
+  bool charge(std::size_t values) {
+    if (values > values_left_) return false;
+    values_left_ -= values;
+    return true;
+  }
   std::optional<Json> field(const Field& field, int depth) {
     if (field.shape == Field::Shape::one) return one(field, depth);
     std::size_t size = field.size;
@@ -150,7 +159,9 @@ class Decoder {
       const auto octets = cdr_.take(size);
       return octets ? std::optional<Json>(base64(*octets)) : std::nullopt;
     }
+    if (!charge(size)) return std::nullopt;
     Json json = Json::array();
+    json.get_ref<Json::array_t&>().reserve(size);
     for (std::size_t i = 0; i < size; ++i) {
       auto value = one(field, depth);
       if (!value) return std::nullopt;
@@ -166,7 +177,6 @@ class Decoder {
   }
 
   std::optional<Json> one(const Field& field, int depth) {
-    if (values_left_-- == 0) return std::nullopt;
     switch (field.kind) {
       case RosKind::boolean: {
         const auto value = cdr_.number<std::uint8_t>();
@@ -206,7 +216,7 @@ class Decoder {
 
   const std::vector<Message>& messages_;
   Cdr cdr_;
-  std::size_t values_left_;  // arrays of nothing need no octets, but time
+  std::size_t values_left_;  // arrays of nothing need no octets, but time; an octet of a file becomes sixteen of memory and more
 };
 
 }  // namespace
@@ -266,7 +276,9 @@ base::Result<RosDefinition> RosDefinition::parse(std::string_view text) {
 base::Result<Json> RosDefinition::decode(std::string_view octets) const {
   if (octets.size() < 4) return wrong("a sample has no octets that say their order");
   auto value = Decoder(messages_, Cdr(octets.substr(4), octets[1] == 1)).message(0, 0);
-  if (!value) return wrong("a sample ends too early, or is deeper than " + std::to_string(deepest_message) + " messages");
+  if (!value)
+    return wrong("a sample ends too early, is deeper than " + std::to_string(deepest_message) + " messages, or has more than " +
+                 std::to_string(most_values) + " values");
   return std::move(*value);
 }
 

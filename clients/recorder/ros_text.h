@@ -2,6 +2,7 @@
 // are read: lengths are checked against what is there. Sequences and arrays of uint8 become base64.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,6 +12,9 @@
 #include "base/result.h"
 
 namespace recorder {
+
+// Of one sample that is shown as JSON; each takes sixteen octets of memory, a named one more.
+inline constexpr std::size_t most_values = std::size_t{1} << 23;
 
 class RosDefinition {
  public:

@@ -23,23 +23,42 @@ bool is_near(const DifferenceOptions& options, const std::string& member, const 
   return std::abs(a.get<double>() - b.get<double>()) <= tolerance;
 }
 
+std::optional<std::string> differ(const DifferenceOptions& options, const std::string& place, const Json& a, const Json& b);
+
+std::optional<std::string> one_alone(const std::string& place) { return place + ": is there in one of them only"; }
+
+std::optional<std::string> objects_differ(const DifferenceOptions& options, const std::string& place, const Json& a, const Json& b) {
+  for (auto one = a.begin(), other = b.begin(); one != a.end() || other != b.end(); ++one, ++other) {
+    const std::string member = place_of(place, one != a.end() ? one.key() : other.key());
+    if (one == a.end() || other == b.end() || one.key() != other.key()) return one_alone(member);
+    if (auto what = differ(options, member, *one, *other)) return what;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> arrays_differ(const DifferenceOptions& options, const std::string& place, const Json& a, const Json& b) {
+  const auto element = [&](std::size_t i) { return place + "[" + std::to_string(i) + "]"; };
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    if (a[i] == b[i]) continue;
+    if (auto what = differ(options, element(i), a[i], b[i])) return what;
+  }
+  return a.size() == b.size() ? std::nullopt : one_alone(element(std::min(a.size(), b.size())));
+}
+
+std::optional<std::string> differ(const DifferenceOptions& options, const std::string& place, const Json& a, const Json& b) {
+  if (a.is_object() && b.is_object()) return objects_differ(options, place, a, b);
+  if (a.is_array() && b.is_array()) return arrays_differ(options, place, a, b);
+  if (a.is_structured() || b.is_structured()) return one_alone(place);
+  if (a == b || json_text(a) == json_text(b)) return std::nullopt;
+  if (std::ranges::any_of(options.ignored, [&](const std::string& one) { return holds(one, place); })) return std::nullopt;
+  if (is_near(options, place, a, b)) return std::nullopt;
+  return place + ": " + json_text(a) + " and " + json_text(b);
+}
+
 }  // namespace
 
 std::optional<std::string> difference(const DifferenceOptions& options, const Json& first, const Json& second) {
-  const auto a = members_of(first);
-  const auto b = members_of(second);
-  for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
-    if (i >= a.size() || i >= b.size() || a[i].first != b[i].first) {
-      const std::string& member = i < a.size() ? a[i].first : b[i].first;
-      return member + ": is there in one of them only";
-    }
-    const auto& [member, value] = a[i];
-    if (value == b[i].second || value.dump() == b[i].second.dump()) continue;
-    if (std::ranges::any_of(options.ignored, [&](const std::string& one) { return holds(one, member); })) continue;
-    if (is_near(options, member, value, b[i].second)) continue;
-    return member + ": " + value.dump() + " and " + b[i].second.dump();
-  }
-  return std::nullopt;
+  return differ(options, "", first, second);
 }
 
 base::Result<std::pair<std::string, double>> parse_tolerance(const std::string& text) {

@@ -23,14 +23,43 @@ std::string repository_id(const std::string& scoped) {
   return id + ":1.0";
 }
 
-void collect(const Json& value, const std::string& place, std::vector<std::pair<std::string, Json>>& members) {
+// False when there are more than `most`.
+bool collect(const Json& value, const std::string& place, std::size_t most, std::vector<std::pair<std::string, Json>>& members) {
   if (value.is_object()) {
-    for (const auto& [key, member] : value.items()) collect(member, place.empty() ? key : place + "." + key, members);
+    for (const auto& [key, member] : value.items()) {
+      if (!collect(member, place_of(place, key), most, members)) return false;
+    }
   } else if (value.is_array()) {
-    for (std::size_t i = 0; i < value.size(); ++i) collect(value[i], place + "[" + std::to_string(i) + "]", members);
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      if (!collect(value[i], place + "[" + std::to_string(i) + "]", most, members)) return false;
+    }
   } else {
+    if (members.size() >= most) return false;
     members.emplace_back(place, value);
   }
+  return true;
+}
+
+// Before it is parsed, which takes memory for each value, and stack for each level when the value is used. At most what is said here.
+base::Result<void> check_json(std::string_view text) {
+  constexpr std::size_t deepest = 100, of_key = 3;
+  std::size_t values = 1, depth = 0;
+  bool is_in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (is_in_string) {
+      i += c == '\\' ? 1 : 0;
+      is_in_string = c != '"';
+      continue;
+    }
+    is_in_string = c == '"';
+    values += c == ':' ? of_key : c == ',' || c == '[' || c == '{' ? 1 : 0;
+    if ((c == ']' || c == '}') && depth > 0) --depth;
+    if ((c == '[' || c == '{') && ++depth > deepest)
+      return base::Error{"a sample is nested deeper than " + std::to_string(deepest) + " levels"};
+    if (values > most_values) return base::Error{"a sample has more than " + std::to_string(most_values) + " values"};
+  }
+  return {};
 }
 
 }  // namespace
@@ -45,6 +74,7 @@ base::Result<Json> SampleValues::of(const mcap::Message& message) {
   const mcap::Channel& channel = reader_.channels().at(message.channel);
   const auto wrong = [&](const std::string& what) { return base::Error{"channel " + base::in_quotes(channel.topic) + ": " + what}; };
   if (channel.encoding == "json") {
+    if (const auto good = check_json(message.data); !good) return wrong(good.error().message);
     Json value = Json::parse(message.data, nullptr, false);
     if (value.is_discarded()) return wrong("a sample is no JSON");
     return value;
@@ -64,16 +94,20 @@ base::Result<Json> SampleValues::of(const mcap::Message& message) {
   if (CORBA::is_nil(type)) return wrong("the data type " + base::in_quotes(name) + " is not known");
   if (message.data.size() < 4) return wrong("a sample has no octets that say their order");
   const auto* octets = reinterpret_cast<const unsigned char*>(message.data.data());
-  auto value = editor::decode(type, {octets + 4, message.data.size() - 4}, octets[1] == 1);
+  auto value = editor::decode(type, {octets + 4, message.data.size() - 4}, octets[1] == 1, most_values);
   if (!value) return wrong(value.error().message);
   return std::move(*value);
 }
 
-std::vector<std::pair<std::string, Json>> members_of(const Json& value) {
+std::vector<std::pair<std::string, Json>> members_of(const Json& value, std::size_t most) {
   std::vector<std::pair<std::string, Json>> members;
-  collect(value, "", members);
+  (void)collect(value, "", most, members);
   return members;
 }
+
+std::string place_of(const std::string& outer, const std::string& key) { return outer.empty() ? key : outer + "." + key; }
+
+std::string json_text(const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 std::string seconds_text(mcap::Time time) {
   char text[40];

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "base/descriptors.h"
 #include "base/text.h"
 
 namespace recorder {
@@ -43,6 +44,23 @@ std::optional<mcap::Reader> open(editor::Editor& editor, const std::string& file
   }
   if (reader->damage()) std::cerr << "rtse: " << *reader->damage() << '\n';
   return std::move(*reader);
+}
+
+void for_each(editor::Editor& editor, mcap::Reader& reader, const Selection& selection,
+              const std::function<bool(const mcap::Message&)>& take) {
+  auto query = query_of(reader, selection);
+  if (!query) return editor.fail(query.error());
+  reader.seek(std::move(*query));
+  for (int n = 0; selection.count <= 0 || n < selection.count;) {
+    const auto message = reader.next();
+    if (!message) {
+      editor.fail(message.error());
+      continue;
+    }
+    if (!message->has_value() || base::output_is_closed()) return;
+    if (!take(**message)) return;
+    ++n;
+  }
 }
 
 }  // namespace recorder

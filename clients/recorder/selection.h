@@ -1,6 +1,7 @@
 // Which samples of a recording a command is about. Values; one thread.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,5 +28,9 @@ base::Result<mcap::Query> query_of(const mcap::Reader& reader, const Selection& 
 
 // Nothing, and the editor has said why, when the file can't be read. Damage is told on stderr.
 std::optional<mcap::Reader> open(editor::Editor& editor, const std::string& file);
+
+// Calls `take` with each message of the selection until it says false; broken chunks are told and passed over.
+void for_each(editor::Editor& editor, mcap::Reader& reader, const Selection& selection,
+              const std::function<bool(const mcap::Message&)>& take);
 
 }  // namespace recorder

@@ -59,6 +59,8 @@ void Editor::fail(const Error& error) {
   if (problem_.empty()) problem_ = error.message;
 }
 
-void Editor::print(const nlohmann::ordered_json& value) const { std::cout << value.dump(2) << '\n'; }
+void Editor::print(const nlohmann::ordered_json& value) const {
+  std::cout << value.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';  // texts of others may be no UTF-8
+}
 
 }  // namespace editor

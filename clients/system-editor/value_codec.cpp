@@ -75,8 +75,11 @@ std::u16string to_utf16(const std::string& text) {
 
 class Reader {
  public:
-  Reader(std::span<const unsigned char> bytes, bool little_endian)
-      : bytes_(bytes), swap_(little_endian != (std::endian::native == std::endian::little)) {}
+  Reader(std::span<const unsigned char> bytes, bool little_endian, std::size_t most_values)
+      : bytes_(bytes),
+        most_values_(most_values),
+        values_left_(most_values),
+        swap_(little_endian != (std::endian::native == std::endian::little)) {}
 
   Json read(CORBA::TypeCode_ptr declared) {
     const auto type = resolved(declared);
@@ -161,6 +164,8 @@ class Reader {
     return std::string(type->member_name(value));
   }
   Json structure(CORBA::TypeCode_ptr type) {
+    constexpr std::size_t of_structure = 2, of_member = 3;  // beside the values of the members
+    charge(of_structure + of_member * type->member_count());
     Json object = Json::object();
     for (CORBA::ULong i = 0; i < type->member_count(); ++i) {
       const CORBA::TypeCode_var member = type->member_type(i);
@@ -172,12 +177,20 @@ class Reader {
     if (count > bytes_.size() - std::min(at_, bytes_.size()))
       throw ValueFailure{"announces " + std::to_string(count) + " elements and is shorter"};
     const CORBA::TypeCode_var content = type->content_type();
+    charge(count);
     Json array = Json::array();
+    array.get_ref<Json::array_t&>().reserve(count);
     for (std::uint32_t i = 0; i < count; ++i) array.push_back(read(content));
     return array;
   }
+  void charge(std::size_t values) {
+    if (values > values_left_) throw ValueFailure{"has more than " + std::to_string(most_values_) + " values"};
+    values_left_ -= values;
+  }
 
   std::span<const unsigned char> bytes_;
+  const std::size_t most_values_;
+  std::size_t values_left_;
   std::size_t at_ = 0;
   bool swap_;
 };
@@ -349,9 +362,9 @@ class Writer {
 
 }  // namespace
 
-Result<Json> decode(CORBA::TypeCode_ptr type, std::span<const unsigned char> payload, bool little_endian) {
+Result<Json> decode(CORBA::TypeCode_ptr type, std::span<const unsigned char> payload, bool little_endian, std::size_t most_values) {
   try {
-    return Reader(payload, little_endian).read(type);
+    return Reader(payload, little_endian, most_values).read(type);
   } catch (const ValueFailure& failure) {
     return Error{std::string("payload of ") + type->id() + " " + failure.message};
   }

@@ -1,0 +1,163 @@
+#include "sample_export.h"
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <set>
+#include <vector>
+
+#include "base/text.h"
+#include "mcap/mcap.h"
+#include "picture_export.h"
+#include "sample_text.h"
+
+namespace recorder {
+
+namespace {
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + '"';
+}
+
+// Names of files for channels: each its own, and none longer than file systems take.
+class FileNames {
+ public:
+  const std::string& of(const std::string& topic, std::uint16_t channel) {
+    std::string& name = names_[channel];
+    if (!name.empty()) return name;
+    constexpr std::size_t longest = 200;
+    std::string wanted = topic.substr(topic.starts_with("/") ? 1 : 0, longest);
+    for (char& c : wanted) {
+      if (c == '/' || c == '\0') c = '.';
+    }
+    if (wanted.empty() || wanted.starts_with(".")) wanted.insert(0, "_");
+    name = wanted;
+    for (int n = 2; !used_.insert(name).second; ++n) name = wanted + "-" + std::to_string(n);
+    return name;
+  }
+
+ private:
+  std::map<std::uint16_t, std::string> names_;
+  std::set<std::string> used_;
+};
+
+constexpr std::size_t most_columns = std::size_t{1} << 18;
+
+// A table: time and the members of the first sample are its columns.
+class Table {
+ public:
+  Table(const std::filesystem::path& file, const std::vector<std::pair<std::string, Json>>& first) : file_(file), out_(file) {
+    out_ << "time";
+    for (const auto& [name, value] : first) {
+      columns_.push_back(name);
+      out_ << ',' << quoted(name);
+    }
+    out_ << '\n';
+  }
+  void add(mcap::Time time, const Json& value) {
+    std::map<std::string, Json> members;
+    for (auto& [name, member] : members_of(value, most_columns)) members[name] = std::move(member);
+    out_ << seconds_text(time);
+    for (const std::string& column : columns_) {
+      const auto member = members.find(column);
+      out_ << ',';
+      if (member != members.end())
+        out_ << (member->second.is_string() ? quoted(member->second.get<std::string>()) : json_text(member->second));
+    }
+    out_ << '\n';
+  }
+  base::Result<void> close() {
+    out_.close();
+    if (out_.fail()) return base::Error{base::in_quotes(file_.string()) + ": cannot be written"};
+    return {};
+  }
+
+ private:
+  std::filesystem::path file_;
+  std::ofstream out_;
+  std::vector<std::string> columns_;
+};
+
+}  // namespace
+
+void export_tables(editor::Editor& editor, const ExportOptions& options) {
+  auto reader = open(editor, options.selection.file);
+  if (!reader) return;
+  std::error_code error;
+  std::filesystem::create_directories(options.folder, error);
+  if (error) return editor.fail({base::in_quotes(options.folder) + ": cannot be made: " + error.message()});
+  std::map<std::uint16_t, std::unique_ptr<Table>> tables;
+  std::set<std::uint16_t> unreadable;
+  FileNames names;
+  SampleValues values(*reader);
+  for_each(editor, *reader, options.selection, [&](const mcap::Message& message) {
+    const std::string& topic = reader->channels().at(message.channel).topic;
+    const auto fail = [&](const base::Error& error) {
+      if (unreadable.insert(message.channel).second) editor.fail(error);
+      return true;
+    };
+    const auto value = values.of(message);
+    if (!value) return fail(value.error());
+    auto found = tables.find(message.channel);
+    if (found == tables.end()) {
+      const auto first = members_of(*value, most_columns + 1);
+      if (first.size() > most_columns)
+        return fail({"channel " + base::in_quotes(topic) + ": has more than " + std::to_string(most_columns) +
+                     " members, which is too much for a table; recording cat prints them"});
+      const auto file = std::filesystem::path(options.folder) / (names.of(topic, message.channel) + ".csv");
+      found = tables.emplace(message.channel, std::make_unique<Table>(file, first)).first;
+    }
+    found->second->add(message.log_time, *value);
+    return true;
+  });
+  for (auto& [id, table] : tables) {
+    if (const auto done = table->close(); !done) return editor.fail(done.error());
+  }
+  if (!editor.json()) std::cout << tables.size() << " tables in " << options.folder << '\n';
+}
+
+void export_pictures(editor::Editor& editor, const ExportOptions& options) {
+  auto reader = open(editor, options.selection.file);
+  if (!reader) return;
+  std::map<std::uint16_t, std::uint64_t> written;
+  std::set<std::uint16_t> unreadable;
+  FileNames names;
+  SampleValues values(*reader);
+  const auto type_of = [&](std::uint16_t channel) {
+    const auto schema = reader->schemas().find(reader->channels().at(channel).schema);
+    return schema == reader->schemas().end() ? std::string() : schema->second.name;
+  };
+  for_each(editor, *reader, options.selection, [&](const mcap::Message& message) {
+    if (!has_pictures(type_of(message.channel)) || unreadable.contains(message.channel)) return true;
+    const std::string& topic = reader->channels().at(message.channel).topic;
+    const auto fail = [&](const base::Error& error) {
+      editor.fail({"channel " + base::in_quotes(topic) + ": " + error.message});
+      unreadable.insert(message.channel);
+      return true;
+    };
+    const auto value = values.of(message);
+    if (!value) return fail(value.error());
+    const auto picture = picture_of(type_of(message.channel), *value);
+    if (!picture) return fail(picture.error());
+    const auto folder = std::filesystem::path(options.folder) / names.of(topic, message.channel);
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    char name[32];
+    std::snprintf(name, sizeof name, "%06llu.png", static_cast<unsigned long long>(++written[message.channel]));
+    const auto done = write_png(*picture, (folder / name).string());
+    return done ? true : fail(done.error());
+  });
+  std::uint64_t pictures = 0;
+  for (const auto& [channel, count] : written) pictures += count;
+  if (pictures == 0 && !editor.failed()) editor.fail({base::in_quotes(options.selection.file) + ": has no pictures in these channels"});
+  if (!editor.json()) std::cout << pictures << " pictures in " << options.folder << '\n';
+}
+
+}  // namespace recorder

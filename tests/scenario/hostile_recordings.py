@@ -1,0 +1,115 @@
+# Recordings of an enemy, shown by rtse: one line says what is wrong, memory stays bounded, nothing is written elsewhere.
+# hostile_recordings.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
+import ctypes
+import json
+import os
+import resource
+import struct
+import subprocess
+import sys
+import tempfile
+
+case, bin_dir, *_ = sys.argv[1:]
+magic = b"\x89MCAP0\r\n"
+cdr = b"\0\1\0\0"  # little-endian
+most_memory = 900 << 20  # [octets] of addresses: a chunk of 128 MiB, its values, their text, and the program with its libraries
+
+
+def text(value):
+    octets = value if isinstance(value, bytes) else value.encode()
+    return struct.pack("<I", len(octets)) + octets
+
+
+def record(code, content):
+    return struct.pack("<BQ", code, len(content)) + content
+
+
+def compressed(octets):
+    zstd = ctypes.CDLL("libzstd.so.1")
+    zstd.ZSTD_compress.restype = ctypes.c_size_t
+    room = ctypes.create_string_buffer(len(octets) // 2 + 1024)
+    size = zstd.ZSTD_compress(room, ctypes.c_size_t(len(room)), octets, ctypes.c_size_t(len(octets)), 3)
+    return room.raw[:size]
+
+
+# Channels (topic, encoding, schema's name, schema's encoding, schema's text) and messages (channel from 1, octets).
+def recording(path, channels, messages):
+    body = b""
+    for n, (topic, encoding, *schema) in enumerate(channels, 1):
+        body += record(3, struct.pack("<H", n) + b"".join(map(text, schema)))
+        body += record(4, struct.pack("<HH", n, n) + text(topic) + text(encoding) + text(""))
+    for time, (channel, octets) in enumerate(messages):
+        body += record(5, struct.pack("<HIQQ", channel, 0, time, time) + octets)
+    packed = compressed(body)
+    chunk = struct.pack("<QQQI", 0, len(messages), len(body), 0) + text("zstd") + struct.pack("<Q", len(packed)) + packed
+    with open(path, "wb") as out:
+        out.write(magic + record(1, text("") + text("")) + record(6, chunk) + record(15, bytes(4)) + record(2, bytes(20)) + magic)
+    return path
+
+
+def rtse(*words):
+    limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (most_memory, most_memory))  # noqa: E731
+    return subprocess.run([f"{bin_dir}/rtse", *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=limit, timeout=120)
+
+
+# Exit code 1 and so many lines that say this.
+def refused(*words, says, lines=1):
+    done = rtse(*words)
+    assert done.returncode == 1 and done.stderr.count(b"\n") == lines and says in done.stderr.decode(), (words, done.returncode, done.stderr)
+
+
+# Few octets that would become gigabytes of values, or overflow the stack.
+def bombs():
+    count = 120 << 20
+    kinds = {"ros": ("/b", "cdr", "t/msg/T", "ros2msg", "bool[] a\n", cdr + struct.pack("<I", count) + bytes(count)),
+             "idl": ("/b", "cdr", "RTC::TimedOctetSeq", "omgidl", "", cdr + struct.pack("<III", 0, 0, count) + bytes(count)),
+             "json": ("/b", "json", "", "", "", b"[" + b"0," * (50 << 20) + b"0]")}
+    for name, (*channel, octets) in kinds.items():
+        file = recording(f"{name}.mcap", [channel], [(1, octets)])
+        assert os.path.getsize(file) < 20000
+        refused("recording", "cat", file, says="more than 8388608 values")
+        refused("recording", "export", file, "-o", "out", says="more than 8388608 values")
+    deep = recording("deep.mcap", [("/b", "json", "", "", "")], [(1, b"[" * 1000000 + b"]" * 1000000), (1, b"[1]")])
+    refused("recording", "cat", deep, says="nested deeper than 100 levels")
+    wide = recording("wide.mcap", [("/b", "json", "", "", ""), ("/c", "json", "", "", "")], [(1, b"[" + b"0," * 300000 + b"0]"), (2, b"5")])
+    refused("recording", "export", wide, "-o", "wide", says="has more than 262144 members, which is too much for a table")
+    assert os.listdir("wide") == ["c.csv"]
+
+
+# What is no UTF-8 is shown with marks in its place, in JSON, too.
+def letters():
+    file = recording("letters.mcap", [(b"/a\xff", "json", "", "", ""), ("/s", "cdr", "t/msg/T", "ros2msg", "string a\n")],
+                     [(1, b'{"v":1}'), (2, cdr + text(b"\xffx\0"))])
+    done = rtse("recording", "cat", file)
+    samples = [json.loads(line) for line in done.stdout.decode().splitlines()]
+    assert done.returncode == 0 and [s["value"] for s in samples] == [{"v": 1}, {"a": "\ufffdx"}], done
+    assert [c["topic"] for c in json.loads(rtse("--json", "recording", "ls", file).stdout)] == ["/a\ufffd", "/s"]
+
+
+# Pictures whose members have other types, or rows that begin beyond the memory.
+def pictures():
+    image = "sensor_msgs/msg/Image"
+    rows = cdr + struct.pack("<III", 3, 1000, 5) + b"rgb8\0" + bytes(7) + struct.pack("<QI", 1 << 63, 3000) + bytes(3000)
+    file = recording("rows.mcap", [("/p", "cdr", image, "ros2msg", "uint32 height\nuint32 width\nstring encoding\nuint64 step\nuint8[] data\n")],
+                     [(1, rows)])
+    refused("recording", "export", file, "--png", "-o", "rows", says="a picture of 1000 x 3 pixels in 3000 octets")
+    file = recording("types.mcap", [("/p", "json", image, "", ""), ("/q", "json", "RTC::CameraImage", "", "")],
+                     [(1, b'{"encoding":5}'), (2, b'{"pixels":[1e300,-5,null,"x"],"width":"x"}')])
+    refused("recording", "export", file, "--png", "-o", "types", says="members of other types", lines=2)
+
+
+# Topics that look like paths, are the same as a file, or are longer than names may be.
+def names():
+    topics = ["/../../up", "/a/b", "/a.b", "/" + "x" * 5000, "/" + "x" * 5001, ""]
+    file = recording("names.mcap", [(topic, "json", "", "", "") for topic in topics], [(n, b'{"v":%d}' % n) for n in range(1, 7)])
+    done = rtse("recording", "export", file, "-o", "tables")
+    assert done.returncode == 0, done
+    long = "x" * 200
+    assert sorted(os.listdir("tables")) == sorted(f"{n}.csv" for n in ("_......up", "a.b", "a.b-2", long, long + "-2", "_")), os.listdir("tables")
+    assert open("tables/a.b-2.csv").read() == "time,v\n0.000000002,3\n"
+
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    globals()[case]()
+print("ok")
