@@ -310,6 +310,11 @@ void record(Editor& editor, const RecordOptions& options) {
   const RunClock clock(static_cast<std::uint32_t>(options.server_id));
   const auto ports = chosen_ports(editor, options);
   if (!ports) return editor.fail(ports.error());
+  // Before the file is made: one that was there before stays.
+  if (options.views && !clock.is_simulated()) {
+    const auto simulation = shm::Iface::open(static_cast<std::uint32_t>(options.server_id), shm::IfaceType::simulation, "world");
+    if (!simulation) return editor.fail(simulation.error());
+  }
   auto sinks = open_sinks(options, clock);
   if (!sinks) return editor.fail(sinks.error());
   editor::catch_interrupts();

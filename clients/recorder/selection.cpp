@@ -17,6 +17,9 @@ mcap::Time to_time(double seconds) { return mcap::Time(static_cast<std::uint64_t
 }  // namespace
 
 base::Result<mcap::Query> query_of(const mcap::Reader& reader, const Selection& selection) {
+  if (selection.to_s > 0 && selection.to_s < selection.from_s)
+    return base::Error{"--to " + base::format_number(selection.to_s) + ": expected a time behind --from " +
+                       base::format_number(selection.from_s)};
   mcap::Query query;
   query.from = to_time(selection.from_s);
   if (selection.to_s > 0) query.to = to_time(selection.to_s);

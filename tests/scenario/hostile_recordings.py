@@ -4,6 +4,7 @@ import ctypes
 import json
 import os
 import resource
+import stat
 import struct
 import subprocess
 import sys
@@ -107,6 +108,18 @@ def names():
     long = "x" * 200
     assert sorted(os.listdir("tables")) == sorted(f"{n}.csv" for n in ("_......up", "a.b", "a.b-2", long, long + "-2", "_")), os.listdir("tables")
     assert open("tables/a.b-2.csv").read() == "time,v\n0.000000002,3\n"
+
+
+# What cannot be done leaves what is there: a pipe in the place of the output, a recording of yesterday.
+def targets():
+    file = recording("good.mcap", [("/a", "json", "", "", "")], [(1, b"1")])
+    before = open(file, "rb").read()
+    os.mkfifo("pipe")
+    refused("recording", "repair", file, "-o", "pipe", says="is not a regular file")
+    assert stat.S_ISFIFO(os.stat("pipe").st_mode)
+    refused("record", "--views", "-s", "9999", "-o", file, says="no simulation")
+    assert open(file, "rb").read() == before
+    refused("recording", "cat", file, "--from", "5", "--to", "1", says="expected a time behind --from 5")
 
 
 with tempfile.TemporaryDirectory() as folder:

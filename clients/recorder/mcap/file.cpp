@@ -24,11 +24,14 @@ base::Error cannot(const std::string& path, const char* what, int reason) {
 
 base::Error File::failed(const char* what) const { return cannot(path_, what, errno); }
 
-base::Result<File> File::create(const std::string& path) {
+base::Result<void> File::check_name(const std::string& path) {
   struct stat there {};
-  if (::stat(path.c_str(), &there) == 0 && !S_ISREG(there.st_mode)) {
-    return base::Error{base::in_quotes(path) + ": is not a regular file; expected the name of a recording to write"};
-  }
+  if (::stat(path.c_str(), &there) != 0 || S_ISREG(there.st_mode)) return {};
+  return base::Error{base::in_quotes(path) + ": is not a regular file; expected the name of a recording to write"};
+}
+
+base::Result<File> File::create(const std::string& path) {
+  if (const auto good = check_name(path); !good) return good.error();
   const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0644);
   if (descriptor < 0) return cannot(path, "written", errno);
   return File(descriptor, path);

@@ -24,6 +24,7 @@ base::Result<Repair> repair(const std::string& from, const std::string& to) {
   auto index = scan(*file);
   if (!index) return index.error();
 
+  if (const auto good = File::check_name(to); !good) return good.error();  // a rename would put a file in the place of a device
   const std::string whole = to + ".part";
   auto out = File::create(whole);
   if (!out) return out.error();
