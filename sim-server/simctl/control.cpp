@@ -204,6 +204,7 @@ void screenshot(Control& control, const ScreenshotOptions& options) {
     request.follow = options.follow;
   } else if (options.from_top) {
     request.view = View::top;
+    if (options.at.size() == 2) request.pose = shm::planar_pose(options.at[0], options.at[1], 0, 0);
   } else if (!options.from.empty()) {
     request.view = View::from;
     request.pose = pose_of(options.from);

@@ -212,6 +212,11 @@ void add_fault(base::Command& app, Work& work) {
   });
 }
 
+void reject_unless_finite(const std::string& option, const std::vector<double>& numbers) {
+  if (!std::all_of(numbers.begin(), numbers.end(), [](double v) { return std::isfinite(v); }))
+    base::reject_command_line(option, "expected finite numbers");
+}
+
 void add_pictures(base::Command& app, Work& work) {
   auto* screenshot = app.add_subcommand("screenshot", "Write a picture of the world");
   auto options = option_value<simctl::ScreenshotOptions>();
@@ -239,11 +244,18 @@ void add_pictures(base::Command& app, Work& work) {
   auto* span = screenshot->add_option("--span", options->span, "Metres across (--top) or field of view in rad (--from, --follow)")
                    ->check(base::number_between(1e-3, 1e6));
   span->excludes(camera);
-  screenshot->callback([&work, options, from, top, follow, span] {
+  auto* at =
+      screenshot->add_option("--at", options->at, "Middle of a picture from above, X Y [m]; goes with --top and --span; default: 0 0")
+          ->expected(1, 2)
+          ->delimiter(' ');
+  screenshot->callback([&work, options, from, top, follow, span, at] {
     if (span->count() > 0 && from->count() + top->count() + follow->count() == 0)
       base::reject_command_line("--span", "goes with --top, --from or --follow");
-    if (!std::all_of(options->from.begin(), options->from.end(), [](double v) { return std::isfinite(v); }))
-      base::reject_command_line("--from", "expected finite numbers");
+    if (at->count() > 0 && (top->count() == 0 || span->count() == 0)) base::reject_command_line("--at", "goes with --top and --span");
+    reject_unless_finite("--from", options->from);
+    reject_unless_finite("--at", options->at);
+    if (at->count() > 0 && options->at.size() != 2)
+      base::reject_command_line("--at", "expected 2 numbers, X Y [m], got " + std::to_string(options->at.size()));
     if (!simctl::parse_size(options->size)) base::reject_command_line("--size", "expected WIDTHxHEIGHT, each from 1 to 8192");
     if (from->count() > 0 && options->from.size() != 6) {
       base::reject_command_line("--from", "expected 6 numbers, X Y Z ROLL PITCH YAW [m, rad], got " + std::to_string(options->from.size()));

@@ -54,7 +54,7 @@ struct SpawnOptions {
 void spawn(Control& control, const SpawnOptions& options);
 struct ScreenshotOptions {
   std::string file, follow, camera, size = "1200x900";
-  std::vector<double> from;
+  std::vector<double> from, at;  // at: x, y [m] of what is in the middle from above
   bool from_top = false, with_scans = false, with_collisions = false;
   double span = 0;
 };

@@ -129,6 +129,9 @@ def screenshots():
     top = screenshot("top.png", "--top")
     near = screenshot("near.png", "--top", "--span", "4", size="160x200")
     assert count(near, is_red) > 1.5 * count(top, is_red) > 0
+    aside = screenshot("aside.png", "--top", "--span", "4", "--at", "40 0", size="160x200")
+    assert count(aside, is_red) == 0
+    assert near == screenshot("middle.png", "--top", "--span", "4", "--at", "0", "0", size="160x200")
     front = screenshot("from.png", "--from", "-3 1.5 1 0 0.25 0")
     assert count(front, is_red) > 20 and count(front, is_yellow) < count(front, is_red)
     assert front == screenshot("words.png", "--from", "-3", "1.5", "1", "0", "0.25", "0")
@@ -202,6 +205,9 @@ def bad_screenshots():
     refused("screenshot", out, "--camera", "eye::camera", "--span", "1", code=2)
     refused("screenshot", out, "--top", "--span", "-1", code=2)
     refused("screenshot", out, "--top", "--follow", "leader", code=2)
+    refused("screenshot", out, "--top", "--at", "1 2", code=2, says="--span")
+    refused("screenshot", out, "--top", "--span", "4", "--at", "1", code=2, says="2 numbers")
+    refused("screenshot", out, "--top", "--span", "4", "--at", "1 nan", code=2, says="finite")
     refused("screenshot", out, "--show", "ghosts", code=2, says="ghosts")
     refused("screenshot", place("no/such/folder/x.png"), says="no/such/folder")
     refused("screenshot", code=2)
