@@ -5,7 +5,7 @@ import { createSocket } from 'node:dgram';
 import { existsSync, mkdtempSync, openSync, readdirSync, readFileSync, rmSync } from 'node:fs';
 import { createServer } from 'node:net';
 import { tmpdir } from 'node:os';
-import { join } from 'node:path';
+import { join, resolve } from 'node:path';
 import { promisify } from 'node:util';
 
 export const watchdog = 180000; // [ms]; a bound on hanging, not on speed
@@ -64,8 +64,13 @@ async function claim_server_id() {
   throw new Error('no server id is free');
 }
 
+const rigs = new Set(); // those that have not ended
+let is_ending = false;
+const stop_here = () => new Promise(() => {}); // end_early ends the process
+
 export class Rig {
   constructor(bin, source, lib = join(bin, '../lib')) {
+    rigs.add(this);
     Object.assign(this, { bin, source, lib, running: [], work: mkdtempSync(join(tmpdir(), 'studio-')) });
   }
 
@@ -76,6 +81,7 @@ export class Rig {
   }
 
   start(name, words) {
+    if (is_ending) throw new Error('this run was told to end');
     const log = join(this.work, `${this.running.length}.log`);
     const file = openSync(log, 'w');
     const program = name === 'rtm-studio' && process.env.STUDIO_SERVER ? process.env.STUDIO_SERVER : existsSync(join(this.bin, name)) ? join(this.bin, name) : name;
@@ -96,6 +102,7 @@ export class Rig {
   }
 
   async end_all() {
+    rigs.delete(this);
     for (const child of [...this.running].reverse()) await this.end(child);
     rmSync(this.work, { recursive: true, force: true });
     const left = readdirSync('/dev/shm').filter((name) => name.startsWith(`rtmsim-${process.getuid()}-${this.server_id}.`));
@@ -121,7 +128,7 @@ export class Rig {
   }
 
   async server(world, ...options) {
-    const child = this.start('sim-server', [join(this.source, world), '-s', String(this.server_id), ...options]);
+    const child = this.start('sim-server', [resolve(this.source, world), '-s', String(this.server_id), ...options]);
     await until('simulator', async () => child.exitCode === null && (await this.simctl('stats')));
     return child;
   }
@@ -146,7 +153,8 @@ export async function launch() {
   const { chromium } = await import('playwright-core');
   const executablePath = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'].find(existsSync);
   if (!executablePath) return null;
-  return chromium.launch({ executablePath, args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist', '--disable-dev-shm-usage'] });
+  // Signals are for run().
+  return chromium.launch({ executablePath, handleSIGINT: false, handleSIGTERM: false, handleSIGHUP: false, args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist', '--disable-dev-shm-usage'] });
 }
 
 // A page of its own, without anything remembered. Errors of the page fail the flow that runs.
@@ -164,6 +172,14 @@ export async function open(browser, url, { width = 1280, height = 800, scheme = 
 export const is_ready = (page) => page.waitForFunction(() => window.studio && window.studio.wire.status === 'open' && window.studio.store.hello);
 export const has_world = (page) => page.waitForFunction(() => window.studio && window.studio.world.frames > 0);
 
+// Told to end: what was started has ended, too, when this has.
+async function end_early(browser, status) {
+  if (is_ending) return;
+  is_ending = true;
+  await Promise.allSettled([browser.close(), ...[...rigs].map((rig) => rig.end_all())]);
+  process.exit(status);
+}
+
 // Runs flows one after the other in one browser: [name, work]. Exit status 77 without a browser.
 export async function run(flows, set_up, take_down) {
   const browser = await launch();
@@ -171,6 +187,7 @@ export async function run(flows, set_up, take_down) {
     console.log('skipped: no chromium (scripts/setup installs it)');
     process.exit(77);
   }
+  for (const [signal, number] of [['SIGHUP', 1], ['SIGINT', 2], ['SIGTERM', 15]]) process.on(signal, () => end_early(browser, 128 + number));
   const only = process.env.STUDIO_FLOW;
   let failed = 0;
   let shared;
@@ -185,6 +202,7 @@ export async function run(flows, set_up, take_down) {
         check(problems.length === 0, `the page says: ${problems.join('; ')}`);
         console.log(`ok    ${name} (${Date.now() - began} ms)`);
       } catch (error) {
+        if (is_ending) await stop_here();
         failed += 1;
         console.log(`FAIL  ${name}: ${error.stack}`);
         if (process.env.STUDIO_PICTURES) await shared.page?.screenshot({ path: join(process.env.STUDIO_PICTURES, `${name.replaceAll(' ', '_')}.png`) }).catch(() => {});
@@ -193,13 +211,16 @@ export async function run(flows, set_up, take_down) {
       }
     }
   } catch (error) {
+    if (is_ending) await stop_here();
     failed += 1;
     console.log(`FAIL  set-up: ${error.stack}`);
     if (shared?.rig) console.log(shared.rig.logs());
   } finally {
+    if (is_ending) await stop_here();
     await browser.close();
     try {
       await take_down?.(shared);
+      for (const rig of [...rigs]) await rig.end_all(); // of a set-up that has failed
     } catch (error) {
       failed += 1;
       console.log(`FAIL  the end: ${error.message}`);
