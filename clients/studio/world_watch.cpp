@@ -187,6 +187,7 @@ void WorldWatch::look_at_world() {
                       {"lockstep", info.lockstep != 0},
                       {"step", static_cast<double>(info.step_ns) * 1e-9},
                       {"version", version_},
+                      {"birth", std::to_string(simulator_->simulation().segment().facts().generation)},
                       {"models", models_json(*simulator_)},
                       {"ifaces", ifaces_json(server_id_)}});
   if (now == told_world_) return;

@@ -1,7 +1,7 @@
 // What is late loses nothing: a server that answers slowly or in another order, frames that have not come yet, parts of the page that are drawn
 // anew under a finger. The page alone, in front of a stand-in that holds its answers back: late_flows.mjs BIN_DIR SOURCE_DIR.
 import { join } from 'node:path';
-import { demo_system, hello, Mock, time, world_of } from './mock.mjs';
+import { demo_system, hello, Mock, poses, time, world_of } from './mock.mjs';
 import { check, has_world, is_ready, open, run, same, until } from './rig.mjs';
 
 const [bin, source] = process.argv.slice(2);
@@ -277,6 +277,36 @@ const flows = [
     mock.say({ ...world, version: world.version + 1 });
     await until('another scene', () => page.evaluate(() => window.studio.world.world !== window.was));
     check(await page.evaluate(() => window.studio.world.eye.followed === window.studio.world.world.models.get('pioneer2dx').canonical), 'it follows the robot of the scene that is shown');
+  }),
+  flow('a simulator that comes instead of another has a scene of its own, also with the same name and version', async ({ mock, page, world }) => {
+    await has_world(page);
+    const note = () => page.evaluate(() => { window.was = window.studio.world.world; });
+    const is_same = () => page.evaluate(() => window.studio.world.world === window.was);
+    await note();
+    mock.say({ ...world, birth: '1' });
+    await until('the scene of the first', async () => !(await is_same()));
+    await note();
+    const fetched = asked(mock, '/world.glb').length;
+    mock.say({ ...world, birth: '1', models: world.models.slice(1) });
+    await page.evaluate(() => window.studio.wire.request('models'));
+    same(asked(mock, '/world.glb').length, fetched, 'scenes that were fetched');
+    mock.say({ ...world, birth: '2' });
+    await until('the scene of the second', async () => !(await is_same()));
+  }),
+  flow('a model that has moved while the scene was on its way is where it went', async ({ mock, page, world }) => {
+    await has_world(page);
+    const index = await page.evaluate(() => window.studio.world.world.links.findIndex((l) => l.name === 'pioneer2dx::chassis'));
+    mock.holds_file = (method, path) => path === '/world.glb';
+    mock.say({ ...world, birth: 'another' });
+    await held(mock, '/world.glb');
+    mock.say(poses(world.version, [[0, 0, 0, 0]], true), false);
+    mock.say(poses(world.version, [[index, 1, 2, 0.1]]), false);
+    mock.say(poses(world.version, [[0, 0, 0, 0]]), false);
+    await page.evaluate(() => { window.was = window.studio.world.world; return window.studio.wire.request('models'); });
+    mock.release_all();
+    await until('another scene', () => page.evaluate(() => window.studio.world.world !== window.was));
+    const place = await page.evaluate((i) => window.studio.world.world.links[i].position.toArray(), index);
+    same(place.map((v) => Math.round(v * 1e3) / 1e3), [1, 2, 0.1], 'where it is');
   }),
   flow('a recording shows the moment that was chosen last, whole when its world has come', async ({ mock, page }) => {
     mock.holds = ({ name }) => name === 'look';

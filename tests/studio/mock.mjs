@@ -39,6 +39,7 @@ export class Mock {
 
   async serve(request, reply) {
     const path = new URL(request.url, 'http://x').pathname;
+    if (path === '/world.glb') this.asked.push({ name: path });
     if (this.holds_file(request.method, path)) await new Promise((resolve) => this.held.push({ message: { name: path }, go: resolve }));
     if (this.refuses) return void reply.writeHead(403).end();
     try {
@@ -100,10 +101,10 @@ export class Mock {
   }
 
   // To everybody, and to those who come later.
-  say(event) {
+  say(event, is_kept = true) {
     const op = event.op;
     if (op) this.first = this.first.filter((e) => e.op !== op);
-    this.first.push(event);
+    if (is_kept) this.first.push(event);
     for (const socket of this.sockets) socket.write(frame(Buffer.isBuffer(event) ? event : JSON.stringify(event)));
   }
 }
@@ -148,6 +149,22 @@ export async function world_of(glb) {
   const ifaces = json.nodes.filter((n) => n.extras?.iface && n.extras.kind === 'ray').map((n) => ({ type: 'laser', name: n.extras.iface, model: n.extras.iface.split('::')[0], info: {} }));
   for (const { model } of [...ifaces]) ifaces.push({ type: 'position2d', name: `${model}::position2d`, model, info: {} });
   return { op: 'world', present: true, problem: '', server_id: 0, name: 'world', file: 'world.sdf', lockstep: false, step: 0.001, version: json.scenes[0].extras.version, links: json.scenes[0].extras.links.length, models, ifaces };
+}
+
+// Of links, [index, x, y, z] each, without any turn.
+export function poses(version, places, all = false) {
+  const frame = Buffer.alloc(24 + 24 * places.length);
+  frame[0] = 0x81;
+  frame[1] = all ? 1 : 0;
+  frame.writeUInt32LE(version, 4);
+  frame.writeBigUInt64LE(13000000000n, 8);
+  frame.writeUInt32LE(places.length, 16);
+  places.forEach(([index, ...place], i) => {
+    frame.writeUInt32LE(index, 24 + 24 * i);
+    place.forEach((v, k) => frame.writeFloatLE(v, 28 + 24 * i + 4 * k));
+    frame.writeInt16LE(32767, 46 + 24 * i);
+  });
+  return frame;
 }
 
 export function scan(watch, beams = 200, t = 1) {

@@ -13,7 +13,7 @@ export interface Connection { id: string; name: string; ports: string[]; absent?
 export interface System { revision: number; problem: string; components: Component[]; connections: Connection[]; managers: { path: string; problem?: string }[] }
 export interface Iface { type: string; name: string; model?: string; info?: Record<string, unknown> }
 export interface WorldEvent {
-  present: boolean; problem: string; is_coming?: boolean; server_id: number; name: string; file?: string; lockstep?: boolean; step?: number; version: number; links: number;
+  present: boolean; problem: string; is_coming?: boolean; server_id: number; name: string; file?: string; lockstep?: boolean; step?: number; version: number; birth?: string; links: number;
   models: { name: string; static: boolean }[]; ifaces: Iface[];
 }
 export interface Participant { name: string; pid: number; phase: number; rate: number; ticks: number; missed: number; mean_us: number; max_us: number; active: boolean; late: boolean }

@@ -100,7 +100,7 @@ export class WorldView {
 
   private world_key = '';
   private key_of(): string {
-    return `${store.hello?.recording?.file}|${store.world?.server_id}|${store.world?.name}|${settings.collisions}`;
+    return `${store.hello?.recording?.file}|${store.world?.server_id}|${store.world?.birth}|${settings.collisions}`;
   }
 
   private async load(version: number): Promise<void> {
@@ -148,7 +148,7 @@ export class WorldView {
     this.daylight.set(world, this.bounds);
     this.latecomers.begin(world);
     this.show_late();
-    if (this.pending && this.pending.version === world.version) this.apply(this.pending);
+    this.apply_all();
     this.apply_settings();
     if (is_first && !this.restored) this.whole();
     else this.look_again();
@@ -188,12 +188,27 @@ export class WorldView {
 
   // Asked for before the server has said what it has: most often this is it.
   private early: Promise<ArrayBuffer | null> | null = fetch('world.glb').then((reply) => (reply.ok ? reply.arrayBuffer() : null), () => null);
-  private pending: Poses | null = null;
+  // The newest of each link that the server has told, by what stands where in which frame: a scene may come long after they did.
+  private told = new Map<number, { view: DataView; at: number }>();
+  private told_version = -1;
   is_past = false;
   private present: Float32Array | null = null;
   private take(poses: Poses): void {
-    if (poses.all) this.pending = poses;
-    if (this.world && poses.version === this.world.version) this.apply(poses);
+    if (poses.all || poses.version !== this.told_version) this.told.clear();
+    this.told_version = poses.version;
+    const { view } = poses;
+    const is_shown = this.world?.version === poses.version;
+    for (let i = 0, at = 24; i < poses.count; ++i, at += 24) {
+      const index = view.getUint32(at, true);
+      this.told.set(index, { view, at });
+      if (is_shown) this.place(index, view, at);
+    }
+    if (is_shown) this.after_places();
+  }
+  private apply_all(): void {
+    if (this.told_version !== this.world?.version) return;
+    for (const [index, { view, at }] of this.told) this.place(index, view, at);
+    this.after_places();
   }
 
   // Seven numbers a link: where they are now, also while what was is shown.
@@ -222,21 +237,19 @@ export class WorldView {
     this.redraw();
   }
 
-  private apply(poses: Poses): void {
-    const { view } = poses;
-    const { links } = this.world!;
-    for (let i = 0, at = 24; i < poses.count; ++i, at += 24) {
-      const index = view.getUint32(at, true);
-      const link = links[index];
-      if (!link) continue;
-      if (this.present) {
-        const q = [16, 18, 20, 22].map((k) => view.getInt16(at + k, true) / 32767);
-        this.present.set([view.getFloat32(at + 4, true), view.getFloat32(at + 8, true), view.getFloat32(at + 12, true), ...q], 7 * index);
-        continue;
-      }
-      link.position.set(view.getFloat32(at + 4, true), view.getFloat32(at + 8, true), view.getFloat32(at + 12, true));
-      link.quaternion.set(view.getInt16(at + 16, true), view.getInt16(at + 18, true), view.getInt16(at + 20, true), view.getInt16(at + 22, true)).normalize();
+  private place(index: number, view: DataView, at: number): void {
+    const link = this.world!.links[index];
+    if (!link) return;
+    if (this.present) {
+      const q = [16, 18, 20, 22].map((k) => view.getInt16(at + k, true) / 32767);
+      this.present.set([view.getFloat32(at + 4, true), view.getFloat32(at + 8, true), view.getFloat32(at + 12, true), ...q], 7 * index);
+      return;
     }
+    link.position.set(view.getFloat32(at + 4, true), view.getFloat32(at + 8, true), view.getFloat32(at + 12, true));
+    link.quaternion.set(view.getInt16(at + 16, true), view.getInt16(at + 18, true), view.getInt16(at + 20, true), view.getInt16(at + 22, true)).normalize();
+  }
+
+  private after_places(): void {
     if (this.is_past) return;
     this.trails.lengthen(this.movers());
     this.shadows_dirty = true;
