@@ -4,6 +4,7 @@
 
 #include <omniORB4/CORBA.h>
 
+#include <array>
 #include <chrono>
 #include <functional>
 #include <string>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "client_message.h"
+#include "shm/layout.h"
 
 namespace studio {
 
@@ -39,6 +41,9 @@ const Act* find_act(std::string_view name);
 
 // Words as a shell would have to be given them.
 std::string shell_line(const std::vector<std::string>& words);
+
+// Roll, pitch and yaw [rad], as simctl takes them.
+std::array<double, 3> angles_of(const shm::Pose& pose);
 
 // The rows, by what they are about.
 std::vector<Act> system_acts();

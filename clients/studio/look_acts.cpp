@@ -150,12 +150,6 @@ std::string base64(std::string_view octets) {
   return text;
 }
 
-std::array<double, 3> angles_of(const shm::Pose& p) {
-  return {std::atan2(2 * (p.qw * p.qx + p.qy * p.qz), 1 - 2 * (p.qx * p.qx + p.qy * p.qy)),
-          std::asin(std::clamp(2 * (p.qw * p.qy - p.qz * p.qx), -1.0, 1.0)),
-          std::atan2(2 * (p.qw * p.qz + p.qx * p.qy), 1 - 2 * (p.qy * p.qy + p.qz * p.qz))};
-}
-
 // Of the eye that is given: {png} in base64.
 Result<Plan> screenshot(const ActContext& context, const Json& args) {
   const auto pose = numbers_of(args, "pose", 7, 7);
@@ -180,6 +174,7 @@ Result<Plan> screenshot(const ActContext& context, const Json& args) {
   const auto short_number = [](double value) { return base::format_number(std::round(value * 1e4) / 1e4); };
   if (is_from_top) {
     words.emplace_back("--top");
+    if (span > 0) words.insert(words.end(), {"--at", base::join({short_number(v[0]), short_number(v[1])}, " ")});
   } else {
     const auto [roll, pitch, yaw] = angles_of(request.pose);
     std::vector<std::string> numbers;
@@ -200,6 +195,12 @@ Result<Plan> screenshot(const ActContext& context, const Json& args) {
 }
 
 }  // namespace
+
+std::array<double, 3> angles_of(const shm::Pose& p) {
+  return {std::atan2(2 * (p.qw * p.qx + p.qy * p.qz), 1 - 2 * (p.qx * p.qx + p.qy * p.qy)),
+          std::asin(std::clamp(2 * (p.qw * p.qy - p.qz * p.qx), -1.0, 1.0)),
+          std::atan2(2 * (p.qw * p.qz + p.qx * p.qy), 1 - 2 * (p.qy * p.qy + p.qz * p.qz))};
+}
 
 std::vector<Act> look_acts() { return {{"members", true, members}, {"statistics", true, statistics}, {"screenshot", true, screenshot}}; }
 

@@ -23,7 +23,8 @@ using Touches = Plan::Touches;
 
 constexpr std::chrono::seconds program_limit{30};
 constexpr std::size_t most_places = 10000;
-constexpr int highest_phase = editor::highest_phase;
+using editor::highest_phase;
+using editor::highest_turn;
 
 std::vector<std::string> rtse_words(const ActContext& context, const std::vector<std::string>& words, bool json) {
   std::vector<std::string> all{editor::own_program("rtse"), "--ns", context.name_server};
@@ -96,8 +97,13 @@ Result<Plan> load_module(const ActContext& context, const Json& args) {
   const auto path = text_of(args, "manager"), file = text_of(args, "file");
   if (!path) return path.error();
   if (!file) return file.error();
-  if (file->starts_with('-')) return Error{"file " + base::in_quotes(*file) + ": expected the name of a module"};
-  return plan(context, {"mgr", "load", *file, "-m", *path});
+  const auto init = text_or(args, "init", "");
+  if (file->starts_with('-') || init.starts_with('-'))
+    return Error{"file " + base::in_quotes(*file) + ": expected the name of a module, and perhaps that of its function"};
+  std::vector<std::string> words{"mgr", "load", *file};
+  if (!init.empty()) words.push_back(init);
+  words.insert(words.end(), {"-m", *path});
+  return plan(context, words);
 }
 
 // "Type?instance_name=...&key=value"
@@ -168,10 +174,13 @@ Result<Plan> inject(const ActContext& context, const Json& args) {
 Result<Plan> join_time(const ActContext& context, const Json& args) {
   const auto path = text_of(args, "path");
   if (!path) return path.error();
-  const double phase = number_or(args, "phase", 1), rate = number_or(args, "rate", 0);
+  const double phase = number_or(args, "phase", 1), turn = number_or(args, "turn", 0), rate = number_or(args, "rate", 0);
   if (phase < 0 || phase > highest_phase || phase != std::floor(phase))
     return Error{"phase: expected a whole number from 0 to " + std::to_string(highest_phase)};
   std::vector<std::string> words{"join", *path, "-s", std::to_string(context.server_id), "-p", base::format_number(phase)};
+  if (turn < 0 || turn > highest_turn || turn != std::floor(turn))
+    return Error{"turn: expected a whole number from 0 to " + std::to_string(highest_turn)};
+  if (turn > 0) words.insert(words.end(), {"--turn", base::format_number(turn)});
   if (args.contains("rate")) {
     if (!(rate >= 1e-6 && rate <= 1e6)) return Error{"rate: expected 1e-6 to 1e6 Hz"};
     words.insert(words.end(), {"-r", base::format_number(rate)});

@@ -283,9 +283,10 @@ const editor::ConfigurationSetView* find_set(const ComponentView& component, con
 
 using Values = std::vector<std::pair<std::string, std::string>>;
 
-Result<void> merge(const ComponentView& component, const std::string& set_id, const Values& values, Values& all) {
+// `is_forced`: also what the component's own types and constraints forbid.
+Result<void> merge(const ComponentView& component, const std::string& set_id, const Values& values, bool is_forced, Values& all) {
   for (const auto& [name, value] : values) {
-    const auto problem = editor::value_problem(component, name, value);
+    const auto problem = is_forced ? std::string() : editor::value_problem(component, name, value);
     if (!problem.empty())
       return Error{"component " + component.path + ": parameter " + name + " cannot be " + base::in_quotes(value) + ", expected " +
                    problem};
@@ -296,13 +297,20 @@ Result<void> merge(const ComponentView& component, const std::string& set_id, co
   return {};
 }
 
-Result<Json> configure(const ActContext& context, const std::string& path, const std::string& set_id, const Values& values, bool is_used) {
+struct Wish {
+  std::string path, set;
+  Values values;
+  bool is_used = false, is_forced = false;
+};
+
+Result<Json> configure(const ActContext& context, const Wish& wish) {
+  const auto& [path, set_id, values, is_used, is_forced] = wish;
   const auto view = editor_of(context).component(path, {.configuration = true});
   if (!view) return view.error();
   const auto* set = find_set(*view, set_id);
   if (!set || set->is_hidden()) return Error{"component " + view->path + ": has no configuration set " + base::in_quotes(set_id)};
   auto all = set->values;
-  if (const auto merged = merge(*view, set_id, values, all); !merged) return merged.error();
+  if (const auto merged = merge(*view, set_id, values, is_forced, all); !merged) return merged.error();
   const editor::CallLimit limited(context.call_limit);
   if (const auto kept = editor::set_values(*view, set_id, all); !kept) return kept.error();
   // Values reach the component when its active set is activated once more.
@@ -317,14 +325,15 @@ Result<Plan> set_configuration(const ActContext& context, const Json& args) {
   const auto values = values_of(args, "values");
   if (!values) return values.error();
   if (values->empty()) return Error{"values: expected at least one"};
-  const bool is_used = flag_of(args, "use");
+  const Wish wish{*path, *set, *values, flag_of(args, "use"), flag_of(args, "force")};
   std::string command;
-  for (const auto& [name, value] : *values)
-    command += (command.empty() ? "" : " && ") + rtse_line(context, {"conf", *path, "-s", *set, "set", name, value});
-  if (is_used) command += " && " + rtse_line(context, {"conf", *path, "use", *set});
-  return Plan{command,
-              [context, path = *path, set = *set, values = *values, is_used] { return configure(context, path, set, values, is_used); },
-              Touches::system};
+  for (const auto& [name, value] : *values) {
+    std::vector<std::string> words{"conf", *path, "-s", *set, "set", name, value};
+    if (wish.is_forced) words.emplace_back("--force");
+    command += (command.empty() ? "" : " && ") + rtse_line(context, words);
+  }
+  if (wish.is_used) command += " && " + rtse_line(context, {"conf", *path, "use", *set});
+  return Plan{command, [context, wish] { return configure(context, wish); }, Touches::system};
 }
 
 Result<Plan> use_set(const ActContext& context, const Json& args) {

@@ -140,10 +140,8 @@ Result<Plan> set_pose(const ActContext& context, const Json& args) {
   const auto numbers = numbers_of(args, "pose", 7, 7);
   if (!numbers) return numbers.error();
   request.pose = pose_from(*numbers);
-  // What is typed has one angle; other tilts have no line.
-  const bool is_level = request.pose.qx == 0 && request.pose.qy == 0;
-  const std::vector<double> shown{request.pose.x, request.pose.y, request.pose.z, shm::yaw_of(request.pose)};
-  return plan(context, request, is_level ? with_numbers({"pose", *model}, shown) : std::vector<std::string>());
+  const auto [roll, pitch, yaw] = angles_of(request.pose);
+  return plan(context, request, with_numbers({"pose", *model}, {request.pose.x, request.pose.y, request.pose.z, roll, pitch, yaw}));
 }
 
 Result<Plan> push(const ActContext& context, const Json& args) {

@@ -3,61 +3,11 @@ import { readFileSync, readdirSync, statSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { gzipSync } from 'node:zlib';
-import { component, demo_system, hello, many_components, Mock, scan, time, world_of } from './mock.mjs';
+import { component, demo_system, hello, many_components, Mock, poses, time, world_of } from './mock.mjs';
+import { answer, asked, avoid, built, choose, glb, host, laser, set_up } from './mock_page.mjs';
 import { check, has_world, is_ready, open, run, same, until } from './rig.mjs';
 
-const [bin, source] = process.argv.slice(2);
-const built = process.env.STUDIO_PAGE ?? join(bin, '../share/rtm-sim/studio');
-const glb = join(source, 'tests/studio/course.glb');
 const axe = createRequire(import.meta.url).resolve('axe-core/axe.min.js');
-const host = '/localhost:2809/demo.host_cxt';
-const laser = `${host}/RTCLaser0.rtc`, avoid = `${host}/LaserObstacleAvoid0.rtc`;
-
-const options = { problem: '', properties: [{ key: 'dataport.dataflow_type', values: ['push', 'pull'], default: 'push', meaning: 'who fetches' }, { key: 'dataport.subscription_type', values: ['flush', 'new', 'periodic'], default: 'flush', meaning: 'when' }, { key: 'dataport.publisher.push_rate', default: '', meaning: 'Hz' }] };
-const detail = (path) => ({
-  ...demo_system().components.find((c) => c.path === path), properties: {},
-  sets: [{ id: 'default', active: true, values: [
-    { name: 'device_id', value: path === laser ? 'pioneer2dx::laser' : '', type: 'string', widget: 'text' }, { name: 'max_turn', value: '60', type: 'double', widget: 'slider.10', constraint: '0<=x<=180' },
-    { name: 'mode', value: 'left', type: 'string', widget: 'radio', constraint: '(left,right)' }, { name: 'days', value: 'mon', type: 'string', widget: 'checkbox', constraint: '(mon,tue,wed)' }, { name: 'count', value: '3', type: 'int', widget: 'spin', constraint: '0<=x<=9' }] }],
-});
-
-function answer(mock) {
-  return ({ name, args, dry }) => {
-    if (dry) return { command: `rtse con ${args.ports?.map((p) => p.split('/').pop()).join(' ')}` };
-    if (name === 'component') return { result: detail(args.path) };
-    if (name === 'connection_options') return { result: options };
-    if (name === 'watch' && args.topic.includes('laser')) setTimeout(() => mock.say(scan(args.watch)), 20);
-    if (name === 'connect') return { result: { id: 'new' }, command: 'rtse con A B' };
-    if (name === 'disconnect') return { result: { name: 'range', ports: demo_system().connections[0].ports, properties: {} }, command: 'rtse dis A B' };
-    if (name === 'manager') return { result: { components: [{ instance: 'RTCLaser0', type: 'RTCLaser' }], loaded: [], loadable: [{ file: 'RTCCamera.so', type: 'RTCCamera' }], factories: [{ type: 'RTCLaser' }] } };
-    if (name === 'create') return { error: 'no component of type Nonsense' };
-    if (name === 'save_profile') return { result: { xml: '<rts/>' } };
-    if (name === 'models') return { result: { models: [{ name: 'cow' }, { name: 'pioneer2dx' }, { name: 'pioneer2dx_with_camera' }] } };
-    if (name === 'spawn') return { result: { name: args.name ?? args.model } };
-    if (name === 'check_profile') return { result: { differences: ['connection range: is not there'] } };
-    if (name === 'members') return { result: { members: [{ path: 'tm.sec', type: 'number' }, { path: 'data.vx', type: 'number' }], zero: { tm: { sec: 0, nsec: 0 }, data: { vx: 0, vy: 0, va: 0 } } } };
-    if (name === 'tree') return { result: { models: [{ name: args.model, links: [{ name: 'chassis', mass: 9 }, { name: 'left_wheel', mass: 1 }], joints: [{ name: 'left', type: 'revolute' }], plugins: [] }] } };
-    if (name === 'statistics') return { result: { contexts: [{ path: laser, rate: 100, running: true, cycles: 1000 + 100 * mock.asked.length, missed: 3, mean_ms: 0.2, max_ms: 4, wait_ms: 0 }] } };
-    if (name === 'screenshot') return { result: { png: 'iVBORw0KGgo=' }, command: 'simctl screenshot world.png' };
-    return {};
-  };
-}
-
-const asked = (mock, name) => mock.asked.filter((m) => m.name === name && !m.dry);
-const choose = (page, kind, id) => page.evaluate(([k, i]) => window.studio.select({ kind: k, id: i }), [kind, id]);
-
-async function set_up(browser) {
-  const mock = new Mock({ page: built, glb });
-  mock.answer = answer(mock);
-  const world = await world_of(glb);
-  for (const event of [hello(), demo_system(), world, time(), { op: 'signals', signals: [
-    { topic: '/demo/RTCLaser0/range', kind: 'port', type: 'IDL:RTC/RangeData:1.0', component: laser }, { topic: '/sim/laser/pioneer2dx/laser', kind: 'iface', type: 'laser', model: 'pioneer2dx' }] }]) mock.say(event);
-  const url = await mock.start();
-  const page = await open(browser, url);
-  await is_ready(page);
-  await has_world(page);
-  return { browser, mock, url, page, world };
-}
 
 const flows = [
   ['the page is small', async () => {
@@ -75,17 +25,9 @@ const flows = [
     same(await page.locator('.labels span').allTextContents(), ['pioneer2dx'], 'names');
   }],
   ['poses move the robot', async ({ page, mock, world }) => {
-    const frame = Buffer.alloc(24 + 24);
-    frame[0] = 0x81;
-    frame.writeUInt32LE(world.version, 4);
-    frame.writeBigUInt64LE(13000000000n, 8);
-    frame.writeUInt32LE(1, 16);
     const index = await page.evaluate(() => window.studio.world.world.links.findIndex((l) => l.name === 'pioneer2dx::chassis'));
-    frame.writeUInt32LE(index, 24);
-    [1, 2, 0.1].forEach((v, i) => frame.writeFloatLE(v, 28 + 4 * i));
-    frame.writeInt16LE(32767, 46);
     const before = await page.evaluate(() => window.studio.world.frames);
-    mock.say(frame);
+    mock.say(poses(world.version, [[index, 1, 2, 0.1]]));
     await until('the robot is there', () => page.evaluate(([i, f]) => { const p = window.studio.world.world.links[i].position; return Math.abs(p.x - 1) < 1e-3 && Math.abs(p.y - 2) < 1e-3 && window.studio.world.frames > f; }, [index, before]));
   }],
   ['a click on the robot selects it everywhere', async ({ page }) => {
@@ -234,82 +176,6 @@ const flows = [
     await until('undo is offered', () => page.locator('#undo').isEnabled());
     await page.locator('#undo').click();
     await until('again', () => asked(mock, 'connect').length === count + 1);
-  }],
-  ['parameters have the widgets that they ask for', async ({ page, mock }) => {
-    await choose(page, 'component', laser);
-    await until('sets', async () => (await page.locator('.inspector .slider input[type=range]').count()) === 1);
-    same(await page.locator('.inspector .choices input').count(), 3, 'checkboxes');
-    same(await page.locator('.inspector select option').allTextContents(), ['left', 'right'], 'choice');
-    await page.locator('.inspector .slider input[type=number]').fill('75');
-    await page.keyboard.press('Tab');
-    await until('set', () => asked(mock, 'set_configuration').some((m) => m.args.values.max_turn === '75'));
-    await page.locator('.inspector .choices input').nth(1).check();
-    await until('both days', () => asked(mock, 'set_configuration').some((m) => m.args.values.days === 'mon,tue'));
-  }],
-  ['a component joins simulated time and leaves it; all of its connections are cut', async ({ page, mock }) => {
-    await choose(page, 'component', avoid);
-    await page.locator('#act-join_time').click();
-    await page.locator('#join-phase').selectOption('2');
-    await page.locator('#join-rate').fill('50');
-    await page.locator('dialog[open] button.main').click();
-    await until('join', () => asked(mock, 'join_time').length === 1);
-    same(asked(mock, 'join_time')[0].args, { path: avoid, phase: 2, rate: 50 }, 'how');
-    mock.say({ ...demo_system(), components: demo_system().components.map((c) => ({ ...c, in_simulated_time: c.path === avoid })) });
-    await page.locator('#act-leave_time').click();
-    await until('leave', () => asked(mock, 'leave_time').at(-1)?.args.path === avoid);
-    await page.locator('#act-disconnect_all').click();
-    await until('cut', () => asked(mock, 'disconnect_all').at(-1)?.args.path === avoid);
-    mock.say(demo_system());
-  }],
-  ['a value is written to a port, beginning with zeros of its type', async ({ page, mock }) => {
-    await choose(page, 'port', `${host}/RTCPosition2d0.rtc:velocity`);
-    await page.locator('#inject').click();
-    await until('the zeros', async () => (await page.locator('#inject-value').inputValue()).includes('"vx": 0'));
-    await page.locator('#inject-value').fill('{"data": {"vx": 0.2}}');
-    await page.locator('dialog[open] button.main').click();
-    await until('inject', () => asked(mock, 'inject').length === 1);
-    same(asked(mock, 'inject')[0].args, { port: `${host}/RTCPosition2d0.rtc:velocity`, value: '{"data":{"vx":0.2}}' }, 'what');
-  }],
-  ['a model is chosen from the list and spawned', async ({ page, mock }) => {
-    await page.locator('.world canvas').focus();
-    await page.keyboard.press('Insert');
-    await until('the list', async () => (await page.locator('.models button').count()) === 3);
-    await page.locator('#spawn-model').fill('pio');
-    await until('those that fit', async () => (await page.locator('.models button').count()) === 2);
-    await page.locator('.models button', { hasText: /^pioneer2dx$/ }).click();
-    await page.locator('dialog[open] button.main').click();
-    await until('spawn', () => asked(mock, 'spawn').at(-1)?.args.model === 'pioneer2dx');
-  }],
-  ['a profile is loaded, started, stopped, torn down or compared', async ({ page, mock }) => {
-    for (const [way, name] of [['Load', 'open_profile'], ['Start', 'start_system'], ['Stop', 'stop_system'], ['Tear down', 'teardown'], ['Compare', 'check_profile']]) {
-      await page.locator('input[type=file]').setInputFiles({ name: 'a.xml', mimeType: 'text/xml', buffer: Buffer.from('<rts/>') });
-      await page.locator('dialog[open] .way', { has: page.locator(`strong:text-is("${way}")`) }).click();
-      await page.locator('dialog[open] button.main').click();
-      await until(name, () => asked(mock, name).at(-1)?.args.xml === '<rts/>');
-    }
-    await page.locator('.differences li', { hasText: 'connection range' }).waitFor();
-    await page.locator('dialog[open] button.main').click();
-  }],
-  ['a model is shown with its links, a picture of the view is saved', async ({ page, mock }) => {
-    await choose(page, 'model', 'pioneer2dx');
-    await page.locator('.links summary', { hasText: '2 links' }).click();
-    await page.locator('.links li', { hasText: 'left_wheel' }).waitFor();
-    const [saved] = await Promise.all([page.waitForEvent('download'), page.locator('button[aria-label^="Save a picture"]').click()]);
-    same(saved.suggestedFilename(), 'world.png', 'file');
-    check(asked(mock, 'screenshot')[0].args.pose.length === 7, 'the eye');
-  }],
-  ['what contexts do is told while it is looked at', async ({ page, mock }) => {
-    await page.locator('#tab-step').click();
-    await until('a row', async () => (await page.locator('.contexts tbody tr').textContent()).includes('RTCLaser0'));
-    await page.locator('#tab-plots').click();
-    await until('no more', async () => { const count = asked(mock, 'statistics').length; await new Promise((resolve) => setTimeout(resolve, 1500)); return asked(mock, 'statistics').length === count; });
-  }],
-  ['a refusal is one line that stays', async ({ page }) => {
-    await choose(page, 'manager', `${host}/rtcd.mgr`);
-    await page.locator('#manager-create').click();
-    await page.locator('#ask-text').fill('Nonsense');
-    await page.keyboard.press('Enter');
-    await until('refusal', async () => (await page.locator('footer .act').textContent()).includes('no component of type Nonsense'));
   }],
   ['boxes are placed by hand and stay there', async ({ page, url, browser }) => {
     const box = await page.locator(`[data-path="${laser}"] .band`).boundingBox();

@@ -313,6 +313,8 @@ TEST(Acts, of_a_simulator_say_what_one_would_type) {
   EXPECT_EQ(command("step", R"({"steps":5,"paced":true})"), "simctl -s 7 step 5 --paced");
   EXPECT_EQ(command("step", R"({"steps":0})"), "error: steps: expected 1 to 1e9");
   EXPECT_EQ(command("set_pose", R"({"model":"a b","planar":[1,2,0.5]})"), "simctl -s 7 pose 'a b' 1 2 0.5");
+  EXPECT_EQ(command("set_pose", R"({"model":"a","pose":[1,2,3,1,0,0,0]})"), "simctl -s 7 pose a 1 2 3 0 0 0");
+  EXPECT_EQ(command("set_pose", R"({"model":"a","pose":[1,2,3,0.6,0.8,0,0]})"), "simctl -s 7 pose a 1 2 3 1.8545904360032248 0 0");
   EXPECT_EQ(command("push", R"({"name":"r","force":[1,0,0],"seconds":2})"), "simctl -s 7 wrench r 1 0 0 --for 2");
   EXPECT_EQ(command("spawn", R"({"model":"../../etc"})"), "error: model \"../../etc\": expected the name of a model on the model path");
   EXPECT_EQ(command("spawn", R"({"model":"/tmp/x.sdf"})"), "error: model \"/tmp/x.sdf\": expected the name of a model on the model path");
@@ -326,7 +328,7 @@ TEST(Acts, of_a_picture_say_which_view) {
   EXPECT_EQ(command(R"({"pose":[1,2,3,1,0,0,0],"span":1.2,"collisions":true})"),
             "simctl -s 7 screenshot world.png --size 800x600 --from '1 2 3 0 0 0' --span 1.2 --show collisions");
   EXPECT_EQ(command(R"({"pose":[1,2,0,1,0,0,0],"span":9,"top":true,"width":300,"height":200})"),
-            "simctl -s 7 screenshot world.png --size 300x200 --top --span 9");
+            "simctl -s 7 screenshot world.png --size 300x200 --top --at '1 2' --span 9");
   EXPECT_EQ(command(R"({"pose":[1,2,0,1,0,0,0],"width":5000})"), "error: width, height: expected 1 to 4096");
 }
 
@@ -338,6 +340,13 @@ TEST(Acts, of_components_say_what_one_would_type) {
   };
   const std::string rtse = "rtse --ns 127.0.0.1:2809 ";
   EXPECT_EQ(command("join_time", R"({"path":"/a.rtc","phase":2,"rate":50})"), rtse + "join /a.rtc -s 7 -p 2 -r 50");
+  EXPECT_EQ(command("join_time", R"({"path":"/a.rtc","phase":15,"turn":3})"), rtse + "join /a.rtc -s 7 -p 15 --turn 3");
+  EXPECT_EQ(command("join_time", R"({"path":"/a.rtc","turn":10000})"), "error: turn: expected a whole number from 0 to 9999");
+  EXPECT_EQ(command("load_module", R"({"manager":"/m.mgr","file":"A.so","init":"AInit"})"), rtse + "mgr load A.so AInit -m /m.mgr");
+  EXPECT_EQ(command("load_module", R"({"manager":"/m.mgr","file":"A.so","init":"-x"})"),
+            "error: file \"A.so\": expected the name of a module, and perhaps that of its function");
+  EXPECT_EQ(command("set_configuration", R"({"path":"/a.rtc","set":"default","values":{"gain":"9"},"force":true})"),
+            rtse + "conf /a.rtc -s default set gain 9 --force");
   EXPECT_EQ(command("join_time", R"({"path":"/a.rtc","phase":1.5})"), "error: phase: expected a whole number from 0 to 15");
   EXPECT_EQ(command("leave_time", R"({"path":"/a.rtc"})"), rtse + "leave /a.rtc");
   EXPECT_EQ(command("disconnect_all", R"({"path":"/a.rtc:in"})"), rtse + "dis /a.rtc:in");

@@ -325,6 +325,8 @@ const flows = [
     await page.locator('#tab-step').click();
     await until('what its context has done', async () => (await page.locator('.contexts tbody tr', { hasText: 'RTCPosition2d0' }).locator('td').nth(1).textContent()).endsWith(' Hz'));
     if (process.env.STUDIO_PICTURES) await page.screenshot({ path: join(process.env.STUDIO_PICTURES, 'step.png') });
+    const says = (instance) => page.locator('.contexts tbody tr', { hasText: instance }).locator('td').last().textContent();
+    await until('who is inactive waits for nothing', async () => (await says('RTCLaser0')) === 'inactive' && (await says('RTCPosition2d0')) !== 'inactive');
     await page.locator('#tab-plots').click();
     await choose(page, 'RTCPosition2d0');
     await page.locator('#act-deactivate').click();
@@ -343,6 +345,15 @@ const flows = [
     const words = [...command.matchAll(/'([^']*)'|(\S+)/g)].map(([, quoted, bare]) => quoted ?? bare);
     await rig.call('simctl', ...words.slice(1));
     same([readFileSync(join(rig.work, 'world.png')).readUInt32BE(16)], [box[0]], 'its picture');
+    // From above, too, wherever its middle is.
+    await rig.simctl('pause');
+    await page.evaluate(() => { const { world } = window.studio; world.top(); world.eye.target.set(2, 1, 0); world.eye.span = 5; world.redraw(); });
+    const [from_above] = await Promise.all([page.waitForEvent('download'), page.locator('button[aria-label^="Save a picture"]').click()]);
+    const told = await until('its command', async () => { const text = await page.locator('footer .command').textContent(); return text.includes('--top') && text; });
+    await rig.call('simctl', ...[...told.matchAll(/'([^']*)'|(\S+)/g)].map(([, quoted, bare]) => quoted ?? bare).slice(1));
+    check(readFileSync(join(rig.work, 'world.png')).equals(readFileSync(await from_above.path())), `not the same picture: ${told}`);
+    await page.evaluate(() => window.studio.world.whole());
+    await rig.simctl('run');
   }],
   ['saved, torn down and opened again', async ({ page, rig }) => {
     const at = () => page.evaluate(() => Object.fromEntries(Object.entries(window.studio.diagram.positions()).map(([path, [x, y]]) => [path, [x, y]])));
@@ -392,6 +403,10 @@ const flows = [
   ['a component dies and comes back', async ({ page, rig, ...shared }) => {
     await rig.end(shared.host, 'SIGKILL');
     await until('the page tells', async () => (await page.locator('.diagram .box').count()) === 0 || (await page.locator('.diagram .box.state-unknown').count()) === 3);
+    await page.locator('#forget-dead').click();
+    await boxes(page, 0);
+    await until('no names', async () => !(await rig.rtse('ls')).includes('RTCLaser0'));
+    await page.locator('#forget-dead').waitFor({ state: 'hidden' });
     shared.host = rig.host(rig.device('RTCLaser'), rig.device('RTCPosition2d'), 'LaserObstacleAvoid');
     await in_state(page, 'inactive', 3);
     await boxes(page, 3);
@@ -403,6 +418,17 @@ const flows = [
     shared.world = await rig.server('worlds/obstacle_course.sdf', '-u');
     await until('the page shows it', async () => (await page.locator('.world .card').count()) === 0);
     await until('its time', () => page.evaluate(() => window.studio.store.time.sim_time < 1 && window.studio.store.time.paused));
+  }],
+  ['the simulator comes back with a wall that is higher, in a world of the same name', async (shared) => {
+    const { page, rig } = shared;
+    const highest = () => page.evaluate(() => window.studio.world.bounds.max.z);
+    const was = await highest(), version = await page.evaluate(() => window.studio.world.world.version);
+    const edited = join(rig.work, 'edited.sdf');
+    writeFileSync(edited, readFileSync(join(source, 'worlds/obstacle_course.sdf'), 'utf8').replaceAll('12.15 0.15 0.6', '12.15 0.15 2.6'));
+    await rig.end(shared.world);
+    shared.world = await rig.server(edited, '-u', '--resource-path', join(source, 'worlds/models'));
+    await until('the higher wall', async () => (await highest()) > was + 0.5);
+    same(await page.evaluate(() => window.studio.world.world.version), version, 'version');
   }],
   ['the naming service dies and comes back', async (shared) => {
     const { page, rig } = shared;
@@ -420,60 +446,6 @@ const flows = [
     // With the same port and the token that this page has.
     shared.studio = await rig.studio('-p', url.port);
     await until('another token: it asks for the new URL', () => page.evaluate(() => window.studio.wire.status !== 'open'));
-  }],
-  ['a component joins simulated time and leaves it', async ({ browser }) => {
-    const rig = new Rig(bin, source, lib);
-    await rig.claim();
-    try {
-      await rig.naming();
-      await rig.server('worlds/obstacle_course.sdf', '--lockstep');
-      rig.host('LaserObstacleAvoid');
-      const studio = await rig.studio();
-      const page = await open(browser, studio.url);
-      await is_ready(page);
-      const members = async () => JSON.parse(await rig.simctl('--json', 'participants'));
-      await choose(page, 'LaserObstacleAvoid0');
-      await page.locator('#act-join_time').click();
-      await page.locator('#join-rate').fill('20');
-      if (process.env.STUDIO_PICTURES) await page.screenshot({ path: join(process.env.STUDIO_PICTURES, 'join.png') });
-      await page.locator('dialog[open] button.main').click();
-      await until('it takes part', async () => { const [one] = await members(); return one?.rate === 20 && one.phase === 1; });
-      await page.locator('#act-leave_time').click();
-      await until('it has left', async () => (await members()).length === 0);
-      await page.locator('#act-join_time').waitFor();
-      same(page.problems, [], 'problems');
-      await page.context().close();
-    } finally {
-      await rig.end_all();
-    }
-  }],
-  ['in lock step a step goes to the next tick of a participant', async ({ browser }) => {
-    const rig = new Rig(bin, source, lib);
-    await rig.claim();
-    try {
-      await rig.naming();
-      await rig.server('worlds/obstacle_course.sdf', '--lockstep', '-u');
-      rig.host('-o', 'manager.modules.preload:SimTimeContext.so', '-o', 'exec_cxt.periodic.type:SimTimeContext', 'LaserObstacleAvoid?exec_cxt.periodic.rate=40');
-      const one = async () => JSON.parse(await rig.simctl('--json', 'participants'))[0];
-      await until('it takes part', async () => (await one())?.active);
-      const { name } = await one();
-      const studio = await rig.studio();
-      const page = await open(browser, studio.url);
-      await is_ready(page);
-      await until('who takes part', async () => (await page.locator('.waits').textContent()).includes('one takes part'));
-      await page.locator('#step-what').selectOption(name);
-      const time = async () => JSON.parse(await rig.simctl('--json', 'stats')).sim_time;
-      for (let i = 0; i < 3; ++i) {
-        const { ticks } = await one(), was = await time();
-        const wanted = was === 0 ? 0.001 : Math.floor(was / 0.025 + 1e-6) * 0.025 + 0.025;
-        await page.locator('#step').click();
-        await until('the tick', async () => (await one()).ticks === ticks + 1 && Math.abs((await time()) - wanted) < 1e-6);
-      }
-      same(page.problems, [], 'problems');
-      await page.context().close();
-    } finally {
-      await rig.end_all();
-    }
   }],
   ['read-only: it may look, not act', async ({ browser, rig }) => {
     const studio = await rig.studio('--read-only');

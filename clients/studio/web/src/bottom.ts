@@ -1,5 +1,5 @@
 // Time: run, pause, step, speed; the line of the last minutes; under it plots, logs, pictures and where a step's time goes.
-import { button, h, icon, once_a_frame, put, unless_pressed } from './dom';
+import { button, h, icon, once_a_frame, put, unless_pressed, with_code } from './dom';
 import { Contexts } from './contexts';
 import { History } from './history';
 import { Playback, recording } from './playback';
@@ -9,7 +9,6 @@ import { act, iface_id, on, read_only, selected_model, store, wire } from './sto
 import { short_path } from './tree';
 import { watch_image } from './watches';
 import type { Participant } from './wire';
-import type { WorldView } from './world';
 
 export class Bottom {
   readonly transport = h('div', { class: 'transport', role: 'toolbar', 'aria-label': 'Time' });
@@ -28,10 +27,11 @@ export class Bottom {
   private readonly body = h('div', { class: 'tab-body', role: 'tabpanel' });
   private readonly log_filter = h('input', { type: 'search', placeholder: 'Filter', 'aria-label': 'Filter logs' });
   private readonly log_list = h('div', { class: 'log', role: 'log', tabindex: 0, 'aria-label': 'Logs' });
-  private readonly images = h('div', { class: 'images' });
+  private readonly offers = h('div', { class: 'offers' });
+  private readonly images = h('div', { class: 'images' }, this.offers);
   private readonly parts = h('div', { class: 'parts', tabindex: 0, role: 'region', 'aria-label': 'Where time goes' });
   private readonly contexts: Contexts;
-  private stops = new Map<string, () => void>();
+  private shown_images = new Map<string, { stop: () => void; figure: HTMLElement }>();
   private moment: number | null = null;
   // What was asked for and is not told yet: the next press means the opposite of it, and not of what is shown.
   private wanted_paused: boolean | undefined = undefined;
@@ -39,7 +39,7 @@ export class Bottom {
   // What a step is: one of the simulator, or until this participant's next tick.
   private readonly step_box = h('select', { id: 'step-what', 'aria-label': 'What a step is', hidden: true }, h('option', { value: '' }, 'one step'));
 
-  constructor(world: WorldView, private readonly history: History, private readonly playback: Playback) {
+  constructor(private readonly history: History, private readonly playback: Playback) {
     this.plots = new Plots(() => this.moment ?? store.time?.sim_time ?? 0, (moment) => this.look(moment));
     const can = () => wire.status === 'open' && (recording() !== undefined || (!read_only() && store.world?.present && store.time !== null));
     const step_button = button('Step', { icon: 'step', key: '.', id: 'step' }, () => this.step());
@@ -85,7 +85,7 @@ export class Bottom {
     on('log', once_a_frame(() => { if (settings.tab === 'logs') unless_pressed(this.log_list, () => this.show_logs()); }));
     on('time', once_a_frame(() => { if (settings.tab === 'step') unless_pressed(this.parts, () => this.show_parts()); }));
     this.contexts = new Contexts(() => unless_pressed(this.parts, () => this.show_parts()), () => settings.tab === 'step' && this.parts.offsetParent !== null);
-    on('world', () => this.offer_images(world));
+    on(['world', 'hello'], () => this.offer_images());
     on('scene', () => { if (this.moment !== null) this.look(null); });
     on('selection', () => { if (settings.tab === 'logs') this.show_logs(); });
     new ResizeObserver(() => this.draw_band()).observe(this.band);
@@ -235,7 +235,7 @@ export class Bottom {
     if (tab === 'logs') this.show_logs();
     if (tab === 'step') this.show_parts();
     put(this.body, tab === 'plots' ? this.plots.element : tab === 'logs' ? [h('div', { class: 'search' }, this.log_filter), this.log_list] : tab === 'images' ? this.images : this.parts);
-    if (tab === 'images' && this.stops.size === 0) this.offer_images();
+    if (tab === 'images') this.offer_images();
   }
 
   private show_logs(): void {
@@ -262,39 +262,43 @@ export class Bottom {
 
   // ---- pictures ----
 
-  private offer_images(_world?: WorldView): void {
+  // Those that are shown, and beside them what else can be.
+  private offer_images(): void {
     const cameras = store.world?.ifaces.filter((i) => /camera|rgbd|depth/.test(i.type)) ?? [];
-    for (const [name, stop] of this.stops) {
-      if (cameras.some((c) => iface_id(c) === name)) continue;
-      stop();
-      this.stops.delete(name);
-    }
-    if (this.stops.size > 0) return;
-    put(this.images, cameras.length === 0 ? h('p', { class: 'hint' }, 'This world has no camera.') : h('div', { class: 'offers' }, cameras.map((c) => button(`Show the pictures of ${c.name}${c.type === 'depth' ? ', depth' : ''}`, { icon: 'camera', label: camera_label(iface_id(c)) }, () => this.show_image(iface_id(c))))));
+    for (const name of this.shown_images.keys()) if (/^(camera|rgbd|depth):/.test(name) && !cameras.some((c) => iface_id(c) === name)) this.close_image(name);
+    const none = recording() ? 'This recording has no pictures.' : store.world?.present ? 'This world has no camera. `worlds/farm.sdf` has one, and so has the model `helicopter`, which can be spawned.' : 'No simulator runs: nothing is seen.';
+    put(this.offers, cameras.length === 0 && this.shown_images.size === 0 ? h('p', { class: 'hint' }, ...with_code(none))
+      : cameras.filter((c) => !this.shown_images.has(iface_id(c))).map((c) => button(`Show the pictures of ${c.name}${c.type === 'depth' ? ', depth' : ''}`, { icon: 'camera', label: camera_label(iface_id(c)) }, () => this.show_image(iface_id(c)))));
+  }
+
+  private close_image(iface: string): void {
+    const shown = this.shown_images.get(iface);
+    this.shown_images.delete(iface);
+    shown?.stop();
+    shown?.figure.remove();
   }
 
   // `iface`: with its type, "depth:robot::eyes".
   show_image(iface: string): void {
     if (settings.tab !== 'images') this.show_tab('images');
-    if (this.stops.has(iface)) return;
-    if (this.stops.size === 0) put(this.images);
+    if (this.shown_images.has(iface)) return;
     const image = h('img', { alt: `What ${camera_label(iface)} sees` });
     const when = h('span', { class: 'more' });
     const end = () => {
-      this.stops.get(iface)?.();
-      this.stops.delete(iface);
-      figure.remove();
-      if (this.stops.size === 0) this.offer_images();
+      this.close_image(iface);
+      this.offer_images();
     };
-    const figure = h('figure', null, image, h('figcaption', null, camera_label(iface), ' ', when, button('Close', { icon: 'close', class: 'plain small' }, end)));
-    this.images.append(figure);
+    const figure = h('figure', null, image, h('figcaption', null, camera_label(iface), ' ', when, button(`Close the picture of ${camera_label(iface)}`, { icon: 'close', class: 'plain small' }, end)));
+    this.offers.before(figure);
     let url = '';
-    this.stops.set(iface, watch_image(iface, { hz: 10 }, (jpeg, time) => {
+    const stop = watch_image(iface, { hz: 10 }, (jpeg, time) => {
       if (url) URL.revokeObjectURL(url);
       url = URL.createObjectURL(jpeg);
       image.src = url;
       when.textContent = `${time.toFixed(2)} s`;
-    }, (why) => { when.textContent = why; }));
+    }, (why) => { when.textContent = why; });
+    this.shown_images.set(iface, { stop, figure });
+    this.offer_images();
   }
 
   selected(): string | undefined {

@@ -19,8 +19,11 @@ export function connect_dialog(from: string, to?: string): void {
   const body = h('div', { class: 'connect' });
   const problem = h('p', { class: 'problem', role: 'alert' });
   const command = h('code', { class: 'command' });
-  const choice = h('select', { id: 'connect-to' }, others.map((p) => h('option', { value: p }, label(p))));
-  const name = h('input', { id: 'connect-name', value: '' });
+  const choice = h('select', { id: 'connect-to', autofocus: true }, others.map((p) => h('option', { value: p }, label(p))));
+  const name = h('input', { id: 'connect-name', value: '' }), id = h('input', { id: 'connect-id', placeholder: 'a new one' });
+  // A connection may have more than two ends.
+  const further = h('select', { id: 'connect-further', multiple: true, size: 4 });
+  const ports = () => [from, choice.value, ...[...further.selectedOptions].map((o) => o.value)];
   const fields = h('div', { class: 'fields' });
   const values = (): { [key: string]: string } => {
     const out: { [key: string]: string } = {};
@@ -29,7 +32,7 @@ export function connect_dialog(from: string, to?: string): void {
     }
     return out;
   };
-  const args = () => ({ ports: [from, choice.value], name: name.value, properties: values() });
+  const args = () => ({ ports: ports(), name: name.value, ...(id.value.trim() ? { id: id.value.trim() } : {}), properties: values() });
   // Answers to earlier questions say nothing any more.
   let commands = 0, choices = 0;
   const show_command = async () => {
@@ -58,7 +61,7 @@ export function connect_dialog(from: string, to?: string): void {
     problem.textContent = '';
     put(fields, h('p', { class: 'hint' }, 'Asking the ports …'));
     try {
-      const { result } = await wire.request('connection_options', { ports: [from, choice.value] });
+      const { result } = await wire.request('connection_options', { ports: ports() });
       if (number !== choices) return;
       problem.textContent = result.problem ?? '';
       const options: Option[] = result.properties ?? [];
@@ -76,15 +79,18 @@ export function connect_dialog(from: string, to?: string): void {
   put(body,
     h('div', { class: 'grid' }, h('span', null, 'From'), h('strong', null, label(from)), h('label', { for: 'connect-to' }, 'To'), choice, h('span', null, 'Type'), h('span', null, short_type(type) || 'service'),
       h('label', { for: 'connect-name' }, 'Name'), name),
-    fields, problem, command);
-  choice.addEventListener('change', refresh);
-  name.addEventListener('change', show_command);
+    fields, h('details', { class: 'ends' }, h('summary', null, 'Id and further ends'), h('div', { class: 'grid' }, h('label', { for: 'connect-id' }, 'Id'), id, h('label', { for: 'connect-further' }, 'And also to'), further)), problem, command);
+  const offer_further = () => put(further, partners(from).filter((p) => p !== choice.value).map((p) => h('option', { value: p }, label(p))));
+  offer_further();
+  choice.addEventListener('change', () => { offer_further(); refresh(); });
+  further.addEventListener('change', refresh);
+  for (const field_ of [name, id]) field_.addEventListener('change', show_command);
   if (others.length === 0) problem.textContent = `No other port takes ${short_type(type) || 'this service'}: start a component that has one.`;
   else refresh();
   open_dialog('Connect', body, 'Connect', () => {
     if (others.length === 0) return;
-    const ports = [from, choice.value];
-    act(`Connect ${label(from)} and ${label(choice.value)}`, 'connect', args(), (result) => ({ text: `Disconnect ${label(from)} and ${label(ports[1])}`, name: 'disconnect', args: { port: from, id: result.id } }));
+    const all = ports().map(label).join(' and ');
+    act(`Connect ${all}`, 'connect', args(), (result) => ({ text: `Disconnect ${all}`, name: 'disconnect', args: { port: from, id: result.id } }));
   });
 }
 

@@ -1,11 +1,14 @@
 // What the contexts of components have really done, asked for while somebody looks: cycles a second, time of one, missed ones.
 import { h } from './dom';
 import { recording } from './playback';
+import { state_words } from './states';
 import { component, on, wire } from './store';
 import { short_path } from './tree';
 
 interface Told { path: string; rate: number; running: boolean; cycles?: number; missed?: number; mean_ms?: number; max_ms?: number; wait_ms?: number }
 interface Look { at: number; told: Told }
+
+const state_of = (path: string) => component(path)?.state ?? 'Unknown';
 
 const period = 1000; // [ms]
 
@@ -51,6 +54,6 @@ export class Contexts {
       h('thead', null, h('tr', null, ['component', 'asked', 'done', 'mean', 'worst', 'missed', ''].map((t) => h('th', { scope: 'col' }, t)))),
       h('tbody', null, this.rows.slice(0, 300).map(({ told, done, mean, waits }) => h('tr', null, h('th', { scope: 'row' }, component(told.path)?.instance ?? short_path(told.path)),
         h('td', null, `${Number(told.rate.toPrecision(4))} Hz`), h('td', null, number(done, 1, ' Hz')), h('td', null, number(mean, 3, ' ms')), h('td', null, number(told.max_ms, 2, ' ms')), h('td', null, number(told.missed, 0, '')),
-        h('td', null, !told.running ? 'stopped' : waits ? 'waits for data' : '')))));
+        h('td', null, !told.running ? 'stopped' : state_of(told.path) !== 'Active' ? state_words[state_of(told.path)] : waits ? 'waits for data' : '')))));
   }
 }

@@ -247,7 +247,7 @@ export class Diagram {
       const { x, y } = this.places.get(path)!;
       [left, top, right, bottom] = [Math.min(left, x), Math.min(top, y), Math.max(right, x + shape.width), Math.max(bottom, y + shape.height)];
     }
-    const scale = Math.min(1.15, (width - 40) / (right - left), (height - 40) / (bottom - top));
+    const scale = Math.min(1.15, (width - 28) / (right - left), (height - 28) / (bottom - top));
     this.pan = { scale, x: (width - (right + left) * scale) / 2, y: (height - (bottom + top) * scale) / 2 };
     this.apply_pan();
   }

@@ -3,7 +3,7 @@
 export interface Box { path: string; width: number; height: number }
 export interface Place { x: number; y: number }
 
-const gap_x = 70, gap_y = 26;
+const gap_x = 48, gap_y = 26;
 
 export function arrange(boxes: Box[], edges: [string, string][]): Map<string, Place> {
   const places = new Map<string, Place>();

@@ -3,14 +3,15 @@ import { Euler, Quaternion } from 'three';
 import { button, h, put, unless_pressed } from './dom';
 import { connect_dialog } from './connect_dialog';
 import { short_type } from './diagram';
-import { ask_text, open_dialog } from './dialog';
+import { ask_text } from './dialog';
 import { inject_dialog, join_dialog } from './rtse_dialogs';
+import { control, is_edited } from './widgets';
 import { state_class, state_mark, state_words } from './states';
 import {
   Act, act, component, component_of_port, components_of, connection, connections_of, iface_id, is_selected, model_of, name_of_port, on, port_of, read_only, refresh_details, select, store, wire,
 } from './store';
 import { short_path, signal_name } from './tree';
-import type { ConfigValue, Values } from './wire';
+import type { ConfigValue, Context, Values } from './wire';
 import { watch } from './watches';
 import type { WorldView } from './world';
 
@@ -125,6 +126,7 @@ export class Inspector {
         drive && can ? button('Drive by keys or stick', { icon: 'drive', label: 'Drive', key: 'G' }, () => this.parts.drive(drive.name)) : null,
         can && !model?.is_static ? button('Set the pose', { label: 'Put …' }, () => this.put_model(name)) : null,
         can && !model?.is_static ? button('Push it', { label: 'Push …' }, () => this.push_model(name)) : null,
+        can && !model?.is_static ? button('Set its velocity', { label: 'Set moving …' }, () => this.set_moving(name)) : null,
         can ? button('Delete the model', { label: 'Delete', class: 'danger' }, () => act(`Delete ${name}`, 'delete_model', { model: name })) : null),
       h('h3', null, 'Pose'), pose,
       ifaces.length > 0 ? h('h3', null, 'Ifaces') : null,
@@ -180,6 +182,13 @@ export class Inspector {
     });
   }
 
+  private set_moving(name: string): void {
+    ask_text(`Set ${name} moving`, 'VX VY VZ [m/s], or with WX WY WZ [rad/s]', '0 0 1', 'Set moving', (text) => {
+      const six = text.split(/[\s,]+/).map(Number);
+      if ((six.length === 3 || six.length === 6) && six.every(Number.isFinite)) act(`Set ${name} moving`, 'set_velocity', { model: name, linear: six.slice(0, 3), angular: six.length === 6 ? six.slice(3) : [0, 0, 0] });
+    });
+  }
+
   private iface(id: string, is_same: boolean): Content | null {
     const iface = store.world?.ifaces.find((i) => iface_id(i) === id);
     if (!iface) return [this.title(id.split(':').slice(1).join(':'), 'iface'), h('p', { class: 'hint' }, 'It is not there now.')];
@@ -194,7 +203,10 @@ export class Inspector {
       h('div', { class: 'acts' },
         has_picture ? button('Show its pictures', { icon: 'camera', label: 'Pictures' }, () => this.parts.show_image(iface_id(iface))) : null,
         has_picture ? button('Look through it', { icon: 'follow', label: 'Look through' }, () => this.parts.world.look_through(iface.name)) : null,
-        iface.type.startsWith('position') && !read_only() ? button('Drive by keys or stick', { icon: 'drive', label: 'Drive' }, () => this.parts.drive(iface.name)) : null),
+        iface.type.startsWith('position') && !read_only() ? button('Drive by keys or stick', { icon: 'drive', label: 'Drive' }, () => this.parts.drive(iface.name)) : null,
+        iface.type === 'position2d' && !read_only() ? [button('Let odometry begin here with zero', { label: 'Reset odometry', id: 'reset-odometry' }, () => act(`Reset the odometry of ${iface.name}`, 'reset_odometry', { iface: iface.name })),
+          ...[true, false].map((on) => button(`Switch the motors ${on ? 'on' : 'off'}`, { label: `Motors ${on ? 'on' : 'off'}`, id: `motors-${on ? 'on' : 'off'}` }, () => act(`Switch the motors of ${iface.name} ${on ? 'on' : 'off'}`, 'set_motors', { iface: iface.name, on },
+            () => ({ text: `Switch the motors of ${iface.name} ${on ? 'off' : 'on'}`, name: 'set_motors', args: { iface: iface.name, on: !on } }))))] : null),
       values,
       iface.info && Object.keys(iface.info).length > 0 ? h('h3', null, 'Constants') : null,
       table(flatten(iface.info ?? {}).filter(([key]) => !['type', 'name', 'server', 'model'].includes(key)).map(([key, value]) => [key, format(value)])),
@@ -271,8 +283,8 @@ export class Inspector {
         store.system.connections.some((c) => c.ports.some((p) => component_of_port(p) === path)) ? does('Disconnect all', 'disconnect_all', true) : null,
         one.problem ? does('Forget', 'forget', true, true) : null) : null,
       h('h3', null, 'Contexts'),
-      one.contexts.map((context) => this.context(path, context)),
-      h('h3', null, 'Ports'),
+      one.contexts.map((context) => this.context(path, context, one.contexts.length === 1)),
+      one.ports.length > 0 ? h('h3', null, 'Ports') : null,
       h('ul', { class: 'list' }, one.ports.map((port) => {
         const id = `${path}:${port.name}`, wires = connections_of(id).length;
         return h('li', null, link_to(port.name, { kind: 'port', id }), h('span', { class: 'more' }, `${port.kind} ${short_type(port.data_type).replace(/^RTC\//, '')}${wires > 0 ? `, ${wires} wired` : ''}`));
@@ -284,14 +296,23 @@ export class Inspector {
     ];
   }
 
-  private context(path: string, context: { index: number; kind: string; rate: number; running: boolean; owned: boolean; type?: string }): HTMLElement {
+  // Of a component with several each has a state of its own.
+  private acts_in(path: string, { index, state }: Context): HTMLElement[] {
+    const now = store.details.get(path)?.contexts.find((c) => c.index === index)?.state ?? state;
+    const ways: [string, string, string][] = [['Inactive', 'activate', 'Activate'], ['Active', 'deactivate', 'Deactivate'], ['Error', 'reset', 'Reset']];
+    return ways.filter(([from]) => from === now).map(([, name, word]) => button(`${word} ${short_path(path)} in context ${index}`, { label: word, id: `${name}-in-${index}` },
+      () => act(`${word} ${short_path(path)} in context ${index}`, name, { path, context: index }).then(() => refresh_details(path))));
+  }
+
+  private context(path: string, context: Context, is_one: boolean): HTMLElement {
     const id = `rate-${context.index}`;
     const rate = h('input', { id, type: 'number', min: 0.001, step: 'any', value: context.rate, class: 'number', disabled: read_only(), 'data-known': String(context.rate) });
     rate.addEventListener('change', () => { rate.dataset.known = rate.value; act(`Set the rate of ${short_path(path)}`, 'set_rate', { path, context: context.index, rate: Number(rate.value) },
       () => ({ text: `Set the rate of ${short_path(path)} back`, name: 'set_rate', args: { path, context: context.index, rate: context.rate } })); });
     return h('div', { class: 'line' }, h('label', { for: id }, `${context.index}${context.owned ? '' : ' (joined)'}`), rate, h('span', null, 'Hz'), h('span', { class: 'more' }, context.running ? 'runs' : 'stopped'),
       read_only() ? null : button(context.running ? `Stop context ${context.index}` : `Start context ${context.index}`, { label: context.running ? 'Stop' : 'Start', id: `context-${context.index}` },
-        () => act(`${context.running ? 'Stop' : 'Start'} a context of ${short_path(path)}`, context.running ? 'stop_context' : 'start_context', { path, context: context.index })));
+        () => act(`${context.running ? 'Stop' : 'Start'} a context of ${short_path(path)}`, context.running ? 'stop_context' : 'start_context', { path, context: context.index })),
+      read_only() || is_one ? null : this.acts_in(path, context));
   }
 
   private sets(path: string): Content {
@@ -309,11 +330,17 @@ export class Inspector {
 
   private parameter(path: string, set: string, value: ConfigValue, i: number): HTMLElement[] {
     const id = `conf-${set}-${i}`;
-    const change = async (text: string) => {
+    const change = async (text: string, force = false) => {
+      document.getElementById(`${id}-force`)?.remove();
       if (text === value.value) return;
-      const done = await act(`Set ${value.name} of ${short_path(path)}`, 'set_configuration', { path, set, values: { [value.name]: text } },
-        () => ({ text: `Set ${value.name} of ${short_path(path)} back`, name: 'set_configuration', args: { path, set, values: { [value.name]: value.value } } }));
-      if (!done) document.getElementById(id)?.setAttribute('aria-invalid', 'true'); // what is typed stays, to be mended
+      const done = await act(`Set ${value.name} of ${short_path(path)}`, 'set_configuration', { path, set, values: { [value.name]: text }, force },
+        () => ({ text: `Set ${value.name} of ${short_path(path)} back`, name: 'set_configuration', args: { path, set, values: { [value.name]: value.value }, force } }));
+      const field = document.getElementById(id);
+      if (!done && field) {
+        field.setAttribute('aria-invalid', 'true'); // what is typed stays, to be mended
+        const can_force = !force && wire.status === 'open';
+        if (can_force) field.after(button(`Set ${value.name} to ${text}, although the component does not want it`, { label: 'Set all the same', id: `${id}-force`, class: 'danger' }, () => change(text, true)));
+      }
       await refresh_details(path);
     };
     const title = [value.type, value.constraint].filter(Boolean).join(', ');
@@ -378,9 +405,9 @@ export class Inspector {
     const types: string[] = (info.factories ?? []).map((f: any) => f.type);
     return [
       can ? h('div', { class: 'acts' },
-        button('Load a module', { label: 'Load …', id: 'manager-load' }, () => ask_text('Load a module', 'File', info.loadable?.[0]?.file ?? '', 'Load',
-          (file) => act(`Load ${file}`, 'load_module', { manager, file }).then(refresh), (info.loadable ?? []).map((l: any) => l.file))),
-        button('Create a component', { label: 'Create …', id: 'manager-create' }, () => ask_text('Create a component', 'Type', types[0] ?? '', 'Create',
+        button('Load a module', { label: 'Load …', id: 'manager-load' }, () => ask_text('Load a module', 'File, or FILE FUNCTION', info.loadable?.[0]?.file ?? '', 'Load',
+          (text) => { const [file, init] = text.split(/\s+/); act(`Load ${file}`, 'load_module', { manager, file, init }).then(refresh); }, (info.loadable ?? []).map((l: any) => l.file))),
+        button('Create a component', { label: 'Create …', id: 'manager-create' }, () => ask_text('Create a component', 'Type, or TYPE?instance_name=NAME&KEY=VALUE', types[0] ?? '', 'Create',
           (type) => act(`Create ${type}`, 'create', { manager, type }).then(refresh), [...types, ...(info.loadable ?? []).map((l: any) => l.type)]))) : null,
       h('h3', null, 'Components'),
       h('ul', { class: 'list' }, (info.components ?? []).map((c: any) => h('li', null, h('span', null, c.instance), h('span', { class: 'more' }, c.type),
@@ -402,42 +429,6 @@ export function disconnect(id: string): void {
   act(`Disconnect ${one.name || one.ports.map(name_of_port).join(' and ')}`, 'disconnect', { port, id }, (result) => ({
     text: `Connect ${one.name} again`, name: 'connect', args: { ports: result.ports ?? one.ports, name: result.name ?? one.name, id, properties: result.properties ?? one.properties },
   })).then(() => { if (is_selected('connection', id)) select(null); });
-}
-
-// What `__widget__` and `__constraints__` ask for.
-function control(value: ConfigValue, id: string, change: (text: string) => void): HTMLElement {
-  const disabled = read_only();
-  const send = (field: HTMLInputElement) => {
-    field.dataset.known = field.value;
-    change(field.value);
-  };
-  const [kind, step] = (value.widget ?? '').split('.');
-  const range = /^\s*([-+\d.e]+)\s*<=?\s*x\s*<=?\s*([-+\d.e]+)\s*$/i.exec(value.constraint ?? '');
-  const options = /^\s*\(?(.*?)\)?\s*$/.exec(value.constraint ?? '')?.[1].split(',').map((o) => o.trim()).filter(Boolean) ?? [];
-  if ((kind === 'slider' || kind === 'spin') && (range || kind === 'spin')) {
-    const number = h('input', { id, type: 'number', value: value.value, 'data-known': value.value, step: kind === 'slider' || !step ? 'any' : step, min: range?.[1], max: range?.[2], disabled, onchange: () => send(number) });
-    if (kind === 'spin') return number;
-    const [low, high] = [Number(range![1]), Number(range![2])];
-    const slider = h('input', { type: 'range', min: low, max: high, step: (high - low) / Math.max(1, Number(step) || 100), value: value.value, 'aria-label': value.name, disabled, 'data-known': value.value, oninput: () => { number.value = slider.value; }, onchange: () => send(slider) });
-    return h('span', { class: 'slider' }, slider, number);
-  }
-  if (kind === 'radio' && options.length > 0) {
-    const select_box = h('select', { id, disabled, onpointerdown: () => { select_box.dataset.open = ''; }, onchange: () => { delete select_box.dataset.open; change(select_box.value); } }, [...new Set([value.value, ...options])].map((o) => h('option', { value: o, selected: o === value.value }, o)));
-    return select_box;
-  }
-  if ((kind === 'checkbox' || kind === 'ordered_list') && options.length > 0) {
-    const chosen = value.value.split(',').map((v) => v.trim()).filter(Boolean);
-    const boxes = options.map((o) => h('input', { type: 'checkbox', checked: chosen.includes(o), disabled, 'aria-label': `${value.name}: ${o}`, onchange: () => change(options.filter((_, i) => boxes[i].checked).join(',')) }));
-    return h('span', { class: 'choices', id }, options.map((o, i) => h('label', null, boxes[i], ` ${o}`)));
-  }
-  const input = h('input', { id, value: value.value, 'data-known': value.value, disabled, onchange: () => send(input) });
-  return input;
-}
-
-// What stands in it is not what was shown, which `data-known` says; or its list is open.
-function is_edited(element: Element): boolean {
-  if (element instanceof HTMLSelectElement) return element.dataset.open !== undefined;
-  return element instanceof HTMLInputElement && element.dataset.known !== undefined && element.value !== element.dataset.known;
 }
 
 function link_to(text: string, selection: { kind: any; id: string }): HTMLElement {
@@ -504,28 +495,3 @@ export function polar(canvas: HTMLCanvasElement, ranges: number[], info: { [key:
   draw.closePath();
   draw.stroke();
 }
-
-export function spawn_dialog(): void {
-  const model = h('input', { id: 'spawn-model', list: 'spawn-models', autocomplete: 'off', autofocus: true }), name = h('input', { id: 'spawn-name' }), pose = h('input', { id: 'spawn-pose', value: '0 0 0' });
-  const hints = h('datalist', { id: 'spawn-models' });
-  const list = h('ul', { class: 'list models', 'aria-label': 'Models of the model path' }, h('li', { class: 'more' }, 'Looking for models …'));
-  let names: string[] = [];
-  const show = () => {
-    const words = names.includes(model.value) ? '' : model.value.trim().toLowerCase();
-    const found = names.filter((n) => n.toLowerCase().includes(words));
-    put(list, found.length === 0 ? h('li', { class: 'more' }, names.length === 0 ? 'The model path of the simulator has none: see its option --resource-path' : 'None is called so') : found.slice(0, 300).map((n) => h('li', { class: n === model.value ? 'chosen' : undefined }, h('button', { type: 'button', class: 'link', onclick: () => { model.value = n; show(); } }, n))));
-  };
-  model.addEventListener('input', show);
-  wire.request('models').then(({ result }) => {
-    names = (result.models ?? []).map((m: { name: string }) => m.name);
-    put(hints, names.map((n) => h('option', { value: n })));
-    show();
-  }, (error) => put(list, h('li', { class: 'problem' }, (error as Error).message)));
-  open_dialog('Spawn a model', h('div', { class: 'grid' }, h('label', { for: 'spawn-model' }, 'Model'), h('div', null, model, list), h('label', { for: 'spawn-name' }, 'Name (or empty)'), name, h('label', { for: 'spawn-pose' }, 'X Y YAW [m, rad]'), pose, hints), 'Spawn', () => {
-    const [x, y, yaw] = pose.value.split(/[\s,]+/).map(Number);
-    const args: { [key: string]: unknown } = { model: model.value.trim(), pose: [x || 0, y || 0, 0, Math.cos((yaw || 0) / 2), 0, 0, Math.sin((yaw || 0) / 2)] };
-    if (name.value.trim()) args.name = name.value.trim();
-    if (args.model) act(`Spawn ${args.model}`, 'spawn', args, (result) => ({ text: `Delete ${result.name}`, name: 'delete_model', args: { model: result.name } })).then((result) => { if (result?.name) select({ kind: 'model', id: result.name }); });
-  });
-}
-

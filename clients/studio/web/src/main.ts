@@ -5,12 +5,13 @@ import { open_dialog } from './dialog';
 import { button, h, once_a_frame, put } from './dom';
 import { Drive } from './drive';
 import { History } from './history';
-import { disconnect, Inspector, spawn_dialog } from './inspector';
+import { disconnect, Inspector } from './inspector';
 import { apply_theme, keep, linked, settings, to_link } from './settings';
 import { act, changed, component, on, read_only, select, selected_model, store, undo_last, wire } from './store';
 import { Playback, recording } from './playback';
 import { profile_dialog } from './profile_dialog';
 import { recordings_dialog } from './recordings_dialog';
+import { spawn_dialog } from './spawn_dialog';
 import { Tree } from './tree';
 import { WorldView } from './world';
 
@@ -22,7 +23,7 @@ const tree = new Tree();
 const drive = new Drive();
 const history_of_run = new History(world);
 const playback = new Playback(() => world.trails.forget());
-const bottom = new Bottom(world, history_of_run, playback);
+const bottom = new Bottom(history_of_run, playback);
 const inspector = new Inspector({
   world,
   drive: (iface) => drive.begin(iface),
@@ -174,7 +175,8 @@ const world_panel = h('section', { class: 'panel world-panel', 'aria-label': 'Wo
 const system_panel = h('section', { class: 'panel system-panel', 'aria-label': 'System' },
   h('div', { class: 'bar', role: 'toolbar', 'aria-label': 'System' }, h('h2', null, 'System'), h('span', { class: 'counts' }), h('span', { class: 'spring' }),
     button('Activate every inactive component', { icon: 'run', label: 'All', id: 'activate-all' }, () => all_components('Inactive', 'activate', 'Activate')),
-    button('Deactivate every active component', { icon: 'stop', label: 'All', id: 'deactivate-all' }, () => all_components('Active', 'deactivate', 'Deactivate')), diagram.tools()),
+    button('Deactivate every active component', { icon: 'stop', label: 'All', id: 'deactivate-all' }, () => all_components('Active', 'deactivate', 'Deactivate')),
+    button('Forget all names whose components are gone', { icon: 'broom', id: 'forget-dead' }, () => act('Forget the names of what is gone', 'forget_dead', {})), diagram.tools()),
   diagram.element);
 const tree_panel = h('nav', { class: 'panel tree-panel', 'aria-label': 'Everything by name' }, tree.element);
 const inspector_panel = h('aside', { class: 'panel inspector-panel', 'aria-label': 'Inspector' }, inspector.element);
@@ -265,6 +267,7 @@ function show_head(): void {
   counts.textContent = store.system.components.length > 0 ? `${errors > 0 ? `${errors} in error, ` : ''}${store.system.components.length} component${store.system.components.length === 1 ? '' : 's'}` : '';
   document.title = `${store.world?.present ? `${store.world.name} – ` : ''}rtm-studio`;
   for (const id of ['save', 'open', 'activate-all', 'deactivate-all']) (document.getElementById(id) as HTMLButtonElement | null)?.toggleAttribute('disabled', status !== 'open' || (read_only() && (id !== 'save' || whole !== undefined)));
+  document.getElementById('forget-dead')!.hidden = status !== 'open' || read_only() || !store.system.components.some((c) => c.problem) && !store.system.managers.some((m) => m.problem);
   for (const tool of [tools.move, tools.push, tools.spawn]) tool.disabled = status !== 'open' || read_only() || !store.world?.present;
   tools.picture.disabled = status !== 'open' || !store.world?.present || whole !== undefined;
 }

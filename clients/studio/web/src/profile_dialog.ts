@@ -14,10 +14,11 @@ const ways: [string, string, object, string][] = [
 
 export function profile_dialog(file: string, xml: string, place: (positions: { [path: string]: number[] }) => void): void {
   const boxes = ways.map(([, text, , what], i) => h('label', { class: 'way' }, h('input', { type: 'radio', name: 'way', value: i, checked: i === 0, autofocus: i === 0 }), h('strong', null, text), h('span', { class: 'more' }, what)));
-  const body = h('div', { class: 'ways' }, boxes);
+  const force = h('input', { type: 'checkbox', id: 'profile-force' });
+  const body = h('div', { class: 'ways' }, boxes, h('label', { class: 'way', title: 'Of Load and Load with states' }, force, h('span', null, 'Set also values that the components forbid')));
   open_dialog(`Open ${file}`, body, 'Do it', async () => {
-    const [name, text, args] = ways[Number(body.querySelector<HTMLInputElement>('input:checked')!.value)];
-    const result = await act(`${text} ${file}`, name, { xml, ...args });
+    const [name, text, args] = ways[Number(body.querySelector<HTMLInputElement>('input[name=way]:checked')!.value)];
+    const result = await act(`${text} ${file}`, name, { xml, ...args, ...(force.checked && name === 'open_profile' ? { force: true } : {}) });
     if (result?.positions && name === 'open_profile') place(result.positions);
     if (result?.differences) show(file, result.differences);
   });

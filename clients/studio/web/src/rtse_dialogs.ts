@@ -5,15 +5,20 @@ import { act, component_of_port, name_of_port, wire } from './store';
 import { short_path } from './tree';
 import type { Component } from './wire';
 
+const highest_phase = 15;
+
 export function join_dialog(one: Component): void {
-  const phase = h('select', { id: 'join-phase' }, [['0', '0: before all others, as sensors'], ['1', '1: clients'], ['2', '2: after them, as actuators']].map(([value, text]) => h('option', { value, selected: value === '1' }, text)));
+  const usual_phases = ['before all others, as sensors', 'clients', 'after them, as actuators'];
+  const phase = h('select', { id: 'join-phase', autofocus: true }, Array.from({ length: highest_phase + 1 }, (_, i) => h('option', { value: i, selected: i === 1 }, usual_phases[i] ? `${i}: ${usual_phases[i]}` : i)));
+  const turn = h('input', { id: 'join-turn', type: 'number', step: 1, min: 0, max: 9999, value: 0, class: 'number' });
   const usual = one.contexts.find((c) => c.owned)?.rate;
   const rate = h('input', { id: 'join-rate', type: 'number', step: 'any', min: 0.000001, class: 'number', placeholder: usual ? String(usual) : '' });
   const tick = h('input', { id: 'join-tick', type: 'checkbox' });
-  const body = h('div', { class: 'grid' }, h('label', { for: 'join-phase' }, 'Turn in a tick'), phase, h('label', { for: 'join-rate' }, 'Ticks a second of simulated time'), rate,
+  const body = h('div', { class: 'grid' }, h('label', { for: 'join-phase' }, 'Phase of a tick'), phase, h('label', { for: 'join-turn', title: 'Who reads from others of its phase comes before them' }, 'Turn within the phase'), turn, h('label', { for: 'join-rate' }, 'Ticks a second of simulated time'), rate,
     h('label', { for: 'join-tick', title: 'Only of a component whose own context is ticked from outside' }, 'Tick its own context'), tick);
   open_dialog(`${one.instance} takes part in simulated time`, body, 'Join', () => {
     const args: { [key: string]: unknown } = { path: one.path, phase: Number(phase.value) };
+    if (Number(turn.value) > 0) args.turn = Number(turn.value);
     if (rate.value) args.rate = Number(rate.value);
     if (tick.checked) args.tick = true;
     act(`${one.instance} joins simulated time`, 'join_time', args, () => ({ text: `${one.instance} leaves simulated time`, name: 'leave_time', args: { path: one.path } }));
@@ -22,7 +27,7 @@ export function join_dialog(one: Component): void {
 
 // Begins with a value of the port's type in which everything is zero.
 export function inject_dialog(port: string, type: string): void {
-  const value = h('textarea', { id: 'inject-value', rows: 8, spellcheck: 'false' });
+  const value = h('textarea', { id: 'inject-value', autofocus: true, rows: 8, spellcheck: 'false' });
   const hint = h('p', { class: 'hint' }, 'Asking for its type …');
   const label = `${short_path(component_of_port(port))}:${name_of_port(port)}`;
   wire.request('members', { topic: port }).then(({ result }) => {
