@@ -86,10 +86,13 @@ Result<Plan> manager(const ActContext& context, const Json& args) {
                   const auto file = module.value("module_file_path", module.value("module_file_name", ""));
                   loadable.push_back({{"file", file}, {"type", module.value("implementation_id", "")}});
                 }
+                Json factories = Json::array();
+                for (const Json& factory : list.value("factories", Json::array()))
+                  factories.push_back({{"type", factory.value("implementation_id", "")}});
                 return Json{{"components", list.value("components", Json::array())},
                             {"loaded", names_of(list.value("loaded_modules", Json::array()), {"file_path", "module_file_path"})},
                             {"loadable", std::move(loadable)},
-                            {"factories", list.value("factories", Json::array())}};
+                            {"factories", std::move(factories)}};
               }};
 }
 

@@ -270,11 +270,16 @@ const flows = [
   ['narrow and wide screens show everything', async ({ browser, url }) => {
     const page = await open(browser, url, { width: 360, height: 700 });
     await has_world(page);
+    await choose(page, 'component', avoid); // the system is not seen yet
     for (const panel of ['tree', 'world', 'system', 'inspector', 'bottom']) {
       await page.locator(`.panel-tabs [data-panel=${panel}]`).click();
       check(await page.locator(`.${panel}-panel`).isVisible(), panel);
       check(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${panel} is too wide`);
+      same(await page.evaluate(() => [...document.querySelectorAll('button, input, select')].filter((e) => { const { width, left, right } = e.getBoundingClientRect(); return width > 0 && (left < -1 || right > innerWidth + 1); }).map((e) => e.id || e.ariaLabel)), [], `out of reach in ${panel}`);
     }
+    await page.locator('.panel-tabs [data-panel=system]').click();
+    const left = () => page.evaluate(() => Math.min(...[...document.querySelectorAll('.diagram .box')].map((b) => b.getBoundingClientRect().left)));
+    await until('all boxes are seen', async () => (await left()) >= 0);
     await page.setViewportSize({ width: 3840, height: 2160 });
     for (const panel of ['tree', 'world', 'system', 'inspector', 'bottom']) check(await page.locator(`.${panel}-panel`).isVisible(), `${panel} on a wall`);
     await page.context().close();

@@ -290,11 +290,16 @@ const flows = [
     const manager = await until('manager', () => page.evaluate(() => window.studio.store.system.managers[0]?.path));
     await page.evaluate((id) => window.studio.select({ kind: 'manager', id }), manager);
     await page.locator('#manager-create').click();
-    await page.locator('#ask-text').fill('LaserObstacleAvoid');
+    await page.locator('#ask-text').fill('LaserObstacleAvoid?instance_name=Second');
     await page.keyboard.press('Enter');
     await boxes(page, 4);
-    await choose(page, 'LaserObstacleAvoid1');
+    await choose(page, 'Second');
     await page.locator('#act-exit').click();
+    await boxes(page, 3);
+    await page.evaluate((id) => window.studio.select({ kind: 'manager', id }), manager);
+    await page.locator('.inspector li', { hasText: /^RTCLaser$/ }).locator('button[aria-label="Create RTCLaser"]').click();
+    await boxes(page, 4);
+    await page.locator('.inspector button[aria-label="Delete RTCLaser1"]').click();
     await boxes(page, 3);
   }],
   ['a signal has members before its first sample, then a rate; a value is written by hand', async ({ page, rig }) => {

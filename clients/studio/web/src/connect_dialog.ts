@@ -52,7 +52,7 @@ export function connect_dialog(from: string, to?: string): void {
       ? h('select', { id, 'data-key': option.key, 'data-default': usual }, [...new Set([usual, ...option.values])].map((v) => h('option', { value: v }, v || '(as the ports say)')))
       : h('input', { id, 'data-key': option.key, 'data-default': usual, value: usual });
     input.addEventListener('change', show_command);
-    const key = option.key.replace(/^dataport\./, '');
+    const key = option.key.replace(/^dataport\./, '').replace(/[._]/g, '$&\u200b'); // a long one is broken there
     return [h('label', { for: id, title: option.meaning }, key), input];
   };
   const refresh = async () => {

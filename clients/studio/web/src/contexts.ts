@@ -51,7 +51,7 @@ export class Contexts {
     if (this.rows.length === 0) return null;
     const number = (value: number | null | undefined, digits: number, unit: string) => (value === null || value === undefined ? '–' : `${value.toFixed(digits)}${unit}`);
     return h('table', { class: 'contexts' }, h('caption', null, 'What contexts of components do, by the wall clock'),
-      h('thead', null, h('tr', null, ['component', 'asked', 'done', 'mean', 'worst', 'missed', ''].map((t) => h('th', { scope: 'col' }, t)))),
+      h('thead', null, h('tr', null, ['component', 'asked', 'done', 'mean', 'worst', 'missed', 'state'].map((t) => h('th', { scope: 'col' }, t)))),
       h('tbody', null, this.rows.slice(0, 300).map(({ told, done, mean, waits }) => h('tr', null, h('th', { scope: 'row' }, component(told.path)?.instance ?? short_path(told.path)),
         h('td', null, `${Number(told.rate.toPrecision(4))} Hz`), h('td', null, number(done, 1, ' Hz')), h('td', null, number(mean, 3, ' ms')), h('td', null, number(told.max_ms, 2, ' ms')), h('td', null, number(told.missed, 0, '')),
         h('td', null, !told.running ? 'stopped' : state_of(told.path) !== 'Active' ? state_words[state_of(told.path)] : waits ? 'waits for data' : '')))));

@@ -300,6 +300,7 @@ export class Diagram {
     const place = this.places.get(path), shape = this.shapes.get(path);
     if (!place || !shape) return;
     const { clientWidth: width, clientHeight: height } = this.element;
+    if (width < 10 || height < 10) return; // it is not seen
     const x = place.x * this.pan.scale + this.pan.x, y = place.y * this.pan.scale + this.pan.y;
     if (x > 0 && y > 0 && x + shape.width * this.pan.scale < width && y + shape.height * this.pan.scale < height) return;
     this.has_panned = true;

@@ -183,10 +183,15 @@ const inspector_panel = h('aside', { class: 'panel inspector-panel', 'aria-label
 const bottom_panel = h('section', { class: 'panel bottom-panel', 'aria-label': 'Time' }, bottom.element);
 const middle = h('main', { class: 'middle' }, world_panel, splitter('split', 'x'), system_panel);
 const tab_bar = h('div', { class: 'panel-tabs', role: 'toolbar', 'aria-label': 'Panels' }, panel_names.map(([panel, name]) => h('button', { type: 'button', 'data-panel': panel, onclick: () => show_only(panel) }, name.split(' ')[0])));
-const page = h('div', { class: 'page' }, top_bar, tree_panel, splitter('tree', 'x'), middle, splitter('inspector', 'x'), inspector_panel, splitter('bottom', 'y'), bottom_panel, tab_bar, status_bar);
+const page = h('div', { class: 'page' }, top_bar, tree_panel, edge('tree', 'x'), middle, edge('inspector', 'x'), inspector_panel, edge('bottom', 'y'), bottom_panel, tab_bar, status_bar);
 
 async function all_components(state: string, name: string, word: string): Promise<void> {
   for (const one of store.system.components.filter((c) => c.state === state)) await act(`${word} ${one.instance}`, name, { path: one.path });
+}
+
+// Between panels, where a landmark of its own says what it is.
+function edge(what: 'tree' | 'inspector' | 'bottom', axis: 'x' | 'y'): HTMLElement {
+  return h('div', { class: 'edge-of-panel', role: 'region', 'aria-label': `Size of ${what}` }, splitter(what, axis));
 }
 
 function splitter(what: keyof typeof settings.sizes, axis: 'x' | 'y'): HTMLElement {

@@ -1,5 +1,5 @@
 // Recordings in the folder that rtm-studio was started in: one is chosen, or its path typed, and everybody who looks sees it; and back again.
-import { button, h, put } from './dom';
+import { button, h, put, with_code } from './dom';
 import { open_dialog } from './dialog';
 import { act, wire } from './store';
 
@@ -9,9 +9,9 @@ interface Reply { folder: string; open: string; may_open: boolean; files: Found[
 const size_text = (octets: number): string => (octets < 1e6 ? `${Math.max(1, Math.round(octets / 1e3))} kB` : `${(octets / 1e6).toFixed(1)} MB`);
 
 export function recordings_dialog(): void {
-  const file = h('input', { id: 'recording-file', autocomplete: 'off', placeholder: 'run.mcap' });
+  const file = h('input', { id: 'recording-file', autocomplete: 'off', placeholder: 'run.mcap', autofocus: true });
   const list = h('ul', { class: 'list', id: 'recordings' }, h('li', { class: 'more' }, 'Looking …'));
-  const body = h('div', { class: 'recordings' }, h('div', { class: 'line' }, h('label', { for: 'recording-file' }, 'File'), file), list);
+  const body = h('div', { class: 'recordings' }, h('div', { class: 'grid' }, h('label', { for: 'recording-file' }, 'File'), file), list);
   const open = (name: string) => {
     if (name.trim()) act(`Open ${name.trim()}`, 'open_recording', { file: name.trim() });
   };
@@ -20,6 +20,7 @@ export function recordings_dialog(): void {
     file.disabled = !may_open;
     put(list,
       h('li', { class: 'more' }, `${files.length === 0 ? 'No recordings' : files.length === 200 ? 'The newest 200 recordings' : files.length === 1 ? 'One recording' : `${files.length} recordings`} in ${folder} and below it${may_open ? '' : '; this studio is read-only and opens none'}`),
+      files.length === 0 ? h('li', { class: 'more' }, h('span', null, ...with_code('Make one: `rtse record --all -o run.mcap` of what runs now, or `rtse run SYSTEM.xml --record run.mcap`.'))) : null,
       opened ? h('li', null, button(`Back from ${opened} to what rtm-studio was started for`, { label: 'Back to what was shown at first', id: 'close-recording' }, () => {
         dialog.close();
         act(`Close ${opened}`, 'close_recording', {});
