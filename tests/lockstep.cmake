@@ -14,6 +14,13 @@ foreach(case join_and_leave started same_state faulty late_receiver one_phase on
   set_tests_properties(lockstep.foreign_${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
 
+# Components of ours in contexts of other processes.
+foreach(case knows_the_time)
+  add_test(NAME lockstep.called_${case}
+    COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/scenario/called_in_time.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+  set_tests_properties(lockstep.called_${case} PROPERTIES LABELS integration TIMEOUT 300)
+endforeach()
+
 # Runs that depend on nothing, and planted races that are found.
 rtmsim_component(Chance scenario/chance.cpp)
 foreach(case links_of_one_phase twice first_difference changed_from_outside sample_between_ticks service_of_one_phase callers_of_one_phase same_on_every_processor race_of_a_thread race_of_the_clock race_of_an_address)

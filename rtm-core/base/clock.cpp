@@ -42,6 +42,11 @@ std::uint64_t FollowingClock::moment() const {
   return clock ? clock->moment() : 0;
 }
 
+bool FollowingClock::is_simulated() const {
+  const auto clock = clock_.snapshot();
+  return (clock ? *clock : current_clock()).is_simulated();
+}
+
 void FollowingClock::follow(std::shared_ptr<const Clock> clock) {
   clock_.lock()->swap(clock);  // the one before ends without the lock
 }

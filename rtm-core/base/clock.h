@@ -21,6 +21,8 @@ class Clock {
   // How many phases of ticks have begun and ended in the lock step that this clock follows: odd while a phase runs, even between; 0 where
   // nothing runs in lock step. What is written at an odd moment can be read from the next one on (base/tick.h).
   virtual std::uint64_t moment() const { return 0; }
+  // Its time passes only when somebody moves it, who waits for those that run on it: they must not wait for time to pass.
+  virtual bool is_simulated() const { return false; }
 };
 
 class SystemClock final : public Clock {
@@ -28,7 +30,7 @@ class SystemClock final : public Clock {
   std::chrono::nanoseconds now() const override;
 };
 
-// Moved by its owner. For tests.
+// Moved by its owner.
 class ManualClock final : public Clock {
  public:
   std::chrono::nanoseconds now() const override { return std::chrono::nanoseconds(now_.load(std::memory_order_acquire)); }
@@ -39,6 +41,7 @@ class ManualClock final : public Clock {
     set(std::chrono::nanoseconds(0));
     era_.fetch_add(1, std::memory_order_acq_rel);
   }
+  bool is_simulated() const override { return true; }
 
  private:
   std::atomic<std::int64_t> now_{0};
@@ -56,6 +59,7 @@ class FollowingClock final : public Clock {
   std::chrono::nanoseconds now() const override;
   std::uint64_t era() const override;
   std::uint64_t moment() const override;
+  bool is_simulated() const override;
   void follow(std::shared_ptr<const Clock> clock);
 
  private:

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <optional>
 
 #include "base/text.h"
 #include "base/tick.h"
+#include "corba/call_context.h"
 #include "corba/orb.h"
 
 namespace RTC {
@@ -67,6 +69,9 @@ template <class Function>
 ReturnCode_t RTObject_impl::callUser(const char* name, Function function) {
   base::expect_no_data_held();
   const Impl::Visit visit(*impl_, name);
+  // Called by a context of another process: its time is ours.
+  std::optional<base::ScopedClock> clock;
+  if (const auto* of_caller = corba::clock_of_caller()) clock.emplace(base::current_clock_or(*of_caller));
   try {
     return function();
   } catch (const CORBA::Exception& exception) {

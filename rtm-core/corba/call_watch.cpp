@@ -16,6 +16,7 @@
 #include "base/chance.h"
 #include "base/clock.h"
 #include "base/tick.h"
+#include "corba/call_context.h"
 #include "corba/object_names.h"
 
 namespace corba {
@@ -75,40 +76,20 @@ bool is_of_the_runtime(std::string_view operation) {
   return has(of_the_runtime, operation);
 }
 
-// A service context of ours, "RTS" and 1: the moment of the tick that calls, as a CDR encapsulation. ORBs pass over contexts that they do
-// not know (CORBA 3.3 part 2, 9.3.1).
-constexpr CORBA::ULong context_of_tick = 0x52545301;
-constexpr CORBA::ULong encapsulation_size = 16;  // octet order, padding, unsigned long long
-
 _CORBA_Boolean say_moment(omni::omniInterceptors::clientSendRequest_T::info_T& request) {
   const base::Tick* tick = base::tick_in_lock_step();
-  if (tick == nullptr || is_of_the_runtime(request.operation())) return true;
-  IOP::ServiceContext context;
-  context.context_id = context_of_tick;
-  context.context_data.length(encapsulation_size);
-  for (CORBA::ULong i = 0; i < encapsulation_size; ++i)
-    context.context_data[i] = i < 8 ? 0 : static_cast<CORBA::Octet>(tick->moment() >> (8 * (encapsulation_size - 1 - i)));
-  request.service_contexts.length(request.service_contexts.length() + 1);
-  request.service_contexts[request.service_contexts.length() - 1] = context;
+  if (tick != nullptr && !is_of_the_runtime(request.operation()))
+    add_to_call(request.service_contexts, CallContext::moment, tick->moment());
   return true;
-}
-
-// 0: of no tick, or of one that did not say so.
-std::uint64_t moment_of_caller(const IOP::ServiceContextList& contexts) {
-  for (CORBA::ULong at = 0; at < contexts.length(); ++at) {
-    if (contexts[at].context_id != context_of_tick || contexts[at].context_data.length() != encapsulation_size) continue;
-    std::uint64_t moment = 0;
-    for (CORBA::ULong i = 8; i < encapsulation_size; ++i) moment = moment << 8 | contexts[at].context_data[i];
-    return moment;
-  }
-  return 0;
 }
 
 _CORBA_Boolean look_at_call(omni::omniInterceptors::serverReceiveRequest_T::info_T& request) {
   const auto clock = base::lock_step_clock();
   const std::uint64_t moment = clock ? clock->moment() : 0;
   if (moment == 0) return true;
-  const auto what = chance_of_call(request.operation(), moment, moment_of_caller(request.giop_s.service_contexts()));
+  // 0: of no tick, or of one that did not say so.
+  const std::uint64_t moment_of_caller = said_by_call(request.giop_s.service_contexts(), CallContext::moment).value_or(0);
+  const auto what = chance_of_call(request.operation(), moment, moment_of_caller);
   if (what.empty() || clock->stands_still()) return true;
   const std::span key(request.giop_s.key(), static_cast<std::size_t>(request.giop_s.keysize()));
   base::tell_of_chance(name_of_object(std::as_bytes(key)), what, clock->now());

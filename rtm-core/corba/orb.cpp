@@ -15,6 +15,7 @@
 #include "base/guarded.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "corba/call_context.h"
 #include "corba/call_timeout.h"
 #include "corba/call_watch.h"
 #include "corba/farewell.h"
@@ -297,6 +298,7 @@ base::Result<std::unique_ptr<Orb>> Orb::start(const OrbSettings& settings) {
     result->orb_ = CORBA::ORB_init(argc, argv.data(), "omniORB4");
     remember_callers();
     watch_calls();
+    pass_on_time();
     CORBA::Object_var poa = result->orb_->resolve_initial_references("RootPOA");
     result->root_poa_ = PortableServer::POA::_narrow(poa);
     result->poa_manager_ = result->root_poa_->the_POAManager();

@@ -9,6 +9,7 @@
 
 #include "base/clock.h"
 #include "base/text.h"
+#include "corba/call_context.h"
 #include "corba/orb.h"
 #include "corba/return_code.h"
 
@@ -279,7 +280,11 @@ coil::Properties ExecutionContextBase::getProperties() const { return impl_->sha
 std::string ExecutionContextBase::getName() const { return getProperties().getProperty("name"); }
 std::string ExecutionContextBase::getTypeName() const { return getProperties().getProperty("type"); }
 
-const base::Clock& ExecutionContextBase::contextClock() const { return system_clock(); }
+// Inside a tick that a context of another process gives, its time.
+const base::Clock& ExecutionContextBase::contextClock() const {
+  const auto* of_caller = corba::clock_of_caller();
+  return of_caller ? *of_caller : system_clock();
+}
 
 void ExecutionContextBase::invokeWorker() {
   const base::ScopedClock clock(contextClock());
