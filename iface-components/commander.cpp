@@ -23,22 +23,42 @@ std::string text_of(std::span<const double> values) {
 
 // The component's other handle of the same iface says when it is lost and found.
 Commander::Commander(shm::IfaceType type, Say say)
-    : link_(type, [](bool, const std::string&) {}), say_(std::move(say)), values_(type == shm::IfaceType::position3d ? 6 : 3) {}
+    : link_(type, [](bool, const std::string&) {}),
+      world_(shm::IfaceType::simulation, [](bool, const std::string&) {}),
+      say_(std::move(say)),
+      values_(type == shm::IfaceType::position3d ? 6 : 3) {}
 
 base::Result<void> Commander::attach(const Device& device) {
   const auto mine = turn_.take();
+  static_cast<void>(world_.attach({device.server_id, "world"}, false));  // without it no run is told from another
   return link_.attach(device, false);
 }
 
 void Commander::detach() {
   const auto mine = turn_.take();
   link_.detach();
+  world_.detach();
   is_driving_ = false;
 }
 
 void Commander::received(std::span<const double> velocity) {
+  {
+    const auto mine = turn_.take();
+    run_of_newest_ = run();
+  }
   arrivals_.fetch_add(1, std::memory_order_acq_rel);
   if (!in_simulated_time_.load(std::memory_order_acquire)) drive(velocity);  // pairs with set_simulated_time
+}
+
+Commander::Run Commander::run() {
+  auto* world = world_.live();
+  if (!world || !world->read()) return {world_.attachments(), 0};
+  return {world_.attachments(), world->sample<shm::SimulationSample>().stamp.resets};
+}
+
+bool Commander::is_newest_of_this_run() {
+  const auto mine = turn_.take();
+  return run_of_newest_ == run();
 }
 
 void Commander::drive(std::span<const double> velocity) {

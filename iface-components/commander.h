@@ -23,13 +23,26 @@ class Commander {
   void drive(std::span<const double> velocity);
   // True when the robot had been driven.
   bool stop();
+  // False: the simulator has been reset, or is another one, since the newest velocity came. A context of this process has thrown it away
+  // then; one of another process, which calls a component here, cannot.
+  bool is_newest_of_this_run();
   // Velocities so far.
   std::uint64_t arrivals() const { return arrivals_.load(std::memory_order_acquire); }  // pairs with the addition in received
   void set_simulated_time(bool simulated) { in_simulated_time_.store(simulated, std::memory_order_release); }  // pairs with received
 
  private:
+  // Which simulator, and how often it has been reset.
+  struct Run {
+    std::uint64_t attachments = 0;
+    std::uint32_t resets = 0;
+    bool operator==(const Run&) const = default;
+  };
+  Run run();  // with the turn
+
   base::Turn<> turn_;  // to use what follows; attaching looks at files
   IfaceLink link_;
+  IfaceLink world_;
+  Run run_of_newest_;
   Say say_;
   std::size_t values_;  // of a command
   bool is_driving_ = false;

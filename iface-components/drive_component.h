@@ -71,7 +71,7 @@ class DriveComponent : public Drive {
     const bool simulated = in_simulated_time();
     commander().set_simulated_time(simulated);
     // In real time the listener has driven the robot already.
-    if (read_newest_velocity() && simulated) commander().drive(values_of(velocity_));
+    if (read_newest_velocity() && simulated && commander().is_newest_of_this_run()) commander().drive(values_of(velocity_));
     switch_motors();
     watch_and_publish();
     return RTC::RTC_OK;

@@ -15,7 +15,7 @@ foreach(case join_and_leave started same_state faulty late_receiver one_phase on
 endforeach()
 
 # Components of ours in contexts of other processes.
-foreach(case knows_the_time)
+foreach(case knows_the_time velocity_before_a_reset)
   add_test(NAME lockstep.called_${case}
     COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/scenario/called_in_time.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(lockstep.called_${case} PROPERTIES LABELS integration TIMEOUT 300)

@@ -31,6 +31,7 @@ void Sensor::show_changed(const Moment& moment, const std::function<void(shm::If
 void Sensor::reset() {
   schedule_.restart();
   noise_ = fresh_noise_;
+  writer_->drop_command();  // of the run before
   restart();
 }
 

@@ -96,6 +96,10 @@ CommandChange IfaceWriter::poll_command(Command& command) {
   return CommandChange::fresh;
 }
 
+void IfaceWriter::drop_command() {
+  impl_->seen_command = load(impl_->segment.header().command_latest);  // pairs with the release in Iface::command
+}
+
 pid_t IfaceWriter::commander() const { return owner_pid(impl_->commander); }
 
 }  // namespace shm

@@ -70,6 +70,8 @@ class IfaceWriter {
   // ---- commands ----
   // The latest command of all clients wins. Values are finite and kind is known; anything else is not delivered.
   CommandChange poll_command(Command& command);
+  // What has been commanded and not been taken yet is not delivered.
+  void drop_command();
   // Pid of the client whose command is in force, 0 = none.
   pid_t commander() const;
 

@@ -198,6 +198,19 @@ TEST(Iface, the_latest_command_counts_and_its_end_is_told_once) {
   EXPECT_EQ(writer->commander(), 0);
 }
 
+TEST(Iface, a_command_that_is_dropped_before_it_is_taken_never_comes) {
+  Fixture f;
+  auto writer = f.make(iface_spec(IfaceType::position2d, "base", Position2dInfo{}));
+  auto a = f.open(IfaceType::position2d, "base");
+  Command command{};
+  ASSERT_TRUE(a.command_velocity(1, 0, 0));
+  writer->drop_command();
+  EXPECT_EQ(writer->poll_command(command), CommandChange::none);
+  ASSERT_TRUE(a.command_velocity(2, 0, 0));
+  EXPECT_EQ(writer->poll_command(command), CommandChange::fresh);
+  EXPECT_EQ(command.values[0], 2);
+}
+
 TEST(Iface, a_command_that_is_not_finite_is_refused) {
   Fixture f;
   auto writer = f.make(iface_spec(IfaceType::position2d, "base", Position2dInfo{}));
