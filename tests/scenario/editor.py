@@ -171,6 +171,20 @@ def disconnect_own_ports():
     refused("dis", "-i", "loop", says="no port has it")
 
 
+# A context that is stopped has no rate, though it is the only one and the component is active in it.
+def stopped_context():
+    up("SourceAll")
+    rig.rtse("act", "SourceAll0")
+
+    def row():
+        return next(line.split() for line in rig.rtse("ls", "-lR").splitlines() if "SourceAll0" in line)
+    assert row()[0] == "Active" and row()[2] == "Hz", row()
+    rig.rtse("ec", "SourceAll0", "stop")
+    assert row()[:2] == ["Active", "stopped"], row()
+    rig.rtse("ec", "SourceAll0", "start")
+    assert row()[2] == "Hz", row()
+
+
 # The reasons are told apart.
 def why_not():
     up("SourceAll", "SinkAll", "EchoProvider")

@@ -70,7 +70,10 @@ Json summary(const Entry& entry, const ComponentView* component) {
     value["state"] = state_text(component->state());
     value["type"] = component->type;
     value["ports"] = component->ports.size();
-    if (const auto* context = component->shown_context()) value["rate"] = context->rate;
+    if (const auto* context = component->shown_context()) {
+      value["rate"] = context->rate;
+      value["running"] = context->is_running;
+    }
   } else if (component && entry.problem.empty()) {
     value["problem"] = component->problem;
   }
@@ -97,7 +100,8 @@ void print_long(const Entry& entry, const ComponentView* component) {
     state = entry.health == Health::hung ? "Hung" : entry.health == Health::zombie ? "Zombie" : "Unreadable";
   if (component && component->problem.empty()) {
     state = state_text(component->state());
-    if (const auto* context = component->shown_context()) rate = base::format_number(context->rate) + " Hz";
+    if (const auto* context = component->shown_context())
+      rate = context->is_running ? base::format_number(context->rate) + " Hz" : "stopped";
     counts = port_counts(*component);
   }
   print_row(state, rate, counts, display(entry));
