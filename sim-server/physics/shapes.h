@@ -55,7 +55,7 @@ struct ShapeInstance {
   bool needs_lock = false;  // ODE collides it through global buffers
   bool is_wheel = false;    // a cylinder that turns about its own axis in a joint
   Aabb box;
-  std::uint32_t partners = 0;  // moving shapes that it touches in this step
+  std::uint32_t partners = 0, deep_partners = 0;  // moving shapes that it touches in this step, and those that it is much too deep in
   std::shared_ptr<void> data;
 };
 

@@ -10,11 +10,16 @@ namespace sim {
 namespace {
 
 constexpr int most_contacts = 24;  // of one pair of shapes, before they are thinned out
-// With more contacts at once the iterative solver takes fewer rounds, unless the world asks for that solver.
+// With more contacts at once, or shapes that are too deep in each other, the iterative solver takes fewer rounds, unless the world asks for
+// that solver.
 constexpr double affordable_contacts = 3000;
 constexpr int least_iterations = 10;
 // As many equal balls have room around one. Shapes that both touch more moving ones are in a muddle, of which some contacts are enough.
 constexpr std::uint32_t most_partners = 12;
+// Shapes that are in each other by more than this part of half the smaller one came there by no motion. They are pushed apart by one
+// contact, and only where one of both has few such partners: that lets a crowd in one place come apart, and costs little until it has.
+constexpr double too_deep = 0.25, least_too_deep = 1e-3;  // [m] the latter, for thin sheets
+constexpr std::uint32_t most_deep_partners = 4;
 constexpr double mesh_correction = 0.1;  // [m/s] at most between meshes that are in each other
 
 // ODE's mesh and height field colliders work in global buffers.
@@ -50,6 +55,12 @@ bool may_touch_itself(const ModelInstance& model, const ShapeInstance& a, const 
 bool can_be_pushed(dGeomID geom) {
   const dBodyID body = dGeomGetBody(geom);
   return body != nullptr && dBodyIsKinematic(body) == 0;
+}
+
+bool is_too_deep(const ShapeInstance& a, const ShapeInstance& b, const dContactGeom* found, int count) {
+  const double size = std::min((a.box.high - a.box.low).minCoeff(), (b.box.high - b.box.low).minCoeff());
+  return std::any_of(found, found + count,
+                     [&](const dContactGeom& one) { return one.depth > std::max(too_deep * size / 2, least_too_deep); });
 }
 
 bool is_mesh(const ShapeInstance& shape) { return dGeomGetClass(shape.geom.id()) == dTriMeshClass; }
@@ -107,12 +118,12 @@ void Shard::step(const std::vector<ShapeInstance*>& statics, std::uint64_t step_
   has_left = is_insane = false;
   find_active();
   if (active_.empty()) return;
-  has_many_joints_ = false;
+  has_many_joints_ = has_muddle_ = false;
   for (auto* model : active_) {
     has_many_joints_ = has_many_joints_ || model->tree().places.size() >= TreeSolver::least_bodies;
     std::swap(model->contacts, model->previous_contacts);
     model->contacts.clear();
-    for (auto& shape : model->shapes()) shape.partners = 0;
+    for (auto& shape : model->shapes()) shape.partners = shape.deep_partners = 0;
     groups_.add(*model);
   }
   find_contacts(statics);
@@ -148,7 +159,8 @@ void Shard::solve_iteratively(std::uint64_t step_count) {
   const bool is_free = physics_.solver == PhysicsDef::Solver::automatic;
   const int asked = std::clamp(physics_.iterations, 1, 10000);
   const auto affordable = static_cast<int>(static_cast<double>(asked) * affordable_contacts / std::max(groups_.contacts(), 1U));
-  dWorldSetQuickStepNumIterations(world_.id(), is_free ? std::clamp(affordable, std::min(asked, least_iterations), asked) : asked);
+  const int least = std::min(asked, least_iterations);
+  dWorldSetQuickStepNumIterations(world_.id(), !is_free ? asked : has_muddle_ ? least : std::clamp(affordable, least, asked));
   dWorldQuickStep(world_.id(), physics_.step);
 }
 
@@ -264,7 +276,9 @@ void Shard::collide_pair(ModelInstance& a, ModelInstance& b) {
 void Shard::collide(ModelInstance& model_a, ShapeInstance& a, ModelInstance* model_b, ShapeInstance& b) {
   if (!masks_match(*a.surface, *b.surface)) return;
   const std::uint32_t partners = model_b != nullptr ? std::min(a.partners, b.partners) : 0;
-  if (partners >= most_partners) return;
+  const bool are_in_muddle = model_b != nullptr && std::min(a.deep_partners, b.deep_partners) >= most_deep_partners;
+  has_muddle_ = has_muddle_ || are_in_muddle;
+  if (partners >= most_partners || are_in_muddle) return;
   dContactGeom found[most_contacts];
   const int most = std::clamp(physics_.max_contacts, 1, most_contacts);
   int count = 0;
@@ -281,7 +295,14 @@ void Shard::collide(ModelInstance& model_a, ShapeInstance& a, ModelInstance* mod
   if (a.is_wheel) count = merge_under_wheel(a.geom.id(), found, count);
   if (b.is_wheel) count = merge_under_wheel(b.geom.id(), found, count);
   count = reduce(found, count);
-  if (model_b != nullptr) ++a.partners, ++b.partners;
+  if (model_b != nullptr) {
+    ++a.partners, ++b.partners;
+    if (is_too_deep(a, b, found, count)) {
+      ++a.deep_partners, ++b.deep_partners;
+      std::swap(found[0], *std::max_element(found, found + count, [](const auto& x, const auto& y) { return x.depth < y.depth; }));
+      count = 1;
+    }
+  }
   if (partners >= most_partners / 2) count = 1;
   dSurfaceParameters surface = combine(*a.surface, *b.surface, physics_.step);
   if (a.is_wheel || b.is_wheel) surface.mu = std::min(surface.mu, best_grip), surface.mu2 = std::min(surface.mu2, best_grip);

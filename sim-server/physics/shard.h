@@ -60,6 +60,7 @@ class Shard {
   ContactGroups groups_;
   TreeSolver tree_solver_;
   bool has_many_joints_ = false;            // one of the active models
+  bool has_muddle_ = false;                 // in this step some that are too deep in each other do not count
   std::vector<MadeContact> made_contacts_;  // of the step, while it has
   std::vector<dBodyID> lying_;              // those of the other solver
   std::vector<ModelInstance*> active_;      // models that take part in a step, during it, ascending by id
