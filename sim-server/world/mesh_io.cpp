@@ -53,7 +53,10 @@ std::string with_named_images(const std::string& collada) {
 }
 
 std::string import_fault(std::string_view said) {
-  return said.find("bad_alloc") != std::string_view::npos ? "is too large for the memory" : base::in_quotes(said);
+  const auto is_said = [&](std::string_view words) { return said.find(words) != std::string_view::npos; };
+  if (is_said("bad_alloc")) return "is too large for the memory";
+  if (is_said("STL storage representation")) return "is no STL file: neither text, nor as long as the number of its triangles says";
+  return base::in_quotes(said);
 }
 
 bool MeshIo::Exists(const char* file) const {

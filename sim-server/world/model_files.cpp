@@ -145,6 +145,8 @@ void ModelFiles::resolve_uris(pugi::xml_node entity, const fs::path& folder) {
     }
     const std::optional<fs::path> found = model_path_.find(uri, folder);
     if (found && !is_lfs_pointer_file(*found)) {
+      if (const auto line = model_path_.other_version(uri, *found); !line.empty())
+        complaints_.warn(node, "file " + base::in_quotes(uri) + ": " + line);
       node.text() = found->string().c_str();
       return;
     }
@@ -257,6 +259,8 @@ pugi::xml_node ModelFiles::included(pugi::xml_node include, const fs::path& fold
   const auto [known, is_new] = found_.try_emplace(uri + "\n" + folder.string());
   if (is_new) known->second = model_path_.find(uri, folder);
   const std::optional<fs::path>& path = known->second;
+  if (const auto line = is_new && path ? model_path_.other_version(uri, *path) : ""; !line.empty())
+    complaints_.warn(include, "model " + base::in_quotes(uri) + ": " + line);
   if (!path) {
     complaints_.drop(include, "model " + base::in_quotes(uri) + " is not found and is left out");
     return {};

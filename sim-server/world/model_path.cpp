@@ -187,6 +187,19 @@ std::optional<fs::path> ModelPath::find(std::string_view uri, const fs::path& fo
   return !problem && holds(real) ? std::optional(real) : std::nullopt;
 }
 
+std::string ModelPath::other_version(std::string_view uri, const fs::path& found) const {
+  const FuelAddress address = fuel_address(without_percent_codes(base::trim(uri)));
+  if (!base::parse_integer(address.version)) return {};
+  for (const fs::path& cache : fuel_caches_) {
+    std::error_code problem;
+    const fs::path inside = fs::relative(found, fs::weakly_canonical(cache, problem), problem);
+    const std::vector<fs::path> parts(inside.begin(), inside.end());  // server, owner, models, name, version, ...
+    if (problem || parts.size() < 5 || parts[0] == ".." || parts[4] == address.version) continue;
+    return "version " + parts[4].string() + " of it is taken instead of version " + address.version + ", which is not here";
+  }
+  return {};
+}
+
 std::vector<std::string> ModelPath::models() const {
   std::set<std::string> names;
   for (const fs::path& place : folders_) {

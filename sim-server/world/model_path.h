@@ -34,6 +34,10 @@ class ModelPath {
   // then in the caches), absolute and relative paths. The file or folder exists; empty when none does.
   std::optional<std::filesystem::path> find(std::string_view uri, const std::filesystem::path& folder) const;
 
+  // For what find() gave: a line when a Fuel address asks for one version of a model and the cache has another, "version 2 of it is taken
+  // instead of version 1, which is not here"; else empty.
+  std::string other_version(std::string_view uri, const std::filesystem::path& found) const;
+
   // Every NAME that find("model://NAME") gives a model for: folders with a model.config or model.sdf, sorted, each once. At most
   // `most_listed` of them; unreadable folders have none. Fuel caches are not looked into.
   static constexpr std::size_t most_listed = 10'000;

@@ -375,6 +375,8 @@ base::Result<LoadedModel> Loader::model(std::string_view what, const std::string
     base::Result<pugi::xml_node> entity = files_.entity(*path);
     if (!entity) return entity.error();
     found = *entity;
+    if (const auto line = model_path_.other_version(trimmed, *path); !line.empty())
+      complaints_.warn(found, "model " + base::in_quotes(trimmed) + ": " + line);
   }
   if (std::string_view(found.name()) != "model") {
     for (const Finding& finding : complaints_.take()) {

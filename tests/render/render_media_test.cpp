@@ -208,6 +208,22 @@ TEST(RenderMedia, meshes_that_the_memory_does_not_hold_are_named) {
   EXPECT_EQ(met.error().message, "mesh " + path + ": is too large for the memory");
 }
 
+TEST(RenderMedia, an_stl_file_that_claims_more_triangles_than_it_has_is_told) {
+  const WorldFiles files;
+  std::string head(84 + 50 * 3, '\0');
+  const std::uint32_t count = 4'000'000'000;
+  std::memcpy(head.data() + 80, &count, 4);
+  const std::string path = files.write("claims.stl", head);
+  const MeshShape shape{path, "", false, Eigen::Vector3d::Ones()};
+  const auto seen = read_mesh_file(shape);
+  const auto met = TriangleCache().triangles(shape);
+  ASSERT_FALSE(seen);
+  ASSERT_FALSE(met);
+  const std::string line = "mesh " + path + ": is no STL file: neither text, nor as long as the number of its triangles says";
+  EXPECT_EQ(seen.error().message, line);
+  EXPECT_EQ(met.error().message, line);
+}
+
 // --- DirectDraw surfaces
 
 std::vector<std::uint8_t> dds(const std::string& code, int width, int height, const std::vector<std::uint8_t>& data,

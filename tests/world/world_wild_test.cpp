@@ -465,6 +465,12 @@ TEST(ModelPath, finds_what_gazebo_has_fetched) {
   EXPECT_THAT(found("https://fuel.gazebosim.org/1.0/OpenRobotics/models/Coke Can/2/files/meshes/a.dae"),
               testing::EndsWith("/2/meshes/a.dae"));
   EXPECT_EQ(found("https://fuel.gazebosim.org/1.0/somebody/models/Coke Can"), "");
+  const auto said = [&](const std::string& uri) { return path.other_version(uri, found(uri)); };
+  EXPECT_EQ(said("https://fuel.gazebosim.org/1.0/OpenRobotics/models/Coke Can/1"),
+            "version 10 of it is taken instead of version 1, which is not here");
+  EXPECT_NE(said("https://fuel.gazebosim.org/1.0/OpenRobotics/models/Coke Can/1/files/model.sdf"), "");
+  for (const char* end : {"", "/2", "/10", "/tip", "/2/files/meshes/a.dae"})
+    EXPECT_EQ(said("https://fuel.gazebosim.org/1.0/OpenRobotics/models/Coke Can" + std::string(end)), "") << end;
 }
 
 }  // namespace
