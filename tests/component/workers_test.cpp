@@ -72,6 +72,27 @@ TEST_F(ExecutionContextTest, time_in_which_a_member_waits_is_no_work_and_makes_n
   EXPECT_LT(statistics.total_execution, statistics.total_waiting);
 }
 
+TEST_F(ExecutionContextTest, who_waits_for_longer_than_its_period_misses_no_cycle_on_a_busy_machine) {
+  ManualTime time;
+  activate();
+  ASSERT_EQ(context.set_rate(1000), ReturnCode::ok);
+  std::promise<void> enough;
+  participant->during = [&, count = 0](Action action) mutable {
+    if (action != Action::execute || count > 3) return;
+    {
+      const base::ScopedWait waiting;
+      std::this_thread::sleep_for(2ms);
+    }
+    time.advance(10s);  // its thread gets no processor
+    if (++count == 3) enough.set_value();
+  };
+  {
+    Running<PeriodicWorker> running(context, time);
+    enough.get_future().wait();
+  }
+  EXPECT_EQ(context.statistics().missed_cycles, 0u);
+}
+
 TEST_F(ExecutionContextTest, a_periodic_worker_answers_requests_at_once_at_any_rate) {
   context.set_rate(0.001);
   Running<PeriodicWorker> running(context);

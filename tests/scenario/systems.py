@@ -329,7 +329,7 @@ def waiting_is_no_fault():
         await_(f"cycles of {name}", lambda: statistics(name)["cycles"] > 100)
         found = statistics(name)
         assert found["mean_execution_time"] < found["mean_waiting_time"] and found["mean_waiting_time"] > 0.001, (name, found)
-        # Who counted waiting as work said that nearly all were missed. On a loaded machine some are.
+        # Only on a busy machine, and only of cycles in which nothing had to be waited for.
         assert found["missed_cycles"] * 2 < found["cycles"], (name, found)
     screen = watched(3)
     assert "waits for data" in screen and "LaserObstacleAvoid0" in screen, screen
