@@ -6,6 +6,7 @@ import { has_world, is_ready, launch, open, Rig, until } from './rig.mjs';
 const [bin, source, lib, folder] = process.argv.slice(2).map((path) => resolve(path));
 const size = { width: 1440, height: 860 };
 const robot = 'pioneer2dx';
+const rate = ['-o', 'exec_cxt.periodic.rate:100'];
 
 const save = (page, name) => page.screenshot({ path: join(folder ?? join(source, 'docs'), `${name}.png`) });
 const time_of = (page) => page.evaluate(() => window.studio.store.time?.sim_time ?? 0);
@@ -44,7 +45,7 @@ async function wire(rig, number = '') {
 async function demo(browser, rig) {
   await rig.naming();
   await rig.server('worlds/obstacle_course.sdf');
-  rig.host(rig.device('RTCLaser'), rig.device('RTCPosition2d'), 'LaserObstacleAvoid');
+  rig.host(...rate, rig.device('RTCLaser'), rig.device('RTCPosition2d'), 'LaserObstacleAvoid');
   const page = await page_of(browser, rig, 3);
   await wire(rig);
   await choose(page, 'model', robot);
@@ -68,14 +69,14 @@ async function hundred(browser, rig) {
   await rig.server('worlds/hundred.sdf', '--rtf', '1');
   const driven = Array.from({ length: 10 }, (_, i) => i);
   const device = (type, i, iface) => `${rig.device(type)}&conf.default.device_id=pioneer_${i}::${iface}`;
-  rig.host(...driven.flatMap((i) => [device('RTCLaser', i, 'laser'), device('RTCPosition2d', i, 'position2d'), 'LaserObstacleAvoid']));
+  rig.host(...rate, ...driven.flatMap((i) => [device('RTCLaser', i, 'laser'), device('RTCPosition2d', i, 'position2d'), 'LaserObstacleAvoid']));
   const page = await page_of(browser, rig, 30, { scheme: 'dark' });
   for (const i of driven) await wire(rig, String(i));
   await choose(page, 'model', 'pioneer_4');
   await plot(page, '/sim/position2d/pioneer_4/position2d', ['velocity[0]', 'velocity[2]']);
-  const begin = await time_of(page);
   await page.locator('#activate-all').click();
-  await at(page, begin + 28);
+  await until('all are active', async () => (await page.locator('.diagram .box.state-active').count()) === 30);
+  await at(page, (await time_of(page)) + 24);
   await save(page, 'studio-hundred');
 }
 

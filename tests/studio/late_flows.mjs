@@ -197,6 +197,15 @@ const flows = [
     same(asked(mock, 'speed').map((m) => m.args.rtf), [3, 1], 'speeds');
     mock.release_all();
   }),
+  flow('a component that takes long to activate keeps no other waiting', async ({ mock, page }) => {
+    await has_world(page);
+    mock.say({ ...demo_system(), components: demo_system().components.map((c) => ({ ...c, state: 'Inactive' })) });
+    await until('inactive', async () => (await page.locator('.diagram .box.state-inactive').count()) === 3);
+    mock.holds = ({ name }) => name === 'activate';
+    await page.locator('#activate-all').click();
+    await held(mock, 'activate', 3);
+    mock.release_all();
+  }),
   flow('a server that is late gets the newest velocity, and not all that were wanted', async ({ mock, page }) => {
     await has_world(page);
     await choose(page, 'model', 'pioneer2dx');

@@ -186,7 +186,8 @@ const tab_bar = h('div', { class: 'panel-tabs', role: 'toolbar', 'aria-label': '
 const page = h('div', { class: 'page' }, top_bar, tree_panel, edge('tree', 'x'), middle, edge('inspector', 'x'), inspector_panel, edge('bottom', 'y'), bottom_panel, tab_bar, status_bar);
 
 async function all_components(state: string, name: string, word: string): Promise<void> {
-  for (const one of store.system.components.filter((c) => c.state === state)) await act(`${word} ${one.instance}`, name, { path: one.path });
+  // At the same time: a component that takes long does not keep the others waiting.
+  await Promise.all(store.system.components.filter((c) => c.state === state).map((one) => act(`${word} ${one.instance}`, name, { path: one.path })));
 }
 
 // Between panels, where a landmark of its own says what it is.
