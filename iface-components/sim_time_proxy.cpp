@@ -74,13 +74,13 @@ void SimTimeProxy::watch() {
   }
 }
 
-bool SimTimeProxy::serves_somebody() {
-  const CORBA::ORB_var orb = RTC::Manager::instance().getORB();
+// References of those who have joined, whether they are still there or not.
+std::vector<std::string> SimTimeProxy::joined() {
+  std::vector<std::string> all;
   const RTC::ExecutionContext_var context = get_context(0);
-  std::vector<std::string> served;
-  if (!CORBA::is_nil(context)) served = iface::members_of(orb, context);
-  if (auto ticked = watched_.lock()->ticked; !ticked.empty()) served.push_back(std::move(ticked));
-  return std::ranges::any_of(served, [&](const std::string& reference) { return !iface::is_gone(orb, reference); });
+  if (!CORBA::is_nil(context)) all = iface::members_of(RTC::Manager::instance().getORB(), context);
+  if (auto ticked = watched_.lock()->ticked; !ticked.empty()) all.push_back(std::move(ticked));
+  return all;
 }
 
 // For longer than it may be.
@@ -88,9 +88,12 @@ bool SimTimeProxy::is_alone() {
   const auto now = Clock::now();
   if (now < next_look_) return false;
   next_look_ = now + std::min<std::chrono::nanoseconds>(*alone_limit_ / 4, longest_pause);
-  if (!serves_somebody()) return now - served_at_ > patience_;
+  const auto all = joined();
+  if (!all.empty()) patience_ = *alone_limit_;
+  CORBA::ORB_ptr orb = RTC::Manager::instance().getORB();  // borrowed
+  if (std::ranges::all_of(all, [&](const std::string& reference) { return iface::is_gone(orb, reference); }))
+    return now - served_at_ > patience_;
   served_at_ = now;
-  patience_ = *alone_limit_;
   return false;
 }
 
@@ -111,7 +114,6 @@ RTC::ReturnCode_t SimTimeProxy::onActivated(RTC::UniqueId) {
 
 RTC::ReturnCode_t SimTimeProxy::onDeactivated(RTC::UniqueId) {
   ticked_.reset();
-  watched_.lock()->ticked.clear();
   return RTC::RTC_OK;
 }
 

@@ -9,7 +9,7 @@
 //
 // Property sim_time_proxy.alone_limit [s]: a proxy that serves nobody any more, since the component's process has ended or the object has
 // gone, exits after so long, and the last one takes its host with it. Who started it may be gone, and so may the simulator and the naming
-// service. One that has not served anybody yet is given the time of a start. Default: it stays.
+// service. One that nobody has joined yet is given the time of a start. Default: it stays.
 //
 // Threads: those of every component; the watch looks at long ticks, and asks after who is served.
 #pragma once
@@ -23,6 +23,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "ticked_context.h"
 
@@ -45,7 +46,7 @@ class SimTimeProxy : public RTC::DataFlowComponentBase {
   };
   void watch();
   bool is_alone();
-  bool serves_somebody();
+  std::vector<std::string> joined();
   iface::TickedContext::Answer tick(std::string& why);
 
   std::string ticks_;

@@ -463,20 +463,23 @@ def host_dies():
 
 
 def forgotten():
-    # Nobody says `leave`: the hosts of the contexts end all the same when those whom they serve have gone, and with them everybody else.
+    # Nobody says `leave`: the host of a context ends all the same when those whom it serves have gone, also after everybody else. The others stay.
     with Mixed(bin_dir, lib_dir) as s:
         names = s.naming()
         server = s.server(empty, "--lockstep", "--paused", "--rtf", "0")
-        aliens = [s.foreign("Alien"), s.foreign("Ticked", "--context", "triggered"), s.foreign("Other")]
-        s.rtse("wait", "Alien", "Ticked", "Other", "--state", "any", "--timeout", "60")
-        s.rtse("join", "Alien", "Other", "--rate", "100", "--server-id", s.server_id)
-        s.rtse("join", "Ticked", "--tick", "--rate", "100", "--server-id", s.server_id)
+        aliens = {"Ticked": s.foreign("Ticked", "--context", "triggered"), "Other": s.foreign("Other"), "Alien": s.foreign("Alien")}
+        s.rtse("wait", *aliens, "--state", "any", "--timeout", "60")
+        for name in aliens:
+            s.rtse("join", name, *(["--tick"] if name == "Ticked" else []), "--rate", "100", "--server-id", s.server_id)
+        assert len(s.time_hosts()) == 3, s.time_hosts()
+        s.kill(aliens["Alien"])
+        s.until("the end of its host", lambda: len(s.time_hosts()) < 3)
         s.simctl("step", "100")
-        hosts = s.time_hosts()
-        assert len(hosts) == 2, hosts
+        assert len(s.time_hosts()) == 2 and {p["name"] for p in s.participants()} == {"Ticked", "Other"}, s.participants()
+        assert s.calls("Ticked").count(["tick", "-1.000000"]) == 11, s.calls("Ticked")
         server.terminate()
         server.wait(60)
-        for process in (names, *aliens):
+        for process in (names, aliens["Ticked"], aliens["Other"]):
             s.kill(process)
         s.until("the end of the hosts", lambda: not s.time_hosts())
 
