@@ -82,4 +82,5 @@ void SimTick::write_log(const std::vector<std::uint64_t>& states) {
   }
   write(read_);
   write(written_);
+  log_->end_tick();
 }

@@ -2,6 +2,7 @@
 #include "base/hash_log.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -14,20 +15,23 @@ namespace {
 
 constexpr std::size_t flush_size = 1U << 16U;
 
+constexpr std::size_t longest_varint = 10;
+
+// Returns where it ends.
+char* put_varint(char* out, std::uint64_t number) {
+  for (; number >= 0x80; number >>= 7U) *out++ = static_cast<char>(number | 0x80U);
+  *out++ = static_cast<char>(number);
+  return out;
+}
+
 void put_varint(std::string& out, std::uint64_t number) {
-  for (; number >= 0x80; number >>= 7U) out += static_cast<char>(number | 0x80U);
-  out += static_cast<char>(number);
+  std::array<char, longest_varint> octets;
+  out.append(octets.data(), put_varint(octets.data(), number));
 }
 
 void put_text(std::string& out, std::string_view text) {
   put_varint(out, text.size());
   out += text;
-}
-
-void put_word(std::string& out, std::uint64_t word) {
-  char octets[sizeof word];
-  for (unsigned i = 0; i < sizeof word; ++i) octets[i] = static_cast<char>(word >> (8 * i));
-  out.append(octets, sizeof octets);
 }
 
 }  // namespace
@@ -53,26 +57,32 @@ std::uint32_t HashLogWriter::key(const HashKey& key) {
 }
 
 void HashLogWriter::begin_tick(std::uint32_t run, std::chrono::nanoseconds time) {
-  write_tick();
+  end_tick();
   tick_.run = run;
   tick_.time = time;
 }
 
+// There are thousands of entries for each second of a run: their octets are put together here and appended at once.
 void HashLogWriter::add(std::uint32_t key, std::uint64_t hash, std::span<const std::byte> value) {
-  put_varint(entries_, key);
-  put_word(entries_, hash);
   const auto kept = value.size() <= longest_hash_value ? value : std::span<const std::byte>();
-  put_text(entries_, {reinterpret_cast<const char*>(kept.data()), kept.size()});
+  std::array<char, longest_varint + sizeof hash + longest_varint + longest_hash_value> octets;
+  char* end = put_varint(octets.data(), key);
+  for (unsigned i = 0; i < sizeof hash; ++i) *end++ = static_cast<char>(hash >> (8 * i));
+  end = put_varint(end, kept.size());
+  if (!kept.empty()) std::memcpy(end, kept.data(), kept.size());
+  entries_.append(octets.data(), static_cast<std::size_t>(end - octets.data()) + kept.size());
   ++count_;
 }
 
-void HashLogWriter::write_tick() {
+void HashLogWriter::end_tick() {
   if (count_ == 0) return;
-  out_ += std::exchange(keys_, {});
-  out_ += hash_log_format::tick_record;
-  put_varint(out_, tick_.run);
-  put_varint(out_, static_cast<std::uint64_t>(std::max<std::int64_t>(tick_.time.count(), 0)));
-  put_varint(out_, std::exchange(count_, 0));
+  if (!keys_.empty()) out_ += std::exchange(keys_, {});
+  std::array<char, 1 + 3 * longest_varint> head;
+  head[0] = hash_log_format::tick_record;
+  char* end = put_varint(head.data() + 1, tick_.run);
+  end = put_varint(end, static_cast<std::uint64_t>(std::max<std::int64_t>(tick_.time.count(), 0)));
+  end = put_varint(end, std::exchange(count_, 0));
+  out_.append(head.data(), end);
   out_ += entries_;
   entries_.clear();
   ++ticks_;
@@ -85,7 +95,7 @@ void HashLogWriter::flush() {
 }
 
 bool HashLogWriter::finish() {
-  write_tick();
+  end_tick();
   out_ += hash_log_format::end_record;
   put_varint(out_, ticks_);
   flush();

@@ -62,15 +62,15 @@ class HashLogWriter {
 
   // The number of the leaf, for add().
   std::uint32_t key(const HashKey& key);
-  // Ticks come in order.
+  // Ticks come in order. One ends by end_tick(), while what it has is at hand, or when the next one begins.
   void begin_tick(std::uint32_t run, std::chrono::nanoseconds time);
   void add(std::uint32_t key, std::uint64_t hash, std::span<const std::byte> value = {});
+  void end_tick();
   // False when not all could be written. Without it readers take the log for one of a run that did not end.
   bool finish();
 
  private:
   explicit HashLogWriter(std::ofstream file) : file_(std::move(file)) {}
-  void write_tick();
   void flush();
 
   std::ofstream file_;

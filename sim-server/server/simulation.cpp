@@ -131,10 +131,13 @@ void Simulation::sense(PartTimes& times) {
   const Moment moment{time_, world_->physics.step};
   due_.clear();
   bool needs_rays = false;
-  for (auto& device : devices_) {
-    if (!device->wants_sample(moment)) continue;
-    due_.push_back(device.get());
-    needs_rays = needs_rays || device->uses_rays();
+  samples_taken_.resize(devices_.size());
+  for (std::size_t i = 0; i < devices_.size(); ++i) {
+    Device& device = *devices_[i];
+    if (!device.wants_sample(moment)) continue;
+    due_.push_back(&device);
+    ++samples_taken_[i];
+    needs_rays = needs_rays || device.uses_rays();
   }
   if (due_.empty()) return times.mark(Part::sensors);
   active_sensors_ = std::max(active_sensors_, static_cast<std::uint32_t>(due_.size()));

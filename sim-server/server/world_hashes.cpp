@@ -63,6 +63,11 @@ void WorldHashes::look_at_names_again(std::uint64_t arrangement) {
     for (Leaf& leaf : *leaves) leaf.is_named = false;
 }
 
+void WorldHashes::restart() {
+  schedule_.restart();
+  for (Leaf& device : devices_) device.samples.reset();
+}
+
 // Of the leaf whose state is in state_: it is another one than before. To compare costs a tenth of a hash, and what rests, or keeps nothing
 // but its name, is not hashed again.
 bool WorldHashes::is_new(Leaf& leaf) {
@@ -88,10 +93,14 @@ void WorldHashes::record_models(const Simulation& simulation) {
 void WorldHashes::record_devices(const Simulation& simulation) {
   const auto& devices = simulation.devices();
   for (std::size_t i = 0; i < devices.size(); ++i) {
+    Leaf& device = leaf(devices_, i);
+    const auto samples = simulation.samples_taken(i);
+    // Most are sensors that take a sample in every twentieth step or so: a look at each costs more than all the rest.
+    if (device.is_named && device.samples == samples) continue;
     state_.clear();
     devices[i]->add_to(state_);
-    Leaf& device = leaf(devices_, i);
     if (const auto& iface = devices[i]->iface(); !device.is_named) name(device, shm::to_text(iface.type()), iface.name());
+    device.samples = devices[i]->follows_steps() ? std::nullopt : std::optional(samples);
     if (is_new(device)) log_.add(device.key, device.hash);
   }
 }
@@ -103,6 +112,7 @@ void WorldHashes::record(const Simulation& simulation) {
   log_.begin_tick(simulation.resets(), simulation.time());
   record_models(simulation);
   record_devices(simulation);
+  log_.end_tick();
 }
 
 }  // namespace sim

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -25,7 +26,7 @@ class WorldHashes {
   // Before anybody's tick at this moment. Changes nothing.
   void record(const Simulation& simulation);
   // After a reset.
-  void restart() { schedule_.restart(); }
+  void restart();
   // False when not everything could be written.
   bool finish() { return log_.finish(); }
 
@@ -36,7 +37,9 @@ class WorldHashes {
     std::uint32_t key = 0;
     std::uint64_t hash = 0;
     bool is_known = false;
-    bool is_named = false;               // type and name are those of this arrangement of the world
+    bool is_named = false;  // type and name are those of this arrangement of the world
+    // Of a device that changes only with a sample: how many it had taken then. Nothing: it is looked at each time.
+    std::optional<std::uint64_t> samples{};
     std::vector<std::uint64_t> state{};  // as of the last entry
   };
   Leaf& leaf(std::vector<Leaf>& leaves, std::size_t index);

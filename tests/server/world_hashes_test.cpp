@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
 #include <set>
 
 #include "support/naming_service.h"
@@ -87,6 +89,58 @@ TEST_F(HashesOfTheWorld, have_a_model_under_its_name_in_the_place_of_one_of_the_
   EXPECT_EQ(all[0], before);
   EXPECT_EQ(all[1].count("model late"), 1U);
   EXPECT_EQ(all[1].count("model early"), 0U);
+}
+
+// Its laser draws at random for each beam.
+WorldDef noisy_world() {
+  WorldDef world;
+  world.models = {ground(), pioneer("robot", at(0, 0, 0))};
+  auto& ray = std::get<RayDef>(world.models[1].links[0].sensors[0].data);
+  ray.noise.kind = NoiseDef::Kind::gaussian;
+  ray.noise.stddev = 0.01;
+  return world;
+}
+
+TEST(HashesOfASensor, have_an_entry_for_each_sample_and_after_a_reset) {
+  SimulationFixture f{noisy_world()};
+  const auto laser = f.open(shm::IfaceType::laser, "robot::laser");
+  support::TemporaryFolder folder;
+  const std::string path = (folder.path() / "world.hashlog").string();
+  auto hashes = WorldHashes::open(path, 1ns).value();
+  std::map<std::pair<std::uint32_t, std::chrono::nanoseconds>, std::uint64_t> samples;  // that had been taken at each record
+  const auto record = [&] {
+    hashes.record(*f.simulation);
+    samples.emplace(std::pair(f.simulation->resets(), f.simulation->time()), laser.sequence());
+  };
+  f.simulation->sense(f.times);
+  record();
+  for (int i = 0; i < 250; ++i) {
+    f.simulation->step(f.times);
+    f.simulation->sense(f.times);
+    record();
+  }
+  std::vector<std::string> notes;
+  ASSERT_TRUE(f.simulation->reset(notes));
+  hashes.restart();
+  record();
+  ASSERT_TRUE(hashes.finish());
+  auto reader = base::HashLogReader::open(path);
+  ASSERT_TRUE(reader);
+  std::vector<std::uint64_t> at;  // samples at the laser's entries
+  std::vector<bool> is_of_second_run;
+  base::HashTick tick;
+  while (reader->next(tick).value()) {
+    for (const auto& entry : tick.entries) {
+      if (reader->keys().at(entry.key).text() != "device laser robot::laser") continue;
+      at.push_back(samples.at(tick.when()));
+      is_of_second_run.push_back(tick.run != 0);
+    }
+  }
+  ASSERT_GE(at.size(), 3U);
+  EXPECT_TRUE(is_of_second_run.back());  // its place in the noise is that of the beginning
+  EXPECT_EQ(std::ranges::count(is_of_second_run, true), 1);
+  for (std::size_t i = 1; i + 1 < at.size(); ++i) EXPECT_EQ(at[i], at[i - 1] + 1);
+  EXPECT_EQ(at.at(at.size() - 2), std::prev(samples.end(), 2)->second);
 }
 
 }  // namespace
