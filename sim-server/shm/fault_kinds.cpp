@@ -1,5 +1,6 @@
 #include "shm/fault_kinds.h"
 
+#include <cmath>
 #include <vector>
 
 #include "base/text.h"
@@ -27,7 +28,11 @@ std::string fault_names() {
 base::Result<const FaultRow*> check_fault(std::string_view name, std::optional<double> amount) {
   const FaultRow* row = find_fault(name);
   if (row == nullptr) return base::Error{"fault " + base::in_quotes(std::string(name)) + ": is none; expected one of " + fault_names()};
-  if (!row->amount || !amount || (*amount >= row->least && *amount <= row->most)) return row;
+  if (!row->amount || !amount) return row;
+  if (row->kind == FaultKind::latency && *amount != std::floor(*amount))
+    return base::Error{"fault " + std::string(name) + ": its amount must be a whole number of samples, got " +
+                       base::format_number(*amount)};
+  if (*amount >= row->least && *amount <= row->most) return row;
   return base::Error{"fault " + std::string(name) + ": its amount must be from " + base::format_number(row->least) + " to " +
                      base::format_number(row->most) + ", got " + base::format_number(*amount)};
 }

@@ -193,7 +193,7 @@ void add_fault(base::Command& app, Work& work) {
   fault->add_option("KIND", options->kind, meanings_of_faults())->check(base::one_of(std::move(kinds)));
   fault->add_option("AMOUNT", *amount, "Default: that in brackets");
   auto* seconds = fault->add_option("--for", options->seconds, "Simulated seconds; default: until it is ended, or the world is reset")
-                      ->check(base::number_between(0.0, 1e9));
+                      ->check(base::number_between(1e-9, 1e9));
   auto* end = fault->add_flag("--end", options->ends, "End the faults of IFACE, of that KIND; without, all");
   end->excludes(seconds);
   fault->callback([&work, options, amount] {
