@@ -123,6 +123,24 @@ TEST_F(Worlds, are_changed_by_path_in_copies_of_their_files) {
     EXPECT_NE(all.find(text), std::string::npos) << text;
 }
 
+TEST_F(Worlds, have_lights_that_are_included) {
+  auto changed = world();
+  const auto set = changed.set("light/sun/intensity", "0.25");
+  ASSERT_TRUE(set) << set.error().message;
+  ASSERT_TRUE(changed.set("light/sun/direction", "0 0 -1"));
+  ASSERT_TRUE(changed.write(folder_.string()));
+  std::ifstream in(folder_ / "world.sdf");
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_NE(text.find("<intensity>0.25</intensity>"), std::string::npos);
+  EXPECT_NE(text.find("<direction>0 0 -1</direction>"), std::string::npos);
+  EXPECT_EQ(text.find("model://sun"), std::string::npos);
+  EXPECT_EQ(refusal("light/moon/intensity", "1"), "light/moon/intensity: the world has no light \"moon\"; lights: sun");
+  // What the light is belongs to what the world is made of.
+  std::string files;
+  for (const auto& file : world().files()) files += file + " ";
+  EXPECT_NE(files.find("sun/model.sdf"), std::string::npos) << files;
+}
+
 TEST_F(Worlds, have_no_other_values) {
   EXPECT_EQ(refusal("model/nobody/pose", "1 2 0").substr(0, 52), "model/nobody/pose: the world has no model \"nobody\"; ");
   EXPECT_EQ(refusal("model/pioneer2dx/sensor/nose/noise", "1"),

@@ -57,11 +57,11 @@ std::optional<fs::path> ModelFiles::find(const std::string& uri, const fs::path&
   return std::nullopt;
 }
 
-std::optional<ModelFiles::Opened> ModelFiles::open(pugi::xml_node include, const fs::path& at) const {
+std::optional<ModelFiles::Opened> ModelFiles::open(pugi::xml_node include, const fs::path& at, const char* kind) const {
   const std::string uri = include.child("uri").text().get();
   if (uri.starts_with("model://")) {
     if (const auto copy = copies_.find(uri.substr(8)); copy != copies_.end())
-      return Opened{copy->second->document.child("sdf").child("model"), copy->second->file};
+      return Opened{copy->second->document.child("sdf").child(kind), copy->second->file};
   }
   auto place = find(uri, at);
   std::error_code error;
@@ -72,8 +72,8 @@ std::optional<ModelFiles::Opened> ModelFiles::open(pugi::xml_node include, const
     document = std::make_unique<pugi::xml_document>();
     document->load_file(place->c_str());
   }
-  const auto model = document->child("sdf").child("model");
-  return model ? std::optional(Opened{model, fs::absolute(*place)}) : std::nullopt;
+  const auto found = document->child("sdf").child(kind);
+  return found ? std::optional(Opened{found, fs::absolute(*place)}) : std::nullopt;
 }
 
 std::optional<ModelFiles::Opened> ModelFiles::copy(pugi::xml_node include, const fs::path& at, const std::string& name) {
@@ -118,7 +118,8 @@ bool ModelFiles::add_model(const std::string& uri, std::set<std::string>& files)
 
 void ModelFiles::add_files(pugi::xml_node node, const fs::path& at, std::set<std::string>& files) const {
   if (std::string(node.name()) == "include") {
-    if (const auto opened = open(node, at)) {
+    const auto model = open(node, at);
+    if (const auto opened = model ? model : open_light(node, at)) {
       files.insert(opened->file.string());
       add_files(opened->model, opened->file.parent_path(), files);
     }

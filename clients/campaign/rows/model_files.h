@@ -24,7 +24,9 @@ class ModelFiles {
     std::filesystem::path file;
   };
   // What an <include> in a file of folder `at` means.
-  std::optional<Opened> open(pugi::xml_node include, const std::filesystem::path& at) const;
+  std::optional<Opened> open(pugi::xml_node include, const std::filesystem::path& at) const { return open(include, at, "model"); }
+  // The same of a light, which a file can hold in place of a model.
+  std::optional<Opened> open_light(pugi::xml_node include, const std::filesystem::path& at) const { return open(include, at, "light"); }
   // A copy of what the include means, under a name of its own, made at the first call.
   std::optional<Opened> copy(pugi::xml_node include, const std::filesystem::path& at, const std::string& name);
   void drop_copy(const std::string& name) { copies_.erase(name); }
@@ -45,6 +47,7 @@ class ModelFiles {
   void add_files(pugi::xml_node node, const std::filesystem::path& at, std::set<std::string>& files) const;
 
  private:
+  std::optional<Opened> open(pugi::xml_node include, const std::filesystem::path& at, const char* kind) const;
   std::optional<std::filesystem::path> find(const std::string& uri, const std::filesystem::path& at) const;
 
   std::vector<std::filesystem::path> folders_;

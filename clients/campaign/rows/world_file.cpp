@@ -184,6 +184,7 @@ struct WorldFile::State {
 
   Result<void> set_model(const std::string& path, const std::vector<std::string>& words, const std::string& value);
   Result<void> set_sensor(pugi::xml_node node, const std::string& path, const std::vector<std::string>& words, const std::string& value);
+  pugi::xml_node light_in_world(const std::string& name, std::vector<std::string>& names);
   Result<void> set_light(const std::string& path, const std::vector<std::string>& words, const std::string& value);
   Result<void> set_world(const std::string& path, const std::string& what, const std::string& value);
   std::string model_names() const;
@@ -244,10 +245,33 @@ Result<void> WorldFile::State::set_model(const std::string& path, const std::vec
   return {};
 }
 
+// One that is included is written into the world in place of its include; the file stays as it is.
+pugi::xml_node WorldFile::State::light_in_world(const std::string& name, std::vector<std::string>& names) {
+  for (auto node : world().children()) {
+    const bool is_included = std::string(node.name()) == "include";
+    if (!is_included && std::string(node.name()) != "light") continue;
+    const auto opened = is_included ? files.open_light(node, folder()) : std::nullopt;
+    if (is_included && !opened) continue;
+    const std::string own = is_included ? opened->model.attribute("name").value() : node.attribute("name").value();
+    const std::string given = node.child("name").text().get();
+    names.push_back(given.empty() ? own : given);
+    if (names.back() != name) continue;
+    if (!is_included) return node;
+    auto light = world().insert_copy_after(opened->model, node);
+    light.attribute("name").set_value(name.c_str());
+    if (const auto pose = node.child("pose")) {
+      light.remove_child("pose");
+      light.prepend_copy(pose);
+    }
+    world().remove_child(node);
+    return light;
+  }
+  return {};
+}
+
 Result<void> WorldFile::State::set_light(const std::string& path, const std::vector<std::string>& words, const std::string& value) {
-  auto light = world().find_child_by_attribute("light", "name", words[1].c_str());
   std::vector<std::string> names;
-  for (auto one : world().children("light")) names.emplace_back(one.attribute("name").value());
+  auto light = light_in_world(words[1], names);
   if (!light)
     return Error{path + ": the world has no light " + base::in_quotes(words[1]) +
                  "; lights: " + (names.empty() ? "none" : base::join(names, ", "))};
