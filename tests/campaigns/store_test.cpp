@@ -66,7 +66,7 @@ TEST_F(Stores, hold_many_rows_and_show_them_in_a_page_of_bounded_size) {
   {
     auto store = Store::open(file("rows.db"));
     ASSERT_TRUE(store) << store.error().message;
-    ASSERT_TRUE(store->begin_rows(Plan{}));
+    ASSERT_TRUE(store->begin_rows(Plan{}, ""));
     for (std::size_t number = 1; number <= count; ++number) ASSERT_TRUE(store->add_row(row(number), key(number)));
     ASSERT_TRUE(store->end_rows());
     for (std::size_t number = 1; number <= count; ++number) ASSERT_TRUE(store->add_run(key(number), outcome(number), ""));

@@ -28,6 +28,8 @@ class Statement {
   Result<bool> next();
   // Runs it to its end, and makes it ready for the next values.
   Result<void> run();
+  // Needs no more rows: one that is not told so keeps what it reads from being written.
+  void end();
 
   std::string text(int column) const;
   std::int64_t integer(int column) const;
@@ -49,7 +51,8 @@ class Statement {
 class Database {
  public:
   enum class Access { read, write };
-  // Writing makes the file when there is none.
+  // Writing makes the file when there is none. While somebody writes, SQLite keeps a log beside the file; the last one takes it away, so
+  // that what stays is one file that can be read wherever it lies.
   static Result<Database> open(const std::string& file, Access access);
   // Several statements, without values.
   Result<void> execute(const std::string& sql);
@@ -58,9 +61,12 @@ class Database {
 
  private:
   struct Close {
+    std::string folder;  // of the file of one who writes; empty: of one who reads
     void operator()(sqlite3* database) const;
   };
-  Database(sqlite3* database, std::string file) : database_(database), file_(std::move(file)) {}
+  Database(sqlite3* database, std::string file, std::string folder)
+      : database_(database, Close{std::move(folder)}), file_(std::move(file)) {}
+  Result<void> begin_log();
   std::unique_ptr<sqlite3, Close> database_;
   std::string file_;
 };

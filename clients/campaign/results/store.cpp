@@ -8,6 +8,7 @@ namespace campaign {
 namespace {
 
 constexpr const char* schema = R"(
+BEGIN IMMEDIATE;
 CREATE TABLE IF NOT EXISTS campaign (name TEXT PRIMARY KEY, value TEXT) WITHOUT ROWID;
 CREATE TABLE IF NOT EXISTS rows (number INTEGER PRIMARY KEY, key TEXT NOT NULL, seed INTEGER NOT NULL);
 CREATE TABLE IF NOT EXISTS parameters (number INTEGER, name TEXT, value TEXT, PRIMARY KEY (number, name)) WITHOUT ROWID;
@@ -17,6 +18,8 @@ CREATE TABLE IF NOT EXISTS measures (key TEXT, name TEXT, value REAL, PRIMARY KE
 CREATE TABLE IF NOT EXISTS verdicts (key TEXT, place INTEGER, expectation TEXT, problem TEXT, details TEXT, PRIMARY KEY (key, place)) WITHOUT ROWID;
 CREATE TABLE IF NOT EXISTS audits (key TEXT, at TEXT, state TEXT, same INTEGER);
 CREATE INDEX IF NOT EXISTS rows_by_key ON rows (key);
+INSERT OR IGNORE INTO campaign VALUES ('version', '1');
+COMMIT;
 )";
 
 enum StatementNumber {
@@ -29,7 +32,8 @@ enum StatementNumber {
   insert_audit,
   set_fact,
   drop_measures,
-  drop_verdicts
+  drop_verdicts,
+  get_fact
 };
 
 }  // namespace
@@ -37,18 +41,27 @@ enum StatementNumber {
 Result<Store> Store::open(const std::string& file) {
   auto database = Database::open(file, Database::Access::write);
   if (!database) return database.error();
-  for (const char* sql : {"PRAGMA journal_mode=WAL", "PRAGMA synchronous=NORMAL", "PRAGMA wal_autocheckpoint=1000", schema}) {
-    if (const auto done = database->execute(sql); !done) return done.error();
-  }
+  if (const auto done = database->execute(schema); !done) return done.error();
   auto asked = database->prepare("SELECT value FROM campaign WHERE name = 'version'");
   if (!asked) return asked.error();
   const auto has = asked->next();
   if (!has) return has.error();
   if (*has && asked->text(0) != std::to_string(version))
     return Error{"results " + base::in_quotes(file) + ": are of version " + asked->text(0) + ", expected " + std::to_string(version)};
+  asked->end();
   Store store(std::move(*database));
   if (const auto made = store.make_statements(); !made) return made.error();
   return store;
+}
+
+bool Store::has_list(const std::string& file, const std::string& list) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return false;
+  const auto database = Database::open(file, Database::Access::read);
+  auto asked = database ? database->prepare("SELECT value FROM campaign WHERE name = 'list'") : database.error();
+  if (!asked) return false;
+  const auto has = asked->next();
+  return has && *has && asked->text(0) == list;
 }
 
 Result<void> Store::make_statements() {
@@ -57,25 +70,37 @@ Result<void> Store::make_statements() {
         "SELECT passed, problem, state, folder, simulated, wall FROM runs WHERE key = ?",
         "INSERT OR REPLACE INTO runs VALUES (?, ?, ?, ?, ?, ?, ?, ?, datetime('now'))", "INSERT OR REPLACE INTO measures VALUES (?, ?, ?)",
         "INSERT OR REPLACE INTO verdicts VALUES (?, ?, ?, ?, ?)", "INSERT INTO audits VALUES (?, datetime('now'), ?, ?)",
-        "INSERT OR REPLACE INTO campaign VALUES (?, ?)", "DELETE FROM measures WHERE key = ?", "DELETE FROM verdicts WHERE key = ?"}) {
+        "INSERT OR REPLACE INTO campaign VALUES (?, ?)", "DELETE FROM measures WHERE key = ?", "DELETE FROM verdicts WHERE key = ?",
+        "SELECT value FROM campaign WHERE name = ?"}) {
     auto statement = database_.prepare(sql);
     if (!statement) return statement.error();
     statements_.push_back(std::move(*statement));
   }
-  return statements_[set_fact].bind(1, std::string_view("version")).bind(2, std::to_string(version)).run();
+  return {};
 }
 
-Result<void> Store::begin_rows(const Plan& plan) {
+Result<bool> Store::begin_rows(const Plan& plan, const std::string& list) {
   const auto file = plan.file.empty() ? std::string() : std::filesystem::absolute(plan.file).lexically_normal().string();
-  if (const auto begun = database_.execute("BEGIN IMMEDIATE; DELETE FROM rows; DELETE FROM parameters;"); !begun) return begun;
+  if (const auto begun = database_.execute("BEGIN IMMEDIATE"); !begun) return begun.error();
+  auto& fact = statements_[get_fact];
+  const auto found = fact.bind(1, std::string_view("list")).next();
+  const bool is_there = found && *found && fact.text(0) == list && !list.empty();
+  fact.end();
+  if (!found) return found.error();
+  if (is_there) {  // what is read now is of one moment
+    if (const auto ended = database_.execute("COMMIT; BEGIN;"); !ended) return ended.error();
+    return false;
+  }
+  if (const auto dropped = database_.execute("DELETE FROM rows; DELETE FROM parameters;"); !dropped) return dropped.error();
   for (const auto& [name, value] : {std::pair<std::string, std::string>("plan", plan.text),
                                     {"plan_file", file},
                                     {"system", plan.system},
                                     {"world", plan.world},
+                                    {"list", list},
                                     {"duration", base::format_number(plan.duration_s)}}) {
-    if (const auto set = statements_[set_fact].bind(1, name).bind(2, value).run(); !set) return set;
+    if (const auto set = statements_[set_fact].bind(1, name).bind(2, value).run(); !set) return set.error();
   }
-  return {};
+  return true;
 }
 
 Result<void> Store::add_row(const Row& row, const std::string& key) {
@@ -96,7 +121,7 @@ Result<std::optional<StoredRun>> Store::run(const std::string& key) {
   if (!found) return found.error();
   std::optional<StoredRun> run;
   if (*found) run = StoredRun{select.integer(0) != 0, select.text(1), select.text(2), select.text(3), select.number(4), select.number(5)};
-  static_cast<void>(select.run());
+  select.end();
   return run;
 }
 

@@ -28,9 +28,12 @@ class Store {
 
   // Makes the file, or goes on with one of the same version.
   static Result<Store> open(const std::string& file);
+  // Whether the file is there and its list of rows is this one.
+  static bool has_list(const std::string& file, const std::string& list);
 
-  // Begins a list of rows, and forgets the one before; the runs stay.
-  Result<void> begin_rows(const Plan& plan);
+  // Begins a list of rows, and forgets the one before; the runs stay. False: the list that is called so is there already, and nobody
+  // who runs some of its rows need wait for another who writes it again.
+  Result<bool> begin_rows(const Plan& plan, const std::string& list);
   Result<void> add_row(const Row& row, const std::string& key);
   Result<void> end_rows();
 

@@ -248,6 +248,14 @@ std::string Campaign::key(const Row& row) const {
   return hash.text();
 }
 
+std::string Campaign::list_key() const {
+  ContentHash hash;
+  hash.add(base_key_);
+  hash.add(plan_->text);
+  hash.add(fs::absolute(plan_->file).string());
+  return hash.text();
+}
+
 Result<std::optional<WorldFile>> Campaign::world_of(const Row& row) const {
   if (std::ranges::none_of(row.values, [](const auto& one) { return is_world_path(one.first); })) return std::optional<WorldFile>();
   auto world = WorldFile::read(plan_->world, plan_->resource_paths);

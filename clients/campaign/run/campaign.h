@@ -30,6 +30,8 @@ class Campaign {
   std::string key(const Row& row) const;
   // What it is of a row without seed and values.
   const std::string& base_key() const { return base_key_; }
+  // Stands for all rows together, with their values and seeds.
+  std::string list_key() const;
 
   // The world of a row; nothing when it is the plan's own.
   Result<std::optional<WorldFile>> world_of(const Row& row) const;

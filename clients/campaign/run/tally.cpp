@@ -14,13 +14,14 @@ constexpr std::size_t most_failed_told = 100;
 }  // namespace
 
 Result<void> Tally::list_rows() {
-  if (const auto begun = store_.begin_rows(campaign_.plan()); !begun) return begun;
+  const auto begun = store_.begin_rows(campaign_.plan(), campaign_.list_key());
+  if (!begun) return begun.error();
   std::set<std::string> keys;
   for (std::size_t number = 1; number <= campaign_.rows(); ++number) {
     const auto row = campaign_.row(number);
     if (!row) return Error{"row " + std::to_string(number) + ": " + row.error().message};
     const auto key = campaign_.key(*row);
-    if (const auto added = store_.add_row(*row, key); !added) return added;
+    if (const auto added = *begun ? store_.add_row(*row, key) : Result<void>(); !added) return added;
     const auto run = store_.run(key);
     if (!run) return run.error();
     if (number < options_.first_row || (options_.last_row > 0 && number > options_.last_row)) continue;
