@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -66,6 +67,19 @@ std::string values_text(const Row& row) {
   return text;
 }
 
+// Of a run before, in a folder that may hold more.
+void remove_files_of_run(const fs::path& folder) {
+  std::error_code ignored;
+  if (!fs::exists(folder / "sim-server.log", ignored)) return;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const auto name = entry.path().filename().string();
+    const bool is_log = name.starts_with("rtcd-") && name.ends_with(".log");
+    constexpr std::array names = {"omninames.err", "omninames.log", "sim-server.log", "recorder.log", "record.txt",
+                                  "system.xml",    "expect.yaml",   "picture.png",    "run.mcap",     "world"};
+    if (is_log || std::ranges::find(names, name) != names.end()) fs::remove_all(entry.path(), ignored);
+  }
+}
+
 // One row, with its files kept: what the command that repeats a row does.
 void run_one(Editor& editor, const Campaign& campaign, const SweepCall& call) {
   if (call.row > campaign.rows())
@@ -75,6 +89,7 @@ void run_one(Editor& editor, const Campaign& campaign, const SweepCall& call) {
   const auto folder = call.keep.empty() ? "row-" + std::to_string(call.row) : call.keep;
   if (!editor.json()) std::printf("row %zu  %s\n", row->number, values_text(*row).c_str());
   std::fflush(stdout);
+  remove_files_of_run(folder);
   const auto outcome = run_row(editor.orb(), campaign, *row, {.folder = folder, .keeps_files = true, .records = call.records});
   nlohmann::ordered_json json{{"row", row->number},
                               {"seed", row->seed},

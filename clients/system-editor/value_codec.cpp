@@ -380,4 +380,48 @@ Result<std::vector<unsigned char>> encode(CORBA::TypeCode_ptr type, const Json& 
   }
 }
 
+std::string member_problem(const std::string& repository_id, const std::vector<std::string>& path) {
+  constexpr const char* nothing = "no more";
+  const auto type = type_code_of(repository_id);
+  if (CORBA::is_nil(type)) return "";
+  CORBA::TypeCode_var at = resolved(type);
+  std::string way;
+  for (const auto& step : path) {
+    const auto kind = at->kind();
+    if (kind == CORBA::tk_sequence || kind == CORBA::tk_array) {
+      if (!base::parse_integer(step)) return way + "[0]";
+      at = resolved(CORBA::TypeCode_var(at->content_type()));
+      way += "[" + step + "]";
+      continue;
+    }
+    if (kind == CORBA::tk_union) return "";
+    if (kind != CORBA::tk_struct) return nothing;
+    CORBA::TypeCode_var next;
+    std::vector<std::string> names;
+    for (CORBA::ULong i = 0; i < at->member_count(); ++i) {
+      names.push_back(way + (way.empty() ? "" : ".") + at->member_name(i));
+      if (step == at->member_name(i)) next = at->member_type(i);
+    }
+    if (CORBA::is_nil(next)) return base::join(names, ", ");
+    at = resolved(next);
+    way += (way.empty() ? "" : ".") + step;
+  }
+  switch (at->kind()) {
+    case CORBA::tk_struct: {
+      std::vector<std::string> names;
+      for (CORBA::ULong i = 0; i < at->member_count(); ++i) names.push_back(way + "." + at->member_name(i));
+      return base::join(names, ", ");
+    }
+    case CORBA::tk_sequence:
+    case CORBA::tk_array:
+      return way + "[0]";
+    case CORBA::tk_string:
+    case CORBA::tk_wstring:
+    case CORBA::tk_enum:
+      return nothing;
+    default:
+      return "";
+  }
+}
+
 }  // namespace editor

@@ -23,6 +23,9 @@ base::Result<nlohmann::ordered_json> decode(CORBA::TypeCode_ptr type, std::span<
 // Missing members of objects are zero; unknown ones, wrong kinds and values out of range are errors that name the member.
 base::Result<std::vector<unsigned char>> encode(CORBA::TypeCode_ptr type, const nlohmann::ordered_json& value, bool little_endian = true);
 
+// "" when the path leads to a number, or as far as the type tells, may; else the names of what is where it fails, or "no more".
+std::string member_problem(const std::string& repository_id, const std::vector<std::string>& path);
+
 // The type behind typedefs, which say nothing on the wire.
 CORBA::TypeCode_var resolved(CORBA::TypeCode_ptr type);
 

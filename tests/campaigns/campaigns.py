@@ -1,6 +1,4 @@
 # Campaigns as users run them, one case per run: campaigns.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
-import csv
-import io
 import json
 import os
 import pathlib
@@ -9,39 +7,9 @@ import shutil
 import signal
 import sqlite3
 import subprocess
-import sys
-import tempfile
 import time
 
-case, bin_dir, lib_dir, source = sys.argv[1:]
-folder = pathlib.Path(tempfile.mkdtemp(prefix="campaigns-"))
-START = f"""system: {source}/worlds/systems/obstacle_avoidance.xml
-world: {source}/worlds/obstacle_course.sdf
-duration: 1
-"""
-
-
-def plan(text, name="plan.yaml"):
-    (folder / name).write_text(START + text)
-    return str(folder / name)
-
-
-def call(*words):
-    return subprocess.run([f"{bin_dir}/rtse", *map(str, words)], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=200)
-
-
-def rtse(*words, code=0):
-    done = call(*words)
-    assert code is None or done.returncode == code, (words, done.returncode, done.stdout, done.stderr)
-    return done
-
-
-def rows(file="plan.db"):
-    return list(csv.DictReader(io.StringIO(rtse("results", folder / file, "--csv").stdout)))
-
-
-def states(file="plan.db"):
-    return {row["row"]: row["state"] for row in rows(file)}
+from calls import START, bin_dir, case, folder, lib_dir, plan, rows, rtse, source, states, twice
 
 
 # Rows differ by what varies, a row alone gives what it gave among others, and nothing runs twice.
@@ -69,9 +37,9 @@ measure:
     # Rows that are the same run once, and count as often as they stand in the plan.
     twins = json.loads(rtse("--json", "sweep", plan("vary: {seed: [1, 2, 1]}\n", "twins.yaml")).stdout)
     assert (twins["rows"], twins["passed"], twins["failed"]) == (3, 3, 0), twins
-    # A number that no sample has is no number that is not there by chance.
+    # A number that no sample has is no number that is not there by chance, also of a port whose type the profile does not tell.
     for text in ("measure: [{value: {port: PORT, member: data.wx, take: min}}]\n", "never: [{port: PORT, member: data.wx, min: 1}]\n"):
-        done = rtse("sweep", plan(text.replace("PORT", '"LaserObstacleAvoid0:velocity"'), "member.yaml"), code=1)
+        done = rtse("sweep", plan(text.replace("PORT", '"RTCPosition2d0:actual_velocity"'), "member.yaml"), code=1)
         assert "the samples have no number data.wx; they have " in done.stderr, done.stderr
 
 
@@ -198,7 +166,7 @@ def refused():
         ("vary: {connector/nobody/buffer.length: [1]}", 'the system has no connection "nobody"; connections: range-to-avoidance'),
         ("vary: {seed: [1.5]}", 'seed: must be a whole number from 0 to 1e18, got "1.5"'),
         ("vary: {weather: [1]}", "weather: is no parameter; expected seed, component/..."),
-        ("measure: [{path_length: {model: nobody}}]", 'measure: the world has no model "nobody"'),
+        ("measure: [{contacts: {model: nobody}}]", 'measure: the world has no model "nobody"'),
         ("expect: nowhere.yaml", "there is no file"),
         ("never: [{model: pioneer2dx, touches: nobody}]", 'never: the world has no model "nobody"; models: '),
         ("faults: [{at: 0, connector: nobody, is: drop}]", 'faults: the system has no connection "nobody"; connections: range-to-avoidance'),
@@ -215,7 +183,7 @@ def refused():
         ("hunt: {events: [{activate: Nobody0}]}", 'hunt: events: the system has no component "Nobody0"'),
         ("never: [{component: Nobody0, is: Error}]", 'never: the system has no component "Nobody0"'),
         ("vary: {model/pioneer2dx/pose: [1 2]}", 'model/pioneer2dx/pose: must be x y yaw or x y z roll pitch yaw, got "1 2"'),
-        ("measure: [{path_length: {model: nobody}}]", "models: box_0, box_1,"),
+        ("measure: [{contacts: {model: nobody}}]", "models: box_0, box_1,"),
         ("measure: [{value: {port: 'LaserObstacleAvoid0:speed', member: data.vx, take: min}}]",
          'measure: component LaserObstacleAvoid0 has no port "speed" in the profile; ports: range, velocity'),
         ("measure: [{value: {port: LaserObstacleAvoid0, member: data.vx, take: min}}]", 'port "LaserObstacleAvoid0": expected COMPONENT:PORT'),
@@ -232,6 +200,26 @@ def refused():
         ("events: [{at: 1, spawn: {model: 'model://nobody'}}]", 'events: there is no model "model://nobody" to spawn'),
         ("events: [{at: 0.5, spawn: {model: 'model://cow', name: cow}}, {at: 1, delete: caw}]", 'events: the world has no model "caw"'),
         ("scatter: [{models: [nobody], region: [0, 0, 1, 1]}]", 'plan.yaml": scatter: the world has no model "nobody"'),
+        ("vary: {connector/range-to-avoidance/subscripton_type: [new]}", 'no connection has a property "subscripton_type"; properties: allow_dup_connection'),
+        ("measure: [{value: {port: 'LaserObstacleAvoid0:velocity', member: data.nope, take: min}}]",
+         'measure: port "LaserObstacleAvoid0:velocity" sends no number "data.nope"; it has data.vx, data.vy, data.va'),
+        ("expect: [{value: {port: 'LaserObstacleAvoid0:velocity', member: data, min: 1}}]", 'sends no number "data"; it has data.vx'),
+        ("never: [{port: 'LaserObstacleAvoid0:velocity', member: 'data.vx[0]', min: 1}]", 'never: port "LaserObstacleAvoid0:velocity" sends no number "data.vx[0]"'),
+        ("measure: [{value: {port: 'LaserObstacleAvoid0:range', member: 'ranges[0]', take: min}}]",
+         'measure: port "LaserObstacleAvoid0:range" is no OutPort, so there are no values to see'),
+        ("never: [{model: pioneer2dx, touches: any, within: 0.5}]", ":4:51: within is of eventually"),
+        ("events: [{when: {model: pioneer2dx, touches: any, within: 0.5}, delete: box_1}]", "within is of eventually"),
+        ("measure: [{path_length: {model: box_1}}]", 'measure: the world has no moving model "box_1"; moving models: pioneer2dx'),
+        ("measure: [{time_to: {model: box_1, region: [0, 0, 1, 1]}}]", 'measure: the world has no moving model "box_1"'),
+        ("measure: [{clearance: {model: pioneer2dx, to: pioneer2dx}}]", 'clearance of "pioneer2dx" to itself is none'),
+        ("measure: [{clearance: {model: pioneer2dx, as: passed}}]", 'the results have a column "passed" already'),
+        ("vary: {world/step: [0.001]}\nmeasure: [{clearance: {model: pioneer2dx, as: world/step}}]", 'the results have a column "world/step" already'),
+        ("events: [{at: 0.5, spawn: {model: 'model://cow', name: box_1}}]", 'events: the world has a model "box_1" already'),
+        ("faults: [{at: 0, sensor: nope, is: stuck}]", 'faults: iface "nope": expected MODEL::NAME'),
+        ("vary: {light/moon/intensity: [1]}", 'light/moon/intensity: the world has no light "moon"; lights: sun'),
+        ("vary: {component/LaserObstacleAvoid0/stop_distance: [0.5, far]}", 'vary: component/LaserObstacleAvoid0/stop_distance: cannot be "far", expected a number'),
+        ("events: [{at: 0.9, set: {component: LaserObstacleAvoid0, parameter: stop_distance, value: far}}]", 'value: far}}: cannot be "far", expected a number'),
+        ("hunt: {faults: [{naming: gone, component: RTCLaser0}]}", "must have one of sensor, actuator, connector, component, naming"),
         ("unknown: 1", ':4:1: plan has no key "unknown"'),
         ("repeat: 2000000", "has 2e+06 rows, expected at most 1000000"),
     ]:
@@ -319,13 +307,6 @@ def interrupted():
         assert process.returncode == 1 and expected in said[1] and len(said[1].splitlines()) == 1, (words, process.returncode, said)
         assert not list(folder.glob("rtse-run-*")) and not list(folder.glob("plan.finds/*")), list(folder.iterdir())
     assert json.loads(rtse("--json", "sweep", p, "--rows", "1..1").stdout)["passed"] == 1
-
-
-# Of a plan with one row: its report, the same in two runs.
-def twice(text, name, code=0):
-    one, two = (json.loads(rtse("--json", "sweep", plan(text, name), "--row", 1, "--keep", folder / name[:-5], code=code).stdout) for _ in range(2))
-    assert one["state"] == two["state"], (text, one, two)
-    return one
 
 
 # What happens at a time or on a condition happens at the same step in every run.

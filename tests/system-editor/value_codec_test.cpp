@@ -132,5 +132,21 @@ TEST(ValueCodec, wrong_values_are_refused_by_name) {
 
 TEST(ValueCodec, unknown_types_are_nil) { EXPECT_TRUE(CORBA::is_nil(type_code_of("IDL:RTC/Nothing:1.0"))); }
 
+TEST(Members, are_looked_up_in_the_type) {
+  const auto problem = [](const char* type, std::vector<std::string> path) {
+    return member_problem("IDL:RTC/" + std::string(type) + ":1.0", path);
+  };
+  EXPECT_EQ(problem("TimedVelocity2D", {"data", "vx"}), "");
+  EXPECT_EQ(problem("TimedVelocity2D", {"tm", "sec"}), "");
+  EXPECT_EQ(problem("TimedVelocity2D", {"data", "nope"}), "data.vx, data.vy, data.va");
+  EXPECT_EQ(problem("TimedVelocity2D", {"data"}), "data.vx, data.vy, data.va");
+  EXPECT_EQ(problem("TimedVelocity2D", {"data", "vx", "0"}), "no more");
+  EXPECT_EQ(problem("TimedDoubleSeq", {"data", "1000"}), "");
+  EXPECT_EQ(problem("TimedDoubleSeq", {"data", "x"}), "data[0]");
+  EXPECT_EQ(problem("TimedDoubleSeq", {"data"}), "data[0]");
+  EXPECT_EQ(problem("TimedString", {"data"}), "no more");
+  EXPECT_EQ(problem("NobodyKnows", {"data"}), "");
+}
+
 }  // namespace
 }  // namespace editor

@@ -293,7 +293,9 @@ Json schema_of(const Key& key) {
     case Form::texts:
       return {{"anyOf", {Json{{"type", {"string", "number"}}}, scalars()}}};
     case Form::words: {
-      return {{"enum", base::split_list(key.of, ' ')}};
+      Json values = base::split_list(key.of, ' ');
+      if (std::ranges::find(values, "off") != values.end()) values.push_back(false);  // what editors read of an off without quotes
+      return {{"enum", values}};
     }
     case Form::any:
       return Json::object();

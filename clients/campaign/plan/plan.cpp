@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -15,6 +16,8 @@
 
 namespace campaign {
 namespace {
+
+constexpr std::array<std::string_view, 7> result_columns = {"row", "seed", "passed", "problem", "state", "simulated_s", "wall_s"};
 
 double number(const YAML::Node& node, const char* key, double usual) {
   return node[key] ? base::parse_number(node[key].Scalar()).value_or(usual) : usual;
@@ -110,6 +113,10 @@ std::vector<Measure> to_measures(const YAML::Node& node) {
   for (const auto& entry : node) {
     Measure measure;
     read_measure(entry.begin()->first.Scalar(), entry.begin()->second, measure);
+    if (std::ranges::find(result_columns, measure.name) != result_columns.end())
+      fail_at(entry, "the results have a column " + base::in_quotes(measure.name) + " already; name the measure otherwise with as");
+    if (measure.kind == Measure::Kind::clearance && std::ranges::find(measure.to, measure.model) != measure.to.end())
+      fail_at(entry, "clearance of " + base::in_quotes(measure.model) + " to itself is none");
     if (!names.insert(measure.name).second)
       fail_at(entry, "there are two measures " + base::in_quotes(measure.name) + "; name one with as");
     measures.push_back(measure);
@@ -125,8 +132,9 @@ void check_in_run(const YAML::Node& node, const char* key, double time, bool is_
                                             base::format_number(time));
 }
 
-Condition to_condition_in_run(const YAML::Node& node, const Plan& plan) {
+Condition to_condition_in_run(const YAML::Node& node, const Plan& plan, bool has_end = false) {
   auto condition = to_condition(node);
+  if (condition.within_s && !has_end) fail_at(node["within"], "within is of eventually; expected after, or nothing");
   check_in_run(node, "after", condition.after_s, true, plan);
   if (condition.within_s) check_in_run(node, "within", *condition.within_s, true, plan);
   if (condition.within_s && *condition.within_s < condition.after_s) fail_at(node["within"], "within must not be less than after");
@@ -211,6 +219,15 @@ void read_variation(const YAML::Node& root, Plan& plan) {
   }
 }
 
+// What the plan varies is a column, too.
+void check_columns(const YAML::Node& root, const Plan& plan) {
+  for (const auto& measure : plan.measures) {
+    if (std::ranges::find(plan.axes, measure.name, &Axis::path) != plan.axes.end())
+      fail_at(root["measure"],
+              "the results have a column " + base::in_quotes(measure.name) + " already; name the measure otherwise with as");
+  }
+}
+
 void read_deeds(const YAML::Node& root, Plan& plan) {
   for (const auto& entry : root["events"]) {
     plan.events.push_back(to_event_in_run(entry, plan));
@@ -221,7 +238,7 @@ void read_deeds(const YAML::Node& root, Plan& plan) {
     check_in_run(entry, "at", plan.faults.back().at_s, false, plan);
   }
   for (const auto& entry : root["never"]) plan.never.push_back(to_condition_in_run(entry, plan));
-  for (const auto& entry : root["eventually"]) plan.eventually.push_back(to_condition_in_run(entry, plan));
+  for (const auto& entry : root["eventually"]) plan.eventually.push_back(to_condition_in_run(entry, plan, true));
 }
 
 Plan to_plan(const YAML::Node& root, const std::string& file) {
@@ -235,6 +252,7 @@ Plan to_plan(const YAML::Node& root, const std::string& file) {
   read_expect(root["expect"], plan);
   read_variation(root, plan);
   plan.measures = to_measures(root["measure"]);
+  check_columns(root, plan);
   read_deeds(root, plan);
   plan.hunt = to_hunt(root["hunt"], plan);
   plan.properties = words(root["properties"]);

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -68,6 +69,43 @@ Result<void> set_component(SavedSystem& system, const std::string& path, const s
   return {};
 }
 
+// What ports of rtm-sim read of a connection; each also as inport.KEY and outport.KEY, for one end.
+constexpr std::array connector_keys = {"allow_dup_connection",
+                                       "buffer.length",
+                                       "buffer.read.empty_policy",
+                                       "buffer.read.timeout",
+                                       "buffer.write.full_policy",
+                                       "buffer.write.timeout",
+                                       "buffer_type",
+                                       "call_timeout",
+                                       "data_type",
+                                       "dataflow_type",
+                                       "fan_out",
+                                       "fault",
+                                       "interface_type",
+                                       "io_mode",
+                                       "marshaling_type",
+                                       "publisher.push_policy",
+                                       "publisher.push_rate",
+                                       "publisher.skip_count",
+                                       "reconnect",
+                                       "serializer.cdr.endian",
+                                       "shem_default_size",
+                                       "subscription_type",
+                                       "sync_readwrite",
+                                       "timestamp_policy"};
+
+// Transports of others read what they like.
+bool is_known_key(const SavedConnector& connector, std::string key) {
+  constexpr std::array ours = {"", "corba_cdr", "data_service", "shared_memory", "direct"};
+  if (!connector.is_data || std::ranges::find(ours, connector.interface_type) == ours.end()) return true;
+  key = key.substr(std::string("dataport.").size());
+  for (const char* end : {"inport.", "outport."}) {
+    if (key.starts_with(end)) key.erase(0, std::string(end).size());
+  }
+  return key.starts_with("interface_option.") || std::ranges::find(connector_keys, key) != connector_keys.end();
+}
+
 Result<void> set_connector(SavedSystem& system, const std::string& path, const std::vector<std::string>& words, const std::string& value) {
   if (words.size() != 3) return Error{path + ": expected connector/ID/KEY"};
   const auto found = std::ranges::find_if(system.connectors, [&](const auto& one) { return one.id == words[1] || one.name == words[1]; });
@@ -77,6 +115,9 @@ Result<void> set_connector(SavedSystem& system, const std::string& path, const s
   const std::string key = words[2].starts_with("dataport.") ? words[2] : "dataport." + words[2];
   auto& values = found->properties;
   const auto old = std::ranges::find_if(values, [&](const auto& one) { return one.first == key; });
+  if (old == values.end() && !is_known_key(*found, key))
+    return Error{path + ": no connection has a property " + base::in_quotes(words[2]) +
+                 "; properties: " + base::join(std::vector<std::string>(connector_keys.begin(), connector_keys.end()), ", ")};
   if (old != values.end()) old->second = value;
   if (old == values.end()) values.emplace_back(key, value);
   if (key == "dataport.subscription_type") found->subscription_type = value;

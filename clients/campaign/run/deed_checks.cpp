@@ -6,8 +6,6 @@
 #include <set>
 
 #include "base/text.h"
-#include "run/child_process.h"
-#include "run/deeds_runner.h"
 #include "run/expectations.h"
 #include "run/subject_checks.h"
 
@@ -22,6 +20,7 @@ class DeedChecks {
       : plan_(plan), system_(system) {
     for (const auto& [name, model] : models) {
       models_.insert(name);
+      standing_.insert(name);
       if (model.is_static) static_.insert(name);
     }
     for (const auto* events : {&plan.events, &plan.hunt.events}) {
@@ -104,7 +103,7 @@ class DeedChecks {
     check_component(where, condition.port.substr(0, condition.port.find(':')));
     if (!condition.port.empty()) {
       if (const auto problem = port_problem(system_, condition.port); !problem.empty()) fail(where, problem);
-      if (const auto path = editor::member_path(condition.member); !path) fail(where, path.error().message);
+      if (const auto problem = value_problem(system_, condition.port, condition.member); !problem.empty()) fail(where, problem);
     }
     check_model(where, condition.model);
     check_model(where, condition.touched);
@@ -131,15 +130,26 @@ class DeedChecks {
       case Event::Kind::disconnect:
         return check_connection(where, event.target);
       case Event::Kind::spawn:
+        return check_new_name(where, event.name);
       case Event::Kind::command:
         return;
     }
+  }
+
+  // What the world has from its beginning, and nobody takes away, cannot be added.
+  void check_new_name(const std::string& where, const std::string& name) {
+    const auto takes_it = [&](const Event& event) { return event.kind == Event::Kind::remove && event.target == name; };
+    if (!standing_.contains(name) || std::ranges::any_of(plan_.events, takes_it) || std::ranges::any_of(plan_.hunt.events, takes_it))
+      return;
+    fail(where, "the world has a model " + base::in_quotes(name) + " already, so none can be spawned under this name");
   }
 
   void check_target(const std::string& where, Fault::Object object, const std::string& name) {
     switch (object) {
       case Fault::Object::sensor:
       case Fault::Object::actuator:
+        if (name.find("::") == std::string::npos)
+          return fail(where, "iface " + base::in_quotes(name) + ": expected MODEL::NAME, as \"pioneer2dx::laser\"");
         return check_model(where, name);
       case Fault::Object::connector:
         return check_faulty_connection(where, name);
@@ -152,7 +162,7 @@ class DeedChecks {
 
   const Plan& plan_;
   const editor::SavedSystem& system_;
-  std::set<std::string> models_, static_;
+  std::set<std::string> models_, static_, standing_;
   bool has_unnamed_ = false;  // something that is spawned has the name that stands in its file
   std::string problem_;
 };

@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "run/interrupt.h"
 #include "run/row_script.h"
+#include "run/value_script.h"
 #include "run/warm_program.h"
 
 namespace campaign {
@@ -102,6 +103,19 @@ std::string Outcome::first_problem() const {
   if (!problem.empty()) return problem;
   const auto unmet = std::ranges::find_if(verdicts, [](const auto& verdict) { return !verdict.problem.empty(); });
   return unmet == verdicts.end() ? "" : unmet->expectation + ": " + unmet->problem;
+}
+
+Result<void> check_values(CORBA::ORB_ptr orb, const Campaign& campaign, const std::string& folder) {
+  ValueScript script(campaign.plan());
+  if (!script.is_needed()) return {};
+  auto run = options_of(campaign, Row{}, {.folder = folder});
+  run.expectations.clear();
+  run.script = &script;
+  static_cast<void>(editor::run_system(orb, run));
+  std::error_code ignored;
+  fs::remove_all(folder, ignored);
+  if (script.problem().empty()) return {};
+  return Error{"plan " + base::in_quotes(campaign.plan().file) + ": " + script.problem()};
 }
 
 Outcome run_row(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, const RowRunOptions& options) {

@@ -41,6 +41,10 @@ struct Outcome {
   std::string first_problem() const;
 };
 
+// Whether the components take the values that the plan has for their parameters. Starts the system for it, when there are some; one that
+// does not start is no error here: rows say so. `folder`: as of a row.
+Result<void> check_values(CORBA::ORB_ptr orb, const Campaign& campaign, const std::string& folder);
+
 Outcome run_row(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, const RowRunOptions& options);
 
 }  // namespace campaign

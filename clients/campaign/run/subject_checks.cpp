@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "run/expectations.h"
 #include "run/run_system.h"
+#include "value_codec.h"
 
 namespace campaign {
 namespace {
@@ -77,10 +78,11 @@ class SubjectChecks {
 
   void check_measure(const Measure& measure) {
     for (const auto& model : measure.to) check_model("measure", model);
-    check_model("measure", measure.model);
+    const bool must_move = measure.kind == Measure::Kind::path_length || measure.kind == Measure::Kind::time_to;
+    check_model("measure", measure.model, must_move);
     check_port("measure", measure.port);
     if (measure.kind != Measure::Kind::value) return;
-    if (const auto path = editor::member_path(measure.member); !path) fail("measure", path.error().message);
+    if (const auto problem = value_problem(system_, measure.port, measure.member); !problem.empty()) fail("measure", problem);
   }
 
   void check_expectation(const Expectation& expectation) {
@@ -89,6 +91,8 @@ class SubjectChecks {
     for (const auto& model : expectation.except) check_model(where, model);
     check_component(where, expectation.component);
     check_port(where, expectation.port);
+    if (expectation.kind != Expectation::Kind::value) return;
+    if (const auto problem = value_problem(system_, expectation.port, expectation.member); !problem.empty()) fail(where, problem);
   }
 
   const Plan& plan_;
@@ -111,6 +115,24 @@ std::string port_problem(const editor::SavedSystem& system, const std::string& p
   if (std::ranges::find(names, port.substr(colon + 1)) != names.end()) return "";
   return "component " + component->instance + " has no port " + base::in_quotes(port.substr(colon + 1)) +
          " in the profile; ports: " + base::join(names, ", ");
+}
+
+std::string value_problem(const editor::SavedSystem& system, const std::string& port, const std::string& member) {
+  const auto path = editor::member_path(member);
+  if (!path) return path.error().message;
+  const auto is_at = [&](const editor::SavedTarget& end) {
+    return end.instance + ":" + end.port_name.substr(end.port_name.find('.') + 1) == port;
+  };
+  bool is_read = false;
+  for (const auto& connector : system.connectors) {
+    if (!connector.is_data) continue;
+    if (is_at(connector.source)) {
+      const auto problem = editor::member_problem(connector.data_type, *path);
+      return problem.empty() ? "" : "port " + base::in_quotes(port) + " sends no number " + base::in_quotes(member) + "; it has " + problem;
+    }
+    is_read = is_read || is_at(connector.target);
+  }
+  return is_read ? "port " + base::in_quotes(port) + " is no OutPort, so there are no values to see" : "";
 }
 
 Result<void> check_subjects(const Plan& plan, const editor::SavedSystem& system, const std::map<std::string, StandingModel>& models) {

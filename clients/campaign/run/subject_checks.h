@@ -14,5 +14,7 @@ namespace campaign {
 Result<void> check_subjects(const Plan& plan, const editor::SavedSystem& system, const std::map<std::string, StandingModel>& models);
 // That of a condition or a measure, COMPONENT:PORT; empty: good. The problem says what is there.
 std::string port_problem(const editor::SavedSystem& system, const std::string& port);
+// Of a number that it sends, as far as the profile's connections tell; empty: good.
+std::string value_problem(const editor::SavedSystem& system, const std::string& port, const std::string& member);
 
 }  // namespace campaign

@@ -1,0 +1,40 @@
+// Whether the components of a system take the values that a plan has for their parameters. Only they know the types, so a run is begun for
+// it, and given up before its first step. One thread at a time; see run_script.h of the system editor.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "plan/plan.h"
+#include "run/run_script.h"
+
+namespace campaign {
+
+class ValueScript final : public editor::RunScript {
+ public:
+  explicit ValueScript(const Plan& plan);
+  // Whether there is anything to ask.
+  bool is_needed() const { return !wanted_.empty(); }
+  // What a component does not take; empty: it takes all, or has not come so far.
+  const std::string& problem() const { return problem_; }
+
+  const std::vector<editor::Expectation>& watched() const override { return watched_; }
+  editor::Result<void> begin(editor::RunScene& scene) override;
+  std::optional<std::int64_t> next_stop(std::int64_t) const override { return std::nullopt; }
+  editor::Result<void> act(editor::RunScene&, std::int64_t) override { return {}; }
+  bool excuses(const std::string&) const override { return true; }
+  void end(editor::RunScene*, const editor::Seen&, editor::RunResult&) override {}
+
+ private:
+  struct Wanted {
+    std::string where;  // in the plan
+    std::string component, parameter, value;
+  };
+  std::vector<Wanted> wanted_;
+  std::vector<editor::Expectation> watched_;
+  std::string problem_;
+};
+
+}  // namespace campaign
