@@ -86,6 +86,12 @@ class Hunt {
     for (const auto& feature : outcome.features) is_new |= features_.insert(feature).second;
     if (is_new && outcome.is_passed()) corpus_.push_back(tried);
     const auto kind = signature(outcome);
+    if (!outcome.has_begun && !outcome.problem.empty()) {  // trouble of the machine
+      constexpr std::size_t enough = 3;
+      if (++not_begun_ == result_.cases && not_begun_ >= enough)
+        problem_ = "plan " + base::in_quotes(campaign_.plan().file) + ": does not start: " + outcome.problem;
+      return;
+    }
     if (const auto room = outcome.problem.empty() ? Result<void>() : room_for(options_, room_to_go_on); !room) {
       problem_ = room.error().message;
       return;
@@ -188,7 +194,9 @@ class Hunt {
   Random random_;
   std::vector<HuntCase> corpus_;
   std::set<std::string> features_, signatures_;
+  Broken broken_;  // the simplest case so far of what is being shrunk
   HuntResult result_;
+  std::size_t not_begun_ = 0;  // cases
   const editor::WarmPrograms warm_;
   std::string problem_;  // why nothing can be found
   Clock::time_point began_ = Clock::now();
@@ -218,7 +226,14 @@ Result<HuntResult> hunt(CORBA::ORB_ptr orb, const Campaign& campaign, const Hunt
   fs::create_directories(options.folder, error);
   if (error) return Error{"folder " + base::in_quotes(options.folder) + ": " + error.message()};
   if (const auto room = room_for(options, room_to_begin); !room) return room.error();
-  auto result = Hunt(orb, campaign, options, show).go();
+  if (const auto writable = check_writable(temporary_folder()); !writable) return writable.error();
+  if (const auto good = check_values(orb, campaign, options.folder + "/values"); !good) {
+    fs::remove(options.folder, error);
+    return good.error();
+  }
+  const auto targets = hunt_targets(campaign);
+  if (!targets) return targets.error();
+  auto result = Hunt(orb, campaign, *targets, options, show).go();
   fs::remove(options.folder, error);  // when it is empty
   return result;
 }

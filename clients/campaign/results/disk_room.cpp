@@ -1,7 +1,9 @@
 #include "results/disk_room.h"
 
+#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
+#include <system_error>
 
 #include "base/text.h"
 
@@ -16,6 +18,17 @@ base::Result<void> check_room(const std::vector<std::string>& folders, std::uint
     if (space.available < least)
       return base::Error{"folder " + base::in_quotes(folder) + ": the disk has less than " + std::to_string(least >> 20U) + " MiB left"};
   }
+  return {};
+}
+
+base::Result<void> check_writable(const std::string& folder) {
+  auto name = (fs::path(folder) / "rtse-tried-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) {
+    const std::error_code error(errno, std::generic_category());
+    return base::Error{"folder " + base::in_quotes(folder) + ": " + error.message()};
+  }
+  std::error_code ignored;
+  fs::remove(name, ignored);
   return {};
 }
 

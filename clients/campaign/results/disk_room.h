@@ -14,6 +14,9 @@ inline constexpr std::uintmax_t room_to_begin = 32U << 20U, room_to_go_on = 1U <
 // The error names the first folder whose disk has less.
 base::Result<void> check_room(const std::vector<std::string>& folders, std::uintmax_t least);
 
+// Whether a file can be made in the folder.
+base::Result<void> check_writable(const std::string& folder);
+
 // Where the temporary files of runs are.
 std::string temporary_folder();
 

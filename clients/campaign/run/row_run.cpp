@@ -59,6 +59,7 @@ Outcome run_once(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, c
   Outcome outcome;
   const auto world = campaign.world_of(row);
   if (!world) {
+    outcome.has_begun = true;  // with these values it never will
     outcome.problem = world.error().message;
     return outcome;
   }
@@ -78,6 +79,7 @@ Outcome run_once(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, c
   run.simulator_options = script.simulator_options();
   run.script = &script;
   const auto result = editor::run_system(orb, run);
+  outcome.has_begun = result.has_begun;
   outcome.problem = result.problem;
   outcome.logs = result.logs;
   outcome.verdicts = result.verdicts;

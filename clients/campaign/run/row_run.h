@@ -27,8 +27,9 @@ struct RowRunOptions {
 };
 
 struct Outcome {
-  std::string problem;  // why it did not run to its end
-  std::string logs;     // then: last lines of all processes
+  bool has_begun = false;  // false: the machine did not let it, which says nothing about the row
+  std::string problem;     // why it did not run to its end
+  std::string logs;        // then: last lines of all processes
   std::vector<editor::Verdict> verdicts;
   std::vector<std::string> notes;
   std::string state_hash;

@@ -55,6 +55,14 @@ Result<SweepResult> sweep(CORBA::ORB_ptr orb, const Campaign& campaign, const Sw
                           const std::function<void(const Progress&)>& show) {
   if (const auto made = make_kept(options); !made) return made.error();
   if (const auto room = check_room({temporary_folder()}, room_to_begin); !room) return room.error();
+  if (const auto writable = check_writable(temporary_folder()); !writable) return writable.error();
+  // Once a list of rows is there, the call that made it has asked.
+  const bool was_asked = Store::has_list(options.results, campaign.list_key());
+  if (const auto good = was_asked ? Result<void>() : check_values(orb, campaign, options.kept + "/values"); !good) {
+    std::error_code ignored;
+    fs::remove(options.kept, ignored);
+    return good.error();
+  }
   auto store = Store::open(options.results);
   if (!store) return store.error();
   Tally tally(campaign, options, std::move(*store), show);

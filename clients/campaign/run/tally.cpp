@@ -60,6 +60,8 @@ bool Tally::is_stopped() {
 
 void Tally::add(const Todo& todo, const std::string& key, const Outcome& outcome, const std::string& folder) {
   auto& progress = result_.progress;
+  const bool was_run = outcome.has_begun || outcome.problem.empty();
+  if (todo.is_audit && !was_run) return;
   if (todo.is_audit) {
     const bool is_same = outcome.state_hash == todo.stored_state;
     ++progress.audited;
@@ -70,7 +72,9 @@ void Tally::add(const Todo& todo, const std::string& key, const Outcome& outcome
     if (const auto added = store_.add_audit(key, outcome.state_hash, is_same); !added && problem_.empty()) problem_ = added.error().message;
     return;
   }
-  if (const auto added = store_.add_run(key, outcome, folder); !added && problem_.empty()) problem_ = added.error().message;
+  // What the machine did not let begin is run again by the next call.
+  const auto added = was_run ? store_.add_run(key, outcome, folder) : Result<void>();
+  if (!added && problem_.empty()) problem_ = added.error().message;
   const auto twins = twins_.find(key);
   const std::size_t rows = 1 + (twins == twins_.end() ? 0 : twins->second);
   progress.done += rows;

@@ -120,6 +120,7 @@ Result<void> run_task(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepO
     if (editor::is_interrupted() && !outcome.problem.empty()) return;
     const auto room = outcome.problem.empty() ? Result<void>() : check_room({options.kept, temporary_folder()}, room_to_go_on);
     if (!room) return part.give_up(room.error().message);
+    if (!outcome.has_begun && !outcome.problem.empty()) return part.give_up(outcome.problem);  // another machine may let it
     std::string kept;
     if (!outcome.is_passed()) {
       kept = options.kept + "/" + name;

@@ -198,7 +198,10 @@ class Run final : public RunningSystem {
     if (options_.record_last_s > 0 && result_.is_passed()) std::filesystem::remove(options_.record, ignored);
   }
 
-  Result<void> start_foreign() { return foreign_.start(naming_.address(), simulator_.id()); }
+  Result<void> start_foreign() {
+    result_.has_begun = true;
+    return foreign_.start(naming_.address(), simulator_.id());
+  }
 
   // The contexts in which components of others are called.
   Result<void> start_time_host() {

@@ -70,6 +70,7 @@ struct RunOptions {
 
 struct RunResult {
   std::uint64_t seed = 0;
+  bool has_begun = false;          // its naming service and its simulator were there: what came then is its own
   std::string problem;             // why the system could not be started or run to the end; empty: it was
   std::string logs;                // last lines of all processes, when there was a problem
   std::vector<std::string> notes;  // what is not as the world's file says
