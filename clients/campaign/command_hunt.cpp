@@ -48,10 +48,12 @@ nlohmann::ordered_json to_json(const Find& find) {
 }
 
 void tell(const Find& find, std::size_t number) {
-  std::printf("find %zu after %.0f s, case %zu: %s\n  %s\n  rtse sweep %s --row 1 --state %s%s\n", number, find.after_s, find.case_number,
-              find.problem.c_str(), text_of(find.tried).c_str(), shell_word(find.file).c_str(),
-              find.state_hash.empty() ? "-" : find.state_hash.c_str(),
-              find.is_repeatable ? "" : "\n  it was not the same when it was run again");
+  const auto again = "rtse sweep " + shell_word(find.file) + " --row 1" + (find.state_hash.empty() ? "" : " --state " + find.state_hash);
+  const char* doubt = !find.was_repeated   ? "\n  interrupted: it may not be the simplest, and was not run again"
+                      : find.is_repeatable ? ""
+                                           : "\n  it was not the same when it was run again";
+  std::printf("find %zu after %.0f s, case %zu: %s\n  %s\n  %s%s\n", number, find.after_s, find.case_number, find.problem.c_str(),
+              text_of(find.tried).c_str(), again.c_str(), doubt);
   std::fflush(stdout);
 }
 

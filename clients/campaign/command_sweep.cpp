@@ -31,6 +31,8 @@ namespace {
 
 using editor::Editor;
 
+constexpr const char* no_state = "-";  // of a run that does not get to its end
+
 struct SweepCall {
   std::string plan, results, keep, audit = "0", state, rows, engine = "local", shared, task;
   std::vector<std::string> sbatch;
@@ -105,13 +107,14 @@ void run_one(Editor& editor, const Campaign& campaign, const SweepCall& call) {
     std::cout << json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
   } else {
     std::printf("%s  %.1f s simulated in %.1f s  state %s  files in %s\n", outcome.is_passed() ? "passed" : "FAILED", outcome.simulated_s,
-                outcome.wall_s, outcome.state_hash.empty() ? "-" : outcome.state_hash.c_str(), folder.c_str());
+                outcome.wall_s, outcome.state_hash.empty() ? no_state : outcome.state_hash.c_str(), folder.c_str());
     for (const auto& [name, value] : outcome.measures) std::printf("  %s  %.6g\n", name.c_str(), value);
   }
   std::fflush(stdout);
   for (const auto& note : outcome.notes) std::fprintf(stderr, "rtse: %s\n", note.c_str());
-  if (!call.state.empty() && call.state != outcome.state_hash)
-    editor.fail({"row " + std::to_string(call.row) + ": state " + outcome.state_hash + ", expected " + call.state});
+  const std::string state = outcome.state_hash.empty() ? no_state : outcome.state_hash;
+  if (!call.state.empty() && call.state != state)
+    editor.fail({"row " + std::to_string(call.row) + ": state " + state + ", expected " + call.state});
   if (!outcome.problem.empty()) editor.fail({outcome.problem});
   for (const auto& verdict : outcome.verdicts) {
     if (!verdict.problem.empty()) editor.fail({verdict.expectation + ": " + verdict.problem});
@@ -256,7 +259,8 @@ void add_sweep(base::Command& app, editor::Chosen& chosen) {
   command->add_option("--keep", call->keep, "Folder for files of rows that fail; default: the results' name with .runs");
   auto* row = command->add_option("--row", call->row, "Run only this row, whatever is stored, and keep its files")
                   ->check(base::number_between(1, 1e6));
-  command->add_option("--state", call->state, "With --row: fail when the state at the end is another")->needs(row);
+  command->add_option("--state", call->state, "With --row: fail when the state at the end is another; -: it does not get there")
+      ->needs(row);
   command->add_option("--rows", call->rows, "Only the rows FIRST..LAST")->excludes(row)->check([](const std::string& text) {
     return parse_row_range(text) ? std::string() : "expected N or FIRST..LAST, got " + base::in_quotes(text);
   });

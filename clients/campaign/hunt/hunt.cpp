@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "remote.h"
 #include "results/disk_room.h"
+#include "run/iface_faults.h"
 #include "run/interrupt.h"
 #include "run/warm_program.h"
 
@@ -27,8 +28,14 @@ Result<void> room_for(const HuntOptions& options, std::uintmax_t least) { return
 
 class Hunt {
  public:
-  Hunt(CORBA::ORB_ptr orb, const Campaign& campaign, const HuntOptions& options, const std::function<void(const HuntProgress&)>& show)
-      : orb_(orb), campaign_(campaign), options_(options), show_(show), maker_(campaign), random_(campaign.plan().hunt.seed, "hunt") {}
+  Hunt(CORBA::ORB_ptr orb, const Campaign& campaign, const std::vector<HuntTarget>& targets, const HuntOptions& options,
+       const std::function<void(const HuntProgress&)>& show)
+      : orb_(orb),
+        campaign_(campaign),
+        options_(options),
+        show_(show),
+        maker_(campaign, targets),
+        random_(campaign.plan().hunt.seed, "hunt") {}
 
   // The error: the system of the plan does not start.
   Result<HuntResult> go() {
@@ -100,7 +107,7 @@ class Hunt {
       Find find;
       find.case_number = result_.cases;
       find.after_s = wall();
-      find.problem = outcome.first_problem();
+      broken_ = {outcome.first_problem(), outcome.state_hash};
       find.tried = shrunk(tried, kind);
       if (!write(find, kind)) return;
       result_.finds.push_back(std::move(find));
@@ -109,8 +116,15 @@ class Hunt {
     show_({result_.cases, result_.finds.size(), features_.size(), wall(), found ? &result_.finds.back() : nullptr});
   }
 
-  bool still_breaks(const HuntCase& tried, const std::string& kind) {
-    return !editor::is_interrupted() && signature(run(tried, "shrinking")) == kind;
+  struct Broken {
+    std::string problem, state_hash;
+  };
+
+  // How, if it does.
+  std::optional<Broken> still_breaks(const HuntCase& tried, const std::string& kind) {
+    if (editor::is_interrupted()) return std::nullopt;
+    const auto outcome = run(tried, "shrinking");
+    return signature(outcome) == kind ? std::optional(Broken{outcome.first_problem(), outcome.state_hash}) : std::nullopt;
   }
 
   // Whether it is not simply too short for what is expected: a path that is long enough, a place that is reached.
@@ -128,7 +142,9 @@ class Hunt {
   // Fewer deeds, then simpler numbers, then a shorter run.
   HuntCase shrunk(HuntCase best, const std::string& kind) {
     const auto try_it = [&](HuntCase simpler) {
-      if (!still_breaks(simpler, kind)) return false;
+      auto broken = still_breaks(simpler, kind);
+      if (!broken) return false;
+      broken_ = std::move(*broken);
       best = std::move(simpler);
       return true;
     };
@@ -174,15 +190,21 @@ class Hunt {
   // The plan that repeats it, and whether it does. False: there is nothing to repeat, since nothing runs even when it is left alone.
   bool write(Find& find, const std::string& kind) {
     find.file = options_.folder + "/find-" + std::to_string(result_.finds.size() + 1) + ".yaml";
+    find.problem = broken_.problem;
+    find.state_hash = broken_.state_hash;
     const auto first = run(find.tried, "again"), second = run(find.tried, "again");
     if (find.tried.deeds() == 0 && !first.problem.empty() && first.simulated_s <= 0 && !editor::is_interrupted()) {
       problem_ = "plan " + base::in_quotes(campaign_.plan().file) + ": does not start: " + first.problem;
       return false;
     }
-    find.state_hash = first.state_hash;
-    if (!first.first_problem().empty()) find.problem = first.first_problem();
-    find.is_repeatable = first.state_hash == second.state_hash && signature(first) == kind && signature(second) == kind;
-    std::ofstream(find.file) << "# " << find.problem << "\n# state " << find.state_hash << "\n" << plan_text(campaign_, find.tried);
+    find.was_repeated = !editor::is_interrupted();
+    if (find.was_repeated) {
+      find.state_hash = first.state_hash;
+      if (!first.first_problem().empty()) find.problem = first.first_problem();
+      find.is_repeatable = first.state_hash == second.state_hash && signature(first) == kind && signature(second) == kind;
+    }
+    std::ofstream(find.file) << "# " << find.problem << "\n# state " << (find.state_hash.empty() ? "-" : find.state_hash) << "\n"
+                             << plan_text(campaign_, find.tried);
     return true;
   }
 

@@ -28,9 +28,10 @@ struct Find {
   std::string problem;
   HuntCase tried;  // shrunk
   std::size_t case_number = 0;
-  double after_s = 0;  // real time until it was found
-  std::string state_hash;
-  std::string file;  // the plan that repeats it
+  double after_s = 0;         // real time until it was found
+  std::string state_hash;     // empty: it does not run to its end
+  std::string file;           // the plan that repeats it
+  bool was_repeated = false;  // no interrupt came before
   bool is_repeatable = false;
 };
 

@@ -14,37 +14,9 @@ namespace campaign {
 namespace {
 
 namespace fs = std::filesystem;
-using Object = Fault::Object;
 
 // A tenth of a second is exact enough to find things, and easy to read.
 double rounded(double seconds) { return std::round(seconds * 10) / 10; }
-
-std::string parameter(const editor::SavedComponent& component, const std::string& name) {
-  for (const auto& set : component.configuration_sets) {
-    for (const auto& [key, value] : set.values) {
-      if (!set.is_hidden() && key == name) return value;
-    }
-  }
-  return "";
-}
-
-// Our own components say which iface they stand for.
-std::vector<HuntTarget> targets_of(const editor::SavedSystem& system) {
-  std::vector<HuntTarget> targets;
-  for (const auto& connector : system.connectors) {
-    const bool is_push = connector.is_data && !base::equal_ignoring_case(connector.dataflow_type, "pull");
-    if (is_push) targets.push_back({Object::connector, connector.id, {}});
-  }
-  for (const auto& component : system.components) {
-    const auto device = parameter(component, "device_id");
-    const bool is_drive = component.id.find(":RTCPosition2d:") != std::string::npos;
-    const bool is_camera = component.id.find("Camera:") != std::string::npos;
-    if (!device.empty() && is_drive) targets.push_back({Object::actuator, device, {}});
-    if (!device.empty() && !is_camera) targets.push_back({Object::sensor, device, {}});
-    targets.push_back({Object::component, component.instance, {Fault::Kind::error, Fault::Kind::exception}});
-  }
-  return targets;
-}
 
 // As often the utmost as anything between: most of what can break breaks there.
 double amount(Fault::Kind kind, Random& random) {
@@ -74,14 +46,11 @@ double amount(Fault::Kind kind, Random& random) {
 
 }  // namespace
 
-CaseMaker::CaseMaker(const Campaign& campaign) : campaign_(campaign) {
-  const auto& hunt = campaign.plan().hunt;
-  const bool is_all = hunt.targets.empty() && hunt.events.empty();
-  for (const auto& target : is_all ? targets_of(campaign.system()) : hunt.targets) {
-    for (const auto kind : target.kinds.empty() ? faults_of(target.object) : target.kinds)
-      choices_.push_back({nullptr, target.object, kind, target.name});
+CaseMaker::CaseMaker(const Campaign& campaign, const std::vector<HuntTarget>& targets) : campaign_(campaign) {
+  for (const auto& target : targets) {
+    for (const auto kind : target.kinds) choices_.push_back({nullptr, target.object, kind, target.name});
   }
-  for (const auto& event : hunt.events) choices_.push_back({&event, {}, {}, {}});
+  for (const auto& event : campaign.plan().hunt.events) choices_.push_back({&event, {}, {}, {}});
 }
 
 // The first moment is special: nothing has been measured, sent or remembered yet.

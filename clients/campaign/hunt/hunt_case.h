@@ -24,8 +24,8 @@ struct HuntCase {
 
 class CaseMaker {
  public:
-  // What the plan says may be broken; without a word of it, all that the system has. The campaign must live as long.
-  explicit CaseMaker(const Campaign& campaign);
+  // Of the plan's events and these faults, see hunt_targets(). The campaign must live as long.
+  CaseMaker(const Campaign& campaign, const std::vector<HuntTarget>& targets);
 
   HuntCase fresh(Random& random);
   // A case that differs a little.

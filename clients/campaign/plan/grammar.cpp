@@ -171,6 +171,7 @@ constexpr std::array hunt_fault_keys = {
     Key{"actuator", Form::text, {}, false, "iface of a drive"},
     Key{"connector", Form::text, {}, false, "Id or name of a connection of the system"},
     Key{"component", Form::text, {}, false, "Component of the system"},
+    Key{"naming", Form::words, "gone", false, "The naming service does not answer"},
     Key{"is", Form::texts, {}, false, "Only these; default: all that fit"},
 };
 

@@ -158,14 +158,15 @@ HuntSpace to_hunt(const YAML::Node& node, const Plan& plan) {
   for (const auto& entry : node["faults"]) {
     HuntTarget target;
     int objects = 0;
-    for (const auto object : {Fault::Object::sensor, Fault::Object::actuator, Fault::Object::connector, Fault::Object::component}) {
+    for (const auto object :
+         {Fault::Object::sensor, Fault::Object::actuator, Fault::Object::connector, Fault::Object::component, Fault::Object::naming}) {
       const auto named = entry[std::string(to_text(object))];
       if (!named) continue;
       ++objects;
       target.object = object;
       target.name = named.Scalar();
     }
-    if (objects != 1) fail_at(entry, "must have one of sensor, actuator, connector, component");
+    if (objects != 1) fail_at(entry, "must have one of sensor, actuator, connector, component, naming");
     const auto possible = faults_of(target.object);
     for (const auto& name : words(entry["is"])) {
       const auto kind = fault_kind(name);

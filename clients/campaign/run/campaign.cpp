@@ -12,6 +12,7 @@
 #include "rows/content_hash.h"
 #include "run/child_process.h"
 #include "run/deed_checks.h"
+#include "run/iface_faults.h"
 #include "run/spawned_models.h"
 #include "run/subject_checks.h"
 

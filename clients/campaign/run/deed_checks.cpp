@@ -1,8 +1,6 @@
 #include "run/deed_checks.h"
 
 #include <algorithm>
-#include <chrono>
-#include <filesystem>
 #include <set>
 
 #include "base/text.h"
@@ -11,8 +9,6 @@
 
 namespace campaign {
 namespace {
-
-using namespace std::chrono_literals;
 
 class DeedChecks {
  public:
@@ -171,28 +167,6 @@ class DeedChecks {
 
 Result<void> check_deeds(const Plan& plan, const editor::SavedSystem& system, const std::map<std::string, StandingModel>& models) {
   return DeedChecks(plan, system, models).check();
-}
-
-Result<void> check_iface_faults(const Plan& plan) {
-  constexpr auto limit = 60s;
-  auto faults = plan.faults;
-  for (const auto& target : plan.hunt.targets) {
-    for (const auto kind : target.kinds.empty() ? faults_of(target.object) : target.kinds)
-      faults.push_back({target.object, kind, target.name, 0, {}, usual_amount(kind).value_or(0)});
-  }
-  const auto options = DeedsRunner({.events = {}, .faults = faults, .never = {}, .eventually = {}}, 1, 0).simulator_options();
-  if (options.empty()) return {};
-  editor::ProgramCall call{{editor::own_program("sim-server"), plan.world, "--check", "-v", "0"}, {}, ""};
-  for (const auto& path : plan.resource_paths) call.words.insert(call.words.end(), {"--resource-path", path});
-  call.words.insert(call.words.end(), options.begin(), options.end());
-  auto started = editor::ChildProcess::start(call);
-  if (!started) return started.error();
-  if (!started->wait(limit)) return {};  // a world that takes so long is loaded once more, and says so then
-  constexpr std::string_view mark = "sim-server: fault ";
-  for (const auto& line : base::split_list(started->said(), '\n')) {
-    if (line.starts_with(mark)) return Error{"plan " + base::in_quotes(plan.file) + ": " + line.substr(line.find(' ') + 1)};
-  }
-  return {};
 }
 
 }  // namespace campaign

@@ -13,7 +13,5 @@ namespace campaign {
 
 // The error names what was asked for, and what there is. Models that an event spawns count as there.
 Result<void> check_deeds(const Plan& plan, const editor::SavedSystem& system, const std::map<std::string, StandingModel>& models);
-// Asks the simulator itself, which costs a load of the world; nothing without faults of sensors and drives.
-Result<void> check_iface_faults(const Plan& plan);
 
 }  // namespace campaign

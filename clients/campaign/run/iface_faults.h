@@ -1,0 +1,16 @@
+// Which faults the simulator can give to the sensors and drives of a plan's world: it is asked, since it alone knows what they are. One
+// thread at a time.
+#pragma once
+
+#include <vector>
+
+#include "run/campaign.h"
+
+namespace campaign {
+
+// Whether the faults that a plan names fit. The error is one line.
+Result<void> check_iface_faults(const Plan& plan);
+// What a hunt may break: of what the plan names, or else all that the system has, each with all faults that fit it.
+Result<std::vector<HuntTarget>> hunt_targets(const Campaign& campaign);
+
+}  // namespace campaign
