@@ -1,10 +1,14 @@
 # Campaigns: plans, rows, results, and whole sweeps.
 rtmsim_test(campaign_test campaigns/fault_test.cpp campaigns/plan_test.cpp campaigns/rows_test.cpp campaigns/store_test.cpp LIBRARIES campaign rt_core)
-foreach(case sweep reports killed warm_killed disk_full interrupted refused events faults hunts)
-  add_test(NAME campaigns.${case}
-    COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/campaigns/campaigns.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
-  set_tests_properties(campaigns.${case} PROPERTIES LABELS integration TIMEOUT 300)
-endforeach()
+function(campaign_cases script)
+  foreach(case ${ARGN})
+    add_test(NAME campaigns.${case}
+      COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/campaigns/${script} ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+    set_tests_properties(campaigns.${case} PROPERTIES LABELS integration TIMEOUT 300)
+  endforeach()
+endfunction()
+campaign_cases(campaigns.py sweep reports killed warm_killed disk_full interrupted refused events faults hunts)
+campaign_cases(trouble.py kills shared machine finds)
 # On a cluster of one machine; skipped where Slurm is not installed (scripts/setup --with-slurm).
 foreach(case rows broken killed other_rows)
   add_test(NAME campaigns.slurm_${case}

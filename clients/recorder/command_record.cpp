@@ -2,14 +2,17 @@
 #include <fnmatch.h>
 #include <omnithread.h>
 #include <poll.h>
+#include <signal.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <iostream>
 #include <iterator>
 #include <map>
@@ -82,6 +85,31 @@ class EndHandle {
  private:
   const int descriptor_;
   std::atomic<bool> is_raised_{false};  // relaxed: says nothing but itself
+};
+
+// Readable after SIGUSR1: somebody has started components again. One for the process.
+class LookSignal {
+ public:
+  LookSignal() {
+    handle_.store(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
+    struct sigaction action {};
+    action.sa_handler = [](int) {
+      const int saved = errno;
+      (void)::eventfd_write(handle_.load(std::memory_order_relaxed), 1);
+      errno = saved;
+    };
+    ::sigemptyset(&action.sa_mask);
+    ::sigaction(SIGUSR1, &action, nullptr);
+  }
+  static int descriptor() { return handle_.load(std::memory_order_relaxed); }
+  // Whether it has come since the last time.
+  static bool take() {
+    eventfd_t count = 0;
+    return ::eventfd_read(descriptor(), &count) == 0;
+  }
+
+ private:
+  static inline std::atomic<int> handle_{-1};  // relaxed: says nothing but itself
 };
 
 bool is_excluded(const RecordOptions& options, const std::string& name) {
@@ -194,8 +222,24 @@ void report(Editor& editor, const RecordOptions& options, const McapSink& sink, 
   std::cerr << '\n';
 }
 
+// Components that were killed and are there again go on in their channels. Who is not there need not be.
+void look_again(Editor& editor, PortSource& source, ComponentSource& components) {
+  if (const auto tree = editor.tree()) {
+    const editor::Detail all{.contexts = true, .connectors = true, .configuration = true};
+    for (const auto& component : editor::read_components(*tree, all, editor.limit())) {
+      if (!component.problem.empty()) continue;
+      for (const auto& port : component.ports) {
+        if (const auto done = source.connect_again(component, port); !done) editor.fail(done.error());
+      }
+      components.attach_again(component);
+    }
+  }
+  std::cerr << "looked again" << std::endl;
+}
+
 // An interrupt, the end of the time that was asked for, or a file that takes no more: which announces itself here.
-void wait_for_end(const RecordOptions& options, channels::Exchange& exchange, const std::shared_ptr<EndHandle>& handle) {
+void wait_for_end(const RecordOptions& options, channels::Exchange& exchange, const std::shared_ptr<EndHandle>& handle,
+                  const std::function<void()>& look) {
   exchange.on_failure([handle] { handle->raise(); });
   const auto start = std::chrono::steady_clock::now();
   while (!editor::is_interrupted() && !exchange.failure() && !handle->is_raised()) {
@@ -205,8 +249,9 @@ void wait_for_end(const RecordOptions& options, channels::Exchange& exchange, co
       if (passed.count() >= options.duration_s) return;
       wait_ms = static_cast<int>(std::clamp((options.duration_s - passed.count()) * 1000 + 1, 0.0, 1e9));
     }
-    pollfd handles[2] = {{editor::interrupt_handle(), POLLIN, 0}, {handle->descriptor(), POLLIN, 0}};
-    (void)::poll(handles, 2, wait_ms);
+    pollfd handles[3] = {{editor::interrupt_handle(), POLLIN, 0}, {handle->descriptor(), POLLIN, 0}, {LookSignal::descriptor(), POLLIN, 0}};
+    (void)::poll(handles, 3, wait_ms);
+    if (LookSignal::take()) look();
   }
 }
 
@@ -285,7 +330,7 @@ bool record_into(Editor& editor, const RecordOptions& options, const RunClock& c
   if (!options.quiet)
     std::cerr << "recording " << source.size() << " ports" << (*views ? " and the simulator" : "") << " into "
               << base::in_quotes(options.file) << "; Ctrl-C ends it\n";
-  wait_for_end(options, exchange, end);
+  wait_for_end(options, exchange, end, [&] { look_again(editor, source, components); });
   if (end->is_raised() && !exchange.failure() && !options.quiet) std::cerr << "a component is in its error state\n";
   return true;
 }
@@ -318,6 +363,7 @@ void record(Editor& editor, const RecordOptions& options) {
   auto sinks = open_sinks(options, clock);
   if (!sinks) return editor.fail(sinks.error());
   editor::catch_interrupts();
+  const LookSignal caught;
   {
     channels::Exchange exchange;
     exchange.attach(sinks->first, {.patience = clock.is_lockstep() ? lockstep_patience : std::chrono::seconds(0)});

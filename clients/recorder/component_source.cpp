@@ -1,5 +1,6 @@
 #include "component_source.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
@@ -82,6 +83,7 @@ struct ComponentSource::State {
   std::function<void(const std::string&, const ComponentEvent&)> told{};
   std::optional<channels::ChannelId> log{}, diagnostics{};
   std::vector<std::unique_ptr<Watched>> watched{};
+  base::Turn<> turn{};                            // of who asks the components, and who puts one in the place of another
   std::map<std::string, std::uint64_t> counts{};  // of diagnose(), by topic
   channels::Time diagnosed{0};
 
@@ -110,6 +112,8 @@ class ComponentSource::Watched {
   Watched& operator=(const Watched&) = delete;
 
   base::Result<void> open();
+  // Instead of opening some: with the channels of one that is gone.
+  void go_on_from(const Watched& gone);
   void attach();
   const editor::ComponentView& view() const { return view_; }
 
@@ -121,6 +125,8 @@ class ComponentSource::Watched {
     if (is_latched) channel.metadata["latched"] = "yes";
     return state_.exchange.open(std::move(channel));
   }
+
+  void put_first();
 
   State& state_;
   const editor::ComponentView view_;
@@ -135,6 +141,19 @@ base::Result<void> ComponentSource::Watched::open() {
   if (!states || !configuration) return (states ? configuration : states).error();
   states_ = *states;
   configuration_ = *configuration;
+  put_first();
+  return {};
+}
+
+void ComponentSource::Watched::go_on_from(const Watched& gone) {
+  states_ = gone.states_;
+  configuration_ = gone.configuration_;
+  *events_.lock() = gone.events_.snapshot();
+  put_first();
+}
+
+// As it is now.
+void ComponentSource::Watched::put_first() {
   const auto now = state_.clock.now();
   for (const auto& context : view_.contexts) {
     if (!context.is_gone() && context.is_running)
@@ -148,7 +167,6 @@ base::Result<void> ComponentSource::Watched::open() {
     }
     state_.put(configuration_, now, {{"set", set.id}, {"values", values}, {"is_change", false}, {"is_in_tick", false}});
   }
-  return {};
 }
 
 // A component that does not know such services says nothing more.
@@ -205,7 +223,18 @@ base::Result<void> ComponentSource::add(const editor::ComponentView& component) 
   return {};
 }
 
+void ComponentSource::attach_again(const editor::ComponentView& component) {
+  const auto mine = state_->turn.take();
+  const auto known = std::ranges::find_if(state_->watched, [&](const auto& one) { return one->view().instance == component.instance; });
+  if (known == state_->watched.end() || (*known)->view().object->_is_equivalent(component.object)) return;
+  auto watched = std::make_unique<Watched>(*state_, component);
+  watched->go_on_from(**known);
+  watched->attach();
+  *known = std::move(watched);
+}
+
 void ComponentSource::diagnose(channels::Time now, const PortSource& ports) {
+  const auto mine = state_->turn.take();
   if (!state_->diagnostics) return;
   const auto counts = ports.counts();
   const double passed = std::chrono::duration<double>(now - state_->diagnosed).count();

@@ -1,5 +1,6 @@
 #include "port_source.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "base/text.h"
@@ -28,11 +29,15 @@ std::string inports_of(const editor::PortView& port, const editor::ConnectorView
   return base::join(names, ",");
 }
 
+std::string topic_of(const editor::ComponentView& component, const editor::PortView& port) {
+  return "/" + component.instance + "/" + port.name;
+}
+
 }  // namespace
 
 channels::Channel channel_of(const editor::ComponentView& component, const editor::PortView& port) {
   channels::Channel channel;
-  channel.topic = "/" + component.instance + "/" + port.name;
+  channel.topic = topic_of(component, port);
   channel.encoding = "cdr";
   const std::string type = port.data_type();
   channel.schema.name = channels::scoped_name(type);
@@ -65,21 +70,37 @@ base::Result<void> PortSource::add(const editor::ComponentView& component, const
   channel.metadata.insert(extra.begin(), extra.end());
   const auto id = exchange_.open(std::move(channel));
   if (!id) return id.error();
-  Counter& counter = *counters_.emplace_back(new Counter{"/" + component.instance + "/" + port.name});
-  auto tap =
-      editor::Tap::connect(orb_, port, {}, [this, id = *id, &counter](std::span<const unsigned char> payload, bool is_little_endian) {
-        counter.samples.fetch_add(1, std::memory_order_relaxed);
+  Tapped tapped{*id, {}, std::make_unique<Counter>(), {}};
+  tapped.counter->topic = topic_of(component, port);
+  if (const auto connected = connect(tapped, port); !connected) return connected;
+  tapped_.push_back(std::move(tapped));
+  return {};
+}
+
+base::Result<void> PortSource::connect_again(const editor::ComponentView& component, const editor::PortView& port) {
+  const auto known = std::ranges::find_if(tapped_, [&](const Tapped& one) { return one.counter->topic == topic_of(component, port); });
+  if (known == tapped_.end() || known->port->_is_equivalent(port.object)) return {};
+  return connect(*known, port);
+}
+
+base::Result<void> PortSource::connect(Tapped& tapped, const editor::PortView& port) {
+  tapped.tap.reset();
+  auto tap = editor::Tap::connect(
+      orb_, port, {},
+      [this, id = tapped.channel, counter = tapped.counter.get()](std::span<const unsigned char> payload, bool is_little_endian) {
+        counter->samples.fetch_add(1, std::memory_order_relaxed);
         exchange_.put(id, clock_.now(), channels::cdr_head(is_little_endian),
                       {reinterpret_cast<const char*>(payload.data()), payload.size()});
       });
   if (!tap) return tap.error();
-  taps_.push_back(std::move(*tap));
+  tapped.tap = std::move(*tap);
+  tapped.port = port.object;
   return {};
 }
 
 std::map<std::string, std::uint64_t> PortSource::counts() const {
   std::map<std::string, std::uint64_t> counts;
-  for (const auto& counter : counters_) counts[counter->topic] = counter->samples.load(std::memory_order_relaxed);
+  for (const auto& one : tapped_) counts[one.counter->topic] = one.counter->samples.load(std::memory_order_relaxed);
   return counts;
 }
 

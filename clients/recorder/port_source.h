@@ -29,7 +29,9 @@ class PortSource final {
   // `extra` is added to the metadata of the channel.
   base::Result<void> add(const editor::ComponentView& component, const editor::PortView& port,
                          const std::map<std::string, std::string>& extra = {});
-  std::size_t size() const { return taps_.size(); }
+  // The channel of a port whose component was started again goes on with the new one. Nothing happens to others.
+  base::Result<void> connect_again(const editor::ComponentView& component, const editor::PortView& port);
+  std::size_t size() const { return tapped_.size(); }
   // How many samples came so far, by topic. Any thread.
   std::map<std::string, std::uint64_t> counts() const;
 
@@ -38,11 +40,18 @@ class PortSource final {
     std::string topic;
     std::atomic<std::uint64_t> samples{0};  // relaxed: says nothing but itself
   };
+  struct Tapped {
+    channels::ChannelId channel;
+    RTC::PortService_var port;
+    std::unique_ptr<Counter> counter;  // before the tap, which uses it
+    std::unique_ptr<editor::Tap> tap;
+  };
+  base::Result<void> connect(Tapped& tapped, const editor::PortView& port);
+
   CORBA::ORB_var orb_;
   channels::Exchange& exchange_;
   const base::Clock& clock_;
-  std::vector<std::unique_ptr<Counter>> counters_;  // before the taps, which use them
-  std::vector<std::unique_ptr<editor::Tap>> taps_;
+  std::vector<Tapped> tapped_;
 };
 
 }  // namespace recorder

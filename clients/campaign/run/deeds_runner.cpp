@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "base/text.h"
 #include "remote.h"
@@ -139,30 +140,64 @@ Result<void> DeedsRunner::act(editor::RunScene& scene, std::int64_t done) {
   return look(scene, static_cast<double>(done) * step_s_);
 }
 
+void DeedsRunner::note(const std::string& text) {
+  if (std::ranges::find(notes_, text) == notes_.end()) notes_.push_back(text);
+}
+
 Result<void> DeedsRunner::carry_out(editor::RunScene& scene, const Timed& timed) {
-  if (timed.what == Timed::What::event) {
-    const auto& event = deeds_.events[timed.place];
-    if (const auto done = carry_out_event(scene, event); !done) return Error{"event " + event.text + ": " + done.error().message};
-    return {};
-  }
-  const auto& fault = deeds_.faults[timed.place];
-  const auto done = timed.what == Timed::What::fault ? start_fault(scene, fault) : end_fault(scene, fault);
-  if (!done) return Error{"fault " + fault.text() + ": " + done.error().message};
+  if (timed.what == Timed::What::event) return happen(scene, deeds_.events[timed.place]);
+  const auto done = timed.what == Timed::What::fault ? start_fault(scene, timed.place) : end_fault(scene, timed.place);
+  if (!done) return Error{"fault " + deeds_.faults[timed.place].text() + ": " + done.error().message};
   return {};
 }
 
-Result<void> DeedsRunner::start_fault(editor::RunScene& scene, const Fault& fault) {
+Result<void> DeedsRunner::happen(editor::RunScene& scene, const Event& event) {
+  const auto done = carry_out_event(scene, event);
+  if (!done) return Error{"event " + event.text + ": " + done.error().message};
+  if (!done->empty()) note("event " + event.text + ": did nothing: " + *done);
+  return {};
+}
+
+Result<void> DeedsRunner::start_fault(editor::RunScene& scene, std::size_t place) {
+  const auto& fault = deeds_.faults[place];
   if (fault.object == Object::naming) {
-    scene.set_naming(false);
+    if (naming_gone_++ == 0) scene.set_naming(false);
     return {};
   }
-  return scene.kill_host(fault.target);
+  if (scene.is_away(fault.target)) {
+    note("fault " + fault.text() + ": did nothing: component " + fault.target + " was killed and is not there again");
+    return {};
+  }
+  if (const auto killed = scene.kill_host(fault.target); !killed) return killed;
+  killed_.insert(place);
+  for (const auto& component : scene.system.components) {
+    if (scene.is_away(component.instance)) away_.insert(component.instance);
+  }
+  return {};
 }
 
-Result<void> DeedsRunner::end_fault(editor::RunScene& scene, const Fault& fault) {
-  if (fault.object == Object::component) return scene.restart_host(fault.target);
+Result<void> DeedsRunner::end_fault(editor::RunScene& scene, std::size_t place) {
+  const auto& fault = deeds_.faults[place];
+  if (fault.object == Object::component) {
+    if (killed_.erase(place) == 0) return {};
+    if (naming_gone_ == 0) return restart(scene, fault.target);
+    // Nobody would find it, nor it the others.
+    note("fault " + fault.text() + ": its host starts again when the naming service is back");
+    late_.push_back(fault.target);
+    return {};
+  }
+  if (--naming_gone_ > 0) return {};
   scene.set_naming(true);
+  for (const auto& instance : std::exchange(late_, {})) {
+    if (const auto there = restart(scene, instance); !there) return there;
+  }
   return {};
+}
+
+Result<void> DeedsRunner::restart(editor::RunScene& scene, const std::string& instance) {
+  const auto there = scene.restart_host(instance);
+  std::erase_if(away_, [&](const std::string& one) { return !scene.is_away(one); });
+  return there;
 }
 
 Result<void> DeedsRunner::look(editor::RunScene& scene, double now_s) {
@@ -173,7 +208,7 @@ Result<void> DeedsRunner::look(editor::RunScene& scene, double now_s) {
     if (!is_now) return is_now.error();
     if (!*is_now) continue;
     happened_.insert(i);
-    if (const auto done = carry_out_event(scene, event); !done) return Error{"event " + event.text + ": " + done.error().message};
+    if (const auto done = happen(scene, event); !done) return done.error();
   }
   for (auto [conditions, moments] : {std::pair(&deeds_.never, &broken_), std::pair(&deeds_.eventually, &fulfilled_)}) {
     for (std::size_t i = 0; i < conditions->size(); ++i) {
@@ -194,7 +229,7 @@ Result<bool> DeedsRunner::is_true(editor::RunScene& scene, const Condition& cond
     return (!condition.min || value->last >= *condition.min) && (!condition.max || value->last <= *condition.max);
   }
   if (condition.kind == Condition::Kind::state) {
-    const auto view = scene.editor.component(condition.component + ".rtc", {.contexts = true});
+    const auto view = scene.is_away(condition.component) ? Error{"killed"} : scene.component(condition.component, {.contexts = true});
     const std::string state = view ? editor::state_text(view->state()) : "gone";
     return base::equal_ignoring_case(state, condition.state);
   }
@@ -218,10 +253,10 @@ Result<bool> DeedsRunner::is_true(editor::RunScene& scene, const Condition& cond
 }
 
 bool DeedsRunner::excuses(const std::string& instance) const {
-  return std::ranges::any_of(deeds_.faults, [&](const Fault& fault) {
-    return fault.object == Object::component && fault.target == instance && fault.kind != Kind::slow &&
-           !(fault.kind == Kind::kill && fault.for_s);
-  });
+  return away_.contains(instance) || std::ranges::any_of(deeds_.faults, [&](const Fault& fault) {
+           return fault.object == Object::component && fault.target == instance && fault.kind != Kind::slow &&
+                  !(fault.kind == Kind::kill && fault.for_s);
+         });
 }
 
 std::vector<editor::Verdict> DeedsRunner::verdicts() const {

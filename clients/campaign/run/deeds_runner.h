@@ -39,6 +39,8 @@ class DeedsRunner {
   bool excuses(const std::string& instance) const;
   // Of never and eventually.
   std::vector<editor::Verdict> verdicts() const;
+  // What did nothing, and why: each once.
+  const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   struct Timed {
@@ -47,8 +49,11 @@ class DeedsRunner {
     std::size_t place = 0;
   };
   Result<void> carry_out(editor::RunScene& scene, const Timed& timed);
-  Result<void> start_fault(editor::RunScene& scene, const Fault& fault);
-  Result<void> end_fault(editor::RunScene& scene, const Fault& fault);
+  Result<void> happen(editor::RunScene& scene, const Event& event);
+  Result<void> start_fault(editor::RunScene& scene, std::size_t place);
+  Result<void> end_fault(editor::RunScene& scene, std::size_t place);
+  Result<void> restart(editor::RunScene& scene, const std::string& instance);
+  void note(const std::string& text);
   Result<void> look(editor::RunScene& scene, double now_s);
   Result<bool> is_true(editor::RunScene& scene, const Condition& condition, double now_s);
   bool polls() const;
@@ -63,11 +68,16 @@ class DeedsRunner {
   std::set<std::size_t> happened_;           // events on a condition
   std::map<std::size_t, double> broken_;     // never -> when [s]
   std::map<std::size_t, double> fulfilled_;  // eventually -> when [s]
+  std::set<std::size_t> killed_;             // faults that killed a host which is not there again
+  std::set<std::string> away_;               // components of such hosts
+  std::vector<std::string> late_;            // whose host starts again when the naming service is back
+  int naming_gone_ = 0;                      // faults that keep it away
+  std::vector<std::string> notes_;
 };
 
 // Whether the world has no such model, or none that a link's name begins with. False, too, when the simulator does not answer.
 bool is_missing(const editor::RunScene& scene, const std::string& model);
-// One event, now.
-Result<void> carry_out_event(editor::RunScene& scene, const Event& event);
+// One event, now. A text: why it did nothing.
+Result<std::string> carry_out_event(editor::RunScene& scene, const Event& event);
 
 }  // namespace campaign

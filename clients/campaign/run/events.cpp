@@ -24,13 +24,14 @@ Result<void> simctl(editor::RunScene& scene, std::vector<std::string> words, con
   return said ? Result<void>() : said.error();
 }
 
-Result<void> spawn(editor::RunScene& scene, const Event& event) {
+Result<std::string> spawn(editor::RunScene& scene, const Event& event) {
   std::vector<std::string> words{"spawn", event.target};
   if (!event.name.empty()) words.insert(words.end(), {"--name", event.name});
   if (!event.numbers.empty()) words.insert(words.end(), {"--pose", base::join(event.numbers, " ")});
   const auto done = simctl(scene, words);
-  const bool is_there = !done && !event.name.empty() && scene.simulator.models().size() > 0 && !is_missing(scene, event.name);
-  return is_there ? Result<void>() : done;  // spawned already
+  if (done) return std::string();
+  const bool is_there = !event.name.empty() && scene.simulator.models().size() > 0 && !is_missing(scene, event.name);
+  return is_there ? Result<std::string>("there is a model " + base::in_quotes(event.name) + " already") : done.error();
 }
 
 // Of a model that has gone, or is still to come: nothing happens.
@@ -47,23 +48,16 @@ Result<void> push(editor::RunScene& scene, const Event& event) {
   return change_model(scene, event.target, words, event.numbers);
 }
 
-Result<editor::ComponentView> component(editor::RunScene& scene, const std::string& instance, editor::Detail detail) {
-  auto view = scene.editor.component(instance + ".rtc", detail);
-  if (!view) return view.error();
-  if (!view->problem.empty()) return Error{"component " + instance + " " + view->problem};
-  return view;
-}
-
 // What a component refuses, because it is in another state, is no failure of the run.
 Result<void> change(editor::RunScene& scene, const std::string& instance, editor::Transition transition) {
-  const auto view = component(scene, instance, {.contexts = true});
+  const auto view = scene.component(instance, {.contexts = true});
   if (!view) return view.error();
   static_cast<void>(editor::change_state(*view, transition, -1));
   return {};
 }
 
 Result<void> set(editor::RunScene& scene, const Event& event) {
-  const auto view = component(scene, event.target, {.configuration = true});
+  const auto view = scene.component(event.target, {.configuration = true});
   if (!view) return view.error();
   const auto id = view->active_set.empty() ? "default" : view->active_set;
   if (const auto problem = editor::value_problem(*view, event.name, event.value); !problem.empty())
@@ -72,22 +66,53 @@ Result<void> set(editor::RunScene& scene, const Event& event) {
   return editor::use_set(*view, id);
 }
 
+const editor::SavedConnector* saved_connection(const editor::RunScene& scene, const std::string& name) {
+  const auto& connectors = scene.system.connectors;
+  const auto saved = std::ranges::find_if(connectors, [&](const auto& one) { return one.id == name || one.name == name; });
+  return saved == connectors.end() ? nullptr : &*saved;
+}
+
+Result<editor::PortView> port(editor::RunScene& scene, const editor::SavedTarget& target) {
+  const auto view = scene.component(target.instance, {.connectors = true});
+  if (!view) return view.error();
+  const auto* found = view->port(target.port_name.substr(target.port_name.find('.') + 1));
+  if (found == nullptr) return Error{"component " + target.instance + ": has no port " + base::in_quotes(target.port_name)};
+  return *found;
+}
+
 // What is connected already, or not any more, is left as it is.
 Result<void> connection(editor::RunScene& scene, const Event& event) {
-  const auto& connectors = scene.system.connectors;
-  const auto saved = std::ranges::find_if(connectors, [&](const auto& one) { return one.id == event.target || one.name == event.target; });
-  if (saved == connectors.end()) return Error{"the system has no connection " + base::in_quotes(event.target)};
-  const auto port = [&](const editor::SavedTarget& target) {
-    return scene.editor.port(target.instance + ".rtc:" + target.port_name.substr(target.port_name.find('.') + 1), true);
-  };
-  const auto source = port(saved->source);
+  const auto* saved = saved_connection(scene, event.target);
+  if (saved == nullptr) return Error{"the system has no connection " + base::in_quotes(event.target)};
+  const auto source = port(scene, saved->source);
   if (!source) return source.error();
-  const bool is_there = std::ranges::any_of(source->port.connectors, [&](const auto& one) { return one.id == saved->id; });
+  const bool is_there = std::ranges::any_of(source->connectors, [&](const auto& one) { return one.id == saved->id; });
   if (is_there == (event.kind == Event::Kind::connect)) return {};
-  if (event.kind == Event::Kind::disconnect) return editor::disconnect_connector(source->port, saved->id);
-  const auto target = port(saved->target);
+  if (event.kind == Event::Kind::disconnect) return editor::disconnect_connector(*source, saved->id);
+  const auto target = port(scene, saved->target);
   if (!target) return target.error();
-  return editor::connect_ports({&source->port, &target->port}, saved->id, saved->name, editor::connect_properties(*saved));
+  return editor::connect_ports({&*source, &*target}, saved->id, saved->name, editor::connect_properties(*saved));
+}
+
+// The component that an event needs and that was killed; empty: none.
+std::string away_of(const editor::RunScene& scene, const Event& event) {
+  std::vector<std::string> needed;
+  switch (event.kind) {
+    case Event::Kind::set:
+    case Event::Kind::activate:
+    case Event::Kind::deactivate:
+    case Event::Kind::reset:
+      needed = {event.target};
+      break;
+    case Event::Kind::connect:
+    case Event::Kind::disconnect:
+      if (const auto* saved = saved_connection(scene, event.target)) needed = {saved->source.instance, saved->target.instance};
+      break;
+    default:
+      break;
+  }
+  const auto away = std::ranges::find_if(needed, scene.is_away);
+  return away == needed.end() ? "" : *away;
 }
 
 Result<void> command(editor::RunScene& scene, const Event& event) {
@@ -96,12 +121,8 @@ Result<void> command(editor::RunScene& scene, const Event& event) {
   return said ? Result<void>() : said.error();
 }
 
-}  // namespace
-
-Result<void> carry_out_event(editor::RunScene& scene, const Event& event) {
+Result<void> do_it(editor::RunScene& scene, const Event& event) {
   switch (event.kind) {
-    case Event::Kind::spawn:
-      return spawn(scene, event);
     case Event::Kind::remove:
       return change_model(scene, event.target, {"delete", event.target});
     case Event::Kind::push:
@@ -121,8 +142,19 @@ Result<void> carry_out_event(editor::RunScene& scene, const Event& event) {
       return connection(scene, event);
     case Event::Kind::command:
       return command(scene, event);
+    case Event::Kind::spawn:
+      break;
   }
   return {};
+}
+
+}  // namespace
+
+Result<std::string> carry_out_event(editor::RunScene& scene, const Event& event) {
+  if (event.kind == Event::Kind::spawn) return spawn(scene, event);
+  if (const auto away = away_of(scene, event); !away.empty()) return "component " + away + " was killed and is not there again";
+  const auto done = do_it(scene, event);
+  return done ? Result<std::string>(std::string()) : done.error();
 }
 
 }  // namespace campaign

@@ -53,6 +53,7 @@ void RowScript::end(editor::RunScene* scene, const editor::Seen& seen, editor::R
     measures_ =
         take_measures(campaign_.plan().measures, seen, world_ ? world_->models() : campaign_.models(), scene->place.file("record.txt"), 0);
   }
+  result.notes.insert(result.notes.end(), deeds_.notes().begin(), deeds_.notes().end());
   add_features(seen);
   if (!scene || !options_.draws || result.is_passed()) return;
   // A picture that cannot be drawn takes nothing from the verdict.

@@ -344,6 +344,7 @@ Result<std::vector<std::string>> member_path(const std::string& member) {
 }
 
 void SeenValue::take(double number) {
+  is_over = false;
   ++samples;
   if (std::isnan(number)) {
     ++not_numbers;

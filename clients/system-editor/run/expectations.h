@@ -66,6 +66,7 @@ struct SeenValue {
   double lowest = 0, highest = 0;
   double sum = 0, last = 0;  // of the numbers
   std::string problem;       // why other samples did not count
+  bool is_over = false;      // the component that sent the last one was killed
   void take(double number);
   // Of the numbers that were no NaN; nothing when there were none.
   std::optional<double> mean() const;

@@ -1,5 +1,6 @@
 #include "run/port_values.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
@@ -54,23 +55,51 @@ const Json* find(const Json& sample, const std::vector<std::string>& path) {
 Result<void> PortValues::listen(CORBA::ORB_ptr orb, const Editor& editor, const std::vector<Expectation>& expectations) {
   for (const auto& expectation : expectations) {
     if (expectation.kind != Expectation::Kind::value) continue;
-    auto port = editor.port(expectation.port);
-    if (!port) return port.error();
-    if (port->port.port_type() != "DataOutPort")
-      return Error{"port " + expectation.port + ": is no OutPort, so there are no values to see"};
-    const auto type = type_code_of(port->port.data_type());
-    if (CORBA::is_nil(type))
-      return Error{"port " + expectation.port + ": carries " + port->port.data_type() + ", which rtse does not know"};
-    if (!listened_.insert(expectation.port + " " + expectation.member).second) continue;
-    const auto path =
-        expectation.member.empty() ? Result<std::vector<std::string>>(std::vector<std::string>()) : member_path(expectation.member);
-    if (!path) return path.error();
-    auto tap = Tap::connect(orb, port->port, {{"dataport.allow_dup_connection", "YES"}},
-                            [this, type, &expectation, path = *path](std::span<const unsigned char> payload, bool little) {
-                              take(type, expectation, path, payload, little);
-                            });
-    if (!tap) return tap.error();
-    taps_.push_back(std::move(*tap));
+    const bool is_known = std::ranges::any_of(listening_, [&](const Listening& one) {
+      return one.expectation->port == expectation.port && one.expectation->member == expectation.member;
+    });
+    if (is_known) continue;
+    auto attached = attach(orb, editor, expectation);
+    if (!attached) return attached.error();
+    listening_.push_back(std::move(*attached));
+  }
+  return {};
+}
+
+Result<PortValues::Listening> PortValues::attach(CORBA::ORB_ptr orb, const Editor& editor, const Expectation& expectation) {
+  auto port = editor.port(expectation.port);
+  if (!port) return port.error();
+  if (port->port.port_type() != "DataOutPort") return Error{"port " + expectation.port + ": is no OutPort, so there are no values to see"};
+  const auto type = type_code_of(port->port.data_type());
+  if (CORBA::is_nil(type)) return Error{"port " + expectation.port + ": carries " + port->port.data_type() + ", which rtse does not know"};
+  const auto path =
+      expectation.member.empty() ? Result<std::vector<std::string>>(std::vector<std::string>()) : member_path(expectation.member);
+  if (!path) return path.error();
+  if (const auto problem = path->empty() ? "" : member_problem(port->port.data_type(), *path); !problem.empty())
+    return Error{"port " + expectation.port + ": the samples have no number " + expectation.member + "; they have " + problem};
+  auto tap = Tap::connect(orb, port->port, {{"dataport.allow_dup_connection", "YES"}},
+                          [this, type, &expectation, path = *path](std::span<const unsigned char> payload, bool little) {
+                            take(type, expectation, path, payload, little);
+                          });
+  if (!tap) return tap.error();
+  return Listening{&expectation, port->component.instance, std::move(*tap)};
+}
+
+void PortValues::forget(const std::set<std::string>& instances) {
+  for (const auto& one : listening_) {
+    if (!instances.contains(one.instance)) continue;
+    auto all = seen_.lock();
+    if (const auto found = all->find(one.expectation->port + " " + one.expectation->member); found != all->end())
+      found->second.is_over = true;
+  }
+}
+
+Result<void> PortValues::listen_again(CORBA::ORB_ptr orb, const Editor& editor, const std::set<std::string>& instances) {
+  for (auto& one : listening_) {
+    if (!instances.contains(one.instance)) continue;
+    auto attached = attach(orb, editor, *one.expectation);
+    if (!attached) return attached.error();
+    one = std::move(*attached);
   }
   return {};
 }
@@ -78,11 +107,11 @@ Result<void> PortValues::listen(CORBA::ORB_ptr orb, const Editor& editor, const 
 std::optional<SeenValue> PortValues::so_far(const std::string& port, const std::string& member) const {
   const auto all = seen_.lock();
   const auto found = all->find(port + " " + member);
-  return found == all->end() ? std::nullopt : std::optional(found->second);
+  return found == all->end() || found->second.is_over ? std::nullopt : std::optional(found->second);
 }
 
 std::map<std::string, SeenValue> PortValues::end() {
-  taps_.clear();
+  listening_.clear();
   return seen_.snapshot();
 }
 

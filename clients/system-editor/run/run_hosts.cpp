@@ -136,6 +136,8 @@ std::string RunHosts::gone_member() {
 
 bool RunHosts::has(const std::string& instance) const { return host_of(hosts_, instance) != hosts_.end(); }
 
+bool RunHosts::is_killed(const std::string& instance) const { return host_of(killed_, instance) != killed_.end(); }
+
 std::vector<RunningSystem::Process> RunHosts::processes() const {
   std::vector<RunningSystem::Process> all;
   for (const auto& host : hosts_) all.push_back({"rtcd of " + host.components, host.process.pid()});

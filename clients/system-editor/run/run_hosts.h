@@ -40,6 +40,8 @@ class RunHosts {
   // Empty: nobody. Looks only at what has been said since the last time.
   std::string gone_member();
   bool has(const std::string& instance) const;
+  // Its host was killed and is not there again.
+  bool is_killed(const std::string& instance) const;
   std::vector<RunningSystem::Process> processes() const;
   std::vector<std::string> logs() const;
   // ": " and what the log of a component's host tells.

@@ -42,6 +42,20 @@ base::Result<void> RunRecorder::start(const RecorderCall& call, const Wait& wait
   return base::Error{"recording " + base::in_quotes(call.file) + ": " + (lines.empty() ? process_->how_it_ended() : lines.back())};
 }
 
+base::Result<void> RunRecorder::look_again(const Wait& wait_until) {
+  constexpr std::string_view mark = "looked again";
+  const auto looks = [&] {
+    const auto text = said();
+    std::size_t count = 0;
+    for (auto at = text.find(mark); at != std::string::npos; at = text.find(mark, at + 1)) ++count;
+    return count;
+  };
+  if (!process_ || !process_->is_running()) return {};
+  const auto before = looks();
+  ::kill(process_->pid(), SIGUSR1);
+  return wait_until("recorder", [&] { return looks() > before || !process_->is_running(); });
+}
+
 bool RunRecorder::await_word(const char* word) {
   const auto deadline = std::chrono::steady_clock::now() + recorder_limit;
   while (said().find(word) == std::string::npos) {

@@ -32,6 +32,8 @@ class RunRecorder {
 
   // Returns when every port is connected to it.
   base::Result<void> start(const RecorderCall& call, const Wait& wait_until);
+  // At the ports of components that are there again, too; when it was started.
+  base::Result<void> look_again(const Wait& wait_until);
   // It takes nothing more. The file is whole then, unless there is a hash log to come. Nothing happens when it was not started, here and
   // in finish().
   void end();

@@ -28,7 +28,10 @@ struct RunScene {
   const PortValues& values;
   std::function<Result<void>(const std::string& instance)> kill_host;     // the host of a component, with SIGKILL
   std::function<Result<void>(const std::string& instance)> restart_host;  // one that was killed; its components are wired and started
+  std::function<bool(const std::string& instance)> is_away;               // its host was killed and is not there again
   std::function<void(bool is_there)> set_naming;                          // stops the naming service, or lets it go on
+  // As the editor sees it; also while the naming service is stopped.
+  std::function<Result<ComponentView>(const std::string& instance, Detail)> component;
 };
 
 class RunScript {

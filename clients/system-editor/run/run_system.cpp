@@ -6,10 +6,12 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <thread>
 
 #include "base/text.h"
 #include "commands/system.h"
+#include "remote.h"
 #include "run/foreign_processes.h"
 #include "run/interrupt.h"
 #include "run/port_values.h"
@@ -32,6 +34,12 @@ using namespace std::chrono_literals;
 
 constexpr auto editor_limit = 5s;
 constexpr auto end_of_process = 300ms;  // from the break of its connections until it can be waited for
+
+std::set<std::string> instances_of(const RunHosts::Members& members) {
+  std::set<std::string> instances;
+  for (const auto* member : members) instances.insert(member->instance);
+  return instances;
+}
 
 // Everything of one run. Its end takes the processes down, the components before the simulator before the naming service.
 class Run final : public RunningSystem {
@@ -282,6 +290,7 @@ class Run final : public RunningSystem {
   Result<void> kill_host(const std::string& instance) {
     const auto members = hosts_.kill(instance);
     if (!members) return members.error();
+    ports_.forget(instances_of(*members));
     return wait_until("end of the host of " + names_of(*members), [&] {
       const auto there = simulator_.participants();
       return std::ranges::none_of(*members, [&](const auto* member) { return there.contains(member->instance); });
@@ -298,10 +307,28 @@ class Run final : public RunningSystem {
       });
     });
     if (!back) return back;
-    return wire_again(*members);
+    if (const auto wired = wire_again(*members); !wired) return wired;
+    if (const auto heard = ports_.listen_again(orb_, *editor_, instances_of(*members)); !heard) return heard;
+    return recorder_.look_again(wait());
   }
 
-  // Connections that a dead process has left behind are made again, the others stand.
+  // Who is there is known before it cannot be asked.
+  void set_naming(bool is_there) {
+    auto names = is_there ? Result<NamingTree>(Error{}) : editor_->tree();
+    names_ = names ? std::optional(std::move(*names)) : std::nullopt;
+    naming_.set_running(is_there);
+  }
+
+  Result<ComponentView> component(const std::string& instance, Detail detail) {
+    if (!names_) return editor_->component(instance + ".rtc", detail);
+    const auto entry = names_->find_component({false, {instance + ".rtc"}, ""});
+    if (!entry) return entry.error();
+    const CallLimit limited(editor_limit);
+    auto view = read_component(**entry, detail);
+    return view.problem.empty() ? Result<ComponentView>(std::move(view)) : Error{"component " + instance + " " + view.problem};
+  }
+
+  // Connections that a dead process has left behind are made again, the others stand. Who is still away is left out.
   Result<void> wire_again(const RunHosts::Members& members) {
     const auto is_member = [&](const SavedComponent& component) { return std::ranges::find(members, &component) != members.end(); };
     auto all = system_;
@@ -314,6 +341,9 @@ class Run final : public RunningSystem {
       return std::ranges::none_of(members, [&](const auto* member) { return member->instance == component.instance; });
     });
     std::erase_if(started.start_up, [&](const SavedTurn& turn) { return started.component(turn.instance) == nullptr; });
+    std::erase_if(all.components, [&](const SavedComponent& component) { return hosts_.is_killed(component.instance); });
+    const auto is_away = [&](const SavedTarget& end) { return hosts_.is_killed(end.instance); };
+    std::erase_if(all.connectors, [&](const SavedConnector& one) { return is_away(one.source) || is_away(one.target); });
     const auto wired_file = place_.scratch("wired-again.xml"), started_file = place_.scratch("started-again.xml");
     for (const auto& [system, file] : {std::pair(&all, &wired_file), std::pair(&started, &started_file)}) {
       if (const auto written = write_system(*system, *file); !written) return written;
@@ -386,10 +416,11 @@ class Run final : public RunningSystem {
 
   Result<void> begin_script() {
     if (!options_.script) return {};
-    scene_.emplace(RunScene{orb_, *editor_, simulator_, place_, naming_.address(), system_, ports_,
-                            [this](const auto& instance) { return kill_host(instance); },
-                            [this](const auto& instance) { return restart_host(instance); },
-                            [this](bool is_there) { naming_.set_running(is_there); }});
+    scene_.emplace(RunScene{
+        orb_, *editor_, simulator_, place_, naming_.address(), system_, ports_,
+        [this](const auto& instance) { return kill_host(instance); }, [this](const auto& instance) { return restart_host(instance); },
+        [this](const auto& instance) { return hosts_.is_killed(instance); }, [this](bool is_there) { set_naming(is_there); },
+        [this](const auto& instance, Detail detail) { return component(instance, detail); }});
     return options_.script->begin(*scene_);
   }
 
@@ -445,6 +476,7 @@ class Run final : public RunningSystem {
   ForeignProcesses foreign_;
   RunRecorder recorder_{place_};
   std::optional<Editor> editor_;
+  std::optional<NamingTree> names_;  // while the naming service is stopped by a script
   RunJudge judge_{options_, place_, system_, simulator_, hosts_};
   PortValues ports_;
   std::optional<RunScene> scene_;  // of a script

@@ -1,0 +1,45 @@
+# What the tests of campaigns share: a folder of their own, plans in it, and calls of rtse. Arguments: CASE BIN_DIR LIB_DIR SOURCE_DIR.
+import csv
+import io
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+case, bin_dir, lib_dir, source = sys.argv[1:]
+folder = pathlib.Path(tempfile.mkdtemp(prefix="campaigns-"))
+START = f"""system: {source}/worlds/systems/obstacle_avoidance.xml
+world: {source}/worlds/obstacle_course.sdf
+duration: 1
+"""
+
+
+def plan(text, name="plan.yaml"):
+    (folder / name).write_text(START + text)
+    return str(folder / name)
+
+
+def call(*words):
+    return subprocess.run([f"{bin_dir}/rtse", *map(str, words)], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=200)
+
+
+def rtse(*words, code=0):
+    done = call(*words)
+    assert code is None or done.returncode == code, (words, done.returncode, done.stdout, done.stderr)
+    return done
+
+
+def rows(file="plan.db"):
+    return list(csv.DictReader(io.StringIO(rtse("results", folder / file, "--csv").stdout)))
+
+
+def states(file="plan.db"):
+    return {row["row"]: row["state"] for row in rows(file)}
+
+
+# Of a plan with one row: its report, the same in two runs.
+def twice(text, name, code=0):
+    one, two = (json.loads(rtse("--json", "sweep", plan(text, name), "--row", 1, "--keep", folder / name[:-5], code=code).stdout) for _ in range(2))
+    assert one["state"] == two["state"], (text, one, two)
+    return one
