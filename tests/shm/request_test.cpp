@@ -83,6 +83,7 @@ TEST(Requests, nonsense_is_refused_with_a_message) {
   EXPECT_EQ(message(FaultRequest{"laser", "odd", std::nullopt, 0}),
             "fault \"odd\": is none; expected one of off, stuck, bias, noise, missing, latency, dropout, weak, halted");
   EXPECT_EQ(message(FaultRequest{"laser", "dropout", 1.5, 0}), "fault dropout: its amount must be from 0 to 1, got 1.5");
+  EXPECT_EQ(message(FaultRequest{"laser", "latency", 2.5, 0}), "fault latency: its amount must be a whole number of samples, got 2.5");
   EXPECT_EQ(message(FaultRequest{"laser", "off", std::nullopt, -1}), "request fault: duration must not be negative, got -1");
   RawRequest raw;
   raw.kind = 999;
