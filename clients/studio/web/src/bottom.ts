@@ -265,7 +265,8 @@ export class Bottom {
   // Those that are shown, and beside them what else can be.
   private offer_images(): void {
     const cameras = store.world?.ifaces.filter((i) => /camera|rgbd|depth/.test(i.type)) ?? [];
-    for (const name of this.shown_images.keys()) if (/^(camera|rgbd|depth):/.test(name) && !cameras.some((c) => iface_id(c) === name)) this.close_image(name);
+    // A world that is away, or on its way, does not say that a camera has gone.
+    if (store.world?.present) for (const name of this.shown_images.keys()) if (/^(camera|rgbd|depth):/.test(name) && !cameras.some((c) => iface_id(c) === name)) this.close_image(name);
     const none = recording() ? 'This recording has no pictures.' : store.world?.present ? 'This world has no camera. `worlds/farm.sdf` has one, and so has the model `helicopter`, which can be spawned.' : 'No simulator runs: nothing is seen.';
     put(this.offers, cameras.length === 0 && this.shown_images.size === 0 ? h('p', { class: 'hint' }, ...with_code(none))
       : cameras.filter((c) => !this.shown_images.has(iface_id(c))).map((c) => button(`Show the pictures of ${c.name}${c.type === 'depth' ? ', depth' : ''}`, { icon: 'camera', label: camera_label(iface_id(c)) }, () => this.show_image(iface_id(c)))));
