@@ -99,8 +99,8 @@ void export_tables(editor::Editor& editor, const ExportOptions& options) {
   SampleValues values(*reader);
   for_each(editor, *reader, options.selection, [&](const mcap::Message& message) {
     const std::string& topic = reader->channels().at(message.channel).topic;
-    const auto fail = [&](const base::Error& error) {
-      if (unreadable.insert(message.channel).second) editor.fail(error);
+    const auto fail = [&](const base::Error& why) {
+      if (unreadable.insert(message.channel).second) editor.fail(why);
       return true;
     };
     const auto value = values.of(message);
