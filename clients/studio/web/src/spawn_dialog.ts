@@ -26,4 +26,3 @@ export function spawn_dialog(): void {
     if (args.model) act(`Spawn ${args.model}`, 'spawn', args, (result) => ({ text: `Delete ${result.name}`, name: 'delete_model', args: { model: result.name } })).then((result) => { if (result?.name) select({ kind: 'model', id: result.name }); });
   });
 }
-
