@@ -47,6 +47,8 @@ const flows = [
     const usual = mock.answer;
     mock.answer = (message) => (message.name === 'set_configuration' && !message.args.force ? { error: 'parameter count cannot be 99, expected at most 9' } : usual(message));
     await choose(page, 'component', laser);
+    await until('its details', () => page.evaluate((path) => window.studio.store.details.has(path), laser));
+    await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));  // and they are drawn
     const field = page.locator('.inspector label:has-text("max_turn") + * input[type=number]');
     await field.fill('999');
     await page.keyboard.press('Tab');
