@@ -1,4 +1,5 @@
 # What the campaigns share: an rtcd of their own on a port of loopback, and connections that send it whatever they like. Traffic goes to 127.0.0.1 only.
+import argparse
 import ctypes
 import os
 import random
@@ -136,3 +137,35 @@ def seeded(given):
     seed = given if given is not None else int.from_bytes(os.urandom(4), "little")
     print(f"seed {seed}", flush=True)
     return random.Random(seed)
+
+
+# Of a campaign that sends messages.
+def message_options():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("bin_dir")
+    parser.add_argument("lib_dir")
+    parser.add_argument("--messages", type=int, default=20000)
+    parser.add_argument("--seconds", type=float, help="again and again for so long")
+    parser.add_argument("--connections", type=int, default=8)
+    parser.add_argument("--seed", type=int)
+    parser.add_argument("--valgrind", action="store_true")
+    return parser.parse_args()
+
+
+# The parser of a campaign against a whole system, for a number of rounds or for so long; it may get more options.
+def system_options(rounds):
+    parser = argparse.ArgumentParser()
+    parser.add_argument("folders", nargs=3)
+    parser.add_argument("--rounds", type=int, default=rounds)
+    parser.add_argument("--seconds", type=float)
+    parser.add_argument("--seed", type=int)
+    return parser
+
+
+# What is answered does not matter, but it must be taken.
+def drain(stream):
+    try:
+        while stream.recv(65536):
+            pass
+    except OSError:
+        pass

@@ -2,10 +2,8 @@
 # Each verb of rtse talks to components and to a naming service of ours through two ears that keep every request: the corpus, made anew in each run, so that object keys are those of living
 # objects. Then its messages are sent again, changed: octets, lengths, pieces of other messages, fragments. Ends well when components and names still answer, rtcd has ended with 0 and has not taken
 # much memory. Changed references may name other hosts: as root it goes on in a network of its own, else addresses stay as they are.
-import argparse
 import ctypes
 import fcntl
-import os
 import random as randomness
 import re
 import shutil
@@ -16,17 +14,9 @@ import sys
 import threading
 import time
 
-from attacker import Host, check, head, memory_factor, message, seeded, watchdog
+from attacker import Host, check, drain, head, memory_factor, message, message_options, seeded, watchdog
 
-parser = argparse.ArgumentParser()
-parser.add_argument("bin_dir")
-parser.add_argument("lib_dir")
-parser.add_argument("--messages", type=int, default=20000)
-parser.add_argument("--seconds", type=float, help="again and again for so long")
-parser.add_argument("--connections", type=int, default=8)
-parser.add_argument("--seed", type=int)
-parser.add_argument("--valgrind", action="store_true")
-options = parser.parse_args()
+options = message_options()
 random = seeded(options.seed)
 components = ["SourceAll", "SinkAll", "EchoProvider", "EchoConsumer", "ConfigDemo", "FailOnRequest"]
 # What these do is their business: they end what is to be tried out.
@@ -247,7 +237,7 @@ class Attack(threading.Thread):
                 self.closed += 1
 
     def talk(self, stream):
-        reader = threading.Thread(target=self.drain, args=(stream,), daemon=True)
+        reader = threading.Thread(target=drain, args=(stream,), daemon=True)
         reader.start()
         for _ in range(50):
             batch, good = [], True
@@ -266,14 +256,6 @@ class Attack(threading.Thread):
         except OSError:
             pass
         reader.join(30)
-
-    @staticmethod
-    def drain(stream):
-        try:
-            while stream.recv(65536):
-                pass
-        except OSError:
-            pass
 
 
 has_own_network = alone()

@@ -1,7 +1,6 @@
 # Requests in fragments of every kind, many connections at the same time: fragments.py BIN_DIR LIB_DIR [--messages N] [--seconds T] [--seed S] [--valgrind]
 # omniORB 4.2 dies of 1,400 of them when they reach it. Half of the connections lead to rtcd, half to the naming service that it has started. Ends well when both still answer, rtcd has ended with 0 and
 # neither has taken much memory. With --valgrind both run under it.
-import argparse
 import os
 import re
 import shutil
@@ -12,17 +11,9 @@ import tempfile
 import threading
 import time
 
-from attacker import Host, check, head, locate, memory_factor, message, name_server, pad, seeded
+from attacker import Host, check, drain, head, locate, memory_factor, message, message_options, name_server, pad, seeded
 
-parser = argparse.ArgumentParser()
-parser.add_argument("bin_dir")
-parser.add_argument("lib_dir")
-parser.add_argument("--messages", type=int, default=20000)
-parser.add_argument("--seconds", type=float, help="again and again for so long")
-parser.add_argument("--connections", type=int, default=8)
-parser.add_argument("--seed", type=int)
-parser.add_argument("--valgrind", action="store_true")
-options = parser.parse_args()
+options = message_options()
 random = seeded(options.seed)
 
 keys = [b"manager", b"NameService", b"INIT", b"nobody", b"\xff\x00\x00\x00"]
@@ -72,7 +63,7 @@ class Attack(threading.Thread):
                 self.left -= 1
 
     def talk(self, stream):
-        reader = threading.Thread(target=self.drain, args=(stream,), daemon=True)
+        reader = threading.Thread(target=drain, args=(stream,), daemon=True)
         reader.start()
         good = True
         while good and self.goes_on():
@@ -88,14 +79,6 @@ class Attack(threading.Thread):
         except OSError:
             pass
         reader.join(self.patience)
-
-    @staticmethod
-    def drain(stream):
-        try:
-            while stream.recv(65536):
-                pass
-        except OSError:
-            pass
 
 
 wrapper = ()

@@ -1,21 +1,16 @@
 # Processes of a running system killed or stopped at random moments: kills.py BIN_DIR LIB_DIR SOURCE_DIR [--rounds N | --seconds T] [--only kill|stop] [--seed S]. A robot drives around obstacles in real time; each
 # round takes one process away (simulator, host of the sensors, host of the client, naming service, a tool that listens), by SIGKILL or by SIGSTOP for a while. The others must go on,
 # and once the process is there again, the robot must drive again. At the end everything ends in time and nothing is left in shared memory.
-import argparse
 import signal
-import sys
 import time
 
-arguments = argparse.ArgumentParser()
-arguments.add_argument("folders", nargs=3)
-arguments.add_argument("--rounds", type=int, default=4)
-arguments.add_argument("--seconds", type=float)
+from attacker import seeded, system_options
+from driving import Driving, System, robot
+
+arguments = system_options(rounds=4)
 arguments.add_argument("--only", choices=("kill", "stop"))
-arguments.add_argument("--seed", type=int)
 given = arguments.parse_args()
 bin_dir, lib_dir, source = given.folders
-from attacker import seeded
-from driving import Driving, System, robot
 
 
 class Kills(Driving):

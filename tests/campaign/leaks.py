@@ -1,23 +1,17 @@
 # What comes and goes, again and again: leaks.py BIN_DIR LIB_DIR SOURCE_DIR [--seconds T | --rounds N] [--seed S]. While a robot drives, connections are made and ended, components
 # created and deleted, models spawned and deleted, tools started, bare connections opened and closed. Before and after, each process has as many files and threads, and hardly more memory.
-import argparse
 import os
 import socket
 import time
 
-arguments = argparse.ArgumentParser()
-arguments.add_argument("folders", nargs=3)
-arguments.add_argument("--rounds", type=int, default=4)
-arguments.add_argument("--seconds", type=float)
-arguments.add_argument("--seed", type=int)
-given = arguments.parse_args()
-bin_dir, lib_dir, source = given.folders
-from attacker import listening_ports, locate, sanitized, seeded
+from attacker import listening_ports, locate, sanitized, seeded, system_options
 from driving import Driving, System
 
 box = "<sdf version='1.9'><model name='box'><pose>3 3 1 0 0 0</pose><link name='l'><collision name='c'><geometry><box><size>.1 .1 .1</size></box></geometry></collision></link></model></sdf>"
 few = 320 if sanitized else 16  # [MiB] that heaps of many threads may come to, whatever the number of rounds
 each_round = 16 / 1024  # [MiB]
+given = system_options(rounds=4).parse_args()
+bin_dir, lib_dir, source = given.folders
 choice = seeded(given.seed)
 
 

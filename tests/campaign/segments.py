@@ -1,25 +1,18 @@
 # Shared memory that somebody has gone mad in: segments.py BIN_DIR LIB_DIR SOURCE_DIR [--seconds T | --rounds N] [--seed S]. Everybody who uses the memory of a simulator does so at the same time:
 # components, player-gateway, rtm-studio, tools; meanwhile anything is written anywhere into all of its segments, and files of them are cut, made longer or put in the place of others. The simulator and
 # all servers go on, tools end with a line at worst, nobody by a signal; and with the next simulator the robot drives again.
-import argparse
 import mmap
 import os
 import signal
-import sys
 import time
 
-arguments = argparse.ArgumentParser()
-arguments.add_argument("folders", nargs=3)
-arguments.add_argument("--rounds", type=int, default=2)
-arguments.add_argument("--seconds", type=float)
-arguments.add_argument("--seed", type=int)
-given = arguments.parse_args()
-bin_dir, lib_dir, source = given.folders
-from attacker import seeded
+from attacker import seeded, system_options
 from driving import Driving, System, robot
 from player_peer import LASER, POSITION2D, Client
 from web_peer import Socket
 
+given = system_options(rounds=2).parse_args()
+bin_dir, lib_dir, source = given.folders
 choice = seeded(given.seed)
 each_round = 3  # [s]
 

@@ -2,10 +2,13 @@
 import csv
 import io
 import json
+import os
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 case, bin_dir, lib_dir, source = sys.argv[1:]
 folder = pathlib.Path(tempfile.mkdtemp(prefix="campaigns-"))
@@ -43,3 +46,16 @@ def twice(text, name, code=0):
     one, two = (json.loads(rtse("--json", "sweep", plan(text, name), "--row", 1, "--keep", folder / name[:-5], code=code).stdout) for _ in range(2))
     assert one["state"] == two["state"], (text, one, two)
     return one
+
+
+# Ctrl-C once this has appeared in the folder: exit code, output, errors.
+def interrupted_at(pattern, *words):
+    process = subprocess.Popen([f"{bin_dir}/rtse", *map(str, words)], cwd=folder, env={**os.environ, "TMPDIR": str(folder)}, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                               text=True)
+    deadline = time.monotonic() + 100
+    while not list(folder.glob(pattern)):
+        assert time.monotonic() < deadline and process.poll() is None, (pattern, process.poll())
+        time.sleep(0.02)
+    process.send_signal(signal.SIGINT)
+    said = process.communicate(timeout=100)
+    return process.returncode, *said

@@ -9,7 +9,7 @@ import sqlite3
 import subprocess
 import time
 
-from calls import START, bin_dir, case, folder, lib_dir, plan, rows, rtse, source, states, twice
+from calls import START, bin_dir, case, folder, interrupted_at, lib_dir, plan, rows, rtse, source, states, twice
 
 
 # Rows differ by what varies, a row alone gives what it gave among others, and nothing runs twice.
@@ -297,14 +297,8 @@ def with_small_disk(size, place, *words):
 def interrupted():
     p = plan("repeat: 300\n")
     for words, expected in [(["sweep", p, "-j", "2"], "interrupted after "), (["hunt", p, "-j", "2", "--budget", "200s"], "interrupted after ")]:
-        process = subprocess.Popen([f"{bin_dir}/rtse", *words], cwd=folder, env={**os.environ, "TMPDIR": str(folder)}, stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE, text=True)
-        deadline = time.monotonic() + 100
-        while not list(folder.glob("rtse-run-*/names")) and time.monotonic() < deadline:
-            time.sleep(0.02)
-        process.send_signal(signal.SIGINT)
-        said = process.communicate(timeout=100)
-        assert process.returncode == 1 and expected in said[1] and len(said[1].splitlines()) == 1, (words, process.returncode, said)
+        code, out, err = interrupted_at("rtse-run-*/names", *words)
+        assert code == 1 and expected in err and len(err.splitlines()) == 1, (words, code, out, err)
         assert not list(folder.glob("rtse-run-*")) and not list(folder.glob("plan.finds/*")), list(folder.iterdir())
     assert json.loads(rtse("--json", "sweep", p, "--rows", "1..1").stdout)["passed"] == 1
 

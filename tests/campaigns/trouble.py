@@ -3,12 +3,10 @@ import json
 import os
 import shlex
 import shutil
-import signal
 import sqlite3
 import subprocess
-import time
 
-from calls import bin_dir, case, folder, plan, rows, rtse, twice
+from calls import bin_dir, case, folder, interrupted_at, plan, rows, rtse, twice
 
 
 # What is seen of a component whose host was killed, and is there again.
@@ -130,14 +128,8 @@ hunt:
     assert "has not ended its tick" in find and "hang.finds/find-1.yaml --row 1\n" in find and "--state" not in find, find
     assert "expected" not in rtse("sweep", folder / "hang.finds/find-1.yaml", "--row", 1, "--state", "-", code=1).stderr
     # An interrupt while it is shrunk takes nothing of its reason.
-    process = subprocess.Popen([f"{bin_dir}/rtse", "hunt", hang, "--cases", "40"], cwd=folder, env={**os.environ, "TMPDIR": str(folder)}, stdout=subprocess.PIPE,
-                               stderr=subprocess.PIPE, text=True)
-    deadline = time.monotonic() + 100
-    while not list(folder.glob("hang.finds/shrinking")) and time.monotonic() < deadline:
-        time.sleep(0.02)
-    process.send_signal(signal.SIGINT)
-    said = process.communicate(timeout=100)
-    assert "has not ended its tick" in said[0] and "run: interrupted" not in said[0] and "interrupted: it may not be the simplest" in said[0], said
+    _, out, _ = interrupted_at("hang.finds/shrinking", "hunt", hang, "--cases", 40)
+    assert "has not ended its tick" in out and "run: interrupted" not in out and "interrupted: it may not be the simplest" in out, out
     assert "has not ended its tick" in (folder / "hang.finds/find-1.yaml").read_text()
 
 

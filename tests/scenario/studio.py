@@ -16,8 +16,8 @@ rig = Rig(*folders)
 class Studio:
     def __init__(self, *options):
         self.process = rig.start(f"{rig.bin_dir}/rtm-studio", "--ns", rig.names, "-s", rig.server_id, "--port", "0", *options)
-        url = await_("the URL", lambda: next(line for line in rig.log(self.process).splitlines() if line.startswith("http")) if rig.log(self.process) else "no")
-        await_("the URL", lambda: rig.log(self.process).startswith("http"))
+        await_("the URL, or an end", lambda: rig.log(self.process).startswith("http") or self.process.poll() is not None)
+        assert self.process.poll() is None, (self.process.args, self.process.returncode, rig.log(self.process))
         url = rig.log(self.process).splitlines()[0]
         self.token = url.split("token=")[1]
         self.port = int(url.split(":")[2].split("/")[0])
