@@ -57,6 +57,18 @@ TEST_F(Plans, hold_what_is_written_in_them) {
   EXPECT_EQ(plan->events[0].numbers, (std::vector<std::string>{"1", "0", "0"}));
 }
 
+// As a hunt writes them into another plan.
+TEST_F(Plans, tell_deeds_in_one_line_however_they_are_written) {
+  const auto plan = read(start_ +
+                         "events:\n  - at: 1\n    command: |\n      one\n      two\n"
+                         "never:\n  - model: robot\n    region:\n      - 0\n      - 0\n      - 1\n      - 1\n");
+  ASSERT_TRUE(plan) << plan.error().message;
+  ASSERT_EQ(plan->events.size(), 1U);
+  EXPECT_EQ(plan->events[0].text, R"({at: 1, command: "one\ntwo\n"})");
+  ASSERT_EQ(plan->never.size(), 1U);
+  EXPECT_EQ(plan->never[0].text, "{model: robot, region: [0, 0, 1, 1]}");
+}
+
 TEST_F(Plans, say_line_and_column_of_what_is_wrong) {
   EXPECT_EQ(error(start_ + "repaet: 3\n").substr(0, 45), ":4:1: plan has no key \"repaet\"; it has system");
   EXPECT_EQ(error(start_ + "repeat: many\n"), ":4:9: repeat must be a whole number, 0 or more, got \"many\"");

@@ -9,6 +9,7 @@
 
 #include "base/text.h"
 #include "plan/grammar.h"
+#include "run/flow_text.h"
 
 namespace campaign {
 namespace {
@@ -136,9 +137,7 @@ void shorten(std::vector<Condition>& conditions, double duration_s) {
     condition.within_s.reset();
     auto node = YAML::Load(condition.text);
     node.remove("within");
-    YAML::Emitter flow;
-    flow << YAML::Flow << node;
-    condition.text = flow.c_str();
+    condition.text = editor::flow_text(node);
   }
 }
 
@@ -164,9 +163,7 @@ namespace {
 std::string event_text(const Event& event) {
   auto node = YAML::Load(event.text);
   if (event.at_s) node["at"] = base::format_number(*event.at_s);
-  YAML::Emitter flow;
-  flow << YAML::Flow << node;
-  return flow.c_str();
+  return editor::flow_text(node);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "plan/grammar.h"
+#include "run/flow_text.h"
 
 namespace campaign {
 namespace {
@@ -18,9 +19,7 @@ std::optional<double> number(const YAML::Node& node, const char* key) {
 
 Condition to_condition(const YAML::Node& node) {
   Condition condition;
-  YAML::Emitter flow;
-  flow << YAML::Flow << node;
-  condition.text = flow.c_str();
+  condition.text = editor::flow_text(node);
   const int subjects = (node["port"] ? 1 : 0) + (node["model"] ? 1 : 0) + (node["component"] ? 1 : 0);
   if (subjects != 1) fail_at(node, "a condition must have one of port, model, component");
   condition.port = word(node, "port");

@@ -8,6 +8,7 @@
 
 #include "base/text.h"
 #include "plan/grammar.h"
+#include "run/flow_text.h"
 
 namespace campaign {
 namespace {
@@ -48,12 +49,6 @@ constexpr std::array fault_rows = {
 
 const FaultRow& row_of(Kind kind) {
   return *std::ranges::find_if(fault_rows, [&](const FaultRow& row) { return row.kind == kind; });
-}
-
-std::string flow_text(const YAML::Node& node) {
-  YAML::Emitter flow;
-  flow << YAML::Flow << node;
-  return flow.c_str();
 }
 
 std::vector<std::string> numbers_of(const YAML::Node& node, const char* what, std::initializer_list<std::size_t> sizes,
@@ -150,12 +145,12 @@ void set_spawned(Event& event, const std::string& file) {
   event.target = file;
   auto node = YAML::Load(event.text);
   node["spawn"]["model"] = file;
-  event.text = flow_text(node);
+  event.text = editor::flow_text(node);
 }
 
 Event to_event(const YAML::Node& node) {
   Event event;
-  event.text = flow_text(node);
+  event.text = editor::flow_text(node);
   if (node["at"] && node["when"]) fail_at(node, "an event must not have both at and when");
   if (node["at"]) event.at_s = *base::parse_number(node["at"].Scalar());
   if (event.at_s && *event.at_s < 0) fail_at(node["at"], "at must not be negative");

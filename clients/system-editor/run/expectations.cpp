@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "run/flow_text.h"
 #include "value_failure.h"
 
 namespace editor {
@@ -81,9 +82,7 @@ Expectation read_one(const std::string& name, const YAML::Node& node) {
                        ", expected path_length, reach, stay, no_contact, value, state or command"};
   Expectation expectation;
   expectation.kind = kind->second;
-  YAML::Emitter flow;
-  flow << YAML::Flow << node;
-  expectation.text = name + ": " + flow.c_str();
+  expectation.text = name + ": " + flow_text(node);
   if (expectation.kind == Kind::command) {
     if (!node.IsScalar() || node.Scalar().empty()) throw ValueFailure{"command needs a command line"};
     expectation.command = node.Scalar();
