@@ -266,16 +266,19 @@ def disk_full():
     assert "cannot be written" in done.stderr and len(done.stderr.splitlines()) == 1, done.stderr
     # A disk for temporary files that is full before the first row, or while rows run: one line, and no row is stored as one that has failed.
     (folder / "tmp").mkdir()
-    p = plan("""repeat: 100
+    filling = """repeat: 100
 events:
   - at: 0.5
-    command: setsid sh -c 'while kill -0 $CALLER; do head -c 100000000 /dev/zero >> $TMPDIR/fill; sleep 0.01; done' > /dev/null 2>&1 &
-""", "filling.yaml")
-    for size, verb, expected in [(16, "sweep", "less than 32 MiB left"), (16, "hunt", "less than 32 MiB left"), (48, "sweep", "less than 1 MiB left"), (48, "hunt", "less than 1 MiB left")]:
+    command: setsid sh -c 'LATER; while kill -0 $CALLER; do head -c 100000000 /dev/zero >> $TMPDIR/fill; sleep 0.01; done' > /dev/null 2>&1 &
+"""
+    begin, go_on = "less than 32 MiB left", "less than 1 MiB left"
+    # At once: the row that fills it fails. Later: rows have passed, and the next ones do not begin.
+    for size, verb, later, expected in [(16, "sweep", ":", begin), (16, "hunt", ":", begin), (48, "sweep", ":", go_on), (48, "hunt", ":", go_on), (48, "hunt", "sleep 2", go_on)]:
+        p = plan(filling.replace("LATER", later), "filling.yaml")
         done = with_small_disk(size, folder / "tmp", f"{bin_dir}/rtse", verb, p)
         if done is None:
             return print("a small disk: not allowed here")
-        assert done.returncode == 1 and f'rtse: folder "{folder}/tmp": the disk has {expected}' in done.stderr and len(done.stderr.splitlines()) == 1, (size, verb, done)
+        assert done.returncode == 1 and f'rtse: folder "{folder}/tmp": the disk has {expected}' in done.stderr and len(done.stderr.splitlines()) == 1, (size, verb, later, done)
     with sqlite3.connect(folder / "filling.db") as database:
         stored = database.execute("SELECT passed FROM runs").fetchall()
     assert len(stored) < 100 and all(passed == (1,) for passed in stored), stored
@@ -395,8 +398,9 @@ hunt:
     assert "NaN" in rtse("sweep", find["plan"], "--row", 1, "--state", find["state"], code=1).stderr
     p.write_text(p.read_text().replace("faulty=YES", "faulty=NO"))
     assert json.loads(rtse("--json", "hunt", p, "--cases", 8, "-j", 2).stdout)["finds"] == []
-    # A find is not made too short for what is expected: without its fault it passes.
-    way = pathlib.Path(plan("expect: [{path_length: {model: pioneer2dx, min: 0.3}}]\nhunt: {faults: [{connector: range-to-avoidance, is: drop}]}\n", "way.yaml"))
+    # A find is not made too short for what is expected: without its fault it passes. Deeds may stand in lines of their own.
+    deeds = "events:\n  - at: 0.1\n    command: |\n      true\nnever:\n  - model: pioneer2dx\n    region: [90, 90, 91, 91]\n"
+    way = pathlib.Path(plan(deeds + "expect: [{path_length: {model: pioneer2dx, min: 0.3}}]\nhunt: {faults: [{connector: range-to-avoidance, is: drop}]}\n", "way.yaml"))
     way.write_text(way.read_text().replace("duration: 1", "duration: 4"))
     find = json.loads(rtse("--json", "hunt", way, "--finds", 1, "--cases", 40, "-j", 2, code=1).stdout)["finds"][0]
     lines = pathlib.Path(find["plan"]).read_text().splitlines()

@@ -93,16 +93,7 @@ class Hunt {
     for (const auto& feature : outcome.features) is_new |= features_.insert(feature).second;
     if (is_new && outcome.is_passed()) corpus_.push_back(tried);
     const auto kind = signature(outcome);
-    if (!outcome.has_begun && !outcome.problem.empty()) {  // trouble of the machine
-      constexpr std::size_t enough = 3;
-      if (++not_begun_ == result_.cases && not_begun_ >= enough)
-        problem_ = "plan " + base::in_quotes(campaign_.plan().file) + ": does not start: " + outcome.problem;
-      return;
-    }
-    if (const auto room = outcome.problem.empty() ? Result<void>() : room_for(options_, room_to_go_on); !room) {
-      problem_ = room.error().message;
-      return;
-    }
+    if (!outcome.problem.empty() && is_trouble_of_the_machine(outcome)) return;
     if (!outcome.is_passed() && signatures_.insert(kind).second) {
       Find find;
       find.case_number = result_.cases;
@@ -114,6 +105,22 @@ class Hunt {
     }
     const bool found = !result_.finds.empty() && result_.finds.back().case_number == result_.cases;
     show_({result_.cases, result_.finds.size(), features_.size(), wall(), found ? &result_.finds.back() : nullptr});
+  }
+
+  // It says nothing about the system. When it is there to stay, problem_ says so.
+  bool is_trouble_of_the_machine(const Outcome& outcome) {
+    if (const auto room = room_for(options_, room_to_go_on); !room) {
+      problem_ = room.error().message;
+      return true;
+    }
+    if (outcome.has_begun) {
+      not_begun_ = 0;
+      return false;
+    }
+    constexpr std::size_t from_the_start = 3, later = 2 * generation;
+    if (++not_begun_ >= (not_begun_ == result_.cases ? from_the_start : later))
+      problem_ = "plan " + base::in_quotes(campaign_.plan().file) + ": does not start: " + outcome.problem;
+    return true;
   }
 
   struct Broken {
@@ -187,7 +194,7 @@ class Hunt {
     }
   }
 
-  // The plan that repeats it, and whether it does. False: there is nothing to repeat, since nothing runs even when it is left alone.
+  // The plan that repeats it, and whether it does. False: problem_ says why there is nothing to repeat, or no plan.
   bool write(Find& find, const std::string& kind) {
     find.file = options_.folder + "/find-" + std::to_string(result_.finds.size() + 1) + ".yaml";
     find.problem = broken_.problem;
@@ -203,9 +210,12 @@ class Hunt {
       if (!first.first_problem().empty()) find.problem = first.first_problem();
       find.is_repeatable = first.state_hash == second.state_hash && signature(first) == kind && signature(second) == kind;
     }
-    std::ofstream(find.file) << "# " << find.problem << "\n# state " << (find.state_hash.empty() ? "-" : find.state_hash) << "\n"
-                             << plan_text(campaign_, find.tried);
-    return true;
+    std::ofstream file(find.file);
+    file << "# " << find.problem << "\n# state " << (find.state_hash.empty() ? "-" : find.state_hash) << "\n"
+         << plan_text(campaign_, find.tried);
+    file.close();
+    if (!file) problem_ = "find " + base::in_quotes(find.file) + ": cannot be written: " + find.problem;
+    return problem_.empty();
   }
 
   CORBA::ORB_ptr orb_;
@@ -218,7 +228,7 @@ class Hunt {
   std::set<std::string> features_, signatures_;
   Broken broken_;  // the simplest case so far of what is being shrunk
   HuntResult result_;
-  std::size_t not_begun_ = 0;  // cases
+  std::size_t not_begun_ = 0;  // cases one after the other
   const editor::WarmPrograms warm_;
   std::string problem_;  // why nothing can be found
   Clock::time_point began_ = Clock::now();
