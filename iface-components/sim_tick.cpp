@@ -35,7 +35,7 @@ std::string SimTick::keep_hashes(const std::string& folder, const std::string& c
 
 void SimTick::begin(const shm::Tick& tick) { tick_ = tick; }
 
-void SimTick::end(const std::function<std::vector<std::uint64_t>()>& states) {
+void SimTick::end(const std::function<std::uint64_t()>& states) {
   // What they add is for the next end.
   auto work = std::exchange(at_end_, {});
   for (auto& each : work) each(*this);
@@ -72,13 +72,11 @@ void SimTick::write(Leaves& leaves) {
   }
 }
 
-void SimTick::write_log(const std::vector<std::uint64_t>& states) {
+void SimTick::write_log(std::uint64_t states) {
   log_->begin_tick(tick_.resets, tick_.now);
-  base::Hash64 all;
-  for (const std::uint64_t state : states) all.add(state);
-  if (const auto hash = all.value(); states_ != hash) {
-    states_ = hash;
-    log_->add(component_, hash);
+  if (states_ != states) {
+    states_ = states;
+    log_->add(component_, states);
   }
   write(read_);
   write(written_);

@@ -26,8 +26,8 @@ class SimTick final : public base::Tick {
   std::string keep_hashes(const std::string& folder, const std::string& component, std::uint32_t phase);
 
   void begin(const shm::Tick& tick);
-  // After the callbacks. `states`: of the context's components; its hash is kept when it has changed.
-  void end(const std::function<std::vector<std::uint64_t>()>& states);
+  // After the callbacks. `states`: a hash of those of the context's components, kept when it has changed.
+  void end(const std::function<std::uint64_t()>& states);
 
   std::chrono::nanoseconds time() const override { return tick_.now; }
   std::uint64_t moment() const override { return tick_.moment; }
@@ -45,7 +45,7 @@ class SimTick final : public base::Tick {
 
   using Leaves = std::map<std::string, Leaf, std::less<>>;  // by port
   void write(Leaves& leaves);
-  void write_log(const std::vector<std::uint64_t>& states);
+  void write_log(std::uint64_t states);
 
   shm::Tick tick_;
   std::vector<std::function<void(Tick&)>> at_end_;

@@ -1,6 +1,7 @@
 #include "sim_time_context.h"
 
 #include <base/chance.h>
+#include <base/hash64.h>
 #include <base/text.h>
 #include <rtm/ECFactory.h>
 
@@ -93,10 +94,10 @@ std::shared_ptr<shm::Participant> SimTimeContext::join() {
   return participant;
 }
 
-std::vector<std::uint64_t> SimTimeContext::member_states() const {
-  std::vector<std::uint64_t> states;
-  for (const auto& member : getComponents()) states.push_back(static_cast<std::uint64_t>(getComponentState(member)));
-  return states;
+std::uint64_t SimTimeContext::hash_of_states() const {
+  base::Hash64 all;
+  for (const auto state : getComponentStates()) all.add(static_cast<std::uint64_t>(state));
+  return all.value();
 }
 
 void SimTimeContext::run_tick(const shm::Tick& tick) {
@@ -107,7 +108,7 @@ void SimTimeContext::run_tick(const shm::Tick& tick) {
   invokeWorkerDo();
   invokeWorkerPostDo();
   const base::ScopedClock clock(clock_);  // for what is sent
-  tick_.end([this] { return member_states(); });
+  tick_.end([this] { return hash_of_states(); });
 }
 
 void SimTimeContext::run(shm::Participant& participant) {

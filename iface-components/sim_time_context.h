@@ -51,7 +51,7 @@ class SimTimeContext : public RTC::PeriodicExecutionContext {
   std::shared_ptr<shm::Participant> join();
   void run(shm::Participant& participant);
   void run_tick(const shm::Tick& tick);
-  std::vector<std::uint64_t> member_states() const;
+  std::uint64_t hash_of_states() const;
   void interrupt();
   void say_once(const std::string& line);
   std::string participant_name() const;

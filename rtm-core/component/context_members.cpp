@@ -77,6 +77,12 @@ std::vector<RTC::LightweightRTObject_var> ExecutionContextBase::getComponents() 
   return components;
 }
 
+std::vector<RTC::LifeCycleState> ExecutionContextBase::getComponentStates() const {
+  std::vector<RTC::LifeCycleState> states;
+  for (const auto& member : impl_->context.members()) states.push_back(onGetComponentState(static_cast<RTC::LifeCycleState>(member.state)));
+  return states;
+}
+
 const RTC::RTCList& ExecutionContextBase::getComponentList() const {
   RTC::RTCList& list = impl_->component_list;
   list.length(0);

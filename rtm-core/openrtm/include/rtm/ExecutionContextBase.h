@@ -87,6 +87,8 @@ class ExecutionContextBase {
   // The caller owns the profile.
   RTC::ExecutionContextProfile* getProfile();
   std::vector<RTC::LightweightRTObject_var> getComponents() const;
+  // Of each of them, in their order: as getComponentState() for all at once.
+  std::vector<RTC::LifeCycleState> getComponentStates() const;
   // The same as a sequence, which loops of authors step through. For one thread at a time; good until the next call.
   const RTC::RTCList& getComponentList() const;
 
