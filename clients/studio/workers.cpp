@@ -16,10 +16,11 @@ Workers::Workers(std::size_t threads) {
 }
 
 Workers::~Workers() {
+  std::deque<Work> dropped;  // not in the lock: what work has bound may take other locks when it goes
   {
     auto data = data_.lock();
     data->is_ending = true;
-    data->waiting.clear();
+    dropped.swap(data->waiting);
   }
   changed_.notify_all();
   for (auto& thread : threads_) thread.join();
