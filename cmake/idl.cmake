@@ -7,6 +7,7 @@
 function(rtmsim_generate_idl sources_variable headers_variable)
   cmake_parse_arguments(PARSE_ARGV 2 arg "" "OUTPUT_DIRECTORY" "OPTIONS;FILES")
   file(MAKE_DIRECTORY ${arg_OUTPUT_DIRECTORY})
+  set(nil_references ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/nil_references.cmake)
   list(TRANSFORM RTMSIM_IDL_INCLUDE_DIRS PREPEND -I OUTPUT_VARIABLE include_options)
   foreach(file IN LISTS arg_FILES)
     cmake_path(ABSOLUTE_PATH file NORMALIZE)
@@ -15,18 +16,19 @@ function(rtmsim_generate_idl sources_variable headers_variable)
     set(made ${arg_OUTPUT_DIRECTORY}/${name})
     file(GLOB_RECURSE neighbours CONFIGURE_DEPENDS ${folder}/*.idl)
     add_custom_command(
-      OUTPUT ${made}.hh ${made}SK.cc ${made}DynSK.cc
+      OUTPUT ${made}.hh ${made}SK.cc ${made}DynSK.cc ${made}Nil.cc
       COMMAND ${RTMSIM_OMNIIDL} -bcxx -Wba -Wbuse-quotes -nf -C${arg_OUTPUT_DIRECTORY} -I${folder} ${include_options} ${arg_OPTIONS} ${file}
-      DEPENDS ${file} ${neighbours}
+      COMMAND ${CMAKE_COMMAND} -DSTUBS=${made}SK.cc -DOUTPUT=${made}Nil.cc -P ${nil_references}
+      DEPENDS ${file} ${neighbours} ${nil_references}
       COMMENT "Compiling ${name}.idl"
       VERBATIM)
     foreach(half Skel Stub)
       file(CONFIGURE OUTPUT ${made}${half}.h CONTENT "#pragma once\n#include \"${name}.hh\"\n")
     endforeach()
-    file(CONFIGURE OUTPUT ${made}.cc CONTENT "#include \"${name}SK.cc\"\n#include \"${name}DynSK.cc\"\n")
+    file(CONFIGURE OUTPUT ${made}.cc CONTENT "#include \"${name}SK.cc\"\n#include \"${name}DynSK.cc\"\n#include \"${name}Nil.cc\"\n")
     set_source_files_properties(${made}.cc PROPERTIES
-      OBJECT_DEPENDS "${made}.hh;${made}SK.cc;${made}DynSK.cc" COMPILE_OPTIONS -w SKIP_UNITY_BUILD_INCLUSION ON)
-    set_source_files_properties(${made}SK.cc ${made}DynSK.cc PROPERTIES HEADER_FILE_ONLY ON)
+      OBJECT_DEPENDS "${made}.hh;${made}SK.cc;${made}DynSK.cc;${made}Nil.cc" COMPILE_OPTIONS -w SKIP_UNITY_BUILD_INCLUSION ON)
+    set_source_files_properties(${made}SK.cc ${made}DynSK.cc ${made}Nil.cc PROPERTIES HEADER_FILE_ONLY ON)
     list(APPEND made_sources ${made}.cc)
     list(APPEND made_headers ${made}.hh)
   endforeach()

@@ -38,7 +38,7 @@ string(REGEX REPLACE "[^/]+" ".." PACKAGE_PC_UP ${CMAKE_INSTALL_LIBDIR}/pkgconfi
 configure_file(cmake/package/openrtm.pc.in ${PROJECT_BINARY_DIR}/package/openrtm.pc @ONLY)
 
 install(FILES ${PROJECT_BINARY_DIR}/package/OpenRTMConfig.cmake ${PROJECT_BINARY_DIR}/OpenRTMConfigVersion.cmake
-  cmake/omniorb.cmake cmake/idl.cmake cmake/component.cmake cmake/throw_specifications.cmake cmake/component_main.cpp.in
+  cmake/omniorb.cmake cmake/idl.cmake cmake/nil_references.cmake cmake/component.cmake cmake/throw_specifications.cmake cmake/component_main.cpp.in
   DESTINATION ${package_cmake})
 foreach(name rtm-core openrtm-aist openrtm2 libcoil)
   install(FILES ${PROJECT_BINARY_DIR}/package/openrtm.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig RENAME ${name}.pc)
