@@ -118,7 +118,8 @@ class Hunt {
       return false;
     }
     constexpr std::size_t from_the_start = 3, later = 2 * generation;
-    if (++not_begun_ >= (not_begun_ == result_.cases ? from_the_start : later))
+    ++not_begun_;
+    if (not_begun_ >= (not_begun_ == result_.cases ? from_the_start : later))
       problem_ = "plan " + base::in_quotes(campaign_.plan().file) + ": does not start: " + outcome.problem;
     return true;
   }
