@@ -232,6 +232,10 @@ class ScratchFile {
     if (!name_.empty()) std::filesystem::remove(name_, ignored);
   }
   const std::string& name() const { return name_; }
+  std::string text() const {
+    std::ifstream in(name_, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
 
  private:
   explicit ScratchFile(std::string name) : name_(std::move(name)) {}
@@ -263,14 +267,14 @@ Result<Places> places_of(const Json& args) {
 }
 
 // As rtse says it, with the boxes where the page has them.
-Result<Json> save_with(const std::string& xml, const Places& places) {
-  if (places.empty()) return Json{{"xml", xml}};
+Result<std::string> save_with(const std::string& xml, const Places& places) {
+  if (places.empty()) return xml;
   auto system = editor::parse_xml(xml, "the saved system");
   if (!system) return system.error();
   for (auto& component : system->components) {
     if (const auto place = places.find(below_name_server(component.path_uri)); place != places.end()) component.place = place->second;
   }
-  return Json{{"xml", editor::to_xml(*system)}};
+  return editor::to_xml(*system);
 }
 
 Result<Plan> save_profile(const ActContext& context, const Json& args) {
@@ -279,10 +283,18 @@ Result<Plan> save_profile(const ActContext& context, const Json& args) {
   if (!name.empty()) words.insert(words.end(), {"--name=" + name});
   const auto places = places_of(args);
   if (!places) return places.error();
-  return Plan{rtse_line(context, words), [context, words, places = *places]() -> Result<Json> {
+  auto line = rtse_line(context, words);
+  return Plan{std::move(line), [context, words = std::move(words), places = *places]() mutable -> Result<Json> {
+                const auto file = ScratchFile::with("");
+                if (!file) return file.error();
+                words[1] = file->name();
                 const auto said = rtse(context, words);
-                if (!said) return said.error();
-                return save_with(*said, places);
+                const auto xml = file->text();
+                if (!said && xml.empty()) return said.error();
+                const auto saved = save_with(xml, places);
+                if (!saved) return saved.error();
+                // What the format cannot hold, or whose component is not there, is left out, and rtse says so.
+                return Json{{"xml", *saved}, {"left_out", said ? "" : said.error().message}};
               }};
 }
 

@@ -8,6 +8,12 @@
 #include "rtm/idl/RTCSkel.h"
 
 namespace editor {
+namespace {
+
+constexpr const char* connector_name = "rtse";
+constexpr const char* port_name = "rtse.tap";
+
+}  // namespace
 
 class Tap::Receiver final : public POA_OpenRTM::InPortCdr {
  public:
@@ -51,7 +57,7 @@ class Tap::Port final : public POA_RTC::PortService {
 
   RTC::PortProfile* get_port_profile() override {
     RTC::PortProfile_var profile = new RTC::PortProfile;
-    profile->name = "rtse.tap";
+    profile->name = port_name;
     profile->port_ref = RTC::PortService::_duplicate(self_);
     profile->properties = to_nv_list({{"port.port_type", port_type_},
                                       {"dataport.data_type", data_type_},
@@ -157,7 +163,7 @@ Result<std::unique_ptr<Tap>> Tap::connect(CORBA::ORB_ptr orb, const PortView& po
                                {"dataport.serializer.cdr.endian", "little,big"}};
   for (const auto& [key, value] : extra) properties[key] = value;
   RTC::ConnectorProfile profile;
-  profile.name = "rtse";
+  profile.name = connector_name;
   profile.connector_id = tap->id_.c_str();
   profile.ports.length(2);
   profile.ports[0] = RTC::PortService::_duplicate(reads ? port.object.in() : tap->port_->self());
@@ -170,6 +176,16 @@ Result<std::unique_ptr<Tap>> Tap::connect(CORBA::ORB_ptr orb, const PortView& po
   if (!called) return called.error();
   if (const auto checked = check("connecting to port " + port.full_name, code); !checked) return checked.error();
   return tap;
+}
+
+bool is_tap(const ConnectorView& connector) {
+  if (connector.name != connector_name) return false;
+  for (CORBA::ULong i = 0; i < connector.ports.length(); ++i) {
+    RTC::PortProfile_var profile;
+    const auto asked = remote("port of a connection", [&] { profile = connector.ports[i]->get_port_profile(); });
+    if (asked && std::string_view(profile->name) == port_name) return true;
+  }
+  return false;
 }
 
 Tap::~Tap() {

@@ -10,6 +10,9 @@
 
 namespace editor {
 
+// Whether it is a tap's, of this program or another one: no part of a system.
+bool is_tap(const ConnectorView& connector);
+
 class Tap {
  public:
   // Called from the ORB's threads, one call at a time, with the payload and its byte order. Keep it short: the writer waits.

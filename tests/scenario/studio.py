@@ -224,8 +224,13 @@ def system():
     for path in paths.values():
         viewer.do("activate", path=path)
     await_("states", lambda: all(rig.state(name) == "Active" for name in paths))
-    xml = viewer.do("save_profile", name="saved")["xml"]
-    assert "RTCLaser0" in xml and "saved" in xml
+    # Who looks on is no part of the system.
+    viewer.do("watch", watch=8, topic="/RTCLaser0/range")
+    await_("somebody who looks on", lambda: len(json.loads(rig.rtse("--json", "cat", "RTCLaser0:range"))["connectors"]) == 2)
+    saved = viewer.do("save_profile", name="saved")
+    xml = saved["xml"]
+    assert "RTCLaser0" in xml and "saved" in xml and saved["left_out"] == "" and rig.rtse("save", "-").count("<rts:DataPortConnectors ") == 2, saved
+    viewer.do("unwatch", watch=8)
     viewer.do("teardown", xml=xml)
     assert not json.loads(rig.rtse("--json", "cat", "RTCLaser0:range")).get("connectors", [])
     viewer.do("open_profile", xml=xml)

@@ -13,6 +13,7 @@
 #include "commands/state.h"
 #include "commands/system.h"
 #include "profile/matched_system.h"
+#include "tap.h"
 
 namespace editor {
 namespace {
@@ -95,6 +96,7 @@ void collect_connectors(Editor& editor, const std::vector<ComponentView>& compon
           if (owner.port) owners.push_back(owner);
           if (!owner.port && absent.empty()) absent = absent_port(connector.ports[i]);
         }
+        if (!absent.empty() && is_tap(connector)) continue;  // somebody looks on
         if (!absent.empty() || owners.size() < 2) {
           editor.fail({"connection " + connector.id + " of port " + port.full_name + ": leads to " +
                        (absent.empty() ? "no other port" : absent) + "; it is left out"});
