@@ -282,9 +282,10 @@ base::Result<std::string> Writer::write() {
     const auto links = std::span(link_nodes_).subspan(model.first_link, model.link_count);
     const bool is_static = model.link_count > 0 && scene_.links[model.first_link].is_static;
     parts_.set(List::nodes, 1 + i,
-               fmt::format(R"({{"name":{}{},"extras":{{"model":true,"static":{},"radius":{},"height":{},"link":{}}}}})",
-                           glb::text(model.name), links.empty() ? "" : ",\"children\":" + glb::indices(links), yes_no(is_static),
-                           model.radius, model.height, model.canonical_link));
+               fmt::format(
+                   R"({{"name":{}{},"extras":{{"model":true,"static":{},"radius":{},"height":{},"link":{},"position":{},"rotation":{}}}}})",
+                   glb::text(model.name), links.empty() ? "" : ",\"children\":" + glb::indices(links), yes_no(is_static), model.radius,
+                   model.height, model.canonical_link, glb::vector3(model.frame.translation()), glb::quaternion(model.frame.linear())));
     top.push_back(1 + i);
   }
   add_links();

@@ -73,7 +73,10 @@ class Builder {
     entry.link_count = static_cast<std::uint32_t>(model.links.size());
     for (const auto& link : model.links) {
       const auto index = static_cast<std::uint32_t>(scene_.links.size());
-      if (link.name == model.canonical_link) entry.canonical_link = index;
+      if (link.name == model.canonical_link) {
+        entry.canonical_link = index;
+        entry.frame = link.pose.inverse();
+      }
       scene_.links.push_back({model.name + "::" + link.name, model.is_static, model.pose * link.pose});
       if (content_ == Scene::Content::visuals) {
         for (const auto& visual : link.visuals) add(visual, index);

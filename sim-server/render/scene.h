@@ -60,9 +60,10 @@ struct SceneLight {
 struct SceneModel {
   std::string name;
   std::uint32_t first_link = 0, link_count = 0;
-  std::uint32_t canonical_link = 0;  // index into links
-  double radius = 0;                 // round the canonical link's origin, of all that is drawn
-  double height = 0;                 // of the highest point over that origin at the start
+  std::uint32_t canonical_link = 0;                         // index into links
+  Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();  // of the model in the canonical link
+  double radius = 0;                                        // round the canonical link's origin, of all that is drawn
+  double height = 0;                                        // of the highest point over that origin at the start
 };
 
 // The links after an actor's own are its bones.

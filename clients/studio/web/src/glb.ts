@@ -1,11 +1,21 @@
 // Reads what `simctl export` writes: glTF 2.0 binary with one scene. z stays up; poses of links are in the world.
 import {
-  Bone, BufferAttribute, BufferGeometry, Group, LinearMipmapLinearFilter, LinearSRGBColorSpace, Matrix4, Mesh, Object3D, RepeatWrapping, Skeleton, SkinnedMesh, SRGBColorSpace, Texture,
+  Bone, BufferAttribute, BufferGeometry, Group, LinearMipmapLinearFilter, LinearSRGBColorSpace, Matrix4, Mesh, Object3D, Quaternion, RepeatWrapping, Skeleton, SkinnedMesh, SRGBColorSpace, Texture, Vector3,
 } from 'three';
 import { Look, make_material, SceneLight, Surface } from './material';
 
 export interface Sensor { iface: string; kind: string; node: Object3D; [number: string]: unknown }
-export interface Model { name: string; group: Group; links: Object3D[]; is_static: boolean; radius: number; height: number; canonical: Object3D | null }
+export interface Model { name: string; group: Group; links: Object3D[]; is_static: boolean; radius: number; height: number; canonical: Object3D | null; frame: Matrix4 }
+export interface Pose { position: Vector3; quaternion: Quaternion }
+
+// In the world. Links are what is told; a model's own frame hangs on its canonical link.
+export function pose_of(model: Model): Pose {
+  const pose = { position: new Vector3(), quaternion: new Quaternion() };
+  model.canonical!.updateMatrix();
+  new Matrix4().multiplyMatrices(model.canonical!.matrix, model.frame).decompose(pose.position, pose.quaternion, new Vector3());
+  return pose;
+}
+
 export interface WorldScene {
   root: Group;
   links: Object3D[];
@@ -165,6 +175,7 @@ export async function read_world(octets: ArrayBuffer): Promise<WorldScene> {
     scene.models.set(node.name, {
       name: node.name, group: nodes[index] as Group, links, is_static: node.extras.static, radius: node.extras.radius, height: node.extras.height,
       canonical: scene.links[node.extras.link] ?? null,
+      frame: new Matrix4().compose(new Vector3().fromArray(node.extras.position ?? [0, 0, 0]), new Quaternion().fromArray(node.extras.rotation ?? [0, 0, 0, 1]), new Vector3(1, 1, 1)),
     });
   });
   return scene;

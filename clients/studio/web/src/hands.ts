@@ -1,6 +1,6 @@
 // The mouse on models: a click selects, a double click follows; with a tool in hand they are moved, turned and pushed.
 import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial, Mesh, Object3D, Plane, Quaternion, Raycaster, Scene, Vector2, Vector3 } from 'three';
-import type { Model, WorldScene } from './glb';
+import { pose_of, type Model, type WorldScene } from './glb';
 import type { Eye } from './orbit';
 import { act, changed, read_only, select, wire } from './store';
 
@@ -51,9 +51,10 @@ export class Hands {
     const model = hit && this.view.world!.models.get(hit.model);
     if (!hit || !model?.canonical || model.is_static) return false;
     select({ kind: 'model', id: model.name });
-    const x = new Vector3(1, 0, 0).applyQuaternion(model.canonical.getWorldQuaternion(new Quaternion()));
+    const { position, quaternion } = pose_of(model);
+    const x = new Vector3(1, 0, 0).applyQuaternion(quaternion);
     this.drag = {
-      model, from: [...model.canonical.position.toArray(), ...wxyz(model.canonical.quaternion)], at: hit.point.clone(), seen: hit.point.clone(), offset: model.canonical.position.clone().sub(hit.point), yaw: Math.atan2(x.y, x.x), last: 0, turn: null,
+      model, from: [...position.toArray(), ...wxyz(quaternion)], at: hit.point.clone(), seen: hit.point.clone(), offset: position.clone().sub(hit.point), yaw: Math.atan2(x.y, x.x), last: 0, turn: null,
     };
     this.view.canvas.setPointerCapture(event.pointerId);
     return true;
@@ -89,7 +90,7 @@ export class Hands {
   // With Ctrl or Alt it turns where it is, a hundredth radian for each pixel to the right.
   private turned(drag: Drag, event: PointerEvent): Vector3 | null {
     if (!event.ctrlKey && !event.altKey) return (drag.turn = null);
-    drag.turn ??= { x: event.clientX, yaw: drag.yaw, place: drag.model.canonical!.position.clone() };
+    drag.turn ??= { x: event.clientX, yaw: drag.yaw, place: pose_of(drag.model).position };
     drag.yaw = drag.turn.yaw + (event.clientX - drag.turn.x) * 0.01;
     return drag.turn.place;
   }

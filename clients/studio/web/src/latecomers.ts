@@ -1,5 +1,5 @@
 // Models that have come to a recorded world after its beginning, in one colour each as /sim/shapes has them; those that have gone are hidden.
-import { Bone, BufferAttribute, BufferGeometry, Group, Mesh } from 'three';
+import { Bone, BufferAttribute, BufferGeometry, Group, Matrix4, Mesh } from 'three';
 import type { WorldScene } from './glb';
 import { linear, make_material } from './material';
 import type { Late } from './wire';
@@ -61,6 +61,6 @@ export class Latecomers {
       return bone;
     });
     world.root.add(group);
-    world.models.set(name, { name, group, links: bones, is_static: false, radius, height: radius, canonical: bones[0] ?? null });
+    world.models.set(name, { name, group, links: bones, is_static: false, radius, height: radius, canonical: bones[0] ?? null, frame: new Matrix4() });
   }
 }
