@@ -14,6 +14,12 @@ const Act* find_act(std::string_view name) {
   return found == all.end() ? nullptr : &*found;
 }
 
+std::vector<std::string> simctl_words(std::uint32_t server_id) {
+  std::vector<std::string> words{"simctl"};
+  if (server_id != 0) words.insert(words.end(), {"-s", std::to_string(server_id)});
+  return words;
+}
+
 std::string shell_line(const std::vector<std::string>& words) {
   constexpr std::string_view plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-/:=,+@%";
   std::string line;

@@ -42,6 +42,9 @@ const Act* find_act(std::string_view name);
 // Words as a shell would have to be given them.
 std::string shell_line(const std::vector<std::string>& words);
 
+// The first words of a line for this simulator.
+std::vector<std::string> simctl_words(std::uint32_t server_id);
+
 // Roll, pitch and yaw [rad], as simctl takes them.
 std::array<double, 3> angles_of(const shm::Pose& pose);
 

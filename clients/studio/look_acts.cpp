@@ -167,8 +167,7 @@ Result<Plan> screenshot(const ActContext& context, const Json& args) {
   request.with_collisions = flag_of(args, "collisions");
   const bool is_from_top = flag_of(args, "top");
   request.view = is_from_top ? shm::ScreenshotRequest::View::top : shm::ScreenshotRequest::View::from;
-  std::vector<std::string> words{"simctl"};
-  if (context.server_id != 0) words.insert(words.end(), {"-s", std::to_string(context.server_id)});
+  std::vector<std::string> words = simctl_words(context.server_id);
   words.insert(words.end(),
                {"screenshot", "world.png", "--size", base::format_number(request.width) + "x" + base::format_number(request.height)});
   const auto short_number = [](double value) { return base::format_number(std::round(value * 1e4) / 1e4); };

@@ -29,8 +29,10 @@ void add_options(base::Command& app, Settings& settings) {
                  "RTSProfile: start its components and a simulator of --world, as rtse run does, paused; or a recording (MCAP): show it")
       ->check(base::existing_file());
   app.add_option("--ns", settings.studio.name_server,
-                 "Name server HOST[:PORT]; default: the first of $RTCTREE_NAMESERVERS, else localhost:2809");
-  app.add_option("-s,--server-id", settings.studio.server_id, "Which simulator")
+                 "Name server HOST[:PORT] of what runs already (a system that is started here gets one of its own); default: the first of "
+                 "$RTCTREE_NAMESERVERS, else localhost:2809");
+  app.add_option("-s,--server-id", settings.studio.server_id,
+                 "Which simulator to attach to; a system that is started here gets one of its own")
       ->check(base::integer_between(0, 9999))
       ->envname("RTMSIM_SERVER_ID")
       ->capture_default_str();

@@ -4,6 +4,7 @@
 #include <boost/asio/post.hpp>
 #include <utility>
 
+#include "acts.h"
 #include "base/id.h"
 #include "base/log.h"
 #include "base/text.h"
@@ -162,7 +163,8 @@ void Studio::handle_drive(Guest& guest, const Request& request) {
   const auto velocity = numbers_of(request.args, "velocity", 3, 6);
   if (!velocity || (velocity->size() != 3 && velocity->size() != 6))
     return answer(guest, request.id, Error{"velocity: expected 3 numbers (position2d) or 6 (position3d)"});
-  std::vector<std::string> words{"simctl", "velocity", *iface};
+  std::vector<std::string> words = simctl_words(options_.server_id);
+  words.insert(words.end(), {"velocity", *iface});
   for (const double number : *velocity) words.push_back(base::format_number(number));
   const auto command = shell_line(words);
   if (request.is_dry) return answer(guest, request.id, Json::object(), command);

@@ -33,8 +33,7 @@ Result<Json> ask(std::uint32_t server_id, const shm::Request& request, std::chro
 // `words`: of simctl; empty: nothing can be typed for it.
 Plan plan(const ActContext& context, shm::Request request, const std::vector<std::string>& words, Read read = no_result,
           Touches touches = Touches::world, std::chrono::nanoseconds limit = usual_limit) {
-  std::vector<std::string> line{"simctl"};
-  if (context.server_id != 0) line.insert(line.end(), {"-s", std::to_string(context.server_id)});
+  std::vector<std::string> line = simctl_words(context.server_id);
   line.insert(line.end(), words.begin(), words.end());
   return {words.empty() ? "" : shell_line(line),
           [id = context.server_id, request = std::move(request), read = std::move(read), limit] { return ask(id, request, limit, read); },

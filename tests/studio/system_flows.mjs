@@ -104,6 +104,18 @@ const flows = [
     await page.keyboard.press('Enter');
     await until('real time again', () => page.evaluate(() => window.studio.store.time.rtf_wanted === 1));
   }],
+  ['what was done to all is undone for all, by a key too', async ({ page }) => {
+    await page.locator('#deactivate-all').click();
+    await in_state(page, 'inactive', 3);
+    await page.keyboard.press('Control+z');
+    await in_state(page, 'active', 3);
+    await choose(page, 'RTCLaser0');
+    await page.keyboard.press('d');
+    await in_state(page, 'active', 2);
+    await page.keyboard.press('Control+z');
+    await in_state(page, 'active', 3);
+    await edges(page, 2);
+  }],
   ['the command of an act does the same', async ({ page, rig }) => {
     await page.locator('#deactivate-all').click();
     await in_state(page, 'inactive', 3);
@@ -254,6 +266,31 @@ const flows = [
     await until('it has turned', async () => Math.abs((await yaw()) - straight) > 0.3);
     const now = await place();
     check(Math.hypot(now[0] - before[0], now[1] - before[1]) < 0.02, `it has stayed: ${now}`);
+    await page.evaluate(() => { window.studio.world.hands.set_tool('move'); window.studio.world.whole(); });
+    await rig.simctl('run');
+  }],
+  ['a model whose link has a pose of its own is put back where it was', async ({ page, rig }) => {
+    await rig.simctl('pause');
+    const shape = '<geometry><box><size>0.6 0.6 0.6</size></box></geometry>';
+    await rig.simctl('spawn', `<sdf version="1.9"><model name="crate"><link name="l"><pose>1 0 0.3 0 0 0.5</pose><collision name="c">${shape}</collision><visual name="v">${shape}</visual></link></model></sdf>`, '--pose', '2 -3 0.2');
+    const place = async () => { const { position, yaw } = JSON.parse(await rig.simctl('--json', 'pose', 'crate')); return [...position, yaw]; };
+    const before = await place();
+    await until('in the world', () => page.evaluate(() => window.studio.world.world.models.has('crate')));
+    await page.evaluate(() => { window.studio.select({ kind: 'model', id: 'crate' }); window.studio.world.follow('crate'); window.studio.world.hands.set_tool('move'); window.studio.world.draw(); });
+    await until('its pose is shown', async () => (await page.locator('.inspector dl.values dd').allTextContents()).slice(0, 3).join(' ') === '2.000 m -3.000 m 0.000 m');
+    const box = await page.locator('.world canvas').boundingBox();
+    const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 60, y, { steps: 5 });
+    await page.mouse.up();
+    await until('the page knows that it was put', () => page.evaluate(() => window.studio.store.acts.at(-1).undo?.text === 'Put crate back'));
+    const put = await place();
+    check(Math.hypot(put[0] - before[0], put[1] - before[1]) > 0.05 && Math.abs(put[3] - before[3]) < 1e-3, `moved, and not turned: ${put}`);
+    await page.keyboard.press('Control+z');
+    await until('it is back', async () => (await place()).every((value, i) => Math.abs(value - before[i]) < 1e-3));
+    await rig.simctl('delete', 'crate');
+    await until('and gone', async () => (await page.locator('.inspector').textContent()).includes('It is not there now'));
     await page.evaluate(() => { window.studio.world.hands.set_tool('move'); window.studio.world.whole(); });
     await rig.simctl('run');
   }],

@@ -1,14 +1,15 @@
 // What is selected, in full, and what can be done with it.
-import { Euler, Quaternion } from 'three';
+import { Euler } from 'three';
 import { button, h, put, unless_pressed } from './dom';
 import { connect_dialog } from './connect_dialog';
 import { short_type } from './diagram';
 import { ask_text } from './dialog';
+import { pose_of } from './glb';
 import { inject_dialog, join_dialog } from './rtse_dialogs';
 import { control, is_edited } from './widgets';
 import { state_class, state_mark, state_words } from './states';
 import {
-  Act, act, component, component_of_port, components_of, connection, connections_of, iface_id, is_selected, model_of, name_of_port, on, port_of, read_only, refresh_details, select, store, wire,
+  act, component, component_of_port, components_of, connection, connections_of, iface_id, is_selected, model_of, name_of_port, on, port_of, read_only, refresh_details, select, state_act, store, wire,
 } from './store';
 import { short_path, signal_name } from './tree';
 import type { ConfigValue, Context, Values } from './wire';
@@ -102,6 +103,10 @@ export class Inspector {
     else if (!this.stop) this.follow_velocity(name); // a model that has just come is told before its ifaces
     const model = world.world?.models.get(name);
     const ifaces = store.world?.ifaces.filter((i) => i.model === name && i.type !== 'truth') ?? [];
+    if (!store.world?.models.some((m) => m.name === name)) {
+      this.live = null;
+      return [this.title(name, 'model'), h('p', { class: 'hint' }, 'It is not there now.')];
+    }
     const drive = ifaces.find((i) => i.type === 'position2d' || i.type === 'position3d');
     const pose = h('dl', { class: 'values' });
     const numbers = ['x', 'y', 'z', 'roll', 'pitch', 'yaw'].map((label) => {
@@ -110,10 +115,11 @@ export class Inspector {
       return value;
     });
     this.live = () => {
-      const link = world.world?.models.get(name)?.canonical;
-      if (!link) return;
-      const angles = new Euler().setFromQuaternion(new Quaternion().copy(link.quaternion), 'ZYX');
-      const values = [link.position.x, link.position.y, link.position.z, angles.x, angles.y, angles.z];
+      const shown = world.world?.models.get(name);
+      if (!shown?.canonical) return;
+      const { position, quaternion } = pose_of(shown);
+      const angles = new Euler().setFromQuaternion(quaternion, 'ZYX');
+      const values = [position.x, position.y, position.z, angles.x, angles.y, angles.z];
       numbers.forEach((element, i) => { element.textContent = i < 3 ? `${fixed(values[i], 3)} m` : `${fixed((values[i] * 180) / Math.PI, 1)}°`; });
     };
     this.live();
@@ -164,13 +170,14 @@ export class Inspector {
   }
 
   private put_model(name: string): void {
-    const link = this.parts.world.world?.models.get(name)?.canonical;
-    const yaw = link ? new Euler().setFromQuaternion(link.quaternion, 'ZYX').z : 0;
-    const start = link ? [link.position.x, link.position.y, yaw] : [0, 0, 0];
+    const model = this.parts.world.world?.models.get(name);
+    const pose = model?.canonical ? pose_of(model) : null;
+    const start = pose ? [pose.position.x, pose.position.y, new Euler().setFromQuaternion(pose.quaternion, 'ZYX').z] : [0, 0, 0];
+    const from = pose ? [...pose.position.toArray(), pose.quaternion.w, pose.quaternion.x, pose.quaternion.y, pose.quaternion.z] : null;
     ask_text(`Put ${name}`, 'X Y YAW [m, m, rad]', start.map((v) => v.toFixed(3)).join(' '), 'Put', (text) => {
       const planar = text.split(/[\s,]+/).map(Number);
       if (planar.length === 3 && planar.every(Number.isFinite)) {
-        act(`Put ${name}`, 'set_pose', { model: name, planar }, () => ({ text: `Put ${name} back`, name: 'set_pose', args: { model: name, planar: start } }));
+        act(`Put ${name}`, 'set_pose', { model: name, planar }, () => ({ text: `Put ${name} back`, name: 'set_pose', args: from ? { model: name, pose: from } : { model: name, planar: start } }));
       }
     });
   }
@@ -268,7 +275,7 @@ export class Inspector {
     if (!one) return [this.title(short_path(path), 'component'), h('p', { class: 'hint' }, 'It is not there now.')];
     const detail = store.details.get(path);
     const can = !read_only();
-    const does = (text: string, name: string, enabled: boolean, danger = false, undo?: () => Act['undo']) => button(`${text} ${one.instance}`, { label: text, disabled: !enabled, class: danger ? 'danger' : undefined, id: `act-${name}` }, () => act(`${text} ${one.instance}`, name, { path }, undo));
+    const does = (text: string, name: string, enabled: boolean, danger = false) => button(`${text} ${one.instance}`, { label: text, disabled: !enabled, class: danger ? 'danger' : undefined, id: `act-${name}` }, () => state_act(one, text, name));
     const model = model_of(path);
     return [
       this.title(one.instance, one.instance.replace(/\d+$/, '') === one.type ? '' : one.type, state_mark(one.state)),
@@ -276,11 +283,11 @@ export class Inspector {
       one.problem ? h('p', { class: 'problem' }, one.problem) : null,
       one.state === 'Error' ? h('p', { class: 'hint' }, 'Reset takes it from the error state to inactive; its log says what was wrong.') : null,
       can ? h('div', { class: 'acts' },
-        does('Activate', 'activate', one.state === 'Inactive', false, () => ({ text: `Deactivate ${one.instance}`, name: 'deactivate', args: { path } })),
-        does('Deactivate', 'deactivate', one.state === 'Active', false, () => ({ text: `Activate ${one.instance}`, name: 'activate', args: { path } })),
+        does('Activate', 'activate', one.state === 'Inactive'),
+        does('Deactivate', 'deactivate', one.state === 'Active'),
         does('Reset', 'reset', one.state === 'Error'), does('Exit', 'exit', true, true),
         one.in_simulated_time ? does('Leave', 'leave_time', true) : button(`Let ${one.instance} take part in simulated time`, { label: 'Join …', id: 'act-join_time' }, () => join_dialog(one)),
-        store.system.connections.some((c) => c.ports.some((p) => component_of_port(p) === path)) ? does('Disconnect all', 'disconnect_all', true) : null,
+        store.system.connections.some((c) => c.ports.some((p) => component_of_port(p) === path)) ? button(`Disconnect all ${one.instance}`, { label: 'Disconnect all', id: 'act-disconnect_all' }, () => disconnect_all(store.system.connections.filter((c) => c.ports.some((p) => component_of_port(p) === path)))) : null,
         one.problem ? does('Forget', 'forget', true, true) : null) : null,
       h('h3', null, 'Contexts'),
       one.contexts.map((context) => this.context(path, context, one.contexts.length === 1)),
@@ -357,7 +364,7 @@ export class Inspector {
       h('p', null, 'of ', link_to(component(path)?.instance ?? path, { kind: 'component', id: path }), port.data_type ? `, ${short_type(port.data_type)}` : ''),
       h('div', { class: 'acts' }, read_only() ? null : button('Connect this port', { icon: 'link', label: 'Connect …', key: 'C', id: 'connect' }, () => connect_dialog(id)),
         port.kind === 'in' && !read_only() ? button('Write a value to this port', { label: 'Write …', id: 'inject' }, () => inject_dialog(id, port.data_type)) : null,
-        connections_of(id).length > 1 && !read_only() ? button('Cut all connections of this port', { label: 'Disconnect all', id: 'disconnect-all' }, () => act(`Disconnect all of ${port.name}`, 'disconnect_all', { path: id })) : null,
+        connections_of(id).length > 1 && !read_only() ? button('Cut all connections of this port', { label: 'Disconnect all', id: 'disconnect-all' }, () => disconnect_all(connections_of(id))) : null,
         signal ? button('Show its values', { icon: 'plot', label: 'Values' }, () => select({ kind: 'signal', id: signal.topic })) : null),
       connections_of(id).length > 0 ? h('h3', null, 'Connections') : null,
       h('ul', { class: 'list' }, connections_of(id).map((c) => h('li', null, link_to(c.name || c.ports.map(name_of_port).join(' – '), { kind: 'connection', id: c.id }),
@@ -422,13 +429,18 @@ export class Inspector {
   }
 }
 
-export function disconnect(id: string): void {
+function disconnect_all(all: { id: string }[]): void {
+  const group = {};
+  for (const { id } of all) disconnect(id, group);
+}
+
+export function disconnect(id: string, group?: object): void {
   const one = connection(id);
   if (!one || read_only()) return;
   const port = one.ports.find((p) => port_of(p)) ?? one.ports[0];
   act(`Disconnect ${one.name || one.ports.map(name_of_port).join(' and ')}`, 'disconnect', { port, id }, (result) => ({
     text: `Connect ${one.name} again`, name: 'connect', args: { ports: result.ports ?? one.ports, name: result.name ?? one.name, id, properties: result.properties ?? one.properties },
-  })).then(() => { if (is_selected('connection', id)) select(null); });
+  }), undefined, group).then(() => { if (is_selected('connection', id)) select(null); });
 }
 
 function link_to(text: string, selection: { kind: any; id: string }): HTMLElement {

@@ -7,7 +7,7 @@ import { Drive } from './drive';
 import { History } from './history';
 import { disconnect, Inspector } from './inspector';
 import { apply_theme, keep, linked, settings, to_link } from './settings';
-import { act, changed, component, on, read_only, select, selected_model, store, undo_last, wire } from './store';
+import { act, changed, component, on, read_only, select, selected_model, state_act, store, undo_last, wire } from './store';
 import { Playback, recording } from './playback';
 import { profile_dialog } from './profile_dialog';
 import { recordings_dialog } from './recordings_dialog';
@@ -69,7 +69,9 @@ profile_input.addEventListener('change', async () => {
 
 async function save_profile(): Promise<void> {
   const result = await act('Save the system', 'save_profile', { positions: diagram.positions() });
-  if (result?.xml) download(new Blob([result.xml], { type: 'application/xml' }), `${store.world?.name || 'system'}.xml`);
+  if (!result?.xml) return;
+  download(new Blob([result.xml], { type: 'application/xml' }), `${store.world?.name || 'system'}.xml`);
+  if (result.left_out) store.acts.push({ text: 'Saved, but', error: result.left_out }), changed('acts');
 }
 
 async function save_picture(): Promise<void> {
@@ -186,8 +188,9 @@ const tab_bar = h('div', { class: 'panel-tabs', role: 'toolbar', 'aria-label': '
 const page = h('div', { class: 'page' }, top_bar, tree_panel, edge('tree', 'x'), middle, edge('inspector', 'x'), inspector_panel, edge('bottom', 'y'), bottom_panel, tab_bar, status_bar);
 
 async function all_components(state: string, name: string, word: string): Promise<void> {
+  const group = {};
   // At the same time: a component that takes long does not keep the others waiting.
-  await Promise.all(store.system.components.filter((c) => c.state === state).map((one) => act(`${word} ${one.instance}`, name, { path: one.path })));
+  await Promise.all(store.system.components.filter((c) => c.state === state).map((one) => state_act(one, word, name, group)));
 }
 
 // Between panels, where a landmark of its own says what it is.
@@ -311,7 +314,7 @@ document.addEventListener('keydown', (event) => {
   }
   const chosen = store.selection?.kind === 'component' ? component(store.selection.id) : undefined;
   // Whatever state the page knows of: it may be late, and the component says itself what it cannot do.
-  const on_chosen = (name: string, word: string) => () => { if (chosen && !read_only()) act(`${word} ${chosen.instance}`, name, { path: chosen.path }); };
+  const on_chosen = (name: string, word: string) => () => { if (chosen && !read_only()) state_act(chosen, word, name); };
   const table: { [key: string]: () => void } = {
     ' ': () => bottom.run_or_pause(), '.': () => bottom.step(), ',': () => bottom.step(-1), R: () => bottom.reset(), '/': () => { show_panel('tree', true); tree.search.focus(); tree.search.select(); }, '?': show_keys,
     o: () => world.whole(), t: () => tools.top.click(), f: follow, l: () => toggle('lasers'), n: () => toggle('names'), k: () => toggle('contacts'), s: () => toggle('sonars'), h: () => toggle('trails'), b: () => toggle('collisions'), x: () => toggle('frames'), Insert: () => tools.spawn.click(), m: () => world.hands.set_tool('move'), p: () => world.hands.set_tool('push'), g: () => drive.toggle(), r: () => recordings_dialog(),

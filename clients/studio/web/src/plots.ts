@@ -102,7 +102,7 @@ class Plot {
     put(this.legend, this.lines.map((line, i) => {
       const sign = h('i');
       sign.style.background = palette[i % palette.length];
-      return h('span', { title: `${line.topic} ${line.member}` }, sign, `${signal_name(line)} ${line.member}`, line.error ? h('em', null, ` ${line.error}`) : null,
+      return h('span', { title: `${line.topic} ${line.member}${line.error ? `: ${line.error}` : ''}` }, sign, `${signal_name(line)} ${line.member}`, line.error ? h('em', null, ` ${line.error}`) : null,
         button(`Remove ${line.member}`, { icon: 'close', class: 'plain small' }, () => this.drop(i)));
     }));
   }
@@ -243,7 +243,7 @@ export async function first_member(topic: string): Promise<{ topic: string; memb
   try {
     const { result } = await wire.request('members', { topic });
     const members: { path: string; type: string }[] = result.members ?? [];
-    const one = members.find((m) => m.type === 'number' && !is_stamp(m.path)) ?? members.find((m) => m.type === 'number');
+    const one = members.find((m) => m.type === 'number' && !is_dull(m.path));
     if (one) return { topic, member: one.path };
   } catch { /* older servers: from a sample */ }
   return new Promise((resolve) => {
@@ -251,11 +251,13 @@ export async function first_member(topic: string): Promise<{ topic: string; memb
       if (!values.value) return;
       stop();
       const numbers = flatten(values.value).filter(([, v]) => typeof v === 'number').map(([k]) => k);
-      const member = numbers.find((k) => !is_stamp(k)) ?? numbers[0];
+      const member = numbers.find((k) => !is_dull(k)) ?? numbers.find((k) => !is_stamp(k)) ?? numbers[0];
       resolve(member ? { topic, member } : undefined);
     });
     setTimeout(() => { stop(); resolve(undefined); }, 5000);
   });
 }
 
+// Of a scan: where the sensor sits and how it is made.
+const is_dull = (path: string): boolean => is_stamp(path) || /^(geometry|config)\./.test(path);
 const is_stamp = (path: string): boolean => /(^|\.)(stamp|tm|header|sequence)(\.|$)/.test(path);

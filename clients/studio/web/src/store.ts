@@ -11,6 +11,7 @@ export interface Act {
   text: string;
   command?: string;
   error?: string;
+  group?: object; // acts of one group are undone together
   undo?: { text: string; name: string; args: object };
 }
 
@@ -110,8 +111,8 @@ export const read_only = (): boolean => store.hello?.read_only ?? false;
 const under_way = new Set<Promise<unknown>>();
 
 // Does something to the system or the world, and remembers it with the command that would have done the same. `after`: what has to be over.
-export function act(text: string, name: string, args: object, undo?: (result: any) => Act['undo'], after?: Promise<void>): Promise<any> {
-  const doing = carry_out(text, name, args, undo, after);
+export function act(text: string, name: string, args: object, undo?: (result: any) => Act['undo'], after?: Promise<void>, group?: object): Promise<any> {
+  const doing = carry_out(text, name, args, undo, after, group);
   if (undo) {
     under_way.add(doing);
     doing.finally(() => under_way.delete(doing));
@@ -119,8 +120,8 @@ export function act(text: string, name: string, args: object, undo?: (result: an
   return doing;
 }
 
-async function carry_out(text: string, name: string, args: object, undo?: (result: any) => Act['undo'], after?: Promise<void>): Promise<any> {
-  const done: Act = { text };
+async function carry_out(text: string, name: string, args: object, undo?: (result: any) => Act['undo'], after?: Promise<void>, group?: object): Promise<any> {
+  const done: Act = { text, group };
   try {
     if (after) await after;
     const reply = await wire.request(name, args);
@@ -141,12 +142,23 @@ async function carry_out(text: string, name: string, args: object, undo?: (resul
 export async function undo_last(): Promise<void> {
   await Promise.allSettled([...under_way]);
   for (let i = store.acts.length - 1; i >= 0; --i) {
-    const undo = store.acts[i].undo;
+    const { undo, group } = store.acts[i];
     if (!undo) continue;
-    store.acts[i].undo = undefined;
-    await act(undo.text, undo.name, undo.args);
+    const together = store.acts.filter((one) => one.undo && (one === store.acts[i] || (group && one.group === group)));
+    await Promise.all(together.map((one) => {
+      const { text, name, args } = one.undo!;
+      one.undo = undefined;
+      return act(text, name, args);
+    }));
     return;
   }
+}
+
+// Wherever it is asked for: by a button, a key or for all components.
+export function state_act(one: { path: string; instance: string }, word: string, name: string, group?: object): Promise<any> {
+  const { path, instance } = one;
+  const back = { activate: ['Deactivate', 'deactivate'], deactivate: ['Activate', 'activate'] }[name];
+  return act(`${word} ${instance}`, name, { path }, back && (() => ({ text: `${back[0]} ${instance}`, name: back[1], args: { path } })), undefined, group);
 }
 
 function ask_details(): void {
