@@ -40,7 +40,13 @@ const flows = [
     await page.locator('#act-leave_time').click();
     await until('leave', () => asked(mock, 'leave_time').at(-1)?.args.path === avoid);
     await page.locator('#act-disconnect_all').click();
-    await until('cut', () => asked(mock, 'disconnect_all').at(-1)?.args.path === avoid);
+    const cut = demo_system().connections.filter((c) => c.ports.some((p) => p.startsWith(`${avoid}:`))).map((c) => c.id);
+    await until('cut', () => asked(mock, 'disconnect').length === cut.length);
+    same(asked(mock, 'disconnect').map((m) => m.args.id).sort(), cut.sort(), 'which');
+    await until('both can be undone', () => page.evaluate((n) => window.studio.store.acts.slice(-n).every((one) => one.undo), cut.length));
+    const before = asked(mock, 'connect').length;
+    await page.keyboard.press('Control+z');
+    await until('all come back at once', () => asked(mock, 'connect').length === before + cut.length);
     mock.say(demo_system());
   }],
   ['what a component refuses can be set all the same', async ({ page, mock }) => {
