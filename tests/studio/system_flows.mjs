@@ -48,6 +48,16 @@ async function drag(page, from, to) {
   await page.locator('dialog[open] button.main').click();
 }
 
+// What is in the middle of the world's view, to the right.
+async function pull(page, pixels) {
+  const box = await page.locator('.world canvas').boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + pixels, y, { steps: 5 });
+  await page.mouse.up();
+}
+
 const drives = (rig) => until('the robot drives', async () => (await rig.speed()) > 0.05);
 const stands = (rig) => until('the robot stands', async () => Math.abs(await rig.speed()) < 0.01);
 
@@ -240,12 +250,7 @@ const flows = [
     await page.evaluate((name) => { window.studio.world.follow(name); window.studio.world.hands.set_tool('move'); }, robot);
     await page.evaluate(() => window.studio.world.draw());
     const before = await place();
-    const box = await page.locator('.world canvas').boundingBox();
-    const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
-    await page.mouse.move(x, y);
-    await page.mouse.down();
-    await page.mouse.move(x + 70, y, { steps: 5 });
-    await page.mouse.up();
+    await pull(page, 70);
     await until('it was put', async () => { const now = await place(); return Math.hypot(now[0] - before[0], now[1] - before[1]) > 0.05; });
     const put = await place();
     await until('the page knows that it was', () => page.evaluate(() => window.studio.store.acts.at(-1).undo?.text === 'Put pioneer2dx back'));
@@ -258,10 +263,7 @@ const flows = [
     const yaw = async () => JSON.parse(await rig.simctl('--json', 'pose', robot)).yaw;
     const straight = await yaw();
     await page.keyboard.down('Control');
-    await page.mouse.move(x, y);
-    await page.mouse.down();
-    await page.mouse.move(x + 50, y, { steps: 5 });
-    await page.mouse.up();
+    await pull(page, 50);
     await page.keyboard.up('Control');
     await until('it has turned', async () => Math.abs((await yaw()) - straight) > 0.3);
     const now = await place();
@@ -278,12 +280,7 @@ const flows = [
     await until('in the world', () => page.evaluate(() => window.studio.world.world.models.has('crate')));
     await page.evaluate(() => { window.studio.select({ kind: 'model', id: 'crate' }); window.studio.world.follow('crate'); window.studio.world.hands.set_tool('move'); window.studio.world.draw(); });
     await until('its pose is shown', async () => (await page.locator('.inspector dl.values dd').allTextContents()).slice(0, 3).join(' ') === '2.000 m -3.000 m 0.000 m');
-    const box = await page.locator('.world canvas').boundingBox();
-    const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
-    await page.mouse.move(x, y);
-    await page.mouse.down();
-    await page.mouse.move(x + 60, y, { steps: 5 });
-    await page.mouse.up();
+    await pull(page, 60);
     await until('the page knows that it was put', () => page.evaluate(() => window.studio.store.acts.at(-1).undo?.text === 'Put crate back'));
     const put = await place();
     check(Math.hypot(put[0] - before[0], put[1] - before[1]) > 0.05 && Math.abs(put[3] - before[3]) < 1e-3, `moved, and not turned: ${put}`);

@@ -31,6 +31,7 @@ export class Inspector {
   private facts_shown = '';
   private stop: (() => void) | null = null;
   private live: (() => void) | null = null;
+  private told = ''; // the model of the selection that the simulator has named
   private ask_again: (() => void) | null = null; // what was asked of a server that has gone, or was not there yet
 
   constructor(private readonly parts: Parts) {
@@ -103,7 +104,9 @@ export class Inspector {
     else if (!this.stop) this.follow_velocity(name); // a model that has just come is told before its ifaces
     const model = world.world?.models.get(name);
     const ifaces = store.world?.ifaces.filter((i) => i.model === name && i.type !== 'truth') ?? [];
-    if (!store.world?.models.some((m) => m.name === name)) {
+    const is_told = store.world?.models.some((m) => m.name === name);
+    if (is_told) this.told = name;
+    if (!is_told && (!model || this.told === name)) { // actors are in the scene alone
       this.live = null;
       return [this.title(name, 'model'), h('p', { class: 'hint' }, 'It is not there now.')];
     }

@@ -243,21 +243,23 @@ export async function first_member(topic: string): Promise<{ topic: string; memb
   try {
     const { result } = await wire.request('members', { topic });
     const members: { path: string; type: string }[] = result.members ?? [];
-    const one = members.find((m) => m.type === 'number' && !is_dull(m.path));
-    if (one) return { topic, member: one.path };
+    const numbers = members.filter((m) => m.type === 'number').map((m) => m.path);
+    const member = first_of(numbers);
+    if (member) return { topic, member };
   } catch { /* older servers: from a sample */ }
   return new Promise((resolve) => {
     const stop = watch({ topic, hz: 5 }, (values) => {
       if (!values.value) return;
       stop();
       const numbers = flatten(values.value).filter(([, v]) => typeof v === 'number').map(([k]) => k);
-      const member = numbers.find((k) => !is_dull(k)) ?? numbers.find((k) => !is_stamp(k)) ?? numbers[0];
+      const member = first_of(numbers);
       resolve(member ? { topic, member } : undefined);
     });
     setTimeout(() => { stop(); resolve(undefined); }, 5000);
   });
 }
 
+const first_of = (paths: string[]): string | undefined => paths.find((path) => !is_dull(path)) ?? paths.find((path) => !is_stamp(path)) ?? paths[0];
 // Of a scan: where the sensor sits and how it is made.
 const is_dull = (path: string): boolean => is_stamp(path) || /^(geometry|config)\./.test(path);
 const is_stamp = (path: string): boolean => /(^|\.)(stamp|tm|header|sequence)(\.|$)/.test(path);
