@@ -272,6 +272,7 @@ void ServerLoop::handle_requests(When when) {
   }
   auto waiting = std::exchange(postponed_, {});
   for (auto& asked : board_.poll()) waiting.push_back({std::move(asked), Clock::now()});
+  if (when == When::between_steps && !waiting.empty() && !barrier_->settle()) return;
   for (auto& [asked, since] : waiting) {
     // What its client was told has failed must not happen later.
     if (!board_.is_awaited(asked.ticket)) continue;

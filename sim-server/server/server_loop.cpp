@@ -77,6 +77,7 @@ bool ServerLoop::run() {
   start_pace();
   while (!is_stopping_.load(std::memory_order_acquire)) {  // pairs with the release in stop
     times_.begin_step(simulation_.steps());
+    if (mode_.stands_still() && !barrier_->settle()) break;
     const bool stood_still = mode_.stands_still();
     handle_requests(When::between_steps);
     tend();
@@ -87,7 +88,10 @@ bool ServerLoop::run() {
       is_fresh_moment_ = false;
       if (!finish_moment()) break;
     }
-    if (options_.duration && simulation_.time() >= *options_.duration) break;
+    if (options_.duration && simulation_.time() >= *options_.duration) {
+      (void)barrier_->settle();
+      break;
+    }
     if (mode_.stands_still()) {
       barrier_->refresh();
       board_.wait(Clock::now() + pause_period);
@@ -140,7 +144,7 @@ void ServerLoop::step() {
 bool ServerLoop::finish_moment() {
   // Nobody waits for the wall clock: pictures must not be late in simulated time.
   simulation_.pictures().set_synchronous(options_.is_lockstep || pace_.is_free() || mode_.hurries());
-  simulation_.sense(times_);
+  if (!simulation_.sense(times_, [this] { return barrier_->settle(); })) return false;
   if (recorder_) recorder_->record(simulation_.time(), simulation_.physics());
   if (hashes_) hashes_->record(simulation_);
   publish_clock();
@@ -233,7 +237,7 @@ bool ServerLoop::is_watched() const {
 }
 
 void ServerLoop::finish_step_request() {
-  if (!step_ticket_) return;
+  if (!step_ticket_ || !barrier_->settle()) return;
   shm::Reply reply;
   reply.sim_time_ns = simulation_.time().count();
   reply.steps = simulation_.steps();

@@ -127,7 +127,7 @@ void Simulation::step(PartTimes& times) {
   times.mark(Part::commands);
 }
 
-void Simulation::sense(PartTimes& times) {
+bool Simulation::sense(PartTimes& times, const std::function<bool()>& before_writing) {
   const Moment moment{time_, world_->physics.step};
   due_.clear();
   bool needs_rays = false;
@@ -139,9 +139,15 @@ void Simulation::sense(PartTimes& times) {
     ++samples_taken_[i];
     needs_rays = needs_rays || device.uses_rays();
   }
-  if (due_.empty()) return times.mark(Part::sensors);
+  if (due_.empty()) {
+    times.mark(Part::sensors);
+    return true;
+  }
   active_sensors_ = std::max(active_sensors_, static_cast<std::uint32_t>(due_.size()));
   times.begin_due(Part::sensors);
+  // Pictures are written into their ifaces as soon as they are drawn.
+  const bool has_pictures = std::ranges::any_of(due_, [](Device* device) { return shm::has_frames(device->iface().type()); });
+  if (has_pictures && before_writing && !before_writing()) return false;
   if (needs_rays) {
     rays_->update();
     times.mark(Part::rays);
@@ -151,9 +157,11 @@ void Simulation::sense(PartTimes& times) {
     for (auto* device : due_) device->take_sample(moment);
   }
   times.mark(Part::sensors);
+  if (!has_pictures && before_writing && !before_writing()) return false;
   for (auto* device : due_) device->publish(moment);
   times.mark(Part::publish);
   times.end_due();
+  return true;
 }
 
 void Simulation::answer_new_subscribers() {

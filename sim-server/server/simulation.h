@@ -48,7 +48,8 @@ class Simulation {
   // Commands, physics, encoders; time goes on by a step.
   void step(PartTimes& times);
   // Sensors that are due measure and publish.
-  void sense(PartTimes& times);
+  // `before_writing` is called before the first of them is written; when it says false none is, and sense() says so.
+  bool sense(PartTimes& times, const std::function<bool()>& before_writing = {});
   // While time stands still: sensors that were switched on meanwhile show the present moment; the run goes on as without them.
   void answer_new_subscribers();
 

@@ -38,6 +38,8 @@ struct Barrier::State {
     std::uint32_t go = 0;
     std::uint64_t missed = 0;
     bool is_hanging = false;
+    bool observes = false;    // as of this tick
+    bool is_looking = false;  // an observer in its tick
 
     auto order() const { return std::pair(phase, turn); }
   };
@@ -60,7 +62,9 @@ struct Barrier::State {
   bool has_looked_ahead = false;
   bool is_ticking = false, has_gone = false;  // gone: members with owner 0 are to be removed after the tick
   std::int64_t last_now = -1;
-  std::int64_t earliest_due = 0;
+  std::int64_t earliest_due = 0;   // of all
+  std::int64_t earliest_turn = 0;  // of those who are waited for at once
+  bool is_looked_at = false;
   std::uint32_t resets = 0;
   mutable std::uint64_t moment = 0;  // kept here, too: what a client scribbles into the shared one must not stay
 
@@ -80,6 +84,9 @@ struct Barrier::State {
   void wake(std::span<Member* const> group);
   bool run_turn(std::span<Member*> group, std::int64_t now, std::uint64_t steps);
   void end_phase();
+  bool observes(std::size_t index) const { return options.is_lockstep && load(slot_at(segment, index).observes) != 0; }
+  void let_look(std::int64_t now, std::uint64_t steps);
+  void remove_gone();
   bool wait_for(std::span<Member*> group);
   bool look_for_end(std::span<Member*> group, nanoseconds limit) const;
   bool all_done(std::span<Member*> group) const {
@@ -105,8 +112,17 @@ Barrier::~Barrier() {
 }
 
 void Barrier::State::schedule_all() {
-  earliest_due = longest_period;
-  for (const Member& member : members) earliest_due = std::min(earliest_due, member.next_due);
+  earliest_due = earliest_turn = longest_period;
+  for (const Member& member : members) {
+    earliest_due = std::min(earliest_due, member.next_due);
+    if (!member.observes) earliest_turn = std::min(earliest_turn, member.next_due);
+  }
+}
+
+// Who has lost its place while a tick ran.
+void Barrier::State::remove_gone() {
+  if (std::exchange(has_gone, false)) std::erase_if(members, [](const Member& member) { return member.owner == 0; });
+  schedule_all();
 }
 
 void Barrier::State::take_in(std::size_t index) {
@@ -118,6 +134,7 @@ void Barrier::State::take_in(std::size_t index) {
   member.phase = slot.phase;
   member.turn = slot.turn;
   member.period = load(slot.period_ns);
+  member.observes = observes(index);
   const bool is_good = member.phase <= max_phase && member.period > 0 && member.period < longest_period && member.owner != 0;
   member.watched = server.watch().watch(mark_of(slot));
   if (member.watched->is_dead()) return free_slot(slot, member.owner);
@@ -292,7 +309,7 @@ void Barrier::State::wake_ahead(std::int64_t step) {
   due.clear();
   for (Member& member : members) {
     if (!due.empty() && member.order() != due[0]->order()) break;
-    if (member.next_due < earliest_due + step) due.push_back(&member);
+    if (member.next_due < earliest_turn + step && !member.observes) due.push_back(&member);
   }
   free.look(steady_clock::now());
   if (due.empty() || !free.are_there_for(due.size())) return;
@@ -338,14 +355,47 @@ bool Barrier::State::run_turn(std::span<Member*> group, std::int64_t now, std::u
   return wait_for(group);
 }
 
+// Their wake costs the server one system call, and what they do nothing as long as a processor is free.
+void Barrier::State::let_look(std::int64_t now, std::uint64_t steps) {
+  due.clear();
+  for (Member& member : members) {
+    if (member.owner != 0 && member.next_due <= now && member.observes) due.push_back(&member);
+  }
+  if (due.empty()) return;
+  is_looked_at = true;
+  store(control().pending, static_cast<std::int32_t>(due.size()), std::memory_order_seq_cst);
+  for (Member* member : due) {
+    member->is_looking = true;
+    release(*member, now, steps);
+  }
+  wake(due);
+}
+
+bool Barrier::settle() {
+  State& state = *state_;
+  if (!std::exchange(state.is_looked_at, false)) return true;
+  state.due.clear();
+  for (State::Member& member : state.members) {
+    if (std::exchange(member.is_looking, false)) state.due.push_back(&member);
+  }
+  if (state.due.empty()) return true;
+  state.is_ticking = true;
+  const bool is_complete = state.wait_for(state.due);
+  state.is_ticking = false;
+  for (const auto* member : state.due) state.has_gone = state.has_gone || member->owner == 0;
+  state.remove_gone();
+  return is_complete;
+}
+
 bool Barrier::tick(nanoseconds now, std::uint64_t steps) {
   State& state = *state_;
   refresh();
   const std::int64_t step = now.count() - std::exchange(state.last_now, now.count());
-  if (now.count() < state.earliest_due) {
-    if (state.options.is_lockstep && now.count() + step * state.ahead.steps() >= state.earliest_due) state.wake_ahead(step);
-    return true;
-  }
+  if (state.options.is_lockstep && now.count() < state.earliest_turn && now.count() + step * state.ahead.steps() >= state.earliest_turn)
+    state.wake_ahead(step);
+  if (now.count() < state.earliest_due) return true;
+  if (!settle()) return false;
+  for (State::Member& member : state.members) member.observes = state.observes(member.index);
   std::size_t begin = 0;
   bool is_complete = true, has_begun = false;
   state.is_ticking = true;
@@ -354,7 +404,8 @@ bool Barrier::tick(nanoseconds now, std::uint64_t steps) {
     std::size_t end = begin;
     state.due.clear();
     for (; end < state.members.size() && state.members[end].order() == order; ++end) {
-      if (state.members[end].owner != 0 && state.members[end].next_due <= now.count()) state.due.push_back(&state.members[end]);
+      State::Member& member = state.members[end];
+      if (member.owner != 0 && member.next_due <= now.count() && !member.observes) state.due.push_back(&member);
     }
     const std::span<State::Member*> group(state.due);
     if (!group.empty() && !std::exchange(has_begun, true)) state.learn_ahead(group);
@@ -364,8 +415,8 @@ bool Barrier::tick(nanoseconds now, std::uint64_t steps) {
     begin = end;
   }
   state.is_ticking = false;
-  if (std::exchange(state.has_gone, false)) std::erase_if(state.members, [](const State::Member& member) { return member.owner == 0; });
-  state.schedule_all();
+  if (is_complete && state.options.is_lockstep) state.let_look(now.count(), steps);
+  state.remove_gone();
   return is_complete;
 }
 
@@ -393,9 +444,7 @@ bool Barrier::drop(const std::string& name) {
   if (!is_found) return false;
   state.has_gone = true;
   if (state.is_ticking) return true;  // asked by on_waiting: the tick removes it
-  state.has_gone = false;
-  std::erase_if(state.members, [](const State::Member& member) { return member.owner == 0; });
-  state.schedule_all();
+  state.remove_gone();
   return true;
 }
 

@@ -16,7 +16,15 @@
 // woken: sleepers share a futex word and are told apart by its bit sets. Due times are the multiples of the period since time 0, so they do
 // not depend on when somebody joined; a tick happens at the first step at or after the due time, without drift.
 //
+// Observers (those that only look at samples, as recorders do) come after all phases and are not waited for at the end of the tick, but
+// before the next samples are written, anybody's next tick, and whatever else may change what they look at: settle(). So they read while
+// the next steps are computed, and see what they would have seen in their tick. The clock is that of the tick (Tick::now): the one that
+// is published, and what the server is asked for, may be of a later step. Without lock step they are as all others.
+//
+//   active ──(server: tick is due)──> reads ──(client: done, left, dead; server: dropped)──> active, or gone
+//
 // Failures:
+//   observer dies, hangs, leaves       as below; settle() goes on without it
 //   dies at any point                  its slot is taken back at once (pid watch); the tick goes on without it
 //   hangs (stopped, endless loop)      named after one second, once per hang; dropped after participant_timeout when there is one
 //   stopped, dropped, then continued   its wait() says dropped; it may join again
@@ -84,8 +92,12 @@ class Barrier {
 
   // Takes in who has joined and lets go who has left; also done by tick(). Returns the number of active participants.
   std::size_t refresh();
-  // Runs all phases for the participants due at `now`. Cheap when nobody is due. False when on_waiting ended it.
+  // Runs all phases for the participants due at `now`, and lets the observers begin. Cheap when nobody is due. False when on_waiting
+  // ended it.
   bool tick(std::chrono::nanoseconds now, std::uint64_t steps);
+  // Waits for the observers of the last tick; to be called before samples are written, and before requests change anything. tick() does
+  // so itself. Cheap when nobody looks. False when on_waiting ended it.
+  bool settle();
   // Earliest time at which anybody is due, if anybody is there.
   std::optional<std::chrono::nanoseconds> next_due() const;
   // After a reset or another jump of time: due times start again at the first multiple of each period at or after `now`.
@@ -104,6 +116,7 @@ struct ParticipantOptions {
   std::uint32_t phase = 1;  // 0 sensors, 1 clients, 2 actuators; at most 15
   std::chrono::nanoseconds period = std::chrono::milliseconds(10);
   std::uint32_t turn = 0;  // within the phase: higher ones begin when lower ones have finished
+  bool observes = false;   // only looks at what the simulator shows: time need not wait for it at once; the phase does not matter
 };
 
 struct Tick {
@@ -128,6 +141,7 @@ class Participant {
   // The tick is done; for those who have other things to do before they wait again.
   void finish();
   void set_period(std::chrono::nanoseconds period);
+  void set_observing(bool observes);
   bool is_active() const;
   // Wakes a wait() in another thread: it returns timed_out. Any thread.
   void interrupt();

@@ -87,6 +87,7 @@ base::Result<void> Participant::Impl::take_slot(const ParticipantOptions& option
     store(candidate.start_time, mark.start_time);
     candidate.phase = options.phase;
     candidate.turn = options.turn;
+    store(candidate.observes, options.observes ? 1U : 0U);
     store(candidate.period_ns, static_cast<std::int64_t>(options.period.count()));
     set_text(candidate.name, options.name);
     store(candidate.done, 0U);
@@ -168,10 +169,10 @@ bool Participant::Impl::finish(steady_clock::time_point now) {
 }
 
 // Until the server has passed to the next phase, and a moment longer: who takes part there is woken meanwhile and goes on on this
-// processor, which has not gone to sleep. When no phase follows at once there is nobody to wait for.
+// processor, which has not gone to sleep. When no phase follows at once, and after observers, there is nobody to wait for.
 void Participant::Impl::linger() const {
   constexpr nanoseconds most = std::chrono::microseconds(20), pause = std::chrono::microseconds(3);
-  if (moment == 0) return;
+  if (moment % 2 == 0) return;
   const auto begin = steady_clock::now();
   std::optional<steady_clock::time_point> over;
   std::uint64_t seen = moment;
@@ -243,6 +244,10 @@ Participant::State Participant::wait(Tick& tick, nanoseconds timeout) {
 
 void Participant::set_period(nanoseconds period) {
   if (impl_->is_ours() && period.count() > 0) store(impl_->slot().period_ns, static_cast<std::int64_t>(period.count()));
+}
+
+void Participant::set_observing(bool observes) {
+  if (impl_->is_ours()) store(impl_->slot().observes, observes ? 1U : 0U);
 }
 
 bool Participant::is_active() const { return impl_->is_ours() && load(impl_->slot().state) == RTMSIM_PARTICIPANT_ACTIVE; }

@@ -44,6 +44,7 @@ inline std::string name_of(const ParticipantSlot& slot) {
 inline void free_slot(ParticipantSlot& slot, std::uint64_t owner) {
   store(slot.state, static_cast<std::uint32_t>(RTMSIM_PARTICIPANT_FREE));
   store(slot.start_time, std::uint64_t{0});
+  store(slot.observes, 0U);  // of nobody who does not say so
   word(slot.owner).compare_exchange_strong(owner, 0, std::memory_order_acq_rel);
 }
 

@@ -371,6 +371,22 @@ with System(bin_dir, lib_dir) as s:
         goes_on(s)
         assert s.seconds() > at > 0.5 and not s.stats()["paused"], "the reset or the steps were done all the same"
 
+    elif case == "observer":
+        # The simulator goes on while somebody only looks, and does not write over what is looked at.
+        s.server(f"{source}/worlds/obstacle_course.sdf", "--lockstep", "--rtf", "0", "--paused")
+        name = re.search(r"laser +(\S+)", s.simctl("list"))[1]
+        rate = 10  # [Hz] of that laser
+        helper = subprocess.Popen([f"{bin_dir}/shm_helper", "observe", s.server_id, name, str(1000 // rate), "60"], stdout=subprocess.PIPE, text=True)
+        join(s, 1)
+        s.simctl("run")
+        out, _ = helper.communicate(timeout=120)
+        assert helper.returncode == 0, out
+        ticks = [tuple(map(int, line.split())) for line in out.splitlines()]
+        assert len(ticks) == 60, out
+        wrong = [tick for tick in ticks if tick[1] != tick[0]]
+        assert not wrong, f"samples of another time than the tick's: {wrong}"
+        assert any(clock > now for now, _, clock in ticks), "the simulator has waited for the observer"
+
     elif case == "loaded":
         # The same run on a machine that has better things to do.
         system, course = f"{source}/worlds/systems/obstacle_avoidance.xml", f"{source}/worlds/obstacle_course.sdf"

@@ -111,6 +111,30 @@ int participate(std::uint32_t id, const char* name, std::uint32_t phase, std::ch
   }
 }
 
+// Looks at a laser once in each of its periods, so slowly that the simulator could be far ahead. Says for each tick its time, that of the
+// sample that it sees at the end of it and that of the clock then [ms].
+int observe(std::uint32_t id, const char* name, std::chrono::nanoseconds period, int ticks) {
+  auto laser = open_at_last([&] { return Iface::open(id, IfaceType::laser, name); });
+  auto simulation = open_at_last([&] { return Iface::open(id, IfaceType::simulation, "world"); });
+  if (!laser.subscribe()) return 1;
+  auto participant = Participant::join(id, {.name = "observer", .period = period, .observes = true});
+  if (!participant) return 1;
+  const auto ms = [](std::int64_t ns) { return static_cast<int>(ns / 1'000'000); };
+  Tick tick;
+  for (int n = 0; n < ticks;) {
+    const auto state = participant->wait(tick, 60s);
+    if (state != Participant::State::tick) return 1;
+    const auto slow = std::chrono::steady_clock::now() + 5ms;  // of work
+    while (std::chrono::steady_clock::now() < slow || !simulation.read()) {
+    }
+    if (!laser.read()) return 1;
+    std::printf("%d %d %d\n", ms(tick.now.count()), ms(laser.sample<LaserSample>().stamp.sim_time_ns),
+                ms(simulation.sample<SimulationSample>().stamp.sim_time_ns));
+    ++n;
+  }
+  return 0;
+}
+
 // One request as a foreign client may write it, whatever our own tools would do: screenshot PATH, spawn-path PATH, spawn-text SDF. Says
 // the status and the message or, of a picture, its first octets.
 int ask_once(std::uint32_t id, const std::string& what, const std::string& text) {
@@ -171,5 +195,6 @@ int main(int argc, char** argv) {
   if (part == "participate" && argc == 6) {
     return participate(id, argv[3], static_cast<std::uint32_t>(std::atoi(argv[4])), std::chrono::microseconds(std::atoi(argv[5])));
   }
+  if (part == "observe" && argc == 6) return observe(id, argv[3], std::chrono::milliseconds(std::atoi(argv[4])), std::atoi(argv[5]));
   return 2;
 }
