@@ -13,6 +13,8 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -41,7 +43,8 @@ struct GateState {
   std::size_t most = most_connections;
   std::map<const omni::giopConnection*, GuardedConnection*> connections{};  // by the connection that is guarded
   Clock::time_point last_complaint{};
-  std::size_t complaints = 0;  // that were not logged
+  std::size_t complaints = 0;         // that were not logged
+  std::set<std::string> endpoints{};  // their texts
 };
 
 // The end points are those of the process. Never destroyed: connections may go after it otherwise.
@@ -204,11 +207,12 @@ class GuardedConnection final : public omni::giopConnection {
 
 class GuardedEndpoint final : public omni::giopEndpoint {
  public:
-  // The end point of omniORB points into the text that it is made from.
+  // The end point of omniORB points into the text that it is made from, and deletes itself with its last connection, some time. So texts
+  // are kept, each once.
   static omni::giopEndpoint* make(const std::string& plain) {
-    auto text = std::make_unique<std::string>(plain);
-    omni::giopEndpoint* inner = omni::giopEndpoint::str2Endpoint(text->c_str());
-    return inner != nullptr ? new GuardedEndpoint(inner, std::move(text)) : nullptr;
+    const std::string& text = *Doors::instance().state.lock()->endpoints.insert(plain).first;
+    omni::giopEndpoint* inner = omni::giopEndpoint::str2Endpoint(text.c_str());
+    return inner != nullptr ? new GuardedEndpoint(inner) : nullptr;
   }
   ~GuardedEndpoint() override { delete inner_; }
 
@@ -240,7 +244,6 @@ class GuardedEndpoint final : public omni::giopEndpoint {
   }
 
   void Shutdown() override {
-    (void)text_.release();  // it deletes itself with its last connection, some time
     std::exchange(inner_, nullptr)->Shutdown();
     delete this;
   }
@@ -302,9 +305,8 @@ class GuardedEndpoint final : public omni::giopEndpoint {
     connection->decrRefCount();
   }
 
-  GuardedEndpoint(omni::giopEndpoint* inner, std::unique_ptr<std::string> text) : text_(std::move(text)), inner_(inner) {}
+  explicit GuardedEndpoint(omni::giopEndpoint* inner) : inner_(inner) {}
 
-  std::unique_ptr<std::string> text_;
   omni::giopEndpoint* inner_;
   omni::giopConnection::notifyReadable_t notify_ = nullptr;
   void* cookie_ = nullptr;
