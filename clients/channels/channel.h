@@ -5,9 +5,10 @@
 #include <chrono>
 #include <cstdint>
 #include <map>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace channels {
 
@@ -38,8 +39,12 @@ struct Sample {
   std::uint32_t sequence = 0;  // of the channel, from 0; a gap is what was dropped
   Time log_time{0};            // when it was said, by the clock of the simulation
   Time publish_time{0};        // the same by the wall clock
-  std::vector<char> octets;
+  std::span<const char> octets;
+  std::shared_ptr<const void> owner;  // of the octets: a copy of the sample keeps them, and those that were put together with it
 };
+
+// With octets of its own, for those who keep it for long.
+Sample copy_of(const Sample& sample);
 
 // The four octets before the plain CDR of a sample.
 std::string_view cdr_head(bool is_little_endian);

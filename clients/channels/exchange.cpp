@@ -1,5 +1,6 @@
 #include "exchange.h"
 
+#include <algorithm>
 #include <condition_variable>
 #include <deque>
 #include <thread>
@@ -12,11 +13,79 @@ namespace channels {
 
 namespace {
 
+constexpr std::size_t smallest_block = 1024;  // [octets]
+constexpr std::size_t largest_free = 4 << 20;
+constexpr std::size_t most_free = 8;
+
+}  // namespace
+
+struct Block {
+  struct Head {
+    ChannelId channel;
+    std::uint32_t sequence;
+    Time log_time;
+    std::size_t begin, size;  // of the octets
+  };
+
+  std::vector<Head> heads;
+  std::unique_ptr<char[]> octets;
+  std::size_t capacity = 0, used = 0;
+  Time put_at{0};
+
+  void reserve(std::size_t size);
+  std::span<char> add(ChannelId channel, Time log_time, std::size_t size);
+  std::size_t size() const { return capacity + heads.size() * sizeof(Sample); }
+};
+
+void Block::reserve(std::size_t size) {
+  auto larger = std::make_unique_for_overwrite<char[]>(size);
+  std::copy_n(octets.get(), used, larger.get());
+  octets = std::move(larger);
+  capacity = size;
+}
+
+std::span<char> Block::add(ChannelId channel, Time log_time, std::size_t size) {
+  if (used + size > capacity) reserve(std::max({used + size, 2 * capacity, smallest_block}));
+  heads.push_back({channel, 0, log_time, used, size});
+  used += size;
+  return {octets.get() + used - size, size};
+}
+
+struct Blocks {
+  base::Guarded<std::vector<std::unique_ptr<Block>>, base::Rank::registry> free;
+
+  std::unique_ptr<Block> take() {
+    auto blocks = free.lock();
+    if (blocks->empty()) return std::make_unique<Block>();
+    auto block = std::move(blocks->back());
+    blocks->pop_back();
+    return block;
+  }
+  void give_back(std::unique_ptr<Block> block) {
+    block->heads.clear();
+    block->used = 0;
+    auto blocks = free.lock();
+    if (blocks->size() < most_free && block->capacity <= largest_free) blocks->push_back(std::move(block));
+  }
+};
+
+Batch::Batch() : free_(std::make_shared<Blocks>()) {}
+Batch::~Batch() = default;
+
+std::span<char> Batch::add(ChannelId channel, Time log_time, std::size_t size) {
+  if (!block_) block_ = free_->take();
+  return block_->add(channel, log_time, size);
+}
+
+bool Batch::is_empty() const { return !block_; }
+
+namespace {
+
 constexpr std::chrono::seconds last_wait{5};
 constexpr std::size_t most_channels = 65535;
 constexpr std::chrono::milliseconds gather_period{10};  // after the first sample, before a sink is given what has come
 
-using SharedSample = std::shared_ptr<const Sample>;
+using SharedBlock = std::shared_ptr<const Block>;
 using SharedChannel = std::shared_ptr<const Channel>;
 
 // A sink, its queue and its thread.
@@ -40,9 +109,9 @@ class Outlet {
     changed_.notify_all();
   }
 
-  // False when the sample was dropped.
-  bool put(const SharedSample& sample) {
-    const std::size_t size = sample->octets.size() + sizeof(Sample);
+  // False when it was dropped.
+  bool put(const SharedBlock& block) {
+    const std::size_t size = block->size();
     auto data = data_.lock();
     const auto has_room = [&] {
       return data->failure || data->is_ending || data->queue.empty() || data->octets + size <= options_.most_octets;
@@ -53,9 +122,9 @@ class Outlet {
     }
     if (data->failure || data->is_ending) return true;  // nobody is there who could miss it; failure() says why
     const bool was_urgent = is_urgent(*data);
-    data->queue.push_back(sample);
+    data->queue.push_back(block);
     data->octets += size;
-    // One wake for all samples of a tick: a wake for each costs more than the samples do.
+    // One wake for all that comes about now: a wake for each sample costs more than the samples do.
     if (data->queue.size() == 1 || (is_urgent(*data) && !was_urgent)) changed_.notify_one();
     return true;
   }
@@ -81,7 +150,7 @@ class Outlet {
  private:
   struct Data {
     std::vector<std::pair<ChannelId, SharedChannel>> news;  // channels that the sink has not heard of
-    std::deque<SharedSample> queue;
+    std::deque<SharedBlock> queue;
     std::vector<ChannelId> closed;  // behind the queue
     std::size_t octets = 0;
     std::uint64_t rests_wanted = 0;
@@ -92,7 +161,7 @@ class Outlet {
   };
   struct Work {
     std::vector<std::pair<ChannelId, SharedChannel>> news;
-    std::deque<SharedSample> samples;
+    std::deque<SharedBlock> blocks;
     std::vector<ChannelId> closed;
     std::uint64_t rests_wanted = 0;
     bool is_ending = false;
@@ -117,12 +186,26 @@ class Outlet {
     return work;
   }
 
+  base::Result<void> give(const SharedBlock& block) {
+    Sample sample;
+    sample.publish_time = block->put_at;
+    sample.owner = block;
+    for (const auto& head : block->heads) {
+      sample.channel = head.channel;
+      sample.sequence = head.sequence;
+      sample.log_time = head.log_time;
+      sample.octets = {block->octets.get() + head.begin, head.size};
+      if (const auto done = sink_->take(sample); !done) return done;
+    }
+    return {};
+  }
+
   base::Result<void> give(const Work& work) {
     for (const auto& [id, channel] : work.news) {
       if (const auto done = sink_->open(id, *channel); !done) return done;
     }
-    for (const SharedSample& sample : work.samples) {
-      if (const auto done = sink_->take(*sample); !done) return done;
+    for (const SharedBlock& block : work.blocks) {
+      if (const auto done = give(block); !done) return done;
     }
     for (const ChannelId id : work.closed) {
       if (const auto done = sink_->close(id); !done) return done;
@@ -171,6 +254,8 @@ struct Exchange::State {
     std::function<void()> told;  // of failures
   };
   base::Guarded<Data, base::Rank::connector> data;
+
+  void put(std::shared_ptr<Block> block);
 };
 
 Exchange::Exchange() : state_(std::make_unique<State>()) {}
@@ -198,27 +283,33 @@ base::Result<ChannelId> Exchange::open(Channel channel) {
 }
 
 void Exchange::put(ChannelId channel, Time log_time, std::span<const char> head, std::span<const char> octets) {
-  std::vector<char> all;
-  all.reserve(head.size() + octets.size());
-  all.insert(all.end(), head.begin(), head.end());
-  all.insert(all.end(), octets.begin(), octets.end());
-  put(channel, log_time, std::move(all));
+  auto block = std::make_shared<Block>();
+  block->reserve(head.size() + octets.size());
+  const auto room = block->add(channel, log_time, head.size() + octets.size());
+  std::ranges::copy(octets, std::ranges::copy(head, room.begin()).out);
+  state_->put(std::move(block));
+}
+
+void Exchange::put(Batch& batch) {
+  if (batch.is_empty()) return;
+  state_->put({batch.block_.release(), [free = batch.free_](Block* block) { free->give_back(std::unique_ptr<Block>(block)); }});
 }
 
 // Samples of one channel are put by one thread at a time, so their numbers are in the order of each queue.
-void Exchange::put(ChannelId channel, Time log_time, std::vector<char>&& octets) {
-  Sample sample{channel, 0, log_time, base::SystemClock().now(), std::move(octets)};
+void Exchange::State::put(std::shared_ptr<Block> block) {
   SharedOutlets outlets;
   {
-    auto data = state_->data.lock();
-    if (channel == 0 || channel > data->channels.size()) return;
-    sample.sequence = data->sequences[channel - 1u]++;
-    outlets = data->outlets;
+    auto now = data.lock();
+    std::erase_if(block->heads, [&](const auto& head) { return head.channel == 0 || head.channel > now->channels.size(); });
+    for (auto& head : block->heads) head.sequence = now->sequences[head.channel - 1u]++;
+    outlets = now->outlets;
   }
-  const auto shared = std::make_shared<const Sample>(std::move(sample));
+  block->put_at = base::SystemClock().now();
   std::uint64_t dropped = 0;
-  for (const auto& outlet : *outlets) dropped += outlet->put(shared) ? 0 : 1;
-  if (dropped > 0) state_->data.lock()->dropped[channel - 1u] += dropped;
+  for (const auto& outlet : *outlets) dropped += outlet->put(block) ? 0 : 1;
+  if (dropped == 0) return;
+  auto now = data.lock();
+  for (const auto& head : block->heads) now->dropped[head.channel - 1u] += dropped;
 }
 
 void Exchange::close(ChannelId channel) {
@@ -252,6 +343,14 @@ std::optional<base::Error> Exchange::failure() const {
     if (auto failure = outlet->failure()) return failure;
   }
   return std::nullopt;
+}
+
+Sample copy_of(const Sample& sample) {
+  const auto octets = std::make_shared<std::vector<char>>(sample.octets.begin(), sample.octets.end());
+  Sample copy = sample;
+  copy.octets = *octets;
+  copy.owner = octets;
+  return copy;
 }
 
 std::string_view cdr_head(bool is_little_endian) {

@@ -4,8 +4,8 @@
 // Any thread may put, open, close and attach. A sink is called on its thread alone: open() before the first sample of a channel, take() in
 // the order in which samples were put, close() behind the last sample, rest() when there is nothing to take and at least once in
 // rest_period. A sink gets samples some ten milliseconds after they were put, together. When a sink fails it is called no more, and
-// failure() says why. When a queue is full, put() waits up to `patience` of that sink; then the sample is dropped for it and counted. With
-// a patience of zero a source never waits.
+// failure() says why. When a queue is full, put() waits up to `patience` of that sink; then what was put is dropped for it and counted.
+// With a patience of zero a source never waits.
 #pragma once
 
 #include <chrono>
@@ -39,6 +39,28 @@ struct QueueOptions {
   std::chrono::milliseconds patience{0};
 };
 
+struct Block;   // samples that were put together
+struct Blocks;  // that nobody uses
+
+// Samples that are put together, as those of a tick: in one piece of memory, which is used again when all sinks have done with it. One
+// thread at a time.
+class Batch {
+ public:
+  Batch();
+  Batch(const Batch&) = delete;
+  Batch& operator=(const Batch&) = delete;
+  ~Batch();
+
+  // Room for the octets of a sample. They are to be written before the next one is added.
+  std::span<char> add(ChannelId channel, Time log_time, std::size_t size);
+  bool is_empty() const;
+
+ private:
+  friend class Exchange;
+  const std::shared_ptr<Blocks> free_;
+  std::unique_ptr<Block> block_;  // that is being filled; null while empty
+};
+
 class Exchange final {
  public:
   Exchange();
@@ -51,7 +73,8 @@ class Exchange final {
   // At most 65535, with those that were closed.
   base::Result<ChannelId> open(Channel channel);
   void put(ChannelId channel, Time log_time, std::span<const char> head, std::span<const char> octets = {});
-  void put(ChannelId channel, Time log_time, std::vector<char>&& octets);
+  // All of it, in the order in which they were added; the batch is empty then.
+  void put(Batch& batch);
   // Nothing more comes on it.
   void close(ChannelId channel);
   // Gives the sinks what waits for them and lets them rest; false when they have not done so in time.

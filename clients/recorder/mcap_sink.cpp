@@ -111,7 +111,7 @@ base::Result<void> McapSink::take(const channels::Sample& sample) {
   }
   if (!first_) first_ = sample.log_time;
   if (const auto channel = channels_.find(sample.channel); channel != channels_.end() && channel->second.is_latched())
-    latched_.insert_or_assign(sample.channel, sample);
+    latched_.insert_or_assign(sample.channel, copy_of(sample));
   return write(sample);
 }
 

@@ -49,7 +49,7 @@ void LastSink::drop_front() {
 
 base::Result<void> LastSink::take(const channels::Sample& sample) {
   octets_ += size_of(sample);
-  samples_.push_back(sample);
+  samples_.push_back(copy_of(sample));
   while (samples_.front().log_time < sample.log_time - span_ || octets_ > most_octets) drop_front();
   return {};
 }

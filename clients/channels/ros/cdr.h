@@ -42,20 +42,23 @@ class Measure {
   std::size_t size_ = 0;
 };
 
-// The octets themselves; room is made once.
+// The octets themselves, into room that is large enough.
 class Octets {
  public:
-  explicit Octets(std::size_t size) { octets_.reserve(size); }
-  std::size_t size() const { return octets_.size(); }
-  void fill(std::size_t count) { octets_.resize(octets_.size() + count); }
-  void append(const void* from, std::size_t count) {
-    const auto* octets = static_cast<const char*>(from);
-    octets_.insert(octets_.end(), octets, octets + count);
+  explicit Octets(std::span<char> room) : begin_(room.data()), end_(room.data()) {}
+  std::size_t size() const { return static_cast<std::size_t>(end_ - begin_); }
+  void fill(std::size_t count) {
+    std::memset(end_, 0, count);
+    end_ += count;
   }
-  std::vector<char> take() { return std::move(octets_); }
+  void append(const void* from, std::size_t count) {
+    std::memcpy(end_, from, count);
+    end_ += count;
+  }
 
  private:
-  std::vector<char> octets_;
+  char* begin_;
+  char* end_;
 };
 
 // A visitor of fields().
@@ -197,12 +200,24 @@ class Definitions {
 };
 
 template <Message T>
-std::vector<char> encode(const T& message) {
+std::size_t encoded_size(const T& message) {
   Encoder measured{Measure()};
   T::fields(message, measured);
-  Encoder encoder{Octets(measured.out().size())};
+  return measured.out().size();
+}
+
+// Into room of that size.
+template <Message T>
+void encode(const T& message, std::span<char> room) {
+  Encoder encoder{Octets(room)};
   T::fields(message, encoder);
-  return encoder.out().take();
+}
+
+template <Message T>
+std::vector<char> encode(const T& message) {
+  std::vector<char> octets(encoded_size(message));
+  encode(message, octets);
+  return octets;
 }
 
 template <Message T>

@@ -1,5 +1,6 @@
 #include "views/iface_view.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -11,9 +12,6 @@ namespace channels {
 
 namespace {
 
-using Wanted = std::vector<bool>;
-using Saids = std::vector<Said>;
-
 template <class Message>
 Channel channel(const shm::Iface& iface, const std::string& suffix = "") {
   return {topic_of(iface.type(), iface.name()) + suffix,
@@ -21,6 +19,8 @@ Channel channel(const shm::Iface& iface, const std::string& suffix = "") {
           ros::schema<Message>(),
           {{"iface", iface.name()}, {"iface_type", std::string(shm::to_text(iface.type()))}}};
 }
+
+ros::Time time_of(const shm::Stamp& stamp) { return ros::to_time(std::chrono::nanoseconds(stamp.sim_time_ns)); }
 
 ros::Vector3 vector_of(const double* v) { return {v[0], v[1], v[2]}; }
 
@@ -42,27 +42,42 @@ IfaceView simple_view(const shm::Iface& iface, Say say) {
   IfaceView view;
   view.channels = {channel<Message>(iface)};
   place<Info>(view, iface);
-  view.tell = [say](shm::Iface& from, const shm::HeldFrame*, const Wanted&, Saids& said) {
-    if (from.sample<Sample>().stamp.valid != 0) said.push_back({0, ros::encode(say(from))});
+  view.tell = [say](shm::Iface& from, const shm::HeldFrame*, Said& said) {
+    if (from.sample<Sample>().stamp.valid != 0) said.add(0, say(from));
   };
   return view;
 }
 
 // ---- range finders ----
 
-ros::LaserScan scan_message(const shm::Iface& iface) {
+// What is the same in each scan.
+ros::LaserScan empty_scan(const shm::Iface& iface) {
   const auto& info = iface.info<shm::LaserInfo>();
-  const auto scan = iface.laser_scan();
   const auto number = [](double value) { return static_cast<float>(value); };
-  return {.header = header_of(scan.sample->stamp, iface.name()),
+  return {.header = {{}, iface.name()},
           .angle_min = number(info.min_angle),
           .angle_max = number(info.max_angle),
           .angle_increment = number(info.angle_step),
           .scan_time = info.rate > 0 ? number(1 / info.rate) : 0,
           .range_min = number(info.min_range),
-          .range_max = number(info.max_range),
-          .ranges = scan.ranges,
-          .intensities = scan.intensities};
+          .range_max = number(info.max_range)};
+}
+
+IfaceView flat_laser_view(const shm::Iface& iface) {
+  IfaceView view;
+  view.channels = {channel<ros::LaserScan>(iface)};
+  place<shm::LaserInfo>(view, iface);
+  view.tell = [message = empty_scan(iface)](shm::Iface& from, const shm::HeldFrame*, Said& said) mutable {
+    const auto scan = from.laser_scan();
+    if (scan.sample->stamp.valid == 0) return;
+    message.header.stamp = time_of(scan.sample->stamp);
+    message.ranges = scan.ranges;
+    // A world without reflecting surfaces has none, which the message says by leaving them out.
+    const bool has_intensities = std::ranges::any_of(scan.intensities, [](float one) { return one != 0; });
+    message.intensities = has_intensities ? scan.intensities : std::span<const float>();
+    said.add(0, message);
+  };
+  return view;
 }
 
 std::vector<ros::PointField> point_fields(bool with_intensity) {
@@ -103,17 +118,17 @@ std::vector<float> points_of(const shm::LaserInfo& info, const shm::ScanView& sc
 }
 
 IfaceView laser_view(const shm::Iface& iface) {
-  if (iface.info<shm::LaserInfo>().layers == 1) return simple_view<ros::LaserScan, shm::LaserInfo, shm::LaserSample>(iface, scan_message);
+  if (iface.info<shm::LaserInfo>().layers == 1) return flat_laser_view(iface);
   IfaceView view;
   view.channels = {channel<ros::PointCloud2>(iface)};
   place<shm::LaserInfo>(view, iface);
-  view.tell = [](shm::Iface& from, const shm::HeldFrame*, const Wanted&, Saids& said) {
+  view.tell = [](shm::Iface& from, const shm::HeldFrame*, Said& said) {
     const auto scan = from.laser_scan();
     if (scan.sample->stamp.valid == 0) return;
     const auto& info = from.info<shm::LaserInfo>();
     const auto points = points_of(info, scan);
-    said.push_back({0, ros::encode(cloud_message(scan.sample->stamp, from.name(), info.beams, info.layers, true,
-                                                 {reinterpret_cast<const std::uint8_t*>(points.data()), points.size() * sizeof(float)}))});
+    said.add(0, cloud_message(scan.sample->stamp, from.name(), info.beams, info.layers, true,
+                              {reinterpret_cast<const std::uint8_t*>(points.data()), points.size() * sizeof(float)}));
   };
   return view;
 }
@@ -129,18 +144,18 @@ IfaceView sonar_view(const shm::Iface& iface) {
     view.channels.push_back(channel<ros::Range>(iface, "/" + std::to_string(i)));
     view.frames.push_back(transform_of({}, text_of(info.model), iface.name() + "/" + std::to_string(i), poses[i]));
   }
-  view.tell = [](shm::Iface& from, const shm::HeldFrame*, const Wanted& wanted, Saids& said) {
+  view.tell = [poses_count = poses.size()](shm::Iface& from, const shm::HeldFrame*, Said& said) {
     const auto scan = from.sonar_scan();
     if (scan.sample->stamp.valid == 0) return;
     const auto& ring = from.info<shm::SonarInfo>();
-    for (std::size_t i = 0; i < scan.ranges.size() && i < wanted.size(); ++i) {
-      if (!wanted[i]) continue;
+    for (std::size_t i = 0; i < scan.ranges.size() && i < poses_count; ++i) {
+      if (!said.is_wanted(i)) continue;
       const ros::Range range{.header = header_of(scan.sample->stamp, from.name() + "/" + std::to_string(i)),
                              .field_of_view = static_cast<float>(ring.cone),
                              .min_range = static_cast<float>(ring.min_range),
                              .max_range = static_cast<float>(ring.max_range),
                              .range = scan.ranges[i]};
-      said.push_back({i, ros::encode(range)});
+      said.add(i, range);
     }
   };
   return view;
@@ -153,20 +168,24 @@ template <class Info, class Sample, class Pose, class Velocity>
 IfaceView drive_view(const shm::Iface& iface, Pose pose_by_wheels, Velocity velocity) {
   IfaceView view;
   view.channels = {channel<ros::Odometry>(iface), channel<ros::TFMessage>(iface, "/origin")};
-  view.tell = [pose_by_wheels, velocity](shm::Iface& from, const shm::HeldFrame*, const Wanted& wanted, Saids& said) {
+  const std::string origin = iface.name() + "/origin";
+  ros::Odometry odometry{.header = {{}, origin}, .child_frame_id = text_of(iface.info<Info>().model)};
+  ros::TFMessage place{{transform_of({}, world_frame, origin, {})}};
+  view.tell = [pose_by_wheels, velocity, odometry, place](shm::Iface& from, const shm::HeldFrame*, Said& said) mutable {
     const auto& sample = from.sample<Sample>();
     if (sample.stamp.valid == 0) return;
-    const std::string origin = from.name() + "/origin";
     const shm::Pose pose = pose_by_wheels(sample);
-    if (wanted[0]) {
-      ros::Odometry odometry{.header = header_of(sample.stamp, origin), .child_frame_id = text_of(from.info<Info>().model)};
+    if (said.is_wanted(0)) {
+      odometry.header.stamp = time_of(sample.stamp);
       odometry.pose.pose = pose_of(pose);
       odometry.twist.twist = velocity(sample);
-      said.push_back({0, ros::encode(odometry)});
+      said.add(0, odometry);
     }
-    if (wanted[1]) {
-      const auto place = product(sample.true_pose, inverse(pose));
-      said.push_back({1, ros::encode(ros::TFMessage{{transform_of(sample.stamp, world_frame, origin, place)}})});
+    if (said.is_wanted(1)) {
+      auto& transform = place.transforms[0];
+      transform.header.stamp = time_of(sample.stamp);
+      transform.transform = transform_of({}, "", "", product(sample.true_pose, inverse(pose))).transform;
+      said.add(1, place);
     }
   };
   return view;
@@ -238,15 +257,14 @@ ros::CameraInfo camera_message(const shm::CameraInfo& info, const ros::Header& h
           .p = {info.fx, 0, info.cx, 0, 0, info.fy, info.cy, 0, 0, 0, 1, 0}};
 }
 
-std::vector<char> image_octets(const shm::HeldFrame& frame, const ros::Header& header) {
+ros::Image image_message(const shm::HeldFrame& frame, const ros::Header& header) {
   const auto& head = frame.head();
-  const ros::Image image{.header = header,
-                         .height = head.height,
-                         .width = head.width,
-                         .encoding = encoding_of(static_cast<shm::Format>(head.format)),
-                         .step = head.stride,
-                         .data = {reinterpret_cast<const std::uint8_t*>(frame.data().data()), frame.data().size()}};
-  return ros::encode(image);
+  return {.header = header,
+          .height = head.height,
+          .width = head.width,
+          .encoding = encoding_of(static_cast<shm::Format>(head.format)),
+          .step = head.stride,
+          .data = {reinterpret_cast<const std::uint8_t*>(frame.data().data()), frame.data().size()}};
 }
 
 IfaceView camera_view(const shm::Iface& iface, Pictures pictures) {
@@ -258,16 +276,16 @@ IfaceView camera_view(const shm::Iface& iface, Pictures pictures) {
   place<shm::CameraInfo>(view, iface);
   view.frames.push_back(optical_frame(iface.name()));
   const auto jpeg = is_jpeg ? std::make_shared<Jpeg>() : nullptr;
-  view.tell = [jpeg](shm::Iface& from, const shm::HeldFrame* frame, const Wanted& wanted, Saids& said) {
+  view.tell = [jpeg](shm::Iface& from, const shm::HeldFrame* frame, Said& said) {
     if (frame == nullptr || frame->head().stamp.valid == 0) return;
     const auto header = header_of(frame->head().stamp, from.name() + "/optical");
-    if (wanted[0] && jpeg) {
+    if (said.is_wanted(0) && jpeg) {
       const auto octets = jpeg->encode(*frame);
-      if (octets) said.push_back({0, ros::encode(ros::CompressedImage{header, "jpeg", *octets})});
-    } else if (wanted[0]) {
-      said.push_back({0, image_octets(*frame, header)});
+      if (octets) said.add(0, ros::CompressedImage{header, "jpeg", *octets});
+    } else if (said.is_wanted(0)) {
+      said.add(0, image_message(*frame, header));
     }
-    if (wanted[1]) said.push_back({1, ros::encode(camera_message(from.info<shm::CameraInfo>(), header))});
+    said.add(1, camera_message(from.info<shm::CameraInfo>(), header));
   };
   return view;
 }
@@ -276,12 +294,12 @@ IfaceView points_view(const shm::Iface& iface) {
   IfaceView view;
   view.channels = {channel<ros::PointCloud2>(iface)};
   place<shm::CameraInfo>(view, iface);
-  view.tell = [](shm::Iface& from, const shm::HeldFrame* frame, const Wanted&, Saids& said) {
+  view.tell = [](shm::Iface& from, const shm::HeldFrame* frame, Said& said) {
     if (frame == nullptr || frame->head().stamp.valid == 0) return;
     const auto& head = frame->head();
     const bool with_intensity = static_cast<shm::Format>(head.format) == shm::Format::points_intensity_float;
-    said.push_back({0, ros::encode(cloud_message(head.stamp, from.name(), head.width, head.height, with_intensity,
-                                                 {reinterpret_cast<const std::uint8_t*>(frame->data().data()), frame->data().size()}))});
+    said.add(0, cloud_message(head.stamp, from.name(), head.width, head.height, with_intensity,
+                              {reinterpret_cast<const std::uint8_t*>(frame->data().data()), frame->data().size()}));
   };
   return view;
 }
@@ -335,11 +353,11 @@ IfaceView altimeter_view(const shm::Iface& iface) {
   IfaceView view;
   view.channels = {channel<ros::Float64>(iface, "/height"), channel<ros::Float64>(iface, "/climb")};
   place<shm::MeterInfo>(view, iface);
-  view.tell = [](shm::Iface& from, const shm::HeldFrame*, const Wanted& wanted, Saids& said) {
+  view.tell = [](shm::Iface& from, const shm::HeldFrame*, Said& said) {
     const auto& sample = from.sample<shm::AltimeterSample>();
     if (sample.stamp.valid == 0) return;
-    if (wanted[0]) said.push_back({0, ros::encode(ros::Float64{sample.height})});
-    if (wanted[1]) said.push_back({1, ros::encode(ros::Float64{sample.climb})});
+    said.add(0, ros::Float64{sample.height});
+    said.add(1, ros::Float64{sample.climb});
   };
   return view;
 }
@@ -420,9 +438,7 @@ std::unique_ptr<IfaceView> view_of(const shm::Iface& iface, Pictures pictures) {
   return view ? std::make_unique<IfaceView>(std::move(*view)) : nullptr;
 }
 
-ros::Header header_of(const shm::Stamp& stamp, const std::string& frame) {
-  return {ros::to_time(std::chrono::nanoseconds(stamp.sim_time_ns)), frame};
-}
+ros::Header header_of(const shm::Stamp& stamp, const std::string& frame) { return {time_of(stamp), frame}; }
 
 shm::Pose inverse(const shm::Pose& p) {
   const double w = p.qw, x = -p.qx, y = -p.qy, z = -p.qz;

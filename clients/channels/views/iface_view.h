@@ -9,6 +9,7 @@
 
 #include "base/result.h"
 #include "channel.h"
+#include "exchange.h"
 #include "ros/messages.h"
 #include "shm/client.h"
 
@@ -16,10 +17,24 @@ namespace channels {
 
 enum class Pictures { jpeg, raw };
 
-// What one sample of an iface says.
-struct Said {
-  std::size_t channel;  // place in IfaceView::channels
-  std::vector<char> octets;
+// Takes what one sample of an iface says, on the channels that are wanted.
+class Said {
+ public:
+  Said(Batch& batch, const std::vector<ChannelId>& ids, const std::vector<bool>& wanted, Time time)
+      : batch_(batch), ids_(ids), wanted_(wanted), time_(time) {}
+
+  // `channel`: place in IfaceView::channels
+  bool is_wanted(std::size_t channel) const { return channel < wanted_.size() && wanted_[channel]; }
+  template <ros::Message T>
+  void add(std::size_t channel, const T& message) {
+    if (is_wanted(channel)) ros::encode(message, batch_.add(ids_[channel], time_, ros::encoded_size(message)));
+  }
+
+ private:
+  Batch& batch_;
+  const std::vector<ChannelId>& ids_;
+  const std::vector<bool>& wanted_;
+  const Time time_;
 };
 
 struct IfaceView {
@@ -27,8 +42,8 @@ struct IfaceView {
   // Where the sensor stands on its model, and frames of its own: known before there is a sample.
   std::vector<ros::TransformStamped> frames;
   double rate = 0;  // [Hz] of samples; 0: every step, so that more come than anybody looks at
-  // Appends what the latest sample or frame says on the channels that are wanted. Nothing while it says nothing true.
-  std::function<void(shm::Iface&, const shm::HeldFrame*, const std::vector<bool>& wanted, std::vector<Said>&)> tell;
+  // Adds what the latest sample or frame says. Nothing while it says nothing true.
+  std::function<void(shm::Iface&, const shm::HeldFrame*, Said&)> tell;
 };
 
 // "pioneer2dx::laser" -> "/sim/laser/pioneer2dx/laser"
