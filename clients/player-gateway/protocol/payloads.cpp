@@ -1,7 +1,6 @@
 #include "protocol/payloads.h"
 
-#include <type_traits>
-#include <utility>
+#include "protocol/payload_codec.h"
 
 namespace player {
 namespace {
@@ -10,21 +9,6 @@ constexpr std::size_t max_driver_name = 63;  // clients write a zero behind it i
 constexpr std::size_t max_key = 32;          // with or without a zero behind it
 constexpr std::size_t max_name = 4096;
 constexpr std::size_t max_value = 65536;
-
-template <class Put>
-std::string written(Put put_all) {
-  XdrWriter out;
-  put_all(out);
-  return std::move(out.bytes());
-}
-
-// The value that `take` reads, if the payload is exactly that.
-template <class Take>
-auto whole(std::string_view payload, Take take) {
-  XdrReader in(payload);
-  auto value = take(in);
-  return in.is_complete() ? std::optional(std::move(value)) : std::nullopt;
-}
 
 }  // namespace
 
@@ -280,145 +264,6 @@ std::string encode_u32(std::uint32_t value) {
   return written([&](XdrWriter& out) { out.u32(value); });
 }
 
-// ---- laser ----
-
-std::string encode(const LaserScan& scan) {
-  return written([&](XdrWriter& out) {
-    out.bytes().reserve(40 + 5 * scan.ranges.size());
-    for (const float value : {scan.min_angle, scan.max_angle, scan.resolution, scan.max_range}) out.f32(value);
-    out.count(scan.ranges.size());
-    for (const float range : scan.ranges) out.f32(range);
-    out.counted_bytes(scan.intensities);
-    out.u32(scan.id);
-  });
-}
-
-std::optional<LaserScan> decode_laser_scan(std::string_view payload) {
-  return whole(payload, [](XdrReader& in) {
-    LaserScan scan;
-    for (float* value : {&scan.min_angle, &scan.max_angle, &scan.resolution, &scan.max_range}) *value = in.f32();
-    scan.ranges.resize(in.count(4, max_message / 4));
-    for (float& range : scan.ranges) range = in.f32();
-    scan.intensities = in.counted_bytes(max_message);
-    scan.id = in.u32();
-    return scan;
-  });
-}
-
-std::string encode(const LaserConfig& config) {
-  return written([&](XdrWriter& out) {
-    for (const float value : {config.min_angle, config.max_angle, config.resolution, config.max_range, config.range_resolution})
-      out.f32(value);
-    out.boolean(config.has_intensity);
-    out.f32(config.rate);
-  });
-}
-
-std::optional<LaserConfig> decode_laser_config(std::string_view payload) {
-  return whole(payload, [](XdrReader& in) {
-    LaserConfig config;
-    for (float* value : {&config.min_angle, &config.max_angle, &config.resolution, &config.max_range, &config.range_resolution})
-      *value = in.f32();
-    config.has_intensity = in.boolean();
-    config.rate = in.f32();
-    return config;
-  });
-}
-
-// ---- ranger ----
-
-std::string encode(const RangerGeometry& geometry) {
-  return written([&](XdrWriter& out) {
-    put(out, geometry.pose);
-    put(out, geometry.size);
-    out.count(geometry.element_poses.size());
-    for (const Pose3d& pose : geometry.element_poses) put(out, pose);
-    out.count(geometry.element_sizes.size());
-    for (const Size3d& size : geometry.element_sizes) put(out, size);
-  });
-}
-
-std::string encode(const RangerConfig& config) {
-  return written([&](XdrWriter& out) {
-    for (const double value :
-         {config.min_angle, config.max_angle, config.resolution, config.min_range, config.max_range, config.range_resolution, config.rate})
-      out.f64(value);
-  });
-}
-
-std::optional<RangerConfig> decode_ranger_config(std::string_view payload) {
-  return whole(payload, [](XdrReader& in) {
-    RangerConfig config;
-    for (double* value : {&config.min_angle, &config.max_angle, &config.resolution, &config.min_range, &config.max_range,
-                          &config.range_resolution, &config.rate})
-      *value = in.f64();
-    return config;
-  });
-}
-
-std::string encode_ranger_values(const std::vector<double>& values) {
-  return written([&](XdrWriter& out) {
-    out.count(values.size());
-    for (const double value : values) out.f64(value);
-  });
-}
-
-// ---- sonar ----
-
-std::string encode_sonar_ranges(const std::vector<float>& ranges) {
-  return written([&](XdrWriter& out) {
-    out.count(ranges.size());
-    for (const float range : ranges) out.f32(range);
-  });
-}
-
-std::string encode_poses(const std::vector<Pose3d>& poses) {
-  return written([&](XdrWriter& out) {
-    out.count(poses.size());
-    for (const Pose3d& pose : poses) put(out, pose);
-  });
-}
-
-// ---- aio, pointcloud3d ----
-
-std::string encode_voltages(const std::vector<double>& values) {
-  return written([&](XdrWriter& out) {
-    out.count(values.size());
-    for (const double value : values) out.f32(static_cast<float>(value));
-  });
-}
-
-std::string encode_points(const std::vector<Point3d>& points) {
-  return written([&](XdrWriter& out) {
-    constexpr std::size_t size_of_one = 40;
-    out.bytes().reserve(8 + size_of_one * points.size());
-    out.count(points.size());
-    for (const Point3d& point : points) {
-      for (const double value : {point.x, point.y, point.z}) out.f64(value);
-      for (int channel = 0; channel < 4; ++channel) out.u32(255);
-    }
-  });
-}
-
-// ---- camera ----
-
-std::string encode(const Image& image) {
-  return written([&](XdrWriter& out) {
-    out.bytes().reserve(40 + image.pixels.size());
-    for (const std::uint32_t value : {image.width, image.height, image.bits, static_cast<std::uint32_t>(image.format)}) out.u32(value);
-    out.u32(1);  // fdiv
-    out.u32(0);  // not compressed
-    out.counted_bytes(image.pixels);
-  });
-}
-
-std::string encode_camera_source(std::string_view norm, std::int32_t source) {
-  return written([&](XdrWriter& out) {
-    out.counted_text(norm);
-    out.i32(source);
-  });
-}
-
 // ---- simulation ----
 
 std::string encode(const NamedPose2d& request) {
@@ -472,43 +317,6 @@ std::optional<Property> decode_property(std::string_view payload) {
     request.index = in.u32();
     request.value = in.counted_bytes(max_value);
     return request;
-  });
-}
-
-// ---- gps, imu, bumper ----
-
-std::string encode(const GpsState& state) {
-  return written([&](XdrWriter& out) {
-    out.u32(state.seconds);
-    out.u32(state.microseconds);
-    for (const std::int32_t value : {state.latitude, state.longitude, state.altitude}) out.i32(value);
-    for (const double value : {state.speed, state.course, state.utm_east, state.utm_north}) out.f64(value);
-    for (const std::uint32_t value : {state.quality, state.satellites, state.hdop, state.vdop}) out.u32(value);
-    out.f64(state.horizontal_error);
-    out.f64(state.vertical_error);
-  });
-}
-
-void put(XdrWriter& out, const ImuCalibrated& values) {
-  for (const float value : values.acceleration) out.f32(value);
-  for (const float value : values.angular_velocity) out.f32(value);
-  for (const float value : values.magnetic_field) out.f32(value);
-}
-
-std::string encode_bumpers(const std::vector<bool>& pressed) {
-  std::string bytes;
-  for (const bool one : pressed) bytes += one ? '\1' : '\0';
-  return written([&](XdrWriter& out) { out.counted_bytes(bytes); });
-}
-
-std::string encode_bumper_shapes(const std::vector<BumperShape>& shapes) {
-  return written([&](XdrWriter& out) {
-    out.count(shapes.size());
-    for (const BumperShape& shape : shapes) {
-      put(out, shape.pose);
-      out.f32(shape.length);
-      out.f32(shape.radius);
-    }
   });
 }
 
