@@ -432,14 +432,13 @@ namespace {
 
 void add_parts_to(StateHash& hash, const ModelInstance& model) {
   model.for_each_state([&hash](const BodyState& state) {
-    hash.add(state.position);
-    hash.add(state.orientation);
-    hash.add(state.linear);
-    hash.add(state.angular);
-    hash.add(std::uint64_t{state.is_awake});
+    const auto &p = state.position, &v = state.linear, &w = state.angular;
+    const auto& q = state.orientation;
+    hash.add_all(p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z(), v.x(), v.y(), v.z(), w.x(), w.y(), w.z(), std::uint64_t{state.is_awake});
   });
   for (const auto& joint : model.joints()) {
-    for (const int axis : {0, 1}) hash.add(joint.drive(axis).velocity), hash.add(joint.drive(axis).effort);
+    const auto &first = joint.drive(0), &second = joint.drive(1);
+    hash.add_all(first.velocity, first.effort, second.velocity, second.effort);
   }
 }
 
