@@ -272,7 +272,12 @@ void ServerLoop::handle_requests(When when) {
   }
   auto waiting = std::exchange(postponed_, {});
   for (auto& asked : board_.poll()) waiting.push_back({std::move(asked), Clock::now()});
-  if (when == When::between_steps && !waiting.empty() && !barrier_->settle()) return;
+  if (when == When::between_steps && !waiting.empty()) {
+    // While an observer is waited for they are those of a tick: some are answered, and what has to wait is told who is late.
+    postponed_ = std::move(waiting);
+    if (!barrier_->settle()) return;
+    waiting = std::exchange(postponed_, {});
+  }
   for (auto& [asked, since] : waiting) {
     // What its client was told has failed must not happen later.
     if (!board_.is_awaited(asked.ticket)) continue;

@@ -415,7 +415,7 @@ bool Barrier::tick(nanoseconds now, std::uint64_t steps) {
     begin = end;
   }
   state.is_ticking = false;
-  if (is_complete && state.options.is_lockstep) state.let_look(now.count(), steps);
+  if (is_complete) state.let_look(now.count(), steps);
   state.remove_gone();
   return is_complete;
 }

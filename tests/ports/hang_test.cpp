@@ -26,6 +26,14 @@ void stop_process(ports::Peer& peer) {
   }));
 }
 
+// Writes until then.
+bool loses_its_connection(RTC::OutPort<RTC::TimedOctetSeq>& octets) {
+  return ports::eventually([&] {
+    octets.write();
+    return octets.connectors().empty();
+  });
+}
+
 TEST_F(Faults, a_peer_that_hangs_costs_its_own_connection_only) {
   ports::Peer peer;
   RTC::TimedOctetSeq value{};
@@ -98,10 +106,7 @@ TEST_F(Faults, a_connection_that_is_to_come_back_does_so_when_the_peer_that_hung
     auto plan = profile({ends[0], ends[1]}, {{"subscription_type", "new"}, {"call_timeout", "0.3"}, {"reconnect", "YES"}}, "here again");
     ASSERT_EQ(octets.connect(plan), RTC::RTC_OK);
     stop_process(peer);
-    EXPECT_TRUE(ports::eventually([&] {
-      octets.write();
-      return octets.connectors().empty();
-    }));
+    EXPECT_TRUE(loses_its_connection(octets));
     peer.process().signal(SIGCONT);
     EXPECT_TRUE(ports::eventually([&] { return octets.connectors().size() == 1; }));
     EXPECT_STREQ(octets.connectors().at(0)->id(), "here again");
@@ -177,10 +182,7 @@ TEST_F(Faults, a_peer_that_was_dropped_while_it_hung_is_told_and_can_be_connecte
     plan.connector_id = "the same";
     ASSERT_EQ(octets.connect(plan), RTC::RTC_OK);
     stop_process(peer);
-    EXPECT_TRUE(ports::eventually([&] {
-      octets.write();
-      return octets.connectors().empty();
-    }));
+    EXPECT_TRUE(loses_its_connection(octets));
     peer.process().signal(SIGCONT);
     EXPECT_TRUE(ports::eventually([&] { return RTC::ConnectorProfileList_var(far->get_connector_profiles())->length() == 0; }));
     auto again = plan;

@@ -386,6 +386,17 @@ with System(bin_dir, lib_dir) as s:
         wrong = [tick for tick in ticks if tick[1] != tick[0]]
         assert not wrong, f"samples of another time than the tick's: {wrong}"
         assert any(clock > now for now, _, clock in ticks), "the simulator has waited for the observer"
+        # One that is stopped while it looks holds up no answer to what leaves the world alone.
+        s.simctl("rtf", "1")
+        helper = subprocess.Popen([f"{bin_dir}/shm_helper", "observe", s.server_id, name, str(1000 // rate), "100000"], stdout=subprocess.DEVNULL)
+        for _ in range(10):
+            s.until("an observer that ticks", lambda: sum(p["ticks"] for p in s.participants()) > 2)
+            helper.send_signal(signal.SIGSTOP)
+            for _ in range(10):
+                s.simctl("stats")
+            helper.send_signal(signal.SIGCONT)
+        helper.kill()
+        helper.wait()
 
     elif case == "loaded":
         # The same run on a machine that has better things to do.

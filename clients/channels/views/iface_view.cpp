@@ -144,11 +144,11 @@ IfaceView sonar_view(const shm::Iface& iface) {
     view.channels.push_back(channel<ros::Range>(iface, "/" + std::to_string(i)));
     view.frames.push_back(transform_of({}, text_of(info.model), iface.name() + "/" + std::to_string(i), poses[i]));
   }
-  view.tell = [poses_count = poses.size()](shm::Iface& from, const shm::HeldFrame*, Said& said) {
+  view.tell = [](shm::Iface& from, const shm::HeldFrame*, Said& said) {
     const auto scan = from.sonar_scan();
     if (scan.sample->stamp.valid == 0) return;
     const auto& ring = from.info<shm::SonarInfo>();
-    for (std::size_t i = 0; i < scan.ranges.size() && i < poses_count; ++i) {
+    for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
       if (!said.is_wanted(i)) continue;
       const ros::Range range{.header = header_of(scan.sample->stamp, from.name() + "/" + std::to_string(i)),
                              .field_of_view = static_cast<float>(ring.cone),
