@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <span>
 #include <utility>
 
 #include "base/text.h"
@@ -24,19 +25,31 @@ constexpr int read_attempts = 8;
 
 std::string describe(IfaceType type, std::string_view name) { return std::string(to_text(type)) + " " + base::in_quotes(name); }
 
+// Segments of one server. The one of its simulation tells of all: others are opened when there is none, as programs of tests make servers.
+bool is_any_alive(std::span<const SegmentName> names) {
+  const auto is_simulation = [](const SegmentName& name) { return name.type == IfaceType::simulation; };
+  const bool has_one = std::ranges::any_of(names, is_simulation);
+  return std::ranges::any_of(names, [&](const SegmentName& name) { return (!has_one || is_simulation(name)) && inspect(name).is_alive; });
+}
+
 // Why there is no such iface: what the server has instead, or which servers there are.
 std::string explain_absence(std::uint32_t server_id, IfaceType type, std::string_view name) {
   std::vector<std::string> same_type, other_types, servers;
-  for (const Found& found : find_segments()) {
-    if (!found.is_alive) continue;
-    const std::string server = std::to_string(found.name.server_id);
-    if (std::find(servers.begin(), servers.end(), server) == servers.end()) servers.push_back(server);
-    if (found.name.server_id != server_id) continue;
-    if (found.name.type == type) {
-      same_type.push_back(found.name.iface);
-    } else {
-      const std::string other(to_text(found.name.type));
-      if (std::find(other_types.begin(), other_types.end(), other) == other_types.end()) other_types.push_back(other);
+  const auto names = segment_names();
+  for (auto begin = names->begin(); begin != names->end();) {
+    const std::uint32_t id = begin->server_id;
+    const auto end = std::find_if(begin, names->end(), [&](const SegmentName& other) { return other.server_id != id; });
+    const std::span<const SegmentName> all(begin, end);
+    begin = end;
+    if (!is_any_alive(all)) continue;
+    servers.push_back(std::to_string(id));
+    if (id != server_id) continue;
+    for (const SegmentName& found : all) {
+      if (found.type == type) {
+        same_type.push_back(found.iface);
+      } else if (std::string other(to_text(found.type)); std::ranges::find(other_types, other) == other_types.end()) {
+        other_types.push_back(std::move(other));
+      }
     }
   }
   const std::string start = "no " + describe(type, name) + " on server " + std::to_string(server_id);
@@ -49,12 +62,13 @@ std::string explain_absence(std::uint32_t server_id, IfaceType type, std::string
 }  // namespace
 
 struct Iface::State {
-  explicit State(Segment opened) : segment(std::move(opened)), owner(make_owner()) {}
+  explicit State(Segment opened) : segment(std::move(opened)), server(ProcessLife::of(segment.facts().server)), owner(make_owner()) {}
   ~State() {
     if (lease) give_lease_back(segment, *lease, owner);
   }
 
   Segment segment;
+  std::shared_ptr<const ProcessLife> server;  // as it was when the iface was opened
   std::uint64_t owner;
   std::optional<std::size_t> lease;
   bool is_subscribed = false;
@@ -108,7 +122,7 @@ Status Iface::State::status(bool is_hurried) {
   checked_at.store(now, std::memory_order_relaxed);
   Header judged = segment.facts();
   judged.heartbeat_ns = load(header().heartbeat_ns);
-  if (is_server_alive(judged)) return Status::live;
+  if (is_server_alive(judged, *server)) return Status::live;
   is_dead.store(true, std::memory_order_relaxed);
   return Status::dead;
 }
@@ -175,11 +189,12 @@ base::Result<Iface> Iface::open(std::uint32_t server_id, IfaceType type, std::st
   auto segment = Segment::open(wanted);
   if (!segment) {
     bool is_found = false;
-    for (const Found& found : find_segments(server_id)) {
-      if (found.name.type != type || found.name.iface != name) continue;
+    const auto names = segment_names();
+    for (const SegmentName& other : *names) {
+      if (other.server_id != server_id || other.type != type || other.iface != name) continue;
       is_found = true;
-      if (found.name.uid == wanted.uid || !found.is_alive) continue;
-      segment = Segment::open(found.name);
+      if (other.uid == wanted.uid || !inspect(other).is_alive) continue;
+      segment = Segment::open(other);
       if (segment) break;
     }
     if (!segment && is_found) return segment.error();

@@ -1,8 +1,10 @@
 #include "shm/process.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -11,6 +13,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <map>
+#include <tuple>
+
+#include "base/guarded.h"
 
 namespace shm {
 namespace {
@@ -97,6 +103,31 @@ bool is_alive(const ProcessMark& mark) {
   if (stat.state == 0) return ::kill(mark.pid, 0) == 0 || errno == EPERM;  // no /proc: the pid must do
   if (stat.state == 'Z' || stat.state == 'X') return false;
   return mark.start_time == 0 || stat.start_time == mark.start_time;
+}
+
+// The pid may be another process's by now: the pidfd holds whom it has, and then the mark is looked at.
+ProcessLife::ProcessLife(const ProcessMark& mark) : mark_(mark) {
+  const bool is_here = mark.pid > 0 && mark.start_time != 0 && mark.pid_namespace == own_namespace();
+  if (!is_here) return;
+  FileHandle pidfd(static_cast<int>(::syscall(SYS_pidfd_open, mark.pid, 0)));
+  if (pidfd.get() >= 0 && shm::is_alive(mark)) pidfd_ = std::move(pidfd);
+}
+
+bool ProcessLife::is_alive() const {
+  if (pidfd_.get() < 0) return shm::is_alive(mark_);
+  pollfd ended{pidfd_.get(), POLLIN, 0};
+  return ::poll(&ended, 1, 0) == 0;
+}
+
+std::shared_ptr<const ProcessLife> ProcessLife::of(const ProcessMark& mark) {
+  using Key = std::tuple<std::int32_t, std::uint32_t, std::uint64_t>;
+  static base::Guarded<std::map<Key, std::weak_ptr<const ProcessLife>>, base::Rank::registry> known;
+  auto all = known.lock();
+  std::erase_if(*all, [](const auto& entry) { return entry.second.expired(); });
+  auto& known_one = (*all)[{mark.pid, mark.pid_namespace, mark.start_time}];
+  auto life = known_one.lock();
+  if (!life) known_one = life = std::make_shared<const ProcessLife>(mark);
+  return life;
 }
 
 std::uint64_t make_owner() {

@@ -5,8 +5,10 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 
+#include "shm/file_handle.h"
 #include "shm/layout.h"
 
 namespace shm {
@@ -21,6 +23,19 @@ const std::array<std::uint8_t, 16>& boot_id();
 // False when the process has ended (zombies have) or its pid belongs to another one now. A process of another pid namespace can't be
 // judged and counts as alive. A start time of 0 means unknown: then the pid alone decides.
 bool is_alive(const ProcessMark& mark);
+
+// The same question for those who ask again and again: one system call that no file is opened for. All of this process who ask for one and
+// the same process share a descriptor.
+class ProcessLife {
+ public:
+  static std::shared_ptr<const ProcessLife> of(const ProcessMark& mark);
+  explicit ProcessLife(const ProcessMark& mark);  // use of()
+  bool is_alive() const;
+
+ private:
+  ProcessMark mark_;
+  FileHandle pidfd_;  // none: the kernel would not give one, or the process can't be judged
+};
 
 // (pid << 32) | number; the number is unique in this process. Never 0.
 std::uint64_t make_owner();

@@ -255,12 +255,22 @@ base::Result<void> check_name(std::string_view iface) {
   return {};
 }
 
-bool is_server_alive(const Header& header) {
-  if (std::memcmp(header.boot_id, boot_id().data(), boot_id().size()) != 0) return false;
-  if (!is_alive(header.server)) return false;
+namespace {
+
+bool is_of_this_boot(const Header& header) { return std::memcmp(header.boot_id, boot_id().data(), boot_id().size()) == 0; }
+
+// A server of another pid namespace can't be judged by its process.
+bool has_good_heartbeat(const Header& header) {
   static const std::uint32_t here = own_mark().pid_namespace;
-  if (header.server.pid_namespace == here) return true;
-  return monotonic_ns() - load(header.heartbeat_ns) < heartbeat_limit_ns;
+  return header.server.pid_namespace == here || monotonic_ns() - load(header.heartbeat_ns) < heartbeat_limit_ns;
+}
+
+}  // namespace
+
+bool is_server_alive(const Header& header) { return is_of_this_boot(header) && is_alive(header.server) && has_good_heartbeat(header); }
+
+bool is_server_alive(const Header& header, const ProcessLife& server) {
+  return is_of_this_boot(header) && server.is_alive() && has_good_heartbeat(header);
 }
 
 base::Result<Segment> Segment::create(const SegmentName& name, const Geometry& geometry, std::span<const std::byte> info,
@@ -381,8 +391,6 @@ void Segment::close() {
   remove_name(name_, path_of(name_));
 }
 
-namespace {
-
 Found inspect(const SegmentName& name) {
   Found found;
   found.name = name;
@@ -406,17 +414,17 @@ Found inspect(const SegmentName& name) {
   return found;
 }
 
-}  // namespace
-
 std::vector<Found> find_segments() {
   std::vector<Found> found;
-  for (const auto& name : all_names()) found.push_back(inspect(name));
+  const auto names = segment_names();
+  for (const auto& name : *names) found.push_back(inspect(name));
   return found;
 }
 
 std::vector<Found> find_segments(std::uint32_t server_id) {
   std::vector<Found> found;
-  for (const auto& name : all_names()) {
+  const auto names = segment_names();
+  for (const auto& name : *names) {
     if (name.server_id == server_id) found.push_back(inspect(name));
   }
   return found;
@@ -424,7 +432,8 @@ std::vector<Found> find_segments(std::uint32_t server_id) {
 
 std::vector<std::string> remove_stale(std::uint32_t first_server, std::uint32_t last_server) {
   std::vector<std::string> removed;
-  for (const auto& name : all_names()) {
+  const auto names = segment_names();
+  for (const auto& name : *names) {
     if (name.uid != ::geteuid() || name.server_id < first_server || name.server_id > last_server) continue;
     auto eviction = evict(name, path_of(name));
     if (eviction && eviction->judgement == Judgement::removed) removed.push_back(name.text());
@@ -435,7 +444,8 @@ std::vector<std::string> remove_stale(std::uint32_t first_server, std::uint32_t 
 void remove_own() {
   static const auto mine = naming().take();
   const ProcessMark own = own_mark();
-  for (const auto& name : all_names()) {
+  const auto names = segment_names();
+  for (const auto& name : *names) {
     auto segment = Segment::open(name);
     if (!segment) continue;
     const ProcessMark& server = segment->facts().server;

@@ -20,6 +20,8 @@
 
 namespace shm {
 
+class ProcessLife;
+
 // What the name of a segment says.
 struct SegmentName {
   uid_t uid = 0;
@@ -107,6 +109,10 @@ struct Found {
   std::uint32_t subscribers = 0;
   std::string problem;  // why it is not readable
 };
+Found inspect(const SegmentName& name);
+// The names of all segments of all users, sorted by server, user, type and iface. Read again only when /dev/shm has changed: those who wait
+// for a simulator ask ten times a second, hundreds of them at once.
+std::shared_ptr<const std::vector<SegmentName>> segment_names();
 // All of them, of every user, sorted by server, type and name.
 std::vector<Found> find_segments();
 std::vector<Found> find_segments(std::uint32_t server_id);
@@ -121,7 +127,8 @@ std::vector<std::string> remove_stale(std::uint32_t first_server = 0, std::uint3
 // threads that want one wait for the end of the process. No data may be held.
 void remove_own();
 
-// By process and, when that can't be judged, by heartbeat.
+// By process and, when that can't be judged, by heartbeat. `server`: the process of the header, for who asks again and again.
 bool is_server_alive(const Header& header);
+bool is_server_alive(const Header& header, const ProcessLife& server);
 
 }  // namespace shm

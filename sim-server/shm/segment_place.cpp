@@ -13,6 +13,9 @@
 #include <tuple>
 #include <utility>
 
+#include "base/guarded.h"
+#include "shm/process.h"
+
 namespace shm {
 namespace {
 
@@ -101,7 +104,9 @@ bool is_elsewhere_too(const SegmentName& name, const std::string& path) {
          std::any_of(refuges.begin(), refuges.end(), [&](const std::string& refuge) { return is_other(refuge + "/" + name.text()); });
 }
 
-std::vector<SegmentName> all_names() {
+namespace {
+
+std::vector<SegmentName> read_names() {
   std::vector<SegmentName> names;
   for (const std::string& entry : entries_of(segment_folder)) {
     if (auto name = SegmentName::parse(entry)) {
@@ -115,6 +120,32 @@ std::vector<SegmentName> all_names() {
   const auto key = [](const SegmentName& name) { return std::tie(name.server_id, name.uid, name.type, name.iface); };
   std::sort(names.begin(), names.end(), [&](const SegmentName& a, const SegmentName& b) { return key(a) < key(b); });
   names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
+// [ns] Unix time of the last change of the folder; nothing: it can't be told, or there are folders in it, whose changes it does not show.
+std::optional<std::int64_t> last_change(const char* path) {
+  struct stat status {};
+  if (::stat(path, &status) != 0 || status.st_nlink != 2) return std::nullopt;
+  return std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec;
+}
+
+struct Listing {
+  std::optional<std::int64_t> changed;  // nothing: not to be used again
+  std::shared_ptr<const std::vector<SegmentName>> names;
+};
+
+}  // namespace
+
+std::shared_ptr<const std::vector<SegmentName>> segment_names() {
+  static base::Guarded<Listing, base::Rank::registry> last;
+  // The kernel's clock for files ticks every few milliseconds: a change in the same tick as the last one would not be seen.
+  constexpr std::int64_t settled = 50'000'000;  // [ns]
+  auto changed = last_change(segment_folder);
+  if (changed && wall_ns() - *changed < settled) changed.reset();
+  if (auto known = last.lock(); changed && known->changed == changed) return known->names;
+  auto names = std::make_shared<const std::vector<SegmentName>>(read_names());
+  *last.lock() = {changed, names};
   return names;
 }
 

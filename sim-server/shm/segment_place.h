@@ -1,6 +1,6 @@
 // Where a segment of a name is: the usual path /dev/shm/<text of its name>, or, when another user has made a file of that name, the folder
-// /dev/shm/rtmsim-<uid>.<random letters>/ of the user in the name (a refuge). Any thread and any process; nothing is kept, the file system
-// is asked each time. One question costs the same however many segments there are, as long as /dev/shm has no folders.
+// /dev/shm/rtmsim-<uid>.<random letters>/ of the user in the name (a refuge). Any thread and any process; the file system is asked each
+// time. One question costs the same however many segments there are, as long as /dev/shm has no folders.
 #pragma once
 
 #include <string>
@@ -26,8 +26,5 @@ void remove_name(const SegmentName& name, const std::string& path);
 
 // The refuge of the effective user, made when there is none. Fails when it can't be made.
 base::Result<std::string> make_refuge();
-
-// The names of all segments of all users, sorted by server, user, type and iface.
-std::vector<SegmentName> all_names();
 
 }  // namespace shm
