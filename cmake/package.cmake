@@ -77,7 +77,6 @@ install(DIRECTORY idl/ext/ DESTINATION ${package_include}/rtm/ext FILES_MATCHING
 set(package_shared_libraries base rt_core rt_corba openrtm coil rtm_idl)
 set_target_properties(${package_shared_libraries} PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${RTMSIM_SOVERSION} INSTALL_RPATH "$ORIGIN")
 install(TARGETS ${package_shared_libraries} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-set_target_properties(own_account_door PROPERTIES INSTALL_RPATH "$ORIGIN/..")
 install(TARGETS own_account_door LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/rtm-sim)
 install(TARGETS rtcprof RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 # Manual page and completion of each program, printed by the program itself.
