@@ -34,6 +34,7 @@ class SimTick final : public base::Tick {
   void at_end(std::function<void(Tick&)> work) override { at_end_.push_back(std::move(work)); }
   bool keeps_data() const override { return log_.has_value(); }
   void passed(const base::Passage& passage) override;
+  bool passed_again(const base::Passage& passage, const base::Hash64& hash) override;
 
  private:
   struct Leaf {
@@ -44,6 +45,7 @@ class SimTick final : public base::Tick {
   };
 
   using Leaves = std::map<std::string, Leaf, std::less<>>;  // by port
+  Leaf& leaf_of(const base::Passage& passage);
   void write(Leaves& leaves);
   void write_log(std::uint64_t states);
 

@@ -10,8 +10,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string_view>
+
+#include "base/hash64.h"
 
 namespace base {
 
@@ -23,6 +26,8 @@ struct Passage {
   std::string_view port;                               // with the name of its component
   std::string_view type;                               // of the data
   std::span<const std::span<const std::byte>> octets;  // encoded
+  // Where a hash for passed_again() goes; it stays empty when the octets are as fast.
+  std::shared_ptr<const Hash64>* hash = nullptr;
 };
 
 class Tick {
@@ -37,6 +42,8 @@ class Tick {
   // False: nobody wants to hear of data.
   virtual bool keeps_data() const = 0;
   virtual void passed(const Passage& passage) = 0;
+  // The same data as `hash` is of, without its octets: they need not be encoded and looked at again. False: they are wanted.
+  virtual bool passed_again(const Passage& passage, const Hash64& hash) = 0;
 };
 
 // nullptr: this thread is in no tick.

@@ -53,12 +53,15 @@ std::size_t room_of(const TypeOps& ops) {
 
 // What was read in a tick is part of what the run did.
 template <class Read>
-void tell_tick(const Read& read, rt::ByteOrder order, const InConnection& connection) {
+void tell_tick(const Read& read, rt::ByteOrder order, const base::Hash64* hash, const InConnection& connection) {
   base::Tick* tick = base::current_tick();
   if (!tick || !tick->keeps_data()) return;
+  base::Passage passage{false, connection.port(), connection.ops().type_id, {}};
+  if (hash != nullptr && !connection.ops().codec && tick->passed_again(passage, *hash)) return;
   try {
     Payload payload(connection.ops(), read);
-    tick->passed({false, connection.port(), connection.ops().type_id, payload.pieces(order).parts});
+    passage.octets = payload.pieces(order).parts;
+    tick->passed(passage);
   } catch (const CORBA::Exception&) {
     // It cannot be encoded, so nobody has sent it to another process either.
   }
@@ -415,7 +418,7 @@ rt::PortStatus InEngine::deliver(const rt::Sample& received, InConnection& conne
   // A sender of another make may have stamped it with the clock of its machine: what is stamped here is told with the stamp of here.
   const auto policy = connection.settings().stamp;
   const bool is_stamped = ops.stamp && (policy == rt::StampPolicy::on_received || policy == rt::StampPolicy::on_read);
-  if (!is_stamped) tell_tick(*sample, sample->block ? sample->order : rt::ByteOrder::little, connection);
+  if (!is_stamped) tell_tick(*sample, sample->block ? sample->order : rt::ByteOrder::little, sample->hash.get(), connection);
   if (sample->value) {
     ops.assign(value, sample->value.get());
   } else if (!decode_safely(ops, value, sample->block->octets(), sample->order)) {
@@ -426,7 +429,7 @@ rt::PortStatus InEngine::deliver(const rt::Sample& received, InConnection& conne
   }
   if (is_stamped) {
     stamp(ops, value, policy == rt::StampPolicy::on_received ? sample->received : connection.plan_.caller_time());
-    tell_tick(static_cast<const void*>(value), rt::ByteOrder::little, connection);
+    tell_tick(static_cast<const void*>(value), rt::ByteOrder::little, nullptr, connection);
   }
   return rt::PortStatus::ok;
 }

@@ -113,6 +113,7 @@ rt::Sample Payload::copied() {
   }
   rt::Sample sample;
   sample.value = copy_;
+  sample.hash = hash_;
   return sample;
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "corba/type_ops.h"
@@ -39,6 +40,8 @@ class Payload {
   rt::Sample copied();
   // nullptr if it came encoded and is no value of the type.
   const void* value();
+  // Of the value, for those who read it.
+  void set_hash(std::shared_ptr<const base::Hash64> hash) { hash_ = std::move(hash); }
 
  private:
   struct Encoded {
@@ -51,6 +54,7 @@ class Payload {
   const void* value_ = nullptr;
   std::shared_ptr<const void> copy_;
   Encoded encoded_[2];  // by rt::ByteOrder
+  std::shared_ptr<const base::Hash64> hash_;
 };
 
 }  // namespace corba

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <tuple>
 
+#include "base/tick.h"
 #include "corba/call_timeout.h"
 #include "corba/cdr.h"
 #include "ports/support.h"
@@ -38,6 +39,57 @@ INSTANTIATE_TEST_SUITE_P(Ways, Transport,
                                          Way{"data_service", "pull"}, Way{"direct", "push"}, Way{"direct", "pull"},
                                          Way{"shared_memory", "push"}, Way{"shared_memory", "pull"}),
                          name_of);
+
+// Keeps a hash of each sample that passes.
+class KeepingTick final : public base::Tick {
+ public:
+  std::chrono::nanoseconds time() const override { return std::chrono::nanoseconds(0); }
+  std::uint64_t moment() const override { return 0; }
+  void at_end(std::function<void(Tick&)>) override {}
+  bool keeps_data() const override { return true; }
+  void passed(const base::Passage& passage) override {
+    base::Hash64 hash;
+    for (const auto& part : passage.octets) hash.add(part);
+    if (passage.hash != nullptr) *passage.hash = std::make_shared<const base::Hash64>(hash);
+    hashes.push_back(hash.value());
+  }
+  bool passed_again(const base::Passage&, const base::Hash64& hash) override {
+    if (!takes_hashes) return false;
+    ++again;
+    hashes.push_back(hash.value());
+    return true;
+  }
+  std::vector<std::uint64_t> hashes;
+  int again = 0;
+  bool takes_hashes = true;
+};
+
+TEST_P(Transport, a_tick_sees_the_same_octets_when_they_are_read_as_when_they_were_written) {
+  RTC::CameraImage sent{};
+  RTC::CameraImage received{};
+  RTC::OutPort<RTC::CameraImage> out("A0.out", sent);
+  RTC::InPort<RTC::CameraImage> in("B0.in", received);
+  auto plan = profile({out.getPortRef(), in.getPortRef()}, {{"interface_type", interface}, {"dataflow_type", dataflow}});
+  ASSERT_EQ(out.connect(plan), RTC::RTC_OK);
+  for (const bool takes_hashes : {true, false}) {
+    KeepingTick tick;
+    tick.takes_hashes = takes_hashes;
+    const base::ScopedTick scope(tick);
+    for (const CORBA::ULong size : {1u, 5000u}) {
+      sent.pixels.length(size);
+      sent.pixels[size - 1] = static_cast<CORBA::Octet>(size);
+      ASSERT_TRUE(out.write());
+      ASSERT_TRUE(ports::eventually([&] { return in.isNew(); }));
+      ASSERT_TRUE(in.read());
+    }
+    ASSERT_EQ(tick.hashes.size(), 4U);
+    EXPECT_EQ(tick.hashes[0], tick.hashes[1]);
+    EXPECT_EQ(tick.hashes[2], tick.hashes[3]);
+    EXPECT_NE(tick.hashes[0], tick.hashes[2]);
+    // A value that is handed over as it is need not be encoded once more.
+    EXPECT_EQ(tick.again, takes_hashes && interface == "direct" && dataflow == "push" ? 2 : 0);
+  }
+}
 
 // Of what the InPort has received; with pull, what was not fetched has not been.
 class Push : public Transport {};
