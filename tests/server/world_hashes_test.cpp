@@ -91,6 +91,19 @@ TEST_F(HashesOfTheWorld, have_a_model_under_its_name_in_the_place_of_one_of_the_
   EXPECT_EQ(all[1].count("model early"), 0U);
 }
 
+TEST_F(HashesOfTheWorld, have_a_model_that_cannot_move_again_when_it_was_put_elsewhere) {
+  record();
+  step();
+  record();
+  ASSERT_TRUE(f.simulation->physics().set_model_pose(0, at(0, 0, -1)));
+  step();
+  record();
+  const auto all = leaves();
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_EQ(all[1].count("model ground"), 0U);
+  EXPECT_EQ(all[2].count("model ground"), 1U);
+}
+
 // Its laser draws at random for each beam.
 WorldDef noisy_world() {
   WorldDef world;
