@@ -116,7 +116,7 @@ ProcessLife::ProcessLife(const ProcessMark& mark) : mark_(mark) {
 bool ProcessLife::is_alive() const {
   if (pidfd_.get() < 0) return shm::is_alive(mark_);
   pollfd ended{pidfd_.get(), POLLIN, 0};
-  return ::poll(&ended, 1, 0) == 0;
+  return ::poll(&ended, 1, 0) <= 0;
 }
 
 std::shared_ptr<const ProcessLife> ProcessLife::of(const ProcessMark& mark) {
