@@ -109,7 +109,7 @@ void tell_tick(Payload& payload, const OutConnection& connection) {
   try {
     std::shared_ptr<const base::Hash64> hash;
     tick->passed({true, port, payload.ops().type_id, payload.pieces(rt::ByteOrder::little).parts, &hash});
-    if (!payload.ops().codec) payload.set_hash(std::move(hash));
+    payload.set_hash(std::move(hash));
   } catch (const CORBA::Exception&) {
     // It cannot be encoded; who sends it says so.
   }

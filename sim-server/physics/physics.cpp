@@ -457,14 +457,10 @@ void Physics::add_to(StateHash& hash, ModelId id) const {
   add_parts_to(hash, impl_->at(id));
 }
 
-void Physics::add_place_to(StateHash& hash, ModelId id) const {
-  const Eigen::Matrix4d& place = impl_->at(id).base().matrix();
-  for (int column = 0; column < 4; ++column) hash.add(Eigen::Vector3d(place.col(column).head<3>()));
-}
-
 void Physics::add_place_and_parts_to(StateHash& hash, ModelId id) const {
-  add_place_to(hash, id);
-  add_parts_to(hash, impl_->at(id));
+  const ModelInstance& model = impl_->at(id);
+  for (int column = 0; column < 4; ++column) hash.add(Eigen::Vector3d(model.base().matrix().col(column).head<3>()));
+  add_parts_to(hash, model);
 }
 
 PhysicsStatistics Physics::statistics() const {

@@ -137,8 +137,6 @@ class Physics {
   void add_to(StateHash& hash, ModelId model) const;
   // As much, quicker: where it was put instead of its pose, which follows from that and its parts. For comparing a model with itself.
   void add_place_and_parts_to(StateHash& hash, ModelId model) const;
-  // The first twelve numbers of that.
-  void add_place_to(StateHash& hash, ModelId model) const;
   PhysicsStatistics statistics() const;
   // One line for each model that had to be put back because it left the numbers, since the last call.
   std::vector<std::string> take_complaints();

@@ -82,15 +82,9 @@ void WorldHashes::record_models(const Simulation& simulation) {
   const Physics& physics = simulation.physics();
   for (ModelId id = 0; id < physics.model_slots(); ++id) {
     if (!physics.exists(id)) continue;
-    Leaf& model = leaf(models_, id);
-    // Of what cannot move only somebody's request can change the place.
-    if (model.is_named && physics.is_static(id)) {
-      state_.clear();
-      physics.add_place_to(state_, id);
-      if (std::ranges::equal(state_.words(), std::span(model.state).first(state_.words().size()))) continue;
-    }
     state_.clear();
     physics.add_place_and_parts_to(state_, id);
+    Leaf& model = leaf(models_, id);
     if (!model.is_named) name(model, "", physics.def(id).name);
     if (is_new(model)) log_.add(model.key, model.hash, octets_of(physics.model_pose(id)));
   }

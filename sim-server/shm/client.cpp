@@ -25,11 +25,11 @@ constexpr int read_attempts = 8;
 
 std::string describe(IfaceType type, std::string_view name) { return std::string(to_text(type)) + " " + base::in_quotes(name); }
 
-// Segments of one server. The one of its simulation tells of all: others are opened when there is none, as programs of tests make servers.
+// Segments of one server of one user. The one of its simulation tells of all; a server without one has few.
 bool is_any_alive(std::span<const SegmentName> names) {
-  const auto is_simulation = [](const SegmentName& name) { return name.type == IfaceType::simulation; };
-  const bool has_one = std::ranges::any_of(names, is_simulation);
-  return std::ranges::any_of(names, [&](const SegmentName& name) { return (!has_one || is_simulation(name)) && inspect(name).is_alive; });
+  const auto simulation = std::ranges::find(names, IfaceType::simulation, &SegmentName::type);
+  if (simulation != names.end()) return inspect(*simulation).is_alive;
+  return std::ranges::any_of(names, [](const SegmentName& name) { return inspect(name).is_alive; });
 }
 
 // Why there is no such iface: what the server has instead, or which servers there are.
@@ -37,12 +37,13 @@ std::string explain_absence(std::uint32_t server_id, IfaceType type, std::string
   std::vector<std::string> same_type, other_types, servers;
   const auto names = segment_names();
   for (auto begin = names->begin(); begin != names->end();) {
+    const uid_t uid = begin->uid;
     const std::uint32_t id = begin->server_id;
-    const auto end = std::find_if(begin, names->end(), [&](const SegmentName& other) { return other.server_id != id; });
+    const auto end = std::find_if(begin, names->end(), [&](const SegmentName& other) { return other.server_id != id || other.uid != uid; });
     const std::span<const SegmentName> all(begin, end);
     begin = end;
     if (!is_any_alive(all)) continue;
-    servers.push_back(std::to_string(id));
+    if (servers.empty() || servers.back() != std::to_string(id)) servers.push_back(std::to_string(id));
     if (id != server_id) continue;
     for (const SegmentName& found : all) {
       if (found.type == type) {
@@ -68,7 +69,7 @@ struct Iface::State {
   }
 
   Segment segment;
-  std::shared_ptr<const ProcessLife> server;  // as it was when the iface was opened
+  std::shared_ptr<const ProcessLife> server;  // its process
   std::uint64_t owner;
   std::optional<std::size_t> lease;
   bool is_subscribed = false;

@@ -116,17 +116,24 @@ ProcessLife::ProcessLife(const ProcessMark& mark) : mark_(mark) {
 bool ProcessLife::is_alive() const {
   if (pidfd_.get() < 0) return shm::is_alive(mark_);
   pollfd ended{pidfd_.get(), POLLIN, 0};
-  return ::poll(&ended, 1, 0) <= 0;
+  const int told = ::poll(&ended, 1, 0);
+  if (told == 0) return true;
+  return (ended.revents & POLLIN) == 0 && shm::is_alive(mark_);
 }
 
 std::shared_ptr<const ProcessLife> ProcessLife::of(const ProcessMark& mark) {
   using Key = std::tuple<std::int32_t, std::uint32_t, std::uint64_t>;
-  static base::Guarded<std::map<Key, std::weak_ptr<const ProcessLife>>, base::Rank::registry> known;
+  using Known = std::map<Key, std::weak_ptr<const ProcessLife>>;
+  // Never destroyed: threads may still ask at the very end.
+  static auto& known = *new base::Guarded<Known, base::Rank::registry>;
+  const Key key{mark.pid, mark.pid_namespace, mark.start_time};
+  if (auto life = (*known.lock())[key].lock()) return life;
+  auto made = std::make_shared<const ProcessLife>(mark);
   auto all = known.lock();
   std::erase_if(*all, [](const auto& entry) { return entry.second.expired(); });
-  auto& known_one = (*all)[{mark.pid, mark.pid_namespace, mark.start_time}];
-  auto life = known_one.lock();
-  if (!life) known_one = life = std::make_shared<const ProcessLife>(mark);
+  auto& place = (*all)[key];
+  auto life = place.lock();  // another thread's, made meanwhile
+  if (!life) place = life = std::move(made);
   return life;
 }
 

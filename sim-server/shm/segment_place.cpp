@@ -126,7 +126,7 @@ std::vector<SegmentName> read_names() {
 // [ns] Unix time of the last change of the folder; nothing: it can't be told, or there are folders in it, whose changes it does not show.
 std::optional<std::int64_t> last_change(const char* path) {
   struct stat status {};
-  if (::stat(path, &status) != 0 || status.st_nlink != 2) return std::nullopt;
+  if (!has_no_folders(path) || ::stat(path, &status) != 0) return std::nullopt;
   return std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec;
 }
 
@@ -138,7 +138,7 @@ struct Listing {
 }  // namespace
 
 std::shared_ptr<const std::vector<SegmentName>> segment_names() {
-  static base::Guarded<Listing, base::Rank::registry> last;
+  static auto& last = *new base::Guarded<Listing, base::Rank::registry>;  // never destroyed: threads may still look at the very end
   // The kernel's clock for files ticks every few milliseconds: a change in the same tick as the last one would not be seen.
   constexpr std::int64_t settled = 50'000'000;  // [ns]
   auto changed = last_change(segment_folder);

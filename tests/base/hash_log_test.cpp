@@ -173,6 +173,7 @@ TEST(Hash64, does_not_depend_on_how_the_octets_are_cut) {
   for (int i = 0; i < 100; ++i) octets.push_back(static_cast<std::byte>(i * 7));
   Hash64 whole;
   whole.add(std::span<const std::byte>(octets));
+  EXPECT_EQ(whole.value(), 0xe00611ec2ed8a0eaU) << "logs that exist have other hashes now";
   for (std::size_t cut = 0; cut <= octets.size(); ++cut) {
     Hash64 pieces;
     pieces.add(std::span<const std::byte>(octets).first(cut));

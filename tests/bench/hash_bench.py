@@ -50,7 +50,7 @@ def processor_time(processes):
     total = 0
     for process in processes:
         for task in pathlib.Path(f"/proc/{process.pid}/task").iterdir():
-            with contextlib.suppress(FileNotFoundError):  # a thread that has ended meanwhile
+            with contextlib.suppress(FileNotFoundError, ProcessLookupError):  # a thread that has ended meanwhile
                 total += int((task / "schedstat").read_text().split()[0])
     return total * 1e-9
 

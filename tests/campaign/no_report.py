@@ -23,7 +23,7 @@ known_leaks = re.compile("|".join([
 
 # Nothing but known leaks; those that are only reached from others count with these.
 def is_known(report):
-    if "ERROR: LeakSanitizer" not in report or report.count("ERROR: ") > 1:
+    if "ERROR: LeakSanitizer" not in report or report.count("ERROR: ") > 1 or "runtime error: " in report:
         return False
     direct = re.findall(r"^Direct leak .*\n(?: +#\d+ .*(?:operator new|_interceptor_|asan_\w+\.cpp).*\n)* +#\d+ (.*)$", report, re.MULTILINE)
     return len(direct) == report.count("Direct leak ") > 0 and all(known_leaks.search(frame) for frame in direct)
@@ -32,16 +32,16 @@ def is_known(report):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         os.chmod(folder, 0o777)  # some programs run as another account
-        # Reports are judged here, not by exit codes.
-        common = f"log_path={folder}/report:log_exe_name=1:print_stacktrace=1:exitcode=0"
+        common = f"log_exe_name=1:print_stacktrace=1"
         settings = {
-            # A library that is loaded before all others is not ours to order. A process that is told to end by a signal and one that dies are told apart by the tests.
-            "ASAN_OPTIONS": f"verify_asan_link_order=0:handle_segv=1:detect_stack_use_after_return=1:{common}",
-            "LSAN_OPTIONS": f"suppressions={tests}/lsan.supp:print_suppressions=0:{common}",
-            "UBSAN_OPTIONS": common,
-            "TSAN_OPTIONS": f"suppressions={tests}/tsan.supp:print_suppressions=0:{common}",
+            # A library that is loaded before all others is not ours to order. A process that is told to end by a signal and one that dies are told apart by the tests. Leaks are judged here, by their
+            # report, and not by the exit code; other errors abort.
+            "ASAN_OPTIONS": f"verify_asan_link_order=0:handle_segv=1:detect_stack_use_after_return=1:abort_on_error=1:exitcode=0:log_path={folder}/report:{common}",
+            "LSAN_OPTIONS": f"suppressions={tests}/lsan.supp:print_suppressions=0:exitcode=0:log_path={folder}/report:{common}",
+            "UBSAN_OPTIONS": f"log_path={folder}/report.undefined:{common}",  # its runtime is another one, which would write over the file
+            "TSAN_OPTIONS": f"suppressions={tests}/tsan.supp:print_suppressions=0:log_path={folder}/report:{common}",
         }
-        # What was set outside counts, but for where reports go.
+        # What was set outside counts, but for what is said here.
         environment = {**os.environ, "RTMSIM_SANITIZED": "1", **{name: f"{os.environ.get(name, '')}:{words}".strip(":") for name, words in settings.items()}}
         command = subprocess.Popen(sys.argv[1:], env=environment)
         for number in (signal.SIGTERM, signal.SIGINT):

@@ -19,6 +19,21 @@ ours = """Direct leak of 40 byte(s) in 1 object(s) allocated from:
     #2 0x7f86771ac958 in omniObjRef::_unMarshal(char const*, cdrStream&) (/lib/libomniORB4.so.2+0xe9958)
 
 """
+text = """Direct leak of 10 byte(s) in 1 object(s) allocated from:
+    #0 0x7f8c47eb9628 in operator new[](unsigned long) ../../../../src/libsanitizer/asan/asan_new_delete.cpp:98
+    #1 0x7f8c42907598 in cdrStream::unmarshalRawString() (/lib/x86_64-linux-gnu/libomniORB4.so.2+0xc5598)
+
+"""
+connection = """Direct leak of 432 byte(s) in 1 object(s) allocated from:
+    #0 0x7f8c47eb94c8 in operator new(unsigned long) ../../../../src/libsanitizer/asan/asan_new_delete.cpp:95
+    #1 0x7f8c4295430a in omni::giopStrand::acquireServer(omni::giopWorker*) (/lib/x86_64-linux-gnu/libomniORB4.so.2+0x11230a)
+
+"""
+tls = """Direct leak of 904 byte(s) in 1 object(s) allocated from:
+    #0 0x7fb49bab89cf in __interceptor_malloc ../../../../src/libsanitizer/asan/asan_malloc_linux.cpp:69
+    #1 0x7fb492e333e8 in CRYPTO_zalloc (/lib/x86_64-linux-gnu/libcrypto.so.3+0x2333e8)
+
+"""
 picture = """Direct leak of 16 byte(s) in 1 object(s) allocated from:
     #0 0x7f75496b83b7 in __interceptor_calloc ../../../../src/libsanitizer/asan/asan_malloc_linux.cpp:77
     #1 0x7f75452b81de  (/lib/x86_64-linux-gnu/libOSMesa.so.8+0xb81de)
@@ -38,7 +53,7 @@ reached = """Indirect leak of 8224 byte(s) in 1 object(s) allocated from:
 
 class Reports(unittest.TestCase):
     def test_of_known_leaks_do_not_count(self):
-        for leaks in (reference, picture, reference + picture + reached):
+        for leaks in (reference, text, connection, tls, picture, reference + picture + reached):
             self.assertTrue(is_known(head + leaks), leaks)
 
     def test_of_others_count(self):
@@ -49,6 +64,7 @@ class Reports(unittest.TestCase):
         self.assertFalse(is_known("==1==ERROR: AddressSanitizer: heap-use-after-free\n" + reference))
         self.assertFalse(is_known(head + reference + "==1==ERROR: AddressSanitizer: SEGV\n"))
         self.assertFalse(is_known("WARNING: ThreadSanitizer: data race\n"))
+        self.assertFalse(is_known("any.cpp:3:7: runtime error: signed integer overflow\n" + head + reference))
         self.assertFalse(is_known(""))
 
 
