@@ -103,7 +103,7 @@ int GiopGate::receive(std::byte* to, std::size_t size, const Read& read) {
   }
   if (is_broken_ || !problem_.empty()) return -1;
   settle();
-  if (held_.empty() && ahead_.empty() && size >= least_room) {
+  if (limits_.reads_ahead && held_.empty() && ahead_.empty() && size >= least_room) {
     const int got = read(to, size);
     if (got <= 0) return got;
     const std::span<const std::byte> come(to, static_cast<std::size_t>(got));

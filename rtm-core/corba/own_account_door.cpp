@@ -1,19 +1,26 @@
 // A library to be loaded before others (LD_PRELOAD) into a server that is not ours, as omniNames: connections over TCP from other accounts
-// end before the server has read anything, and when there are too many the one that has been silent longest ends. base/own_account.h says
-// where it is.
+// end before the server has read anything, when there are too many the one that has been silent longest ends, and what comes in is handed
+// on in whole GIOP messages (giop_gate.h): of fragments that it does not expect omniORB 4.2 keeps threads and connections for ever, which
+// take all processors. base/own_account.h says where the library is.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstddef>
+#include <map>
+#include <memory>
 
 #include "base/descriptors.h"
+#include "base/guarded.h"
 #include "base/peer_account.h"
+#include "corba/giop_gate.h"
 
 namespace {
 
@@ -65,6 +72,56 @@ void end_most_silent(int latest) {
   for (int waited = 0; waited < 200 && fcntl(silent, F_GETFD) != -1; ++waited) usleep(1000);
 }
 
+template <class Function>
+Function next(const char* name) {
+  return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
+}
+
+// Connections by their files, from when they come until they are closed: then the number is another file's.
+class Gates {
+ public:
+  using Gate = std::shared_ptr<corba::GiopGate>;
+  void begin(int file) {
+    auto gate = std::make_shared<corba::GiopGate>(limits(), in_progress_);
+    (*gates_.lock())[file] = std::move(gate);
+  }
+  void end(int file) { gates_.lock()->erase(file); }
+  Gate of(int file) {
+    auto gates = gates_.lock();
+    const auto found = gates->find(file);
+    return found == gates->end() ? nullptr : found->second;
+  }
+
+ private:
+  static corba::GiopLimits limits() {
+    corba::GiopLimits limits;
+    limits.sample = limits.request;  // no data port is here
+    limits.reads_ahead = false;
+    return limits;
+  }
+  base::Guarded<std::map<int, Gate>, base::Rank::registry> gates_;
+  std::atomic<std::size_t> in_progress_{0};
+};
+
+// Never destroyed: threads may still read at the very end.
+Gates& gates() {
+  static Gates& all = *new Gates;
+  return all;
+}
+
+constexpr int longest_silence = 30'000;  // [ms] within a message
+
+using Receive = ssize_t (*)(int, void*, size_t, int);
+
+// Octets of a connection; 0 when none come within a time, as if the peer had ended it. A message that has begun is waited for also where
+// the socket does not wait.
+int read_from(int file, std::byte* to, std::size_t size, int flags, bool is_in_message) {
+  static const auto original = next<Receive>("recv");
+  pollfd waiting{file, POLLIN, 0};
+  if (is_in_message && poll(&waiting, 1, longest_silence) == 0) return 0;
+  return static_cast<int>(original(file, to, size, flags));
+}
+
 // What the server gets of a connection that has come: nothing of one from another account, as if nobody had come after all.
 int let_in(int connection) {
   const int error = errno;
@@ -76,17 +133,13 @@ int let_in(int connection) {
       return -1;
     }
     end_most_silent(connection);
+    gates().begin(connection);
   }
   errno = error;
   return connection;
 }
 
 [[gnu::constructor]] void raise_limit() { (void)most_connections(); }
-
-template <class Function>
-Function next(const char* name) {
-  return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
-}
 
 }  // namespace
 
@@ -98,4 +151,23 @@ extern "C" __attribute__((visibility("default"))) int accept(int socket, sockadd
 extern "C" __attribute__((visibility("default"))) int accept4(int socket, sockaddr* address, socklen_t* size, int flags) {
   static const auto original = next<int (*)(int, sockaddr*, socklen_t*, int)>("accept4");
   return let_in(original(socket, address, size, flags));
+}
+
+extern "C" __attribute__((visibility("default"))) ssize_t recv(int socket, void* to, size_t size, int flags) {
+  static const auto original = next<Receive>("recv");
+  const auto gate = gates().of(socket);
+  if (!gate || (flags & MSG_PEEK) != 0 || size == 0) return original(socket, to, size, flags);
+  const int got = gate->receive(static_cast<std::byte*>(to), size,
+                                [&](std::byte* at, std::size_t room) { return read_from(socket, at, room, flags, gate->is_in_message()); });
+  if (got < 0 && !gate->problem().empty()) {
+    shutdown(socket, SHUT_RDWR);
+    errno = ECONNRESET;
+  }
+  return got;
+}
+
+extern "C" __attribute__((visibility("default"))) int close(int file) {
+  static const auto original = next<int (*)(int)>("close");
+  gates().end(file);
+  return original(file);
 }
