@@ -220,7 +220,9 @@ int GiopGate::fill(const Read& read, std::size_t size) {
     if (needed > small && needed > claimed_ && !claim(needed - claimed_))
       return refuse("too much is in progress on all connections together");
     held_.resize(needed);
+    room_ = wanted;
     const int got = read_on(read, held_.data() + have, wanted);
+    room_ = 0;
     held_.resize(have + static_cast<std::size_t>(std::max(got, 0)));
     if (got <= 0) return got;
   }

@@ -40,8 +40,8 @@ class GiopGate {
   // Some octets of whole messages, at least one; what `read` said when that ended, -1 when the peer is refused (see problem()).
   int receive(std::byte* to, std::size_t size, const Read& read);
 
-  // A message has begun and has not come whole.
-  bool is_in_message() const { return direct_left_ > 0 || !ahead_.empty() || (!held_.empty() && delivered_ == whole_); }
+  // A message has begun and has not come whole. Also asked by who reads for receive().
+  bool is_in_message() const { return direct_left_ > 0 || !ahead_.empty() || (held_.size() > room_ && delivered_ == whole_); }
   // Octets have been read that receive() has not given yet.
   bool has_more() const { return delivered_ < whole_ || !ahead_.empty(); }
   // Whole messages (or their beginnings, of samples that pass) that were handed on.
@@ -74,6 +74,7 @@ class GiopGate {
   std::atomic<std::size_t>& in_progress_;
   std::vector<std::byte> ahead_;  // read, of messages after the one in held_
   std::vector<std::byte> held_;   // one message, as far as it has come
+  std::size_t room_ = 0;          // at its end, for what is being read
   std::size_t whole_ = 0;         // so much of held_ may be handed on
   std::size_t delivered_ = 0;
   std::size_t direct_left_ = 0;

@@ -13,9 +13,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstddef>
+#include <exception>
 #include <map>
 #include <memory>
+#include <new>
 
 #include "base/descriptors.h"
 #include "base/guarded.h"
@@ -81,9 +84,13 @@ Function next(const char* name) {
 class Gates {
  public:
   using Gate = std::shared_ptr<corba::GiopGate>;
-  void begin(int file) {
+  // False: there is no memory.
+  bool begin(int file) try {
     auto gate = std::make_shared<corba::GiopGate>(limits(), in_progress_);
     (*gates_.lock())[file] = std::move(gate);
+    return true;
+  } catch (const std::bad_alloc&) {
+    return false;
   }
   void end(int file) { gates_.lock()->erase(file); }
   Gate of(int file) {
@@ -95,7 +102,8 @@ class Gates {
  private:
   static corba::GiopLimits limits() {
     corba::GiopLimits limits;
-    limits.sample = limits.request;  // no data port is here
+    limits.sample = limits.request;
+    limits.direct = 0;  // no data port is here, whose samples would pass while they come
     limits.reads_ahead = false;
     return limits;
   }
@@ -109,17 +117,43 @@ Gates& gates() {
   return all;
 }
 
-constexpr int longest_silence = 30'000;  // [ms] within a message
+constexpr std::chrono::seconds longest_silence{30};  // within a message
 
 using Receive = ssize_t (*)(int, void*, size_t, int);
 
-// Octets of a connection; 0 when none come within a time, as if the peer had ended it. A message that has begun is waited for also where
-// the socket does not wait.
+// Octets of a connection; 0 or less when there will be no more: of a message that has begun the next ones come within a time, whatever the
+// socket does.
 int read_from(int file, std::byte* to, std::size_t size, int flags, bool is_in_message) {
   static const auto original = next<Receive>("recv");
-  pollfd waiting{file, POLLIN, 0};
-  if (is_in_message && poll(&waiting, 1, longest_silence) == 0) return 0;
-  return static_cast<int>(original(file, to, size, flags));
+  if (!is_in_message) return static_cast<int>(original(file, to, size, flags));
+  const auto end = std::chrono::steady_clock::now() + longest_silence;
+  while (true) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+    if (left.count() <= 0) return 0;
+    pollfd waiting{file, POLLIN, 0};
+    if (poll(&waiting, 1, static_cast<int>(left.count())) <= 0) continue;
+    const auto got = original(file, to, size, flags);
+    if (got >= 0 || (errno != EINTR && errno != EAGAIN)) return static_cast<int>(got);
+  }
+}
+
+// What the server reads of a connection with a gate. -1 with ECONNRESET when the gate ends it.
+int read_through(corba::GiopGate& gate, int file, std::byte* to, std::size_t size, int flags) {
+  bool has_asked = false;
+  int got = -1;
+  try {
+    got = gate.receive(to, size, [&](std::byte* at, std::size_t room) {
+      has_asked = true;
+      return read_from(file, at, room, flags, gate.is_in_message());
+    });
+  } catch (const std::exception&) {  // no memory
+    has_asked = false;
+  }
+  if (got < 0 && (!has_asked || !gate.problem().empty())) {
+    shutdown(file, SHUT_RDWR);
+    errno = ECONNRESET;
+  }
+  return got;
 }
 
 // What the server gets of a connection that has come: nothing of one from another account, as if nobody had come after all.
@@ -133,7 +167,11 @@ int let_in(int connection) {
       return -1;
     }
     end_most_silent(connection);
-    gates().begin(connection);
+    if (!gates().begin(connection)) {
+      close(connection);
+      errno = EAGAIN;
+      return -1;
+    }
   }
   errno = error;
   return connection;
@@ -157,13 +195,7 @@ extern "C" __attribute__((visibility("default"))) ssize_t recv(int socket, void*
   static const auto original = next<Receive>("recv");
   const auto gate = gates().of(socket);
   if (!gate || (flags & MSG_PEEK) != 0 || size == 0) return original(socket, to, size, flags);
-  const int got = gate->receive(static_cast<std::byte*>(to), size,
-                                [&](std::byte* at, std::size_t room) { return read_from(socket, at, room, flags, gate->is_in_message()); });
-  if (got < 0 && !gate->problem().empty()) {
-    shutdown(socket, SHUT_RDWR);
-    errno = ECONNRESET;
-  }
-  return got;
+  return read_through(*gate, socket, static_cast<std::byte*>(to), size, flags);
 }
 
 extern "C" __attribute__((visibility("default"))) int close(int file) {

@@ -124,7 +124,8 @@ base::Result<Folder> make_folder() {
     if (!door.empty()) setenv("LD_PRELOAD", door.c_str(), 1);
     const auto end_point = "giop:tcp:" + address.host + ":" + address.port;
     execlp("omniNames", "omniNames", "-always", "-ignoreport", "-start", address.port.c_str(), "-datadir", folder.c_str(), "-ORBendPoint",
-           end_point.c_str(), base::one_thread_a_connection[0], base::one_thread_a_connection[1], static_cast<char*>(nullptr));
+           end_point.c_str(), base::naming_options[0], base::naming_options[1], base::naming_options[2], base::naming_options[3],
+           static_cast<char*>(nullptr));
     _exit(127);
   }
   for (bool running = child > 0; running;) {

@@ -114,6 +114,33 @@ TEST(GiopGate, no_octet_is_read_that_the_orb_does_not_hear_of) {
   EXPECT_FALSE(f.gate.has_more());
 }
 
+// For who looks at the connection itself, and has to know whether it may wait long.
+TEST(GiopGate, that_does_not_read_ahead_takes_one_message_and_is_in_it_from_its_first_octet_to_its_last) {
+  const Octets longer = message(request, request_head(1, "ping") + Octets(20'000, std::byte{'x'}));
+  const Octets pieces = message(request, request_head(2, "ping"), true) + message(fragment, numbered(2, 100), false);
+  for (const Octets& one : {small_ones, longer, pieces}) {
+    for (const std::size_t most : {1u, 5u, 100000u}) {
+      corba::GiopLimits limits;
+      limits.reads_ahead = false;
+      Gate f(limits);
+      Peer peer{one + small_ones, most};
+      const auto ask = peer.reader();
+      const corba::GiopGate::Read reader = [&](std::byte* to, std::size_t size) {
+        EXPECT_EQ(f.gate.is_in_message(), peer.at != 0) << most;
+        return ask(to, size);
+      };
+      Octets buffer(8192);
+      std::size_t come = 0;
+      do come += static_cast<std::size_t>(std::max(f.gate.receive(buffer.data(), buffer.size(), reader), 0));
+      while (f.gate.has_more() && !HasFailure());
+      EXPECT_FALSE(f.gate.is_in_message());
+      EXPECT_EQ(f.gate.messages(), 1u);
+      EXPECT_LE(peer.at, one.size());
+      EXPECT_GT(come, 12u);
+    }
+  }
+}
+
 TEST(GiopGate, fragments_become_one_message) {
   for (const std::size_t most : {7u, 1u << 20}) {
     const Octets head = request_head(5, "anything");
