@@ -282,7 +282,7 @@ for attack in attacks:
     attack.join()
 check(host.process.poll() is None, f"rtcd has ended with {host.process.returncode}", host)
 check(host.answers(30), "rtcd does not answer any more", host)
-done = subprocess.run([f"{options.bin_dir}/rtse", "--ns", f"127.0.0.1:{names_port}", "ls", "-R"], capture_output=True, text=True, timeout=2 * watchdog)
+done = subprocess.run([f"{options.bin_dir}/rtse", "--ns", f"127.0.0.1:{names_port}", "ls", "-R"], capture_output=True, text=True, errors="replace", timeout=2 * watchdog)
 check(done.returncode == 0, f"the naming service does not answer any more: {done.stderr}", host)
 memory = host.memory()
 code = host.end()
