@@ -211,6 +211,18 @@ RTC::RTObject_ptr ManagerServant::create_component(const char* module_name) {
     if (rt::is_protected_key(key) && !may(rt::RemoteRights::everything, "a component with " + base::in_quotes(key)))
       return RTC::RTObject::_nil();
   }
+  // A type that is not known yet is looked for as a module of that name.
+  const bool is_path = argument.substr(0, argument.find('?')).find('/') != std::string::npos;
+  const bool takes_paths = !manager_.impl_->where("manager.modules.abs_path_allowed").empty() ||
+                           rt::parse_remote_rights(manager_.configValue("manager.remote_rights")) == rt::RemoteRights::everything;
+  if (is_path && corba::doors_are_open() && !takes_paths) {
+    refuse("the component " + base::in_quotes(argument),
+           "others than the own account may call and manager.modules.abs_path_allowed is not set");
+    return RTC::RTObject::_nil();
+  }
+  // The other one would see a caller of our account.
+  if (!address.empty() && corba::doors_are_open() && !may(rt::RemoteRights::everything, "a component at another manager"))
+    return RTC::RTObject::_nil();
   if (!address.empty()) {
     RTM::Manager_var other = manager_at(address);
     if (CORBA::is_nil(other)) {

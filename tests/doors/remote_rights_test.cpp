@@ -72,6 +72,20 @@ TEST_F(RemoteRightsOf, a_caller_sets_no_protected_key_and_the_log_says_who_tried
   EXPECT_NE(rtcd_->output().find("giop:"), std::string::npos) << "where the caller is";
 }
 
+// A type that is not known is looked for as a module of that name, and another manager would see a caller of our account.
+TEST_F(RemoteRightsOf, a_caller_of_an_open_process_loads_no_file_and_reaches_no_other_manager_by_the_way_of_a_component) {
+  start({"-o", "corba.open_to:host"});
+  for (const std::string argument :
+       {"/tmp/nobody/x.so", "../../../tmp/nobody/x", "RTC:v:c:/tmp/nobody/x.so:C++:1.0", "/tmp/nobody/x.so?my.key=1"}) {
+    EXPECT_FALSE(can_create(argument));
+    EXPECT_TRUE(eventually([&] { return rtcd_->output().find("the component \"" + argument + "\": refused") != std::string::npos; }))
+        << argument;
+  }
+  EXPECT_FALSE(can_create("SinkAll?manager_address=127.0.0.1:" + std::to_string(port_)));
+  EXPECT_TRUE(eventually([&] { return rtcd_->output().find("a component at another manager: refused") != std::string::npos; }));
+  EXPECT_TRUE(can_create("SinkAll"));
+}
+
 // The loader finds the functions of the C library through every module.
 TEST_F(RemoteRightsOf, a_function_that_a_caller_names_does_not_end_the_process) {
   start({});
