@@ -22,6 +22,11 @@ base::Result<CosNaming::Name> parse_name(std::string_view text) {
       part.text += text[i];
     }
   }
+  // A context is made, and asked for, at each level: sixteen thousand kept a naming service and the end of its caller busy for minutes.
+  constexpr std::size_t most = 64;
+  if (parts.size() > most)
+    return base::Error{"name " + base::in_quotes(text) + ": has " + std::to_string(parts.size()) + " components, expected at most " +
+                       std::to_string(most)};
   CosNaming::Name name;
   name.length(static_cast<CORBA::ULong>(parts.size()));
   for (CORBA::ULong i = 0; i < name.length(); ++i) {

@@ -262,6 +262,18 @@ TEST(Bindings, dead_entries_are_replaced_and_foreign_ones_are_not_taken_out) {
   EXPECT_TRUE(found->_is_equivalent(other));
 }
 
+TEST(Naming, a_name_of_too_many_components_is_refused) {
+  const auto deep = [](int levels) {
+    std::string text = "a.k";
+    for (int i = 1; i < levels; ++i) text += "/a.k";
+    return corba::parse_name(text);
+  };
+  EXPECT_TRUE(deep(64));
+  ASSERT_FALSE(deep(65));
+  EXPECT_NE(deep(16'000).error().message.find("has 16000 components, expected at most 64"), std::string::npos)
+      << deep(16'000).error().message;
+}
+
 TEST(Naming, names_are_found_below_the_root) {
   support::NamingService names;
   auto orb = started();
