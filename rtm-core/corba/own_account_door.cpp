@@ -119,20 +119,22 @@ Gates& gates() {
 
 constexpr std::chrono::seconds longest_silence{30};  // within a message
 
-using Receive = ssize_t (*)(int, void*, size_t, int);
+ssize_t receive(int file, void* to, std::size_t size, int flags) {
+  static const auto original = next<ssize_t (*)(int, void*, size_t, int)>("recv");
+  return original(file, to, size, flags);
+}
 
 // Octets of a connection; 0 or less when there will be no more: of a message that has begun the next ones come within a time, whatever the
 // socket does.
 int read_from(int file, std::byte* to, std::size_t size, int flags, bool is_in_message) {
-  static const auto original = next<Receive>("recv");
-  if (!is_in_message) return static_cast<int>(original(file, to, size, flags));
+  if (!is_in_message) return static_cast<int>(receive(file, to, size, flags));
   const auto end = std::chrono::steady_clock::now() + longest_silence;
   while (true) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
     if (left.count() <= 0) return 0;
     pollfd waiting{file, POLLIN, 0};
     if (poll(&waiting, 1, static_cast<int>(left.count())) <= 0) continue;
-    const auto got = original(file, to, size, flags);
+    const auto got = receive(file, to, size, flags);
     if (got >= 0 || (errno != EINTR && errno != EAGAIN)) return static_cast<int>(got);
   }
 }
@@ -160,18 +162,15 @@ int read_through(corba::GiopGate& gate, int file, std::byte* to, std::size_t siz
 int let_in(int connection) {
   const int error = errno;
   if (connection < 0) return connection;
+  const auto refuse = [connection] {
+    close(connection);
+    errno = EAGAIN;
+    return -1;
+  };
   if (own_port(connection) != 0) {
-    if (!base::is_own_account(base::peer_account(connection))) {
-      close(connection);
-      errno = EAGAIN;
-      return -1;
-    }
+    if (!base::is_own_account(base::peer_account(connection))) return refuse();
     end_most_silent(connection);
-    if (!gates().begin(connection)) {
-      close(connection);
-      errno = EAGAIN;
-      return -1;
-    }
+    if (!gates().begin(connection)) return refuse();
   }
   errno = error;
   return connection;
@@ -192,9 +191,8 @@ extern "C" __attribute__((visibility("default"))) int accept4(int socket, sockad
 }
 
 extern "C" __attribute__((visibility("default"))) ssize_t recv(int socket, void* to, size_t size, int flags) {
-  static const auto original = next<Receive>("recv");
   const auto gate = gates().of(socket);
-  if (!gate || (flags & MSG_PEEK) != 0 || size == 0) return original(socket, to, size, flags);
+  if (!gate || (flags & MSG_PEEK) != 0 || size == 0) return receive(socket, to, size, flags);
   return read_through(*gate, socket, static_cast<std::byte*>(to), size, flags);
 }
 

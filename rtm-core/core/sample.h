@@ -65,7 +65,8 @@ struct Sample {
   std::uint64_t era = 0;     // of the clock of the port's component, when it came or was written
   std::uint64_t moment = 0;  // likewise
 
-  std::shared_ptr<const base::Hash64> hash;  // of the value as it is written down without a codec, where a tick has looked at it (base/tick.h)
+  std::shared_ptr<const base::Hash64>
+      hash;  // of the value as it is written down without a codec, where a tick has looked at it (base/tick.h)
 
   explicit operator bool() const { return block || value; }
 };

@@ -127,8 +127,10 @@ void ManagerServant::deactivate() {
 // --- who may do what
 
 // rtc.conf says it, and nobody over the wire.
+rt::RemoteRights ManagerServant::rights() const { return rt::parse_remote_rights(manager_.configValue("manager.remote_rights")); }
+
 bool ManagerServant::may(rt::RemoteRights needed, const std::string& what) const {
-  const auto given = rt::parse_remote_rights(manager_.configValue("manager.remote_rights"));
+  const auto given = rights();
   if (given >= needed) return true;
   refuse(what, given == rt::RemoteRights::read ? "manager.remote_rights is read" : "manager.remote_rights is not everything");
   return false;
@@ -141,18 +143,20 @@ void ManagerServant::refuse(const std::string& what, const std::string& why) con
 // --- modules
 
 // Whoever may put a file somewhere would be this account. A module of the load path was put there by somebody who is.
+bool ManagerServant::may_load(const std::string& module, const std::string& what) const {
+  const bool is_said = !manager_.impl_->where("manager.modules.abs_path_allowed").empty() || rights() == rt::RemoteRights::everything;
+  if (module.find('/') == std::string::npos || !corba::doors_are_open() || is_said) return true;
+  refuse(what, "others than the own account may call and manager.modules.abs_path_allowed is not set");
+  return false;
+}
+
 RTC::ReturnCode_t ManagerServant::load_module(const char* pathname, const char* initfunc) {
   const std::string path(pathname);
   const std::string what = "the module " + base::in_quotes(path);
   if (!may(rt::RemoteRights::components, what)) return RTC::RTC_ERROR;
-  const bool is_everything = rt::parse_remote_rights(manager_.configValue("manager.remote_rights")) == rt::RemoteRights::everything;
-  const bool is_said = !manager_.impl_->where("manager.modules.abs_path_allowed").empty() || is_everything;
-  if (path.find('/') != std::string::npos && corba::doors_are_open() && !is_said) {
-    refuse(what, "others than the own account may call and manager.modules.abs_path_allowed is not set");
-    return RTC::RTC_ERROR;
-  }
+  if (!may_load(path, what)) return RTC::RTC_ERROR;
   const std::string suffix = manager_.configValue("manager.modules.init_func_suffix");
-  if (!is_everything &&
+  if (rights() != rt::RemoteRights::everything &&
       !rt::is_init_function(path, initfunc, manager_.configValue("manager.modules.init_func_prefix"), suffix.empty() ? "Init" : suffix)) {
     refuse(what + " by the function " + base::in_quotes(initfunc), "no function that makes a module known has that name");
     return RTC::BAD_PARAMETER;
@@ -212,14 +216,7 @@ RTC::RTObject_ptr ManagerServant::create_component(const char* module_name) {
       return RTC::RTObject::_nil();
   }
   // A type that is not known yet is looked for as a module of that name.
-  const bool is_path = argument.substr(0, argument.find('?')).find('/') != std::string::npos;
-  const bool takes_paths = !manager_.impl_->where("manager.modules.abs_path_allowed").empty() ||
-                           rt::parse_remote_rights(manager_.configValue("manager.remote_rights")) == rt::RemoteRights::everything;
-  if (is_path && corba::doors_are_open() && !takes_paths) {
-    refuse("the component " + base::in_quotes(argument),
-           "others than the own account may call and manager.modules.abs_path_allowed is not set");
-    return RTC::RTObject::_nil();
-  }
+  if (!may_load(argument.substr(0, argument.find('?')), "the component " + base::in_quotes(argument))) return RTC::RTObject::_nil();
   // The other one would see a caller of our account.
   if (!address.empty() && corba::doors_are_open() && !may(rt::RemoteRights::everything, "a component at another manager"))
     return RTC::RTObject::_nil();

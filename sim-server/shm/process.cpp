@@ -14,7 +14,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <map>
-#include <tuple>
 
 #include "base/guarded.h"
 
@@ -122,11 +121,10 @@ bool ProcessLife::is_alive() const {
 }
 
 std::shared_ptr<const ProcessLife> ProcessLife::of(const ProcessMark& mark) {
-  using Key = std::tuple<std::int32_t, std::uint32_t, std::uint64_t>;
-  using Known = std::map<Key, std::weak_ptr<const ProcessLife>>;
+  using Known = std::map<ProcessKey, std::weak_ptr<const ProcessLife>>;
   // Never destroyed: threads may still ask at the very end.
   static auto& known = *new base::Guarded<Known, base::Rank::registry>;
-  const Key key{mark.pid, mark.pid_namespace, mark.start_time};
+  const ProcessKey key = key_of(mark);
   if (auto life = (*known.lock())[key].lock()) return life;
   auto made = std::make_shared<const ProcessLife>(mark);
   auto all = known.lock();

@@ -7,11 +7,16 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <tuple>
 
 #include "shm/file_handle.h"
 #include "shm/layout.h"
 
 namespace shm {
+
+// Tells processes apart.
+using ProcessKey = std::tuple<std::int32_t, std::uint32_t, std::uint64_t>;
+inline ProcessKey key_of(const ProcessMark& mark) { return {mark.pid, mark.pid_namespace, mark.start_time}; }
 
 // Of the calling process; read again after a fork.
 ProcessMark own_mark();

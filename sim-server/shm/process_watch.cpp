@@ -10,7 +10,6 @@
 #include <cstring>
 #include <map>
 #include <system_error>
-#include <tuple>
 
 #include "base/text.h"
 #include "shm/file_handle.h"
@@ -18,9 +17,6 @@
 
 namespace shm {
 namespace {
-
-using Key = std::tuple<std::int32_t, std::uint32_t, std::uint64_t>;
-Key key_of(const ProcessMark& mark) { return {mark.pid, mark.pid_namespace, mark.start_time}; }
 
 struct Entry {
   std::shared_ptr<Watched> watched;
@@ -35,7 +31,7 @@ constexpr std::size_t purge_size = 256;
 struct ProcessWatch::State {
   FileHandle epoll, stop;
   struct Table {
-    std::map<Key, Entry> entries;
+    std::map<ProcessKey, Entry> entries;
     std::uint64_t next_number = 1;  // 0 is the stop event
     std::function<void()> callback;
     bool is_calling = false;

@@ -32,7 +32,7 @@ def is_known(report):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         os.chmod(folder, 0o777)  # some programs run as another account
-        common = f"log_exe_name=1:print_stacktrace=1"
+        common = "log_exe_name=1:print_stacktrace=1"
         settings = {
             # A library that is loaded before all others is not ours to order. A process that is told to end by a signal and one that dies are told apart by the tests. Leaks are judged here, by their
             # report, and not by the exit code; other errors abort.

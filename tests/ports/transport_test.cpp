@@ -64,23 +64,34 @@ class KeepingTick final : public base::Tick {
   bool takes_hashes = true;
 };
 
-TEST_P(Transport, a_tick_sees_the_same_octets_when_they_are_read_as_when_they_were_written) {
+// A connection for pictures.
+struct Line {
   RTC::CameraImage sent{};
   RTC::CameraImage received{};
-  RTC::OutPort<RTC::CameraImage> out("A0.out", sent);
-  RTC::InPort<RTC::CameraImage> in("B0.in", received);
-  auto plan = profile({out.getPortRef(), in.getPortRef()}, {{"interface_type", interface}, {"dataflow_type", dataflow}});
-  ASSERT_EQ(out.connect(plan), RTC::RTC_OK);
+  RTC::OutPort<RTC::CameraImage> out{"A0.out", sent};
+  RTC::InPort<RTC::CameraImage> in{"B0.in", received};
+  void connect(const std::string& interface, const std::string& dataflow) {
+    auto plan = profile({out.getPortRef(), in.getPortRef()}, {{"interface_type", interface}, {"dataflow_type", dataflow}});
+    ASSERT_EQ(out.connect(plan), RTC::RTC_OK);
+  }
+  void pass() {
+    ASSERT_TRUE(out.write());
+    ASSERT_TRUE(ports::eventually([&] { return in.isNew(); }));
+    ASSERT_TRUE(in.read());
+  }
+};
+
+TEST_P(Transport, a_tick_sees_the_same_octets_when_they_are_read_as_when_they_were_written) {
+  Line line;
+  line.connect(interface, dataflow);
   for (const bool takes_hashes : {true, false}) {
     KeepingTick tick;
     tick.takes_hashes = takes_hashes;
     const base::ScopedTick scope(tick);
     for (const CORBA::ULong size : {1u, 5000u}) {
-      sent.pixels.length(size);
-      sent.pixels[size - 1] = static_cast<CORBA::Octet>(size);
-      ASSERT_TRUE(out.write());
-      ASSERT_TRUE(ports::eventually([&] { return in.isNew(); }));
-      ASSERT_TRUE(in.read());
+      line.sent.pixels.length(size);
+      line.sent.pixels[size - 1] = static_cast<CORBA::Octet>(size);
+      line.pass();
     }
     ASSERT_EQ(tick.hashes.size(), 4U);
     EXPECT_EQ(tick.hashes[0], tick.hashes[1]);
@@ -104,23 +115,17 @@ TEST_P(Transport, a_tick_sees_what_listeners_of_the_reader_have_made_of_the_data
   };
   for (const auto event : {RTC::ConnectorDataListenerType::ON_RECEIVED, RTC::ConnectorDataListenerType::ON_BUFFER_READ}) {
     for (const bool is_raw : {false, true}) {
-      RTC::CameraImage sent{};
-      RTC::CameraImage received{};
-      RTC::OutPort<RTC::CameraImage> out("A0.out", sent);
-      RTC::InPort<RTC::CameraImage> in("B0.in", received);
-      auto plan = profile({out.getPortRef(), in.getPortRef()}, {{"interface_type", interface}, {"dataflow_type", dataflow}});
-      ASSERT_EQ(out.connect(plan), RTC::RTC_OK);
-      in.addConnectorDataListener(event, is_raw ? static_cast<RTC::ConnectorDataListener*>(new Brighter) : new Darker);
+      Line line;
+      line.connect(interface, dataflow);
+      line.in.addConnectorDataListener(event, is_raw ? static_cast<RTC::ConnectorDataListener*>(new Brighter) : new Darker);
       KeepingTick tick;
       const base::ScopedTick scope(tick);
-      sent.pixels.length(5000);
-      sent.pixels[0] = 7;
-      ASSERT_TRUE(out.write());
-      ASSERT_TRUE(ports::eventually([&] { return in.isNew(); }));
-      ASSERT_TRUE(in.read());
+      line.sent.pixels.length(5000);
+      line.sent.pixels[0] = 7;
+      line.pass();
       ASSERT_EQ(tick.hashes.size(), 2U);
       EXPECT_NE(tick.hashes[0], tick.hashes[1]) << is_raw;
-      EXPECT_TRUE(is_raw || received.pixels[0] == 6);
+      EXPECT_TRUE(is_raw || line.received.pixels[0] == 6);
     }
   }
 }

@@ -70,7 +70,9 @@ class ManagerServant final : public POA_RTM::Manager {
     bool is_told = false;
     std::chrono::steady_clock::time_point may_return{};
   };
+  rt::RemoteRights rights() const;
   bool may(rt::RemoteRights needed, const std::string& what) const;
+  bool may_load(const std::string& module, const std::string& what) const;
   void refuse(const std::string& what, const std::string& why) const;
   RTC::ReturnCode_t add_master(RTM::Manager_ptr mgr);
   std::vector<RTM::Manager_var> living_slaves();
