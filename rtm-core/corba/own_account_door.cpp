@@ -1,7 +1,8 @@
 // A library to be loaded before others (LD_PRELOAD) into a server that is not ours, as omniNames: connections over TCP from other accounts
 // end before the server has read anything, when there are too many the one that has been silent longest ends, and what comes in is handed
 // on in whole GIOP messages (giop_gate.h): of fragments that it does not expect omniORB 4.2 keeps threads and connections for ever, which
-// take all processors. base/own_account.h says where the library is.
+// take all processors. base/own_account.h says where the library is. Who was refused is told in lines to the file whose number is in
+// RTMSIM_DOOR_LOG, to standard error without it; one a second at most.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <netinet/in.h>
@@ -15,10 +16,14 @@
 #include <cerrno>
 #include <chrono>
 #include <cstddef>
+#include <cstdlib>
 #include <exception>
 #include <map>
 #include <memory>
 #include <new>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "base/descriptors.h"
 #include "base/guarded.h"
@@ -158,6 +163,31 @@ int read_through(corba::GiopGate& gate, int file, std::byte* to, std::size_t siz
   return got;
 }
 
+int log_file() {
+  static const int file = [] {
+    const char* text = getenv("RTMSIM_DOOR_LOG");
+    return text == nullptr ? STDERR_FILENO : atoi(text);
+  }();
+  return file;
+}
+
+// One thread at a time: the one that accepts. A log that takes no more loses the line.
+void tell_refused(std::optional<uid_t> account) {
+  static std::optional<std::chrono::steady_clock::time_point> last;
+  static std::size_t others = 0;
+  const auto now = std::chrono::steady_clock::now();
+  if (last && now - *last < std::chrono::seconds(1)) {
+    ++others;
+    return;
+  }
+  last = now;
+  std::string line = "naming service: " + (account ? "account " + std::to_string(*account) : std::string("another host or account")) +
+                     " refused: it serves account " + std::to_string(geteuid()) + " alone";
+  if (const auto missed = std::exchange(others, 0); missed > 0) line += "; so were " + std::to_string(missed) + " others";
+  line += '\n';
+  (void)!write(log_file(), line.data(), line.size());
+}
+
 // What the server gets of a connection that has come: nothing of one from another account, as if nobody had come after all.
 int let_in(int connection) {
   const int error = errno;
@@ -168,7 +198,10 @@ int let_in(int connection) {
     return -1;
   };
   if (own_port(connection) != 0) {
-    if (!base::is_own_account(base::peer_account(connection))) return refuse();
+    if (const auto account = base::peer_account(connection); !base::is_own_account(account)) {
+      tell_refused(account);
+      return refuse();
+    }
     end_most_silent(connection);
     if (!gates().begin(connection)) return refuse();
   }

@@ -13,11 +13,14 @@
 
 #include <cerrno>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <string_view>
 #include <thread>
 
+#include "base/log.h"
 #include "base/own_account.h"
 #include "base/text.h"
 
@@ -108,9 +111,18 @@ base::Result<Folder> make_folder() {
   return base::Error{"naming service: no folder can be made in the temporary folder"};
 }
 
+// What the library in omniNames tells, until it and the keeper have gone.
+void log_lines(int file) {
+  std::FILE* stream = fdopen(file, "r");
+  char line[512];
+  while (stream != nullptr && std::fgets(line, sizeof line, stream) != nullptr)
+    base::log_text(base::Level::warn, "doors", std::string_view(line, std::strcspn(line, "\n")));
+  if (stream != nullptr) std::fclose(stream);
+}
+
 // The keeper: a child of ours, because somebody has to remove the folder when we are killed. Signals of the terminal are not for it; it
 // ends when the pipe from us closes or omniNames ends.
-[[noreturn]] void keep(const Address& address, const std::string& folder, const std::string& door, int alive) {
+[[noreturn]] void keep(const Address& address, const std::string& folder, const std::string& door, int alive, int lines) {
   setpgid(0, 0);
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) ::signal(number, SIG_IGN);
   const pid_t keeper = getpid();
@@ -122,6 +134,7 @@ base::Result<Folder> make_folder() {
     const int null = open("/dev/null", O_RDWR);
     for (const int file : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(null, file);
     if (!door.empty()) setenv("LD_PRELOAD", door.c_str(), 1);
+    setenv("RTMSIM_DOOR_LOG", std::to_string(fcntl(lines, F_DUPFD, STDERR_FILENO + 1)).c_str(), 1);  // this one stays open
     const auto end_point = "giop:tcp:" + address.host + ":" + address.port;
     execlp("omniNames", "omniNames", "-always", "-ignoreport", "-start", address.port.c_str(), "-datadir", folder.c_str(), "-ORBendPoint",
            end_point.c_str(), base::naming_options[0], base::naming_options[1], base::naming_options[2], base::naming_options[3],
@@ -133,7 +146,7 @@ base::Result<Folder> make_folder() {
     constexpr int look = 500;  // [ms], at a child that ends on its own
     const int ready = poll(&ends, 1, look);
     if (ready > 0) {
-      kill(child, SIGTERM);
+      kill(child, SIGKILL);  // whatever state it is in; its data go with the folder
       waitpid(child, nullptr, 0);
       running = false;
     } else if (waitpid(child, nullptr, WNOHANG) == child) {
@@ -157,17 +170,25 @@ base::Result<std::unique_ptr<NameService>> NameService::start_if_none(const std:
   const auto made = make_folder();
   if (!made) return made.error();
   const auto& folder = made->path;
-  int ends[2];
+  int ends[2], lines[2];
   if (pipe2(ends, O_CLOEXEC) != 0) return base::Error{"naming service: no pipe can be made"};
   std::unique_ptr<NameService> service(new NameService);
   service->alive_ = ends[1];
+  if (pipe2(lines, O_CLOEXEC) != 0) {
+    close(ends[0]);
+    return base::Error{"naming service: no pipe can be made"};
+  }
+  fcntl(lines[1], F_SETFL, O_NONBLOCK);  // a log that nobody reads keeps nobody waiting
   service->keeper_ = fork();
   if (service->keeper_ == 0) {
     close(ends[1]);
-    keep(*address, folder, door, ends[0]);
+    close(lines[0]);
+    keep(*address, folder, door, ends[0], lines[1]);
   }
   close(ends[0]);
+  close(lines[1]);
   close(made->lock);  // the keeper has it now
+  service->log_ = std::thread([file = lines[0]] { log_lines(file); });
 
   constexpr std::chrono::seconds patience{10};
   const auto deadline = std::chrono::steady_clock::now() + patience;
@@ -185,4 +206,5 @@ base::Result<std::unique_ptr<NameService>> NameService::start_if_none(const std:
 NameService::~NameService() {
   if (alive_ >= 0) close(alive_);
   if (keeper_ > 0) waitpid(keeper_, nullptr, 0);
+  if (log_.joinable()) log_.join();
 }

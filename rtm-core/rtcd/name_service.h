@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <string>
+#include <thread>
 
 #include "base/result.h"
 
@@ -21,4 +22,5 @@ class NameService {
   NameService() = default;
   pid_t keeper_ = -1;  // the process that starts omniNames, waits for our end and tidies up
   int alive_ = -1;     // closed by our end, however it comes
+  std::thread log_;    // logs who was refused; ends with the keeper and omniNames
 };

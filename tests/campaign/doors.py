@@ -10,7 +10,7 @@ import tempfile
 import time
 import unittest
 
-from attacker import Host, head, listening_ports, locate, message, name_server
+from attacker import Host, head, listening_ports, locate, message, name_server, watchdog
 
 sys.path.append(os.path.join(os.path.dirname(__file__), "../scenario"))
 from system import System
@@ -70,10 +70,21 @@ class Doors(unittest.TestCase):
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
             port = probe.getsockname()[1]
-        self.host("--with-naming", "-o", f"corba.nameservers:127.0.0.1:{port}")
+        host = self.host("--with-naming", "-o", f"corba.nameservers:127.0.0.1:{port}")
         root = locate(1, b"NameService")
         self.assertEqual(ask_as(0, port, root), "GIOP")
         self.assertEqual(ask_as(65534, port, root), "")
+        until = time.monotonic() + watchdog
+        while "naming service: account 65534 refused" not in host.text() and time.monotonic() < until:
+            time.sleep(0.01)
+        self.assertIn("naming service: account 65534 refused: it serves account 0 alone", host.text())
+
+    def test_a_naming_service_that_stands_does_not_hold_the_end_of_rtcd(self):
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            port = probe.getsockname()[1]
+        host = self.host("--with-naming", "-o", f"corba.nameservers:127.0.0.1:{port}")
+        os.kill(name_server(host.process.pid), signal.SIGSTOP)
 
     @unittest.skipUnless(os.geteuid() == 0, "needs a second account, so root")
     def test_a_tool_that_listens_is_as_closed(self):
@@ -179,7 +190,7 @@ class Doors(unittest.TestCase):
 
     def test_output_to_a_full_device_is_a_failure(self):
         for program, *words in (["rtcd", "--help"], ["rtse", "--help"], ["simctl", "--help"], ["sim-server", "--help"], ["player-gateway", "--help"], ["rtm-studio", "--help"], ["follow", "--help"],
-                                ["rtse", "record", "--help"], ["rtse", "sweep", "--help"], ["SinkAllComp", "--help"], ["rtcprof", f"{lib_dir}/SinkAll.so"]):
+                                ["rtse", "record", "--help"], ["rtse", "sweep", "--help"], ["SinkAllComp", "--help"], ["rtcprof", f"{lib_dir}/SinkAll.so"], ["rtm-skelwrapper", "--help"]):
             if not os.path.exists(f"{bin_dir}/{program}"):
                 continue
             with open("/dev/full", "w") as full:
