@@ -6,6 +6,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -60,6 +61,19 @@ std::string profile_program_path() {
   return profile_program;
 }
 
+bool ends_until(pid_t child, steady_clock::time_point deadline) {
+  const int process = static_cast<int>(syscall(SYS_pidfd_open, child, 0));
+  if (process < 0) return false;
+  int ready = -1;
+  do {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - steady_clock::now()).count();
+    pollfd ended{process, POLLIN, 0};
+    ready = poll(&ended, 1, static_cast<int>(std::max<std::int64_t>(left, 0)));
+  } while (ready < 0 && errno == EINTR);
+  close(process);
+  return ready > 0;
+}
+
 // What the program prints on stdout; nothing when it fails or takes too long, in which case it is killed. `start_error`: why it does not
 // start, or 0.
 std::optional<std::string> output_of(const std::vector<std::string>& words, std::chrono::seconds patience, int& start_error) {
@@ -95,6 +109,7 @@ std::optional<std::string> output_of(const std::vector<std::string>& words, std:
       }
       output.append(buffer, static_cast<std::size_t>(size));
     }
+    if (complete) complete = ends_until(child, deadline);  // it may have closed its output long before
     if (!complete) kill(child, SIGKILL);
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {

@@ -233,6 +233,16 @@ TEST(Keys, module_profile_command_is_asked_for_profiles) {
   EXPECT_EQ(loadable[0].getProperty("file"), (folder.path() / "Any.so").string());
 }
 
+TEST(Keys, a_module_profile_command_that_does_not_end_is_ended) {
+  support::TemporaryFolder folder;
+  const auto script = (folder.path() / "profiles").string();
+  std::ofstream(script) << "#!/bin/sh\necho implementation_id: FromScript\nexec >&-\nexec sleep 1000\n";
+  std::filesystem::permissions(script, std::filesystem::perms::owner_all);
+  std::ofstream(folder.path() / "Any.so") << "no library";
+  Started manager({"manager.modules.load_path:" + folder.path().string(), "manager.modules.C++.profile_cmd:" + script});
+  EXPECT_EQ(manager->getLoadableModules().size(), 0u);
+}
+
 TEST(Keys, modules_are_preloaded_or_searched_or_neither) {
   {
     Started manager({"manager.modules.load_path:" + modules, "manager.modules.preload:FailOnRequest.so", "manager.modules.search_auto:NO"});
