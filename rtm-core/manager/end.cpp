@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <system_error>
 
 #include "base/log.h"
 #include "base/text.h"
@@ -147,6 +148,21 @@ void ManagerImpl::answer_last_calls() {
   is_done.wait_for(grace);
 }
 
+// A thread that reads has its stream for as long as it waits, and whoever flushes all streams waits for it.
+void ManagerImpl::flush_streams() {
+  auto done = std::make_shared<std::promise<void>>();
+  const auto is_done = done->get_future();
+  try {
+    std::thread([done] {
+      std::fflush(nullptr);
+      done->set_value();
+    }).detach();
+  } catch (const std::system_error&) {  // no thread: what is not written yet is lost
+    return;
+  }
+  is_done.wait_for(grace);
+}
+
 // Anything more would be taken away under the hands of whoever does not return.
 void ManagerImpl::give_up(const std::string& step) {
   complain_about_callbacks();
@@ -155,7 +171,7 @@ void ManagerImpl::give_up(const std::string& step) {
   RTC_ERROR(("the process ends as it is; it got as far as: %s", step.c_str()));
   if (step != after_naming && step != in_orb) answer_last_calls();
   remove_files();
-  std::fflush(nullptr);
+  flush_streams();
   std::_Exit(EXIT_FAILURE);
 }
 

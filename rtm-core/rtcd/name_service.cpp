@@ -11,11 +11,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <string_view>
 #include <thread>
@@ -113,11 +113,13 @@ base::Result<Folder> make_folder() {
 
 // What the library in omniNames tells, until it and the keeper have gone.
 void log_lines(int file) {
-  std::FILE* stream = fdopen(file, "r");
-  char line[512];
-  while (stream != nullptr && std::fgets(line, sizeof line, stream) != nullptr)
-    base::log_text(base::Level::warn, "doors", std::string_view(line, std::strcspn(line, "\n")));
-  if (stream != nullptr) std::fclose(stream);
+  std::array<char, 512> text;  // of whole lines: it writes them so, and they are short
+  for (ssize_t got = 1; got > 0;) {
+    got = read(file, text.data(), text.size());
+    for (const auto& line : base::split_list(std::string_view(text.data(), static_cast<std::size_t>(std::max<ssize_t>(got, 0))), '\n'))
+      if (!line.empty()) base::log_text(base::Level::warn, "doors", line);
+  }
+  close(file);
 }
 
 // The keeper: a child of ours, because somebody has to remove the folder when we are killed. Signals of the terminal are not for it; it

@@ -1,9 +1,10 @@
-// Hangs: a component whose onExecute never returns; HangsInMaking: one that takes its time to be made. For tests of how a process ends, and
+// Hangs: a component whose onExecute never returns, with a stream in its hands, as one that waits for input; HangsInMaking: one that takes its time to be made. For tests of how a process ends, and
 // of modules that fail or go.
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/Manager.h>
 
 #include <chrono>
+#include <cstdio>
 #include <iostream>
 #include <semaphore>
 #include <stdexcept>
@@ -12,6 +13,7 @@ class Hangs : public RTC::DataFlowComponentBase {
  public:
   explicit Hangs(RTC::Manager* manager) : RTC::DataFlowComponentBase(manager) {}
   RTC::ReturnCode_t onExecute(RTC::UniqueId) override {
+    flockfile(stdin);
     std::cout << "hanging" << std::endl;
     never_.acquire();
     return RTC::RTC_OK;

@@ -79,7 +79,7 @@ void ManagerImpl::end_at_exit(int status, void*) {
   manager->impl_->request_end();
   if (manager->impl_->wait_until_ended(patience)) return;
   manager->impl_->remove_files();
-  std::fflush(nullptr);
+  ManagerImpl::flush_streams();
   _exit(status);
 }
 
