@@ -1,8 +1,11 @@
 #include "clock_generator.h"
 
 #include <base/text.h>
+#include <corba/asker.h>
 #include <rtm/CorbaNaming.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "specification.h"
@@ -33,6 +36,14 @@ namespace {
 constexpr const char* usual_name = "ClockGenerator";
 constexpr unsigned long asking_limit = 1000;      // [ms]
 constexpr double shortest = 1e-6, longest = 1e6;  // period [s]
+constexpr std::size_t most_jobs = 1000, most_subscriptions = 1000;
+
+// A name becomes part of the argument that a component is made by.
+bool is_plain(std::string_view name) {
+  return !name.empty() && name.size() <= 200 && std::ranges::all_of(name, [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.';
+  });
+}
 
 std::string owner_of(OpenRTM::ExtTrigExecutionContextService_ptr context) {
   try {
@@ -40,7 +51,7 @@ std::string owner_of(OpenRTM::ExtTrigExecutionContextService_ptr context) {
     if (CORBA::is_nil(profile->owner)) return "";
     omniORB::setClientCallTimeout(profile->owner, asking_limit);
     RTC::ComponentProfile_var owner = profile->owner->get_component_profile();
-    return owner->instance_name.in();
+    return is_plain(owner->instance_name.in()) ? owner->instance_name.in() : "";
   } catch (const CORBA::Exception&) {
     return "";  // a name of ours does as well
   }
@@ -63,8 +74,13 @@ class ClockGenerator::Service : public POA_OpenHRP::ClockGenerator {
  private:
   template <class Job>
   void post(Context context, Job job) {
+    if (!corba::may_keep(context)) throw CORBA::NO_PERMISSION();
     const OpenRTM::ExtTrigExecutionContextService_var kept = OpenRTM::ExtTrigExecutionContextService::_duplicate(context);
-    component_.post([this, kept, job] { job(component_, kept.in()); });
+    if (!component_.post([this, kept, job, asker = corba::asker()] {
+          const corba::ForAsker same(asker);
+          job(component_, kept.in());
+        }))
+      throw CORBA::NO_RESOURCES();
   }
   ::ClockGenerator& component_;
 };
@@ -118,9 +134,14 @@ void ClockGenerator::unbind() {
   }
 }
 
-void ClockGenerator::post(std::function<void()> job) {
-  jobs_.lock()->push_back(std::move(job));
+bool ClockGenerator::post(std::function<void()> job) {
+  {
+    auto jobs = jobs_.lock();
+    if (jobs->size() >= most_jobs) return false;
+    jobs->push_back(std::move(job));
+  }
   posted_.notify_one();
+  return true;
 }
 
 void ClockGenerator::run(const std::stop_token& stop) {
@@ -142,6 +163,10 @@ void ClockGenerator::run(const std::stop_token& stop) {
 
 void ClockGenerator::subscribe(Context context, double period) {
   unsubscribe(context);
+  if (subscriptions_.size() >= most_subscriptions) {
+    RTC_ERROR(("a context that subscribes: there are %s subscriptions already", std::to_string(most_subscriptions).c_str()));
+    return;
+  }
   auto& manager = RTC::Manager::instance();
   const CORBA::String_var reference = manager.getORB()->object_to_string(context);
   omniORB::setClientCallTimeout(context, asking_limit);

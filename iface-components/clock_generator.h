@@ -37,7 +37,7 @@ class ClockGenerator : public RTC::DataFlowComponentBase {
     RTC::RTObject_var proxy;
   };
 
-  void post(std::function<void()> job);
+  bool post(std::function<void()> job);
   void run(const std::stop_token& stop);
   void subscribe(Context context, double period);
   void unsubscribe(Context context);

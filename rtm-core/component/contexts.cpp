@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "corba/asker.h"
 #include "corba/orb.h"
 #include "corba/remote_participant.h"
 
@@ -335,7 +336,7 @@ UniqueId RTObject_impl::bindContext(ExecutionContext_ptr exec_context) {
 }
 
 ExecutionContextHandle_t RTObject_impl::attach_context(ExecutionContext_ptr exec_context) {
-  if (!is_context(exec_context)) return -1;
+  if (!is_context(exec_context) || !corba::may_keep(exec_context)) return -1;
   // The same one again keeps its handle; it is told like the first time, because the context has just added the component.
   ExecutionContextHandle_t id = get_context_handle(exec_context);
   if (id < foreign_offset) {

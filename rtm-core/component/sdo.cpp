@@ -2,6 +2,7 @@
 #include "component/component_impl.h"
 
 #include "base/text.h"
+#include "corba/asker.h"
 #include "corba/orb.h"
 
 namespace RTC {
@@ -74,7 +75,7 @@ CORBA::Any* RTObject_impl::get_status(const char* name) {
 }
 
 bool RTObject_impl::addOrganization(SDOPackage::Organization_ptr organization) {
-  if (CORBA::is_nil(organization)) return false;
+  if (CORBA::is_nil(organization) || !corba::may_keep(organization)) return false;
   auto data = impl_->shared.lock();
   for (const SDOPackage::Organization_var& known : data->organizations)
     if (SDOPackage::Organization_var(known)->_is_equivalent(organization)) return true;

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "base/text.h"
+#include "corba/asker.h"
 #include "corba/call_timeout.h"
 #include "corba/nv_list.h"
 
@@ -42,13 +43,13 @@ CORBA::Object_ptr published_reference(const RTC::ConnectorProfile& profile, rt::
     const char* text = nullptr;
     if (prefix + "_ior" != entry.name.in() || !(entry.value >>= text)) continue;
     CORBA::Object_var object = parse_reference(text);
-    if (!CORBA::is_nil(object)) return object._retn();
+    if (!CORBA::is_nil(object)) return may_keep(object) ? object._retn() : CORBA::Object::_nil();
   }
   for (CORBA::ULong i = profile.properties.length(); i-- > 0;) {
     const auto& entry = profile.properties[i];
     CORBA::Object_var object;
     if (prefix + "_ref" != entry.name.in() || !(entry.value >>= CORBA::Any::to_object(object.out()))) continue;
-    if (!CORBA::is_nil(object)) return object._retn();
+    if (!CORBA::is_nil(object)) return may_keep(object) ? object._retn() : CORBA::Object::_nil();
   }
   return CORBA::Object::_nil();
 }

@@ -6,6 +6,13 @@
 #include <omniORB4/omniInterceptors.h>
 #include <omniORB4/omniTransport.h>
 
+// Each needs the one before it.
+// clang-format off
+#include <omniORB4/internal/giopStream.h>
+#include <omniORB4/internal/giopStrand.h>
+#include <omniORB4/internal/GIOP_S.h>
+// clang-format on
+
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -23,6 +30,8 @@
 #include "base/log.h"
 #include "base/peer_account.h"
 #include "base/text.h"
+#include "corba/asker.h"
+#include "corba/call_context.h"
 
 namespace corba {
 namespace {
@@ -52,6 +61,7 @@ struct Doors {
   base::Guarded<GateState, base::Rank::registry> state;
   std::condition_variable gone;             // a connection
   std::atomic<std::size_t> in_progress{0};  // see GiopGate
+  std::atomic<bool> are_open{false};        // to others than the own account
   static Doors& instance() {
     static Doors& doors = *new Doors;
     return doors;
@@ -120,18 +130,18 @@ bool may_come_in(const Visitor& visitor, OpenTo open_to) {
   return open_to == OpenTo::host && visitor.account;
 }
 
-std::atomic<Clock::rep> now_of(Clock::time_point time) { return time.time_since_epoch().count(); }
-
-// Who sent the request that this thread runs; an address is shorter.
-thread_local std::array<char, 128> address_of_caller{};
-
-_CORBA_Boolean remember_caller(omni::omniInterceptors::serverReceiveRequest_T::info_T& request) {
-  const char* address = request.peeraddress();
-  const std::string_view text = address != nullptr ? address : "";
-  const auto length = text.copy(address_of_caller.data(), address_of_caller.size() - 1);
-  address_of_caller[length] = '\0';
-  return true;
+Asker kind_of(const Visitor& visitor) {
+  if (visitor.is_own) return Asker::own;
+  if (visitor.address.starts_with("giop:ssl:")) return Asker::certificate;
+  return visitor.account ? Asker::host : Asker::network;
 }
+
+bool may_come_in(Asker asker, const DoorSettings& settings) {
+  if (asker == Asker::own || settings.open_to == OpenTo::network) return true;
+  return asker == Asker::host ? settings.open_to == OpenTo::host : asker == Asker::certificate && settings.has_tls;
+}
+
+std::atomic<Clock::rep> now_of(Clock::time_point time) { return time.time_since_epoch().count(); }
 
 // ---- a connection
 
@@ -202,6 +212,38 @@ class GuardedConnection final : public omni::giopConnection {
   bool is_complained_ = false;
   bool is_leaving_ = false;  // guarded by the lock of Doors
 };
+
+// ---- a call
+
+// Who sent the request that this thread runs; an address is shorter.
+thread_local std::array<char, 128> address_of_caller{};
+
+// A process of our account may call for somebody else.
+Asker asker_of(omni::GIOP_S& request) {
+  const auto* connection = dynamic_cast<const GuardedConnection*>(request.strand().connection);
+  if (connection == nullptr) return Asker::network;  // another kind of end point than those that are guarded
+  const Asker who = kind_of(connection->visitor());
+  if (who != Asker::own) return who;
+  const auto said = said_by_call(request.service_contexts(), CallContext::asker);
+  if (!said) return Asker::own;
+  return *said == static_cast<std::uint64_t>(Asker::host) || *said == static_cast<std::uint64_t>(Asker::certificate)
+             ? static_cast<Asker>(*said)
+             : Asker::network;
+}
+
+_CORBA_Boolean remember_caller(omni::omniInterceptors::serverReceiveRequest_T::info_T& request) {
+  const char* address = request.peeraddress();
+  const std::string_view text = address != nullptr ? address : "";
+  const auto length = text.copy(address_of_caller.data(), address_of_caller.size() - 1);
+  address_of_caller[length] = '\0';
+  const Asker who = asker_of(request.giop_s);
+  set_asker(who);
+  if (who != Asker::own && !may_come_in(who, Doors::instance().state.lock()->settings)) {
+    complain(caller() + " asked for " + request.operation() + " for somebody who may not come in: refused");
+    throw CORBA::NO_PERMISSION(0, CORBA::COMPLETED_NO);
+  }
+  return true;
+}
 
 // ---- an end point
 
@@ -341,13 +383,11 @@ void set_doors(const DoorSettings& settings) {
   }
   auto state = Doors::instance().state.lock();
   state->settings = settings;
+  Doors::instance().are_open = settings.open_to != OpenTo::account || settings.has_tls;
   state->most = std::max<std::size_t>(most, 1);
 }
 
-bool doors_are_open() {
-  auto state = Doors::instance().state.lock();
-  return state->settings.open_to != OpenTo::account || state->settings.has_tls;
-}
+bool doors_are_open() { return Doors::instance().are_open.load(std::memory_order_relaxed); }  // set before there is an ORB
 
 std::string guarded(const std::string& endpoint) {
   for (const std::string_view kind : {"giop:tcp:", "giop:unix:", "giop:ssl:"}) {
@@ -356,7 +396,10 @@ std::string guarded(const std::string& endpoint) {
   return endpoint;
 }
 
-void remember_callers() { omniORB::getInterceptors()->serverReceiveRequest.add(&remember_caller); }
+void remember_callers() {
+  omniORB::getInterceptors()->serverReceiveRequest.add(&remember_caller);
+  pass_on_asker();
+}
 
 std::string caller() {
   const std::string address = address_of_caller.data();

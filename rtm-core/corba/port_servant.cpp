@@ -7,6 +7,7 @@
 #include "base/id.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "corba/asker.h"
 #include "corba/farewell.h"
 #include "corba/nv_list.h"
 #include "corba/object_names.h"
@@ -37,6 +38,14 @@ bool is_good(const RTC::ConnectorProfile& profile, const std::string& port) {
   const auto checked = check_profile(profile);
   if (!checked) base::log(base::Level::warn, port, "refused: {}", checked.error().message);
   return bool(checked);
+}
+
+// Later they are watched, connected again, told of the end.
+bool may_keep_ports(const RTC::PortServiceList& ports, int self) {
+  for (CORBA::ULong i = 0; i < ports.length(); ++i) {
+    if (i != static_cast<CORBA::ULong>(self) && !may_keep(ports[i])) return false;
+  }
+  return true;
 }
 
 template <class T>
@@ -305,7 +314,7 @@ bool PortServant::gives_way(std::string_view id) {
 
 RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile) {
   const int self = position(profile.ports);
-  if (self < 0) return RTC::BAD_PARAMETER;
+  if (self < 0 || !may_keep_ports(profile.ports, self)) return RTC::BAD_PARAMETER;
   tell(Step::notify_connect, profile, RTC::RTC_OK);
   const auto terms = read_terms(profile);
   RTC::ReturnCode_t code = reserve(profile, terms->allows_duplicate);

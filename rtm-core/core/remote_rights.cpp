@@ -17,8 +17,15 @@ bool is_protected_key(std::string_view key) {
     const bool is_inside = key.starts_with(group) && (key.size() == group.size() || key[group.size()] == '.' || key[group.size()] == '_');
     if (is_inside) return true;
   }
-  return key == "config_file" || key.ends_with(".config_file");
+  return key == "config_file" || key.ends_with(".config_file") || key.ends_with(".hash_log");
 }
+
+bool shows_environment(std::string_view key, std::string_view value) {
+  const bool is_format = key.ends_with("naming.formats") || key.ends_with("naming_formats");
+  return is_format && (value.find("${") != std::string_view::npos || value.find("$(") != std::string_view::npos);
+}
+
+bool is_secret_key(std::string_view key) { return key == "corba.args" || key == "corba.tls.password"; }
 
 bool is_init_function(std::string_view module, std::string_view function, std::string_view prefix, std::string_view suffix) {
   module = base::trim(module);

@@ -2,8 +2,10 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "corba/asker.h"
 #include "core/config_file.h"
 #include "core/name_format.h"
+#include "core/remote_rights.h"
 #include "manager/manager_impl.h"
 #include "rtm/ModuleManager.h"
 #include "rtm/NamingManager.h"
@@ -214,6 +216,8 @@ coil::Properties ManagerImpl::properties_of_file(const std::string& named_by, co
 coil::Properties ManagerImpl::configured_properties(const std::string& category, const std::string& name) {
   coil::Properties properties;
   if (category.empty() || name.empty()) return properties;
+  const bool is_ours = corba::asker() != corba::Asker::own && rt::is_protected_key(category + "." + name);
+  if (is_ours) return properties;  // a stranger chooses the name, and sees the properties
   coil::Properties in_line;
   {
     const auto mine = config_turn.take();

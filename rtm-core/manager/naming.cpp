@@ -8,6 +8,7 @@
 
 #include "base/log.h"
 #include "base/text.h"
+#include "corba/asker.h"
 #include "corba/naming.h"
 #include "corba/orb.h"
 #include "manager/manager_impl.h"
@@ -178,6 +179,7 @@ struct NamingManager::Impl {
 
   // `instance`, `category/instance` or `*/instance`, of the manager and its slaves.
   RTCList at_manager(const std::string& host, const std::string& path) {
+    const corba::AsksOnItsOwn scope;
     RTCList found;
     RTM::Manager_var other = manager_at(host);
     if (CORBA::is_nil(other)) return found;
@@ -227,8 +229,10 @@ void NamingManager::bindObject(const char* name, const RTM::ManagerServant* serv
 void NamingManager::bindUnlessTaken(const char* name, const RTM::ManagerServant* servant) {
   impl_->bindings.bind(name, servant->getObjRef(), true);
 }
-void NamingManager::bindObject(const std::string& name, CORBA::Object_ptr object) { impl_->bindings.bind(name, object); }
-void NamingManager::bindPortObject(const char* name, PortService_ptr port) { impl_->bindings.bind(name, port); }
+void NamingManager::bindObject(const std::string& name, CORBA::Object_ptr object) {
+  impl_->bindings.bind(name, object, corba::asker() != corba::Asker::own);  // a stranger's component takes no name from a living one
+}
+void NamingManager::bindPortObject(const char* name, PortService_ptr port) { bindObject(name, port); }
 void NamingManager::unbindObject(const char* name) { impl_->bindings.unbind(name); }
 void NamingManager::unbindAll() { impl_->bindings.unbind_all(); }
 void NamingManager::update() { impl_->bindings.refresh(); }

@@ -6,6 +6,7 @@
 
 #include "base/log.h"
 #include "base/text.h"
+#include "corba/asker.h"
 #include "corba/call_timeout.h"
 #include "corba/guarded_transport.h"
 #include "corba/orb.h"
@@ -150,6 +151,11 @@ bool ManagerServant::may_load(const std::string& module, const std::string& what
   return false;
 }
 
+bool ManagerServant::may_set(const std::string& key, const std::string& value, const std::string& what) const {
+  const bool is_shown = corba::asker() != corba::Asker::own && rt::shows_environment(key, value);
+  return may(rt::is_protected_key(key) || is_shown ? rt::RemoteRights::everything : rt::RemoteRights::components, what);
+}
+
 RTC::ReturnCode_t ManagerServant::load_module(const char* pathname, const char* initfunc) {
   const std::string path(pathname);
   const std::string what = "the module " + base::in_quotes(path);
@@ -212,8 +218,7 @@ RTC::RTObject_ptr ManagerServant::create_component(const char* module_name) {
   const auto [argument, name, address] = take_manager(module_name);
   const auto wanted = rt::parse_component_argument(argument);
   for (const auto& [key, text] : wanted ? wanted->properties : decltype(wanted->properties){}) {
-    if (rt::is_protected_key(key) && !may(rt::RemoteRights::everything, "a component with " + base::in_quotes(key)))
-      return RTC::RTObject::_nil();
+    if (!may_set(key, text, "a component with " + base::in_quotes(key))) return RTC::RTObject::_nil();
   }
   // A type that is not known yet is looked for as a module of that name.
   if (!may_load(argument.substr(0, argument.find('?')), "the component " + base::in_quotes(argument))) return RTC::RTObject::_nil();
@@ -312,6 +317,11 @@ RTM::NVList* ManagerServant::get_configuration() {
     const auto mine = manager_.impl_->config_turn.take();
     config = manager_.impl_->config;
   }
+  if (corba::asker() != corba::Asker::own) {
+    for (const auto& key : config.propertyNames()) {
+      if (rt::is_secret_key(key)) config.setProperty(key, "");
+    }
+  }
   NVUtil::copyFromProperties(list.inout(), config);
   return list._retn();
 }
@@ -322,8 +332,7 @@ RTC::ReturnCode_t ManagerServant::set_configuration(const char* name, const char
       key.back() == '.' || key.find("..") != std::string::npos) {
     return RTC::BAD_PARAMETER;
   }
-  const auto needed = rt::is_protected_key(key) ? rt::RemoteRights::everything : rt::RemoteRights::components;
-  if (!may(needed, "the key " + base::in_quotes(key))) return RTC::RTC_ERROR;
+  if (!may_set(key, value, "the key " + base::in_quotes(key))) return RTC::RTC_ERROR;
   const auto complaint = rt::complain_about(key, value);
   if (complaint && !complaint->takes_value) return RTC::BAD_PARAMETER;
   {

@@ -1,8 +1,10 @@
 // The masters and slaves of a manager. Slaves in a circle, which would ask each other without end, are refused, as is what does not answer
 // as a manager. One that hangs is dropped, and may come back after a while.
 #include <algorithm>
+#include <optional>
 
 #include "base/log.h"
+#include "corba/asker.h"
 #include "corba/call_timeout.h"
 #include "corba/orb.h"
 #include "core/remote_rights.h"
@@ -89,6 +91,10 @@ RTC::ReturnCode_t ManagerServant::add_master(RTM::Manager_ptr mgr) {
 }
 
 RTC::ReturnCode_t ManagerServant::remove_master_manager(RTM::Manager_ptr mgr) {
+  return may(rt::RemoteRights::components, "a master to be forgotten") ? remove_master(mgr) : RTC::RTC_ERROR;
+}
+
+RTC::ReturnCode_t ManagerServant::remove_master(RTM::Manager_ptr mgr) {
   if (CORBA::is_nil(mgr)) return RTC::BAD_PARAMETER;
   answers(mgr);  // one that has died may go as well
   const std::scoped_lock lock(mutex_);
@@ -114,6 +120,7 @@ RTC::ReturnCode_t ManagerServant::add_slave_manager(RTM::Manager_ptr mgr) {
 }
 
 RTC::ReturnCode_t ManagerServant::remove_slave_manager(RTM::Manager_ptr mgr) {
+  if (!may(rt::RemoteRights::components, "a slave to be forgotten")) return RTC::RTC_ERROR;
   if (CORBA::is_nil(mgr)) return RTC::BAD_PARAMETER;
   answers(mgr);  // one that has died may go as well
   const std::scoped_lock lock(mutex_);
@@ -182,7 +189,8 @@ std::vector<RTM::Manager_var> ManagerServant::living_slaves() {
         continue;
       }
       drop(slave, false);
-    } catch (const CORBA::Exception& e) {  // as good as gone
+    } catch (const CORBA::NO_PERMISSION&) {  // it does not let in for whom we ask
+    } catch (const CORBA::Exception& e) {    // as good as gone
       drop(slave, corba::is_time_out(e));
     }
   }
@@ -191,6 +199,7 @@ std::vector<RTM::Manager_var> ManagerServant::living_slaves() {
 
 // Nil if nothing that is a manager answers there.
 RTM::Manager_var ManagerServant::manager_at(const std::string& address) {
+  const corba::AsksOnItsOwn scope;
   const auto url = "corbaloc:iiop:" + address + "/" + manager_.configValue("manager.name");
   try {
     CORBA::Object_var object = manager_.getORB()->string_to_object(url.c_str());
@@ -204,6 +213,7 @@ RTM::Manager_var ManagerServant::manager_at(const std::string& address) {
 }
 
 void ManagerServant::greet_master() {
+  const corba::AsksOnItsOwn scope;
   RTM::Manager_var master = manager_at(manager_.configValue("corba.master_manager"));
   try {
     // A manager that is no master has that address because the port was free; it may be this one.
@@ -215,7 +225,7 @@ void ManagerServant::greet_master() {
     }
   } catch (const CORBA::Exception&) {  // gone meanwhile
   }
-  if (!CORBA::is_nil(greeted_)) remove_master_manager(greeted_);
+  if (!CORBA::is_nil(greeted_)) remove_master(greeted_);
   greeted_ = RTM::Manager::_nil();
 }
 
@@ -234,6 +244,8 @@ void ManagerServant::leave_masters() {
     }
   };
   for (auto& master : masters) {
+    std::optional<corba::AsksOnItsOwn> scope;
+    if (!CORBA::is_nil(greeted_) && master->_is_equivalent(greeted_)) scope.emplace();
     corba::set_call_timeout(master, peer_timeout);
     quietly([&] { master->remove_slave_manager(reference_); });
   }

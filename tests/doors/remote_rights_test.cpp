@@ -13,9 +13,10 @@ namespace manager_test {
 namespace {
 
 TEST(RemoteRights, keys_that_name_programs_files_and_doors_are_protected) {
-  for (const char* key : {"manager.modules.abs_path_allowed", "manager.modules.C++.profile_cmd", "manager.modules.load_path",
-                          "logger.file_name", "logger.date_format", "corba.args", "corba.open_to", "config_file", "test.X.config_file",
-                          "manager.remote_rights", "manager.local_service.modules", "manager.preload.modules"}) {
+  for (const char* key :
+       {"manager.modules.abs_path_allowed", "manager.modules.C++.profile_cmd", "manager.modules.load_path", "logger.file_name",
+        "logger.date_format", "corba.args", "corba.open_to", "config_file", "test.X.config_file", "manager.remote_rights",
+        "manager.local_service.modules", "manager.preload.modules", "exec_cxt.sim_time.hash_log"}) {
     EXPECT_TRUE(rt::is_protected_key(key)) << key;
   }
   for (const char* key : {"my.key", "test.X.conf.default.gain", "exec_cxt.periodic.rate", "naming.formats", "manager.components.precreate",

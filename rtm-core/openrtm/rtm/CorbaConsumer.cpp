@@ -1,5 +1,6 @@
 #include "rtm/CorbaConsumer.h"
 
+#include "corba/asker.h"
 #include "corba/call_timeout.h"
 #include "corba/transport.h"
 
@@ -27,7 +28,7 @@ CORBA::Object_ptr CorbaConsumerBase::with_timeout(CORBA::Object_ptr object) {
 
 bool CorbaConsumerBase::setObject(CORBA::Object_ptr object) {
   const CORBA::Object_var own = with_timeout(object);
-  if (CORBA::is_nil(own)) return false;
+  if (CORBA::is_nil(own) || !corba::may_keep(own)) return false;
   store(own);
   return true;
 }

@@ -10,6 +10,7 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "corba/asker.h"
 #include "corba/object_names.h"
 #include "corba/orb.h"
 #include "corba/remote_participant.h"
@@ -140,7 +141,8 @@ ReturnCode_t RTObject_impl::exitBy(std::chrono::steady_clock::time_point deadlin
   if (!isInsideCallback()) return exitNow(deadline);
   // A context cannot be stopped from inside one of its callbacks. The thread holds a reference: the component may be given back meanwhile.
   _add_ref();
-  *impl_->exiter.lock() = std::thread([this, deadline] {
+  *impl_->exiter.lock() = std::thread([this, deadline, asker = corba::asker()] {
+    const corba::ForAsker same(asker);
     exitNow(deadline);
     _remove_ref();
   });

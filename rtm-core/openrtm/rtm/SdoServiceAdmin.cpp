@@ -10,6 +10,7 @@
 #include "base/guarded.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "corba/asker.h"
 
 namespace RTC {
 
@@ -143,7 +144,7 @@ bool SdoServiceAdmin::removeSdoServiceProvider(const char* id) {
 bool SdoServiceAdmin::addSdoServiceConsumer(const SDOPackage::ServiceProfile& profile) {
   const std::string id = profile.id.in();
   const std::string type = profile.interface_type.in();
-  if (id.empty() || CORBA::is_nil(profile.service)) return false;
+  if (id.empty() || CORBA::is_nil(profile.service) || !corba::may_keep(profile.service)) return false;
   std::shared_ptr<SdoServiceConsumerBase> known;
   std::string enabled;
   {

@@ -72,9 +72,11 @@ class ManagerServant final : public POA_RTM::Manager {
   };
   rt::RemoteRights rights() const;
   bool may(rt::RemoteRights needed, const std::string& what) const;
+  bool may_set(const std::string& key, const std::string& value, const std::string& what) const;
   bool may_load(const std::string& module, const std::string& what) const;
   void refuse(const std::string& what, const std::string& why) const;
   RTC::ReturnCode_t add_master(RTM::Manager_ptr mgr);
+  RTC::ReturnCode_t remove_master(RTM::Manager_ptr mgr);
   std::vector<RTM::Manager_var> living_slaves();
   void drop(RTM::Manager_ptr slave, bool hangs);
   RTM::Manager_var manager_at(const std::string& address);

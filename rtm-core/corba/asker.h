@@ -1,0 +1,56 @@
+// For whom a thread works. A call from another account or host makes this process call others in turn: a manager its slaves, a port the
+// next one, a context a member. They would see a caller of our account. So the call says for whom it is (call_context.h), and is refused by
+// a process that does not let the asker in itself. So is, from a process that is open, a call that an object's answer has sent elsewhere:
+// a stranger may have given the object. Any thread.
+#pragma once
+
+#include <omniORB4/CORBA.h>
+
+#include <cstdint>
+
+namespace corba {
+
+enum class Asker : std::uint32_t {
+  own,          // this account, root, or nobody: a thread that carries out no request
+  host,         // another account of this machine
+  network,      // another host
+  certificate,  // another host with a certificate (corba/tls.h)
+};
+
+// Who sent the request that this thread carries out.
+Asker asker();
+
+// The thread works for somebody else, for as long as this lives: for threads that finish what a request has begun.
+class ForAsker {
+ public:
+  explicit ForAsker(Asker asker);
+  ~ForAsker();
+  ForAsker(const ForAsker&) = delete;
+  ForAsker& operator=(const ForAsker&) = delete;
+
+ private:
+  const Asker before_;
+};
+
+// The thread calls objects that it has found by itself: they may send its calls elsewhere (as a manager does that is called by its name),
+// for as long as this lives. A thread that carries out a request may be sent on anyway, since its calls say for whom they are.
+class AsksOnItsOwn {
+ public:
+  AsksOnItsOwn();
+  ~AsksOnItsOwn();
+  AsksOnItsOwn(const AsksOnItsOwn&) = delete;
+  AsksOnItsOwn& operator=(const AsksOnItsOwn&) = delete;
+
+ private:
+  const bool before_;
+};
+
+// Whether a reference that came with a request may be kept, to be called later when nobody knows for whom. For strangers: it answers them,
+// within two seconds. Nil may be kept.
+bool may_keep(CORBA::Object_ptr object);
+
+// For the transport: a thread carries out a request, of whom; and calls that say it.
+void set_asker(Asker asker);
+void pass_on_asker();
+
+}  // namespace corba
