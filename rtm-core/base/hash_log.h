@@ -52,8 +52,8 @@ struct HashTick {
 // Longer values are not kept.
 inline constexpr std::size_t longest_hash_value = 256;
 
-// Of the hashes: logs of different versions cannot be compared. All since version 1 can be read.
-inline constexpr unsigned hash_log_version = 2;
+// Of what is hashed, and when: logs of different versions cannot be compared. All since version 1 can be read.
+inline constexpr unsigned hash_log_version = 3;
 
 class HashLogWriter {
  public:

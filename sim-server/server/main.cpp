@@ -30,7 +30,7 @@ struct Options {
   double rtf = 1;
   std::uint32_t wait_for = 0;
   double participant_timeout = 0, duration = -1;
-  double hash_period = 0.01;  // [s]
+  std::optional<double> hash_period{};  // [s]
   std::uint64_t seed = 1;
   std::vector<std::string> resource_paths, faults;
   std::string record, hash_log, shm_mode = "0600", shm_group;
@@ -173,7 +173,9 @@ int run(const Options& options, Signals& signals) {
   }
   std::optional<WorldHashes> hashes;
   if (!options.hash_log.empty()) {
-    auto opened = WorldHashes::open(options.hash_log, std::chrono::nanoseconds(std::llround(options.hash_period * 1e9)));
+    std::optional<std::chrono::nanoseconds> period;
+    if (options.hash_period) period = std::chrono::nanoseconds(std::llround(*options.hash_period * 1e9));
+    auto opened = WorldHashes::open(options.hash_log, period);
     if (!opened) return fail(opened.error().message);
     hashes = std::move(*opened);
   }
@@ -235,7 +237,8 @@ int serve(int argc, char** argv) {
   app.add_flag("--check", options.check, "load, list every finding, exit with 1 when something had to be dropped");
   app.add_flag("--hash", options.print_hash, "print the hash of the final state");
   app.add_option("--hash-log", options.hash_log, "write a hash of each model and device over time; rtse diff compares two such files");
-  app.add_option("--hash-period", options.hash_period, "simulated seconds between two hashes (0.01)")
+  app.add_option("--hash-period", options.hash_period,
+                 "simulated seconds between two hashes; without it when components are called, at least each 0.1 s and at most each 0.01 s")
       ->check(base::number_between(1e-6, 1e6));
   app.add_option("--record", options.record,
                  "write the poses of moving models, ten times a simulated second, as text: time model x y z qw qx qy qz");

@@ -146,7 +146,7 @@ bool ServerLoop::finish_moment() {
   simulation_.pictures().set_synchronous(options_.is_lockstep || pace_.is_free() || mode_.hurries());
   if (!simulation_.sense(times_, [this] { return barrier_->settle(); })) return false;
   if (recorder_) recorder_->record(simulation_.time(), simulation_.physics());
-  if (hashes_) hashes_->record(simulation_);
+  if (hashes_) hashes_->record(simulation_, barrier_->has_turn(simulation_.time()));
   publish_clock();
   times_.mark(Part::publish);
   const bool goes_on = barrier_->tick(simulation_.time(), simulation_.steps());

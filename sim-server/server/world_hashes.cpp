@@ -11,6 +11,8 @@
 namespace sim {
 namespace {
 
+constexpr std::chrono::nanoseconds usual_period = std::chrono::milliseconds(10), longest_pause = std::chrono::milliseconds(100);
+
 // The same on every machine.
 std::uint64_t hash_of(std::span<const std::uint64_t> state) {
   base::Hash64 hash;
@@ -37,10 +39,17 @@ std::array<std::byte, 7 * sizeof(double)> octets_of(const Eigen::Isometry3d& pos
 
 }  // namespace
 
-base::Result<WorldHashes> WorldHashes::open(const std::string& path, std::chrono::nanoseconds period) {
+WorldHashes::WorldHashes(std::string path, base::HashLogWriter log, std::optional<std::chrono::nanoseconds> period)
+    : path_(std::move(path)),
+      log_(std::move(log)),
+      follows_turns_(!period),
+      schedule_(1e9 / static_cast<double>(period.value_or(usual_period).count())),
+      without_turns_(1e9 / static_cast<double>(longest_pause.count())) {}
+
+base::Result<WorldHashes> WorldHashes::open(const std::string& path, std::optional<std::chrono::nanoseconds> period) {
   auto log = base::HashLogWriter::create(path);
   if (!log) return log.error();
-  return WorldHashes(path, std::move(*log), 1e9 / static_cast<double>(period.count()));
+  return WorldHashes(path, std::move(*log), period);
 }
 
 WorldHashes::Leaf& WorldHashes::leaf(std::vector<Leaf>& leaves, std::size_t index) {
@@ -65,6 +74,7 @@ void WorldHashes::look_at_names_again(std::uint64_t arrangement) {
 
 void WorldHashes::restart() {
   schedule_.restart();
+  without_turns_.restart();
   for (Leaf& device : devices_) device.samples.reset();
 }
 
@@ -105,9 +115,12 @@ void WorldHashes::record_devices(const Simulation& simulation) {
   }
 }
 
-void WorldHashes::record(const Simulation& simulation) {
-  if (!schedule_.is_due(simulation.time())) return;
-  schedule_.done(simulation.time());
+void WorldHashes::record(const Simulation& simulation, std::optional<bool> has_turn) {
+  const auto now = simulation.time();
+  if (!schedule_.is_due(now)) return;
+  if (follows_turns_ && has_turn == false && !without_turns_.is_due(now)) return;
+  schedule_.done(now);
+  without_turns_.done(now);
   look_at_names_again(simulation.arrangement());
   log_.begin_tick(simulation.resets(), simulation.time());
   record_models(simulation);

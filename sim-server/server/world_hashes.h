@@ -1,5 +1,6 @@
-// The world's part of a run's hash log (base/hash_log.h): each model and each device whose state has changed since the last entry, at fixed
-// moments of simulated time. The stepping thread only.
+// The world's part of a run's hash log (base/hash_log.h): each model and each device whose state has changed since the last entry. At fixed
+// moments of simulated time; without a period when participants are called, as they see the world then, at most each 0.01 s, and each 0.1 s
+// when they are called less often. The stepping thread only.
 #pragma once
 
 #include <chrono>
@@ -7,7 +8,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 #include "base/hash_log.h"
@@ -21,17 +21,17 @@ namespace sim {
 class WorldHashes {
  public:
   // Every `period`, or every step when that is longer.
-  static base::Result<WorldHashes> open(const std::string& path, std::chrono::nanoseconds period);
+  static base::Result<WorldHashes> open(const std::string& path, std::optional<std::chrono::nanoseconds> period);
 
-  // Before anybody's tick at this moment. Changes nothing.
-  void record(const Simulation& simulation);
+  // Before anybody's tick at this moment. `has_turn`: whether a participant is called now; nothing when there is none. Changes nothing.
+  void record(const Simulation& simulation, std::optional<bool> has_turn);
   // After a reset.
   void restart();
   // False when not everything could be written.
   bool finish() { return log_.finish(); }
 
  private:
-  WorldHashes(std::string path, base::HashLogWriter log, double rate) : path_(std::move(path)), log_(std::move(log)), schedule_(rate) {}
+  WorldHashes(std::string path, base::HashLogWriter log, std::optional<std::chrono::nanoseconds> period);
   struct Leaf {
     std::string type, name;  // of the device; of the model, without a type. The number may have been another's.
     std::uint32_t key = 0;
@@ -51,8 +51,10 @@ class WorldHashes {
 
   std::string path_;
   base::HashLogWriter log_;
-  Schedule schedule_;
-  StateHash state_;  // of one leaf after the other
+  bool follows_turns_;
+  Schedule schedule_;       // the earliest
+  Schedule without_turns_;  // the latest
+  StateHash state_;         // of one leaf after the other
   std::vector<Leaf> models_, devices_;
   std::uint64_t arrangement_ = 0;
 };

@@ -425,6 +425,12 @@ std::optional<nanoseconds> Barrier::next_due() const {
   return nanoseconds(state_->earliest_due);
 }
 
+std::optional<bool> Barrier::has_turn(nanoseconds now) {
+  refresh();
+  if (std::ranges::all_of(state_->members, &State::Member::observes)) return std::nullopt;
+  return now.count() >= state_->earliest_turn;
+}
+
 void Barrier::rewind(nanoseconds now, std::uint32_t resets) {
   state_->resets = resets;
   state_->last_now = now.count() - 1;

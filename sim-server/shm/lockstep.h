@@ -100,6 +100,8 @@ class Barrier {
   bool settle();
   // Earliest time at which anybody is due, if anybody is there.
   std::optional<std::chrono::nanoseconds> next_due() const;
+  // Whether anybody is called at `now`; nothing when nobody takes part, but for observers.
+  std::optional<bool> has_turn(std::chrono::nanoseconds now);
   // After a reset or another jump of time: due times start again at the first multiple of each period at or after `now`.
   void rewind(std::chrono::nanoseconds now, std::uint32_t resets);
   // All participants with this name; false when there is none.

@@ -148,11 +148,11 @@ TEST_F(HashLogs, a_log_of_the_first_version_is_read_and_compared_with_its_like_o
   ASSERT_TRUE(compare_hash_logs(a, b).ok());
   EXPECT_FALSE(compare_hash_logs(a, b)->first);
   EXPECT_EQ(compare_hash_logs(a, c).error().message,
-            "hash logs " + in_quotes(a) + " and " + in_quotes(c) + ": are of versions 1 and 2, whose hashes differ for equal runs");
+            "hash logs " + in_quotes(a) + " and " + in_quotes(c) + ": are of versions 1 and 3, whose hashes differ for equal runs");
   ASSERT_TRUE(merge_hash_logs({a}, file("whole")).ok());
   EXPECT_EQ(HashLogReader::open(file("whole"))->version(), 1U);
-  EXPECT_EQ(HashLogReader::open(as_version(c, '3')).error().message,
-            "hash log " + in_quotes(c) + ": is of version 3, which is newer than this program");
+  EXPECT_EQ(HashLogReader::open(as_version(c, '4')).error().message,
+            "hash log " + in_quotes(c) + ": is of version 4, which is newer than this program");
   EXPECT_EQ(HashLogReader::open(as_version(c, '0')).error().message, "file " + in_quotes(c) + ": is no hash log");
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <set>
 
@@ -33,7 +34,7 @@ class HashesOfTheWorld : public ::testing::Test {
       for (const auto& entry : tick.entries) all.back().insert(reader->keys().at(entry.key).text());
     }
   }
-  void record() { hashes.record(*f.simulation); }
+  void record() { hashes.record(*f.simulation, std::nullopt); }
   void step() {
     f.simulation->step(f.times);
     f.simulation->sense(f.times);
@@ -122,7 +123,7 @@ TEST(HashesOfASensor, have_an_entry_for_each_sample_and_after_a_reset) {
   auto hashes = WorldHashes::open(path, 1ns).value();
   std::map<std::pair<std::uint32_t, std::chrono::nanoseconds>, std::uint64_t> samples;  // that had been taken at each record
   const auto record = [&] {
-    hashes.record(*f.simulation);
+    hashes.record(*f.simulation, std::nullopt);
     samples.emplace(std::pair(f.simulation->resets(), f.simulation->time()), laser.sequence());
   };
   f.simulation->sense(f.times);
@@ -154,6 +155,36 @@ TEST(HashesOfASensor, have_an_entry_for_each_sample_and_after_a_reset) {
   EXPECT_EQ(std::ranges::count(is_of_second_run, true), 1);
   for (std::size_t i = 1; i + 1 < at.size(); ++i) EXPECT_EQ(at[i], at[i - 1] + 1);
   EXPECT_EQ(at.at(at.size() - 2), std::prev(samples.end(), 2)->second);
+}
+
+// What each record would be given: nothing when nobody takes part.
+std::vector<int> recorded_steps(std::optional<std::chrono::nanoseconds> period, const std::function<std::optional<bool>(int)>& has_turn) {
+  SimulationFixture f{noisy_world()};
+  support::TemporaryFolder folder;
+  const std::string path = (folder.path() / "world.hashlog").string();
+  auto hashes = WorldHashes::open(path, period).value();
+  std::map<std::chrono::nanoseconds, int> steps;
+  for (int i = 0; i <= 300; ++i) {
+    steps[f.simulation->time()] = i;
+    hashes.record(*f.simulation, has_turn(i));
+    EXPECT_TRUE(f.simulation->physics().set_model_pose(1, at(0.001 * i, 0, 0)));  // something has changed
+    f.simulation->step(f.times);
+  }
+  EXPECT_TRUE(hashes.finish());
+  auto reader = base::HashLogReader::open(path);
+  std::vector<int> at_steps;
+  base::HashTick tick;
+  while (reader->next(tick).value()) at_steps.push_back(steps.at(tick.time));
+  return at_steps;
+}
+
+TEST(MomentsOfWorldHashes, are_when_participants_are_called_and_not_much_rarer_or_more_often) {
+  const auto every = [](int n) { return [n](int i) { return std::optional(i % n == 0); }; };
+  EXPECT_EQ(recorded_steps(std::nullopt, every(50)), (std::vector{0, 50, 100, 150, 200, 250, 300}));
+  EXPECT_EQ(recorded_steps(std::nullopt, every(250)), (std::vector{0, 100, 200, 250, 300}));
+  EXPECT_EQ(recorded_steps(std::nullopt, every(1)).size(), 31U);
+  EXPECT_EQ(recorded_steps(std::nullopt, [](int) { return std::nullopt; }).size(), 31U);
+  EXPECT_EQ(recorded_steps(20ms, every(50)).size(), 16U);
 }
 
 }  // namespace

@@ -117,6 +117,7 @@ RunResult run_apart(const RunOptions& options, std::uint64_t seed) {
   if (!options.record.empty()) add({"--record", for_seed(options.record, seed)});
   if (options.record_last_s > 0) add({"--last", base::format_number(options.record_last_s)});
   if (!options.hash_log.empty()) add({"--hash-log", for_seed(options.hash_log, seed)});
+  if (options.hash_period_s > 0) add({"--hash-period", base::format_number(options.hash_period_s)});
   if (options.twice) add({"--twice"});
   if (options.strict) add({"--strict"});
   if (!options.keep.empty()) add({"--keep", (std::filesystem::path(options.keep) / ("seed-" + std::to_string(seed))).string()});

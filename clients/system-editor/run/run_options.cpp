@@ -34,6 +34,9 @@ void add_repeatability_options(base::Command& run, RunOptions& options) {
   const auto* group = "Repeatability";
   run.add_option("--hash-log", options.hash_log, "Write hashes of the world, the components and what went through each port, for rtse diff")
       ->group(group);
+  run.add_option("--hash-period", options.hash_period_s, "Hash the world each so many simulated seconds (when components are called)")
+      ->seconds_between(1e-6, 1e6)
+      ->group(group);
   run.add_flag("--twice", options.twice, "Run it twice and name the first difference")->group(group);
   run.add_flag("--strict", options.strict, "Fail when something happened that could depend on chance")->group(group);
 }

@@ -46,6 +46,8 @@ Result<void> RunSimulator::try_start(const Wait& wait_until) {
                     options_.in_real_time ? "1" : "0", "--seed", std::to_string(options_.seed), "--record", place_.new_file("record.txt")},
                    {same_math()},
                    place_.new_file(log_name)};
+  if (hashes_.is_wanted() && options_.hash_period_s > 0)
+    call.words.insert(call.words.end(), {"--hash-period", base::format_number(options_.hash_period_s)});
   if (hashes_.is_wanted()) call.words.insert(call.words.end(), {"--hash-log", hashes_.world_part()});
   for (const auto& path : options_.resource_paths) call.words.insert(call.words.end(), {"--resource-path", path});
   call.words.insert(call.words.end(), options_.simulator_options.begin(), options_.simulator_options.end());

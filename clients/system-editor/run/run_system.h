@@ -57,6 +57,7 @@ struct RunOptions {
   std::string record;        // MCAP to write
   double record_last_s = 0;  // only so much of it, and only of a run that fails; 0: all
   std::string hash_log;      // to write
+  double hash_period_s = 0;  // of the world's part; 0: when components are called
   bool twice = false;        // and compare
   bool strict = false;       // what could depend on chance fails the run; else it is a note, when the run is in a CI job
   std::string keep;          // folder for logs and the record; empty: a temporary one, removed at the end
