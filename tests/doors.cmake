@@ -46,7 +46,7 @@ set_tests_properties(campaign.stores PROPERTIES LABELS "process;campaign" TIMEOU
 # What the campaigns run; built alone by scripts/sanitized.
 add_custom_target(campaign_programs)
 add_dependencies(campaign_programs campaign_steps clock_jumps rtcd rtcprof own_account_door rtse rtse-recorder sim-server simctl player-gateway RTCLaser RTCPosition2d
-                 LaserObstacleAvoid SourceAll SinkAll EchoProvider EchoConsumer ConfigDemo FailOnRequest manager_fuzz ports_fuzz player_fuzz)
+                 LaserObstacleAvoid LaserObstacleAvoidComp SourceAll SinkAll EchoProvider EchoConsumer ConfigDemo FailOnRequest manager_fuzz ports_fuzz player_fuzz)
 if(RTMSIM_STUDIO)
   add_dependencies(campaign_programs rtm-studio)
 endif()

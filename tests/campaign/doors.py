@@ -174,7 +174,7 @@ class Doors(unittest.TestCase):
             self.assertEqual(polite.recv(4), b"GIOP")
 
     @unittest.skipUnless(os.geteuid() == 0, "needs an account without threads, so root")
-    def test_rtcd_without_threads_says_so_in_one_line(self):
+    def test_hosts_of_components_without_threads_say_so_in_one_line(self):
         def become():
             resource.setrlimit(resource.RLIMIT_NPROC, (1, 1))
             os.setgroups([])
@@ -183,10 +183,11 @@ class Doors(unittest.TestCase):
 
         with tempfile.TemporaryDirectory() as folder:
             os.chmod(folder, 0o777)
-            done = subprocess.run([f"{bin_dir}/rtcd", "-i", "-f", "none.conf", "-o", "naming.enable:NO"], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60, preexec_fn=become, cwd=folder)
-        self.assertEqual(done.returncode, 1, done.stderr)
-        self.assertIn("rtcd: ", done.stderr)
-        self.assertNotIn("terminate", done.stderr)
+            for program in ("rtcd", "LaserObstacleAvoidComp"):
+                done = subprocess.run([f"{bin_dir}/{program}", "-i", "-f", "none.conf", "-o", "naming.enable:NO"], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60, preexec_fn=become, cwd=folder)
+                self.assertEqual(done.returncode, 1, done.stderr)
+                self.assertIn(f"{program}: the system refuses what is needed", done.stderr)
+                self.assertNotIn("terminate", done.stderr)
 
     def test_output_to_a_full_device_is_a_failure(self):
         for program, *words in (["rtcd", "--help"], ["rtse", "--help"], ["simctl", "--help"], ["sim-server", "--help"], ["player-gateway", "--help"], ["rtm-studio", "--help"], ["follow", "--help"],

@@ -30,6 +30,7 @@ nothing = "127.0.0.1:9"  # nobody answers there
 servers = {
     "sim-server": [f"{bin_dir}/sim-server", course, "-s", server],
     "rtcd": [f"{bin_dir}/rtcd", "-i", "-f", "none.conf", "-o", "naming.enable:NO", "-o", f"manager.modules.load_path:{lib_dir}", "LaserObstacleAvoid"],
+    "component program": [f"{bin_dir}/LaserObstacleAvoidComp", "-f", "none.conf", "-o", "naming.enable:NO"],
     "player-gateway": [f"{bin_dir}/player-gateway", "-s", server, "--port", "0"],
 }
 tools = {

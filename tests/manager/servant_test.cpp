@@ -340,6 +340,26 @@ TEST_F(Servant, a_slave_that_hangs_delays_one_call_and_is_told_that_it_was_dropp
   slave->end();
 }
 
+TEST_F(Servant, slaves_that_hang_cost_the_time_of_one_and_hide_no_other) {
+  const int port = support::free_port();
+  support::Process process(at_port(port, {"-d"}));
+  RTM::Manager_var master = manager_at(port);
+  ASSERT_FALSE(CORBA::is_nil(master)) << process.output();
+  std::vector<std::unique_ptr<support::Process>> slaves;
+  for (int i = 0; i < 6; ++i) {
+    const int its_port = support::free_port();
+    slaves.push_back(
+        std::make_unique<support::Process>(at_port(its_port, {"-o", "corba.update_master_manager.enable:NO", "FailOnRequest"})));
+    RTM::Manager_var slave = manager_at(its_port);
+    ASSERT_FALSE(CORBA::is_nil(slave)) << slaves.back()->output();
+    ASSERT_EQ(master->add_slave_manager(slave), RTC::RTC_OK);
+  }
+  for (std::size_t i = 0; i + 1 < slaves.size(); ++i) slaves[i]->signal(SIGSTOP);
+  EXPECT_EQ(RTC::RTCList_var(master->get_components())->length(), 1u);
+  EXPECT_EQ(RTM::ManagerList_var(master->get_slave_managers())->length(), 1u) << "one call has found all that hang";
+  for (std::size_t i = 0; i + 1 < slaves.size(); ++i) slaves[i]->signal(SIGCONT);
+}
+
 TEST_F(Servant, managers_are_no_slaves_in_a_circle_and_nothing_else_is_one) {
   std::vector<std::unique_ptr<support::Process>> processes;
   std::vector<RTM::Manager_var> managers;

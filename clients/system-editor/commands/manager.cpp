@@ -17,7 +17,9 @@ struct ManagerOptions {
   std::vector<std::string> arguments;
 };
 
-constexpr std::chrono::seconds create_limit{20};
+// RTC_ERROR tells no more.
+constexpr const char* refused = "the manager's log says why; it refuses when its manager.remote_rights is read";
+constexpr std::chrono::seconds longest_work{20};  // making a component, reading modules
 
 Result<CORBA::Object_var> manager_object(const Editor& editor, const std::string& manager) {
   if (manager.starts_with("corbaloc:")) {
@@ -78,7 +80,7 @@ std::string why_not_created(RTM::Manager_ptr manager, const std::string& argumen
   RTM::ModuleProfileList_var factories = manager->get_factory_profiles();
   for (CORBA::ULong i = 0; i < factories->length(); ++i) {
     if (property(to_properties(factories[i].properties), "implementation_id") == type)
-      return "its initialisation failed, the manager's log says why";
+      return "its initialisation failed, or the manager may not; its log says why";
   }
   return "the manager has no type " + base::in_quotes(type) + " and finds no module with it; see: rtse mgr list";
 }
@@ -113,11 +115,15 @@ void list_manager(Editor& editor, RTM::Manager_ptr manager) {
 void manage(Editor& editor, const ManagerOptions& options) {
   const auto object = manager_object(editor, options.manager);
   if (!object) return editor.fail(object.error());
-  const CallLimit limited(create_limit);
   RTM::Manager_var manager;
-  const auto reached = remote("manager " + options.manager, [&] { manager = RTM::Manager::_narrow(*object); });
+  const auto reached = remote("manager " + options.manager, [&] {
+    const CallLimit limited(editor.limit());
+    manager = RTM::Manager::_narrow(*object);
+    if (!CORBA::is_nil(manager)) (void)manager->_non_existent();
+  });
   if (!reached) return editor.fail(reached.error());
   if (CORBA::is_nil(manager)) return editor.fail({"manager " + options.manager + ": the object there is no manager"});
+  const CallLimit limited(std::max<std::chrono::milliseconds>(longest_work, editor.limit()));  // it answers, and may have much to do
   if (options.action == "list") return list_manager(editor, manager);
   if (options.action == "load") {
     const auto init = options.arguments.size() > 1 ? options.arguments[1] : "";
@@ -143,10 +149,12 @@ void manage(Editor& editor, const ManagerOptions& options) {
         }
       } else if (options.action == "delete") {
         code = manager->delete_component(argument.c_str());
-        meaning = "the manager has no such component";
+        meaning = code == RTC::BAD_PARAMETER ? "the manager has no such component" : refused;
       } else if (options.action == "unload") {
         code = manager->unload_module(argument.c_str());
-        meaning = code == RTC::PRECONDITION_NOT_MET ? "components of it are there" : "the manager has not loaded it";
+        meaning = code == RTC::PRECONDITION_NOT_MET ? "components of it are there"
+                  : code == RTC::BAD_PARAMETER      ? "the manager has not loaded it"
+                                                    : refused;
       }
     });
     if (!called) return editor.fail(called.error());

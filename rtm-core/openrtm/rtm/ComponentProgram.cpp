@@ -4,7 +4,9 @@
 #include <array>
 #include <cstdlib>
 #include <iostream>
+#include <new>
 #include <string_view>
+#include <system_error>
 
 #include "rtm/Manager.h"
 
@@ -137,7 +139,7 @@ void make_component(Manager* manager) {
 
 }  // namespace
 
-int runComponentProgram(int argc, char** argv, const std::string& component, const std::string& version, void (*init)(Manager*)) {
+int runComponentProgram(int argc, char** argv, const std::string& component, const std::string& version, void (*init)(Manager*)) try {
   if (const auto answered = answerForItself(argc, argv, component, version)) return *answered;
   program() = {component, init};
   Manager* manager = Manager::init(argc, argv);
@@ -150,6 +152,12 @@ int runComponentProgram(int argc, char** argv, const std::string& component, con
   }
   manager->runManager();
   return EXIT_SUCCESS;
+} catch (const std::system_error& e) {
+  std::cerr << component << "Comp: the system refuses what is needed, as threads or files: " << e.what() << std::endl;
+  std::_Exit(EXIT_FAILURE);  // what has been started cannot be ended in order
+} catch (const std::bad_alloc&) {
+  std::cerr << component << "Comp: out of memory" << std::endl;
+  std::_Exit(EXIT_FAILURE);
 }
 
 }  // namespace RTC
