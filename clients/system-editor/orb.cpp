@@ -57,7 +57,15 @@ Orb::Orb() {
   if (!tls->empty()) options.push_back({"endPoint", over_tls.c_str()});  // what ports of other hosts send comes here
   options.push_back({nullptr, nullptr});
   int argc = 0;
-  orb_ = CORBA::ORB_init(argc, nullptr, "omniORB4", reinterpret_cast<const char*(*)[2]>(options.data()));
+  try {
+    orb_ = CORBA::ORB_init(argc, nullptr, "omniORB4", reinterpret_cast<const char*(*)[2]>(options.data()));
+  } catch (const CORBA::INITIALIZE&) {
+    if (tls->empty()) throw;
+    const auto files = corba::tls_of_environment();
+    throw std::runtime_error("tls: certificate " + base::in_quotes(files.certificate) + " with its key, or authority " +
+                             base::in_quotes(files.authority) +
+                             ": cannot be used; expected PEM files, and the key's password in RTMSIM_TLS_PASSWORD");
+  }
   CORBA::Object_var object = orb_->resolve_initial_references("RootPOA");
   const PortableServer::POA_var poa = PortableServer::POA::_narrow(object);
   const PortableServer::POAManager_var manager = poa->the_POAManager();

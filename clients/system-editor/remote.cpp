@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "corba/return_code.h"
+#include "corba/tls.h"
 
 namespace editor {
 
@@ -49,8 +50,11 @@ std::string describe(const CORBA::Exception& exception) {
   if (const auto* transient = dynamic_cast<const CORBA::TRANSIENT*>(&exception)) {
     if (transient->minor() == omni::TRANSIENT_NoUsableProfile)
       return "cannot be reached (no such host, or nothing in its address can be used)";
-    return "cannot be reached (its process is gone, or there is no such host)";
+    return corba::tls_of_environment().is_on() ? "cannot be reached (its process is gone, there is no such host, or over TLS one side does "
+                                                 "not take the other's certificate)"
+                                               : "cannot be reached (its process is gone, or there is no such host)";
   }
+  if (dynamic_cast<const CORBA::NO_PERMISSION*>(&exception)) return "does not let this call in (its log says why)";
   if (dynamic_cast<const CORBA::BAD_PARAM*>(&exception)) return "has an address that is none, expected HOST:PORT (BAD_PARAM)";
   if (dynamic_cast<const CORBA::COMM_FAILURE*>(&exception)) return "closed the connection in the middle of the call";
   if (dynamic_cast<const CORBA::MARSHAL*>(&exception)) return "sent an answer that cannot be read (MARSHAL)";

@@ -169,7 +169,12 @@ class GuardedConnection final : public omni::giopConnection {
   const char* peeraddress() override { return inner_->peeraddress(); }
   const char* peeridentity() override { return inner_->peeridentity(); }
   void* peerdetails() override { return inner_->peerdetails(); }
-  _CORBA_Boolean gatekeeperCheckSpecific(omni::giopStrand* strand) override { return inner_->gatekeeperCheckSpecific(strand); }
+  // Over TLS the handshake.
+  _CORBA_Boolean gatekeeperCheckSpecific(omni::giopStrand* strand) override {
+    if (inner_->gatekeeperCheckSpecific(strand)) return true;
+    complain(to_text(visitor_) + " sent away: no certificate of corba.tls.authority");
+    return false;
+  }
   void setSelectable(int now, _CORBA_Boolean has_more) override { inner_->setSelectable(now, has_more || gate_.has_more()); }
   void clearSelectable() override { inner_->clearSelectable(); }
   _CORBA_Boolean isSelectable() override { return inner_->isSelectable(); }

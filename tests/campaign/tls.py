@@ -3,6 +3,7 @@
 import os
 import shutil
 import socket
+import ssl
 import subprocess
 import sys
 import tempfile
@@ -138,6 +139,30 @@ class Tls(unittest.TestCase):
             done = self.tool("--ns", f"127.0.0.1:{free_port()}", "ls", **environment)
             self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1), done.stderr)
             self.assertIn(says, done.stderr)
+
+        useless = f"{folder.name}/useless.pem"
+        with open(useless, "w") as file:
+            file.write("no certificate")
+        done = self.tool("--ns", f"127.0.0.1:{free_port()}", "ls", RTMSIM_TLS_CERTIFICATE=useless, RTMSIM_TLS_AUTHORITY=f"{folder.name}/lab-ca.pem")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn(f'rtse: tls: certificate "{useless}" with its key, or authority', done.stderr)
+
+    def test_who_has_no_certificate_is_in_the_log(self):
+        port = free_port()
+        log = self.start(f"{bin_dir}/rtcd", "-i", "-f", "none.conf", "-d", "-p", str(free_port()), "-o", "naming.enable:NO", "-o", f"corba.tls.certificate:{folder.name}/lab.pem", "-o",
+                         f"corba.tls.authority:{folder.name}/lab-ca.pem", "-o", f"corba.tls.endpoints:127.0.0.1:{port}", log="nobody.log")
+        context = ssl.create_default_context(cafile=f"{folder.name}/lab-ca.pem")
+        context.check_hostname = False
+
+        def is_sent_away():
+            try:
+                with socket.create_connection(("127.0.0.1", port), timeout=watchdog) as plain, context.wrap_socket(plain) as stream:
+                    stream.recv(1)
+            except OSError:
+                pass
+            return "sent away: no certificate of corba.tls.authority" in text(log)
+
+        self.until("a line in the log", is_sent_away)
 
     @unittest.skipUnless(os.geteuid() == 0 and shutil.which("ip"), "needs name spaces of the network, so root and iproute2")
     def test_between_two_hosts(self):
