@@ -1,8 +1,11 @@
 // The transport shared_memory: the payload goes through a segment, CORBA calls say when. The sender makes the segment and shows it to the
 // receiver with open_memory; from then on the segment needs no name, so none is left behind by a process that is killed.
 
+#include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <optional>
+#include <string>
 
 #include "base/guarded.h"
 #include "base/id.h"
@@ -45,7 +48,21 @@ class Turns {
   std::condition_variable free_;
 };
 
-void complain(const base::Error& error) { base::log(base::Level::error, "data port", "{}", error.message); }
+// A segment that is of no use fails with each sample: one line a second.
+void complain(const base::Error& error) {
+  using Clock = std::chrono::steady_clock;
+  constexpr Clock::duration pause = std::chrono::seconds(1);
+  static std::atomic<Clock::rep> next{Clock::time_point::min().time_since_epoch().count()};
+  static std::atomic<unsigned> others{0};
+  const auto now = Clock::now().time_since_epoch().count();
+  auto due = next.load();
+  if (now < due || !next.compare_exchange_strong(due, now + pause.count())) {
+    ++others;
+    return;
+  }
+  const unsigned missed = others.exchange(0);
+  base::log(base::Level::error, "data port", "{}{}", error.message, missed > 0 ? "; " + std::to_string(missed) + " like it before" : "");
+}
 
 // The writing end of a segment, and the peer that reads it. To be used in turns.
 class Outlet {
