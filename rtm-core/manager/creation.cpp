@@ -169,7 +169,7 @@ base::Result<RTObject_impl*> ManagerImpl::create(std::string argument) {
     return base::Error{"component " + base::in_quotes(argument) + ": its factory made none"};
   }
   state.lock()->records[place->id].component = component;
-  auto result = finish_creation(*place, *parsed);
+  auto result = try_to_finish_creation(*place, *parsed);
   if (!result) {
     destroy(place->id);
     return base::Error{"component " + base::in_quotes(argument) + ": " + result.error().message};
@@ -282,6 +282,28 @@ std::vector<std::string> ManagerImpl::naming_names(const Managed& component, con
   };
   for (const auto& format : base::split_list(properties.getProperty("naming.formats"))) names.push_back(rt::expand_format(format, text_of));
   return names;
+}
+
+// Whatever is thrown on the way, by a naming policy of an author or for want of memory, leaves no component that is half made.
+base::Result<RTObject_impl*> ManagerImpl::try_to_finish_creation(const Record& place, const rt::ComponentArgument& argument) {
+  std::string problem = "an unknown exception";
+  try {
+    return finish_creation(place, argument);
+  } catch (const std::exception& exception) {
+    problem = exception.what();
+  } catch (...) {
+    RTC_DEBUG(("what was thrown is no std::exception"));
+  }
+  Held component;
+  {
+    auto locked = state.lock();
+    if (const auto at = locked->records.find(place.id); at != locked->records.end()) {
+      at->second.finalized = true;  // so that its end does not destroy it: its creator does
+      component = manage(at->second.component);
+    }
+  }
+  if (component) component->exit();
+  return base::Error{problem};
 }
 
 base::Result<RTObject_impl*> ManagerImpl::finish_creation(const Record& place, const rt::ComponentArgument& argument) {

@@ -186,6 +186,7 @@ class ManagerImpl {
   base::Result<std::string> name_component(const Managed& component, const rt::ComponentArgument& argument, bool& numbered);
   std::vector<std::string> naming_names(const Managed& component, const coil::Properties& properties) const;
   base::Result<RTObject_impl*> finish_creation(const Record& place, const rt::ComponentArgument& argument);
+  base::Result<RTObject_impl*> try_to_finish_creation(const Record& place, const rt::ComponentArgument& argument);
   // Policies are called one at a time, user-written or not; one may ask the manager for anything, another component included.
   base::UsersTurn numbering_turn;
   static constexpr std::chrono::seconds numbering_patience{30};  // more than a policy that asks a naming service which hangs

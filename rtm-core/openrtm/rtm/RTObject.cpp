@@ -99,8 +99,22 @@ ReturnCode_t RTObject_impl::initialize() {
     data->phase = Impl::Phase::alive;
     contexts = data->contexts;
   }
-  for (ExecutionContextBase* context : contexts) context->start();  // a shared one may run already
+  for (ExecutionContextBase* context : contexts) {
+    if (context->start() != RTC_ERROR || context->isRunning()) continue;  // a shared one may run already
+    RTC_ERROR(("an execution context of the component cannot run"));
+    return RTC_ERROR;
+  }
   return RTC_OK;
+}
+
+void RTObject_impl::discard() {
+  {
+    auto data = impl_->shared.lock();
+    if (data->phase != Impl::Phase::created && data->phase != Impl::Phase::initializing) return;
+  }
+  finalizePorts();
+  finalizeContexts();
+  shutdown();
 }
 
 ReturnCode_t RTObject_impl::finalize() { return finalizeBy(std::chrono::steady_clock::now() + callbackTimeout()); }
