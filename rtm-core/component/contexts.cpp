@@ -14,6 +14,8 @@ namespace RTC {
 
 namespace {
 
+constexpr std::size_t most_own_contexts = 64;  // each may be a thread
+
 struct Wanted {
   std::string type;
   std::string name;
@@ -151,6 +153,10 @@ ReturnCode_t RTObject_impl::createContexts() {
     wanted.push_back({property("exec_cxt.periodic.type", "PeriodicExecutionContext"), ""});
   else if (!base::equal_ignoring_case(base::trim(list), "none"))
     wanted = parse_contexts(list);
+  if (wanted.size() > most_own_contexts) {
+    RTC_ERROR(("execution_contexts names %zu contexts, expected at most %zu", wanted.size(), most_own_contexts));
+    return RTC_ERROR;
+  }
   for (const Wanted& one : wanted) {
     coil::Properties options = contextOptions(one.type, one.name);
     ExecutionContextBase* context = NamedContexts::instance().get(one.type, one.name, [&]() -> ExecutionContextBase* {

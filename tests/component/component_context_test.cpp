@@ -56,6 +56,18 @@ TEST_F(ComponentContextTest, components_share_a_context_of_the_same_type_and_nam
   EXPECT_TRUE(b->wait_for("onExecute", b->count("onExecute") + 2));
 }
 
+TEST_F(ComponentContextTest, has_no_more_contexts_of_its_own_than_there_may_be_threads) {
+  const auto initialize_with = [](std::size_t count) {
+    std::string list = "ExtTrigExecutionContext";
+    for (std::size_t n = 1; n < count; ++n) list += ",ExtTrigExecutionContext";
+    Owned<> component(nullptr, "Many");
+    component->getProperties()["execution_contexts"] = list;
+    return component->initialize();
+  };
+  EXPECT_EQ(initialize_with(64), RTC::RTC_OK);
+  EXPECT_EQ(initialize_with(65), RTC::RTC_ERROR);
+}
+
 TEST_F(ComponentContextTest, may_have_none) {
   probe->getProperties()["execution_contexts"] = "none";
   ASSERT_EQ(probe->initialize(), RTC::RTC_OK);

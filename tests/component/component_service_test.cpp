@@ -259,6 +259,20 @@ TEST_F(ComponentServiceTest, groups_of_a_multilayer_composite_run_at_the_same_ti
   for (auto* member : {&*a, &*b, &*c}) member->during = nullptr;
 }
 
+TEST_F(ComponentServiceTest, a_composite_takes_no_more_groups_than_there_may_be_threads) {
+  const auto initialize_with_groups = [](std::size_t count) {
+    Owned<Composite> composite;
+    composite->getProperties()["exec_cxt.periodic.type"] = "MultilayerCompositeEC";
+    coil::Properties spec;
+    spec["conf.default.members"] = "a";
+    for (std::size_t n = 1; n < count; ++n) spec["conf.default.members"] += "|a";
+    composite->setProperties(spec);
+    return composite->initialize();
+  };
+  EXPECT_EQ(initialize_with_groups(256), RTC::RTC_OK);
+  EXPECT_EQ(initialize_with_groups(257), RTC::BAD_PARAMETER);
+}
+
 // --- state machines
 
 TEST_F(ComponentServiceTest, shows_its_state_machine_to_tools) {
