@@ -132,7 +132,7 @@ void Mailbox::finish(Channel channel) {
   freed_.notify_all();
 }
 
-WriteResult Mailbox::write(Channel channel, Sample sample) {
+WriteResult Mailbox::write(Channel channel, Sample sample, std::chrono::nanoseconds most) {
   WriteResult result;
   Sample lost;
   {
@@ -142,7 +142,7 @@ WriteResult Mailbox::write(Channel channel, Sample sample) {
     entry->settle(sample.moment);
     if (entry->is_full(sample.moment) && entry->settings.full == FullPolicy::do_nothing) return {PortStatus::buffer_full};
     if (entry->is_full(sample.moment) && entry->settings.full == FullPolicy::block) {
-      const bool has_room = state.wait_for(freed_, entry->settings.write_timeout, [&] {
+      const bool has_room = state.wait_for(freed_, std::min(entry->settings.write_timeout, most), [&] {
         entry = state->find_writable(channel);
         return !entry || !entry->is_full(sample.moment);
       });
@@ -158,7 +158,7 @@ WriteResult Mailbox::write(Channel channel, Sample sample) {
     }
     arrived_.notify_all();
     const auto reads = entry->read_count;
-    const bool is_read = state.wait_for(freed_, entry->settings.write_timeout, [&] {
+    const bool is_read = state.wait_for(freed_, std::min(entry->settings.write_timeout, most), [&] {
       entry = state->find_writable(channel);
       return !entry || entry->read_count != reads;
     });
@@ -168,7 +168,7 @@ WriteResult Mailbox::write(Channel channel, Sample sample) {
   return result;
 }
 
-ReadResult Mailbox::read(Channel channel, std::uint64_t moment) {
+ReadResult Mailbox::read(Channel channel, std::uint64_t moment, std::chrono::nanoseconds most) {
   ReadResult result;
   {
     auto state = state_.lock();
@@ -181,7 +181,7 @@ ReadResult Mailbox::read(Channel channel, std::uint64_t moment) {
         // Nobody brings anything for this phase any more.
         if (base::is_in_phase(moment) && std::ranges::none_of(state->entries, &Entry::is_rendezvous))
           return {PortStatus::buffer_timeout, {}, false, channel};
-        state.wait_for(arrived_, *patience, [&] {
+        state.wait_for(arrived_, std::min(*patience, most), [&] {
           for (auto& each : state->entries) each.settle(moment);
           entry = state->oldest(channel);
           return entry || (channel == Channel::any ? state->entries.empty() : !state->find(channel));

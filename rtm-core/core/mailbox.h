@@ -9,6 +9,7 @@
 // of the channel whose name comes first are read first.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -46,12 +47,16 @@ class Mailbox {
   // sample.
   void finish(Channel channel);
 
-  // A full ring overwrites, refuses or waits, as the channel's settings say. The sample has the writer's moment.
-  WriteResult write(Channel channel, Sample sample);
+  // As long as the channel's settings say.
+  static constexpr std::chrono::nanoseconds as_set = std::chrono::nanoseconds::max();
+
+  // A full ring overwrites, refuses or waits, as the channel's settings say, and never longer than `most`. The sample has the writer's
+  // moment.
+  WriteResult write(Channel channel, Sample sample, std::chrono::nanoseconds most = as_set);
   // The oldest sample (of that channel). If nothing is unread: the last one again, nothing, or waits, as the settings of the channel say
   // from which the last sample came; before the first sample one channel that waits is enough to wait. At an odd moment nobody waits but
-  // for a rendezvous: what is written in this phase is not for it.
-  ReadResult read(Channel channel = Channel::any, std::uint64_t moment = 0);
+  // for a rendezvous: what is written in this phase is not for it. No wait is longer than `most`.
+  ReadResult read(Channel channel = Channel::any, std::uint64_t moment = 0, std::chrono::nanoseconds most = as_set);
   std::size_t unread(Channel channel = Channel::any, std::uint64_t moment = 0) const;
   // Throws away what is unread in that channel, and the last sample with it.
   void drop_unread(Channel channel);
