@@ -1,6 +1,7 @@
 // State machines and composites of components in this process.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <rtm/ExecutionContextServant.h>
 #include <rtm/InPort.h>
 #include <rtm/NVUtil.h>
 #include <rtm/OutPort.h>
@@ -11,8 +12,10 @@
 #include <condition_variable>
 #include <map>
 #include <mutex>
+#include <semaphore>
 #include <thread>
 
+#include "corba/call_timeout.h"
 #include "support/component_fixture.h"
 
 namespace {
@@ -274,6 +277,52 @@ TEST_F(ComponentServiceTest, a_composite_takes_no_more_groups_than_there_may_be_
 }
 
 // --- state machines
+
+// Takes its time for each answer, but no time-out.
+class SlowContext final : public RTC::ExecutionContextServant<POA_RTC::ExecutionContextService> {
+ public:
+  SlowContext() : ExecutionContextServant("slow_ec") { setObjRef(RTC::ExecutionContextService_var(_this())); }
+  RTC::ReturnCode_t stop() override {
+    ++stops;
+    static_cast<void>(std::binary_semaphore(0).try_acquire_for(100ms));
+    return RTC::RTC_OK;
+  }
+  int stops = 0;
+};
+
+// As many contexts as it likes.
+class Contextful : public support::ProbeComponent {
+ public:
+  explicit Contextful(RTC::ExecutionContextService_ptr one)
+      : ProbeComponent(nullptr, "Contextful0"), one_(RTC::ExecutionContextService::_duplicate(one)) {}
+  RTC::ExecutionContextList* get_owned_contexts() override {
+    RTC::ExecutionContextList_var list = new RTC::ExecutionContextList();
+    list->length(100);
+    for (CORBA::ULong i = 0; i < list->length(); ++i) list[i] = RTC::ExecutionContext::_duplicate(one_);
+    return list._retn();
+  }
+
+ private:
+  const RTC::ExecutionContextService_var one_;
+};
+
+TEST_F(ComponentServiceTest, a_member_that_takes_its_time_for_each_of_many_contexts_does_not_join) {
+  const auto usual = corba::port_call_timeout();
+  Served<SlowContext> context;
+  Owned<Contextful> member(context->getObjRef());
+  member->initialize();
+  Owned<Composite> composite;
+  composite->initialize();
+  SDOPackage::OrganizationList_var organizations = composite->get_owned_organizations();
+  SDOPackage::SDOList members;
+  members.length(1);
+  members[0] = member->getObjRef();
+  corba::set_port_call_timeout(100ms);
+  EXPECT_FALSE(organizations[0u]->add_members(members));
+  corba::set_port_call_timeout(usual);
+  EXPECT_GE(context->stops, 1);
+  EXPECT_LT(context->stops, 10);
+}
 
 TEST_F(ComponentServiceTest, shows_its_state_machine_to_tools) {
   probe->initialize();

@@ -181,11 +181,11 @@ ReturnCode_t RTObject_impl::exitNow(std::chrono::steady_clock::time_point deadli
 void RTObject_impl::leaveOrganizations(std::chrono::steady_clock::time_point deadline) {
   std::vector<SDOPackage::Organization_var> organizations;
   organizations.swap(impl_->shared.lock()->organizations);
+  const LastCalls calls(deadline);
   for (const SDOPackage::Organization_var& organization : organizations) {
+    if (calls.are_over()) return;
     try {
-      constexpr std::chrono::milliseconds shortest{200};
-      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
-      const CORBA::Object_var own = corba::impatient_copy(organization, std::max(left, shortest));
+      const CORBA::Object_var own = corba::impatient_copy(organization, calls.patience());
       const SDOPackage::Organization_var target = SDOPackage::Organization::_unchecked_narrow(own);
       target->remove_member(getInstanceName());
     } catch (const CORBA::Exception& exception) {
