@@ -1,6 +1,7 @@
 // How components come into being: factories, creation from an argument, names.
 #include <algorithm>
 
+#include "base/log.h"
 #include "base/text.h"
 #include "core/config_file.h"
 #include "core/name_format.h"
@@ -49,6 +50,9 @@ constexpr const char* inherited_nodes[] = {"config.version",
                                            "sdo",
                                            "config_file",
                                            "manager.instance_name"};
+
+// Of a component in naming services: each may have folders of its own, and is looked after as long as the component lives.
+constexpr std::size_t most_names = 16;
 
 // Keys of a creation argument that say where and how to create, not what.
 bool is_directive(const std::string& key) { return key == "manager_name" || key == "manager_address" || key == "language"; }
@@ -280,7 +284,13 @@ std::vector<std::string> ManagerImpl::naming_names(const Managed& component, con
         return std::nullopt;
     }
   };
-  for (const auto& format : base::split_list(properties.getProperty("naming.formats"))) names.push_back(rt::expand_format(format, text_of));
+  auto formats = base::split_list(properties.getProperty("naming.formats"));
+  if (formats.size() > most_names) {
+    base::log(base::Level::error, component.instance_name(), "naming.formats has {} names, expected at most {}: the others are left out",
+              formats.size(), most_names);
+    formats.resize(most_names);
+  }
+  for (const auto& format : formats) names.push_back(rt::expand_format(format, text_of));
   return names;
 }
 
