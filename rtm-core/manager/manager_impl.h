@@ -15,6 +15,7 @@
 #include "component/managed.h"
 #include "corba/orb.h"
 #include "core/component_argument.h"
+#include "core/key_limits.h"
 #include "core/signal_watcher.h"
 #include "core/task_runner.h"
 #include "rtm/LogstreamBase.h"
@@ -137,6 +138,7 @@ class ManagerImpl {
   // Between our own readers and writers of config; authors reach it as they like. Held for copies alone.
   mutable base::Turn<base::Rank::log> config_turn;
   coil::Properties config;
+  rt::KeysOfCallers keys_of_callers;           // with the turn
   std::map<std::string, std::string> origins;  // of ManagerConfig
   ManagerOptions options;
   ModuleInitProc init_proc = nullptr;

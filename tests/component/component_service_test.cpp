@@ -278,6 +278,22 @@ TEST_F(ComponentServiceTest, a_composite_takes_no_more_groups_than_there_may_be_
 
 // --- state machines
 
+TEST_F(ComponentServiceTest, an_organization_has_a_limited_number_of_properties_and_members) {
+  probe->initialize();
+  Owned<Composite> composite;
+  composite->initialize();
+  SDOPackage::OrganizationList_var organizations = composite->get_owned_organizations();
+  CORBA::Any value;
+  value <<= "x";
+  for (int i = 0; i < 256; ++i) ASSERT_TRUE(organizations[0u]->set_organization_property_value(std::to_string(i).c_str(), value));
+  EXPECT_THROW(organizations[0u]->set_organization_property_value("another", value), SDOPackage::InvalidParameter);
+  EXPECT_TRUE(organizations[0u]->set_organization_property_value("7", value));
+  SDOPackage::SDOList members;
+  members.length(4097);
+  for (CORBA::ULong i = 0; i < members.length(); ++i) members[i] = probe->getObjRef();
+  EXPECT_THROW(organizations[0u]->set_members(members), SDOPackage::InvalidParameter);
+}
+
 // Takes its time for each answer, but no time-out.
 class SlowContext final : public RTC::ExecutionContextServant<POA_RTC::ExecutionContextService> {
  public:
