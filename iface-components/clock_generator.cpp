@@ -157,6 +157,10 @@ void ClockGenerator::run(const std::stop_token& stop) {
       job();
     } catch (const CORBA::Exception& exception) {
       RTC_WARN(("a context that subscribes or unsubscribes: %s", exception._name()));
+    } catch (const std::exception& exception) {
+      RTC_WARN(("a context that subscribes or unsubscribes: %s", exception.what()));
+    } catch (...) {
+      RTC_WARN(("a context that subscribes or unsubscribes: an unknown exception"));
     }
   }
 }

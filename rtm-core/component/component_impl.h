@@ -9,6 +9,8 @@
 #include <rtm/SdoOrganization.h>
 #include <rtm/SdoServiceAdmin.h>
 
+#include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <map>
 #include <mutex>
@@ -29,6 +31,25 @@ struct RTObject_impl::Port {
   OutPortBase* out = nullptr;
 };
 
+// The time for the calls by which a component that ends leaves its peers: what is left until the deadline; after it a moment for each, so
+// that one peer that hangs does not keep the others from hearing of it, and two seconds for all.
+class LastCalls {
+ public:
+  explicit LastCalls(std::chrono::steady_clock::time_point deadline)
+      : deadline_(deadline), end_(std::max(deadline, std::chrono::steady_clock::now()) + std::chrono::seconds(2)) {}
+  bool are_over() const { return std::chrono::steady_clock::now() >= end_; }
+  std::chrono::milliseconds patience() const {
+    constexpr std::chrono::milliseconds shortest{200};
+    return std::max(std::chrono::duration_cast<std::chrono::milliseconds>(deadline_ - std::chrono::steady_clock::now()), shortest);
+  }
+
+ private:
+  std::chrono::steady_clock::time_point deadline_, end_;
+};
+
+// Foreign contexts a component takes part in, and organizations it is a member of: whoever ends it asks each.
+inline constexpr std::size_t most_memberships = 64;
+
 struct RTObject_impl::Impl {
   enum class Phase { created, initializing, alive, exiting, finalizing, finalized };
 
@@ -42,6 +63,7 @@ struct RTObject_impl::Impl {
     std::vector<Port> ports{};
     std::set<UniqueId> active_in{};  // contexts in which the component is active: ports work while there is one
     std::vector<SDOPackage::Organization_var> organizations{};
+    std::size_t next_to_look_at = 0;                                    // of both, by leaveTheDead
     std::vector<SDOPackage::Organization_impl*> owned_organizations{};  // servants, one reference each
     SDOPackage::Configuration_impl* configuration = nullptr;            // a servant; one reference, none when it is finalized
     SDOPackage::Configuration_var configuration_reference{};            // asking the servant again would activate it again

@@ -10,6 +10,7 @@
 #include "corba/orb.h"
 #include "corba/remote_participant.h"
 #include "corba/return_code.h"
+#include "core/key_limits.h"
 
 namespace RTC {
 
@@ -185,6 +186,10 @@ RTC::ReturnCode_t ExecutionContextBase::addComponent(RTC::LightweightRTObject_pt
   if (CORBA::is_nil(comp)) return RTC::BAD_PARAMETER;
   const Joining joining(impl_->shared, comp);
   if (!joining || impl_->find(comp)) return RTC::PRECONDITION_NOT_MET;
+  if (impl_->context.members().size() >= rt::entry_limits.members) {
+    RTC_ERROR(("a further component is refused: the context has %zu, the most that may be", rt::entry_limits.members));
+    return RTC::RTC_ERROR;
+  }
   if (const auto code = onAddingComponent(comp); code != RTC::RTC_OK) return code;
   RTC::ExecutionContextService_var self = getObjRef();
   Impl::Member member;

@@ -15,6 +15,8 @@ namespace RTC {
 
 namespace {
 
+constexpr std::size_t most_own_contexts = 64;  // each may be a thread
+
 struct Wanted {
   std::string type;
   std::string name;
@@ -94,12 +96,12 @@ base::Guarded<std::vector<ExecutionContextBase*>, base::Rank::registry>& left_co
 }
 
 // What the context asks of others on the way (detach_context) is its own affair; these calls end in time.
-void leaveRemoteContext(ExecutionContext_ptr reference, RTObject_ptr self, std::chrono::steady_clock::time_point deadline) {
-  constexpr std::chrono::milliseconds shortest{200};
-  const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(left_until(deadline));
-  CORBA::Object_var own = corba::impatient_copy(reference, std::max(left, shortest));
-  ExecutionContext_var context = ExecutionContext::_unchecked_narrow(own);
-  switch (context->get_component_state(self)) {
+void leaveRemoteContext(ExecutionContext_ptr reference, RTObject_ptr self, const LastCalls& calls) {
+  const CORBA::Object_var own = corba::impatient_copy(reference, calls.patience());
+  const ExecutionContext_var context = ExecutionContext::_unchecked_narrow(own);
+  const LifeCycleState state = context->get_component_state(self);
+  corba::set_call_timeout(context, calls.patience());
+  switch (state) {
     case ACTIVE_STATE:
       context->deactivate_component(self);
       break;
@@ -109,6 +111,7 @@ void leaveRemoteContext(ExecutionContext_ptr reference, RTObject_ptr self, std::
     default:
       break;
   }
+  corba::set_call_timeout(context, calls.patience());
   context->remove_component(self);
 }
 
@@ -152,6 +155,10 @@ ReturnCode_t RTObject_impl::createContexts() {
     wanted.push_back({property("exec_cxt.periodic.type", "PeriodicExecutionContext"), ""});
   else if (!base::equal_ignoring_case(base::trim(list), "none"))
     wanted = parse_contexts(list);
+  if (wanted.size() > most_own_contexts) {
+    RTC_ERROR(("execution_contexts names %zu contexts, expected at most %zu", wanted.size(), most_own_contexts));
+    return RTC_ERROR;
+  }
   for (const Wanted& one : wanted) {
     coil::Properties options = contextOptions(one.type, one.name);
     ExecutionContextBase* context = NamedContexts::instance().get(one.type, one.name, [&]() -> ExecutionContextBase* {
@@ -205,14 +212,16 @@ void RTObject_impl::leaveContexts(std::chrono::steady_clock::time_point deadline
   comeToRest(deadline);
   const RTObject_var self = getObjRef();
   const std::vector<ExecutionContext_var> foreign = impl_->shared.lock()->foreign;
+  const LastCalls calls(deadline);
   for (const ExecutionContext_var& reference : foreign) {
     if (CORBA::is_nil(reference)) continue;
     if (const auto context = findLocalContext(reference)) {
       context->removeComponent(self, deadline);
       continue;
     }
+    if (calls.are_over()) continue;
     try {
-      leaveRemoteContext(reference, self, deadline);
+      leaveRemoteContext(reference, self, calls);
     } catch (const CORBA::Exception& exception) {
       RTC_DEBUG(("a context of another process does not answer: %s", corba::to_text(exception).c_str()));
     }
@@ -343,9 +352,18 @@ ExecutionContextHandle_t RTObject_impl::attach_context(ExecutionContext_ptr exec
     auto data = impl_->shared.lock();
     auto& list = data->foreign;
     auto free = std::find_if(list.begin(), list.end(), [](const ExecutionContext_var& context) { return CORBA::is_nil(context); });
-    if (free == list.end()) free = list.insert(list.end(), ExecutionContext_var());
-    *free = ExecutionContext::_duplicate(exec_context);
-    id = static_cast<ExecutionContextHandle_t>(free - list.begin()) + foreign_offset;
+    const bool is_full = free == list.end() && list.size() >= most_memberships;
+    if (free == list.end() && !is_full) free = list.insert(list.end(), ExecutionContext_var());
+    if (!is_full) {
+      *free = ExecutionContext::_duplicate(exec_context);
+      id = static_cast<ExecutionContextHandle_t>(free - list.begin()) + foreign_offset;
+    } else {
+      id = -1;
+    }
+  }
+  if (id < 0) {
+    RTC_ERROR(("a further execution context is refused: the component takes part in %zu, the most that may be", most_memberships));
+    return -1;
   }
   chooseClock();
   m_actionListeners.ecaction_[EC_ATTACHED].notify(id);

@@ -27,6 +27,7 @@ class ManagedComponent final : public Managed {
   ReturnCode_t initialize() override { return component_.initialize(); }
 
   ReturnCode_t exit() override { return component_.exit(); }
+  void discard() override { component_.discard(); }
   void exit_by(Deadline deadline) override { component_.exitBy(deadline); }
   void ask_to_rest() override { component_.askToRest(); }
   void come_to_rest(Deadline deadline) override { component_.comeToRest(deadline); }

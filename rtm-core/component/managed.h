@@ -49,6 +49,8 @@ class Managed {
   virtual ReturnCode_t initialize() = 0;
 
   virtual ReturnCode_t exit() = 0;
+  // Of one that never lived; does nothing to others.
+  virtual void discard() = 0;
   // The same with an end of its patience.
   virtual void exit_by(Deadline deadline) = 0;
   // Asks its contexts to calm it, and returns at once.

@@ -1,16 +1,18 @@
 // What becomes of a component when the process of a composite or a context that it takes part in has died: it gets its own life back.
 //
-// Within two seconds; the manager looks at that interval (leaveTheDead).
+// Within two seconds, unless other peers hang; the manager looks at that interval (leaveTheDead).
 #include "component/component_impl.h"
 
+#include "corba/call_timeout.h"
 #include "corba/orb.h"
 
 namespace RTC {
 namespace {
 
+constexpr std::chrono::seconds patience{1};  // with one peer
+
 // A process that hangs is not dead.
 bool is_dead(CORBA::ORB_ptr orb, CORBA::Object_ptr object) {
-  constexpr std::chrono::seconds patience{1};
   try {
     // A reference of its own, so that the time-out is for this call alone.
     CORBA::String_var text = orb->object_to_string(object);
@@ -43,16 +45,22 @@ void RTObject_impl::leaveTheDead() {
   }
   CORBA::ORB_ptr orb = m_pManager != nullptr ? m_pORB.in() : CORBA::ORB::_nil();
   if (CORBA::is_nil(orb)) return;
-  for (std::size_t i = 0; i < contexts.size(); ++i) {
-    if (CORBA::is_nil(contexts[i]) || !is_dead(orb, contexts[i])) continue;
-    const auto handle = static_cast<ExecutionContextHandle_t>(i) + foreign_offset;
-    RTC_WARN(("the process of execution context %d has died: left", static_cast<int>(handle)));
-    const bool was_active = impl_->shared.lock()->active_in.contains(handle);
-    if (was_active) on_deactivated(handle);
-    detach_context(handle);
-  }
+  // Peers that hang take a second each: who is not asked in time is the first the next time.
+  const std::size_t count = contexts.size() + organizations.size();
+  const corba::ChainDeadline deadline{patience};
   bool was_member = false;
-  for (SDOPackage::Organization_var& organization : organizations) {
+  for (std::size_t asked = 0; asked < count && !deadline.is_over(); ++asked) {
+    const std::size_t i = impl_->shared.lock()->next_to_look_at++ % count;
+    if (i < contexts.size()) {
+      if (CORBA::is_nil(contexts[i]) || !is_dead(orb, contexts[i])) continue;
+      const auto handle = static_cast<ExecutionContextHandle_t>(i) + foreign_offset;
+      RTC_WARN(("the process of execution context %d has died: left", static_cast<int>(handle)));
+      const bool was_active = impl_->shared.lock()->active_in.contains(handle);
+      if (was_active) on_deactivated(handle);
+      detach_context(handle);
+      continue;
+    }
+    SDOPackage::Organization_var& organization = organizations[i - contexts.size()];
     if (!is_dead(orb, organization)) continue;
     RTC_WARN(("the process of a composite component has died: this component is on its own again"));
     was_member = true;

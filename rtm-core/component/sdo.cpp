@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "corba/asker.h"
+#include "corba/call_timeout.h"
 #include "corba/orb.h"
 
 namespace RTC {
@@ -76,17 +77,26 @@ CORBA::Any* RTObject_impl::get_status(const char* name) {
 
 bool RTObject_impl::addOrganization(SDOPackage::Organization_ptr organization) {
   if (CORBA::is_nil(organization) || !corba::may_keep(organization)) return false;
-  auto data = impl_->shared.lock();
-  for (const SDOPackage::Organization_var& known : data->organizations)
-    if (SDOPackage::Organization_var(known)->_is_equivalent(organization)) return true;
-  data->organizations.push_back(SDOPackage::Organization::_duplicate(organization));
-  return true;
+  {
+    auto data = impl_->shared.lock();
+    for (const SDOPackage::Organization_var& known : data->organizations)
+      if (SDOPackage::Organization_var(known)->_is_equivalent(organization)) return true;
+    if (data->organizations.size() < most_memberships) {
+      data->organizations.push_back(SDOPackage::Organization::_duplicate(organization));
+      return true;
+    }
+  }
+  RTC_ERROR(("a further organization is refused: the component is in %zu, the most that may be", most_memberships));
+  return false;
 }
 
 bool RTObject_impl::removeOrganization(const char* organization_id) {
   std::vector<SDOPackage::Organization_var> organizations = impl_->shared.lock()->organizations;
+  const corba::ChainDeadline deadline(corba::port_call_timeout());
   for (SDOPackage::Organization_var& organization : organizations) {
+    if (deadline.is_over()) return false;
     try {
+      deadline.limit(organization);
       CORBA::String_var id = organization->get_organization_id();
       if (std::string(id) != organization_id) continue;
     } catch (const CORBA::Exception&) {

@@ -1,5 +1,6 @@
 #include "corba/connector_keys.h"
 
+#include <algorithm>
 #include <string>
 
 #include "base/text.h"
@@ -72,8 +73,11 @@ void remove_references(RTC::ConnectorProfile& profile) {
   profile.properties = kept;
 }
 
+// A peer may ask for more patience than calls have here, but not without end.
 Line line_of(const rt::ConnectorSettings& settings) {
-  return {settings.order, settings.call_timeout.value_or(port_call_timeout()), settings.shared_memory_size};
+  constexpr std::chrono::milliseconds most{60'000};
+  const auto usual = port_call_timeout();
+  return {settings.order, std::min(settings.call_timeout.value_or(usual), std::max(usual, most)), settings.shared_memory_size};
 }
 
 }  // namespace corba

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -31,6 +32,8 @@ constexpr auto attempt = std::chrono::milliseconds(300);
 constexpr auto longest_pause = std::chrono::milliseconds(1000);
 constexpr auto longest_hang = std::chrono::minutes(10);
 constexpr auto longest_absence = std::chrono::hours(24);
+// Each is a thread. Who gives a thousand addresses to ports and answers at none of them is told nothing at further ones.
+constexpr std::size_t most_processes = 1024;
 
 std::chrono::milliseconds patience_for_one() { return std::min(port_call_timeout(), farewell_limit); }
 
@@ -147,23 +150,44 @@ void tell_late(const std::string& address) {
   }
 }
 
+// The messages for that process are dropped.
+void give_up(const std::string& address, const char* reason) {
+  std::deque<Message> dropped;  // let go without the lock
+  {
+    auto state = Farewells::instance().state.lock();
+    const auto found = state->processes.find(address);
+    if (found != state->processes.end()) {
+      dropped = std::move(found->second.untold);
+      state->processes.erase(found);
+    }
+    --state->threads;
+  }
+  base::log(base::Level::warn, "port", "the process at {} is not told of the end of its connections: {}", address, reason);
+}
+
+// Does not throw for want of a thread.
 void tell_later(const std::string& address, RTC::PortService_ptr port, const char* connector_id, bool hangs, Clock::duration lasts,
                 std::shared_ptr<const RTC::ConnectorProfile> connects = nullptr) {
   {
     auto state = Farewells::instance().state.lock();
     if (state->is_ending) return;
     const bool has_thread = state->processes.contains(address);
+    if (!has_thread && state->processes.size() >= most_processes) return;
     Process& process = state->processes[address];
     process.hangs = process.hangs || hangs;
     process.untold.push_back({RTC::PortService::_duplicate(port), connector_id, Clock::now() + lasts, std::move(connects)});
     if (has_thread) return;
     ++state->threads;
   }
-  std::thread([address] {
-    tell_late(address);
-    --Farewells::instance().state.lock()->threads;
-    Farewells::instance().changed.notify_all();
-  }).detach();
+  try {
+    std::thread([address] {
+      tell_late(address);
+      --Farewells::instance().state.lock()->threads;
+      Farewells::instance().changed.notify_all();
+    }).detach();
+  } catch (const std::system_error& error) {
+    give_up(address, error.what());
+  }
 }
 
 }  // namespace

@@ -101,7 +101,11 @@ void InConnection::finish() { mailbox_->finish(channel_); }
 
 std::size_t InConnection::unread() const { return mailbox_->unread(channel_, moment_of_reader()); }
 
-rt::PortStatus InConnection::keep(rt::Sample sample, std::uint64_t moment) {
+rt::PortStatus InConnection::receive(rt::Sample sample) {
+  return keep(std::move(sample), plan_.moment(), line_of(plan_.settings).call_timeout);
+}
+
+rt::PortStatus InConnection::keep(rt::Sample sample, std::uint64_t moment, std::chrono::nanoseconds most) {
   if (sample.block && !ops_.codec && !ops_.shape.fits(sample.block->octets(), sample.order)) {
     base::log(base::Level::warn, "data port", "connection {}: {} octets that are no {} are refused", base::in_quotes(plan_.name),
               sample.block->size(), ops_.type_id);
@@ -135,7 +139,7 @@ rt::PortStatus InConnection::keep(rt::Sample sample, std::uint64_t moment) {
   sample.moment = moment;
   if (moment != 0 && !base::is_in_phase(moment) && !base::current_tick())
     base::tell_of_chance(port_text(plan_), "got a sample between two ticks", plan_.port_time());
-  const rt::WriteResult result = mailbox_->write(channel_, std::move(sample));
+  const rt::WriteResult result = mailbox_->write(channel_, std::move(sample), most);
   if (!is_observed) return result.status == rt::PortStatus::precondition_not_met ? rt::PortStatus::error : result.status;
   switch (result.status) {
     case rt::PortStatus::ok:
@@ -175,7 +179,7 @@ rt::PortStatus InConnection::fetch(bool only_new) {
   }
   if (only_new && !plan_.peer_says_when_empty && is_same_sample(sample, *last_fetched_.lock())) return rt::PortStatus::buffer_empty;
   *last_fetched_.lock() = sample;
-  return keep(std::move(sample), 0);  // the peer has kept the rule of delivery
+  return keep(std::move(sample), 0, rt::Mailbox::as_set);  // the peer has kept the rule of delivery
 }
 
 InEngine::InEngine(const TypeOps& ops)

@@ -37,7 +37,10 @@ class InConnection final : public Receiver, public Waiting {
   const rt::ConnectorSettings& settings() const { return plan_.settings; }
   std::uint64_t era() const { return plan_.era(); }
 
-  rt::PortStatus receive(rt::Sample sample) override { return keep(std::move(sample), plan_.moment()); }
+  // From another process, which waits no longer than its calls may take.
+  rt::PortStatus receive(rt::Sample sample) override;
+  // From an OutPort of this process.
+  rt::PortStatus receive_here(rt::Sample sample) { return keep(std::move(sample), plan_.moment(), rt::Mailbox::as_set); }
   rt::BlockPool& pool() override { return *pool_; }
 
   // Pull connections: asks the peer and keeps what comes for the reader. `only_new`: not if it is what came last time.
@@ -50,8 +53,8 @@ class InConnection final : public Receiver, public Waiting {
 
  private:
   friend class InEngine;
-  // 0: can be read at once.
-  rt::PortStatus keep(rt::Sample sample, std::uint64_t moment);
+  // Moment 0: can be read at once. A full buffer waits no longer than `most`.
+  rt::PortStatus keep(rt::Sample sample, std::uint64_t moment, std::chrono::nanoseconds most);
 
   const ConnectionPlan plan_;
   const TypeOps ops_;  // with the connection's codec

@@ -21,7 +21,7 @@ class DirectSender final : public Sender {
  public:
   explicit DirectSender(std::shared_ptr<InConnection> receiver) : receiver_(std::move(receiver)) {}
   rt::PortStatus send(Payload& payload) override {
-    switch (const rt::PortStatus status = receiver_->receive(payload.copied())) {
+    switch (const rt::PortStatus status = receiver_->receive_here(payload.copied())) {
       case rt::PortStatus::buffer_full:
         return rt::PortStatus::send_full;
       case rt::PortStatus::buffer_timeout:
@@ -242,10 +242,10 @@ rt::PortStatus OutConnection::write_buffered(Payload& payload) {
   return result.status;
 }
 
-rt::PortStatus OutConnection::take(rt::Sample& sample) {
+rt::PortStatus OutConnection::take(rt::Sample& sample, std::chrono::nanoseconds most) try {
   ConnectorEvents& events = *line_->plan.events;
   if (const std::uint64_t era = line_->plan.era(); era > 0) mailbox_.drop_other_eras(era);
-  rt::ReadResult result = mailbox_.read(channel_, line_->plan.moment());
+  rt::ReadResult result = mailbox_.read(channel_, line_->plan.moment(), most);
   switch (result.status) {
     case rt::PortStatus::ok:
       break;
@@ -268,17 +268,13 @@ rt::PortStatus OutConnection::take(rt::Sample& sample) {
   line_->tell(DataEvent::send, changed);
   sample = line_->keep(changed.now());
   return rt::PortStatus::ok;
+} catch (const CORBA::Exception&) {
+  return rt::PortStatus::error;
 }
 
-rt::PortStatus OutConnection::give(rt::Sample& sample) {
-  try {
-    return take(sample);
-  } catch (const CORBA::Exception&) {
-    return rt::PortStatus::error;
-  }
-}
+rt::PortStatus OutConnection::give(rt::Sample& sample) { return take(sample, line_of(settings()).call_timeout); }
 
-rt::PortStatus OutConnection::give_value(rt::Sample& sample) { return give(sample); }
+rt::PortStatus OutConnection::give_value(rt::Sample& sample) { return take(sample, rt::Mailbox::as_set); }
 
 OutEngine::OutEngine(const TypeOps& ops, std::function<void(const std::string& id)> lost)
     : ops_(ops), loss_(std::make_shared<LossHandler>(std::move(lost))), connections_(std::make_shared<const Connections>()) {}

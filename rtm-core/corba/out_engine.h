@@ -36,7 +36,7 @@ class OutConnection final : public Source, public Waiting {
   rt::PortStatus write(Payload& payload);
   // write returns when the peer has answered: subscription flush to another process.
   bool waits_for_peer() const;
-  // The next sample, encoded; or as a value, for this process.
+  // The next sample, encoded, for another process, which waits no longer than its calls may take; or as a value, for this process.
   rt::PortStatus give(rt::Sample& sample) override;
   rt::PortStatus give_value(rt::Sample& sample);
   // A subscription flush keeps nothing.
@@ -49,7 +49,7 @@ class OutConnection final : public Source, public Waiting {
   struct Line;
 
   rt::PortStatus write_buffered(Payload& payload);
-  rt::PortStatus take(rt::Sample& sample);
+  rt::PortStatus take(rt::Sample& sample, std::chrono::nanoseconds most);
 
   const std::shared_ptr<Line> line_;
   std::unique_ptr<rt::Publisher> publisher_;  // push: new, periodic

@@ -122,8 +122,12 @@ class Rounds {
     suspects_ = std::move(suspects);
     for (const auto& key : dead) {
       base::log(base::Level::warn, "port", "connection {}: its other end is gone", key.second);
-      connections.at(key).loss->lost(key.second);
       suspects_.erase(key);
+      try {
+        connections.at(key).loss->lost(key.second);
+      } catch (const std::exception& e) {  // the others are watched all the same
+        base::log(base::Level::error, "port", "connection {}: its end failed: {}", key.second, e.what());
+      }
     }
     return !suspects_.empty();
   }

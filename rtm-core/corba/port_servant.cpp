@@ -17,6 +17,9 @@
 namespace corba {
 namespace {
 
+constexpr std::size_t usual_limit =
+    4096;  // of connections, unless connection_limit says otherwise: each takes memory, and may have a thread
+
 // For others to let go of a port that dies. They do at once, unless the POA was destroyed before.
 constexpr auto longest_wait = std::chrono::seconds(10);
 
@@ -288,11 +291,12 @@ RTC::ReturnCode_t PortServant::reserve(const RTC::ConnectorProfile& profile, boo
     return false;
   };
   const std::string id = profile.connector_id.in();
+  const int limit = connection_limit_.load(std::memory_order_relaxed);
+  const std::size_t most = limit >= 0 ? static_cast<std::size_t>(limit) : usual_limit;
   auto state = state_.lock();
   if (state->find(id)) return RTC::PRECONDITION_NOT_MET;
+  if (state->connections.size() >= most) return RTC::RTC_ERROR;
   Connection* crossed = nullptr;
-  const int limit = connection_limit_.load(std::memory_order_relaxed);
-  if (limit >= 0 && state->connections.size() >= static_cast<std::size_t>(limit)) return RTC::RTC_ERROR;
   for (auto& connection : state->connections) {
     if (allows_duplicate || connection.is_leaving || !share_a_peer(profile.ports, connection.profile.ports)) continue;
     // Two ports that connect to each other at the same time start opposite chains, and each meets the other's at its second port. Both
@@ -318,6 +322,9 @@ RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile) {
   tell(Step::notify_connect, profile, RTC::RTC_OK);
   const auto terms = read_terms(profile);
   RTC::ReturnCode_t code = reserve(profile, terms->allows_duplicate);
+  if (code == RTC::RTC_ERROR)
+    base::log(base::Level::warn, port_name(), "connection {} is refused: the port has as many as connection_limit allows",
+              base::in_quotes(profile.name.in()));
   if (code != RTC::RTC_OK) return code;
 
   const std::string id = profile.connector_id.in();

@@ -6,6 +6,7 @@
 #include "base/chance.h"
 #include "base/text.h"
 #include "base/tick.h"
+#include "core/key_limits.h"
 
 namespace rt {
 
@@ -18,6 +19,19 @@ const std::string* find_value(const Configuration::Set& set, std::string_view na
 }
 
 }  // namespace
+
+bool Configuration::has_room(const State& state, const Set& further) {
+  const auto octets_of = [](const Set& set) {
+    constexpr std::size_t around_it = 64;  // each text takes some
+    std::size_t sum = set.id.size() + around_it;
+    for (const auto& [name, value] : set.values) sum += name.size() + value.size() + around_it;
+    return sum;
+  };
+  std::size_t sum = octets_of(further);
+  for (const Set& set : state.sets) sum += octets_of(set);
+  const bool is_new = find(state, further.id) == nullptr;
+  return sum <= entry_limits.configuration_octets && (!is_new || state.sets.size() < entry_limits.configuration_sets);
+}
 
 Configuration::Configuration() { shared_.lock()->state.sets.push_back({"default", {}}); }
 
@@ -192,6 +206,7 @@ void Configuration::load(const Set& set) {
 
 bool Configuration::set_values(const Set& set) {
   return change([&](State& state) {
+    if (!has_room(state, set)) return false;
     Set* known = find(state, set.id);
     if (!known) {
       if (set.id.empty()) return false;
@@ -208,7 +223,7 @@ bool Configuration::set_values(const Set& set) {
 bool Configuration::add(const Set& set) {
   if (set.id.empty()) return false;
   return change([&](State& state) {
-    if (find(state, set.id)) return false;
+    if (find(state, set.id) || !has_room(state, set)) return false;
     state.sets.push_back(set);
     state.added.push_back(set.id);
     return true;

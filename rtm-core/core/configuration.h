@@ -63,9 +63,9 @@ class Configuration {
 
   // Merges, or makes the set; changes neither which set is active nor whether.
   void load(const Set& set);
-  // Merges. False when there is no such set.
+  // Merges, or makes the set. False when it would be one of too many, or all of them too long (core/key_limits.h).
   bool set_values(const Set& set);
-  // False when there is one of that id, or the id is empty.
+  // False when there is one of that id, the id is empty, or there is no room, as above.
   bool add(const Set& set);
   // Only sets that add() made and that are not active.
   bool remove(std::string_view id);
@@ -106,6 +106,7 @@ class Configuration {
     std::string default_value;
   };
 
+  static bool has_room(const State& state, const Set& further);
   static Set* find(State& state, std::string_view id);
   static const Set* find(const State& state, std::string_view id);
   // Those of this thread; to be asked without the lock.

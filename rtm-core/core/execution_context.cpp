@@ -4,6 +4,7 @@
 #include <cmath>
 #include <exception>
 #include <iterator>
+#include <system_error>
 
 #include "base/clock.h"
 #include "base/log.h"
@@ -14,26 +15,29 @@ namespace rt {
 
 using namespace std::chrono_literals;
 
-// The threads on which members of other places are called.
+// The threads on which members of other places are called. Whoever says that a member is elsewhere costs a thread, up to a limit.
 class Together {
  public:
-  explicit Together(std::size_t most) {
-    crew_.start(most - 1, [this](std::size_t number, int) { work(number); });
+  static constexpr std::size_t most_threads = 64;
+
+  explicit Together(std::size_t most) : threads_(std::min(most, most_threads)) {
+    crew_.start(threads_ - 1, [this](std::size_t number, int) { work(number); });
   }
-  // Calls work(0) here and work(1) ... work(count - 1) on the others, and returns when all have.
+  // Calls work(0) here and work(1) ... work(count - 1) on the others, several on each if there are more than threads, and returns when all
+  // have returned.
   void run(std::size_t count, const std::function<void(std::size_t)>& work) {
     count_ = count;
     work_ = &work;
     clock_ = &base::current_clock();
-    crew_.run(0, [&] { work(0); });
+    crew_.run(0, [&] { this->work(0); });
   }
 
  private:
   void work(std::size_t number) {
-    if (number >= count_) return;
     const base::ScopedClock clock(*clock_);
-    (*work_)(number);
+    for (; number < count_; number += threads_) (*work_)(number);
   }
+  const std::size_t threads_;  // the caller's included
   // Written while the crew rests, which hands them over with its job.
   std::size_t count_ = 0;
   const std::function<void(std::size_t)>* work_ = nullptr;
@@ -309,7 +313,7 @@ ExecutionContext::Members ExecutionContext::begin_cycle(std::size_t number) {
   return made;
 }
 
-ExecutionContext::Members ExecutionContext::plan(const Group& members) {
+ExecutionContext::Members ExecutionContext::plan(const Group& members) const {
   auto made = std::make_shared<Plan>();
   std::size_t most = 1;
   std::vector<std::string> places;  // of the groups of the last stage
@@ -329,7 +333,13 @@ ExecutionContext::Members ExecutionContext::plan(const Group& members) {
     stage[static_cast<std::size_t>(at)].push_back(member);
     most = std::max(most, stage.size());
   }
-  if (most > 1) made->together = std::make_shared<Together>(most);
+  if (most > 1) {
+    try {
+      made->together = std::make_shared<Together>(most);
+    } catch (const std::system_error& error) {
+      base::log(base::Level::error, name_, "members of other processes are called one after another: no further thread: {}", error.what());
+    }
+  }
   return made;
 }
 
@@ -338,8 +348,8 @@ void ExecutionContext::for_all(const Plan& plan, const std::function<void(Member
     for (const auto& member : group) call(*member);
   };
   for (const Stage& stage : plan.stages) {
-    if (stage.size() == 1)
-      call_group(stage.front());
+    if (!plan.together || stage.size() == 1)
+      std::ranges::for_each(stage, call_group);
     else
       plan.together->run(stage.size(), [&](std::size_t number) { call_group(stage[number]); });
   }

@@ -35,8 +35,8 @@ class Participant {
   // Whatever it throws counts as an error and is logged.
   virtual ReturnCode call(Action action) = 0;
   // Where it is called: empty for this process. Members of several other places that stand side by side among the members are called at the
-  // same time, each place on a thread of the context's; those of one place, and all others, one after another in the order in which they
-  // joined.
+  // same time, each place on a thread of the context's (of 64, if there are more places); those of one place, and all others, one after
+  // another in the order in which they joined.
   virtual std::string place() const { return {}; }
 };
 
@@ -199,7 +199,7 @@ class ExecutionContext {
   // Nothing when the member has left or the context is stopped: it is not called then.
   std::optional<ReturnCode> call_in_phase(Member& member, Action action);
   Members begin_cycle(std::size_t lane);
-  static Members plan(const Group& members);
+  Members plan(const Group& members) const;
   static void for_all(const Plan& plan, const std::function<void(Member&)>& call);
   Members members_of(std::size_t lane) const;
   std::shared_ptr<Member> hold(MemberId id) const;

@@ -19,6 +19,16 @@ base::Result<void> check_key(std::string_view what, std::string_view key) {
   return {};
 }
 
+bool KeysOfCallers::take(const std::string& key, std::string_view value) {
+  const auto at = octets_.find(key);
+  const std::size_t octets = key.size() + value.size();
+  const std::size_t total = total_ - (at == octets_.end() ? 0 : at->second) + octets;
+  if (total > entry_limits.manager_octets || (at == octets_.end() && octets_.size() == entry_limits.manager_keys)) return false;
+  octets_[key] = octets;
+  total_ = total;
+  return true;
+}
+
 base::Result<void> KeyCounter::add(std::string_view key) {
   if (auto checked = check_key(what_, key); !checked) return checked;
   total_length_ += key.size();

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
+#include <string>
 #include <string_view>
 
 #include "base/result.h"
@@ -17,11 +19,33 @@ struct KeyLimits {
 };
 inline constexpr KeyLimits key_limits{};
 
+// What peers may leave behind, call after call. Far more than anybody needs, so that it stays memory that a process can spare.
+struct EntryLimits {
+  std::size_t manager_keys = 4096;                           // of a manager, set by callers
+  std::size_t manager_octets = std::size_t{8} << 20;         // of them with their values; every component inherits some
+  std::size_t configuration_sets = 4096;                     // of a component
+  std::size_t configuration_octets = std::size_t{64} << 20;  // of all its sets
+  std::size_t organization_properties = 256;                 // of an organization
+  std::size_t members = 4096;                                // of an organization or an execution context
+};
+inline constexpr EntryLimits entry_limits{};
+
 // A port of one connection calls the next one while the first still waits, so their number is the depth of a chain of calls.
 inline constexpr std::size_t most_ports_of_a_connection = 256;
 
 // `what` begins the message: "property of the connection".
 base::Result<void> check_key(std::string_view what, std::string_view key);
+
+// The keys that callers have set in a manager, and how long their values are.
+class KeysOfCallers {
+ public:
+  // False when there is no room for it (EntryLimits).
+  bool take(const std::string& key, std::string_view value);
+
+ private:
+  std::map<std::string, std::size_t> octets_;
+  std::size_t total_ = 0;
+};
 
 // Counts the keys of one list.
 class KeyCounter {

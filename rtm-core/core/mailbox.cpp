@@ -45,6 +45,31 @@ std::size_t Mailbox::Entry::readable(std::uint64_t now) const {
   return std::min(ring.length(), ring.size() + static_cast<std::size_t>(std::ranges::count_if(aside, is_readable)));
 }
 
+std::size_t Mailbox::Entry::octets() const {
+  std::size_t sum = ring.octets();
+  for (const Sample& sample : aside) sum += octets_of(sample);
+  return sum;
+}
+
+Sample Mailbox::Entry::drop_oldest() {
+  if (!ring.is_empty()) return ring.pop();
+  Sample dropped = std::move(aside.front());
+  aside.pop_front();
+  return dropped;
+}
+
+std::size_t Mailbox::State::unread_octets() const {
+  std::size_t sum = 0;
+  for (const auto& entry : entries) sum += entry.octets();
+  return sum;
+}
+
+std::size_t Mailbox::State::all_octets() const {
+  std::size_t sum = unread_octets();
+  for (const auto& entry : entries) sum += octets_of(entry.last);
+  return sum;
+}
+
 Mailbox::Entry* Mailbox::State::find(Channel channel) {
   const auto it = std::ranges::find(entries, channel, &Entry::channel);
   return it == entries.end() ? nullptr : &*it;
@@ -132,33 +157,38 @@ void Mailbox::finish(Channel channel) {
   freed_.notify_all();
 }
 
-WriteResult Mailbox::write(Channel channel, Sample sample) {
+WriteResult Mailbox::write(Channel channel, Sample sample, std::chrono::nanoseconds most) {
   WriteResult result;
-  Sample lost;
+  std::vector<Sample> lost;  // let go without the lock
   {
     auto state = state_.lock();
     Entry* entry = state->find_writable(channel);
     if (!entry) return {PortStatus::precondition_not_met};
     entry->settle(sample.moment);
-    if (entry->is_full(sample.moment) && entry->settings.full == FullPolicy::do_nothing) return {PortStatus::buffer_full};
-    if (entry->is_full(sample.moment) && entry->settings.full == FullPolicy::block) {
-      const bool has_room = state.wait_for(freed_, entry->settings.write_timeout, [&] {
+    const std::size_t octets = octets_of(sample);
+    const auto is_crowded = [&] { return !entry->is_empty() && state->unread_octets() + octets > most_octets_; };
+    const auto is_full = [&] { return entry->is_full(sample.moment) || is_crowded(); };
+    if (entry->settings.full == FullPolicy::do_nothing && is_full()) return {PortStatus::buffer_full};
+    if (entry->settings.full == FullPolicy::block && is_full()) {
+      const bool has_room = state.wait_for(freed_, std::min(entry->settings.write_timeout, most), [&] {
         entry = state->find_writable(channel);
-        return !entry || !entry->is_full(sample.moment);
+        return !entry || !is_full();
       });
       if (!entry) return {PortStatus::precondition_not_met};
       if (!has_room) return {PortStatus::buffer_timeout};
     }
+    while (is_crowded()) lost.push_back(entry->drop_oldest());
+    if (state->all_octets() + octets > 2 * most_octets_) return {PortStatus::buffer_full};
     sample.arrival = ++state->arrivals;
-    if (entry->is_full(sample.moment) && !entry->ring.is_empty()) lost = entry->ring.front();  // let go without the lock
-    result.overwrote = entry->put(std::move(sample));
+    if (entry->is_full(sample.moment) && !entry->ring.is_empty()) lost.push_back(entry->ring.front());
+    result.overwrote = entry->put(std::move(sample)) || !lost.empty();
     if (!entry->is_rendezvous) {
       arrived_.notify_all();
       return result;
     }
     arrived_.notify_all();
     const auto reads = entry->read_count;
-    const bool is_read = state.wait_for(freed_, entry->settings.write_timeout, [&] {
+    const bool is_read = state.wait_for(freed_, std::min(entry->settings.write_timeout, most), [&] {
       entry = state->find_writable(channel);
       return !entry || entry->read_count != reads;
     });
@@ -168,7 +198,7 @@ WriteResult Mailbox::write(Channel channel, Sample sample) {
   return result;
 }
 
-ReadResult Mailbox::read(Channel channel, std::uint64_t moment) {
+ReadResult Mailbox::read(Channel channel, std::uint64_t moment, std::chrono::nanoseconds most) {
   ReadResult result;
   {
     auto state = state_.lock();
@@ -181,7 +211,7 @@ ReadResult Mailbox::read(Channel channel, std::uint64_t moment) {
         // Nobody brings anything for this phase any more.
         if (base::is_in_phase(moment) && std::ranges::none_of(state->entries, &Entry::is_rendezvous))
           return {PortStatus::buffer_timeout, {}, false, channel};
-        state.wait_for(arrived_, *patience, [&] {
+        state.wait_for(arrived_, std::min(*patience, most), [&] {
           for (auto& each : state->entries) each.settle(moment);
           entry = state->oldest(channel);
           return entry || (channel == Channel::any ? state->entries.empty() : !state->find(channel));

@@ -4,11 +4,15 @@
 // What has come is read also after its connection has ended (of closed connections at most 64 samples), so that a tool may connect, put a
 // value and disconnect.
 //
+// What is unread takes a bounded memory. A channel that has something unread is full when its next sample would lead beyond; the first
+// sample of another one is still taken up to twice as much, in which what was read last counts as well, and refused beyond that.
+//
 // In lock step (base/tick.h) samples of an odd moment wait aside until a later one: neither what is read nor whether a ring is full depends
 // on who of a phase came first. Moments of readers and writers that are even, or 0, have no such rule. Among samples of one phase those
 // of the channel whose name comes first are read first.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -38,6 +42,8 @@ struct ReadResult {
 
 class Mailbox {
  public:
+  explicit Mailbox(std::size_t most_octets = most_octets_waiting) : most_octets_(most_octets) {}
+
   // `name`: orders the channels where time does not.
   Channel open(const BufferSettings& settings, const std::string& name = "");
   // Drops what is in it; whoever waits to write or read there is released.
@@ -46,12 +52,16 @@ class Mailbox {
   // sample.
   void finish(Channel channel);
 
-  // A full ring overwrites, refuses or waits, as the channel's settings say. The sample has the writer's moment.
-  WriteResult write(Channel channel, Sample sample);
+  // As long as the channel's settings say.
+  static constexpr std::chrono::nanoseconds as_set = std::chrono::nanoseconds::max();
+
+  // A full ring overwrites, refuses or waits, as the channel's settings say, and never longer than `most`. The sample has the writer's
+  // moment.
+  WriteResult write(Channel channel, Sample sample, std::chrono::nanoseconds most = as_set);
   // The oldest sample (of that channel). If nothing is unread: the last one again, nothing, or waits, as the settings of the channel say
   // from which the last sample came; before the first sample one channel that waits is enough to wait. At an odd moment nobody waits but
-  // for a rendezvous: what is written in this phase is not for it.
-  ReadResult read(Channel channel = Channel::any, std::uint64_t moment = 0);
+  // for a rendezvous: what is written in this phase is not for it. No wait is longer than `most`.
+  ReadResult read(Channel channel = Channel::any, std::uint64_t moment = 0, std::chrono::nanoseconds most = as_set);
   std::size_t unread(Channel channel = Channel::any, std::uint64_t moment = 0) const;
   // Throws away what is unread in that channel, and the last sample with it.
   void drop_unread(Channel channel);
@@ -78,6 +88,9 @@ class Mailbox {
     std::uint64_t era = 0;  // of what was dropped last
 
     bool is_empty() const { return ring.is_empty() && aside.empty(); }
+    // Of what is unread.
+    std::size_t octets() const;
+    Sample drop_oldest();
     // Takes in what later moments may read.
     void settle(std::uint64_t now);
     // As the writer of this moment may know.
@@ -99,10 +112,14 @@ class Mailbox {
     Entry* oldest(Channel channel);
     Entry* last_read(Channel channel);
     ReadResult take(Entry& entry);
+    std::size_t unread_octets() const;
+    // With what was read last.
+    std::size_t all_octets() const;
     // How long a reader waits for the first or next sample; nothing if it does not.
     std::optional<std::chrono::nanoseconds> patience(Channel channel);
   };
 
+  const std::size_t most_octets_;
   mutable base::Guarded<State, base::Rank::buffer> state_;
   std::condition_variable arrived_;
   std::condition_variable freed_;

@@ -6,7 +6,10 @@
 
 namespace rt {
 
-Ring::Ring(std::size_t length) : length_(length), slots_(std::min<std::size_t>(length, 8)) { assert(length > 0); }
+Ring::Ring(std::size_t length, std::size_t most_octets)
+    : length_(length), most_octets_(most_octets), slots_(std::min<std::size_t>(length, 8)) {
+  assert(length > 0);
+}
 
 void Ring::grow() {
   if (count_ < slots_.size() || slots_.size() == length_) return;
@@ -19,6 +22,7 @@ bool Ring::push(Sample sample) {
   grow();
   const bool overwrites = is_full();
   if (overwrites) pop();
+  octets_ += octets_of(sample);
   slots_[(first_ + count_) % slots_.size()] = std::move(sample);
   ++count_;
   return overwrites;
@@ -28,6 +32,7 @@ void Ring::push_front(Sample sample) {
   assert(!is_full());
   grow();
   first_ = (first_ + slots_.size() - 1) % slots_.size();
+  octets_ += octets_of(sample);
   slots_[first_] = std::move(sample);
   ++count_;
 }
@@ -37,6 +42,7 @@ Sample Ring::pop() {
   Sample sample = std::exchange(slots_[first_], {});
   first_ = (first_ + 1) % slots_.size();
   --count_;
+  octets_ -= octets_of(sample);
   return sample;
 }
 

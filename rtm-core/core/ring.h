@@ -1,4 +1,4 @@
-// The samples of one connection, oldest first, in a fixed number of places. One thread at a time.
+// The samples of one connection, oldest first, in a fixed number of places and a bounded memory. One thread at a time.
 #pragma once
 
 #include <cstddef>
@@ -11,12 +11,14 @@ namespace rt {
 class Ring {
  public:
   // length >= 1. Memory is taken as it is needed.
-  explicit Ring(std::size_t length);
+  explicit Ring(std::size_t length, std::size_t most_octets = most_octets_waiting);
 
   std::size_t length() const { return length_; }
   std::size_t size() const { return count_; }
   bool is_empty() const { return count_ == 0; }
-  bool is_full() const { return count_ == length_; }
+  // One sample is taken however long it is.
+  bool is_full() const { return count_ == length_ || (count_ > 0 && octets_ >= most_octets_); }
+  std::size_t octets() const { return octets_; }
 
   // In a full ring the oldest sample makes room. True if one did.
   bool push(Sample sample);
@@ -30,6 +32,8 @@ class Ring {
   void grow();
 
   std::size_t length_;
+  std::size_t most_octets_;
+  std::size_t octets_ = 0;  // octets_of all of them
   std::vector<Sample> slots_;
   std::size_t first_ = 0;
   std::size_t count_ = 0;

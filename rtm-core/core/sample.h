@@ -71,4 +71,13 @@ struct Sample {
   explicit operator bool() const { return block || value; }
 };
 
+// The memory of a sample that waits, about; 0 for a value, whose size only its type knows.
+inline std::size_t octets_of(const Sample& sample) {
+  constexpr std::size_t around_it = 256;
+  return sample.block ? sample.block->capacity() + around_it : 0;
+}
+
+// The most memory that samples take that wait in one buffer: more waits nowhere, however many places the connection asks for.
+inline constexpr std::size_t most_octets_waiting = std::size_t{1} << 30;
+
 }  // namespace rt

@@ -1,6 +1,7 @@
 // How components come into being: factories, creation from an argument, names.
 #include <algorithm>
 
+#include "base/log.h"
 #include "base/text.h"
 #include "corba/asker.h"
 #include "core/config_file.h"
@@ -51,6 +52,9 @@ constexpr const char* inherited_nodes[] = {"config.version",
                                            "sdo",
                                            "config_file",
                                            "manager.instance_name"};
+
+// Of a component in naming services: each may have folders of its own, and is looked after as long as the component lives.
+constexpr std::size_t most_names = 16;
 
 // Keys of a creation argument that say where and how to create, not what.
 bool is_directive(const std::string& key) { return key == "manager_name" || key == "manager_address" || key == "language"; }
@@ -171,7 +175,7 @@ base::Result<RTObject_impl*> ManagerImpl::create(std::string argument) {
     return base::Error{"component " + base::in_quotes(argument) + ": its factory made none"};
   }
   state.lock()->records[place->id].component = component;
-  auto result = finish_creation(*place, *parsed);
+  auto result = try_to_finish_creation(*place, *parsed);
   if (!result) {
     destroy(place->id);
     return base::Error{"component " + base::in_quotes(argument) + ": " + result.error().message};
@@ -284,8 +288,36 @@ std::vector<std::string> ManagerImpl::naming_names(const Managed& component, con
         return std::nullopt;
     }
   };
-  for (const auto& format : base::split_list(properties.getProperty("naming.formats"))) names.push_back(rt::expand_format(format, text_of));
+  auto formats = base::split_list(properties.getProperty("naming.formats"));
+  if (formats.size() > most_names) {
+    base::log(base::Level::error, component.instance_name(), "naming.formats has {} names, expected at most {}: the others are left out",
+              formats.size(), most_names);
+    formats.resize(most_names);
+  }
+  for (const auto& format : formats) names.push_back(rt::expand_format(format, text_of));
   return names;
+}
+
+// Whatever is thrown on the way, by a naming policy of an author or for want of memory, leaves no component that is half made.
+base::Result<RTObject_impl*> ManagerImpl::try_to_finish_creation(const Record& place, const rt::ComponentArgument& argument) {
+  std::string problem = "an unknown exception";
+  try {
+    return finish_creation(place, argument);
+  } catch (const std::exception& exception) {
+    problem = exception.what();
+  } catch (...) {
+    RTC_DEBUG(("what was thrown is no std::exception"));
+  }
+  Held component;
+  {
+    auto locked = state.lock();
+    if (const auto at = locked->records.find(place.id); at != locked->records.end()) {
+      at->second.finalized = true;  // so that its end does not destroy it: its creator does
+      component = manage(at->second.component);
+    }
+  }
+  if (component) component->exit();
+  return base::Error{problem};
 }
 
 base::Result<RTObject_impl*> ManagerImpl::finish_creation(const Record& place, const rt::ComponentArgument& argument) {

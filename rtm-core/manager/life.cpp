@@ -221,8 +221,14 @@ void ManagerImpl::start_timer_tasks() {
   // Other processes may hang: what looks after them has a thread of its own.
   peers = std::make_unique<rt::TaskRunner>("rtm-peers");
   constexpr std::chrono::seconds look{2};
-  const auto look_after_components = [this] {
-    for (const auto& component : held_components()) component->leave_the_dead();
+  // Other tasks have their turn also while many components have peers that hang.
+  const auto look_after_components = [this, look, next = std::size_t{0}]() mutable {
+    const auto components = held_components();
+    const auto until = steady_clock::now() + look;
+    for (std::size_t seen = 0; seen < components.size() && steady_clock::now() < until; ++seen) {
+      if (state.lock()->end_requested) return;
+      components[next++ % components.size()]->leave_the_dead();
+    }
   };
   peers->add(look_after_components, look, look);
   if (servant != nullptr) peers->add([this] { servant->tell_dropped_slaves(); }, look, look);

@@ -15,6 +15,7 @@
 #include "component/managed.h"
 #include "corba/orb.h"
 #include "core/component_argument.h"
+#include "core/key_limits.h"
 #include "core/signal_watcher.h"
 #include "core/task_runner.h"
 #include "rtm/LogstreamBase.h"
@@ -137,6 +138,7 @@ class ManagerImpl {
   // Between our own readers and writers of config; authors reach it as they like. Held for copies alone.
   mutable base::Turn<base::Rank::log> config_turn;
   coil::Properties config;
+  rt::KeysOfCallers keys_of_callers;           // with the turn
   std::map<std::string, std::string> origins;  // of ManagerConfig
   ManagerOptions options;
   ModuleInitProc init_proc = nullptr;
@@ -187,6 +189,7 @@ class ManagerImpl {
   base::Result<std::string> name_component(const Managed& component, const rt::ComponentArgument& argument, bool& numbered);
   std::vector<std::string> naming_names(const Managed& component, const coil::Properties& properties) const;
   base::Result<RTObject_impl*> finish_creation(const Record& place, const rt::ComponentArgument& argument);
+  base::Result<RTObject_impl*> try_to_finish_creation(const Record& place, const rt::ComponentArgument& argument);
   // Policies are called one at a time, user-written or not; one may ask the manager for anything, another component included.
   base::UsersTurn numbering_turn;
   static constexpr std::chrono::seconds numbering_patience{30};  // more than a policy that asks a naming service which hangs

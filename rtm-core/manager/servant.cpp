@@ -335,9 +335,16 @@ RTC::ReturnCode_t ManagerServant::set_configuration(const char* name, const char
   if (!may_set(key, value, "the key " + base::in_quotes(key))) return RTC::RTC_ERROR;
   const auto complaint = rt::complain_about(key, value);
   if (complaint && !complaint->takes_value) return RTC::BAD_PARAMETER;
+  bool has_room = false;
   {
     const auto mine = manager_.impl_->config_turn.take();
-    manager_.impl_->config.setProperty(key, value);
+    has_room = manager_.impl_->keys_of_callers.take(key, value);
+    if (has_room) manager_.impl_->config.setProperty(key, value);
+  }
+  if (!has_room) {
+    base::log(base::Level::error, "manager", "key {} is refused: callers may set {} keys, and {} octets with their values",
+              base::in_quotes(key), rt::entry_limits.manager_keys, rt::entry_limits.manager_octets);
+    return RTC::OUT_OF_RESOURCES;
   }
   if (key.starts_with("logger.")) manager_.impl_->start_logging();
   return RTC::RTC_OK;

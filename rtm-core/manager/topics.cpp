@@ -22,8 +22,10 @@ struct Topic {
   std::string wanted;  // of those it is connected with
 };
 
-// A port may have several topics, separated by commas; most have none.
-std::vector<Topic> topics_of(const PortProfile& profile) {
+constexpr std::size_t most_topics = 64;  // of a port; each is a name in naming services, and is looked for at every component
+
+// A port may have several topics, separated by commas; most have none. What is too much is left out.
+std::vector<Topic> topics_of(const PortProfile& profile, std::size_t most = most_topics) {
   struct Rule {
     const char* port_type;
     const char* property;
@@ -40,6 +42,7 @@ std::vector<Topic> topics_of(const PortProfile& profile) {
   for (const auto& rule : rules) {
     if (type != rule.port_type) continue;
     for (const auto& name : base::split_list(NVUtil::toString(profile.properties, rule.property))) {
+      if (topics.size() == most) return topics;
       topics.push_back({rule.folder + rt::escape_name(name) + rule.context_kind, rule.kind, rule.wanted});
     }
   }
@@ -113,7 +116,12 @@ void ManagerImpl::publish_ports(const Managed& component) {
   std::vector<std::string> names;
   for (auto* port : component.ports()) {
     const PortProfile profile = port->getPortProfile();
-    for (const auto& topic : topics_of(profile)) {
+    auto topics = topics_of(profile, most_topics + 1);
+    if (topics.size() > most_topics) {
+      topics.pop_back();
+      RTC_ERROR(("port %s: has more than %zu topics: the others are left out", profile.name.in(), most_topics));
+    }
+    for (const auto& topic : topics) {
       names.push_back(topic.context + "/" + rt::escape_name(profile.name.in()) + "." + topic.kind);
       naming->bindPortObject(names.back().c_str(), port->getPortRef());
     }

@@ -13,6 +13,7 @@
 
 #include "base/clock.h"
 #include "support/component_fixture.h"
+#include "support/silence.h"
 
 namespace {
 
@@ -54,6 +55,18 @@ TEST_F(ComponentContextTest, components_share_a_context_of_the_same_type_and_nam
   EXPECT_EQ(a->exit(), RTC::RTC_OK);
   EXPECT_TRUE(of_b->is_running());
   EXPECT_TRUE(b->wait_for("onExecute", b->count("onExecute") + 2));
+}
+
+TEST_F(ComponentContextTest, has_no_more_contexts_of_its_own_than_there_may_be_threads) {
+  const auto initialize_with = [](std::size_t count) {
+    std::string list = "ExtTrigExecutionContext";
+    for (std::size_t n = 1; n < count; ++n) list += ",ExtTrigExecutionContext";
+    Owned<> component(nullptr, "Many");
+    component->getProperties()["execution_contexts"] = list;
+    return component->initialize();
+  };
+  EXPECT_EQ(initialize_with(64), RTC::RTC_OK);
+  EXPECT_EQ(initialize_with(65), RTC::RTC_ERROR);
 }
 
 TEST_F(ComponentContextTest, may_have_none) {
@@ -294,6 +307,52 @@ TEST_F(ComponentContextTest, gives_its_thread_the_stack_that_was_asked_for) {
   EXPECT_EQ(probe->activate(0), RTC::RTC_OK);
   EXPECT_GE(stack, std::size_t{24} << 20) << "stacks of threads that have ended are used again when they are large enough";
   probe->during = nullptr;
+}
+
+struct AmongTheSilent : ComponentTest {
+  CORBA::Object_ptr object(const char* type) {
+    int argc = 0;
+    const CORBA::ORB_var orb = CORBA::ORB_init(argc, nullptr);
+    return silence.object(orb, type, ++made);
+  }
+  RTC::ExecutionContext_ptr context() {
+    const CORBA::Object_var silent = object("IDL:omg.org/RTC/ExecutionContextService:1.0");
+    return RTC::ExecutionContext::_unchecked_narrow(silent);
+  }
+  SDOPackage::Organization_ptr organization() {
+    const CORBA::Object_var silent = object("IDL:org.omg/SDOPackage/Organization:1.0");
+    return SDOPackage::Organization::_unchecked_narrow(silent);
+  }
+  support::Silence silence;
+  int made = 0;
+};
+
+TEST_F(AmongTheSilent, a_component_takes_part_in_a_limited_number_of_contexts_and_organizations) {
+  probe->getProperties()["exec_cxt.callback_timeout"] = "0.2";
+  probe->initialize();
+  SDOPackage::Configuration_var configuration = probe->get_configuration();
+  for (int i = 0; i < 64; ++i) {
+    EXPECT_EQ(probe->attach_context(RTC::ExecutionContext_var(context())), 1000 + i);
+    EXPECT_TRUE(configuration->add_organization(SDOPackage::Organization_var(organization())));
+  }
+  EXPECT_EQ(probe->attach_context(RTC::ExecutionContext_var(context())), -1);
+  EXPECT_FALSE(configuration->add_organization(SDOPackage::Organization_var(organization())));
+  EXPECT_EQ(probe->detach_context(1007), RTC::RTC_OK);
+  EXPECT_EQ(probe->attach_context(RTC::ExecutionContext_var(context())), 1007);
+}
+
+TEST_F(AmongTheSilent, a_component_leaves_in_time) {
+  probe->getProperties()["exec_cxt.callback_timeout"] = "0.2";
+  probe->initialize();
+  SDOPackage::Configuration_var configuration = probe->get_configuration();
+  for (int i = 0; i < 60; ++i) {
+    probe->attach_context(RTC::ExecutionContext_var(context()));
+    configuration->add_organization(SDOPackage::Organization_var(organization()));
+  }
+  const auto began = std::chrono::steady_clock::now();
+  EXPECT_EQ(probe->exit(), RTC::RTC_OK);
+  EXPECT_LT(std::chrono::steady_clock::now() - began, 12s) << "half of what all of them take, one after the other";
+  EXPECT_EQ(probe->count("onFinalize"), 1);
 }
 
 TEST_F(ComponentContextTest, leaves_foreign_ones_when_it_exits) {

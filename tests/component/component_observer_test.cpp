@@ -173,6 +173,21 @@ TEST_F(ComponentObserverTest, tells_an_observer_of_the_second_version_only_what_
   for (const auto& [kind, hint] : observer->heard) EXPECT_NE(kind, RTC::CONFIGURATION) << hint;
 }
 
+TEST_F(ComponentObserverTest, has_no_more_observers_than_there_may_be_threads) {
+  probe->initialize();
+  SDOPackage::Configuration_var configuration = probe->get_configuration();
+  Served<OldObserver> observer;
+  const auto add = [&](int number) {
+    return configuration->add_service_profile(
+        service_profile(std::to_string(number).c_str(), "IDL:OpenRTM/ComponentObserver:1.0", observer.reference()));
+  };
+  for (int number = 0; number < 256; ++number) ASSERT_TRUE(add(number)) << number;
+  EXPECT_FALSE(add(256));
+  EXPECT_TRUE(add(3)) << "one that is known may change";
+  ASSERT_TRUE(configuration->remove_service_profile("7"));
+  EXPECT_TRUE(add(257));
+}
+
 TEST_F(ComponentObserverTest, tells_observers_what_changes_in_ports_profile_and_state_machine) {
   RTC::TimedLong value{};
   RTC::InPort<RTC::TimedLong> in("in", value);

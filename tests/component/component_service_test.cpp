@@ -1,6 +1,7 @@
 // State machines and composites of components in this process.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <rtm/ExecutionContextServant.h>
 #include <rtm/InPort.h>
 #include <rtm/NVUtil.h>
 #include <rtm/OutPort.h>
@@ -11,8 +12,10 @@
 #include <condition_variable>
 #include <map>
 #include <mutex>
+#include <semaphore>
 #include <thread>
 
+#include "corba/call_timeout.h"
 #include "support/component_fixture.h"
 
 namespace {
@@ -259,7 +262,83 @@ TEST_F(ComponentServiceTest, groups_of_a_multilayer_composite_run_at_the_same_ti
   for (auto* member : {&*a, &*b, &*c}) member->during = nullptr;
 }
 
+TEST_F(ComponentServiceTest, a_composite_takes_no_more_groups_than_there_may_be_threads) {
+  const auto initialize_with_groups = [](std::size_t count) {
+    Owned<Composite> composite;
+    composite->getProperties()["exec_cxt.periodic.type"] = "MultilayerCompositeEC";
+    coil::Properties spec;
+    spec["conf.default.members"] = "a";
+    for (std::size_t n = 1; n < count; ++n) spec["conf.default.members"] += "|a";
+    composite->setProperties(spec);
+    return composite->initialize();
+  };
+  EXPECT_EQ(initialize_with_groups(256), RTC::RTC_OK);
+  EXPECT_EQ(initialize_with_groups(257), RTC::BAD_PARAMETER);
+}
+
 // --- state machines
+
+TEST_F(ComponentServiceTest, an_organization_has_a_limited_number_of_properties_and_members) {
+  probe->initialize();
+  Owned<Composite> composite;
+  composite->initialize();
+  SDOPackage::OrganizationList_var organizations = composite->get_owned_organizations();
+  CORBA::Any value;
+  value <<= "x";
+  for (int i = 0; i < 256; ++i) ASSERT_TRUE(organizations[0u]->set_organization_property_value(std::to_string(i).c_str(), value));
+  EXPECT_THROW(organizations[0u]->set_organization_property_value("another", value), SDOPackage::InvalidParameter);
+  EXPECT_TRUE(organizations[0u]->set_organization_property_value("7", value));
+  SDOPackage::SDOList members;
+  members.length(4097);
+  for (CORBA::ULong i = 0; i < members.length(); ++i) members[i] = probe->getObjRef();
+  EXPECT_THROW(organizations[0u]->set_members(members), SDOPackage::InvalidParameter);
+}
+
+// Takes its time for each answer, but no time-out.
+class SlowContext final : public RTC::ExecutionContextServant<POA_RTC::ExecutionContextService> {
+ public:
+  SlowContext() : ExecutionContextServant("slow_ec") { setObjRef(RTC::ExecutionContextService_var(_this())); }
+  RTC::ReturnCode_t stop() override {
+    ++stops;
+    static_cast<void>(std::binary_semaphore(0).try_acquire_for(100ms));
+    return RTC::RTC_OK;
+  }
+  int stops = 0;
+};
+
+// As many contexts as it likes.
+class Contextful : public support::ProbeComponent {
+ public:
+  explicit Contextful(RTC::ExecutionContextService_ptr one)
+      : ProbeComponent(nullptr, "Contextful0"), one_(RTC::ExecutionContextService::_duplicate(one)) {}
+  RTC::ExecutionContextList* get_owned_contexts() override {
+    RTC::ExecutionContextList_var list = new RTC::ExecutionContextList();
+    list->length(100);
+    for (CORBA::ULong i = 0; i < list->length(); ++i) list[i] = RTC::ExecutionContext::_duplicate(one_);
+    return list._retn();
+  }
+
+ private:
+  const RTC::ExecutionContextService_var one_;
+};
+
+TEST_F(ComponentServiceTest, a_member_that_takes_its_time_for_each_of_many_contexts_does_not_join) {
+  const auto usual = corba::port_call_timeout();
+  Served<SlowContext> context;
+  Owned<Contextful> member(context->getObjRef());
+  member->initialize();
+  Owned<Composite> composite;
+  composite->initialize();
+  SDOPackage::OrganizationList_var organizations = composite->get_owned_organizations();
+  SDOPackage::SDOList members;
+  members.length(1);
+  members[0] = member->getObjRef();
+  corba::set_port_call_timeout(100ms);
+  EXPECT_FALSE(organizations[0u]->add_members(members));
+  corba::set_port_call_timeout(usual);
+  EXPECT_GE(context->stops, 1);
+  EXPECT_LT(context->stops, 10);
+}
 
 TEST_F(ComponentServiceTest, shows_its_state_machine_to_tools) {
   probe->initialize();

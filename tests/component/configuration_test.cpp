@@ -40,6 +40,19 @@ TEST_F(ConfigurationTest, a_bound_variable_without_a_value_takes_its_default) {
   EXPECT_EQ(offset, 7);
 }
 
+TEST_F(ConfigurationTest, sets_and_their_memory_have_limits) {
+  int added = 0;
+  while (added < 10'000 && configuration.add({std::to_string(added), {}})) ++added;
+  EXPECT_EQ(added, 4093) << "beside the three that it has";
+  EXPECT_FALSE(configuration.set_values({"another", {{"gain", "1"}}}));
+  EXPECT_TRUE(configuration.set_values({"7", {{"gain", "1"}}})) << "what is there may change";
+  int taken = 0;
+  while (taken < 1000 && configuration.set_values({"7", {{std::to_string(taken), std::string(1 << 20, 'x')}}})) ++taken;
+  EXPECT_GT(taken, 50);
+  EXPECT_LT(taken, 65);
+  EXPECT_TRUE(configuration.set_values({"default", {{"gain", "3"}}}));
+}
+
 TEST_F(ConfigurationTest, a_name_is_bound_once) {
   int other = 0;
   EXPECT_FALSE(configuration.bind("gain", "2", to_int(other)));

@@ -3,12 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <future>
 #include <limits>
+#include <set>
+#include <thread>
 
 #include "base/log.h"
 #include "support/context_fixture.h"
+#include "support/memory_limit.h"
 
 namespace rt {
 
@@ -228,6 +232,53 @@ TEST_F(ExecutionContextTest, runs_the_phases_for_all_members_one_after_the_other
   context.step();
   EXPECT_THAT(order, ElementsAre(std::pair(1, Action::activated), std::pair(2, Action::activated), std::pair(1, Action::execute),
                                  std::pair(2, Action::execute), std::pair(1, Action::state_update), std::pair(2, Action::state_update)));
+}
+
+// Members of so many processes, or of one that has so many addresses.
+struct Elsewhere final : Participant {
+  explicit Elsewhere(std::string where) : place_(std::move(where)) {}
+  std::string name() const override { return place_; }
+  std::string place() const override { return place_; }
+  ReturnCode call(Action action) override {
+    if (action != Action::execute) return ReturnCode::ok;
+    ++calls;
+    thread = std::this_thread::get_id();
+    return ReturnCode::ok;
+  }
+  int calls = 0;
+  std::thread::id thread{};
+
+ private:
+  std::string place_;
+};
+
+struct ManyElsewhere : ExecutionContextTest {
+  void step_with(int count) {
+    for (int i = 0; i < count; ++i) {
+      members.push_back(std::make_shared<Elsewhere>("host:" + std::to_string(i)));
+      ASSERT_EQ(context.request(context.add(members.back()), Event::activate), ReturnCode::ok);
+    }
+    context.step();
+  }
+  int called() const {
+    return static_cast<int>(std::ranges::count_if(members, [](const auto& member) { return member->calls == 1; }));
+  }
+  std::vector<std::shared_ptr<Elsewhere>> members;
+};
+
+TEST_F(ManyElsewhere, are_called_on_a_limited_number_of_threads) {
+  step_with(300);
+  std::set<std::thread::id> threads;
+  for (const auto& member : members) threads.insert(member->thread);
+  EXPECT_EQ(threads.size(), 64u);
+  EXPECT_EQ(called(), 300);
+}
+
+TEST_F(ManyElsewhere, are_called_one_after_another_when_there_is_no_thread_left) {
+  if (!sim::test::MemoryLimit::is_kept) GTEST_SKIP() << "sanitizers need the memory";
+  const sim::test::MemoryLimit limit(std::size_t{64} << 20);  // for a few stacks
+  step_with(60);
+  EXPECT_EQ(called(), 60);
 }
 
 TEST_F(ExecutionContextTest, knows_nothing_of_those_who_are_no_members) {

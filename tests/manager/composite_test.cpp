@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "manager/rtcd_fixture.h"
+#include "support/silence.h"
 
 namespace manager_test {
 namespace {
@@ -299,6 +300,21 @@ TEST_F(Composite, members_live_on_when_the_composite_is_killed) {
   EXPECT_EQ(foreign->length(), 0u);
   EXPECT_EQ(CORBA_RTCUtil::activate(a), RTC::RTC_OK);
   EXPECT_EQ(far.stop(), 0) << far.output();
+}
+
+// Whether they have died is asked of each, in the background; the end of the process waits for that.
+TEST_F(Composite, members_of_many_contexts_that_hang_do_not_keep_the_process_from_ending) {
+  const int port = support::free_port();
+  support::Process rtcd(command({"-p", std::to_string(port), "SinkAll"}));
+  ASSERT_TRUE(eventually([&] { return has("SinkAll0.rtc"); })) << rtcd.output();
+  RTC::RTObject_var sink = component("SinkAll0.rtc");
+  const support::Silence silence;
+  for (int i = 0; i < 60; ++i) {
+    const CORBA::Object_var object = silence.object(orb_->orb(), "IDL:omg.org/RTC/ExecutionContextService:1.0", i);
+    ASSERT_GE(sink->attach_context(RTC::ExecutionContext_var(RTC::ExecutionContext::_unchecked_narrow(object))), 1000);
+  }
+  ASSERT_TRUE(silence.wait_for_caller());
+  EXPECT_EQ(rtcd.stop(), 0) << rtcd.output();
 }
 
 }  // namespace

@@ -3,15 +3,20 @@
 #include <rtm/CORBA_RTCUtil.h>
 #include <rtm/CorbaNaming.h>
 #include <rtm/DataFlowComponentBase.h>
+#include <rtm/ECFactory.h>
 #include <rtm/LogstreamBase.h>
 #include <rtm/Manager.h>
 #include <rtm/ManagerActionListener.h>
 #include <rtm/NamingManager.h>
+#include <rtm/NumberingPolicyBase.h>
+#include <rtm/PeriodicExecutionContext.h>
 
+#include <cerrno>
 #include <future>
 #include <mutex>
 #include <sstream>
 #include <stdexcept>
+#include <system_error>
 
 #include "base/clock.h"
 #include "support/naming_service.h"
@@ -100,6 +105,61 @@ TEST(Manager, makes_numbers_and_deletes_components) {
   EXPECT_EQ(destroyed, 3);
   EXPECT_FALSE(manager.isRunning());
   EXPECT_EQ(manager.createComponent("Plain"), nullptr);
+}
+
+TEST(Manager, a_stack_that_is_too_large_for_a_thread_is_not_taken) {
+  auto& manager = started();
+  for (const char* size : {"1048576M", "257M", "1"})
+    EXPECT_NE(manager.createComponent("Plain?exec_cxt.periodic.stack_size=" + std::string(size)), nullptr) << size;
+  EXPECT_NE(manager.createComponent("Plain?exec_cxt.stack_size=256M"), nullptr);
+  manager.shutdown();
+  EXPECT_EQ(destroyed, 4);
+}
+
+class Threadless : public RTC::PeriodicExecutionContext {
+ public:
+  RTC::ReturnCode_t onStarted() override { throw std::system_error(EAGAIN, std::generic_category(), "no thread could be made"); }
+};
+
+TEST(Manager, a_component_whose_context_gets_no_thread_is_not_made_and_leaves_nothing) {
+  auto& manager = started();
+  RTC::ExecutionContextFactory::instance().addFactory("Threadless", RTC::ECCreate<Threadless>, RTC::ECDelete<Threadless>);
+  EXPECT_EQ(manager.createComponent("Plain?instance_name=mine&exec_cxt.periodic.type=Threadless"), nullptr);
+  EXPECT_EQ(destroyed, 1);
+  EXPECT_NE(manager.createComponent("Plain?instance_name=mine"), nullptr);
+  manager.shutdown();
+  EXPECT_EQ(destroyed, 2);
+}
+
+class Throwing final : public RTM::NumberingPolicyBase {
+ public:
+  std::string onCreate(void*) override {
+    if (number_++ == 0) throw std::runtime_error("no number");
+    return "x";
+  }
+  void onDelete(void*) override {}
+
+ private:
+  int number_ = 0;
+};
+
+TEST(Manager, a_component_on_whose_way_something_is_thrown_leaves_nothing) {
+  RTM::NumberingPolicyFactory::instance().addFactory("throwing", coil::Creator<RTM::NumberingPolicyBase, Throwing>,
+                                                     coil::Destructor<RTM::NumberingPolicyBase, Throwing>);
+  auto& manager = started({"manager.components.naming_policy:throwing"});
+  EXPECT_EQ(manager.createComponent("Plain"), nullptr);
+  EXPECT_EQ(destroyed, 1);
+  EXPECT_NE(manager.createComponent("Plain"), nullptr);
+  manager.shutdown();
+  EXPECT_EQ(destroyed, 2);
+}
+
+TEST(Manager, a_component_that_gets_no_name_is_deleted) {
+  auto& manager = started();
+  ASSERT_NE(manager.createComponent("PeriodicECSharedComposite?instance_name=mine"), nullptr);
+  EXPECT_EQ(manager.createComponent("Plain?instance_name=mine"), nullptr);
+  EXPECT_EQ(destroyed, 1);
+  manager.shutdown();
 }
 
 // A start script that runs twice works.

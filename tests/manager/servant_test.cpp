@@ -84,6 +84,23 @@ TEST_F(Servant, every_value_of_profile_and_configuration_is_a_string) {
   EXPECT_TRUE(rtcd.running());
 }
 
+TEST_F(Servant, callers_set_a_limited_number_of_keys_of_a_limited_length) {
+  const int port = support::free_port();
+  support::Process rtcd(at_port(port, {}));
+  RTM::Manager_var manager = manager_at(port);
+  ASSERT_FALSE(CORBA::is_nil(manager)) << rtcd.output();
+  const std::string long_value(60'000, 'x');
+  int taken = 0;
+  while (taken < 1000 && manager->set_configuration(("test.a." + std::to_string(taken)).c_str(), long_value.c_str()) == RTC::RTC_OK)
+    ++taken;
+  EXPECT_EQ(taken, 139) << "8 MiB";
+  for (int i = 0; i < taken; ++i) ASSERT_EQ(manager->set_configuration(("test.a." + std::to_string(i)).c_str(), ""), RTC::RTC_OK);
+  while (taken < 5000 && manager->set_configuration(("test.a." + std::to_string(taken)).c_str(), "x") == RTC::RTC_OK) ++taken;
+  EXPECT_EQ(taken, 4096);
+  EXPECT_EQ(manager->set_configuration("test.a.9", "y"), RTC::RTC_OK);
+  EXPECT_TRUE(rtcd.wait_for_output("key \"test.a.4096\" is refused")) << rtcd.output();
+}
+
 TEST_F(Servant, modules_are_shown_with_what_tools_look_for) {
   const int port = support::free_port();
   support::Process rtcd(at_port(port, {}));

@@ -30,6 +30,27 @@ TEST(Topics, ports_of_one_process_are_connected) {
   EXPECT_EQ(count("B", "out"), 0u);
 }
 
+std::string numbered(const std::string& text, int count) {
+  std::string list = text + "0";
+  for (int i = 1; i < count; ++i) list += "," + text + std::to_string(i);
+  return list;
+}
+
+TEST(Topics, a_port_has_at_most_64) {
+  Started manager({});
+  ASSERT_EQ(manager.make("Ported?instance_name=A&port.outport.out.publish_topic=" + numbered("t", 100)), "A");
+  ASSERT_EQ(manager.make("Ported?instance_name=B&port.inport.in.subscribe_topic=t63"), "B");
+  ASSERT_EQ(manager.make("Ported?instance_name=C&port.inport.in.subscribe_topic=t64"), "C");
+  EXPECT_EQ(CORBA_RTCUtil::get_connector_names(manager.reference("B"), "in").size(), 1u);
+  EXPECT_EQ(CORBA_RTCUtil::get_connector_names(manager.reference("C"), "in").size(), 0u);
+}
+
+TEST(Keys, naming_formats_gives_a_component_at_most_16_names) {
+  Started manager({});
+  ASSERT_EQ(manager.make("Ported?naming.enable=YES&naming.formats=" + numbered("n", 100)), "Ported0");
+  EXPECT_EQ(manager->getComponent("Ported0")->getNamingNames().size(), 16u);
+}
+
 TEST(Topics, rtc_conf_names_topics_for_types_and_instances) {
   Started manager({"test.Ported.port.outport.out.publish_topic:chatter", "test.B.port.inport.in.subscribe_topic:chatter"});
   ASSERT_EQ(manager.make("Ported?instance_name=A"), "A");

@@ -5,8 +5,10 @@
 
 #include "base/id.h"
 #include "corba/call_timeout.h"
+#include "corba/farewell.h"
 #include "corba/nv_list.h"
 #include "ports/support.h"
+#include "support/memory_limit.h"
 
 namespace {
 
@@ -130,6 +132,55 @@ TEST_F(Connecting, limits_of_connections_hold) {
   EXPECT_EQ(fan.connect(one), RTC::RTC_OK);
   EXPECT_EQ(fan.connect(two), RTC::RTC_ERROR);
   EXPECT_TRUE(second.connectors().empty());
+}
+
+TEST_F(Connecting, a_limit_of_connections_larger_than_an_int_is_no_limit_of_none) {
+  coil::Properties limit;
+  limit.setProperty("connection_limit", "4294967296");
+  out.init(limit);
+  auto plan = profile({out.getPortRef(), in.getPortRef()});
+  EXPECT_EQ(out.connect(plan), RTC::RTC_OK);
+}
+
+TEST_F(Connecting, thousands_of_connections_are_made_and_no_more_unless_the_port_says_so) {
+  const auto connect_up_to = [](RTC::InPort<RTC::TimedLong>& port, int most) {
+    for (int made = 0; made < most; ++made) {
+      auto plan = profile({port.getPortRef()});
+      if (port.connect(plan) != RTC::RTC_OK) return made;
+    }
+    return most;
+  };
+  EXPECT_EQ(connect_up_to(in, 4100), 4096);
+  RTC::InPort<RTC::TimedLong> large("C0.in", received);
+  coil::Properties limit;
+  limit.setProperty("connection_limit", "4098");
+  large.init(limit);
+  EXPECT_EQ(connect_up_to(large, 4100), 4098);
+}
+
+TEST_F(Connecting, a_connection_for_which_there_is_no_thread_is_refused) {
+  if (!sim::test::MemoryLimit::is_kept) GTEST_SKIP() << "sanitizers need the memory";
+  auto plan = profile({out.getPortRef(), in.getPortRef()}, {{"subscription_type", "new"}});
+  {
+    const sim::test::MemoryLimit limit(std::size_t{4} << 20);
+    EXPECT_EQ(out.connect(plan), RTC::RTC_ERROR);
+  }
+  EXPECT_TRUE(in.connectors().empty());
+  EXPECT_EQ(out.connect(plan), RTC::RTC_OK);
+}
+
+// A process that does not answer is told later, on a thread.
+TEST_F(Connecting, a_port_for_whose_farewell_there_is_no_thread_costs_nothing_but_that_farewell) {
+  if (!sim::test::MemoryLimit::is_kept) GTEST_SKIP() << "sanitizers need the memory";
+  auto plan = profile({in.getPortRef()}, {}, "left");
+  ASSERT_EQ(in.connect(plan), RTC::RTC_OK);
+  {
+    const sim::test::MemoryLimit limit(std::size_t{4} << 20);
+    EXPECT_NO_THROW(corba::take_leave_when_awake(in.getPortRef(), "left"));
+  }
+  EXPECT_EQ(in.connectors().size(), 1u);
+  corba::take_leave_when_awake(in.getPortRef(), "left");
+  EXPECT_TRUE(ports::eventually([&] { return in.connectors().empty(); })) << "a later one gets through";
 }
 
 TEST_F(Connecting, stale_references_in_the_profile_are_not_used) {

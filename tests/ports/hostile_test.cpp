@@ -12,13 +12,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstring>
+#include <future>
 #include <span>
 #include <vector>
 
 #include "corba/call_timeout.h"
+#include "corba/connector_keys.h"
 #include "corba/sample_room.h"
 #include "ports/support.h"
 #include "support/hanging.h"
@@ -120,6 +123,51 @@ TEST_F(Hostile, one_deadline_counts_for_a_chain_of_any_length) {
   EXPECT_GT(corba::chain_timeout(10s, 1, 200), 0s);
   const corba::ChainDeadline deadline(1ms);
   EXPECT_TRUE(ports::eventually([&] { return deadline.is_over(); }));
+}
+
+// One port alone is a connection, too; then there is nobody whom the watch for dead peers could miss.
+TEST_F(Hostile, a_call_with_a_sample_waits_no_longer_than_calls_of_its_connection_may_take) {
+  const ports::Pairs patient = {{"buffer.length", "1"},         {"buffer.write.full_policy", "block"}, {"buffer.write.timeout", "1e6"},
+                                {"buffer.read.timeout", "1e6"}, {"buffer.read.empty_policy", "block"}, {"call_timeout", "0.1"}};
+  const auto object_of = [&](const RTC::ConnectorProfile& plan, const char* key) {
+    return CORBA::Object_var(orb->orb()->string_to_object(NVUtil::toString(plan.properties, key).c_str()));
+  };
+  auto push = profile({in.getPortRef()}, patient);
+  ASSERT_EQ(in.connect(push), RTC::RTC_OK);
+  const OpenRTM::InPortCdr_var to = OpenRTM::InPortCdr::_narrow(object_of(push, "dataport.corba_cdr.inport_ior"));
+  OpenRTM::CdrData octets;
+  octets.length(12);  // a TimedLong
+  std::fill_n(octets.get_buffer(), 12, CORBA::Octet{0});
+  ASSERT_EQ(to->put(octets), OpenRTM::PORT_OK);
+  auto putting = std::async(std::launch::async, [&] { return to->put(octets); });
+  EXPECT_EQ(putting.wait_for(support::watchdog), std::future_status::ready);
+  in.disconnect(push.connector_id);
+  EXPECT_EQ(putting.get(), OpenRTM::BUFFER_TIMEOUT);
+
+  auto pull = profile({out.getPortRef()}, patient);
+  NVUtil::setStringValue(pull.properties, "dataport.dataflow_type", "pull");
+  ASSERT_EQ(out.connect(pull), RTC::RTC_OK);
+  const OpenRTM::OutPortCdr_var from = OpenRTM::OutPortCdr::_narrow(object_of(pull, "dataport.corba_cdr.outport_ior"));
+  auto getting = std::async(std::launch::async, [&] {
+    OpenRTM::CdrData_var data;
+    return from->get(data.out());
+  });
+  EXPECT_EQ(getting.wait_for(support::watchdog), std::future_status::ready);
+  out.disconnect(pull.connector_id);
+  EXPECT_EQ(getting.get(), OpenRTM::BUFFER_TIMEOUT);
+}
+
+TEST_F(Hostile, a_connection_asks_for_no_more_patience_than_a_minute_or_what_the_process_has) {
+  rt::ConnectorSettings settings;
+  const auto usual = corba::port_call_timeout();
+  EXPECT_EQ(corba::line_of(settings).call_timeout, usual);
+  settings.call_timeout = 30s;
+  EXPECT_EQ(corba::line_of(settings).call_timeout, 30s);
+  settings.call_timeout = 1'000'000s;
+  EXPECT_EQ(corba::line_of(settings).call_timeout, 60s);
+  corba::set_port_call_timeout(3600s);
+  EXPECT_EQ(corba::line_of(settings).call_timeout, 3600s);
+  corba::set_port_call_timeout(usual);
 }
 
 TEST_F(Hostile, a_reference_that_asks_a_server_of_the_senders_choice_is_none) {

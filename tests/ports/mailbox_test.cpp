@@ -4,6 +4,7 @@
 
 #include <thread>
 
+#include "core/ring.h"
 #include "core/send_queue.h"
 
 namespace rt {
@@ -133,6 +134,58 @@ TEST(Mailbox, a_finished_channel_is_read_to_its_end_and_not_written) {
   EXPECT_EQ(box.read(ended).status, PortStatus::precondition_not_met);
   box.finish(open);
   EXPECT_EQ(box.read().status, PortStatus::precondition_not_met) << "nothing was unread";
+}
+
+constexpr std::size_t small = 10'000;  // [octets] for the memory of a mailbox, in these tests
+
+Sample long_sample(int number, std::size_t octets) {
+  Sample made = sample(number);
+  auto block = std::make_shared<Block>(octets);
+  block->set_size(1);
+  *block->data() = static_cast<std::byte>(number);
+  made.block = block;
+  return made;
+}
+
+TEST(Mailbox, long_samples_fill_a_ring_before_its_places_do) {
+  Mailbox box(small);
+  const auto overwrites = box.open(buffer(FullPolicy::overwrite, EmptyPolicy::do_nothing, 1000));
+  for (int i = 1; i <= 3; ++i) EXPECT_FALSE(box.write(overwrites, long_sample(i, 3000)).overwrote);
+  EXPECT_TRUE(box.write(overwrites, long_sample(4, 3000)).overwrote);
+  EXPECT_EQ(box.unread(), 3u);
+  const auto refuses = box.open(buffer(FullPolicy::do_nothing, EmptyPolicy::do_nothing, 1000));
+  EXPECT_EQ(box.write(refuses, long_sample(5, 3000)).status, PortStatus::ok) << "the first of another connection";
+  EXPECT_EQ(box.write(refuses, long_sample(6, 3000)).status, PortStatus::buffer_full);
+  const auto waits = box.open(buffer(FullPolicy::block, EmptyPolicy::do_nothing, 1000));
+  EXPECT_EQ(box.write(waits, sample(7)).status, PortStatus::ok);
+  EXPECT_EQ(box.write(waits, sample(8)).status, PortStatus::buffer_timeout);
+  for (const int expected : {2, 3, 4, 5, 7}) EXPECT_EQ(number(box.read().sample), expected);
+  EXPECT_EQ(box.write(waits, sample(9)).status, PortStatus::ok);
+}
+
+TEST(Mailbox, what_all_connections_bring_takes_a_bounded_memory) {
+  Mailbox box(small);
+  int taken = 0;
+  for (int i = 0; i < 100; ++i)
+    taken += box.write(box.open(buffer(FullPolicy::overwrite, EmptyPolicy::do_nothing)), long_sample(i, 3000)).status == PortStatus::ok;
+  EXPECT_EQ(taken, 6);
+  EXPECT_EQ(box.unread(), 6u);
+}
+
+TEST(Mailbox, a_sample_longer_than_the_memory_that_is_meant_to_be_is_still_taken_alone) {
+  Mailbox box(small);
+  const auto channel = box.open(buffer(FullPolicy::overwrite, EmptyPolicy::do_nothing));
+  for (const int i : {1, 2}) EXPECT_EQ(box.write(channel, long_sample(i, 15'000)).status, PortStatus::ok);
+  EXPECT_EQ(number(box.read().sample), 2);
+}
+
+TEST(Ring, is_full_of_octets) {
+  Ring ring(1000, small);
+  for (int i = 1; i <= 4; ++i) EXPECT_FALSE(ring.push(long_sample(i, 3000)));
+  EXPECT_TRUE(ring.is_full());
+  EXPECT_TRUE(ring.push(long_sample(5, 3000)));
+  EXPECT_EQ(number(ring.pop()), 2);
+  EXPECT_FALSE(ring.is_full());
 }
 
 TEST(Mailbox, with_a_rendezvous_a_write_returns_when_it_was_read) {

@@ -57,7 +57,10 @@ void Task::activate() {
     kept_->is_due = kept_->is_busy = true;
     kept_->changed.notify_all();
   }
-  if (!thread_) start(&Task::run_again_and_again, new std::shared_ptr<Kept>(kept_));
+  if (thread_) return;
+  auto argument = std::make_unique<std::shared_ptr<Kept>>(kept_);
+  start(&Task::run_again_and_again, argument.get());
+  static_cast<void>(argument.release());  // the thread has it
 }
 
 void Task::start(void* (*body)(void*), void* argument) {
@@ -68,6 +71,10 @@ void Task::start(void* (*body)(void*), void* argument) {
   const int failed = pthread_create(&thread, &attributes, body, argument);
   pthread_attr_destroy(&attributes);
   if (failed != 0) {
+    if (kept_) {
+      const std::lock_guard lock(kept_->mutex);
+      kept_->is_due = kept_->is_busy = false;
+    }
     is_running_ = false;
     throw std::system_error(failed, std::generic_category(), "no thread could be made");
   }

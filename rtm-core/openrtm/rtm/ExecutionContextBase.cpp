@@ -5,6 +5,7 @@
 #include "component/context_impl.h"
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 #include "base/clock.h"
@@ -104,7 +105,15 @@ RTC::ReturnCode_t ExecutionContextBase::start() {
   if (const auto code = onStarting(); code != RTC::RTC_OK) return code;
   const base::ScopedClock clock(contextClock());
   if (const auto code = impl_->context.start(); code != rt::ReturnCode::ok) return corba::to_wire(code);
-  return onStarted();
+  try {
+    return onStarted();
+  } catch (const std::exception& exception) {  // above all: the system gives no further thread
+    RTC_ERROR(("the context does not start: %s", exception.what()));
+  } catch (...) {
+    RTC_ERROR(("the context does not start: an unknown exception"));
+  }
+  impl_->context.stop(callbackPatience());
+  return RTC::RTC_ERROR;
 }
 
 RTC::ReturnCode_t ExecutionContextBase::stop() {

@@ -11,6 +11,8 @@ namespace RTC_exp {
 
 namespace {
 
+constexpr std::size_t most_groups = 256;  // each is a thread
+
 enum Job : int { transitions, execution };
 
 // Members of other processes are named by address: rtcname://host/context/Arm0.rtc, rtcloc://host/category/Arm0.
@@ -30,7 +32,13 @@ MultilayerCompositeEC::~MultilayerCompositeEC() { endThread(); }
 RTC::ReturnCode_t MultilayerCompositeEC::bindComponent(RTC::RTObject_impl* rtc) {
   if (rtc != nullptr && getComponents().empty()) {
     const std::string members = rtc->getConfigService().getConfigurationSet("default").getProperty("members");
-    for (const std::string& group : base::split_list(members, '|')) {
+    const auto groups = base::split_list(members, '|');
+    if (groups.size() > most_groups) {
+      RTC_ERROR(("composite %s: members has %zu groups, expected at most %zu", base::in_quotes(rtc->getInstanceNameString()).c_str(),
+                 groups.size(), most_groups));
+      return RTC::BAD_PARAMETER;
+    }
+    for (const std::string& group : groups) {
       const auto names = base::split_list(group);
       if (names.empty()) continue;
       ++count_;

@@ -8,6 +8,7 @@
 
 #include "base/log.h"
 #include "base/text.h"
+#include "corba/call_timeout.h"
 #include "corba/orb.h"
 #include "corba/remote_participant.h"
 #include "core/workers.h"
@@ -29,6 +30,25 @@ bool attempt(const std::string& id, const char* what, Function function) {
   }
   return false;
 }
+
+// One deadline for what is asked of one member: it says itself how many contexts, ports and members it has.
+class Patience {
+ public:
+  // The object, which is asked next; throws when the time is over.
+  template <class Reference>
+  auto* operator()(const Reference& reference) const {
+    check();
+    auto* const object = reference.operator->();
+    deadline_.limit(object);
+    return object;
+  }
+  void check() const {
+    if (deadline_.is_over()) throw CORBA::TIMEOUT(0, CORBA::COMPLETED_NO);
+  }
+
+ private:
+  corba::ChainDeadline deadline_{corba::port_call_timeout()};
+};
 
 RTC::ExecutionContext_ptr own_context(RTC::RTObject_impl& composite) { return composite.getExecutionContext(0); }
 
@@ -92,11 +112,12 @@ PeriodicECOrganization::~PeriodicECOrganization() = default;
 bool PeriodicECOrganization::join(const Member& member) {
   SDO_var sdo = member.sdo;
   RTC::LightweightRTObject_var component;
+  const Patience in_time;
   const bool joined = attempt(member.id, "join", [&] {
     component = RTC::LightweightRTObject::_narrow(sdo);
     if (CORBA::is_nil(component)) return;
     RTC::ExecutionContextList_var contexts = component->get_owned_contexts();
-    for (CORBA::ULong i = 0; i < contexts->length(); ++i) contexts[i]->stop();
+    for (CORBA::ULong i = 0; i < contexts->length(); ++i) in_time(contexts[i])->stop();
     Configuration_var configuration = sdo->get_configuration();
     Organization_var self = getObjRef();
     configuration->add_organization(self);
@@ -105,8 +126,9 @@ bool PeriodicECOrganization::join(const Member& member) {
     // A composite inside a composite: its members run here, too.
     OrganizationList_var inner = sdo->get_owned_organizations();
     for (CORBA::ULong i = 0; i < inner->length(); ++i) {
-      SDOList_var sdos = inner[i]->get_members();
+      SDOList_var sdos = in_time(inner[i])->get_members();
       for (CORBA::ULong k = 0; k < sdos->length(); ++k) {
+        in_time.check();
         RTC::LightweightRTObject_var innermost = RTC::LightweightRTObject::_narrow(sdos[k]);
         if (!CORBA::is_nil(innermost) && !CORBA::is_nil(context)) context->add_component(innermost);
       }
@@ -117,6 +139,7 @@ bool PeriodicECOrganization::join(const Member& member) {
 
 void PeriodicECOrganization::leave(const Member& member) {
   SDO_var sdo = member.sdo;
+  const Patience in_time;
   attempt(member.id, "leave", [&] {
     RTC::LightweightRTObject_var component = RTC::LightweightRTObject::_narrow(sdo);
     if (CORBA::is_nil(component)) return;
@@ -129,7 +152,7 @@ void PeriodicECOrganization::leave(const Member& member) {
     CORBA::String_var id = get_organization_id();
     configuration->remove_organization(id);
     RTC::ExecutionContextList_var contexts = component->get_owned_contexts();
-    for (CORBA::ULong i = 0; i < contexts->length(); ++i) contexts[i]->start();
+    for (CORBA::ULong i = 0; i < contexts->length(); ++i) in_time(contexts[i])->start();
   });
 }
 
@@ -207,9 +230,10 @@ void PeriodicECOrganization::export_ports(const std::string& list) {
 void PeriodicECOrganization::update_ports() {
   std::map<std::string, RTC::PortService_var> wanted;
   for_each_member([&](const Member& member, RTC::RTObject_ptr component) {
+    const Patience in_time;
     RTC::PortServiceList_var ports = component->get_ports();
     for (CORBA::ULong i = 0; i < ports->length(); ++i) {
-      RTC::PortProfile_var profile = ports[i]->get_port_profile();
+      RTC::PortProfile_var profile = in_time(ports[i])->get_port_profile();
       const std::string name = profile->name.in();
       if (wanted_ports_.count(name) != 0 || wanted_ports_.count(member.id + "." + name) != 0)
         wanted[name] = RTC::PortService::_duplicate(ports[i]);

@@ -12,6 +12,12 @@
 
 namespace RTC {
 
+namespace {
+
+constexpr std::size_t largest_stack = std::size_t{256} << 20;  // [octets]
+
+}  // namespace
+
 class PeriodicExecutionContext::Steps final : public rt::Steps {
  public:
   explicit Steps(PeriodicExecutionContext& context) : context_(context) {}
@@ -63,8 +69,8 @@ void PeriodicExecutionContext::init(coil::Properties& props) {
     priority_ = static_cast<int>(*number);
   const std::string stack = props.getProperty("stack_size");
   const auto octets = stack.empty() ? std::size_t{0} : rt::parse_size(stack);
-  if (!octets || !setStackSize(*octets))
-    RTC_WARN(("stack_size must be a size from 16k on, like 256k or 8M, got %s", base::in_quotes(stack).c_str()));
+  if (!octets || *octets > largest_stack || !setStackSize(*octets))
+    RTC_WARN(("stack_size must be a size from 16k to 256M, like 256k or 8M, got %s", base::in_quotes(stack).c_str()));
 }
 
 RTC::ReturnCode_t PeriodicExecutionContext::onStarted() {

@@ -1,5 +1,9 @@
 #include "rtm/PortBase.h"
 
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
 #include "base/text.h"
 #include "corba/nv_list.h"
 #include "corba/port_servant.h"
@@ -95,7 +99,8 @@ void PortBase::init(coil::Properties& properties) {
     if (!value.empty()) addProperty(name.c_str(), value);
   }
   for (const char* key : {"connection_limit", "dataport.connection_limit"}) {
-    if (const auto limit = base::parse_integer(m_properties.getProperty(key))) setConnectionLimit(static_cast<int>(*limit));
+    if (const auto limit = base::parse_integer(m_properties.getProperty(key)))
+      setConnectionLimit(static_cast<int>(std::clamp<std::int64_t>(*limit, -1, std::numeric_limits<int>::max())));
   }
 }
 

@@ -100,8 +100,22 @@ ReturnCode_t RTObject_impl::initialize() {
     data->phase = Impl::Phase::alive;
     contexts = data->contexts;
   }
-  for (ExecutionContextBase* context : contexts) context->start();  // a shared one may run already
+  for (ExecutionContextBase* context : contexts) {
+    if (context->start() != RTC_ERROR || context->isRunning()) continue;  // a shared one may run already
+    RTC_ERROR(("an execution context of the component cannot run"));
+    return RTC_ERROR;
+  }
   return RTC_OK;
+}
+
+void RTObject_impl::discard() {
+  {
+    auto data = impl_->shared.lock();
+    if (data->phase != Impl::Phase::created && data->phase != Impl::Phase::initializing) return;
+  }
+  finalizePorts();
+  finalizeContexts();
+  shutdown();
 }
 
 ReturnCode_t RTObject_impl::finalize() { return finalizeBy(std::chrono::steady_clock::now() + callbackTimeout()); }
@@ -169,11 +183,11 @@ ReturnCode_t RTObject_impl::exitNow(std::chrono::steady_clock::time_point deadli
 void RTObject_impl::leaveOrganizations(std::chrono::steady_clock::time_point deadline) {
   std::vector<SDOPackage::Organization_var> organizations;
   organizations.swap(impl_->shared.lock()->organizations);
+  const LastCalls calls(deadline);
   for (const SDOPackage::Organization_var& organization : organizations) {
+    if (calls.are_over()) return;
     try {
-      constexpr std::chrono::milliseconds shortest{200};
-      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
-      const CORBA::Object_var own = corba::impatient_copy(organization, std::max(left, shortest));
+      const CORBA::Object_var own = corba::impatient_copy(organization, calls.patience());
       const SDOPackage::Organization_var target = SDOPackage::Organization::_unchecked_narrow(own);
       target->remove_member(getInstanceName());
     } catch (const CORBA::Exception& exception) {

@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "corba/call_timeout.h"
 #include "corba/orb.h"
+#include "core/key_limits.h"
 
 namespace SDOPackage {
 
@@ -55,7 +56,11 @@ CORBA::Boolean Organization_impl::add_organization_property(const OrganizationPr
 
 CORBA::Boolean Organization_impl::set_organization_property_value(const char* name, const CORBA::Any& value) {
   if (name[0] == '\0') throw InvalidParameter("the name is empty");
-  NVUtil::setValue(shared_->data.lock()->property.properties, name, value);
+  auto data = shared_->data.lock();
+  NVList& list = data->property.properties;
+  if (NVUtil::find_index(list, name) < 0 && list.length() >= rt::entry_limits.organization_properties)
+    throw InvalidParameter(("the organization has as many properties as it may, " + std::to_string(list.length())).c_str());
+  NVUtil::setValue(list, name, value);
   return true;
 }
 
@@ -86,7 +91,9 @@ SDOList* Organization_impl::get_members() {
   return sdos._retn();
 }
 
-std::vector<Organization_impl::Member> Organization_impl::ask(const SDOList& sdos) {
+std::vector<Organization_impl::Member> Organization_impl::ask(const SDOList& sdos) const {
+  if (sdos.length() + shared_->data.lock()->members.size() > rt::entry_limits.members)
+    throw InvalidParameter(("an organization has at most " + std::to_string(rt::entry_limits.members) + " members").c_str());
   std::vector<Member> members;
   const corba::ChainDeadline deadline(corba::port_call_timeout());
   for (CORBA::ULong i = 0; i < sdos.length(); ++i) {

@@ -141,27 +141,51 @@ bool SdoServiceAdmin::removeSdoServiceProvider(const char* id) {
   return true;
 }
 
+namespace {
+
+constexpr std::size_t most_consumers = 256;  // of one component; each may have a thread, and is told of every event
+
+bool try_to_init(SdoServiceConsumerBase& consumer, RTObject_impl& component, const SDOPackage::ServiceProfile& profile) {
+  try {
+    return consumer.init(component, profile);
+  } catch (const std::exception& e) {  // no thread, for instance
+    base::log(base::Level::error, component.getInstanceNameString(), "SDO service {} cannot be used: {}", base::in_quotes(profile.id.in()),
+              e.what());
+    return false;
+  }
+}
+
+}  // namespace
+
 bool SdoServiceAdmin::addSdoServiceConsumer(const SDOPackage::ServiceProfile& profile) {
   const std::string id = profile.id.in();
   const std::string type = profile.interface_type.in();
   if (id.empty() || CORBA::is_nil(profile.service) || !corba::may_keep(profile.service)) return false;
   std::shared_ptr<SdoServiceConsumerBase> known;
   std::string enabled;
+  bool is_full = false;
   {
     auto data = impl_->shared.lock();
     enabled = data->enabled_consumers;
+    is_full = data->consumers.size() >= most_consumers;
     for (const Consumer& consumer : data->consumers)
       if (consumer.id == id) known = consumer.consumer;
   }
   if (known) return known->reinit(profile);
+  if (is_full) {
+    base::log(base::Level::error, impl_->component.getInstanceNameString(),
+              "SDO service {} is refused: there are {} already, the most that may be", base::in_quotes(id), most_consumers);
+    return false;
+  }
   if (!is_enabled(enabled, type)) return false;
   const auto consumer = make_consumer(type);
   if (!consumer) return false;
-  if (!consumer->init(impl_->component, profile)) return false;
+  if (!try_to_init(*consumer, impl_->component, profile)) return false;
   bool added = false;
   {
     auto data = impl_->shared.lock();
-    added = std::none_of(data->consumers.begin(), data->consumers.end(), [&](const Consumer& other) { return other.id == id; });
+    added = std::none_of(data->consumers.begin(), data->consumers.end(), [&](const Consumer& other) { return other.id == id; }) &&
+            data->consumers.size() < most_consumers;
     if (added) data->consumers.push_back({id, consumer});
   }
   if (!added) consumer->finalize();  // somebody else was faster

@@ -2,6 +2,7 @@
 // d": each group has a thread of its own (a child task) in which its members run one after the other, in the order in which they have
 // joined. A cycle has two halves, and no thread begins one before all have ended the other: the transitions of everybody; then onExecute
 // and onStateUpdate of everybody. The composite itself, and who is in no group, run in the context's own thread.
+// More than 256 groups are refused.
 #pragma once
 
 #include <rtm/PeriodicExecutionContext.h>

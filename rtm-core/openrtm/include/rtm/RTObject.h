@@ -397,6 +397,8 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   std::vector<std::shared_ptr<ExecutionContextBase>> localContexts() const;
   void leaveContexts(std::chrono::steady_clock::time_point deadline);
   ReturnCode_t exitNow(std::chrono::steady_clock::time_point deadline);
+  // Of a component whose creation failed before it lived: the object adapter lets it go.
+  void discard();
   ReturnCode_t finalizeBy(std::chrono::steady_clock::time_point deadline);
   void finalizeContexts(std::chrono::steady_clock::time_point deadline);
   void chooseClock();
