@@ -112,7 +112,7 @@ RTC::ReturnCode_t ClockGenerator::onFinalize() {
 }
 
 void ClockGenerator::bind() {
-  for (const auto& server : base::split_list(RTC::Manager::instance().getConfig().getProperty("corba.nameservers"))) {
+  for (const auto& server : base::split_list(RTC::Manager::instance().configValue("corba.nameservers"))) {
     try {
       RTC::CorbaNaming naming(RTC::Manager::instance().getORB(), server.c_str());
       naming.rebindByString(usual_name, reference_);
@@ -123,7 +123,7 @@ void ClockGenerator::bind() {
 }
 
 void ClockGenerator::unbind() {
-  for (const auto& server : base::split_list(RTC::Manager::instance().getConfig().getProperty("corba.nameservers"))) {
+  for (const auto& server : base::split_list(RTC::Manager::instance().configValue("corba.nameservers"))) {
     try {
       RTC::CorbaNaming naming(RTC::Manager::instance().getORB(), server.c_str());
       CORBA::Object_var bound = naming.resolve(usual_name);

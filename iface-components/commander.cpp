@@ -97,7 +97,7 @@ bool CommandWatch::expired(Commander& commander, std::int64_t now_ns, double tim
     seen_ns_ = now_ns;
     return false;
   }
-  if (timeout_s <= 0 || now_ns - seen_ns_ < static_cast<std::int64_t>(timeout_s * 1e9)) return false;
+  if (timeout_s <= 0 || static_cast<double>(now_ns - seen_ns_) < timeout_s * 1e9) return false;
   return commander.stop();
 }
 

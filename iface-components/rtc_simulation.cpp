@@ -85,7 +85,7 @@ RTCSimulation::RTCSimulation(RTC::Manager* manager)
 
 RTC::ReturnCode_t RTCSimulation::onInitialize() {
   addOutPort("time", time_out_);
-  const std::string rights = RTC::Manager::instance().getConfig().getProperty("manager.remote_rights");
+  const std::string rights = RTC::Manager::instance().configValue("manager.remote_rights");
   if (base::to_lower(base::trim(rights)) == "everything") service_.open_all_files();
   simulation_port_.registerProvider("simulation", "rtmsim::SimulationService", service_);
   addPort(simulation_port_);

@@ -39,8 +39,8 @@ RTC::ReturnCode_t SimTimeProxy::onInitialize() {
   const std::string limit = getProperties().getProperty("sim_time_proxy.alone_limit");
   if (limit.empty()) return RTC::RTC_OK;
   const auto seconds = base::parse_number(limit);
-  if (!seconds || !(*seconds > 0)) {
-    RTC_ERROR(("sim_time_proxy.alone_limit must be a number of seconds above 0, got %s", base::in_quotes(limit).c_str()));
+  if (!seconds || !(*seconds > 0) || *seconds > 1e6) {
+    RTC_ERROR(("sim_time_proxy.alone_limit must be a number of seconds above 0 and at most 1e6, got %s", base::in_quotes(limit).c_str()));
     return RTC::RTC_ERROR;
   }
   alone_limit_ = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(*seconds));

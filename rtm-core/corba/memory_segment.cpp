@@ -19,10 +19,11 @@ base::Error failure(std::string_view what, const std::string& name) {
   return {"shared memory " + base::in_quotes(name) + ": " + std::string(what) + ": " + std::generic_category().message(errno)};
 }
 
-// A plain name: nothing that leads out of the folder of segments.
+// A plain name: nothing that leads out of the folder of segments, and nothing of the simulator's (shm/segment.h), which is no peer's to
+// show.
 bool is_plain(const std::string& name) {
   const std::string_view plain = std::string_view(name).substr(name.starts_with('/') ? 1 : 0);
-  return !plain.empty() && plain.size() < 200 && plain != "." && plain != ".." &&
+  return !plain.empty() && plain.size() < 200 && !plain.starts_with("rtmsim-") && plain != "." && plain != ".." &&
          plain.find_first_not_of("0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ-_.") == std::string_view::npos;
 }
 

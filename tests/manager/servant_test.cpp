@@ -101,6 +101,18 @@ TEST_F(Servant, callers_set_a_limited_number_of_keys_of_a_limited_length) {
   EXPECT_TRUE(rtcd.wait_for_output("key \"test.a.4096\" is refused")) << rtcd.output();
 }
 
+TEST_F(Servant, a_limit_of_seconds_that_no_clock_can_hold_is_refused) {
+  const int port = support::free_port();
+  support::Process rtcd(at_port(port, {}));
+  RTM::Manager_var manager = manager_at(port);
+  ASSERT_FALSE(CORBA::is_nil(manager)) << rtcd.output();
+  for (const char* limit : {"1e300", "1e7", "0", "soon"}) {
+    EXPECT_TRUE(CORBA::is_nil(make(manager, "SimTimeProxy?sim_time_proxy.alone_limit=" + std::string(limit)))) << limit;
+    EXPECT_TRUE(rtcd.wait_for_output("at most 1e6, got \"" + std::string(limit) + "\"")) << rtcd.output();
+  }
+  EXPECT_FALSE(CORBA::is_nil(make(manager, "SimTimeProxy?sim_time_proxy.alone_limit=1e6"))) << rtcd.output();
+}
+
 TEST_F(Servant, modules_are_shown_with_what_tools_look_for) {
   const int port = support::free_port();
   support::Process rtcd(at_port(port, {}));

@@ -250,7 +250,7 @@ TEST_F(Faults, a_segment_that_lies_is_refused) {
   for (const char* name : {"", "/", "..", "../../etc/passwd", "no-such-segment"}) {
     EXPECT_THROW(port->open_memory(100, name), CORBA::SystemException) << name;
   }
-  const std::string name = "/rtmsim-test-" + std::to_string(getpid());
+  const std::string name = "/test-" + std::to_string(getpid());
   const int file = shm_open(name.c_str(), O_CREAT | O_RDWR, 0600);
   ASSERT_EQ(ftruncate(file, 64), 0);
   port->open_memory(64, name.c_str());

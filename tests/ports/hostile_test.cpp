@@ -57,8 +57,8 @@ class Hostile : public testing::Test {
 
 // A file in the place of a segment, gone with its owner.
 struct Segment {
-  const std::string name = "/rtmsim-hostile-" + std::to_string(getpid());
-  const std::string path = "/dev/shm" + name;
+  std::string name = "/hostile-" + std::to_string(getpid());
+  std::string path = "/dev/shm" + name;
   ~Segment() { unlink(path.c_str()); }
 };
 
@@ -255,6 +255,19 @@ TEST_F(Hostile, what_is_no_segment_is_refused_at_once) {
   ASSERT_EQ(symlink("/dev/zero", segment.path.c_str()), 0);
   EXPECT_THROW(port->open_memory(100, segment.name.c_str()), CORBA::SystemException);
   EXPECT_LT(steady_clock::now() - start, 5s);
+}
+
+// It would take any file of our account there whose first number fits.
+TEST_F(Hostile, a_segment_of_the_simulator_is_none_of_a_sender) {
+  const auto port = connect_and_steal();
+  Segment segment;
+  segment.name = "/rtmsim-0-0.camera." + std::to_string(getpid());
+  segment.path = "/dev/shm" + segment.name;
+  const int file = open(segment.path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600);
+  ASSERT_EQ(ftruncate(file, 4096), 0);
+  close(file);
+  EXPECT_THROW(port->open_memory(4096, segment.name.c_str()), CORBA::SystemException);
+  EXPECT_THROW(port->open_memory(4096, segment.name.c_str() + 1), CORBA::SystemException);
 }
 
 TEST_F(Hostile, a_segment_of_a_terabyte_of_nothing_costs_no_memory) {
