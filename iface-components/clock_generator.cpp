@@ -1,7 +1,7 @@
 #include "clock_generator.h"
 
 #include <base/text.h>
-#include <corba/asker.h>
+#include <rtm/Callers.h>
 #include <rtm/CorbaNaming.h>
 
 #include <algorithm>
@@ -64,6 +64,7 @@ class ClockGenerator::Service : public POA_OpenHRP::ClockGenerator {
   explicit Service(::ClockGenerator& component) : component_(component) {}
   void subscribe(Context context, CORBA::Double period) override {
     if (CORBA::is_nil(context) || !(period >= shortest && period <= longest)) throw CORBA::BAD_PARAM();
+    if (!RTC::mayKeep(context)) throw CORBA::NO_PERMISSION();
     post(context, [period](::ClockGenerator& component, Context one) { component.subscribe(one, period); });
   }
   void unsubscribe(Context context) override {
@@ -74,13 +75,8 @@ class ClockGenerator::Service : public POA_OpenHRP::ClockGenerator {
  private:
   template <class Job>
   void post(Context context, Job job) {
-    if (!corba::may_keep(context)) throw CORBA::NO_PERMISSION();
     const OpenRTM::ExtTrigExecutionContextService_var kept = OpenRTM::ExtTrigExecutionContextService::_duplicate(context);
-    if (!component_.post([this, kept, job, asker = corba::asker()] {
-          const corba::ForAsker same(asker);
-          job(component_, kept.in());
-        }))
-      throw CORBA::NO_RESOURCES();
+    if (!component_.post([this, kept, job] { job(component_, kept.in()); })) throw CORBA::NO_RESOURCES();
   }
   ::ClockGenerator& component_;
 };

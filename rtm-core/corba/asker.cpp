@@ -20,7 +20,7 @@
 namespace corba {
 namespace {
 
-constexpr std::chrono::milliseconds patience{2000};
+constexpr std::chrono::milliseconds longest_answer{2000};
 
 thread_local Asker asker_of_thread = Asker::own;
 thread_local bool asks_on_its_own = false;
@@ -57,7 +57,7 @@ AsksOnItsOwn::~AsksOnItsOwn() { asks_on_its_own = before_; }
 bool may_keep(CORBA::Object_ptr object) {
   if (CORBA::is_nil(object) || asker_of_thread == Asker::own) return true;
   try {
-    const CORBA::Object_var asked = impatient_copy(object, patience);
+    const CORBA::Object_var asked = impatient_copy(object, longest_answer);
     if (!asked->_non_existent()) return true;
   } catch (const CORBA::Exception& e) {
     base::log(base::Level::warn, "doors", "{}: a reference of its call does not answer it: {}", caller(), to_text(e));

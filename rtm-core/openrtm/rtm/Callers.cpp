@@ -1,0 +1,9 @@
+#include "rtm/Callers.h"
+
+#include "corba/asker.h"
+
+namespace RTC {
+
+bool mayKeep(CORBA::Object_ptr object) { return corba::may_keep(object); }
+
+}  // namespace RTC
