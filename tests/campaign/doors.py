@@ -188,6 +188,20 @@ class Doors(unittest.TestCase):
         self.assertIn("rtcd: ", done.stderr)
         self.assertNotIn("terminate", done.stderr)
 
+    # As root, an account of the test's own, since its threads count.
+    @unittest.skipUnless(os.geteuid() == 0 and os.path.exists(f"{bin_dir}/rtm-studio"), "needs an account without threads, so root, and rtm-studio")
+    def test_rtm_studio_without_threads_says_so_in_one_line(self):
+        for most in range(3, 13):
+            def become():
+                resource.setrlimit(resource.RLIMIT_NPROC, (most, most))
+                os.setgroups([])
+                os.setgid(65532)
+                os.setuid(65532)
+
+            done = subprocess.run([f"{bin_dir}/rtm-studio", "-p", "0"], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60, preexec_fn=become, cwd="/")
+            self.assertEqual(done.returncode, 1, (most, done.stderr))
+            self.assertRegex(done.stderr, "^rtm-studio: the system refuses what is needed.*\n$", most)
+
     def test_output_to_a_full_device_is_a_failure(self):
         for program, *words in (["rtcd", "--help"], ["rtse", "--help"], ["simctl", "--help"], ["sim-server", "--help"], ["player-gateway", "--help"], ["rtm-studio", "--help"], ["follow", "--help"],
                                 ["rtse", "record", "--help"], ["rtse", "sweep", "--help"], ["SinkAllComp", "--help"], ["rtcprof", f"{lib_dir}/SinkAll.so"], ["rtm-skelwrapper", "--help"]):
