@@ -62,8 +62,7 @@ std::string polar_plot(const shm::LaserInfo& info, std::span<const float> ranges
 void list(Control& control, bool all_servers) {
   Json json = Json::array();
   bool any = false;
-  for (const auto& found : shm::find_segments()) {
-    if (!all_servers && found.name.server_id != control.server_id()) continue;
+  for (const auto& found : all_servers ? shm::find_segments() : shm::find_segments(control.server_id())) {
     any = true;
     const std::string state = !found.is_readable ? "unreadable" : found.is_alive ? "alive" : "dead";
     json.push_back({{"server", found.name.server_id},
