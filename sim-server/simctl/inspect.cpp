@@ -109,7 +109,8 @@ void echo(Control& control, const std::string& name, int count) {
   std::uint64_t last = iface->sequence();
   if (const auto done = iface->subscribe(); !done) return control.fail(done.error().message);
   catch_interrupts();
-  for (int printed = 0; (count <= 0 || printed < count) && !is_interrupted();) {
+  // Ends when the output takes no more; the end of the program says so.
+  for (int printed = 0; (count <= 0 || printed < count) && !is_interrupted() && std::cout.good();) {
     const auto what = iface->wait(last, std::chrono::milliseconds(200));
     if (what == shm::Wait::closed) return control.fail("iface " + name + ": the simulator is gone");
     if (what == shm::Wait::timed_out) {
