@@ -212,6 +212,25 @@ class Doors(unittest.TestCase):
             self.assertEqual((program, words, done.returncode), (program, words, 1))
             self.assertIn("cannot be written", done.stderr)
 
+    def test_the_entry_to_the_campaigns_says_in_one_line_what_is_wrong(self):
+        entry = os.path.join(os.path.dirname(os.path.abspath(__file__)), "run")
+
+        def run(*words, **more):
+            done = subprocess.run([entry, *words], stderr=subprocess.PIPE, text=True, timeout=60, **more)
+            self.assertEqual(done.returncode, 1, done.stderr)
+            return done.stderr
+
+        self.assertRegex(run("stores", "--build", "/nowhere"), "^run: build /nowhere: .*\n$")
+        with tempfile.TemporaryDirectory() as build:
+            os.mkdir(f"{build}/bin")
+            self.assertRegex(run("stores", "--build", build), f"^run: stores: {build}/bin/campaign_steps: No such file or directory\nfailed: stores\n$")
+        with open("/dev/full", "w") as full:
+            self.assertEqual(run("--list", stdout=full), "run: the output cannot be written\n")
+        reader, writer = os.pipe()
+        os.close(reader)
+        self.assertEqual(run("--list", stdout=writer), "")
+        os.close(writer)
+
     def test_fragments_are_put_together(self):
         host = self.host()
         with host.connect() as stream:
