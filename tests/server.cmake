@@ -1,6 +1,6 @@
 # sim-server and simctl as processes; each case has a server of its own.
 foreach(script_and_cases
-    "server requests motion same_state looked_at_while_paused looked_at_each_device shows_every_type exports check names rate paused_is_idle"
+    "server requests output_that_takes_no_more motion same_state looked_at_while_paused looked_at_each_device shows_every_type exports check names rate paused_is_idle"
     "server_faults faults bad_requests no_room scribbled_over killed living_server_is_refused ends ends_while_it_loads cut_short shared")
   separate_arguments(cases UNIX_COMMAND "${script_and_cases}")
   list(POP_FRONT cases script)

@@ -1,8 +1,11 @@
 // rtm-studio: a simulated world, a system of components and its signals in a browser. See --help.
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <new>
+#include <system_error>
 
 #include "base/command_line.h"
 #include "base/text.h"
@@ -108,9 +111,7 @@ int run(const Settings& settings) {
   return is_past ? show_recording(loop, settings, *page) : show_run(loop, settings, *page);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int studio_of(int argc, char** argv) {
   base::Command app{
       "rtm-studio: a simulated world, a system of RT components and its signals in a browser, live or recorded\nPrints a URL with a token; "
       "without it "
@@ -127,7 +128,20 @@ int main(int argc, char** argv) {
     return run(settings);
   } catch (const CORBA::Exception& e) {
     return fail({editor::describe(e)});
-  } catch (const std::exception& e) {
-    return fail({e.what()});
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return studio_of(argc, argv);
+  } catch (const std::system_error& e) {
+    fail({std::string("the system refuses what is needed, as threads or files: ") + e.what()});
+  } catch (const std::bad_alloc&) {
+    fail({"out of memory"});
+  } catch (const std::exception& e) {
+    fail({e.what()});
+  }
+  std::_Exit(1);  // what the ORB has started may not end in order
 }

@@ -91,6 +91,8 @@ class SystemRun final : public StartedRun {
     std::string problem;
     try {
       problem = editor::run_system(orb, options).problem;
+    } catch (const CORBA::Exception& e) {
+      problem = editor::describe(e);
     } catch (const std::exception& e) {
       problem = e.what();
     }

@@ -3,6 +3,7 @@
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <optional>
 
+#include "base/peer_account.h"
 #include "base/text.h"
 #include "foxglove.h"
 #include "web_shared.h"
@@ -39,12 +40,24 @@ std::string_view agreed_protocol(std::string_view offered) {
   return {};
 }
 
-class Connection final : public std::enable_shared_from_this<Connection> {
+class Connection final : public HttpPeer, public std::enable_shared_from_this<Connection> {
  public:
   Connection(std::shared_ptr<WebShared> shared, tcp::socket socket) : shared_(std::move(shared)), stream_(std::move(socket)) {
-    ++shared_->connections;
+    standing_.is_own_account = base::is_own_account(base::peer_account(stream_.socket().native_handle()));
+    shared_->peers.insert(this);
   }
-  ~Connection() { --shared_->connections; }
+  ~Connection() { shared_->peers.erase(this); }
+
+  const Standing& standing() const override { return standing_; }
+  std::string address() const override {
+    Code code;
+    const auto end = stream_.socket().remote_endpoint(code);
+    return code ? "a connection that is closed" : end.address().to_string() + ":" + std::to_string(end.port());
+  }
+  void give_way() override {
+    shared_->peers.erase(this);
+    stream_.close();  // what is under way ends with an error, and then this
+  }
 
   void read() {
     parser_.emplace();
@@ -75,6 +88,8 @@ class Connection final : public std::enable_shared_from_this<Connection> {
                         view(request_[http::field::authorization]), query};
     const auto verdict = shared_->door.judge(caller);
     if (verdict != Verdict::granted) return refuse(verdict == Verdict::no_token ? 401 : 403, to_text(verdict));
+    standing_.was_granted = true;
+    standing_.last_use = std::chrono::steady_clock::now();
     if (beast::websocket::is_upgrade(request_)) return upgrade(path);
     if (request_.method() != http::verb::get && request_.method() != http::verb::head) return refuse(405, "only GET and HEAD are answered");
     if (path == "/" && shared_->door.brings_token(caller)) return send_to_page();
@@ -189,6 +204,7 @@ class Connection final : public std::enable_shared_from_this<Connection> {
   std::unique_ptr<Response> response_;
   std::optional<http::serializer<false, http::span_body<const char>>> serializer_;
   std::shared_ptr<const std::string> octets_;  // of the response
+  Standing standing_;
   bool is_first_ = true;
   bool is_last_ = false;
 };

@@ -1,6 +1,8 @@
 // Listens, and hands each connection on.
+#include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <utility>
 
 #include "base/log.h"
 #include "web_shared.h"
@@ -12,6 +14,7 @@ using boost::asio::ip::tcp;
 using Code = boost::system::error_code;
 
 constexpr std::chrono::milliseconds recovery{100};  // after an accept that failed: descriptors may be free again
+constexpr std::chrono::seconds between_lines{1};    // of the log, about those who had to go
 
 class Listener final : public WebServer {
  public:
@@ -29,6 +32,7 @@ class Listener final : public WebServer {
       if (code == boost::asio::error::operation_aborted) return;
       if (!code) serve(std::move(socket));
       if (!code) return accept();
+      if (code == boost::asio::error::no_descriptors && make_room()) return accept();
       timer_.expires_after(recovery);
       timer_.async_wait([this](Code stopped) {
         if (!stopped) accept();
@@ -40,13 +44,36 @@ class Listener final : public WebServer {
   void serve(tcp::socket socket) {
     Code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
-    // The others are served; who comes too much hears nothing.
-    if (shared_->connections + shared_->viewers < most_connections) serve_connection(shared_, std::move(socket));
+    if (shared_->peers.size() + shared_->viewers >= most_connections) (void)make_room();
+    serve_connection(shared_, std::move(socket));
+  }
+
+  // Viewers stay. False: there is nobody else.
+  bool make_room() {
+    const auto least = std::ranges::min_element(shared_->peers, {}, [](const HttpPeer* peer) { return peer->standing(); });
+    if (least == shared_->peers.end()) return false;
+    complain((*least)->address() + " sent away: too many connections, and it has been silent longest");
+    (*least)->give_way();
+    return true;
+  }
+
+  // One line a second at most, however many are sent away.
+  void complain(const std::string& line) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_line_ < between_lines) {
+      ++unsaid_;
+      return;
+    }
+    last_line_ = now;
+    const auto others = std::exchange(unsaid_, 0);
+    base::log(base::Level::warn, "web", "{}{}", line, others > 0 ? "; so were " + std::to_string(others) + " others" : "");
   }
 
   std::shared_ptr<WebShared> shared_;
   tcp::acceptor acceptor_;
   boost::asio::steady_timer timer_;
+  std::chrono::steady_clock::time_point last_line_{};
+  std::size_t unsaid_ = 0;
 };
 
 Code listen(tcp::acceptor& acceptor, const tcp::endpoint& endpoint) {

@@ -11,7 +11,8 @@ constexpr std::size_t most_acts_waiting = 256;
 
 }  // namespace
 
-Workers::Workers(std::size_t threads) {
+// What is delegated to has made an object: the destructor ends those threads that are there when one more cannot be had.
+Workers::Workers(std::size_t threads) : Workers() {
   for (std::size_t i = 0; i < threads; ++i) threads_.emplace_back([this] { run(); });
 }
 

@@ -25,6 +25,7 @@ class Workers {
   bool give(Work work);
 
  private:
+  Workers() = default;
   struct Data {
     std::deque<Work> waiting;
     bool is_ending = false;

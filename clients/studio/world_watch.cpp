@@ -123,8 +123,8 @@ void WorldWatch::run() {
 void WorldWatch::attach() {
   auto found = shm::Requester::open(server_id_);
   if (!found) {
-    const auto names = shm::segment_names();
-    const bool is_there = std::ranges::find(*names, server_id_, &shm::SegmentName::server_id) != names->end();
+    const auto places = shm::segment_places();
+    const bool is_there = std::ranges::any_of(*places, [&](const shm::SegmentPlace& place) { return place.name.server_id == server_id_; });
     return detach(is_there ? found.error().message : "no simulator of number " + std::to_string(server_id_) + " runs");
   }
   simulator_ = std::move(*found);

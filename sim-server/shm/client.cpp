@@ -26,26 +26,27 @@ constexpr int read_attempts = 8;
 std::string describe(IfaceType type, std::string_view name) { return std::string(to_text(type)) + " " + base::in_quotes(name); }
 
 // Segments of one server of one user. The one of its simulation tells of all; a server without one has few.
-bool is_any_alive(std::span<const SegmentName> names) {
-  const auto simulation = std::ranges::find(names, IfaceType::simulation, &SegmentName::type);
-  if (simulation != names.end()) return inspect(*simulation).is_alive;
-  return std::ranges::any_of(names, [](const SegmentName& name) { return inspect(name).is_alive; });
+bool is_any_alive(std::span<const SegmentPlace> places) {
+  const auto simulation = std::ranges::find(places, IfaceType::simulation, [](const SegmentPlace& place) { return place.name.type; });
+  if (simulation != places.end()) return inspect(*simulation).is_alive;
+  return std::ranges::any_of(places, [](const SegmentPlace& place) { return inspect(place).is_alive; });
 }
 
 // Why there is no such iface: what the server has instead, or which servers there are.
 std::string explain_absence(std::uint32_t server_id, IfaceType type, std::string_view name) {
   std::vector<std::string> same_type, other_types, servers;
-  const auto names = segment_names();
-  for (auto begin = names->begin(); begin != names->end();) {
-    const uid_t uid = begin->uid;
-    const std::uint32_t id = begin->server_id;
-    const auto end = std::find_if(begin, names->end(), [&](const SegmentName& other) { return other.server_id != id || other.uid != uid; });
-    const std::span<const SegmentName> all(begin, end);
+  const auto places = segment_places();
+  for (auto begin = places->begin(); begin != places->end();) {
+    const uid_t uid = begin->name.uid;
+    const std::uint32_t id = begin->name.server_id;
+    const auto is_of_another = [&](const SegmentPlace& other) { return other.name.server_id != id || other.name.uid != uid; };
+    const auto end = std::find_if(begin, places->end(), is_of_another);
+    const std::span<const SegmentPlace> all(begin, end);
     begin = end;
     if (!is_any_alive(all)) continue;
     if (servers.empty() || servers.back() != std::to_string(id)) servers.push_back(std::to_string(id));
     if (id != server_id) continue;
-    for (const SegmentName& found : all) {
+    for (const auto& [found, in_refuge] : all) {
       if (found.type == type) {
         same_type.push_back(found.iface);
       } else if (std::string other(to_text(found.type)); std::ranges::find(other_types, other) == other_types.end()) {
@@ -190,11 +191,12 @@ base::Result<Iface> Iface::open(std::uint32_t server_id, IfaceType type, std::st
   auto segment = Segment::open(wanted);
   if (!segment) {
     bool is_found = false;
-    const auto names = segment_names();
-    for (const SegmentName& other : *names) {
+    const auto places = segment_places();
+    for (const SegmentPlace& place : *places) {
+      const SegmentName& other = place.name;
       if (other.server_id != server_id || other.type != type || other.iface != name) continue;
       is_found = true;
-      if (other.uid == wanted.uid || !inspect(other).is_alive) continue;
+      if (other.uid == wanted.uid || !inspect(place).is_alive) continue;
       segment = Segment::open(other);
       if (segment) break;
     }

@@ -347,7 +347,10 @@ base::Result<void> Segment::take_name(int file) {
 
 base::Result<Segment> Segment::open(const SegmentName& name) {
   if (auto good = check_name(name.iface); !good) return good.error();
-  const std::string path = path_of(name);
+  return open_at(name, path_of(name));
+}
+
+base::Result<Segment> Segment::open_at(const SegmentName& name, const std::string& path) {
   FileHandle file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   if (file.get() < 0) return base::Error{"shared memory " + name.text() + " can't be opened: " + reason()};
   struct stat status {};
@@ -391,10 +394,10 @@ void Segment::close() {
   remove_name(name_, path_of(name_));
 }
 
-Found inspect(const SegmentName& name) {
+Found inspect(const SegmentPlace& place) {
   Found found;
-  found.name = name;
-  auto segment = Segment::open(name);
+  found.name = place.name;
+  auto segment = Segment::open_at(place.name, path_of(place));
   if (!segment) {
     found.problem = segment.error().message;
     return found;
@@ -416,26 +419,27 @@ Found inspect(const SegmentName& name) {
 
 std::vector<Found> find_segments() {
   std::vector<Found> found;
-  const auto names = segment_names();
-  for (const auto& name : *names) found.push_back(inspect(name));
+  const auto places = segment_places();
+  for (const auto& place : *places) found.push_back(inspect(place));
   return found;
 }
 
 std::vector<Found> find_segments(std::uint32_t server_id) {
   std::vector<Found> found;
-  const auto names = segment_names();
-  for (const auto& name : *names) {
-    if (name.server_id == server_id) found.push_back(inspect(name));
+  const auto places = segment_places();
+  for (const auto& place : *places) {
+    if (place.name.server_id == server_id) found.push_back(inspect(place));
   }
   return found;
 }
 
 std::vector<std::string> remove_stale(std::uint32_t first_server, std::uint32_t last_server) {
   std::vector<std::string> removed;
-  const auto names = segment_names();
-  for (const auto& name : *names) {
+  const auto places = segment_places();
+  for (const auto& place : *places) {
+    const auto& name = place.name;
     if (name.uid != ::geteuid() || name.server_id < first_server || name.server_id > last_server) continue;
-    auto eviction = evict(name, path_of(name));
+    auto eviction = evict(name, path_of(place));
     if (eviction && eviction->judgement == Judgement::removed) removed.push_back(name.text());
   }
   return removed;
@@ -444,9 +448,10 @@ std::vector<std::string> remove_stale(std::uint32_t first_server, std::uint32_t 
 void remove_own() {
   static const auto mine = naming().take();
   const ProcessMark own = own_mark();
-  const auto names = segment_names();
-  for (const auto& name : *names) {
-    auto segment = Segment::open(name);
+  const auto places = segment_places();
+  for (const auto& place : *places) {
+    if (place.name.uid != ::geteuid()) continue;
+    auto segment = Segment::open(place.name);
     if (!segment) continue;
     const ProcessMark& server = segment->facts().server;
     if (server.pid == own.pid && server.pid_namespace == own.pid_namespace && server.start_time == own.start_time) segment->close();

@@ -50,6 +50,9 @@ struct Geometry {
   std::uint32_t participants = 0;
 };
 
+struct Found;
+struct SegmentPlace;
+
 class Segment {
  public:
   // Makes a segment that is complete before its name appears. A stale one of a dead server is replaced (its readers are told); a living
@@ -86,6 +89,8 @@ class Segment {
   void close();
 
  private:
+  friend Found inspect(const SegmentPlace& place);
+  static base::Result<Segment> open_at(const SegmentName& name, const std::string& path);
   base::Result<void> take_name(int file);
 
   // One mapping per process and file, shared by all segments that show it: threads that talk through it use the same addresses.
@@ -109,11 +114,16 @@ struct Found {
   std::uint32_t subscribers = 0;
   std::string problem;  // why it is not readable
 };
-Found inspect(const SegmentName& name);
+// A name that a look at the folder has found, and the file in a refuge (see segment_place.h); empty: there is none.
+struct SegmentPlace {
+  SegmentName name;
+  std::string in_refuge;
+};
+Found inspect(const SegmentPlace& place);
 // The names of all segments of all users, sorted by server, user, type and iface. Read again only when /dev/shm has changed: those who wait
 // for a simulator ask ten times a second, hundreds of them at once.
-std::shared_ptr<const std::vector<SegmentName>> segment_names();
-// All of them, of every user, sorted by server, type and name.
+std::shared_ptr<const std::vector<SegmentPlace>> segment_places();
+// All of them, of every user, sorted by server, type and name. The work is near linear, whatever names others have made.
 std::vector<Found> find_segments();
 std::vector<Found> find_segments(std::uint32_t server_id);
 

@@ -60,8 +60,9 @@ bool has_no_folders(const char* path) {
 std::vector<std::string> refuges_of(uid_t uid) {
   std::vector<std::string> paths;
   if (has_no_folders(segment_folder)) return paths;
+  const std::string prefix = refuge_prefix(uid);
   for (const std::string& entry : entries_of(segment_folder)) {
-    if (refuge_owner(entry) == uid) paths.push_back(std::string(segment_folder) + "/" + entry);
+    if (entry.starts_with(prefix) && refuge_owner(entry) == uid) paths.push_back(std::string(segment_folder) + "/" + entry);
   }
   std::sort(paths.begin(), paths.end());
   return paths;
@@ -92,6 +93,11 @@ std::string path_of(const SegmentName& name) {
   return usual;
 }
 
+std::string path_of(const SegmentPlace& place) {
+  std::string usual = usual_path(place.name);
+  return place.in_refuge.empty() || is_owned_by(usual, place.name.uid) ? usual : place.in_refuge;
+}
+
 void remove_name(const SegmentName& name, const std::string& path) {
   ::unlink(path.c_str());
   if (path != usual_path(name)) ::rmdir(path.substr(0, path.rfind('/')).c_str());  // does so when nothing is left in it
@@ -106,21 +112,32 @@ bool is_elsewhere_too(const SegmentName& name, const std::string& path) {
 
 namespace {
 
-std::vector<SegmentName> read_names() {
-  std::vector<SegmentName> names;
+std::vector<SegmentPlace> read_places() {
+  std::vector<SegmentPlace> places;
   for (const std::string& entry : entries_of(segment_folder)) {
     if (auto name = SegmentName::parse(entry)) {
-      names.push_back(std::move(*name));
+      places.push_back({std::move(*name), {}});
     } else if (const auto uid = refuge_owner(entry)) {
-      for (const std::string& inside : entries_of(std::string(segment_folder) + "/" + entry)) {
-        if (auto hidden = SegmentName::parse(inside); hidden && hidden->uid == *uid) names.push_back(std::move(*hidden));
+      const std::string refuge = std::string(segment_folder) + "/" + entry;
+      for (const std::string& inside : entries_of(refuge)) {
+        auto hidden = SegmentName::parse(inside);
+        if (!hidden || hidden->uid != *uid) continue;
+        std::string path = refuge + "/" + inside;
+        if (!is_owned_by(path, *uid)) path.clear();
+        places.push_back({std::move(*hidden), std::move(path)});
       }
     }
   }
-  const auto key = [](const SegmentName& name) { return std::tie(name.server_id, name.uid, name.type, name.iface); };
-  std::sort(names.begin(), names.end(), [&](const SegmentName& a, const SegmentName& b) { return key(a) < key(b); });
-  names.erase(std::unique(names.begin(), names.end()), names.end());
-  return names;
+  // Of several with one name the first in a refuge stays, if any is.
+  const auto key = [](const SegmentPlace& place) {
+    const SegmentName& name = place.name;
+    return std::tuple(name.server_id, name.uid, name.type, std::string_view(name.iface), place.in_refuge.empty(),
+                      std::string_view(place.in_refuge));
+  };
+  std::ranges::sort(places, {}, key);
+  const auto same = std::ranges::unique(places, {}, &SegmentPlace::name);
+  places.erase(same.begin(), same.end());
+  return places;
 }
 
 // [ns] Unix time of the last change of the folder; nothing: it can't be told, or there are folders in it, whose changes it does not show.
@@ -132,21 +149,21 @@ std::optional<std::int64_t> last_change(const char* path) {
 
 struct Listing {
   std::optional<std::int64_t> changed;  // nothing: not to be used again
-  std::shared_ptr<const std::vector<SegmentName>> names;
+  std::shared_ptr<const std::vector<SegmentPlace>> places;
 };
 
 }  // namespace
 
-std::shared_ptr<const std::vector<SegmentName>> segment_names() {
+std::shared_ptr<const std::vector<SegmentPlace>> segment_places() {
   static auto& last = *new base::Guarded<Listing, base::Rank::registry>;  // never destroyed: threads may still look at the very end
   // The kernel's clock for files ticks every few milliseconds: a change in the same tick as the last one would not be seen.
   constexpr std::int64_t settled = 50'000'000;  // [ns]
   auto changed = last_change(segment_folder);
   if (changed && wall_ns() - *changed < settled) changed.reset();
-  if (auto known = last.lock(); changed && known->changed == changed) return known->names;
-  auto names = std::make_shared<const std::vector<SegmentName>>(read_names());
-  *last.lock() = {changed, names};
-  return names;
+  if (auto known = last.lock(); changed && known->changed == changed) return known->places;
+  auto places = std::make_shared<const std::vector<SegmentPlace>>(read_places());
+  *last.lock() = {changed, places};
+  return places;
 }
 
 }  // namespace shm

@@ -17,6 +17,8 @@ inline constexpr std::string_view segment_prefix = "rtmsim-";
 
 // Where the segment of this name is, or would be made.
 std::string path_of(const SegmentName& name);
+// The same for one of a list: without another look through the folder.
+std::string path_of(const SegmentPlace& place);
 
 // Another file of the same owner has the same name in another place: two have made it at the same time, each where the other did not look.
 bool is_elsewhere_too(const SegmentName& name, const std::string& path);

@@ -62,8 +62,7 @@ std::string polar_plot(const shm::LaserInfo& info, std::span<const float> ranges
 void list(Control& control, bool all_servers) {
   Json json = Json::array();
   bool any = false;
-  for (const auto& found : shm::find_segments()) {
-    if (!all_servers && found.name.server_id != control.server_id()) continue;
+  for (const auto& found : all_servers ? shm::find_segments() : shm::find_segments(control.server_id())) {
     any = true;
     const std::string state = !found.is_readable ? "unreadable" : found.is_alive ? "alive" : "dead";
     json.push_back({{"server", found.name.server_id},
@@ -110,7 +109,8 @@ void echo(Control& control, const std::string& name, int count) {
   std::uint64_t last = iface->sequence();
   if (const auto done = iface->subscribe(); !done) return control.fail(done.error().message);
   catch_interrupts();
-  for (int printed = 0; (count <= 0 || printed < count) && !is_interrupted();) {
+  // Ends when the output takes no more; the end of the program says so.
+  for (int printed = 0; (count <= 0 || printed < count) && !is_interrupted() && std::cout.good();) {
     const auto what = iface->wait(last, std::chrono::milliseconds(200));
     if (what == shm::Wait::closed) return control.fail("iface " + name + ": the simulator is gone");
     if (what == shm::Wait::timed_out) {

@@ -189,6 +189,20 @@ class Doors(unittest.TestCase):
                 self.assertIn(f"{program}: the system refuses what is needed", done.stderr)
                 self.assertNotIn("terminate", done.stderr)
 
+    # As root, an account of the test's own, since its threads count.
+    @unittest.skipUnless(os.geteuid() == 0 and os.path.exists(f"{bin_dir}/rtm-studio"), "needs an account without threads, so root, and rtm-studio")
+    def test_rtm_studio_without_threads_says_so_in_one_line(self):
+        for most in range(3, 13):
+            def become():
+                resource.setrlimit(resource.RLIMIT_NPROC, (most, most))
+                os.setgroups([])
+                os.setgid(65532)
+                os.setuid(65532)
+
+            done = subprocess.run([f"{bin_dir}/rtm-studio", "-p", "0"], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60, preexec_fn=become, cwd="/")
+            self.assertEqual(done.returncode, 1, (most, done.stderr))
+            self.assertRegex(done.stderr, "^rtm-studio: the system refuses what is needed.*\n$", most)
+
     def test_output_to_a_full_device_is_a_failure(self):
         for program, *words in (["rtcd", "--help"], ["rtse", "--help"], ["simctl", "--help"], ["sim-server", "--help"], ["player-gateway", "--help"], ["rtm-studio", "--help"], ["follow", "--help"],
                                 ["rtse", "record", "--help"], ["rtse", "sweep", "--help"], ["SinkAllComp", "--help"], ["rtcprof", f"{lib_dir}/SinkAll.so"], ["rtm-skelwrapper", "--help"]):
@@ -198,6 +212,25 @@ class Doors(unittest.TestCase):
                 done = subprocess.run([f"{bin_dir}/{program}", *words], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
             self.assertEqual((program, words, done.returncode), (program, words, 1))
             self.assertIn("cannot be written", done.stderr)
+
+    def test_the_entry_to_the_campaigns_says_in_one_line_what_is_wrong(self):
+        entry = os.path.join(os.path.dirname(os.path.abspath(__file__)), "run")
+
+        def run(*words, **more):
+            done = subprocess.run([entry, *words], stderr=subprocess.PIPE, text=True, timeout=60, **more)
+            self.assertEqual(done.returncode, 1, done.stderr)
+            return done.stderr
+
+        self.assertRegex(run("stores", "--build", "/nowhere"), "^run: build /nowhere: .*\n$")
+        with tempfile.TemporaryDirectory() as build:
+            os.mkdir(f"{build}/bin")
+            self.assertRegex(run("stores", "--build", build), f"^run: stores: {build}/bin/campaign_steps: No such file or directory\nfailed: stores\n$")
+        with open("/dev/full", "w") as full:
+            self.assertEqual(run("--list", stdout=full), "run: the output cannot be written\n")
+        reader, writer = os.pipe()
+        os.close(reader)
+        self.assertEqual(run("--list", stdout=writer), "")
+        os.close(writer)
 
     def test_fragments_are_put_together(self):
         host = self.host()

@@ -50,9 +50,11 @@ def closed_pipe():
         process.wait(60)
         said = process.stderr.read()
         assert said == "", f"a closed pipe is nothing to complain of: {said}"
-    with open("/dev/full", "w") as full:
-        done = subprocess.run([f"{rig.bin_dir}/rtse", "--ns", rig.names, "ls", "-R"], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
-    assert done.returncode == 1 and "cannot be written" in done.stderr, done
+    rig.rtse("act", "SourceAll0")
+    for words in (["ls", "-R"], ["print", "SourceAll0:long"], ["--json", "print", "SourceAll0:long"], ["print", "SourceAll0:long", "-n", "1000000"]):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([f"{rig.bin_dir}/rtse", "--ns", rig.names, *words], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
+        assert done.returncode == 1 and done.stderr == "rtse: standard output: cannot be written\n", done
 
 
 # Ports of different types are connected when one end turns the one type into the other.

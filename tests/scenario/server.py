@@ -4,6 +4,7 @@ import os
 import re
 import signal
 import struct
+import subprocess
 import time
 
 from server_rig import *
@@ -45,6 +46,21 @@ def requests():
     drive.send_signal(signal.SIGKILL)
     drive.wait()
     await_("a robot without commander that stands", lambda: abs(read("echo", f"{robot}::position2d", "-n", "1")["velocity"][0]) < 0.01)
+    stop(process)
+
+
+# Whoever prints without an end ends with its output.
+def output_that_takes_no_more():
+    process = started()
+    for words in (["echo", f"{robot}::laser"], ["--json", "echo", f"{robot}::laser"], ["echo", f"{robot}::position2d"], ["echo", "simulation:world"]):
+        call = [f"{bin_dir}/simctl", "-s", server_id, *words]
+        with open("/dev/full", "w") as full:
+            done = subprocess.run(call, stdout=full, stderr=subprocess.PIPE, text=True, timeout=watchdog)
+        assert done.returncode == 1 and done.stderr == "the output cannot be written\n", done
+        with subprocess.Popen(call, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as read_once:
+            read_once.stdout.readline()
+            read_once.stdout.close()
+            assert read_once.communicate(timeout=watchdog)[1] == "", words
     stop(process)
 
 
@@ -336,4 +352,4 @@ def paused_is_idle():
     stop(process)
 
 
-run(requests, motion, same_state, looked_at_while_paused, looked_at_each_device, shows_every_type, exports, check, names, rate, paused_is_idle)
+run(requests, output_that_takes_no_more, motion, same_state, looked_at_while_paused, looked_at_each_device, shows_every_type, exports, check, names, rate, paused_is_idle)

@@ -3,7 +3,9 @@ import json
 import os
 import random
 import struct
+import subprocess
 import sys
+import threading
 import time
 
 from rig import Rig, await_
@@ -141,6 +143,51 @@ def garbage():
             viewer.message()
     except (Closed, OSError):
         pass
+    studio.lives()
+
+
+# Holds so many connections that say nothing, and renews each that ends; its own program, so that it can be another account.
+crowd_program = """
+import os, select, socket, sys
+port, count, account = map(int, sys.argv[1:])
+if account:
+    os.setgroups([])
+    os.setgid(account)
+    os.setuid(account)
+held = {}
+watch = select.poll()
+while True:
+    while len(held) < count:
+        line = socket.create_connection(("127.0.0.1", port))
+        held[line.fileno()] = line
+        watch.register(line, select.POLLIN)
+    print("full", flush=True)
+    for number, _ in watch.poll():
+        watch.unregister(number)
+        held.pop(number).close()
+"""
+
+
+# Connections that say nothing lock nobody out, and no viewer has to go for them.
+def crowd():
+    rig.naming()
+    studio = Studio()
+    viewer = studio.viewer()
+    account = 65534 if os.geteuid() == 0 else 0
+    with subprocess.Popen(["/usr/bin/python3", "-c", crowd_program, str(studio.port), "128", str(account)], stdout=subprocess.PIPE, cwd="/") as idle:
+        try:
+            assert idle.stdout.readline() == b"full\n"
+            threading.Thread(target=idle.stdout.read, daemon=True).start()  # nothing waits for us to read
+            began = time.monotonic()
+            served = [studio.get(f"/?token={studio.token}")[0] for _ in range(60)]
+            took = time.monotonic() - began
+            assert served == [303] * 60, served
+            viewer.event("hello")
+            viewer.do("recordings")
+        finally:
+            idle.kill()
+    said = rig.log(studio.process).count("sent away: too many connections")
+    assert 1 <= said <= took + 3, (said, took)
     studio.lives()
 
 

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdarg>
+#include <fstream>
 #include <thread>
 
 #include "shm/shm_support.h"
@@ -78,6 +79,40 @@ TEST(Segments, of_others_are_not_opened_by_who_looks_for_one_that_is_missing) {
   EXPECT_NE(nameless.error().message.find("laser199"), std::string::npos) << nameless.error().message;
   EXPECT_GT(opened, 0);
   EXPECT_LT(opened, 100);
+}
+
+// Files with names of another account, and folders as it makes them for names that are taken.
+class Squatted {
+ public:
+  Squatted(uid_t owner, std::uint32_t id, int count) {
+    for (int i = 0; i < count; ++i) {
+      files_.push_back("/dev/shm/" + SegmentName{owner, id, IfaceType::truth, "model" + std::to_string(i)}.text());
+      std::ofstream(files_.back()) << std::flush;
+      folders_.push_back("/dev/shm/rtmsim-" + std::to_string(owner) + "." + std::to_string(100'000 + i));
+      EXPECT_EQ(::mkdir(folders_.back().c_str(), 0700), 0);
+    }
+  }
+  ~Squatted() {
+    for (const auto& file : files_) ::unlink(file.c_str());
+    for (const auto& folder : folders_) ::rmdir(folder.c_str());
+  }
+  Squatted(const Squatted&) = delete;
+  Squatted& operator=(const Squatted&) = delete;
+
+ private:
+  std::vector<std::string> files_, folders_;
+};
+
+TEST(Segments, are_listed_with_one_look_through_the_folder_whatever_others_have_put_there) {
+  const std::uint32_t id = fresh_server_id();
+  const uid_t other = 1'000'000 + static_cast<uid_t>(::getpid());  // nobody's
+  constexpr int count = 200;
+  const Squatted squatted(other, id, count);
+  looks = 0;
+  const auto found = find_segments(id);
+  EXPECT_EQ(found.size(), static_cast<std::size_t>(count));
+  for (const auto& one : found) EXPECT_FALSE(one.is_readable);
+  EXPECT_LT(looks, 5 * count);  // other tests are at work there, too
 }
 
 // What was read of the folder before is used again only when nothing has changed there.

@@ -95,8 +95,8 @@ void print_ports(Editor& editor, const PrintOptions& options) {
                        : Clock::time_point::max();
   auto next_line = Clock::now();
   int printed = 0;
-  while (!ended_by_user.load(std::memory_order_relaxed) && !base::output_is_closed() && Clock::now() < end &&
-         (options.count <= 0 || printed < options.count)) {
+  const auto is_over = [] { return ended_by_user.load(std::memory_order_relaxed) || base::output_is_closed() || !std::cout; };
+  while (!is_over() && Clock::now() < end && (options.count <= 0 || printed < options.count)) {
     Sample sample;
     {
       auto content = queue.content.lock();
@@ -124,7 +124,7 @@ void print_ports(Editor& editor, const PrintOptions& options) {
   taps.clear();
   if (const auto dropped = queue.content.lock()->dropped; dropped > 0)
     editor.fail({"print: " + std::to_string(dropped) + " samples were dropped, they came faster than they could be written"});
-  if (options.count > 0 && printed < options.count && !base::output_is_closed() && !ended_by_user.load(std::memory_order_relaxed)) {
+  if (options.count > 0 && printed < options.count && !is_over()) {
     editor.fail({"print: got " + std::to_string(printed) + " of " + std::to_string(options.count) + " samples in " +
                  base::format_number(options.timeout_s) + " s"});
   }

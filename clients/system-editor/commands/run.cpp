@@ -248,8 +248,6 @@ void run(Editor& editor, const RunOptions& options, const std::optional<std::str
     if (!results.back().logs.empty() && options.keep.empty() && !editor.json())
       std::fprintf(stderr, "rtse: --keep DIR keeps the logs of all processes\n");
   }
-  if (std::cout.flush(); !std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-    editor.fail({"standard output: cannot be written"});
   if (options.junit.empty()) return;
   if (const auto written = write_junit(options.junit, options, results); !written) editor.fail(written.error());
 }
