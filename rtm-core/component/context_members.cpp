@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "corba/action_call.h"
+#include "corba/asker.h"
 #include "corba/object_names.h"
 #include "corba/orb.h"
 #include "corba/remote_participant.h"
@@ -202,6 +203,7 @@ RTC::ReturnCode_t ExecutionContextBase::addComponent(RTC::LightweightRTObject_pt
       member.handle = local->attach_context(self);
       participant = std::make_shared<LocalParticipant>(local, member.handle);
     } else {
+      if (!corba::may_keep(comp)) return RTC::RTC_ERROR;
       const bool has_time = impl_->patience->is_without_end();
       const RTC::LightweightRTObject_var asked = corba::RemoteParticipant::impatient(
           comp, has_time ? corba::RemoteParticipant::long_call_timeout : corba::RemoteParticipant::call_timeout);

@@ -3,14 +3,22 @@
 // Each needs the one before it.
 // clang-format off
 #include <omniORB4/CORBA.h>
+#include <omniORB4/omniIOR.h>
 #include <omniORB4/omniInterceptors.h>
 #include <omniORB4/internal/giopStream.h>
 #include <omniORB4/internal/giopStrand.h>
 #include <omniORB4/internal/GIOP_C.h>
 // clang-format on
 
+#include <atomic>
+#include <chrono>
+#include <random>
+#include <span>
+#include <unordered_map>
 #include <utility>
 
+#include "base/guarded.h"
+#include "base/hash64.h"
 #include "base/log.h"
 #include "corba/call_context.h"
 #include "corba/guarded_transport.h"
@@ -21,50 +29,106 @@ namespace corba {
 namespace {
 
 constexpr std::chrono::milliseconds longest_answer{2000};
+constexpr std::size_t most_given = 250'000;  // some 10 MB; each connection that a stranger makes gives one or two
 
 thread_local Asker asker_of_thread = Asker::own;
-thread_local bool asks_on_its_own = false;
 
-bool was_sent_on(omni::GIOP_C& call) {
+// References of strangers by what is in them, which copies and narrowed ones have, too.
+struct Given {
+  const std::uint64_t seed = std::random_device()() | std::uint64_t{std::random_device()()} << 32U;  // nobody makes two of one hash
+  base::Guarded<std::unordered_map<std::uint64_t, Asker>, base::Rank::log> references;
+  std::atomic<bool> are_any{false};
+  static Given& instance() {
+    static Given& all = *new Given;  // never destroyed: threads may call at the very end
+    return all;
+  }
+};
+
+std::uint64_t fingerprint(omniObjRef* reference) {
+  const omniIOR_var ior = reference->_getIOR();
+  base::Hash64 hash;
+  hash.add(Given::instance().seed);
+  const auto& profiles = ior->iopProfiles();
+  for (CORBA::ULong i = 0; i < profiles.length(); ++i) {
+    hash.add(std::uint64_t{profiles[i].tag});
+    hash.add(std::as_bytes(std::span(profiles[i].profile_data.get_buffer(), profiles[i].profile_data.length())));
+  }
+  return hash.value();
+}
+
+Asker giver_of(omniObjRef* reference) {
+  Given& given = Given::instance();
+  if (reference == nullptr || !given.are_any.load(std::memory_order_acquire)) return Asker::own;  // pairs with the store in remember
+  const auto print = fingerprint(reference);
+  auto references = given.references.lock();
+  const auto found = references->find(print);
+  return found == references->end() ? Asker::own : found->second;
+}
+
+enum class Remembered { known, added, not_added };
+
+Remembered remember(std::uint64_t print, Asker asker) {
+  Given& given = Given::instance();
+  auto references = given.references.lock();
+  if (references->contains(print)) return Remembered::known;
+  if (references->size() >= most_given) return Remembered::not_added;
+  references->emplace(print, asker);
+  given.are_any.store(true, std::memory_order_release);  // pairs with the load in giver_of
+  return Remembered::added;
+}
+
+omniObjRef* target_of(omni::GIOP_C& call) {
   auto* descriptor = call.calldescriptor();
-  if (descriptor == nullptr || descriptor->objref() == nullptr) return false;
-  const omni_tracedmutex_lock held(*omni::internalLock);
-  return descriptor->objref()->_isForwardLocation() != 0;
+  return descriptor != nullptr ? descriptor->objref() : nullptr;
 }
 
 _CORBA_Boolean say_asker(omni::omniInterceptors::clientSendRequest_T::info_T& call) {
-  Asker who = asker_of_thread;
-  if (who == Asker::own && !asks_on_its_own && doors_are_open() && was_sent_on(call.giop_c)) who = Asker::network;
+  const Asker who = asker_of_thread != Asker::own ? asker_of_thread : giver_of(target_of(call.giop_c));
   if (who != Asker::own) add_to_call(call.service_contexts, CallContext::asker, static_cast<std::uint64_t>(who));
   return true;
+}
+
+// The ORB would put the new reference in the place of the one that we know.
+_CORBA_Boolean refuse_to_move(omni::omniInterceptors::clientReceiveReply_T::info_T& reply) {
+  if (reply.giop_c.replyStatus() != GIOP::LOCATION_FORWARD_PERM || giver_of(target_of(reply.giop_c)) == Asker::own) return true;
+  throw CORBA::NO_PERMISSION(0, CORBA::COMPLETED_NO);
 }
 
 }  // namespace
 
 Asker asker() { return asker_of_thread; }
 
-void set_asker(Asker asker) {
-  asker_of_thread = asker;
-  asks_on_its_own = true;
-}
+void set_asker(Asker asker) { asker_of_thread = asker; }
 
 ForAsker::ForAsker(Asker asker) : before_(std::exchange(asker_of_thread, asker)) {}
 ForAsker::~ForAsker() { asker_of_thread = before_; }
 
-AsksOnItsOwn::AsksOnItsOwn() : before_(std::exchange(asks_on_its_own, true)) {}
-AsksOnItsOwn::~AsksOnItsOwn() { asks_on_its_own = before_; }
+Asker giver_of(CORBA::Object_ptr object) { return CORBA::is_nil(object) ? Asker::own : giver_of(object->_PR_getobj()); }
 
 bool may_keep(CORBA::Object_ptr object) {
   if (CORBA::is_nil(object) || asker_of_thread == Asker::own) return true;
+  omniObjRef* reference = object->_PR_getobj();
+  if (reference == nullptr) return false;  // of the ORB itself
+  const auto print = fingerprint(reference);
+  const auto remembered = remember(print, asker_of_thread);  // now, since its answer may already be to move
+  if (remembered == Remembered::not_added) {
+    base::log(base::Level::warn, "doors", "{}: a reference of its call is not taken: strangers have given {}", caller(), most_given);
+    return false;
+  }
   try {
     const CORBA::Object_var asked = impatient_copy(object, longest_answer);
     if (!asked->_non_existent()) return true;
   } catch (const CORBA::Exception& e) {
     base::log(base::Level::warn, "doors", "{}: a reference of its call does not answer it: {}", caller(), to_text(e));
   }
+  // It may be one of our own, who calls it for himself.
+  if (remembered == Remembered::added) Given::instance().references.lock()->erase(print);
   return false;
 }
 
-void pass_on_asker() { omniORB::getInterceptors()->clientSendRequest.add(&say_asker); }
+void pass_on_asker() {
+  omniORB::getInterceptors()->clientSendRequest.add(&say_asker);
+  omniORB::getInterceptors()->clientReceiveReply.add(&refuse_to_move);
+}
 
 }  // namespace corba

@@ -1,7 +1,7 @@
 // For whom a thread works. A call from another account or host makes this process call others in turn: a manager its slaves, a port the
 // next one, a context a member. They would see a caller of our account. So the call says for whom it is (call_context.h), and is refused by
-// a process that does not let the asker in itself. So is, from a process that is open, a call that an object's answer has sent elsewhere:
-// a stranger may have given the object. Any thread.
+// a process that does not let the asker in itself. So is every later call, by whatever thread, through a reference that a stranger gave:
+// its object may send the call elsewhere, or have more addresses than the one that answered first. Any thread.
 #pragma once
 
 #include <omniORB4/CORBA.h>
@@ -32,22 +32,12 @@ class ForAsker {
   const Asker before_;
 };
 
-// The thread calls objects that it has found by itself: they may send its calls elsewhere (as a manager does that is called by its name),
-// for as long as this lives. A thread that carries out a request may be sent on anyway, since its calls say for whom they are.
-class AsksOnItsOwn {
- public:
-  AsksOnItsOwn();
-  ~AsksOnItsOwn();
-  AsksOnItsOwn(const AsksOnItsOwn&) = delete;
-  AsksOnItsOwn& operator=(const AsksOnItsOwn&) = delete;
-
- private:
-  const bool before_;
-};
-
-// Whether a reference that came with a request may be kept, to be called later when nobody knows for whom. For strangers: it answers them,
-// within two seconds. Nil may be kept.
+// Whether a reference that came with a request may be kept, to be called later: all that are, are asked for here. Those of strangers must
+// answer them, within two seconds; those that do are remembered, and a process remembers so many. Nil may be kept.
 bool may_keep(CORBA::Object_ptr object);
+
+// The stranger who gave this reference; `own` for all others.
+Asker giver_of(CORBA::Object_ptr object);
 
 // For the transport: a thread carries out a request, of whom; and calls that say it.
 void set_asker(Asker asker);

@@ -20,8 +20,10 @@ std::string prefix_of(rt::Interface interface, rt::Side side) {
 }  // namespace
 
 CORBA::Object_ptr parse_reference(const char* text) {
-  const auto form = base::to_lower(std::string_view(text).substr(0, 10));
+  const auto form = base::to_lower(text);
   if (!form.starts_with("ior:") && !form.starts_with("corbaloc:")) return CORBA::Object::_nil();
+  // "resolve initial reference": an object of this ORB itself, on which no call can be made.
+  if (form.starts_with("corbaloc:") && form.find("rir:") != std::string::npos) return CORBA::Object::_nil();
   try {
     return orb()->string_to_object(text);
   } catch (const CORBA::Exception&) {

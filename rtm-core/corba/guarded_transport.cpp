@@ -223,6 +223,12 @@ class GuardedConnection final : public omni::giopConnection {
 // Who sent the request that this thread runs; an address is shorter.
 thread_local std::array<char, 128> address_of_caller{};
 
+const char* to_text(Asker asker) {
+  return asker == Asker::host          ? "another account of this machine"
+         : asker == Asker::certificate ? "the owner of a certificate"
+                                       : "another host";
+}
+
 // A process of our account may call for somebody else.
 Asker asker_of(omni::GIOP_S& request) {
   const auto* connection = dynamic_cast<const GuardedConnection*>(request.strand().connection);
@@ -244,7 +250,7 @@ _CORBA_Boolean remember_caller(omni::omniInterceptors::serverReceiveRequest_T::i
   const Asker who = asker_of(request.giop_s);
   set_asker(who);
   if (who != Asker::own && !may_come_in(who, Doors::instance().state.lock()->settings)) {
-    complain(caller() + " asked for " + request.operation() + " for somebody who may not come in: refused");
+    complain(caller() + " asked for " + request.operation() + " for " + to_text(who) + " who may not come in: refused");
     throw CORBA::NO_PERMISSION(0, CORBA::COMPLETED_NO);
   }
   return true;

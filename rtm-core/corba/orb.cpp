@@ -283,14 +283,16 @@ base::Result<std::unique_ptr<Orb>> Orb::start(const OrbSettings& settings) {
   if (settings.unix_socket) result->folder_ = PrivateFolder::make();
   auto arguments = to_arguments(settings, result->folder_ ? result->folder_->path() : "");
   if (!arguments) return arguments.error();
+  set_port_call_timeout(call_timeout_of(*arguments));
+  const DoorSettings doors = doors_of(settings, *arguments);
+  set_doors(doors);
+  // An answer to "are you there?" may move a reference past those who look at answers to calls (corba/asker.h).
+  if (doors_are_open()) arguments->insert(arguments->end(), {"-ORBverifyObjectExistsAndType", "0"});
   std::vector<char*> argv;
   for (auto& argument : *arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   int argc = static_cast<int>(arguments->size());
 
-  set_port_call_timeout(call_timeout_of(*arguments));
-  const DoorSettings doors = doors_of(settings, *arguments);
-  set_doors(doors);
   *orb_messages().lock() = {.collecting = true, .last = ""};
   omniORB::setLogFunction(&take_orb_message);
   std::string failure;

@@ -179,7 +179,6 @@ struct NamingManager::Impl {
 
   // `instance`, `category/instance` or `*/instance`, of the manager and its slaves.
   RTCList at_manager(const std::string& host, const std::string& path) {
-    const corba::AsksOnItsOwn scope;
     RTCList found;
     RTM::Manager_var other = manager_at(host);
     if (CORBA::is_nil(other)) return found;

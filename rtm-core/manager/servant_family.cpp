@@ -2,7 +2,6 @@
 // as a manager. One that hangs is dropped, and may come back after a while.
 #include <algorithm>
 #include <atomic>
-#include <optional>
 #include <system_error>
 #include <thread>
 
@@ -89,7 +88,7 @@ RTC::ReturnCode_t ManagerServant::add_master_manager(RTM::Manager_ptr mgr) {
 }
 
 RTC::ReturnCode_t ManagerServant::add_master(RTM::Manager_ptr mgr) {
-  if (CORBA::is_nil(mgr) || !answers(mgr) || mgr->_is_equivalent(reference_)) return RTC::BAD_PARAMETER;
+  if (CORBA::is_nil(mgr) || !corba::may_keep(mgr) || !answers(mgr) || mgr->_is_equivalent(reference_)) return RTC::BAD_PARAMETER;
   const std::scoped_lock lock(mutex_);
   return add_unique(masters_, mgr) ? RTC::RTC_OK : RTC::BAD_PARAMETER;
 }
@@ -118,7 +117,7 @@ RTC::ReturnCode_t ManagerServant::add_slave_manager(RTM::Manager_ptr mgr) {
       if (dropped.manager->_is_equivalent(mgr) && now < dropped.may_return) return RTC::BAD_PARAMETER;
     }
   }
-  if (!answers(mgr) || is_below(mgr, reference_)) return RTC::BAD_PARAMETER;
+  if (!corba::may_keep(mgr) || !answers(mgr) || is_below(mgr, reference_)) return RTC::BAD_PARAMETER;
   const std::scoped_lock lock(mutex_);
   return add_unique(slaves_, mgr) ? RTC::RTC_OK : RTC::BAD_PARAMETER;
 }
@@ -214,7 +213,6 @@ std::vector<RTM::Manager_var> ManagerServant::living_slaves() {
 
 // Nil if nothing that is a manager answers there.
 RTM::Manager_var ManagerServant::manager_at(const std::string& address) {
-  const corba::AsksOnItsOwn scope;
   const auto url = "corbaloc:iiop:" + address + "/" + manager_.configValue("manager.name");
   try {
     CORBA::Object_var object = manager_.getORB()->string_to_object(url.c_str());
@@ -228,7 +226,6 @@ RTM::Manager_var ManagerServant::manager_at(const std::string& address) {
 }
 
 void ManagerServant::greet_master() {
-  const corba::AsksOnItsOwn scope;
   RTM::Manager_var master = manager_at(manager_.configValue("corba.master_manager"));
   try {
     // A manager that is no master has that address because the port was free; it may be this one.
@@ -259,8 +256,6 @@ void ManagerServant::leave_masters() {
     }
   };
   for (auto& master : masters) {
-    std::optional<corba::AsksOnItsOwn> scope;
-    if (!CORBA::is_nil(greeted_) && master->_is_equivalent(greeted_)) scope.emplace();
     corba::set_call_timeout(master, peer_timeout);
     quietly([&] { master->remove_slave_manager(reference_); });
   }

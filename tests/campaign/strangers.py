@@ -97,10 +97,11 @@ def call(account, port, operation, arguments, key=b"manager"):
 
 
 class SentOn:
-    """An object that answers as a manager that is alive, and everything else by: ask over there."""
+    """An object that answers as a manager that is alive, and everything else by: ask over there, for now or for ever."""
 
-    def __init__(self, port, key):
+    def __init__(self, port, key, status=3):
         self.there = reference(port, key)
+        self.status = status
         self.listening = socket.create_server(("127.0.0.1", 0))
         self.port = self.listening.getsockname()[1]
         threading.Thread(target=self.serve, daemon=True).start()
@@ -121,7 +122,7 @@ class SentOn:
                 elif start[7] == 0 and (b"is_master" in body or b"_non_existent" in body):
                     connection.sendall(message(1, identity + struct.pack("<II", 0, 0) + bytes([b"is_master" in body])))
                 elif start[7] == 0:
-                    connection.sendall(message(1, identity + struct.pack("<II", 3, 0) + self.there))
+                    connection.sendall(message(1, identity + struct.pack("<II", self.status, 0) + self.there))
 
     def close(self):
         self.listening.close()
@@ -139,7 +140,7 @@ class Strangers(unittest.TestCase):
         closed = self.host("-o", "manager.instance_name:closed")
         slave = reference(closed.port, b"manager")
         self.assertNotEqual(call(stranger, ours.port, "add_slave_manager", slave).number(), 0)
-        self.assertIn("asked for is_master for somebody who may not come in: refused", closed.text())
+        self.assertIn("asked for _non_existent for another account of this machine who may not come in: refused", closed.text())
         self.assertEqual(call(ourselves, ours.port, "add_slave_manager", slave).number(), 0)
         wanted = text("SinkAll?manager_name=closed")
         self.assertFalse(call(stranger, ours.port, "create_component", wanted).is_nil())  # here: there is no such slave
@@ -164,7 +165,7 @@ class Strangers(unittest.TestCase):
         closed = self.host("-o", "manager.components.precreate:SinkAll")
         wanted = text(f"PeriodicECSharedComposite?conf.default.members=rtcloc://127.0.0.1:{closed.port}/*/SinkAll0")
         call(stranger, ours.port, "create_component", wanted)
-        self.assertIn("for somebody who may not come in: refused", closed.text())
+        self.assertIn("for another account of this machine who may not come in: refused", closed.text())
 
     def test_strangers_see_no_secrets(self):
         os.environ["RTMSIM_TEST_SECRET"] = "swordfish"
@@ -178,14 +179,18 @@ class Strangers(unittest.TestCase):
         self.assertEqual(call(stranger, ours.port, "set_configuration", aligned(text("naming.formats"), text("$(RTMSIM_TEST_SECRET).rtc"))).number(), 1)
         self.assertFalse(call(ourselves, ours.port, "create_component", text("SinkAll?naming.formats=${RTMSIM_TEST_SECRET}.rtc")).is_nil())
 
+    # It takes leave of its masters, on a thread that works for nobody.
     def test_calls_that_an_answer_sends_on_are_for_strangers(self):
-        ours = Host(bin_dir, lib_dir, "-o", "corba.open_to:host")
-        closed = self.host()
-        sent_on = SentOn(closed.port, b"manager")
-        self.addCleanup(sent_on.close)
-        self.assertEqual(call(stranger, ours.port, "add_master_manager", reference(sent_on.port, b"any")).number(), 0)
-        self.assertEqual(ours.end(), 0)  # it takes leave of its masters, on a thread that works for nobody
-        self.assertIn("asked for remove_slave_manager for somebody who may not come in: refused", closed.text())
+        for status in (3, 4):  # LOCATION_FORWARD, LOCATION_FORWARD_PERM
+            ours = Host(bin_dir, lib_dir, "-o", "corba.open_to:host")
+            closed = self.host()
+            sent_on = SentOn(closed.port, b"manager", status)
+            self.addCleanup(sent_on.close)
+            self.assertEqual(call(stranger, ours.port, "add_master_manager", reference(sent_on.port, b"any")).number(), 0)
+            self.assertEqual(ours.end(), 0)
+            if status == 3:
+                self.assertIn("asked for remove_slave_manager for another account of this machine who may not come in: refused", closed.text())
+            self.assertEqual(call(ourselves, closed.port, "get_slave_managers", b"").number(), 0)
 
 
 unittest.main()

@@ -182,6 +182,16 @@ TEST_F(Hostile, a_reference_that_asks_a_server_of_the_senders_choice_is_none) {
   EXPECT_LT(steady_clock::now() - start, 5s) << "100 servers were asked";
 }
 
+TEST_F(Hostile, a_reference_to_an_object_of_the_orb_itself_is_none) {
+  for (const char* text :
+       {"corbaloc:rir:/RootPOA", "CORBALOC:rir:/POACurrent", "corbaloc:rir:/DynAnyFactory", "corbaloc:rir:/omniINSPOA"}) {
+    auto plan = profile({in.getPortRef(), out.getPortRef()}, {{"corba_cdr.inport_ior", text}}, "told");
+    EXPECT_NE(out.notify_connect(plan), RTC::RTC_OK) << text;
+    auto back = profile({out.getPortRef(), in.getPortRef()}, {{"corba_cdr.outport_ior", text}, {"dataflow_type", "pull"}}, "told too");
+    EXPECT_NE(in.notify_connect(back), RTC::RTC_OK) << text;
+  }
+}
+
 TEST_F(Hostile, a_segment_that_its_sender_cuts_short_costs_the_receiver_one_sample) {
   const auto port = connect_and_steal();
   Segment segment;

@@ -8,6 +8,7 @@
 
 #include "base/log.h"
 #include "base/text.h"
+#include "corba/asker.h"
 #include "corba/call_timeout.h"
 #include "corba/orb.h"
 #include "corba/remote_participant.h"
@@ -111,6 +112,7 @@ PeriodicECOrganization::~PeriodicECOrganization() = default;
 
 bool PeriodicECOrganization::join(const Member& member) {
   SDO_var sdo = member.sdo;
+  if (!corba::may_keep(sdo)) return false;
   RTC::LightweightRTObject_var component;
   const Patience in_time;
   const bool joined = attempt(member.id, "join", [&] {
@@ -139,6 +141,8 @@ bool PeriodicECOrganization::join(const Member& member) {
 
 void PeriodicECOrganization::leave(const Member& member) {
   SDO_var sdo = member.sdo;
+  std::optional<corba::ForAsker> for_giver;  // its contexts are what it says
+  if (const auto giver = corba::giver_of(sdo); giver != corba::Asker::own) for_giver.emplace(giver);
   const Patience in_time;
   attempt(member.id, "leave", [&] {
     RTC::LightweightRTObject_var component = RTC::LightweightRTObject::_narrow(sdo);
