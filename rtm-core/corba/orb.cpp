@@ -6,7 +6,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <optional>
 #include <system_error>
@@ -44,6 +46,9 @@ void remove_stale_folders(const std::filesystem::path& where) {
     struct stat status {};
     if (lstat(entry.path().c_str(), &status) != 0 || status.st_uid != geteuid() || !S_ISDIR(status.st_mode)) continue;
     const int lock = open((entry.path() / "lock").c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
+    // Its owner could open no file, or is just about to.
+    constexpr std::time_t while_made = 60;  // [s]
+    if (lock < 0 && errno == ENOENT && status.st_mtime + while_made < std::time(nullptr)) rmdir(entry.path().c_str());
     if (lock < 0) continue;
     if (flock(lock, LOCK_EX | LOCK_NB) == 0) std::filesystem::remove_all(entry.path(), error);
     close(lock);
@@ -73,6 +78,7 @@ class Orb::PrivateFolder {
         return std::unique_ptr<PrivateFolder>(new PrivateFolder(pattern, lock));
       }
       if (lock >= 0) close(lock);  // another process took the new folder for a stale one
+      if (lock < 0) rmdir(pattern.c_str());
     }
     return nullptr;
   }

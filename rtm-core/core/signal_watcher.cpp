@@ -1,16 +1,24 @@
 #include "core/signal_watcher.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <pthread.h>
 #include <signal.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <csignal>
+#include <map>
+#include <set>
 #include <thread>
 
 namespace rt {
 namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds same_signal{50};  // as `timeout` sends two: to its child, and to the child's process group
 
 volatile std::sig_atomic_t write_end = -1;  // what the handler needs; set before any handler is installed
 
@@ -37,15 +45,37 @@ struct SignalWatcher::Impl {
   int ends[2] = {-1, -1};
   std::thread thread;
 
+  // Once there has been a signal of a number, until another one of it ends the process.
+  std::map<int, Clock::time_point> until{};
+
+  void give_back_due() {
+    std::erase_if(until, [](const auto& one) {
+      if (Clock::now() < one.second) return false;
+      set_handler(one.first, SIG_DFL);
+      return true;
+    });
+  }
+
   void run() {
     pthread_setname_np(pthread_self(), "rtm-signals");
-    for (;;) {
+    std::set<int> seen;
+    bool is_ending = false;
+    while (!is_ending || !until.empty()) {
+      pollfd news{is_ending ? -1 : ends[0], POLLIN, 0};
+      const bool has_news = poll(&news, 1, until.empty() ? -1 : static_cast<int>(same_signal.count())) > 0;
       unsigned char number = 0;
-      const auto size = read(ends[0], &number, 1);
-      if (size < 0 && errno == EINTR) continue;
-      if (size <= 0 || number == 0) return;
-      set_handler(number, SIG_DFL);
-      call(number);
+      if (has_news && read(ends[0], &number, 1) == 1) {
+        if (number == 0) {
+          is_ending = true;
+        } else if (seen.insert(number).second) {
+          until[number] = Clock::now() + same_signal;
+          call(number);
+        } else if (!until.contains(number) || Clock::now() >= until[number]) {
+          set_handler(number, SIG_DFL);
+          kill(getpid(), number);
+        }
+      }
+      give_back_due();
     }
   }
 };
@@ -66,13 +96,13 @@ SignalWatcher::SignalWatcher(const std::vector<int>& signals, std::function<void
 
 SignalWatcher::~SignalWatcher() {
   if (!impl_->thread.joinable()) return;
+  const unsigned char end = 0;
+  [[maybe_unused]] const auto written = write(impl_->ends[1], &end, 1);
+  impl_->thread.join();
   for (const int number : impl_->signals) {
     struct sigaction present {};
     if (sigaction(number, nullptr, &present) == 0 && present.sa_handler == &handle) set_handler(number, SIG_DFL);
   }
-  const unsigned char end = 0;
-  [[maybe_unused]] const auto written = write(impl_->ends[1], &end, 1);
-  impl_->thread.join();
   write_end = -1;
   close(impl_->ends[0]);
   close(impl_->ends[1]);

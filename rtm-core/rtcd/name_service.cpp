@@ -107,6 +107,7 @@ base::Result<Folder> make_folder() {
     struct stat opened {};
     if (lock >= 0 && flock(lock, LOCK_EX | LOCK_NB) == 0 && fstat(lock, &opened) == 0 && opened.st_nlink > 0) return Folder{path, lock};
     if (lock >= 0) close(lock);  // another process took the new folder for a stale one
+    if (lock < 0) rmdir(path.c_str());
   }
   return base::Error{"naming service: no folder can be made in the temporary folder"};
 }

@@ -365,7 +365,7 @@ TEST_F(Rtcd, leaves_nothing_behind_whatever_ends_it) {
     } else {
       ASSERT_TRUE(eventually([&] { return support::is_listening(port) && files() == 2; })) << rtcd.output();
     }
-    rtcd.signal(signal);
+    for (int i = 0; i < 2; ++i) rtcd.signal(signal);  // as `timeout` sends it
     EXPECT_EQ(rtcd.wait(), exit_code) << rtcd.output();
     EXPECT_TRUE(eventually([&] { return !support::is_listening(port) && files() == 0; })) << component << ' ' << signal;
   }

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <csignal>
 #include <future>
+#include <thread>
 
 #include "core/signal_watcher.h"
 #include "support/process.h"
@@ -112,6 +113,31 @@ TEST(SignalWatcher, hands_a_signal_to_its_thread) {
   auto answer = got.get_future();
   ASSERT_EQ(answer.wait_for(support::watchdog), std::future_status::ready);
   EXPECT_EQ(answer.get(), SIGUSR1);
+}
+
+// As `timeout` does it. The first one is called for; the end of the watcher waits for the second.
+TEST(SignalWatcher, takes_two_signals_that_come_together_for_one) {
+  std::atomic<int> calls{0};
+  {
+    SignalWatcher watcher({SIGUSR1}, [&](int) { ++calls; });
+    raise(SIGUSR1);
+    raise(SIGUSR1);
+  }
+  EXPECT_EQ(calls, 1);
+}
+
+TEST(SignalWatcher, lets_a_later_signal_end_the_process) {
+  EXPECT_EXIT(
+      {
+        std::promise<void> called;
+        SignalWatcher watcher({SIGUSR1}, [&](int) { called.set_value(); });
+        raise(SIGUSR1);
+        called.get_future().wait();
+        struct sigaction present {};
+        while (sigaction(SIGUSR1, nullptr, &present) == 0 && present.sa_handler != SIG_DFL) std::this_thread::yield();
+        raise(SIGUSR1);
+      },
+      testing::KilledBySignal(SIGUSR1), "");
 }
 
 TEST(SignalWatcher, leaves_handlers_of_the_program_alone) {
