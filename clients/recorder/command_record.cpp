@@ -305,6 +305,7 @@ bool record_into(Editor& editor, const RecordOptions& options, const RunClock& c
   ComponentSource components(editor.orb(), exchange, clock);
   auto facts = lockstep_facts(options);
   for (const auto& [component, port] : ports) {
+    if (editor::is_interrupted()) return false;
     if (const auto added = source.add(component, port, facts[component.instance]); !added) editor.fail(added.error());
   }
   if (options.until_error) {
@@ -313,6 +314,7 @@ bool record_into(Editor& editor, const RecordOptions& options, const RunClock& c
     });
   }
   for (const auto& component : chosen_components(editor, options, ports)) {
+    if (editor::is_interrupted()) return false;
     if (const auto added = components.add(component); !added) editor.fail(added.error());
   }
   // On the thread of the views, which end before the others.

@@ -170,7 +170,9 @@ Result<std::unique_ptr<Tap>> Tap::connect(CORBA::ORB_ptr orb, const PortView& po
   profile.ports[1] = RTC::PortService::_duplicate(reads ? tap->port_->self() : port.object.in());
   profile.properties = to_nv_list(properties);
   RTC::ReturnCode_t code = RTC::RTC_ERROR;
-  // The OutPort side starts, as tools do it: the call runs through both ports.
+  // The OutPort side starts, as tools do it: the call runs through both ports, and back to us.
+  constexpr std::chrono::seconds longest_connect{10};
+  const CallLimit limited(longest_connect);
   const auto called = remote("connecting to port " + port.full_name,
                              [&] { code = reads ? port.object->connect(profile) : tap->port_->notify_connect(profile); });
   if (!called) return called.error();
