@@ -1,8 +1,10 @@
 #include "base/command_line.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -56,6 +58,15 @@ std::string summary(const CLI::App& app, const std::string& name) {
   return line;
 }
 
+// One that is closed would be the number of the next file that is opened, and what is printed would go there. In its place comes one that
+// can be neither read nor written, so that whoever looks finds out.
+void keep_standard_files() {
+  for (const int file : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(file, F_GETFD) != -1 || errno != EBADF) continue;
+    (void)open("/dev/null", file == STDIN_FILENO ? O_WRONLY : O_RDONLY);  // the lowest number that is free
+  }
+}
+
 }  // namespace
 
 std::string manual_page(const Command& program, const std::string& name, const std::string& version) {
@@ -98,6 +109,7 @@ void add_standard_options(Command& program, const std::string& name, const std::
 }
 
 std::optional<int> parse_command_line(Command& program, const std::string& name, int argc, const char* const* argv, const Offers& offers) {
+  keep_standard_files();
   if (argc > 1 && std::string_view(argv[1]) == "--complete") {
     const auto completion = complete(program, {argv + 2, argv + argc}, offers);
     if (completion.files) std::cout << ":files\n";

@@ -46,6 +46,7 @@ int main(int argc, char** argv) {
   const std::string first = argc > 1 ? argv[1] : "";
   if (argc < 2 || argc > 3 || first.starts_with("-")) {
     (first == "--help" ? std::cout : std::cerr) << "usage: rtcprof FILE [INITFUNC]\n";
+    if (!std::cout.flush().good()) return fail("the output cannot be written");
     return first == "--help" ? 0 : 2;
   }
   const auto file = std::filesystem::absolute(first).string();

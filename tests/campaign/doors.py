@@ -205,13 +205,13 @@ class Doors(unittest.TestCase):
 
     def test_output_to_a_full_device_is_a_failure(self):
         for program, *words in (["rtcd", "--help"], ["rtse", "--help"], ["simctl", "--help"], ["sim-server", "--help"], ["player-gateway", "--help"], ["rtm-studio", "--help"], ["follow", "--help"],
-                                ["rtse", "record", "--help"], ["rtse", "sweep", "--help"], ["SinkAllComp", "--help"], ["rtcprof", f"{lib_dir}/SinkAll.so"], ["rtm-skelwrapper", "--help"]):
+                                ["rtse", "record", "--help"], ["rtse", "sweep", "--help"], ["SinkAllComp", "--help"], ["rtcprof", f"{lib_dir}/SinkAll.so"], ["rtcprof", "--help"], ["rtm-skelwrapper", "--help"]):
             if not os.path.exists(f"{bin_dir}/{program}"):
                 continue
-            with open("/dev/full", "w") as full:
-                done = subprocess.run([f"{bin_dir}/{program}", *words], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
-            self.assertEqual((program, words, done.returncode), (program, words, 1))
-            self.assertIn("cannot be written", done.stderr)
+            for where in ("/dev/full", "&-"):
+                done = subprocess.run(["sh", "-c", f'exec "$@" >{where}', "sh", f"{bin_dir}/{program}", *words], stderr=subprocess.PIPE, text=True, timeout=60)
+                self.assertEqual((program, words, where, done.returncode), (program, words, where, 1))
+                self.assertIn("cannot be written", done.stderr)
 
     def test_the_entry_to_the_campaigns_says_in_one_line_what_is_wrong(self):
         entry = os.path.join(os.path.dirname(os.path.abspath(__file__)), "run")
