@@ -82,4 +82,11 @@ Line line_of(const rt::ConnectorSettings& settings) {
   return {settings.order, std::min(settings.call_timeout.value_or(usual), std::max(usual, most)), settings.shared_memory_size};
 }
 
+bool may_keep_ports(const RTC::PortServiceList& ports, int self) {
+  for (CORBA::ULong i = 0; i < ports.length(); ++i) {
+    if (i != static_cast<CORBA::ULong>(self) && !may_keep(ports[i])) return false;
+  }
+  return true;
+}
+
 }  // namespace corba

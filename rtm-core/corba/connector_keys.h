@@ -19,4 +19,8 @@ void remove_references(RTC::ConnectorProfile& profile);
 // The time-out, byte order and sizes of a connection.
 Line line_of(const rt::ConnectorSettings& settings);
 
+// Whether the ports of a profile but for the one in that place may be kept (corba/asker.h): they are watched, connected again, told of the
+// end.
+bool may_keep_ports(const RTC::PortServiceList& ports, int self);
+
 }  // namespace corba

@@ -7,7 +7,7 @@
 #include "base/id.h"
 #include "base/log.h"
 #include "base/text.h"
-#include "corba/asker.h"
+#include "corba/connector_keys.h"
 #include "corba/farewell.h"
 #include "corba/nv_list.h"
 #include "corba/object_names.h"
@@ -41,14 +41,6 @@ bool is_good(const RTC::ConnectorProfile& profile, const std::string& port) {
   const auto checked = check_profile(profile);
   if (!checked) base::log(base::Level::warn, port, "refused: {}", checked.error().message);
   return bool(checked);
-}
-
-// Later they are watched, connected again, told of the end.
-bool may_keep_ports(const RTC::PortServiceList& ports, int self) {
-  for (CORBA::ULong i = 0; i < ports.length(); ++i) {
-    if (i != static_cast<CORBA::ULong>(self) && !may_keep(ports[i])) return false;
-  }
-  return true;
 }
 
 template <class T>

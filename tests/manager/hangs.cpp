@@ -1,5 +1,5 @@
-// Hangs: a component whose onExecute never returns, with a stream in its hands, as one that waits for input; HangsInMaking: one that takes its time to be made. For tests of how a process ends, and
-// of modules that fail or go.
+// Hangs: a component whose onExecute never returns, with a stream in its hands, as one that waits for input; HangsInMaking: one that takes
+// its time to be made. For tests of how a process ends, and of modules that fail or go.
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/Manager.h>
 
