@@ -5,6 +5,7 @@
 #include <omniORB4/CORBA.h>
 #include <omniORB4/omniIOR.h>
 #include <omniORB4/omniInterceptors.h>
+#include <omniORB4/internal/omniIdentity.h>
 #include <omniORB4/internal/giopStream.h>
 #include <omniORB4/internal/giopStrand.h>
 #include <omniORB4/internal/GIOP_C.h>
@@ -28,8 +29,7 @@
 namespace corba {
 namespace {
 
-constexpr std::chrono::milliseconds longest_answer{2000};
-constexpr std::size_t most_given = 250'000;  // some 10 MB; each connection that a stranger makes gives one or two
+constexpr std::size_t most_given = 1'000'000;  // some 40 MB; each connection that a stranger makes gives one or two
 
 thread_local Asker asker_of_thread = Asker::own;
 
@@ -65,16 +65,20 @@ Asker giver_of(omniObjRef* reference) {
   return found == references->end() ? Asker::own : found->second;
 }
 
-enum class Remembered { known, added, not_added };
-
-Remembered remember(std::uint64_t print, Asker asker) {
+// Who is least trusted counts. False when there are too many.
+bool remember(std::uint64_t print, Asker asker) {
   Given& given = Given::instance();
   auto references = given.references.lock();
-  if (references->contains(print)) return Remembered::known;
-  if (references->size() >= most_given) return Remembered::not_added;
-  references->emplace(print, asker);
+  if (references->size() >= most_given && !references->contains(print)) return false;
+  const auto [place, is_new] = references->try_emplace(print, asker);
+  if (!is_new && place->second != asker) place->second = Asker::network;
   given.are_any.store(true, std::memory_order_release);  // pairs with the load in giver_of
-  return Remembered::added;
+  return true;
+}
+
+bool is_here(omniObjRef* reference) {
+  const omni_tracedmutex_lock held(*omni::internalLock);
+  return reference->_identity()->inThisAddressSpace() != 0;
 }
 
 omniObjRef* target_of(omni::GIOP_C& call) {
@@ -88,9 +92,10 @@ _CORBA_Boolean say_asker(omni::omniInterceptors::clientSendRequest_T::info_T& ca
   return true;
 }
 
-// The ORB would put the new reference in the place of the one that we know.
+// The ORB would put the new reference in the place of the one that we know, or are about to.
 _CORBA_Boolean refuse_to_move(omni::omniInterceptors::clientReceiveReply_T::info_T& reply) {
-  if (reply.giop_c.replyStatus() != GIOP::LOCATION_FORWARD_PERM || giver_of(target_of(reply.giop_c)) == Asker::own) return true;
+  if (reply.giop_c.replyStatus() != GIOP::LOCATION_FORWARD_PERM) return true;
+  if (asker_of_thread == Asker::own && giver_of(target_of(reply.giop_c)) == Asker::own) return true;
   throw CORBA::NO_PERMISSION(0, CORBA::COMPLETED_NO);
 }
 
@@ -105,24 +110,25 @@ ForAsker::~ForAsker() { asker_of_thread = before_; }
 
 Asker giver_of(CORBA::Object_ptr object) { return CORBA::is_nil(object) ? Asker::own : giver_of(object->_PR_getobj()); }
 
-bool may_keep(CORBA::Object_ptr object) {
+ForGiver::ForGiver(CORBA::Object_ptr object) {
+  if (const Asker giver = giver_of(object); giver != Asker::own) asker_.emplace(giver);
+}
+
+bool may_keep(CORBA::Object_ptr object, std::chrono::milliseconds patience) {
   if (CORBA::is_nil(object) || asker_of_thread == Asker::own) return true;
   omniObjRef* reference = object->_PR_getobj();
-  if (reference == nullptr) return false;  // of the ORB itself
-  const auto print = fingerprint(reference);
-  const auto remembered = remember(print, asker_of_thread);  // now, since its answer may already be to move
-  if (remembered == Remembered::not_added) {
-    base::log(base::Level::warn, "doors", "{}: a reference of its call is not taken: strangers have given {}", caller(), most_given);
-    return false;
-  }
+  if (reference != nullptr && is_here(reference)) return true;  // ours, and called without a message
+  if (reference == nullptr || patience <= std::chrono::milliseconds::zero()) return false;
   try {
-    const CORBA::Object_var asked = impatient_copy(object, longest_answer);
-    if (!asked->_non_existent()) return true;
+    const CORBA::Object_var asked = impatient_copy(object, patience);
+    if (asked->_non_existent()) return false;
   } catch (const CORBA::Exception& e) {
     base::log(base::Level::warn, "doors", "{}: a reference of its call does not answer it: {}", caller(), to_text(e));
+    return false;
   }
-  // It may be one of our own, who calls it for himself.
-  if (remembered == Remembered::added) Given::instance().references.lock()->erase(print);
+  // Not before: it may be one of ours, that we call for ourselves meanwhile.
+  if (remember(fingerprint(reference), asker_of_thread)) return true;
+  base::log(base::Level::warn, "doors", "{}: a reference of its call is not taken: strangers have given {}", caller(), most_given);
   return false;
 }
 

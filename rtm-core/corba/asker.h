@@ -6,7 +6,9 @@
 
 #include <omniORB4/CORBA.h>
 
+#include <chrono>
 #include <cstdint>
+#include <optional>
 
 namespace corba {
 
@@ -33,11 +35,20 @@ class ForAsker {
 };
 
 // Whether a reference that came with a request may be kept, to be called later: all that are, are asked for here. Those of strangers must
-// answer them, within two seconds; those that do are remembered, and a process remembers so many. Nil may be kept.
-bool may_keep(CORBA::Object_ptr object);
+// answer them in time; those that do are remembered, and a process remembers a million. Nil may be kept.
+bool may_keep(CORBA::Object_ptr object, std::chrono::milliseconds patience = std::chrono::seconds(2));
 
 // The stranger who gave this reference; `own` for all others.
 Asker giver_of(CORBA::Object_ptr object);
+
+// The thread works for who gave this reference, when that was a stranger: where what its object answers is called in turn.
+class ForGiver {
+ public:
+  explicit ForGiver(CORBA::Object_ptr object);
+
+ private:
+  std::optional<ForAsker> asker_;
+};
 
 // For the transport: a thread carries out a request, of whom; and calls that say it.
 void set_asker(Asker asker);

@@ -82,9 +82,17 @@ Line line_of(const rt::ConnectorSettings& settings) {
   return {settings.order, std::min(settings.call_timeout.value_or(usual), std::max(usual, most)), settings.shared_memory_size};
 }
 
+ForGivers::ForGivers(const RTC::PortServiceList& ports) {
+  if (asker() != Asker::own) return;
+  for (CORBA::ULong i = 0; i < ports.length() && !asker_; ++i) {
+    if (const Asker giver = giver_of(ports[i].in()); giver != Asker::own) asker_.emplace(giver);
+  }
+}
+
 bool may_keep_ports(const RTC::PortServiceList& ports, int self) {
+  const ChainDeadline deadline(std::chrono::seconds(2));
   for (CORBA::ULong i = 0; i < ports.length(); ++i) {
-    if (i != static_cast<CORBA::ULong>(self) && !may_keep(ports[i])) return false;
+    if (i != static_cast<CORBA::ULong>(self) && !may_keep(ports[i], deadline.left())) return false;
   }
   return true;
 }

@@ -1,6 +1,9 @@
 // Where the object of a data port stands in a ConnectorProfile. Any thread.
 #pragma once
 
+#include <optional>
+
+#include "corba/asker.h"
 #include "corba/transport.h"
 #include "core/connector_settings.h"
 #include "rtm/idl/RTCStub.h"
@@ -18,6 +21,15 @@ CORBA::Object_ptr parse_reference(const char* text);
 void remove_references(RTC::ConnectorProfile& profile);
 // The time-out, byte order and sizes of a connection.
 Line line_of(const rt::ConnectorSettings& settings);
+
+// The thread works for the stranger who gave one of these ports, if one did: they answer with references of their choice.
+class ForGivers {
+ public:
+  explicit ForGivers(const RTC::PortServiceList& ports);
+
+ private:
+  std::optional<ForAsker> asker_;
+};
 
 // Whether the ports of a profile but for the one in that place may be kept (corba/asker.h): they are watched, connected again, told of the
 // end.

@@ -162,6 +162,7 @@ void give_up(const std::string& address, const char* reason) {
     }
     --state->threads;
   }
+  Farewells::instance().changed.notify_all();
   base::log(base::Level::warn, "port", "the process at {} is not told of the end of its connections: {}", address, reason);
 }
 

@@ -185,7 +185,8 @@ void tell_refused(std::optional<uid_t> account) {
                      " refused: it serves account " + std::to_string(geteuid()) + " alone";
   if (const auto missed = std::exchange(others, 0); missed > 0) line += "; so were " + std::to_string(missed) + " others";
   line += '\n';
-  (void)!write(log_file(), line.data(), line.size());
+  pollfd room{log_file(), POLLOUT, 0};
+  if (poll(&room, 1, 0) > 0) (void)!write(log_file(), line.data(), line.size());
 }
 
 // What the server gets of a connection that has come: nothing of one from another account, as if nobody had come after all.

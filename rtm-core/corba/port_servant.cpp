@@ -310,6 +310,7 @@ bool PortServant::gives_way(std::string_view id) {
 
 RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile) {
   const int self = position(profile.ports);
+  const ForGivers givers(profile.ports);
   if (self < 0 || !may_keep_ports(profile.ports, self)) return RTC::BAD_PARAMETER;
   tell(Step::notify_connect, profile, RTC::RTC_OK);
   const auto terms = read_terms(profile);

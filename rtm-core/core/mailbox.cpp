@@ -178,6 +178,7 @@ WriteResult Mailbox::write(Channel channel, Sample sample, std::chrono::nanoseco
       if (!has_room) return {PortStatus::buffer_timeout};
     }
     while (is_crowded()) lost.push_back(entry->drop_oldest());
+    if (!lost.empty()) freed_.notify_all();
     if (state->all_octets() + octets > 2 * most_octets_) return {PortStatus::buffer_full};
     sample.arrival = ++state->arrivals;
     if (entry->is_full(sample.moment) && !entry->ring.is_empty()) lost.push_back(entry->ring.front());

@@ -10,7 +10,9 @@
 #include <chrono>
 #include <csignal>
 #include <map>
+#include <memory>
 #include <set>
+#include <system_error>
 #include <thread>
 
 namespace rt {
@@ -56,6 +58,22 @@ struct SignalWatcher::Impl {
     });
   }
 
+  std::thread caller;  // with the latest of the calls
+
+  // A call may last as long as the end of a program. One after the other, on a thread: this one goes on to read.
+  void begin_call(int number) {
+    auto before = std::make_shared<std::thread>(std::move(caller));
+    try {
+      caller = std::thread([this, before, number] {
+        if (before->joinable()) before->join();
+        call(number);
+      });
+    } catch (const std::system_error&) {
+      if (before->joinable()) before->join();
+      call(number);
+    }
+  }
+
   void run() {
     pthread_setname_np(pthread_self(), "rtm-signals");
     std::set<int> seen;
@@ -69,7 +87,7 @@ struct SignalWatcher::Impl {
           is_ending = true;
         } else if (seen.insert(number).second) {
           until[number] = Clock::now() + same_signal;
-          call(number);
+          begin_call(number);
         } else if (!until.contains(number) || Clock::now() >= until[number]) {
           set_handler(number, SIG_DFL);
           kill(getpid(), number);
@@ -77,6 +95,7 @@ struct SignalWatcher::Impl {
       }
       give_back_due();
     }
+    if (caller.joinable()) caller.join();
   }
 };
 

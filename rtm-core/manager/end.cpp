@@ -137,14 +137,18 @@ void ManagerImpl::remove_files() const {
 void ManagerImpl::answer_last_calls() {
   auto done = std::make_shared<std::promise<void>>();
   const auto is_done = done->get_future();
-  std::thread([done, orb = CORBA::ORB::_duplicate(orb->orb())] {
-    try {
-      orb->shutdown(true);
-    } catch (const CORBA::Exception&) {
-      base::log(base::Level::debug, "manager", "the ORB is down already");
-    }
-    done->set_value();
-  }).detach();
+  try {
+    std::thread([done, orb = CORBA::ORB::_duplicate(orb->orb())] {
+      try {
+        orb->shutdown(true);
+      } catch (const CORBA::Exception&) {
+        base::log(base::Level::debug, "manager", "the ORB is down already");
+      }
+      done->set_value();
+    }).detach();
+  } catch (const std::system_error&) {  // no thread: they get no answer
+    return;
+  }
   is_done.wait_for(grace);
 }
 

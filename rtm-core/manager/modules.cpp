@@ -17,6 +17,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <thread>
 
 #include "base/log.h"
 #include "base/text.h"
@@ -63,7 +64,14 @@ std::string profile_program_path() {
 
 bool ends_until(pid_t child, steady_clock::time_point deadline) {
   const int process = static_cast<int>(syscall(SYS_pidfd_open, child, 0));
-  if (process < 0) return false;
+  if (process < 0) {  // a kernel without them
+    siginfo_t info{};
+    while (waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == 0) {
+      if (steady_clock::now() >= deadline) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));  // nothing tells of it
+    }
+    return true;
+  }
   int ready = -1;
   do {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - steady_clock::now()).count();

@@ -141,8 +141,7 @@ bool PeriodicECOrganization::join(const Member& member) {
 
 void PeriodicECOrganization::leave(const Member& member) {
   SDO_var sdo = member.sdo;
-  std::optional<corba::ForAsker> for_giver;  // its contexts are what it says
-  if (const auto giver = corba::giver_of(sdo); giver != corba::Asker::own) for_giver.emplace(giver);
+  const corba::ForGiver giver(sdo);  // its contexts are what it says
   const Patience in_time;
   attempt(member.id, "leave", [&] {
     RTC::LightweightRTObject_var component = RTC::LightweightRTObject::_narrow(sdo);
@@ -259,6 +258,7 @@ template <class Function>
 void PeriodicECOrganization::for_each_member(Function function) {
   for (const Member& member : members()) {
     SDO_var sdo = member.sdo;
+    const corba::ForGiver giver(sdo);
     attempt(member.id, "answer", [&] {
       RTC::RTObject_var component = RTC::RTObject::_narrow(sdo);
       if (!CORBA::is_nil(component)) function(member, component.in());

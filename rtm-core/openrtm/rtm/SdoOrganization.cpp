@@ -91,9 +91,13 @@ SDOList* Organization_impl::get_members() {
   return sdos._retn();
 }
 
-std::vector<Organization_impl::Member> Organization_impl::ask(const SDOList& sdos) const {
-  if (sdos.length() + shared_->data.lock()->members.size() > rt::entry_limits.members)
+static void check_number(std::size_t members) {
+  if (members > rt::entry_limits.members)
     throw InvalidParameter(("an organization has at most " + std::to_string(rt::entry_limits.members) + " members").c_str());
+}
+
+std::vector<Organization_impl::Member> Organization_impl::ask(const SDOList& sdos) {
+  check_number(sdos.length());
   std::vector<Member> members;
   const corba::ChainDeadline deadline(corba::port_call_timeout());
   for (CORBA::ULong i = 0; i < sdos.length(); ++i) {
@@ -115,6 +119,7 @@ std::vector<Organization_impl::Member> Organization_impl::replaceMembers(std::ve
 
 void Organization_impl::appendMembers(const std::vector<Member>& members) {
   auto data = shared_->data.lock();
+  check_number(members.size() + data->members.size());
   for (const Member& member : members) {
     std::erase_if(data->members, [&](const Member& known) { return known.id == member.id; });
     data->members.push_back(member);

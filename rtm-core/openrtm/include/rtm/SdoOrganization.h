@@ -40,7 +40,7 @@ class Organization_impl : public virtual POA_SDOPackage::Organization, public vi
     SDO_var sdo;
   };
   // The ids of the members, asked of each with a time-out. Throws InvalidParameter for a nil or dead one.
-  std::vector<Member> ask(const SDOList& sdos) const;
+  static std::vector<Member> ask(const SDOList& sdos);
   std::vector<Member> members() const;
   // The old ones.
   std::vector<Member> replaceMembers(std::vector<Member> members);
