@@ -27,7 +27,7 @@ class ManagedComponent final : public Managed {
   ReturnCode_t initialize() override { return component_.initialize(); }
 
   ReturnCode_t exit() override { return component_.exit(); }
-  void discard() override { component_.discard(); }
+  static void discard(RTObject_impl& component) { component.discard(); }
   void exit_by(Deadline deadline) override { component_.exitBy(deadline); }
   void ask_to_rest() override { component_.askToRest(); }
   void come_to_rest(Deadline deadline) override { component_.comeToRest(deadline); }
@@ -48,5 +48,7 @@ std::shared_ptr<Managed> manage(RTObject_impl* component) { return component ? s
 std::shared_ptr<const Managed> manage(const RTObject_impl* component) { return manage(const_cast<RTObject_impl*>(component)); }
 
 bool destroy_left_contexts() { return RTObject_impl::destroyLeftContexts(); }
+
+void discard(RTObject_impl& component) { ManagedComponent::discard(component); }
 
 }  // namespace RTC

@@ -49,8 +49,6 @@ class Managed {
   virtual ReturnCode_t initialize() = 0;
 
   virtual ReturnCode_t exit() = 0;
-  // Of one that never lived; does nothing to others.
-  virtual void discard() = 0;
   // The same with an end of its patience.
   virtual void exit_by(Deadline deadline) = 0;
   // Asks its contexts to calm it, and returns at once.
@@ -66,6 +64,9 @@ class Managed {
 // Null for a null pointer. The component must be in memory.
 std::shared_ptr<Managed> manage(RTObject_impl* component);
 std::shared_ptr<const Managed> manage(const RTObject_impl* component);
+
+// Of one that never lived; does nothing to others.
+void discard(RTObject_impl& component);
 
 // Contexts of components that have gone, which a callback kept from ending. True when none is left.
 bool destroy_left_contexts();

@@ -129,7 +129,7 @@ void ManagerImpl::destroy(std::uint64_t id) {
     if (mine && numbering != nullptr) numbering->onDelete(record.component);
     if (!mine) RTC_WARN(("the naming policy is busy with another component; it does not hear that %s goes", record.instance_name.c_str()));
   }
-  manage(record.component)->discard();
+  discard(*record.component);
   {
     // Nobody finds it any more; who is looking at it has a reference.
     auto locked = state.lock();
