@@ -102,6 +102,7 @@ class SentOn:
     def __init__(self, port, key, status=3):
         self.there = reference(port, key)
         self.status = status
+        self.asked = []
         self.listening = socket.create_server(("127.0.0.1", 0))
         self.port = self.listening.getsockname()[1]
         threading.Thread(target=self.serve, daemon=True).start()
@@ -116,6 +117,7 @@ class SentOn:
         with contextlib.suppress(OSError), connection:
             while start := connection.recv(12, socket.MSG_WAITALL):
                 body = connection.recv(struct.unpack("<I" if start[6] & 1 else ">I", start[8:12])[0], socket.MSG_WAITALL)
+                self.asked.append(body)
                 identity = body[:4] if start[6] & 1 else body[3::-1]
                 if start[7] == 3:  # is it there? Yes.
                     connection.sendall(message(4, identity + struct.pack("<I", 1)))
@@ -181,16 +183,25 @@ class Strangers(unittest.TestCase):
 
     # It takes leave of its masters, on a thread that works for nobody.
     def test_calls_that_an_answer_sends_on_are_for_strangers(self):
-        for status in (3, 4):  # LOCATION_FORWARD, LOCATION_FORWARD_PERM
-            ours = Host(bin_dir, lib_dir, "-o", "corba.open_to:host")
-            closed = self.host()
-            sent_on = SentOn(closed.port, b"manager", status)
-            self.addCleanup(sent_on.close)
-            self.assertEqual(call(stranger, ours.port, "add_master_manager", reference(sent_on.port, b"any")).number(), 0)
-            self.assertEqual(ours.end(), 0)
-            if status == 3:
-                self.assertIn("asked for remove_slave_manager for another account of this machine who may not come in: refused", closed.text())
-            self.assertEqual(call(ourselves, closed.port, "get_slave_managers", b"").number(), 0)
+        ours, closed = Host(bin_dir, lib_dir, "-o", "corba.open_to:host"), self.host()
+        sent_on = SentOn(closed.port, b"manager")
+        self.addCleanup(sent_on.close)
+        self.assertEqual(call(stranger, ours.port, "add_master_manager", reference(sent_on.port, b"any")).number(), 0)
+        self.assertEqual(ours.end(), 0)
+        self.assertIn("asked for remove_slave_manager for another account of this machine who may not come in: refused", closed.text())
+
+    # LOCATION_FORWARD_PERM: the ORB would take the new reference for the one that was given.
+    def test_calls_that_an_answer_sends_on_for_ever_do_not_go_there_unmarked(self):
+        ours = Host(bin_dir, lib_dir, "-o", "corba.open_to:host")
+        there = SentOn(ours.port, b"manager")
+        sent_on = SentOn(there.port, b"any", 4)
+        for each in (there, sent_on):
+            self.addCleanup(each.close)
+        self.assertEqual(call(stranger, ours.port, "add_master_manager", reference(sent_on.port, b"any")).number(), 0)
+        self.assertEqual(ours.end(), 0)
+        self.assertTrue(any(b"remove_slave_manager" in body for body in sent_on.asked))
+        mark = struct.pack("<I", 0x52545303)
+        self.assertFalse([body for body in there.asked if b"remove_slave_manager" in body and mark not in body])
 
 
 unittest.main()
