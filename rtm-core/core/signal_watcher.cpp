@@ -9,11 +9,12 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <future>
 #include <map>
-#include <memory>
 #include <set>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 namespace rt {
 namespace {
@@ -58,18 +59,23 @@ struct SignalWatcher::Impl {
     });
   }
 
-  std::thread caller;  // with the latest of the calls
+  std::shared_future<void> latest;  // of the calls: over
 
-  // A call may last as long as the end of a program. One after the other, on a thread: this one goes on to read.
+  // A call may last as long as the end of a program. One after the other, on a thread: this one goes on to read. Nobody joins it, since the
+  // process may end meanwhile.
   void begin_call(int number) {
-    auto before = std::make_shared<std::thread>(std::move(caller));
+    const auto before = latest;
+    std::promise<void> done;
+    auto over = done.get_future().share();
     try {
-      caller = std::thread([this, before, number] {
-        if (before->joinable()) before->join();
+      std::thread([this, before, number, done = std::move(done)]() mutable {
+        if (before.valid()) before.wait();
         call(number);
-      });
+        done.set_value();
+      }).detach();
+      latest = std::move(over);
     } catch (const std::system_error&) {
-      if (before->joinable()) before->join();
+      if (before.valid()) before.wait();
       call(number);
     }
   }
@@ -95,7 +101,7 @@ struct SignalWatcher::Impl {
       }
       give_back_due();
     }
-    if (caller.joinable()) caller.join();
+    if (latest.valid()) latest.wait();
   }
 };
 
