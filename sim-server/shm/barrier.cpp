@@ -222,7 +222,7 @@ void Barrier::State::release(Member& member, std::int64_t now, std::uint64_t ste
 void Barrier::State::wake(std::span<Member* const> group) {
   std::array<std::uint32_t, RTMSIM_TICK_WORDS> bits{};
   for (const Member* member : group) {
-    if (load(slot(*member).sleeping, std::memory_order_seq_cst) == 0) continue;  // pairs with the store in Participant::wait
+    if (load(slot(*member).sleeping, std::memory_order_seq_cst) == awake) continue;  // pairs with the store in Participant::wait
     bits[member->index / 32 % RTMSIM_TICK_WORDS] |= tick_bit(member->index);
   }
   for (std::size_t i = 0; i < bits.size(); ++i) {
@@ -313,6 +313,10 @@ void Barrier::State::wake_ahead(std::int64_t step) {
   }
   free.look(steady_clock::now());
   if (due.empty() || !free.are_there_for(due.size())) return;
+  for (const Member* member : due) {
+    std::uint32_t expected = asleep;
+    word(slot(*member).sleeping).compare_exchange_strong(expected, called, std::memory_order_seq_cst);
+  }
   wake(due);
   woken_ahead = steady_clock::now();
 }
@@ -325,7 +329,7 @@ void Barrier::State::learn_ahead(std::span<Member* const> group) {
     return ahead.began();
   }
   ahead.began(steady_clock::now() - *woken,
-              std::all_of(group.begin(), group.end(), [this](const Member* m) { return load(slot(*m).sleeping) == 0; }));
+              std::all_of(group.begin(), group.end(), [this](const Member* m) { return load(slot(*m).sleeping) == awake; }));
 }
 
 // Of a phase in which nobody was due nothing is counted.

@@ -1,7 +1,10 @@
 // The clients' side of the lock step, and what anybody may read of it.
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 #include "base/text.h"
 #include "shm/lockstep.h"
@@ -15,6 +18,25 @@ using std::chrono::nanoseconds;
 using std::chrono::steady_clock;
 
 constexpr nanoseconds client_slice = std::chrono::milliseconds(100);
+constexpr std::size_t all_bits = 32 * RTMSIM_TICK_WORDS;
+
+// All slots, the best first: who is woken wakes everybody on the same bit of the same word, so there should be nobody, or only such as have
+// their ticks at the same time. What is seen here may just change: that costs wakes, nothing else.
+std::vector<std::size_t> slots_by_company(const Segment& segment, const ParticipantOptions& options) {
+  enum Company { nobody, alike, others };
+  std::array<Company, all_bits> company{};
+  for (std::size_t i = 0; i < slot_count(segment); ++i) {
+    const ParticipantSlot& slot = slot_at(segment, i);
+    if (load(slot.owner) == 0) continue;
+    const bool is_alike = load(slot.phase) == options.phase && load(slot.turn) == options.turn &&
+                          load(slot.period_ns) == options.period.count() && (load(slot.observes) != 0) == options.observes;
+    company[i % all_bits] = std::max(company[i % all_bits], is_alike ? alike : others);
+  }
+  std::vector<std::size_t> slots(slot_count(segment));
+  std::iota(slots.begin(), slots.end(), std::size_t{0});
+  std::ranges::stable_sort(slots, {}, [&](std::size_t i) { return company[i % all_bits]; });
+  return slots;
+}
 
 }  // namespace
 
@@ -78,20 +100,20 @@ base::Result<void> Participant::Impl::take_slot(const ParticipantOptions& option
   const Segment& segment = simulation.segment();
   owner = make_owner();
   const ProcessMark mark = own_mark();
-  for (std::size_t i = 0; i < slot_count(segment); ++i) {
+  for (const std::size_t i : slots_by_company(segment, options)) {
     ParticipantSlot& candidate = slot_at(segment, i);
     std::uint64_t free = 0;
     if (!word(candidate.owner).compare_exchange_strong(free, owner, std::memory_order_acq_rel)) continue;
     index = i;
     store(candidate.pid_namespace, mark.pid_namespace);
     store(candidate.start_time, mark.start_time);
-    candidate.phase = options.phase;
-    candidate.turn = options.turn;
+    store(candidate.phase, options.phase);  // who looks for a place reads them meanwhile
+    store(candidate.turn, options.turn);
     store(candidate.observes, options.observes ? 1U : 0U);
     store(candidate.period_ns, static_cast<std::int64_t>(options.period.count()));
     set_text(candidate.name, options.name);
     store(candidate.done, 0U);
-    store(candidate.sleeping, 0U);
+    store(candidate.sleeping, awake);
     store(candidate.ticks, std::uint64_t{0});
     store(candidate.total_ns, std::int64_t{0});
     store(candidate.max_ns, std::int64_t{0});
@@ -211,12 +233,12 @@ Participant::State Participant::wait(Tick& tick, nanoseconds timeout) {
       return State::dropped;
     }
     if (impl.is_interrupted.load(std::memory_order_relaxed) && impl.is_interrupted.exchange(false)) return State::timed_out;
-    store(mine.sleeping, 1U, std::memory_order_seq_cst);  // pairs with the load in Barrier's wake
+    store(mine.sleeping, asleep, std::memory_order_seq_cst);  // pairs with the load in Barrier's wake
     const std::uint32_t seen = load(shared, std::memory_order_seq_cst);
     const std::uint32_t go = load(mine.go, std::memory_order_seq_cst);
     if (go != impl.last_go && load(mine.state) == RTMSIM_PARTICIPANT_ACTIVE) {
       constexpr auto relaxed = std::memory_order_relaxed;
-      store(mine.sleeping, 0U, relaxed);
+      store(mine.sleeping, awake, relaxed);
       tick = {nanoseconds(load(mine.now_ns, relaxed)), nanoseconds(load(mine.due_ns, relaxed)), load(mine.steps, relaxed),
               load(mine.resets, relaxed), moment_of(segment)};
       impl.last_go = go;
@@ -226,7 +248,7 @@ Participant::State Participant::wait(Tick& tick, nanoseconds timeout) {
       return State::tick;
     }
     if (now >= deadline) {
-      store(mine.sleeping, 0U, std::memory_order_relaxed);
+      store(mine.sleeping, awake, std::memory_order_relaxed);
       return State::timed_out;
     }
     if (now >= impl.check_at) {
@@ -234,9 +256,10 @@ Participant::State Participant::wait(Tick& tick, nanoseconds timeout) {
       if (impl.simulation.status() != Status::live) return State::closed;
     }
     futex_wait_bits(shared, seen, tick_bit(impl.index), std::min(deadline, impl.check_at));
-    store(mine.sleeping, 0U, std::memory_order_relaxed);
+    const bool is_called = load(mine.sleeping, std::memory_order_relaxed) == called;  // else somebody else was, on the same bit
+    store(mine.sleeping, awake, std::memory_order_relaxed);
     now = steady_clock::now();
-    if (impl.has_tick() || now >= deadline || now >= impl.check_at) continue;
+    if (!is_called || impl.has_tick() || now >= deadline || now >= impl.check_at) continue;
     impl.look_for_tick(WakeAhead::longest);
     now = steady_clock::now();
   }

@@ -19,6 +19,9 @@ namespace shm {
 inline constexpr std::uint32_t max_phase = 15;
 inline constexpr std::int64_t longest_period = std::int64_t{1} << 60;
 
+// ParticipantSlot::sleeping.
+inline constexpr std::uint32_t awake = 0, asleep = 1, called = 2;
+
 inline ParticipantSlot& slot_at(const Segment& segment, std::size_t index) {
   return segment.as<ParticipantSlot>(AreaIndex::participants, index);
 }

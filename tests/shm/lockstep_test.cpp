@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "shm/barrier_support.h"
+#include "shm/participant_slots.h"
 
 namespace shm::test {
 namespace {
@@ -172,6 +173,25 @@ TEST(Barrier, a_hundred_robots_with_several_contexts_each_take_part) {
   f.barrier.reset();
   thread.join();
   EXPECT_EQ(ticks, std::vector<std::uint64_t>(all.size(), 3));
+}
+
+// Who is woken wakes those on the same bit of the same word.
+TEST(Participant, places_on_one_bit_are_of_such_as_have_their_ticks_together) {
+  BarrierFixture f({}, most_participants);
+  std::vector<Participant> all;
+  constexpr std::size_t bits = 32 * RTMSIM_TICK_WORDS, count = 4 * bits;
+  static_assert(count <= most_participants);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t kind = i % 6;  // phases, and periods of one phase
+    all.push_back(f.join("p", kind < 4 ? kind : 4, kind < 5 ? 10ms : 20ms));
+  }
+  const Segment& segment = f.simulation->segment();
+  for (std::size_t i = bits; i < most_participants; ++i) {
+    const auto& slot = slot_at(segment, i);
+    if (load(slot.owner) == 0) continue;
+    const auto& same_bit = slot_at(segment, i % bits);
+    EXPECT_EQ(std::pair(slot.phase, slot.period_ns), std::pair(same_bit.phase, same_bit.period_ns)) << i;
+  }
 }
 
 TEST(Participant, options_that_make_no_sense_are_refused) {
