@@ -1,9 +1,11 @@
 #include "sim_tick.h"
 
+#include <base/hash64.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
+#include <cstring>
 #include <utility>
 
 namespace {
@@ -33,7 +35,18 @@ std::string SimTick::keep_hashes(const std::string& folder, const std::string& c
   return "";
 }
 
-void SimTick::begin(const shm::Tick& tick) { tick_ = tick; }
+// Between two ticks others have filled the caches. What this one will need is asked for now, all at once, instead of waited for one after
+// the other.
+void SimTick::begin(const shm::Tick& tick) {
+  constexpr std::size_t most = 4;
+  tick_ = tick;
+  if (!log_) return;
+  for (std::size_t i = 0; i < std::min(most, leaves_.size()); ++i) {
+    __builtin_prefetch(&leaves_[i], 1);
+    __builtin_prefetch(leaves_[i].value.data(), 1);
+  }
+  log_->expect();
+}
 
 void SimTick::end(const std::function<std::uint64_t()>& states) {
   // What they add is for the next end.
@@ -42,59 +55,74 @@ void SimTick::end(const std::function<std::uint64_t()>& states) {
   if (log_) write_log(states());
 }
 
+// Ports come in the order in which they came in the tick before, nearly always.
 SimTick::Leaf& SimTick::leaf_of(const base::Passage& passage) {
   using Kind = base::HashKey::Kind;
-  Leaves& leaves = passage.is_out ? written_ : read_;
-  auto leaf = leaves.find(passage.port);
-  if (leaf == leaves.end()) {
-    leaf = leaves.emplace(std::string(passage.port), Leaf{}).first;
-    leaf->second.key =
-        log_->key({passage.is_out ? Kind::out_port : Kind::in_port, phase_, port_name(passage.port), std::string(passage.type)});
+  if (expected_ < leaves_.size()) {
+    Leaf& leaf = leaves_[expected_];
+    if (leaf.is_out == passage.is_out && leaf.port == passage.port) {
+      if (++expected_ < leaves_.size()) __builtin_prefetch(leaves_[expected_].port.data());
+      return leaf;
+    }
   }
-  return leaf->second;
+  const auto [place, is_new] = places_.try_emplace({passage.is_out, std::string(passage.port)}, leaves_.size());
+  if (is_new) {
+    Leaf& leaf = leaves_.emplace_back();
+    leaf.port = passage.port;
+    leaf.is_out = passage.is_out;
+    leaf.key = log_->key({passage.is_out ? Kind::out_port : Kind::in_port, phase_, port_name(passage.port), std::string(passage.type)});
+  }
+  expected_ = place->second + 1;
+  return leaves_[place->second];
 }
 
 void SimTick::passed(const base::Passage& passage) {
-  Leaf& seen = leaf_of(passage);
   std::size_t size = 0;
   for (const auto& part : passage.octets) size += part.size();
-  seen.hash.add(std::uint64_t{size});
-  seen.value.clear();
+  base::Hash64 hash;
+  hash.add(std::uint64_t{size});
+  for (const auto& part : passage.octets) hash.add(part);
+  const std::uint64_t value = hash.value();
+  const bool is_short = size <= base::longest_hash_value;
+  if (passage.hash != nullptr && !is_short) *passage.hash = value;  // what is short stands in the log itself
+  Leaf& seen = leaf_of(passage);
+  add(seen, value);
+  if (!is_short) return;
   for (const auto& part : passage.octets) {
-    seen.hash.add(part);
-    if (size <= base::longest_hash_value) seen.value.append(reinterpret_cast<const char*>(part.data()), part.size());
+    if (!part.empty()) std::memcpy(seen.value.data() + seen.value_size, part.data(), part.size());
+    seen.value_size += static_cast<std::uint32_t>(part.size());
   }
-  const bool is_first = ++seen.samples == 1;
-  if (is_first && passage.hash != nullptr && size > base::longest_hash_value)
-    *passage.hash = std::make_shared<const base::Hash64>(seen.hash);
 }
 
-// A hash of several samples goes through the octets of each; nearly always there is one.
-bool SimTick::passed_again(const base::Passage& passage, const base::Hash64& hash) {
-  Leaf& seen = leaf_of(passage);
-  if (seen.samples != 0) return false;
-  seen.hash = hash;
-  seen.value.clear();
-  ++seen.samples;
+bool SimTick::passed_again(const base::Passage& passage, std::uint64_t hash) {
+  add(leaf_of(passage), hash);
   return true;
 }
 
-void SimTick::write(Leaves& leaves) {
-  for (auto& [port, leaf] : leaves) {
-    if (leaf.samples == 0) continue;
-    log_->add(leaf.key, leaf.hash.value(), std::as_bytes(std::span(leaf.value)));
-    leaf.hash = {};
-    leaf.samples = 0;
+// The first sample's hash is that of the tick, so that it is the same at both ends of a connection.
+void SimTick::add(Leaf& leaf, std::uint64_t hash) {
+  leaf.value_size = 0;
+  if (leaf.samples++ == 0) {
+    leaf.hash = hash;
+    return;
   }
+  base::Hash64 both;
+  both.add(leaf.hash);
+  both.add(hash);
+  leaf.hash = both.value();
 }
 
 void SimTick::write_log(std::uint64_t states) {
+  expected_ = 0;
   log_->begin_tick(tick_.resets, tick_.now);
   if (states_ != states) {
     states_ = states;
     log_->add(component_, states);
   }
-  write(read_);
-  write(written_);
+  for (Leaf& leaf : leaves_) {
+    if (leaf.samples == 0) continue;
+    log_->add(leaf.key, leaf.hash, std::span(leaf.value).first(leaf.value_size));
+    leaf.samples = 0;
+  }
   log_->end_tick();
 }

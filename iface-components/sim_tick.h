@@ -9,10 +9,12 @@
 #include <base/tick.h>
 #include <shm/lockstep.h>
 
+#include <array>
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 class SimTick final : public base::Tick {
@@ -34,19 +36,22 @@ class SimTick final : public base::Tick {
   void at_end(std::function<void(Tick&)> work) override { at_end_.push_back(std::move(work)); }
   bool keeps_data() const override { return log_.has_value(); }
   void passed(const base::Passage& passage) override;
-  bool passed_again(const base::Passage& passage, const base::Hash64& hash) override;
+  bool passed_again(const base::Passage& passage, std::uint64_t hash) override;
 
  private:
-  struct Leaf {
+  // A port. What each tick looks at is one line of a cache, and its values follow.
+  struct alignas(64) Leaf {
+    std::string port;
+    bool is_out = false;
     std::uint32_t key = 0;
-    base::Hash64 hash;
-    std::uint64_t samples = 0;  // in this tick
-    std::string value;
+    std::uint32_t samples = 0;     // in this tick
+    std::uint32_t value_size = 0;  // 0: the last one was too long, or came as a hash
+    std::uint64_t hash = 0;        // of this tick's samples
+    std::array<std::byte, base::longest_hash_value> value;
   };
 
-  using Leaves = std::map<std::string, Leaf, std::less<>>;  // by port
   Leaf& leaf_of(const base::Passage& passage);
-  void write(Leaves& leaves);
+  void add(Leaf& leaf, std::uint64_t hash);
   void write_log(std::uint64_t states);
 
   shm::Tick tick_;
@@ -54,5 +59,7 @@ class SimTick final : public base::Tick {
   std::optional<base::HashLogWriter> log_;
   std::uint32_t phase_ = 0, component_ = 0;
   std::optional<std::uint64_t> states_;
-  Leaves read_, written_;
+  std::vector<Leaf> leaves_;                                                 // in the order in which data passed for the first time
+  std::map<std::pair<bool, std::string>, std::size_t, std::less<>> places_;  // in leaves_, by is_out and port
+  std::size_t expected_ = 0;                                                 // who comes next, when all is as in the tick before
 };

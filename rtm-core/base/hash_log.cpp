@@ -56,6 +56,11 @@ std::uint32_t HashLogWriter::key(const HashKey& key) {
   return place->second;
 }
 
+void HashLogWriter::expect() const {
+  __builtin_prefetch(entries_.data(), 1);
+  __builtin_prefetch(out_.data() + out_.size(), 1);
+}
+
 void HashLogWriter::begin_tick(std::uint32_t run, std::chrono::nanoseconds time) {
   end_tick();
   tick_.run = run;

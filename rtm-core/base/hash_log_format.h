@@ -6,7 +6,7 @@
 namespace base::hash_log_format {
 
 // The last octet is the version: another one when the same run gets other hashes.
-inline constexpr std::string_view magic = "RTMHASH3";
+inline constexpr std::string_view magic = "RTMHASH4";
 inline constexpr char oldest_version = '1';
 inline constexpr char key_record = 1;
 inline constexpr char tick_record = 2;

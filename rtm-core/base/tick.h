@@ -10,11 +10,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
-
-#include "base/hash64.h"
 
 namespace base {
 
@@ -27,7 +25,7 @@ struct Passage {
   std::string_view type;                               // of the data
   std::span<const std::span<const std::byte>> octets;  // encoded
   // Where a hash for passed_again() goes; it stays empty when the octets are as fast.
-  std::shared_ptr<const Hash64>* hash = nullptr;
+  std::optional<std::uint64_t>* hash = nullptr;
 };
 
 class Tick {
@@ -43,7 +41,7 @@ class Tick {
   virtual bool keeps_data() const = 0;
   virtual void passed(const Passage& passage) = 0;
   // The same data as `hash` is of, without its octets: they need not be encoded and looked at again. False: they are wanted.
-  virtual bool passed_again(const Passage& passage, const Hash64& hash) = 0;
+  virtual bool passed_again(const Passage& passage, std::uint64_t hash) = 0;
 };
 
 // nullptr: this thread is in no tick.

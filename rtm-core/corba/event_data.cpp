@@ -48,7 +48,7 @@ void EventData::value_changed() {
   payload_ = nullptr;
   sample_.block = nullptr;
   sample_.value = nullptr;
-  sample_.hash = nullptr;
+  sample_.hash.reset();
   original_ = value_ ? value_.get() : nullptr;
 }
 
@@ -90,7 +90,7 @@ void EventData::replace_octets(std::span<const std::byte> octets) {
   is_changed_ = true;
   sample_.block = std::move(block);
   sample_.value = nullptr;
-  sample_.hash = nullptr;
+  sample_.hash.reset();
   payload_ = nullptr;
   original_ = nullptr;
   value_ = nullptr;

@@ -52,19 +52,38 @@ std::size_t room_of(const TypeOps& ops) {
 }
 
 // What was read in a tick is part of what the run did.
-template <class Read>
-void tell_tick(const Read& read, rt::ByteOrder order, const base::Hash64* hash, const InConnection& connection) {
+base::Tick* tick_that_keeps() {
   base::Tick* tick = base::current_tick();
-  if (!tick || !tick->keeps_data()) return;
-  base::Passage passage{false, connection.port(), connection.ops().type_id, {}};
-  if (hash != nullptr && !connection.ops().codec && tick->passed_again(passage, *hash)) return;
+  return tick && tick->keeps_data() ? tick : nullptr;
+}
+
+base::Passage passage_into(const InConnection& connection) { return {false, connection.port(), connection.ops().type_id, {}}; }
+
+template <class Read>
+void tell_of_value(base::Tick& tick, const Read& read, const InConnection& connection) {
   try {
     Payload payload(connection.ops(), read);
-    passage.octets = payload.pieces(order).parts;
-    tick->passed(passage);
+    base::Passage passage = passage_into(connection);
+    passage.octets = payload.pieces(rt::ByteOrder::little).parts;
+    tick.passed(passage);
   } catch (const CORBA::Exception&) {
     // It cannot be encoded, so nobody has sent it to another process either.
   }
+}
+
+void tell_tick(const rt::Sample& sample, const InConnection& connection) {
+  base::Tick* tick = tick_that_keeps();
+  if (!tick) return;
+  base::Passage passage = passage_into(connection);
+  if (sample.hash && !connection.ops().codec && tick->passed_again(passage, *sample.hash)) return;
+  if (!sample.block) return tell_of_value(*tick, sample, connection);
+  const auto octets = sample.block->octets();
+  passage.octets = {&octets, 1};
+  tick->passed(passage);
+}
+
+void tell_tick(const void* value, const InConnection& connection) {
+  if (base::Tick* tick = tick_that_keeps()) tell_of_value(*tick, value, connection);
 }
 
 }  // namespace
@@ -422,7 +441,7 @@ rt::PortStatus InEngine::deliver(const rt::Sample& received, InConnection& conne
   // A sender of another make may have stamped it with the clock of its machine: what is stamped here is told with the stamp of here.
   const auto policy = connection.settings().stamp;
   const bool is_stamped = ops.stamp && (policy == rt::StampPolicy::on_received || policy == rt::StampPolicy::on_read);
-  if (!is_stamped) tell_tick(*sample, sample->block ? sample->order : rt::ByteOrder::little, sample->hash.get(), connection);
+  if (!is_stamped) tell_tick(*sample, connection);
   if (sample->value) {
     ops.assign(value, sample->value.get());
   } else if (!decode_safely(ops, value, sample->block->octets(), sample->order)) {
@@ -433,7 +452,7 @@ rt::PortStatus InEngine::deliver(const rt::Sample& received, InConnection& conne
   }
   if (is_stamped) {
     stamp(ops, value, policy == rt::StampPolicy::on_received ? sample->received : connection.plan_.caller_time());
-    tell_tick(static_cast<const void*>(value), rt::ByteOrder::little, nullptr, connection);
+    tell_tick(static_cast<const void*>(value), connection);
   }
   return rt::PortStatus::ok;
 }

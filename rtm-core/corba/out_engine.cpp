@@ -107,9 +107,9 @@ void tell_tick(Payload& payload, const OutConnection& connection) {
   if (!tick) return connection.tell_of_chance();
   if (!tick->keeps_data()) return;
   try {
-    std::shared_ptr<const base::Hash64> hash;
+    std::optional<std::uint64_t> hash;
     tick->passed({true, port, payload.ops().type_id, payload.pieces(rt::ByteOrder::little).parts, &hash});
-    payload.set_hash(std::move(hash));
+    payload.set_hash(hash);
   } catch (const CORBA::Exception&) {
     // It cannot be encoded; who sends it says so.
   }

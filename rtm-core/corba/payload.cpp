@@ -47,7 +47,7 @@ Payload::Payload(const TypeOps& ops, rt::Sample sample) : ops_(ops) {
   if (sample.value) {
     copy_ = std::move(sample.value);
     value_ = copy_.get();
-    hash_ = std::move(sample.hash);
+    hash_ = sample.hash;
   } else {
     encoded_[static_cast<int>(sample.order)].block = std::move(sample.block);
   }

@@ -41,7 +41,7 @@ class Payload {
   // nullptr if it came encoded and is no value of the type.
   const void* value();
   // Of the value, for those who read it.
-  void set_hash(std::shared_ptr<const base::Hash64> hash) { hash_ = std::move(hash); }
+  void set_hash(std::optional<std::uint64_t> hash) { hash_ = hash; }
 
  private:
   struct Encoded {
@@ -54,7 +54,7 @@ class Payload {
   const void* value_ = nullptr;
   std::shared_ptr<const void> copy_;
   Encoded encoded_[2];  // by rt::ByteOrder
-  std::shared_ptr<const base::Hash64> hash_;
+  std::optional<std::uint64_t> hash_;
 };
 
 }  // namespace corba

@@ -6,10 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "base/guarded.h"
-#include "base/hash64.h"
 
 namespace rt {
 
@@ -65,8 +65,7 @@ struct Sample {
   std::uint64_t era = 0;     // of the clock of the port's component, when it came or was written
   std::uint64_t moment = 0;  // likewise
 
-  std::shared_ptr<const base::Hash64>
-      hash;  // of the value as it is written down without a codec, where a tick has looked at it (base/tick.h)
+  std::optional<std::uint64_t> hash;  // of the value as it is written down without a codec, where a tick has looked at it (base/tick.h)
 
   explicit operator bool() const { return block || value; }
 };

@@ -121,7 +121,7 @@ class FakeTick final : public base::Tick {
   void at_end(std::function<void(Tick&)> work) override { work_.push_back(std::move(work)); }
   bool keeps_data() const override { return false; }
   void passed(const base::Passage&) override {}
-  bool passed_again(const base::Passage&, const base::Hash64&) override { return false; }
+  bool passed_again(const base::Passage&, std::uint64_t) override { return false; }
   void end() {
     for (auto& work : std::exchange(work_, {})) work(*this);
   }

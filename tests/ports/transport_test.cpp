@@ -9,6 +9,7 @@
 #include <cstring>
 #include <tuple>
 
+#include "base/hash64.h"
 #include "base/tick.h"
 #include "corba/call_timeout.h"
 #include "corba/cdr.h"
@@ -50,13 +51,13 @@ class KeepingTick final : public base::Tick {
   void passed(const base::Passage& passage) override {
     base::Hash64 hash;
     for (const auto& part : passage.octets) hash.add(part);
-    if (passage.hash != nullptr) *passage.hash = std::make_shared<const base::Hash64>(hash);
+    if (passage.hash != nullptr) *passage.hash = hash.value();
     hashes.push_back(hash.value());
   }
-  bool passed_again(const base::Passage&, const base::Hash64& hash) override {
+  bool passed_again(const base::Passage&, std::uint64_t hash) override {
     if (!takes_hashes) return false;
     ++again;
-    hashes.push_back(hash.value());
+    hashes.push_back(hash);
     return true;
   }
   std::vector<std::uint64_t> hashes;

@@ -25,7 +25,7 @@ class TickAt final : public base::Tick {
   void at_end(std::function<void(Tick&)>) override {}
   bool keeps_data() const override { return false; }
   void passed(const base::Passage&) override {}
-  bool passed_again(const base::Passage&, const base::Hash64&) override { return false; }
+  bool passed_again(const base::Passage&, std::uint64_t) override { return false; }
 
  private:
   const std::chrono::nanoseconds now_;
