@@ -309,6 +309,22 @@ bool Iface::read() {
   return false;
 }
 
+void Iface::expect() const {
+  const Header& header = state_->header();
+  __builtin_prefetch(&header.state);
+  __builtin_prefetch(&header.sequence);
+}
+
+// What follows the first lines the processor fetches by itself.
+void Iface::bring() const {
+  constexpr std::size_t line = 64, most = 4 * line;
+  const State& state = *state_;
+  const Area& cells = state.segment.area(AreaIndex::cells);
+  if (cells.count == 0) return;
+  const std::byte* cell = state.segment.at(AreaIndex::cells, sequence() % cells.count);
+  for (std::size_t at = 0; at < std::min<std::size_t>(cells.stride, most); at += line) __builtin_prefetch(cell + at);
+}
+
 ScanView Iface::laser_scan() const {
   const auto& head = sample<LaserSample>();
   const auto* ranges = reinterpret_cast<const float*>(&head + 1);

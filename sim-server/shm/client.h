@@ -94,6 +94,10 @@ class Iface {
   // Copies the latest sample into this handle's buffer. False when there is none yet (or, against all odds, the writer was faster than
   // eight attempts). No system call.
   bool read();
+  // For who reads many ifaces, one after the other: bring() a few before its turn asks the processor for the memory that read() looks at,
+  // and expect(), still earlier, for that which bring() does. Neither waits, nor does anything else.
+  void expect() const;
+  void bring() const;
   // Only after read() was true. Valid until the next read(). Sample must be the type's own.
   template <class Sample>
   const Sample& sample() const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -63,6 +64,13 @@ ros::LaserScan empty_scan(const shm::Iface& iface) {
           .range_max = number(info.max_range)};
 }
 
+// Nearly always all octets are, which is found many times faster than by looking at each number.
+bool is_zero(std::span<const float> numbers) {
+  const auto octets = std::as_bytes(numbers);
+  if (octets.empty() || (octets[0] == std::byte{0} && std::memcmp(octets.data(), octets.data() + 1, octets.size() - 1) == 0)) return true;
+  return std::ranges::all_of(numbers, [](float one) { return one == 0; });
+}
+
 IfaceView flat_laser_view(const shm::Iface& iface) {
   IfaceView view;
   view.channels = {channel<ros::LaserScan>(iface)};
@@ -73,8 +81,7 @@ IfaceView flat_laser_view(const shm::Iface& iface) {
     message.header.stamp = time_of(scan.sample->stamp);
     message.ranges = scan.ranges;
     // A world without reflecting surfaces has none, which the message says by leaving them out.
-    const bool has_intensities = std::ranges::any_of(scan.intensities, [](float one) { return one != 0; });
-    message.intensities = has_intensities ? scan.intensities : std::span<const float>();
+    message.intensities = is_zero(scan.intensities) ? std::span<const float>() : scan.intensities;
     said.add(0, message);
   };
   return view;

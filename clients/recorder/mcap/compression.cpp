@@ -5,6 +5,7 @@
 #include <zstd.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "base/text.h"
 
@@ -12,9 +13,10 @@ namespace mcap {
 
 namespace {
 
-// Recordings are written while a robot runs, so time counts. Scans, odometry and poses of a hundred robots: 1565 MB/s to 0.41 of the size;
-// level 1 gives 0.36 at a third of the speed, lz4 0.42 at 1210 MB/s.
-constexpr int zstd_level = -5;
+// Recordings are written while a robot runs, so time counts. A hash table that stays in the nearest cache and matches of at least seven
+// octets make level -5 1.5 times as fast: scans and odometry of a hundred robots at 5.5 GB/s to 0.112 of their size instead of 3.7 GB/s to
+// 0.105, all of an obstacle run at 1.7 GB/s to 0.40 instead of 1.3 to 0.36; lz4 3.0 to 0.120 and 1.2 to 0.37.
+constexpr int zstd_level = -5, hash_log = 11, shortest_match = 7;
 constexpr std::size_t first_room = 1 << 20;  // [octets]
 
 // Grows as octets really come, so that a length that lies costs nothing.
@@ -103,7 +105,12 @@ struct Compressor::Context {
 };
 
 Compressor::Compressor(Compression compression) : compression_(compression), context_(std::make_unique<Context>()) {
-  if (compression == Compression::zstd) context_->zstd.reset(ZSTD_createCCtx());
+  if (compression != Compression::zstd) return;
+  context_->zstd.reset(ZSTD_createCCtx());
+  if (!context_->zstd) return;  // compress() says so
+  for (const auto& [parameter, value] :
+       {std::pair(ZSTD_c_compressionLevel, zstd_level), std::pair(ZSTD_c_hashLog, hash_log), std::pair(ZSTD_c_minMatch, shortest_match)})
+    ZSTD_CCtx_setParameter(context_->zstd.get(), parameter, value);
 }
 
 Compressor::~Compressor() = default;
@@ -115,7 +122,7 @@ base::Result<std::string_view> Compressor::compress(std::string_view octets, std
     case Compression::zstd: {
       if (!context_->zstd) return base::Error{"no memory to compress with"};
       room.resize(std::max(room.size(), ZSTD_compressBound(octets.size())));
-      const std::size_t size = ZSTD_compressCCtx(context_->zstd.get(), room.data(), room.size(), octets.data(), octets.size(), zstd_level);
+      const std::size_t size = ZSTD_compress2(context_->zstd.get(), room.data(), room.size(), octets.data(), octets.size());
       if (ZSTD_isError(size)) return base::Error{std::string("zstd: ") + ZSTD_getErrorName(size)};
       return std::string_view(room).substr(0, size);
     }
