@@ -65,12 +65,13 @@ SimTick::Leaf& SimTick::leaf_of(const base::Passage& passage) {
       return leaf;
     }
   }
-  const auto [place, is_new] = places_.try_emplace({passage.is_out, std::string(passage.port)}, leaves_.size());
-  if (is_new) {
-    Leaf& leaf = leaves_.emplace_back();
-    leaf.port = passage.port;
-    leaf.is_out = passage.is_out;
-    leaf.key = log_->key({passage.is_out ? Kind::out_port : Kind::in_port, phase_, port_name(passage.port), std::string(passage.type)});
+  const std::pair name(passage.is_out, std::string(passage.port));
+  auto place = places_.find(name);
+  if (place == places_.end()) {
+    const std::uint32_t key =
+        log_->key({passage.is_out ? Kind::out_port : Kind::in_port, phase_, port_name(passage.port), std::string(passage.type)});
+    leaves_.push_back({.port = name.second, .is_out = name.first, .key = key});
+    place = places_.emplace(name, leaves_.size() - 1).first;
   }
   expected_ = place->second + 1;
   return leaves_[place->second];
@@ -99,7 +100,7 @@ bool SimTick::passed_again(const base::Passage& passage, std::uint64_t hash) {
   return true;
 }
 
-// The first sample's hash is that of the tick, so that it is the same at both ends of a connection.
+// The hash of a single sample is that of the tick; those of further ones are chained to it.
 void SimTick::add(Leaf& leaf, std::uint64_t hash) {
   leaf.value_size = 0;
   if (leaf.samples++ == 0) {

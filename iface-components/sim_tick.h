@@ -10,6 +10,8 @@
 #include <shm/lockstep.h>
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
@@ -47,7 +49,7 @@ class SimTick final : public base::Tick {
     std::uint32_t samples = 0;     // in this tick
     std::uint32_t value_size = 0;  // 0: the last one was too long, or came as a hash
     std::uint64_t hash = 0;        // of this tick's samples
-    std::array<std::byte, base::longest_hash_value> value;
+    std::array<std::byte, base::longest_hash_value> value{};
   };
 
   Leaf& leaf_of(const base::Passage& passage);

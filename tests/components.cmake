@@ -2,6 +2,7 @@ rtmsim_test(avoidance_test clients/avoidance_test.cpp LIBRARIES avoidance)
 rtmsim_test(iface_components_test iface-components/conversions_test.cpp LIBRARIES iface_link)
 find_package(SDL2 REQUIRED)
 rtmsim_test(camera_image_test iface-components/camera_image_test.cpp LIBRARIES camera_image turbojpeg)
+rtmsim_test(sim_tick_test iface-components/sim_tick_test.cpp ${PROJECT_SOURCE_DIR}/iface-components/sim_tick.cpp LIBRARIES iface_link)
 rtmsim_test(video_test clients/picture_test.cpp clients/window_test.cpp LIBRARIES video SDL2::SDL2)
 
 # Every interface component against a living simulator, in real processes.

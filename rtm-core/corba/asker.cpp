@@ -35,7 +35,7 @@ thread_local Asker asker_of_thread = Asker::own;
 
 // References of strangers by what is in them, which copies and narrowed ones have, too.
 struct Given {
-  const std::uint64_t seed = std::random_device()() | std::uint64_t{std::random_device()()} << 32U;  // nobody makes two of one hash
+  const std::uint64_t seed = std::random_device()() | std::uint64_t{std::random_device()()} << 32U;
   base::Guarded<std::unordered_map<std::uint64_t, Asker>, base::Rank::log> references;
   std::atomic<bool> are_any{false};
   static Given& instance() {
@@ -46,8 +46,7 @@ struct Given {
 
 std::uint64_t fingerprint(omniObjRef* reference) {
   const omniIOR_var ior = reference->_getIOR();
-  base::Hash64 hash;
-  hash.add(Given::instance().seed);
+  base::Hash64 hash(Given::instance().seed);
   const auto& profiles = ior->iopProfiles();
   for (CORBA::ULong i = 0; i < profiles.length(); ++i) {
     hash.add(std::uint64_t{profiles[i].tag});

@@ -11,7 +11,7 @@ namespace rt {
 
 class SignalWatcher {
  public:
-  // `call` runs on the watcher's thread.
+  // `call` runs on threads of the watcher, one call after the other.
   SignalWatcher(const std::vector<int>& signals, std::function<void(int)> call);
   // Restores the default handlers, 50 ms after the last signal; not from within the call.
   ~SignalWatcher();

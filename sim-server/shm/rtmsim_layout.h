@@ -550,12 +550,11 @@ typedef struct {
   uint64_t missed; /* [atomic] ticks skipped because the one before was not finished (free running only) */
   uint8_t reserved1[24];
   /* written by the participant */
-  uint32_t done; /* [atomic] number of the tick it has finished */
-  uint32_t
-      sleeping; /* [atomic] 1 before it sleeps on its tick word; the server makes 2 of it when it wakes it for a tick that comes at once */
-  uint64_t ticks;   /* [atomic] finished */
-  int64_t total_ns; /* [atomic] wall time of all of them */
-  int64_t max_ns;   /* [atomic] */
+  uint32_t done;     /* [atomic] number of the tick it has finished */
+  uint32_t sleeping; /* [atomic] 1 before it sleeps on its tick word; 2: the server wakes it, its tick comes at once */
+  uint64_t ticks;    /* [atomic] finished */
+  int64_t total_ns;  /* [atomic] wall time of all of them */
+  int64_t max_ns;    /* [atomic] */
   uint8_t reserved2[32];
 } rtmsim_participant;
 
