@@ -112,6 +112,7 @@ void PeriodicWorker::wake() {
 bool PeriodicWorker::is_stopping() const { return shared_.lock()->stopping; }
 
 void TriggeredWorker::run() {
+  shared_.lock()->thread = std::this_thread::get_id();
   while (true) {
     std::optional<std::chrono::nanoseconds> tick;
     {
@@ -129,13 +130,17 @@ void TriggeredWorker::run() {
     }
     if (tick) steps_.begin_tick(*tick);
     steps_.transit();
-    if (tick) steps_.execute_and_update();
+    if (!tick) continue;
+    steps_.execute_and_update();
+    ++shared_.lock()->over;
+    cycles_.notify_all();
   }
 }
 
 void TriggeredWorker::stop() {
   shared_.lock()->stopping = true;
   condition_.notify_all();
+  cycles_.notify_all();
 }
 
 bool TriggeredWorker::resume() {
@@ -145,23 +150,42 @@ bool TriggeredWorker::resume() {
   return true;
 }
 
-void TriggeredWorker::reset() { *shared_.lock() = Data{}; }
+void TriggeredWorker::reset() {
+  auto data = shared_.lock();
+  *data = Data{.taken = data->taken, .over = data->taken};
+  cycles_.notify_all();
+}
 
 void TriggeredWorker::wake() {
   shared_.lock()->woken = true;
   condition_.notify_all();
 }
 
-void TriggeredWorker::tick(std::chrono::nanoseconds time) {
-  if (!context_.is_running()) return;
-  bool is_taken = false;
+// Its number; nothing when it is forgotten.
+std::optional<std::uint64_t> TriggeredWorker::take(std::chrono::nanoseconds time) {
+  if (!context_.is_running()) return std::nullopt;
+  std::optional<std::uint64_t> number;
   {
     auto data = shared_.lock();
-    is_taken = data->ticks.size() < most_waiting;
-    if (is_taken) data->ticks.push_back(time);
+    if (data->ticks.size() < most_waiting) {
+      data->ticks.push_back(time);
+      number = ++data->taken;
+    }
   }
   condition_.notify_all();
-  if (!is_taken) context_.count_missed(1);
+  if (!number) context_.count_missed(1);
+  return number;
+}
+
+void TriggeredWorker::tick(std::chrono::nanoseconds time) { (void)take(time); }
+
+void TriggeredWorker::tick_and_wait(std::chrono::nanoseconds time) {
+  const auto number = take(time);
+  if (!number) return;
+  auto data = shared_.lock();
+  const auto is_over = [&] { return data->over >= *number || data->stopping; };
+  while (data->thread != std::this_thread::get_id() && !is_over())
+    data.wait_until(cycles_, std::chrono::steady_clock::now() + std::chrono::hours(24), is_over);
 }
 
 void Crew::start(std::size_t threads, std::function<void(std::size_t, int)> work) {

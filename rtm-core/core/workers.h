@@ -10,6 +10,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -103,6 +104,8 @@ class TriggeredWorker {
   void wake();
   // Any thread, several at once. Ticks of a stopped context are forgotten.
   void tick(std::chrono::nanoseconds time = {});
+  // The same, and returns when its cycle is over, or the worker stops. From within a cycle it returns at once.
+  void tick_and_wait(std::chrono::nanoseconds time);
 
  private:
   struct Data {
@@ -110,12 +113,16 @@ class TriggeredWorker {
     bool has_left = false;
     bool woken = false;
     std::deque<std::chrono::nanoseconds> ticks{};
+    std::uint64_t taken = 0, over = 0;  // ticks so far; those that are forgotten are over
+    std::thread::id thread{};           // of run()
   };
+  std::optional<std::uint64_t> take(std::chrono::nanoseconds time);
 
   ExecutionContext& context_;
   Steps& steps_;
   base::Guarded<Data, base::Rank::buffer> shared_;
   std::condition_variable condition_;
+  std::condition_variable cycles_;  // for those who wait for the end of one
 };
 
 // Does jobs on several threads of its own at once. start, run and stop are called by one thread at a time.

@@ -37,7 +37,7 @@ LogicalTimeTriggeredEC::~LogicalTimeTriggeredEC() {
 }
 
 void LogicalTimeTriggeredEC::tick(CORBA::ULong sec, CORBA::ULong usec) {
-  worker_->tick(std::chrono::seconds(sec) + std::chrono::microseconds(usec));
+  worker_->tick_and_wait(std::chrono::seconds(sec) + std::chrono::microseconds(usec));
 }
 
 void LogicalTimeTriggeredEC::get_time(CORBA::ULong& sec, CORBA::ULong& usec) {
