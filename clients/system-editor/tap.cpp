@@ -161,6 +161,7 @@ Result<std::unique_ptr<Tap>> Tap::connect(CORBA::ORB_ptr orb, const PortView& po
                                {"dataport.subscription_type", "flush"},
                                {"dataport.data_type", port.data_type()},
                                {"dataport.serializer.cdr.endian", "little,big"}};
+  if (reads) properties["dataport.looks_on"] = "YES";
   for (const auto& [key, value] : extra) properties[key] = value;
   RTC::ConnectorProfile profile;
   profile.name = connector_name;

@@ -387,7 +387,9 @@ bool OutEngine::write(const void* value) {
     return false;
   }
   Payload payload(ops_, value);
-  tell_tick(payload, *all->front());
+  // Whether a tool looks on makes no difference to what a run has done.
+  const auto member = std::ranges::find_if(*all, [](const auto& connection) { return !connection->settings().looks_on; });
+  if (member != all->end()) tell_tick(payload, **member);
   bool is_ok = true;
   statuses_.lock()->assign(all->size(), rt::PortStatus::ok);
   const auto write_to = [&](std::size_t i) {

@@ -197,6 +197,7 @@ ConnectorSettingsOutcome read_connector_settings(const KeyValues& properties, Si
                             {"none", StampPolicy::none}});
   reader.flag("allow_dup_connection", settings.allows_duplicate);
   reader.flag("sync_readwrite", settings.is_rendezvous);
+  reader.flag("looks_on", settings.looks_on);
   reader.flag("reconnect", settings.comes_back);
   reader.count("fan_out", settings.fan_out, 1, longest_buffer);
   std::chrono::nanoseconds call_timeout{};

@@ -39,6 +39,7 @@ struct Barrier::State {
     std::uint64_t missed = 0;
     bool is_hanging = false;
     bool observes = false;    // as of this tick
+    bool looks_on = false;    // likewise
     bool is_looking = false;  // an observer in its tick
 
     auto order() const { return std::pair(phase, turn); }
@@ -64,6 +65,7 @@ struct Barrier::State {
   std::int64_t last_now = -1;
   std::int64_t earliest_due = 0;   // of all
   std::int64_t earliest_turn = 0;  // of those who are waited for at once
+  std::int64_t earliest_part = 0;  // of those who do not only look on
   bool is_looked_at = false;
   std::uint32_t resets = 0;
   mutable std::uint64_t moment = 0;  // kept here, too: what a client scribbles into the shared one must not stay
@@ -84,7 +86,8 @@ struct Barrier::State {
   void wake(std::span<Member* const> group);
   bool run_turn(std::span<Member*> group, std::int64_t now, std::uint64_t steps);
   void end_phase();
-  bool observes(std::size_t index) const { return options.is_lockstep && load(slot_at(segment, index).observes) != 0; }
+  bool observes(std::size_t index) const { return options.is_lockstep && load(slot_at(segment, index).observes) == observer; }
+  bool looks_on(std::size_t index) const { return load(slot_at(segment, index).observes) != takes_part; }
   void let_look(std::int64_t now, std::uint64_t steps);
   void remove_gone();
   bool wait_for(std::span<Member*> group);
@@ -112,10 +115,11 @@ Barrier::~Barrier() {
 }
 
 void Barrier::State::schedule_all() {
-  earliest_due = earliest_turn = longest_period;
+  earliest_due = earliest_turn = earliest_part = longest_period;
   for (const Member& member : members) {
     earliest_due = std::min(earliest_due, member.next_due);
     if (!member.observes) earliest_turn = std::min(earliest_turn, member.next_due);
+    if (!member.looks_on) earliest_part = std::min(earliest_part, member.next_due);
   }
 }
 
@@ -135,6 +139,7 @@ void Barrier::State::take_in(std::size_t index) {
   member.turn = slot.turn;
   member.period = load(slot.period_ns);
   member.observes = observes(index);
+  member.looks_on = looks_on(index);
   const bool is_good = member.phase <= max_phase && member.period > 0 && member.period < longest_period && member.owner != 0;
   member.watched = server.watch().watch(mark_of(slot));
   if (member.watched->is_dead()) return free_slot(slot, member.owner);
@@ -399,7 +404,10 @@ bool Barrier::tick(nanoseconds now, std::uint64_t steps) {
     state.wake_ahead(step);
   if (now.count() < state.earliest_due) return true;
   if (!settle()) return false;
-  for (State::Member& member : state.members) member.observes = state.observes(member.index);
+  for (State::Member& member : state.members) {
+    member.observes = state.observes(member.index);
+    member.looks_on = state.looks_on(member.index);
+  }
   std::size_t begin = 0;
   bool is_complete = true, has_begun = false;
   state.is_ticking = true;
@@ -431,8 +439,8 @@ std::optional<nanoseconds> Barrier::next_due() const {
 
 std::optional<bool> Barrier::has_turn(nanoseconds now) {
   refresh();
-  if (std::ranges::all_of(state_->members, &State::Member::observes)) return std::nullopt;
-  return now.count() >= state_->earliest_turn;
+  if (std::ranges::all_of(state_->members, &State::Member::looks_on)) return std::nullopt;
+  return now.count() >= state_->earliest_part;
 }
 
 void Barrier::rewind(nanoseconds now, std::uint32_t resets) {

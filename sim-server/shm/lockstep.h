@@ -100,7 +100,7 @@ class Barrier {
   bool settle();
   // Earliest time at which anybody is due, if anybody is there.
   std::optional<std::chrono::nanoseconds> next_due() const;
-  // Whether anybody is called at `now`; nothing when nobody takes part, but for observers.
+  // Whether anybody is called at `now` who does not only look on; nothing when there is nobody.
   std::optional<bool> has_turn(std::chrono::nanoseconds now);
   // After a reset or another jump of time: due times start again at the first multiple of each period at or after `now`.
   void rewind(std::chrono::nanoseconds now, std::uint32_t resets);
@@ -118,6 +118,7 @@ struct ParticipantOptions {
   std::uint32_t phase = 1;  // 0 sensors, 1 clients, 2 actuators; at most 15
   std::chrono::nanoseconds period = std::chrono::milliseconds(10);
   std::uint32_t turn = 0;  // within the phase: higher ones begin when lower ones have finished
+  bool looks_on = false;   // a tool, no part of what is simulated: who it is and when it comes is no part of what a run did
   bool observes = false;   // only looks at what the simulator shows: time need not wait for it at once; the phase does not matter
 };
 

@@ -29,7 +29,7 @@ std::vector<std::size_t> slots_by_company(const Segment& segment, const Particip
     const ParticipantSlot& slot = slot_at(segment, i);
     if (load(slot.owner) == 0) continue;
     const bool is_alike = load(slot.phase) == options.phase && load(slot.turn) == options.turn &&
-                          load(slot.period_ns) == options.period.count() && (load(slot.observes) != 0) == options.observes;
+                          load(slot.period_ns) == options.period.count() && (load(slot.observes) == observer) == options.observes;
     company[i % all_bits] = std::max(company[i % all_bits], is_alike ? alike : others);
   }
   std::vector<std::size_t> slots(slot_count(segment));
@@ -79,7 +79,7 @@ struct Participant::Impl {
   std::size_t index = 0;
   std::uint64_t owner = 0;
   std::uint32_t last_go = 0;
-  bool is_in_tick = false;
+  bool is_in_tick = false, is_tool = false;
   steady_clock::time_point tick_start, check_at;  // check_at: when to look next whether the server lives
   std::uint64_t moment = 0;                       // of the last tick
   std::uint64_t ticks = 0;
@@ -87,6 +87,7 @@ struct Participant::Impl {
   std::atomic<bool> is_interrupted{false};
 
   ParticipantSlot& slot() const { return slot_at(simulation.segment(), index); }
+  std::uint32_t part(bool observes) const { return observes ? observer : is_tool ? waited_tool : takes_part; }
   bool is_ours() const { return load(slot().owner) == owner; }
   base::Result<void> take_slot(const ParticipantOptions& options);
   bool finish(steady_clock::time_point now);
@@ -109,7 +110,8 @@ base::Result<void> Participant::Impl::take_slot(const ParticipantOptions& option
     store(candidate.start_time, mark.start_time);
     store(candidate.phase, options.phase);  // who looks for a place reads them meanwhile
     store(candidate.turn, options.turn);
-    store(candidate.observes, options.observes ? 1U : 0U);
+    is_tool = options.looks_on;
+    store(candidate.observes, part(options.observes));
     store(candidate.period_ns, static_cast<std::int64_t>(options.period.count()));
     set_text(candidate.name, options.name);
     store(candidate.done, 0U);
@@ -270,7 +272,7 @@ void Participant::set_period(nanoseconds period) {
 }
 
 void Participant::set_observing(bool observes) {
-  if (impl_->is_ours()) store(impl_->slot().observes, observes ? 1U : 0U);
+  if (impl_->is_ours()) store(impl_->slot().observes, impl_->part(observes));
 }
 
 bool Participant::is_active() const { return impl_->is_ours() && load(impl_->slot().state) == RTMSIM_PARTICIPANT_ACTIVE; }

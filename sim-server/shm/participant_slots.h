@@ -22,6 +22,9 @@ inline constexpr std::int64_t longest_period = std::int64_t{1} << 60;
 // ParticipantSlot::sleeping.
 inline constexpr std::uint32_t awake = 0, asleep = 1, called = 2;
 
+// ParticipantSlot::observes.
+inline constexpr std::uint32_t takes_part = 0, observer = 1, waited_tool = 2;
+
 inline ParticipantSlot& slot_at(const Segment& segment, std::size_t index) {
   return segment.as<ParticipantSlot>(AreaIndex::participants, index);
 }
@@ -47,7 +50,7 @@ inline std::string name_of(const ParticipantSlot& slot) {
 inline void free_slot(ParticipantSlot& slot, std::uint64_t owner) {
   store(slot.state, static_cast<std::uint32_t>(RTMSIM_PARTICIPANT_FREE));
   store(slot.start_time, std::uint64_t{0});
-  store(slot.observes, 0U);  // of nobody who does not say so
+  store(slot.observes, takes_part);  // of nobody who does not say so
   word(slot.owner).compare_exchange_strong(owner, 0, std::memory_order_acq_rel);
 }
 

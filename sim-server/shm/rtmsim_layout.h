@@ -539,7 +539,8 @@ typedef struct {
   uint32_t state;    /* [atomic] RTMSIM_PARTICIPANT_* */
   uint32_t error;    /* why the server refused or dropped it: RTMSIM_DROPPED_* */
   uint32_t turn;     /* within its phase: the higher ones begin when the lower ones have finished; written before it asks to join */
-  uint32_t observes; /* [atomic] 1: it only looks, see shm/lockstep.h; may change at any time, taken over at the next tick */
+  uint32_t observes; /* [atomic] 1: it observes, 2: a tool that is waited for; shm/lockstep.h. May change at any time, taken over at the
+                        next tick */
   uint8_t reserved0[16];
   /* written by the server */
   uint32_t go;     /* [atomic] number of the tick to do; 0 = none yet */

@@ -37,6 +37,24 @@ TEST(Observer, comes_last_and_is_waited_for_when_samples_are_to_be_written) {
   observer.join();
 }
 
+TEST(Observer, no_tool_that_looks_on_has_a_turn_whether_it_is_waited_for_or_not) {
+  BarrierFixture f;
+  std::atomic<int> ticks = 0;
+  auto tool = Participant::join(f.id, {.name = "tool", .period = 10ms, .looks_on = true});
+  ASSERT_TRUE(tool);
+  auto thread = run(std::move(*tool), [&](const Tick&) { ++ticks; });
+  const auto observer = join_observer(f, 1h);
+  EXPECT_FALSE(f.barrier->has_turn(0ms));
+  ASSERT_TRUE(f.barrier->tick(0ms, 0));
+  EXPECT_EQ(ticks, 1);
+  EXPECT_FALSE(f.barrier->has_turn(10ms));
+  const auto client = f.join("client", 1, 20ms);
+  EXPECT_EQ(f.barrier->has_turn(10ms), std::optional(false));
+  EXPECT_EQ(f.barrier->has_turn(20ms), std::optional(true));
+  f.barrier.reset();
+  thread.join();
+}
+
 TEST(Observer, time_goes_on_while_it_looks_until_it_is_due_again) {
   BarrierFixture f;
   auto a = join_observer(f);

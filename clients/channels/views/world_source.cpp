@@ -182,8 +182,8 @@ void WorldSource::State::choose_turn() {
 bool WorldSource::State::join() {
   if (participant) return true;
   if (!simulation.read() || simulation.sample<shm::SimulationSample>().waiting_for > 0) return false;
-  auto joined =
-      shm::Participant::join(options.server_id, {.name = "channels", .phase = last_phase, .period = period, .observes = observes});
+  auto joined = shm::Participant::join(options.server_id,
+                                       {.name = "channels", .phase = last_phase, .period = period, .looks_on = true, .observes = observes});
   if (!joined) return false;
   participant.emplace(std::move(*joined));
   shared.lock()->participant = &*participant;
