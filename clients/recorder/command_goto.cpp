@@ -112,9 +112,11 @@ void Stand::say() const {
 }
 
 base::Result<void> Stand::then() {
+  std::cout.flush();
+  std::fflush(stdout);
   auto child = editor::ChildProcess::start({{"sh", "-c", options_.then},
                                             {{"RTMSIM_SERVER_ID", system_->simulator()}, {"RTCTREE_NAMESERVERS", system_->naming()}},
-                                            "/dev/stdout"});
+                                            editor::own_output});
   if (!child) return child.error();
   if (child->wait_or_interrupt(std::chrono::hours(24 * 365)) != editor::Ending::ended) return base::Error{"goto: interrupted"};
   if (child->exit_code() != 0) return base::Error{"command " + base::in_quotes(options_.then) + ": " + child->how_it_ended()};

@@ -11,6 +11,7 @@
 #include "base/command_line.h"
 #include "base/text.h"
 #include "command.h"
+#include "core/connector_settings.h"
 #include "mcap/mcap.h"
 #include "recorder_commands.h"
 #include "run/interrupt.h"
@@ -52,6 +53,13 @@ std::optional<std::uint16_t> channel_of(const mcap::Reader& reader, const std::s
   return std::nullopt;
 }
 
+// "" when the recording does not say it.
+std::string type_of(const mcap::Reader& reader, const mcap::Channel& channel) {
+  if (const auto said = channel.metadata.find("data_type"); said != channel.metadata.end()) return said->second;
+  const auto schema = reader.schemas().find(channel.schema);
+  return schema != reader.schemas().end() ? schema->second.name : "";
+}
+
 base::Result<void> add_route(Editor& editor, const mcap::Reader& reader, const std::string& link, Routes& routes) {
   const auto equals = link.find('=');
   if (equals == std::string::npos) return base::Error{"link " + base::in_quotes(link) + ": expected COMPONENT:PORT=INPORT"};
@@ -68,10 +76,9 @@ base::Result<void> add_route(Editor& editor, const mcap::Reader& reader, const s
     return base::Error{"port " + port->port.full_name + ": is a " + port->port.port_type() + ", play writes to InPorts"};
   }
   const mcap::Channel& recorded = reader.channels().at(*channel);
-  const auto type = recorded.metadata.find("data_type");
-  if (type != recorded.metadata.end() && type->second != port->port.data_type()) {
-    return base::Error{"port " + port->port.full_name + ": takes " + port->port.data_type() + ", " + recorded.topic + " was " +
-                       type->second};
+  const std::string type = type_of(reader, recorded);
+  if (!rt::are_compatible_types(type, port->port.data_type())) {
+    return base::Error{"port " + port->port.full_name + ": takes " + port->port.data_type() + ", " + recorded.topic + " was " + type};
   }
   auto tap = editor::Tap::connect(editor.orb(), port->port, {{"rtmsim.play.topic", recorded.topic}}, {});
   if (!tap) return tap.error();

@@ -174,6 +174,12 @@ void report(Editor& editor, const Options& options, const ReplayResult& result) 
   }
 }
 
+// What was to be compared has to be there.
+std::string nothing_compared(const Options& options, const ReplayResult& result) {
+  if (!options.compares || std::ranges::any_of(result.outputs, [](const auto& output) { return output.recorded > 0; })) return "";
+  return "replay: nothing could be compared, the recording has no outputs of " + options.component + " while it was active";
+}
+
 base::Result<void> write_report(const Options& options, const ReplayResult& result, const std::string& problem) {
   editor::RunOptions names;
   names.system = "replay";
@@ -240,13 +246,14 @@ void replay_file(Editor& editor, const Options& options) {
   };
   editor::catch_interrupts();
   const auto made = editor::run_system(editor.orb(), call);
-  if (!made.problem.empty()) {
-    editor.fail({made.problem});
-  } else {
+  std::string problem = made.problem;
+  if (problem.empty()) {
     report(editor, options, result);
+    problem = nothing_compared(options, result);
   }
+  if (!problem.empty()) editor.fail({problem});
   if (options.junit.empty()) return;
-  if (const auto written = write_report(options, result, made.problem); !written) editor.fail(written.error());
+  if (const auto written = write_report(options, result, problem); !written) editor.fail(written.error());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -110,6 +111,7 @@ void add_standard_options(Command& program, const std::string& name, const std::
 
 std::optional<int> parse_command_line(Command& program, const std::string& name, int argc, const char* const* argv, const Offers& offers) {
   keep_standard_files();
+  (void)std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of who writes it, and has a name
   if (argc > 1 && std::string_view(argv[1]) == "--complete") {
     const auto completion = complete(program, {argv + 2, argv + argc}, offers);
     if (completion.files) std::cout << ":files\n";

@@ -151,7 +151,6 @@ def full_disk():
     up()
 
     def small():
-        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         resource.setrlimit(resource.RLIMIT_FSIZE, (400000, 400000))  # several chunks: one is written each second
     process = subprocess.Popen([f"{rig.bin_dir}/rtse", "--ns", rig.names, "record", "-s", str(rig.server_id), "-o", file, "RTCLaser0:range"],
                                stderr=subprocess.PIPE, text=True, preexec_fn=small)
@@ -200,6 +199,12 @@ def played():
     await_("the InPort has a connection that plays", lambda: "rtmsim.play.topic" in rig.rtse("cat", "-l", "RTCPosition2d0:velocity"))
     looped.send_signal(signal.SIGINT)
     assert re.fullmatch(r"sent \d+ samples\n", looped.communicate(timeout=60)[0]) and looped.returncode == 0
+    views = rig.path("views.mcap")
+    shown = subprocess.Popen([f"{rig.bin_dir}/rtse", "--ns", rig.names, "record", "-s", str(rig.server_id), "-o", views, "--views"], stderr=subprocess.PIPE, text=True)
+    assert shown.stderr.readline().startswith("recording ")
+    seconds(1)
+    ended(shown)
+    refused("play", views, "/tf=RTCPosition2d0:velocity", says="takes IDL:RTC/TimedVelocity2D:1.0, /tf was tf2_msgs/msg/TFMessage")
     done = rig.try_rtse("play", file, "--from", "1000", "--loop")
     assert done.returncode == 1 and "has no sample of these channels in the time that is to be played" in done.stderr, done
     # The same by simulated time: it takes part, and ends when time has come to its last sample.
@@ -241,13 +246,17 @@ def kept():
     assert 1 < len(small) < 20, small
 
 
-# `rtse run` records from before the first step on; two runs are equal, and equal to the run without.
+# `rtse run` records from before the first step on; two runs are equal, and equal to the run without, also in what passed each port: one that nobody but
+# the recorder is connected to has sent nothing that counts.
 def of_a_run():
     call = ["--json", "run", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "--world", f"{rig.source}/worlds/obstacle_course.sdf", "--duration", "5"]
     hashes = []
     for more in ([], ["--record", rig.path("a.mcap")], ["--record", rig.path("b.mcap"), "--one-process-each"]):
-        hashes.append(json.loads(rig.rtse(*call, *more).splitlines()[-1])["state_hash"])
+        made = json.loads(rig.rtse(*call, "--hash-log", rig.path(f"{len(hashes)}.hashlog"), *more).splitlines()[-1])
+        hashes.append((made["state_hash"], made["run_hash"]))
     assert len(set(hashes)) == 1, hashes
+    done = rig.try_rtse(*call, "--twice", "--record", rig.path("twice.mcap"))
+    assert done.returncode == 0, done
     assert rig.rtse("recording", "compare", rig.path("a.mcap"), rig.path("b.mcap")).startswith("equal: ")
     info = json.loads(rig.rtse("--json", "recording", "info", rig.path("a.mcap")))
     assert sorted(a["name"] for a in info["attachments"]) == ["system.xml", "world.sdf"], info["attachments"]
@@ -401,7 +410,7 @@ def hashed():
                                "-d", "2", "--record", path, "--hash-log", rig.path("run.hashlog")).splitlines()[-1])
     ticks = lines("cat", path, "/hashes")
     assert ticks[-1]["value"]["so_far"] == done["run_hash"] != "", (ticks[-1], done)
-    assert [t["value"]["tick"] for t in ticks] == list(range(len(ticks))) and len(ticks) > 100, len(ticks)
+    assert [t["value"]["tick"] for t in ticks] == list(range(len(ticks))) and len(ticks) == 21, len(ticks)  # as components are called, whoever records
     leaves = set().union(*(t["value"]["leaves"] for t in ticks))
     assert any("LaserObstacleAvoid0:velocity" in leaf for leaf in leaves), leaves
     assert [t["value"] for t in foreign(path)[:-1] if t["topic"] == "/hashes"] == [t["value"] for t in ticks]
@@ -417,6 +426,15 @@ def replayed_without_inputs():
     assert done.returncode == 0, done
     assert "input LaserObstacleAvoid0:range: missing, the recording has no /RTCLaser0/range" in done.stderr, done
     refused("replay", rig.path("nothing.mcap"), "--into", "A", says="No such file")
+    os.remove(file)
+    process = recording("RTCLaser0:range", "--attach", f"system.xml={rig.source}/worlds/systems/obstacle_avoidance.xml")
+    seconds(2)
+    ended(process)
+    report = rig.path("nothing.xml")
+    done = rig.try_rtse("replay", file, "--into", "LaserObstacleAvoid0", "--compare", "--junit", report)
+    assert done.returncode == 1 and "nothing could be compared, the recording has no outputs of LaserObstacleAvoid0" in done.stderr, done
+    with open(report) as text:
+        assert "nothing could be compared" in text.read()
 
 
 # The run is made again up to a moment, and is the same there; a condition is found in the tick in which the recording has it.
@@ -427,6 +445,11 @@ def gone_to():
     assert json.loads(there[0])["time"] == 6 and len(json.loads(there[0])["processes"]) == 3, there
     stats = json.loads(there[1])
     assert stats["hash"] == whole and stats["sim_time"] == 6, (stats["hash"], whole)
+    with open(rig.path("said.txt"), "w+") as said:  # what the command says stands behind what was said before, and is followed
+        done = subprocess.run([f"{rig.bin_dir}/rtse", "--json", "goto", path, "1", "--then", "echo one; echo two"], stdout=said, timeout=120)
+        said.seek(0)
+        said_lines = said.read().splitlines()
+    assert done.returncode == 0 and json.loads(said_lines[0])["time"] == 1 and said_lines[1:3] == ["one", "two"], said_lines
     fast = next(s for s in lines("cat", path, "LaserObstacleAvoid0:velocity") if s["value"]["data"]["va"] < -0.1)
     call = ["--json", "goto", path, "--break", "LaserObstacleAvoid0:velocity.data.va < -0.1", "--then", state]
     stands = json.loads(rig.rtse(*call).split("\n", 1)[0])

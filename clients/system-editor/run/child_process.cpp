@@ -54,8 +54,9 @@ int code_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 +
 
 Result<ChildProcess> ChildProcess::start(const ProgramCall& call) {
   const bool collects = call.output.empty();
-  const int output =
-      collects ? memfd_create("output", MFD_CLOEXEC) : open(call.output.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
+  const int output = collects                    ? memfd_create("output", MFD_CLOEXEC)
+                     : call.output == own_output ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3)  // opened anew it would have a place of its own
+                                                 : open(call.output.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
   if (output < 0) return Error{"program " + call.words[0] + ": its output file " + base::in_quotes(call.output) + " cannot be written"};
   std::vector<std::string> variables;
   for (char** entry = environ; *entry; ++entry) {

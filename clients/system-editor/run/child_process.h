@@ -13,13 +13,15 @@
 
 namespace editor {
 
+inline constexpr const char* own_output = "/dev/stdout";
+
 struct ProgramCall {
   std::vector<std::string> words;                  // program and arguments
   std::map<std::string, std::string> environment;  // added to ours
-  std::string output{};                            // file for its standard output and error; empty: they are collected, see said()
-  std::string folder{};                            // where it starts; empty: in ours
-  bool ends_as_group = false;                      // what it has started is told to end with it
-  int input = -1;                                  // descriptor of its standard input; -1: it has none
+  std::string output{};        // file for its standard output and error; empty: they are collected, see said(); own_output: ours
+  std::string folder{};        // where it starts; empty: in ours
+  bool ends_as_group = false;  // what it has started is told to end with it
+  int input = -1;              // descriptor of its standard input; -1: it has none
 };
 
 enum class Ending { ended, timed_out, interrupted };
