@@ -18,6 +18,11 @@ constexpr std::chrono::seconds transition_limit{10};
 // A context answers RTC_ERROR when the component's callback has not returned within a time of its own; it may still come.
 constexpr std::chrono::seconds late_limit{6};
 
+std::chrono::milliseconds& patience() {
+  static std::chrono::milliseconds time{0};
+  return time;
+}
+
 struct Wording {
   const char* verb;
   RTC::LifeCycleState from;
@@ -61,6 +66,8 @@ Result<const ContextView*> pick_context(const ComponentView& component, int inde
 }  // namespace
 
 // A component that is there already is fine: the caller wanted the state, not the step.
+void wait_for_states(std::chrono::milliseconds time) { patience() = time; }
+
 Result<void> change_state(const ComponentView& component, Transition transition, int index) {
   const auto context = pick_context(component, index);
   if (!context) return context.error();
@@ -73,12 +80,13 @@ Result<void> change_state(const ComponentView& component, Transition transition,
                  (state == RTC::ERROR_STATE ? " (try: rtse reset)" : "")};
   }
   RTC::ReturnCode_t code = RTC::RTC_ERROR;
-  const CallLimit limited(transition_limit);
+  const CallLimit limited(std::max<std::chrono::milliseconds>(transition_limit, patience()));
   const auto called = remote(what + ":", [&] { code = call((*context)->object, component.object, transition); });
   if (!called) return called.error();
   if (code == RTC::RTC_OK) return {};
   RTC::LifeCycleState now = words.from;
-  const auto end = std::chrono::steady_clock::now() + (code == RTC::RTC_ERROR ? late_limit : std::chrono::seconds(0));
+  const auto end = std::chrono::steady_clock::now() +
+                   (code == RTC::RTC_ERROR ? std::max<std::chrono::milliseconds>(late_limit, patience()) : std::chrono::milliseconds(0));
   while (true) {
     const auto asked = remote(what, [&] { now = (*context)->object->get_component_state(component.object); });
     if (!asked) return check(what, code);

@@ -140,9 +140,9 @@ std::vector<std::string> ForeignProcesses::components_of(const ForeignProcess& p
   return names;
 }
 
-std::chrono::duration<double> ForeignProcesses::patience() const {
+std::chrono::duration<double> ForeignProcesses::patience(std::chrono::duration<double> usual) const {
   double longest = 0;
-  for (const auto& process : processes_) longest = std::max(longest, process.wait_s);
+  for (const auto& process : processes_) longest = std::max(longest, process.wait_s.value_or(usual.count()));
   return std::chrono::duration<double>(longest);
 }
 

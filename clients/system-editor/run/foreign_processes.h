@@ -33,7 +33,7 @@ class ForeignProcesses {
   // In the order of the system.
   const std::vector<TimeMember>& members() const { return members_; }
   // The longest that somebody waits for the components of a process.
-  std::chrono::duration<double> patience() const;
+  std::chrono::duration<double> patience(std::chrono::duration<double> usual) const;
 
   Result<void> start(const std::string& naming, const std::string& server_id);
   // What the host of their contexts is made of: a proxy for each that needs one, and OpenHRP's clock.

@@ -4,7 +4,7 @@
 //     - command: python3 controller.py    # a line for sh
 //       folder: controller                # where it is started; relative to the run file; default: the folder of the run file
 //       environment: {PYTHONPATH: lib}
-//       wait: 30                          # [s] of real time, for its components to be on the naming service
+//       wait: 30                          # [s] of real time, for its components to be on the naming service; without it --start-timeout
 //       components:                       # of the system, by their instance names
 //         - Controller0
 //         - {name: Filter0, phase: 2, rate: 50, join: tick}
@@ -31,11 +31,10 @@ struct ForeignComponent {
 };
 
 struct ForeignProcess {
-  static constexpr double usual_wait_s = 30;
   std::string command;
   std::string folder{};  // empty: that of rtse
   std::map<std::string, std::string> environment{};
-  double wait_s = usual_wait_s;
+  std::optional<double> wait_s{};
   std::vector<ForeignComponent> components{};
 };
 

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "base/text.h"
+#include "commands/state.h"
 #include "commands/system.h"
 #include "remote.h"
 #include "run/foreign_processes.h"
@@ -235,7 +236,7 @@ class Run final : public RunningSystem {
     if (const auto there = await_components(expected, start_limit()); !there) return there;
     expected.clear();
     for (const auto& member : foreign_.members()) expected.push_back(member.instance);
-    return await_components(expected, foreign_.patience());
+    return await_components(expected, foreign_.patience(start_limit()));
   }
 
   Result<void> await_components(const std::vector<std::string>& expected, std::chrono::duration<double> limit) {
@@ -278,6 +279,7 @@ class Run final : public RunningSystem {
       if (const auto joined = foreign_.join(*editor_, system_); !joined) return joined;
       if (const auto written = write_system(system_, file); !written) return written;
     }
+    wait_for_states(std::chrono::duration_cast<std::chrono::milliseconds>(start_limit()));
     if (!editor_->failed()) start(*editor_, file, false);
     if (!editor_->failed()) {
       if (const auto joined = wait_for_participants(); !joined) return joined;
