@@ -331,6 +331,9 @@ def ticked_by_hand():
     with Mixed(bin_dir, lib_dir) as s:
         s.chain("--context", "triggered", "--active")
         s.rtse("join", "Alien", "--tick", "--phase", "1", "--rate", "100", "--server-id", s.server_id)
+        for words in (["--tick"], []):
+            again = s.try_rtse("join", "Alien", *words, "--rate", "100", "--server-id", s.server_id)
+            assert again.returncode == 1 and "its own context is ticked in simulated time already" in again.stderr, again
         assert {p["name"]: p["phase"] for p in s.participants()} == {"From": 0, "To": 2, "Alien": 1}
         s.rtse("act", "From", "To")
         s.simctl("step", "500")

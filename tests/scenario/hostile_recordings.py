@@ -72,6 +72,10 @@ def bombs():
         refused("recording", "export", file, "-o", "out", says="more than 8388608 values")
     deep = recording("deep.mcap", [("/b", "json", "", "", "")], [(1, b"[" * 1000000 + b"]" * 1000000), (1, b"[1]")])
     refused("recording", "cat", deep, says="nested deeper than 100 levels")
+    many = recording("many.mcap", [("/b", "json", "", "", "")], [(1, b"")] * 1600000)
+    for words in (["cat", many], ["export", many, "-o", "many"], ["compare", many, many]):
+        done = rtse("recording", *words)
+        assert done.returncode == 1 and "more than 1500000 messages in chunks of one time are not read" in done.stderr.decode(), (words, done)
     wide = recording("wide.mcap", [("/b", "json", "", "", ""), ("/c", "json", "", "", "")], [(1, b"[" + b"0," * 300000 + b"0]"), (2, b"5")])
     refused("recording", "export", wide, "-o", "wide", says="has more than 262144 members, which is too much for a table")
     assert os.listdir("wide") == ["c.csv"]

@@ -12,7 +12,7 @@ namespace mcap {
 namespace {
 
 constexpr std::uint64_t most_octets = Reader::largest_chunk;  // of all chunks that are open at once
-constexpr std::size_t most_places = 4'000'000;                // of messages in them; 96 MB
+constexpr std::size_t most_places = 1'500'000;                // of messages in them; 36 MB, and twice that while they grow
 
 // Where a message is: in a chunk's octets, or in the file.
 struct Place {
@@ -97,18 +97,20 @@ base::Result<void> Reader::State::open_chunk(const ChunkEntry& chunk) {
   const auto walked = for_each_record(cursor.octets, [&](Opcode opcode, std::string_view content, std::uint64_t offset) {
     if (opcode != Opcode::message) return;
     const auto message = take_message(content);
-    if (message && is_wanted(*message)) cursor.places.push_back({message->log_time, offset, content.size()});
+    if (cursor.places.size() > most_places || !message || !is_wanted(*message)) return;
+    cursor.places.push_back({message->log_time, offset, content.size()});
   });
   if (!walked)
     return base::Error{base::in_quotes(file.path()) + ": in the chunk at octet " + std::to_string(chunk.start) + ": " +
                        walked.error().message};
-  std::stable_sort(cursor.places.begin(), cursor.places.end(), [](const Place& a, const Place& b) { return a.time < b.time; });
   std::size_t places = cursor.places.size();
   for (const Cursor& other : open) places += other.places.size();
   if (places > most_places) {
     return base::Error{base::in_quotes(file.path()) + ": more than " + std::to_string(most_places) +
                        " messages in chunks of one time are not read; the chunk at octet " + std::to_string(chunk.start) + " is left out"};
   }
+  const auto is_earlier = [](const Place& a, const Place& b) { return a.time < b.time; };
+  if (!std::ranges::is_sorted(cursor.places, is_earlier)) std::ranges::stable_sort(cursor.places, is_earlier);
   if (cursor.is_done()) return {};
   const auto behind = std::find_if(open.begin(), open.end(),
                                    [&](const Cursor& other) { return other.chunk != nullptr && other.chunk->start > chunk.start; });

@@ -91,6 +91,8 @@ Result<Joining> look_at(const Editor& editor, const std::string& path, const Joi
   const auto component = editor.component(path, {.contexts = true});
   if (!component) return component.error();
   if (simulated_context(*component)) return Error{"component " + component->path + ": takes part in simulated time already (rtse leave)"};
+  if (has_proxy(editor, component->instance))
+    return Error{"component " + component->path + ": its own context is ticked in simulated time already (rtse leave)"};
   auto rate = options.rate;
   for (const auto& context : component->contexts) {
     if (rate == 0 && context.is_owned) rate = context.rate;

@@ -82,6 +82,11 @@ bool leave_proxy(const Editor& editor, const std::string& instance) {
 
 std::string proxy_name(const std::string& instance) { return instance + "_time"; }
 
+bool has_proxy(const Editor& editor, const std::string& instance) {
+  const auto proxy = editor.component(proxy_name(instance) + ".rtc", {});
+  return proxy && proxy->type == proxy_type;
+}
+
 std::string proxy_creation(const TimeMember& member, const std::string& server_id) {
   return proxy_type + "?instance_name=" + proxy_name(member.instance) +
          "&exec_cxt.periodic.type=SimTimeContext&exec_cxt.periodic.rate=" + member.rate +

@@ -28,6 +28,8 @@ std::optional<TimeMember::How> parse_how(const std::string& text);
 
 // The instance name of the proxy of a component.
 std::string proxy_name(const std::string& instance);
+// It is there, and answers.
+bool has_proxy(const Editor& editor, const std::string& instance);
 // What a manager makes it from.
 std::string proxy_creation(const TimeMember& member, const std::string& server_id);
 
