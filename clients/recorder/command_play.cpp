@@ -11,7 +11,7 @@
 #include "base/command_line.h"
 #include "base/text.h"
 #include "command.h"
-#include "core/connector_settings.h"
+#include "idl_text.h"
 #include "mcap/mcap.h"
 #include "recorder_commands.h"
 #include "run/interrupt.h"
@@ -77,7 +77,7 @@ base::Result<void> add_route(Editor& editor, const mcap::Reader& reader, const s
   }
   const mcap::Channel& recorded = reader.channels().at(*channel);
   const std::string type = type_of(reader, recorded);
-  if (!rt::are_compatible_types(type, port->port.data_type())) {
+  if (!type.empty() && channels::scoped_name(type) != channels::scoped_name(port->port.data_type())) {
     return base::Error{"port " + port->port.full_name + ": takes " + port->port.data_type() + ", " + recorded.topic + " was " + type};
   }
   auto tap = editor::Tap::connect(editor.orb(), port->port, {{"rtmsim.play.topic", recorded.topic}}, {});

@@ -39,8 +39,7 @@ def recording(path, channels, messages):
     for n, (topic, encoding, *schema) in enumerate(channels, 1):
         body += record(3, struct.pack("<H", n) + b"".join(map(text, schema)))
         body += record(4, struct.pack("<HH", n, n) + text(topic) + text(encoding) + text(""))
-    for time, (channel, octets) in enumerate(messages):
-        body += record(5, struct.pack("<HIQQ", channel, 0, time, time) + octets)
+    body += b"".join(record(5, struct.pack("<HIQQ", channel, 0, time, time) + octets) for time, (channel, octets) in enumerate(messages))
     packed = compressed(body)
     chunk = struct.pack("<QQQI", 0, len(messages), len(body), 0) + text("zstd") + struct.pack("<Q", len(packed)) + packed
     with open(path, "wb") as out:
