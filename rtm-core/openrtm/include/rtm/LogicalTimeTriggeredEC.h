@@ -25,7 +25,8 @@ class LogicalTimeTriggeredEC : public ExecutionContextServant<POA_OpenRTM::Logic
   LogicalTimeTriggeredEC();
   ~LogicalTimeTriggeredEC() override;
 
-  // Returns when its cycle is over, as in OpenRTM; from within a cycle at once. A million microseconds and more are carried over. Ticks of a stopped context are forgotten.
+  // Returns when its cycle is over, as in OpenRTM; from within a cycle at once. A million microseconds and more are carried over. Ticks of
+  // a stopped context are forgotten.
   void tick(CORBA::ULong sec, CORBA::ULong usec) override;
   // The time of the cycle that runs or ran last; 0 before the first.
   void get_time(CORBA::ULong& sec, CORBA::ULong& usec) override;
