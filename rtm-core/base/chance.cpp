@@ -25,7 +25,7 @@ void tell_of_chance(std::string_view where, std::string_view what, std::chrono::
   static auto& told = *new Guarded<std::set<std::string>, Rank::registry>;  // never destroyed, likewise
   const std::string text = std::string(where) + " " + std::string(what);
   if (!told.lock()->insert(text).second) return;
-  log(Level::info, "lock step", "{}{} at {} s", chance_mark, text, format_number(static_cast<double>(simulated.count()) * 1e-9));
+  log(Level::info, "lock step", "{}{} at {} s", chance_mark, text, format_number(to_seconds(simulated)));
 }
 
 }  // namespace base

@@ -1,6 +1,7 @@
 // Small functions on text, and numbers read strictly. Any thread. None of them depends on the locale.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -28,6 +29,8 @@ std::optional<bool> parse_bool(std::string_view text);
 
 // The shortest text that reads back as the same number.
 std::string format_number(double value);
+// [s] The number nearest to the time: 60 ms are 0.06, whose text is short.
+inline double to_seconds(std::chrono::nanoseconds time) { return static_cast<double>(time.count()) / 1e9; }
 
 // A value that comes from outside, fit for one line of a message: control characters escaped, cut after 120 characters.
 std::string in_quotes(std::string_view text);

@@ -119,6 +119,7 @@ Json participants_json(const std::vector<shm::ParticipantRecord>& participants) 
     list.push_back({{"name", p.name},
                     {"pid", p.pid},
                     {"phase", p.phase},
+                    {"period_ns", p.period_ns},
                     {"rate", p.period_ns > 0 ? 1e9 / static_cast<double>(p.period_ns) : 0.0},
                     {"ticks", p.ticks},
                     {"missed", p.missed},

@@ -1,36 +1,52 @@
 #include "run/chance_report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/chance.h"
+#include "base/text.h"
 #include "component_view.h"
 #include "profile/rts_profile.h"
 #include "run/run_files.h"
 
 namespace editor {
+namespace {
 
-std::vector<std::string> chances_in(const std::vector<std::string>& logs) {
+// "port A:out ... at 0.06 s" of a component that is called each 10 ms: ", in tick 6". What came between two ticks counts as of the first.
+std::string tick_text(const std::string& what, const PlacesInTime& places) {
+  const auto words = base::split_list(what, ' ');
+  if (words.size() < 4 || words.back() != "s") return "";
+  const auto place = places.find(words[1].substr(0, words[1].find(':')));
+  const auto time = base::parse_number(words[words.size() - 2]);
+  if (place == places.end() || place->second.period.count() <= 0 || !time) return "";
+  return ", in tick " + std::to_string(std::llround(*time * 1e9) / place->second.period.count());
+}
+
+}  // namespace
+
+std::vector<std::string> chances_in(const std::vector<std::string>& logs, const PlacesInTime& places) {
   std::vector<std::string> found;
   for (const auto& log : logs) {
     for (const auto& line : lines_of(log)) {
       const auto at = line.find(base::chance_mark);
       if (at == std::string::npos) continue;
       auto what = line.substr(at + base::chance_mark.size());
+      what += tick_text(what, places);
       if (std::ranges::find(found, what) == found.end()) found.push_back(std::move(what));
     }
   }
   return found;
 }
 
-std::vector<std::string> services_of_one_phase(const SavedSystem& system, const std::map<std::string, std::int64_t>& phases) {
+std::vector<std::string> services_of_one_phase(const SavedSystem& system, const PlacesInTime& places) {
   std::vector<std::string> found;
   for (const auto& connector : system.connectors) {
     if (connector.is_data || connector.source.instance == connector.target.instance) continue;
-    const auto source = phases.find(connector.source.instance), target = phases.find(connector.target.instance);
-    if (source == phases.end() || target == phases.end() || source->second != target->second) continue;
+    const auto source = places.find(connector.source.instance), target = places.find(connector.target.instance);
+    if (source == places.end() || target == places.end() || source->second.phase != target->second.phase) continue;
     found.push_back("a service between " + connector.source.port_name + " and " + connector.target.port_name + ", both of phase " +
-                    std::to_string(source->second) + ": give them different phases");
+                    std::to_string(source->second.phase) + ": give them different phases");
   }
   return found;
 }
@@ -43,7 +59,7 @@ std::set<std::string> providers_of(const ComponentView& component) {
   return ports;
 }
 
-std::vector<std::string> callers_of_one_phase(const SavedSystem& system, const std::map<std::string, std::int64_t>& phases,
+std::vector<std::string> callers_of_one_phase(const SavedSystem& system, const PlacesInTime& places,
                                               const std::set<std::string>& providers) {
   struct Caller {
     const SavedTarget *from, *to;
@@ -52,9 +68,9 @@ std::vector<std::string> callers_of_one_phase(const SavedSystem& system, const s
   std::vector<Caller> callers;
   std::vector<std::string> found;
   const auto take = [&](const SavedTarget& from, const SavedTarget& to) {
-    const auto phase = phases.find(from.instance);
-    if (phase == phases.end() || from.instance == to.instance || !providers.contains(to.port_name)) return;
-    const Caller caller{&from, &to, phase->second};
+    const auto phase = places.find(from.instance);
+    if (phase == places.end() || from.instance == to.instance || !providers.contains(to.port_name)) return;
+    const Caller caller{&from, &to, phase->second.phase};
     for (const Caller& other : callers) {
       if (other.phase != caller.phase || other.to->instance != to.instance || other.from->instance == from.instance) continue;
       const auto also = other.to->port_name == to.port_name ? std::string() : " and " + to.port_name;

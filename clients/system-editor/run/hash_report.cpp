@@ -76,7 +76,7 @@ std::string what_differs(const base::HashDifference& difference) {
   return "several samples, of which the last are the same";
 }
 
-std::string seconds(std::chrono::nanoseconds time) { return base::format_number(static_cast<double>(time.count()) * 1e-9) + " s"; }
+std::string seconds(std::chrono::nanoseconds time) { return base::format_number(base::to_seconds(time)) + " s"; }
 
 std::string incomplete(const base::HashComparison& comparison) {
   if (comparison.is_complete_a && comparison.is_complete_b) return "";
@@ -106,7 +106,7 @@ Json difference_json(const base::HashComparison& comparison) {
   Json json{{"same", text.empty()}, {"ticks", comparison.ticks}, {"hash", hash_text(comparison.hash)}, {"difference", text}};
   if (!comparison.first) return json;
   const auto& first = *comparison.first;
-  json["first"] = {{"time", static_cast<double>(first.time.count()) * 1e-9},
+  json["first"] = {{"time", base::to_seconds(first.time)},
                    {"tick", first.tick},
                    {"run", first.run},
                    {"where", first.key.text()},

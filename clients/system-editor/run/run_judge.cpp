@@ -58,11 +58,11 @@ Result<void> RunJudge::look(const Editor& editor, const std::vector<std::string>
 // What a next run may do otherwise: a failure when the run is to be strict, a note for each in a CI job.
 void RunJudge::check_chances(const std::vector<std::string>& known, RunResult& result) const {
   if (!options_.strict && !is_ci_job()) return;
-  auto chances = chances_in(hosts_.logs());
+  const auto places = simulator_.places();
+  auto chances = chances_in(hosts_.logs(), places);
   chances.insert(chances.end(), known.begin(), known.end());
-  const auto phases = simulator_.phases();
-  for (auto& pair : services_of_one_phase(system_, phases)) chances.push_back(std::move(pair));
-  for (auto& pair : callers_of_one_phase(system_, phases, providers_)) chances.push_back(std::move(pair));
+  for (auto& pair : services_of_one_phase(system_, places)) chances.push_back(std::move(pair));
+  for (auto& pair : callers_of_one_phase(system_, places, providers_)) chances.push_back(std::move(pair));
   if (options_.strict) {
     result.verdicts.push_back({"nothing depends on chance", base::join(chances, "; ")});
   } else {

@@ -115,12 +115,13 @@ std::set<std::string> RunSimulator::participants() const {
   return names;
 }
 
-std::map<std::string, std::int64_t> RunSimulator::phases() const {
-  std::map<std::string, std::int64_t> phases;
+PlacesInTime RunSimulator::places() const {
+  PlacesInTime places;
   const auto json = parsed(simctl({"--json", "participants"}, call_limit));
   for (const auto& participant : json.is_array() ? json : nlohmann::json::array())
-    phases[participant.value("name", "")] = participant.value("phase", std::int64_t{0});
-  return phases;
+    places[participant.value("name", "")] = {participant.value("phase", std::int64_t{0}),
+                                             std::chrono::nanoseconds(participant.value("period_ns", std::int64_t{0}))};
+  return places;
 }
 
 std::vector<std::string> RunSimulator::models() const {

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "run/chance_report.h"
 #include "run/child_process.h"
 #include "run/run_files.h"
 #include "run/run_hashes.h"
@@ -47,7 +48,7 @@ class RunSimulator {
   nlohmann::json statistics(std::chrono::milliseconds limit) const;
   std::optional<double> time() const;  // [s], simulated
   std::set<std::string> participants() const;
-  std::map<std::string, std::int64_t> phases() const;  // of the participants
+  PlacesInTime places() const;
   std::vector<std::string> models() const;
 
   // So many steps; given up when `alive` has something to say, or when time stands still for longer than a tick may take. `passed` is told
