@@ -140,7 +140,9 @@ RTC::ReturnCode_t SimTimeProxy::onExecute(RTC::UniqueId) {
     case iface::TickedContext::Answer::gone:
       break;
   }
-  RTC_ERROR(("the context that was ticked is gone: %s", why.c_str()));
+  // rtse run looks for this line.
+  RTC_ERROR(("%s: the context that was ticked is gone at %s s (%s)", getProperties().getProperty("exec_cxt.sim_time.participant").c_str(),
+             base::format_number(base::to_seconds(base::current_clock().now())).c_str(), why.c_str()));
   ticked_.reset();
   return RTC::RTC_ERROR;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/clock.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "corba/action_call.h"
@@ -28,6 +29,12 @@ std::string name_of(RTC::LightweightRTObject_ptr component, std::chrono::millise
     return "a component that does not tell its name";
   }
   return "a component without a name";
+}
+
+// " at 0.2 s", where that says more than the time of the log line.
+std::string simulated_time_text() {
+  const base::Clock& clock = base::current_clock();
+  return clock.is_simulated() ? " at " + base::format_number(base::to_seconds(clock.now())) + " s" : "";
 }
 
 }  // namespace
@@ -102,8 +109,8 @@ void RemoteParticipant::tell(rt::Action action, const CORBA::Exception& exceptio
     base::log(base::Level::error, name_, "component of another process has not answered {} within {} s; it is left alone until it is reset",
               callback, base::format_number(static_cast<double>(patience_->limit().count()) / 1000));
   } else if (is_gone) {
-    base::log(base::Level::error, name_, "{} in {} ({}); it is left alone until it is reset", gone_mark.substr(2), callback,
-              to_text(exception));
+    base::log(base::Level::error, name_, "{} in {}{} ({}); it is left alone until it is reset", gone_mark.substr(2), callback,
+              simulated_time_text(), to_text(exception));
   } else {
     base::log(base::Level::error, name_, "component of another process throws in {}: {}", callback, to_text(exception));
   }

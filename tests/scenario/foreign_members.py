@@ -1,6 +1,7 @@
 # Components of other processes and of another make (foreign_component.py) in lock step: foreign_members.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -209,7 +210,17 @@ def faulty():
                 out.write(f"processes:\n  - command: {r.command(options)}; sleep 1000\n    components:\n      - {{name: Alien, join: {how}}}\n")
             done = subprocess.run([f"{bin_dir}/rtse", "run", system, "--world", empty, "--module-path", lib_dir, "--duration", "1000000", "--run-file", f"{r.path}/run.yaml"],
                                   text=True, capture_output=True, timeout=120)
-            assert done.returncode == 1 and "component Alien" in done.stderr and "is gone" in done.stderr, done
+            assert done.returncode == 1 and re.search(r"component Alien: .* is gone( in onExecute)? at 0.2 s", done.stderr), done
+        # Where the command itself ends: also then the time is that of the tick, however far the others have come.
+        code, err, read, calls = r.run("--hang-timeout", "1", start=r.start("--fault die@3"), duration="1000000")
+        assert code == 1 and re.search(r"process of Alien .* killed by signal 9.*, at 0.2 s", err), err
+        # Of several commands it is the one that has ended whose components are named.
+        components = {"From": ("Relay", {"source": 1}), "Alien": ("Foreign", {}), "Other": ("Foreign", {})}
+        system = profile(f"{r.path}/system.xml", components, [("From.out", "Alien.in"), ("From.out", "Other.in")])
+        starts = [word for name in ("Alien", "Other") for word in ("--start", r.command("--fault die@3" if name == "Other" else "", name=name))]
+        done = subprocess.run([f"{bin_dir}/rtse", "run", system, "--world", empty, "--module-path", lib_dir, "--duration", "1000000", *starts],
+                              text=True, capture_output=True, timeout=120)
+        assert done.returncode == 1 and "process of Other (" in done.stderr and ", at 0.2 s" in done.stderr, done
 
 
 def late_receiver():

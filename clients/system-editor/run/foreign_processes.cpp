@@ -211,14 +211,16 @@ Result<void> ForeignProcesses::join(const Editor& editor, SavedSystem& system) {
   return {};
 }
 
-Result<void> ForeignProcesses::check() {
+std::string ForeignProcesses::Ended::text() const { return "process of " + base::join(components, ", ") + " (" + command + ") " + how; }
+
+std::optional<ForeignProcesses::Ended> ForeignProcesses::ended() {
   for (std::size_t i = 0; i < running_.size(); ++i) {
     auto& one = running_[i];
     if (!one.process.is_running())
-      return Error{"process of " + one.components + " (" + shortened(processes_[i].command) + ") " + one.process.how_it_ended() + ": " +
-                   telling_line(one.log)};
+      return Ended{components_of(processes_[i]), processes_[i].components.empty(), shortened(processes_[i].command),
+                   one.process.how_it_ended() + ": " + telling_line(one.log)};
   }
-  return {};
+  return std::nullopt;
 }
 
 std::string ForeignProcesses::about(const std::string& instance) const {

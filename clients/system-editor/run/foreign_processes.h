@@ -41,8 +41,14 @@ class ForeignProcesses {
   std::vector<std::string> proxies() const;
   // Brings them into simulated time, once they and their proxies are there. In `system` their states are then those in these contexts.
   Result<void> join(const Editor& editor, SavedSystem& system);
-  // An error that names the components of a process that has ended, and how.
-  Result<void> check();
+  struct Ended {
+    std::vector<std::string> components;  // at least one of them is of this process, if `is_open`
+    bool is_open = false;                 // nobody has said whose components they are
+    std::string command, how;             // "sh start.sh", "was killed by signal 9: " and a telling line
+    std::string text() const;
+  };
+  // The first process that has.
+  std::optional<Ended> ended();
   // Where a component comes from, and what its process says, for messages.
   std::string about(const std::string& instance) const;
   std::string last_words() const;

@@ -112,8 +112,9 @@ Result<void> RunHosts::check() {
   return {};
 }
 
-std::string RunHosts::gone_member() {
+std::vector<RunHosts::Gone> RunHosts::gone_members() {
   constexpr std::string_view ticked = ": the context that was ticked is gone";  // sim_time_proxy.cpp
+  std::vector<Gone> gone;
   std::error_code error;
   for (auto& host : hosts_) {
     const auto size = host.members.empty() ? std::filesystem::file_size(host.log, error) : 0;
@@ -127,11 +128,15 @@ std::string RunHosts::gone_member() {
     for (const auto& line : base::split_list(text, '\n')) {
       const auto at = std::min(line.find(corba::gone_mark), line.find(ticked));
       if (at == std::string::npos) continue;
-      const auto begin = line.rfind(' ', at == 0 ? 0 : at - 1);
-      return line.substr(begin == std::string::npos ? 0 : begin + 1);
+      const auto begin = at == 0 ? std::string::npos : line.rfind(' ', at - 1);
+      const auto what = line.substr(begin == std::string::npos ? 0 : begin + 1);
+      constexpr std::string_view before_time = " at ";
+      const auto time = what.rfind(before_time, what.find('('));
+      const auto number = time == std::string::npos ? "" : what.substr(time + before_time.size());
+      gone.push_back({what.substr(0, what.find(':')), what, base::parse_number(number.substr(0, number.find(' ')))});
     }
   }
-  return "";
+  return gone;
 }
 
 bool RunHosts::has(const std::string& instance) const { return host_of(hosts_, instance) != hosts_.end(); }

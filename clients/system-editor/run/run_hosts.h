@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,9 +37,13 @@ class RunHosts {
 
   // An error that names the components of one that has ended, how, and when.
   Result<void> check();
-  // A member of others of whom the contexts say that it has gone, with what they say: "Alien: component of another process is gone ...".
-  // Empty: nobody. Looks only at what has been said since the last time.
-  std::string gone_member();
+  // Members of others of whom the contexts have said since the last time that they have gone.
+  struct Gone {
+    std::string instance;
+    std::string said;              // "Alien: component of another process is gone ..."
+    std::optional<double> time{};  // [s], simulated: of the tick in which it was called
+  };
+  std::vector<Gone> gone_members();
   bool has(const std::string& instance) const;
   // Its host was killed and is not there again.
   bool is_killed(const std::string& instance) const;

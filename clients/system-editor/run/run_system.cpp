@@ -150,22 +150,39 @@ class Run final : public RunningSystem {
   Result<void> check_children() {
     if (const auto alive = naming_.check(); !alive) return alive;
     if (const auto alive = simulator_.check(); !alive) return alive;
-    if (const auto alive = foreign_.check(); !alive) return at_this_time(alive.error().message);
-    if (const auto gone = hosts_.gone_member(); !gone.empty()) return tell_of_end(gone);
+    const auto ended = foreign_.ended();
+    const auto gone = hosts_.gone_members();
+    if (ended || !gone.empty()) return tell_of_end(ended, gone);
     return hosts_.check();
   }
 
-  // Somebody's member has gone. How its process has ended is said where that was the command itself, a moment later.
-  Result<void> tell_of_end(const std::string& gone) {
-    for (const auto end = Clock::now() + end_of_process; Clock::now() < end; std::this_thread::sleep_for(20ms)) {
-      if (const auto alive = foreign_.check(); !alive) return at_this_time(alive.error().message);
+  // Somebody of others has gone. Who was called then, and when, the contexts say; how its process has ended is known where that was the
+  // command itself. Both are there in a moment.
+  Result<void> tell_of_end(std::optional<ForeignProcesses::Ended> ended, std::vector<RunHosts::Gone> gone) {
+    for (const auto end = Clock::now() + end_of_process; Clock::now() < end && (!ended || gone.empty());
+         std::this_thread::sleep_for(20ms)) {
+      if (!ended) ended = foreign_.ended();
+      if (gone.empty()) gone = hosts_.gone_members();
     }
-    return at_this_time("component " + gone);
+    if (!ended) return fail("component " + gone.front().said);
+    const auto is_named = [&](const RunHosts::Gone& one) {
+      return std::ranges::find(ended->components, one.instance) != ended->components.end();
+    };
+    const auto known = std::ranges::find_if(gone, is_named);
+    const auto time = known == gone.end() ? simulator_.time() : known->time;
+    if (ended->is_open) name_those_who_are_gone(ended->components);
+    return fail(ended->text() + (time && *time > 0 ? ", at " + base::format_number(*time) + " s" : ""));
   }
 
-  Result<void> at_this_time(const std::string& problem) {
-    const auto time = simulator_.time();
-    return fail(problem + (time && *time > 0 ? ", at " + base::format_number(*time) + " s" : ""));
+  // Of several --start nobody knows whose component is whose; those that answer are not of the one that has ended.
+  void name_those_who_are_gone(std::vector<std::string>& components) {
+    if (!editor_ || components.size() < 2) return;
+    auto gone = components;
+    std::erase_if(gone, [&](const std::string& instance) {
+      const auto view = component(instance, {});
+      return view.ok();
+    });
+    if (!gone.empty()) components = std::move(gone);
   }
 
   RunSimulator::Wait wait() {
