@@ -20,8 +20,8 @@ struct PlaceInTime {
 };
 using PlacesInTime = std::map<std::string, PlaceInTime>;
 
-// One line for each, without doubles, from these log files, with the number of the component's tick: "port A:out was written by a thread that
-// no tick runs at 0.06 s, in tick 6".
+// One line for each, without doubles, from these log files, with the number of the component's tick: "port A:out was written by a thread
+// that no tick runs at 0.06 s, in tick 6".
 std::vector<std::string> chances_in(const std::vector<std::string>& logs, const PlacesInTime& places);
 
 // Services between two components of one phase: whether the call comes before, in or after the tick of the component that is called, nobody

@@ -15,6 +15,7 @@
 #include "remote.h"
 #include "run/foreign_processes.h"
 #include "run/interrupt.h"
+#include "run/lost_members.h"
 #include "run/port_values.h"
 #include "run/run_files.h"
 #include "run/run_hashes.h"
@@ -34,7 +35,6 @@ using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr auto editor_limit = 5s;
-constexpr auto end_of_process = 300ms;  // from the break of its connections until it can be waited for
 
 std::set<std::string> instances_of(const RunHosts::Members& members) {
   std::set<std::string> instances;
@@ -150,39 +150,8 @@ class Run final : public RunningSystem {
   Result<void> check_children() {
     if (const auto alive = naming_.check(); !alive) return alive;
     if (const auto alive = simulator_.check(); !alive) return alive;
-    const auto ended = foreign_.ended();
-    const auto gone = hosts_.gone_members();
-    if (ended || !gone.empty()) return tell_of_end(ended, gone);
+    if (const auto whole = lost_.check(); !whole) return whole;
     return hosts_.check();
-  }
-
-  // Somebody of others has gone. Who was called then, and when, the contexts say; how its process has ended is known where that was the
-  // command itself. Both are there in a moment.
-  Result<void> tell_of_end(std::optional<ForeignProcesses::Ended> ended, std::vector<RunHosts::Gone> gone) {
-    for (const auto end = Clock::now() + end_of_process; Clock::now() < end && (!ended || gone.empty());
-         std::this_thread::sleep_for(20ms)) {
-      if (!ended) ended = foreign_.ended();
-      if (gone.empty()) gone = hosts_.gone_members();
-    }
-    if (!ended) return fail("component " + gone.front().said);
-    const auto is_named = [&](const RunHosts::Gone& one) {
-      return std::ranges::find(ended->components, one.instance) != ended->components.end();
-    };
-    const auto known = std::ranges::find_if(gone, is_named);
-    const auto time = known == gone.end() ? simulator_.time() : known->time;
-    if (ended->is_open) name_those_who_are_gone(ended->components);
-    return fail(ended->text() + (time && *time > 0 ? ", at " + base::format_number(*time) + " s" : ""));
-  }
-
-  // Of several --start nobody knows whose component is whose; those that answer are not of the one that has ended.
-  void name_those_who_are_gone(std::vector<std::string>& components) {
-    if (!editor_ || components.size() < 2) return;
-    auto gone = components;
-    std::erase_if(gone, [&](const std::string& instance) {
-      const auto view = component(instance, {});
-      return view.ok();
-    });
-    if (!gone.empty()) components = std::move(gone);
   }
 
   RunSimulator::Wait wait() {
@@ -493,6 +462,7 @@ class Run final : public RunningSystem {
   RunSimulator simulator_;
   RunHosts hosts_;
   ForeignProcesses foreign_;
+  LostMembers lost_{foreign_, hosts_, simulator_, [this](const auto& instance) { return !editor_ || component(instance, {}).ok(); }};
   RunRecorder recorder_{place_};
   std::optional<Editor> editor_;
   std::optional<NamingTree> names_;  // while the naming service is stopped by a script

@@ -1,0 +1,31 @@
+// Whether somebody of others has gone in a run, and what there is to say of it: who, when, and how the process has ended. One thread at a
+// time.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "run/foreign_processes.h"
+#include "run/run_hosts.h"
+#include "run/run_simulator.h"
+
+namespace editor {
+
+class LostMembers {
+ public:
+  // All must live as long. `answers`: whether the component of that name does.
+  LostMembers(ForeignProcesses& foreign, RunHosts& hosts, const RunSimulator& simulator, std::function<bool(const std::string&)> answers)
+      : foreign_(foreign), hosts_(hosts), simulator_(simulator), answers_(std::move(answers)) {}
+
+  Result<void> check();
+
+ private:
+  Result<void> tell(std::optional<ForeignProcesses::Ended> ended, std::vector<RunHosts::Gone> gone);
+
+  ForeignProcesses& foreign_;
+  RunHosts& hosts_;
+  const RunSimulator& simulator_;
+  const std::function<bool(const std::string&)> answers_;
+};
+
+}  // namespace editor
