@@ -103,14 +103,7 @@ bool SimTick::passed_again(const base::Passage& passage, std::uint64_t hash) {
 // The hash of a single sample is that of the tick; those of further ones are chained to it.
 void SimTick::add(Leaf& leaf, std::uint64_t hash) {
   leaf.value_size = 0;
-  if (leaf.samples++ == 0) {
-    leaf.hash = hash;
-    return;
-  }
-  base::Hash64 both;
-  both.add(leaf.hash);
-  both.add(hash);
-  leaf.hash = both.value();
+  leaf.hash = leaf.samples++ == 0 ? hash : base::chained(leaf.hash, hash);
 }
 
 void SimTick::write_log(std::uint64_t states) {

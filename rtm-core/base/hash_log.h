@@ -55,6 +55,14 @@ inline constexpr std::size_t longest_hash_value = 256;
 // Of what is hashed, and when: logs of different versions cannot be compared. All since version 1 can be read.
 inline constexpr unsigned hash_log_version = 4;
 
+// Of several samples of a tick, in their order. That of a single one is its own.
+inline std::uint64_t chained(std::uint64_t before, std::uint64_t next) {
+  Hash64 both;
+  both.add(before);
+  both.add(next);
+  return both.value();
+}
+
 class HashLogWriter {
  public:
   // Another version: for entries that come from a log of that version.

@@ -50,7 +50,7 @@ const std::vector<Layer> layers = {
     {"clients/examples", {"rtm", "coil", "base", "stubs"}},
     {"clients/obstacle-avoidance", {"rtm", "coil", "base", "stubs"}},
     {"clients/video-player", {"rtm", "coil", "base", "stubs"}, {"SDL2", "X11", "JPEG", "PNG"}},
-    {"clients/system-editor", {"corba", "base", "stubs"}, {"omniORB", "pugixml", "JSON", "YAML", "spdlog", "ncurses"}},
+    {"clients/system-editor", {"corba", "shm", "base", "stubs"}, {"omniORB", "pugixml", "JSON", "YAML", "spdlog", "ncurses"}},
     {"clients/channels/views", {"views", "ros", "shm", "base"}, {"JSON", "JPEG"}},
     {"clients/channels", {"ros", "base", "stubs"}},
     {"clients/recorder/mcap", {"mcap", "base"}, {"zstd", "lz4", "deflate"}},

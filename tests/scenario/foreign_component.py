@@ -3,14 +3,15 @@
 behaves as those of OpenRTM-aist do towards contexts of others, and knows nothing of simulated time.
 
     foreign_component.py NAME [--names HOST:PORT] [--source] [--journal FILE] [--fault KIND@N] [--context periodic|triggered|logical|afterwards] [--clock PERIOD]
-                         [--late MS@N]
+                         [--late MS@N] [--race clock|thread]
 
 It is bound as NAME.rtc in the root of the naming service. InPort `in` and OutPort `out` carry RTC::TimedLong: with --source it counts its
 calls, else it sends on what came, plus one. --fault: in its Nth on_execute it sleeps so many ms ("300@5"; "300@*" in each), or does what the
 word says: fail, throw, die, hang, or meet: it waits until as many components have done so as the files of that name tell ("meet/PATH@5"). The
 journal gets a line "callback handle value" for each call, and "tick seconds value" for each tick of its own context, when that is one that is
 ticked; `afterwards`: one that is ticked, and calls the component on a thread of its own. --late: it answers so many ms after it
-has got its Nth sample. --clock: it subscribes that to the ClockGenerator, with its period in seconds, and unsubscribes at the end.
+has got its Nth sample. --race: what it sends depends on the clock of the machine, or it sends on a thread
+of its own, some time later. --clock: it subscribes that to the ClockGenerator, with its period in seconds, and unsubscribes at the end.
 """
 import argparse
 import os
@@ -205,7 +206,12 @@ class Component:
         else:
             return self.note("on_execute", handle)
         now = time.time()
-        self.out.send(struct.pack("<IIi", int(now), int(now % 1 * 1e9), self.value))
+        value = self.value + time.time_ns() % 1000003 if self.options.race == "clock" else self.value
+        octets = struct.pack("<IIi", int(now), int(now % 1 * 1e9), value)
+        if self.options.race == "thread":
+            threading.Timer(0.005 * (os.getpid() % 3) + 0.001, self.out.send, [octets]).start()
+        else:
+            self.out.send(octets)
         return self.note("on_execute", handle)
 
     def misbehave(self, kind):
@@ -285,6 +291,7 @@ def main():
     parser.add_argument("--journal", default="")
     parser.add_argument("--fault", default="")
     parser.add_argument("--late", default="")
+    parser.add_argument("--race", default="", choices=["", "clock", "thread"])
     parser.add_argument("--context", default="periodic", choices=["periodic", "triggered", "logical", "afterwards"])
     parser.add_argument("--clock", type=float, default=0)
     parser.add_argument("--active", action="store_true")

@@ -3,6 +3,7 @@ import json
 import os
 import re
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -262,6 +263,36 @@ def one_phase_in_a_circle():
         done = subprocess.run([f"{bin_dir}/rtse", "run", system, "--world", empty, "--module-path", lib_dir, "--duration", "1", "--strict", "--twice", *starts],
                               text=True, capture_output=True, timeout=120)
         assert done.returncode == 0 and "connected in a circle" in done.stderr, done
+
+
+def between_others():
+    # What components of others send each other is compared, too, without the stamps of their own clocks; a race there is found.
+    with Run() as r:
+        components = {"Alien": ("Foreign", {}), "Other": ("Foreign", {})}
+        system = profile(f"{r.path}/system.xml", components, [("Alien.out", "Other.in")])
+
+        def run(race, *words):
+            starts = [word for name in ("Alien", "Other") for word in ("--start", r.command("--source" if name == "Alien" else "", race if name == "Alien" else "", name=name))]
+            return subprocess.run([f"{bin_dir}/rtse", "run", system, "--world", empty, "--module-path", lib_dir, "--duration", "2", *words, *starts],
+                                  text=True, capture_output=True, timeout=120)
+
+        def is_found(race, *words):
+            for _ in range(20):
+                done = run(race, *words)
+                if done.returncode == 1:
+                    return done.stderr
+                assert done.returncode == 0, done
+            raise AssertionError(f"{race}: 20 runs, and nobody has noticed")
+
+        log = f"{r.path}/run.hashlog"
+        done = run("", "--twice", "--strict", "--hash-log", log)
+        assert done.returncode == 0 and "stamps of their own clocks" in done.stderr, done
+        octets = open(log, "rb").read()
+        assert octets.count(b"Alien:out") == 1 and octets.count(struct.pack("<IIi", 0, 0, 7)) == 1, octets[-500:]
+        err = is_found("--race clock", "--twice")
+        assert re.search(r"first difference at 0 s .*port Alien:out \(out\): data is \d+ and \d+", err), err
+        err = is_found("--race thread", "--strict")
+        assert re.search(r"port Alien:out sent between two ticks at [\d.]+ s, in tick \d+", err), err
 
 
 def wrong_start():

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 
 #include "base/chance.h"
@@ -9,6 +10,7 @@
 #include "component_view.h"
 #include "profile/rts_profile.h"
 #include "run/run_files.h"
+#include "run/run_system.h"
 
 namespace editor {
 namespace {
@@ -23,7 +25,17 @@ std::string tick_text(const std::string& what, const PlacesInTime& places) {
   return ", in tick " + std::to_string(std::llround(*time * 1e9) / place->second.period.count());
 }
 
+// As services of that kind and their users set it.
+bool is_ci_job() {
+  const char* value = std::getenv("CI");
+  return value != nullptr && *value != '\0' && std::string_view(value) != "false" && std::string_view(value) != "0";
+}
+
 }  // namespace
+
+bool tells_of_chance(const RunOptions& options) { return options.strict || is_ci_job(); }
+
+std::string with_tick(const std::string& what, const PlacesInTime& places) { return what + tick_text(what, places); }
 
 std::vector<std::string> chances_in(const std::vector<std::string>& logs, const PlacesInTime& places) {
   std::vector<std::string> found;
@@ -31,8 +43,7 @@ std::vector<std::string> chances_in(const std::vector<std::string>& logs, const 
     for (const auto& line : lines_of(log)) {
       const auto at = line.find(base::chance_mark);
       if (at == std::string::npos) continue;
-      auto what = line.substr(at + base::chance_mark.size());
-      what += tick_text(what, places);
+      auto what = with_tick(line.substr(at + base::chance_mark.size()), places);
       if (std::ranges::find(found, what) == found.end()) found.push_back(std::move(what));
     }
   }

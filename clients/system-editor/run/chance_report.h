@@ -11,7 +11,11 @@
 namespace editor {
 
 struct ComponentView;
+struct RunOptions;
 struct SavedSystem;
+
+// A run that is to be strict, or in a CI job.
+bool tells_of_chance(const RunOptions& options);
 
 // Who takes part in the lock step, by instance: when they are called.
 struct PlaceInTime {
@@ -20,8 +24,11 @@ struct PlaceInTime {
 };
 using PlacesInTime = std::map<std::string, PlaceInTime>;
 
-// One line for each, without doubles, from these log files, with the number of the component's tick: "port A:out was written by a thread
-// that no tick runs at 0.06 s, in tick 6".
+// A line that ends in a time with the number of the component's tick behind it: "port A:out was written by a thread that no tick runs at
+// 0.06 s, in tick 6".
+std::string with_tick(const std::string& what, const PlacesInTime& places);
+
+// One line for each, without doubles, from these log files.
 std::vector<std::string> chances_in(const std::vector<std::string>& logs, const PlacesInTime& places);
 
 // Services between two components of one phase: whether the call comes before, in or after the tick of the component that is called, nobody

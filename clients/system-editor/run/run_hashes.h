@@ -20,6 +20,8 @@ class RunHashes {
   // Where contexts put their parts, and the simulator's part.
   const std::string& folder() const { return folder_; }
   std::string world_part() const { return folder_ + "/world.hashlog"; }
+  // Of rtse itself: what components of others send each other.
+  std::string links_part() const { return folder_ + "/links.hashlog"; }
 
   // When everybody who writes has ended. The hash of the whole run.
   base::Result<std::uint64_t> merge() const;

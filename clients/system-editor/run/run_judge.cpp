@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -13,12 +12,6 @@
 
 namespace editor {
 namespace {
-
-// As services of that kind and their users set it.
-bool is_ci_job() {
-  const char* value = std::getenv("CI");
-  return value != nullptr && *value != '\0' && std::string_view(value) != "false" && std::string_view(value) != "0";
-}
 
 using namespace std::chrono_literals;
 
@@ -57,7 +50,7 @@ Result<void> RunJudge::look(const Editor& editor, const std::vector<std::string>
 
 // What a next run may do otherwise: a failure when the run is to be strict, a note for each in a CI job.
 void RunJudge::check_chances(const std::vector<std::string>& known, RunResult& result) const {
-  if (!options_.strict && !is_ci_job()) return;
+  if (!tells_of_chance(options_)) return;
   const auto places = simulator_.places();
   auto chances = chances_in(hosts_.logs(), places);
   chances.insert(chances.end(), known.begin(), known.end());

@@ -13,6 +13,7 @@
 #include "commands/state.h"
 #include "commands/system.h"
 #include "remote.h"
+#include "run/foreign_links.h"
 #include "run/foreign_processes.h"
 #include "run/interrupt.h"
 #include "run/lost_members.h"
@@ -63,6 +64,7 @@ class Run final : public RunningSystem {
       result_.logs = last_words();
     }
     ports_.end();
+    links_.end();
     recorder_.end();
     if (!hashes_.is_wanted()) keep_recording();
     const auto warnings = hosts_.warnings();
@@ -376,7 +378,10 @@ class Run final : public RunningSystem {
     judge_.take_values(ports_.end());
     naming_.set_running(true);  // what is judged now is found by it
     if (const auto answer = naming_.ask(); !answer) return answer;
-    return judge_.look(*editor_, foreign_.chances(), result_);
+    auto chances = foreign_.chances();
+    const auto between_others = links_.chances(simulator_.places());
+    chances.insert(chances.end(), between_others.begin(), between_others.end());
+    return judge_.look(*editor_, chances, result_);
   }
 
   Result<void> run_commands() {
@@ -398,6 +403,12 @@ class Run final : public RunningSystem {
   }
 
   Result<void> listen() {
+    if (hashes_.is_wanted() || tells_of_chance(options_)) {
+      const auto part = hashes_.is_wanted() ? hashes_.links_part() : std::string();
+      const auto silent = links_.listen(orb_, *editor_, system_, foreign_, simulator_.id(), part);
+      if (!silent) return silent.error();
+      result_.notes.insert(result_.notes.end(), silent->begin(), silent->end());
+    }
     if (const auto listening = ports_.listen(orb_, *editor_, judge_.expectations()); !listening || !options_.script) return listening;
     return ports_.listen(orb_, *editor_, options_.script->watched());
   }
@@ -468,6 +479,7 @@ class Run final : public RunningSystem {
   std::optional<NamingTree> names_;  // while the naming service is stopped by a script
   RunJudge judge_{options_, place_, system_, simulator_, hosts_};
   PortValues ports_;
+  ForeignLinks links_;
   std::optional<RunScene> scene_;  // of a script
 };
 
