@@ -13,7 +13,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds end_of_process{300};  // from the break of its connections until it can be waited for
-constexpr std::chrono::milliseconds look_period{20};
+constexpr std::chrono::milliseconds pause_between_looks{20};
 
 bool has(const std::vector<std::string>& names, const std::string& name) { return std::ranges::find(names, name) != names.end(); }
 
@@ -29,7 +29,7 @@ Result<void> LostMembers::check() {
 // a moment.
 Result<void> LostMembers::tell(std::optional<ForeignProcesses::Ended> ended, std::vector<RunHosts::Gone> gone) {
   for (const auto end = Clock::now() + end_of_process; Clock::now() < end && (!ended || gone.empty());
-       std::this_thread::sleep_for(look_period)) {
+       std::this_thread::sleep_for(pause_between_looks)) {
     if (!ended) ended = foreign_.ended();
     if (gone.empty()) gone = hosts_.gone_members();
   }
