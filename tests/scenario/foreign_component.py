@@ -3,14 +3,14 @@
 behaves as those of OpenRTM-aist do towards contexts of others, and knows nothing of simulated time.
 
     foreign_component.py NAME [--names HOST:PORT] [--source] [--journal FILE] [--fault KIND@N] [--context periodic|triggered|logical|afterwards] [--clock PERIOD]
-                         [--late MS@N] [--race clock|thread]
+                         [--late MS@N] [--race clock|thread] [--attach-late MS]
 
 It is bound as NAME.rtc in the root of the naming service. InPort `in` and OutPort `out` carry RTC::TimedLong: with --source it counts its
 calls, else it sends on what came, plus one. --fault: in its Nth on_execute it sleeps so many ms ("300@5"; "300@*" in each), or does what the
 word says: fail, throw, die, hang, or meet: it waits until as many components have done so as the files of that name tell ("meet/PATH@5"). The
 journal gets a line "callback handle value" for each call, and "tick seconds value" for each tick of its own context, when that is one that is
 ticked; `afterwards`: one that is ticked, and calls the component on a thread of its own. --late: it answers so many ms after it
-has got its Nth sample. --race: what it sends depends on the clock of the machine, or it sends on a thread
+has got its Nth sample; --attach-late: so many after it was asked to join a context. --race: what it sends depends on the clock of the machine, or it sends on a thread
 of its own, some time later. --clock: it subscribes that to the ClockGenerator, with its period in seconds, and unsubscribes at the end.
 """
 import argparse
@@ -230,6 +230,7 @@ class Component:
 
     # What contexts and tools ask.
     def attach_context(self, context):
+        time.sleep(self.options.attach_late / 1000)
         self.others.append(context)
         return first_other_handle + len(self.others) - 1
 
@@ -291,6 +292,7 @@ def main():
     parser.add_argument("--journal", default="")
     parser.add_argument("--fault", default="")
     parser.add_argument("--late", default="")
+    parser.add_argument("--attach-late", type=float, default=0)
     parser.add_argument("--race", default="", choices=["", "clock", "thread"])
     parser.add_argument("--context", default="periodic", choices=["periodic", "triggered", "logical", "afterwards"])
     parser.add_argument("--clock", type=float, default=0)

@@ -225,10 +225,10 @@ def faulty():
 
 
 def late_receiver():
-    # Who takes a sample only after longer than any usual time-out of a call is waited for, and gets the next ones.
+    # Who takes a sample, or joins, only after longer than any usual time-out of a call is waited for, and gets the next ones.
     with Run() as r:
         seen = []
-        for late in ("", "--late 11000@3"):
+        for late in ("", "--late 11000@3", "--attach-late 11000"):
             code, err, read, calls = r.run(start=r.start(late), duration="0.5")
             assert code == 0, (code, err)
             seen.append((read, calls))
@@ -309,11 +309,13 @@ def wrong_start():
                 out.write(f"processes:\n  - {{command: '{command}', wait: 0.5, components: [Alien]}}\n")
             assert "process of Alien" in refused(r.system(), why, "--run-file", file) or "sleep" in command
         refused(r.system(Alien=("Relay", {})), "there is a module for each component", "--start", "sleep 100")
+        refused(r.system(), 'folder "/nowhere" (--start-folder): there is no such folder', "--start", "sleep 100", "--start-folder", "/nowhere")
         refused(r.system(), "only its exec_cxt.sim_time.phase", "--start", "sleep 100", "--property", "Alien:conf.default.x=1")
         system = r.system()
         for text, why in (("processes: []", "needs a list"), ("process: 1", "has no key"), ("processes: [{command: x, components: [Nobody]}]", "no component Nobody"),
                           ("processes: [{command: x, components: [{name: Alien, phase: 99}]}]", "phase must be"), ("processes: [{command: x, components: [Alien, Alien]}]", "twice"),
                           ("processes: [{command: x, wait: nan, components: [Alien]}]", "wait must be"), ("processes: [{command: x, folder: nowhere, components: [Alien]}]", "no such folder"),
+                          ("processes: [{command: x, command: y, components: [Alien]}]", 'key "command" is there twice'),
                           ("processes: [{command: x, components: [{name: Alien, join: up}]}]", "join must be"), ("][", "run.yaml:1")):
             with open(file, "w") as out:
                 out.write(text)

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "command.h"
 #include "commands/commands.h"
@@ -23,7 +24,9 @@ bool is_recording(const std::string& file) {
 void diff(Editor& editor, const std::string& a, const std::string& b) {
   if (is_recording(a) && is_recording(b)) {
     const auto program = own_program("rtse-recorder");
-    execl(program.c_str(), program.c_str(), "recording", "compare", a.c_str(), b.c_str(), nullptr);
+    std::vector<const char*> words = {program.c_str(), "recording", "compare", a.c_str(), b.c_str(), nullptr};
+    if (editor.json()) words.insert(words.begin() + 1, "--json");
+    execv(program.c_str(), const_cast<char* const*>(words.data()));  // it changes none of them
     return editor.fail({"program " + program + ": cannot be started; expected it beside rtse"});
   }
   const auto comparison = base::compare_hash_logs(a, b);

@@ -163,7 +163,7 @@ void join(Editor& editor, const JoinOptions& options) {
     return editor.fail(there.error());
   }
   for (const auto& one : all) {
-    if (const auto joined = join_time(editor, one.path, proxy_name(one.member.instance) + ".rtc", one.member.how); !joined) {
+    if (const auto joined = join_time(editor, one.path, proxy_name(one.member.instance) + ".rtc", one.member.how, start_limit); !joined) {
       end_proxy_of(editor, one);
       editor.fail(joined.error());
     }

@@ -4,6 +4,7 @@
 
 #include "base/text.h"
 #include "profile/rts_profile.h"
+#include "yaml_keys.h"
 
 namespace editor {
 namespace {
@@ -277,6 +278,7 @@ Result<SavedSystem> parse_yaml(const std::string& content, const std::string& fi
   YAML::Node root;
   try {
     root = YAML::Load(content);
+    expect_unique_keys(root);
     if (!root.IsMap() || !root["rtsProfile"]) return Error{file + ": holds no rtsProfile"};
     const auto profile = root["rtsProfile"];
     SavedSystem system;

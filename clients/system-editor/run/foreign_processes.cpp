@@ -82,6 +82,8 @@ Result<void> ForeignProcesses::read(const RunOptions& options, const SavedSystem
         return Error{"run file " + options.run_file + ": the system has no component " + component.instance};
     }
   }
+  if (!options.start_folder.empty() && !std::filesystem::is_directory(options.start_folder))
+    return Error{"folder " + base::in_quotes(options.start_folder) + " (--start-folder): there is no such folder"};
   for (const auto& command : options.start) processes_.push_back({.command = command, .folder = options.start_folder});
   for (const auto& component : system.components) {
     const auto* named = find(processes_, component.instance);
@@ -196,11 +198,11 @@ std::vector<std::string> ForeignProcesses::creations(const std::string& server_i
   return all;
 }
 
-Result<void> ForeignProcesses::join(const Editor& editor, SavedSystem& system) {
+Result<void> ForeignProcesses::join(const Editor& editor, SavedSystem& system, std::chrono::milliseconds patience) {
   for (const auto& member : members_) {
     if (member.how == TimeMember::How::clock) continue;
     const auto path = member.instance + ".rtc";
-    if (const auto joined = join_time(editor, path, proxy_name(member.instance) + ".rtc", member.how); !joined) return joined;
+    if (const auto joined = join_time(editor, path, proxy_name(member.instance) + ".rtc", member.how, patience); !joined) return joined;
     const auto view = editor.component(path, {.contexts = true});
     if (!view) return view.error();
     if (member.how == TimeMember::How::tick && ticks_on_its_own(*view))

@@ -39,8 +39,9 @@ class ForeignProcesses {
   // What the host of their contexts is made of: a proxy for each that needs one, and OpenHRP's clock.
   std::vector<std::string> creations(const std::string& server_id) const;
   std::vector<std::string> proxies() const;
-  // Brings them into simulated time, once they and their proxies are there. In `system` their states are then those in these contexts.
-  Result<void> join(const Editor& editor, SavedSystem& system);
+  // Brings them into simulated time, once they and their proxies are there; each may take so long for it. In `system` their states are then
+  // those in these contexts.
+  Result<void> join(const Editor& editor, SavedSystem& system, std::chrono::milliseconds patience);
   struct Ended {
     std::vector<std::string> components;  // at least one of them is of this process, if `is_open`
     bool is_open = false;                 // nobody has said whose components they are

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "base/text.h"
+#include "yaml_keys.h"
 
 namespace editor {
 namespace {
@@ -102,6 +103,7 @@ ForeignProcess process_of(const YAML::Node& node, const std::filesystem::path& b
 
 std::vector<ForeignProcess> all_of(const std::string& text, const std::filesystem::path& beside) {
   const auto root = YAML::Load(text);
+  expect_unique_keys(root);
   expect_map(root, "run file", {"processes"});
   const auto list = root["processes"];
   if (!list || !list.IsSequence() || list.size() == 0) throw FailureAt{"run file needs a list of processes", root.Mark()};

@@ -46,7 +46,8 @@ class RunSimulator {
   Result<std::string> simctl(const std::vector<std::string>& words, std::chrono::milliseconds limit) const;
   // An empty object when it does not answer.
   nlohmann::json statistics(std::chrono::milliseconds limit) const;
-  std::optional<double> time() const;  // [s], simulated
+  std::optional<double> time() const;              // [s], simulated
+  double last_time() const { return last_time_; }  // as it was when it was asked last
   std::set<std::string> participants() const;
   PlacesInTime places() const;
   std::vector<std::string> models() const;

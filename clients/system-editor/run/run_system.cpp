@@ -121,6 +121,7 @@ class Run final : public RunningSystem {
 
   using Seconds = std::chrono::duration<double>;
   Seconds start_limit() const { return Seconds(options_.start_timeout_s); }
+  std::chrono::milliseconds start_patience() const { return std::chrono::duration_cast<std::chrono::milliseconds>(start_limit()); }
 
   // A problem that has a reason: what needs the naming service cannot be found without it.
   std::string with_naming(const std::string& problem) {
@@ -264,10 +265,10 @@ class Run final : public RunningSystem {
     editor_.emplace(orb_, naming_.address(), false, std::chrono::milliseconds(editor_limit));
     load(*editor_, {.file = file});
     if (!editor_->failed() && !foreign_.empty()) {
-      if (const auto joined = foreign_.join(*editor_, system_); !joined) return joined;
+      if (const auto joined = foreign_.join(*editor_, system_, start_patience()); !joined) return joined;
       if (const auto written = write_system(system_, file); !written) return written;
     }
-    wait_for_states(std::chrono::duration_cast<std::chrono::milliseconds>(start_limit()));
+    wait_for_states(start_patience());
     if (!editor_->failed()) start(*editor_, file, false);
     if (!editor_->failed()) {
       if (const auto joined = wait_for_participants(); !joined) return joined;
@@ -378,9 +379,8 @@ class Run final : public RunningSystem {
     judge_.take_values(ports_.end());
     naming_.set_running(true);  // what is judged now is found by it
     if (const auto answer = naming_.ask(); !answer) return answer;
-    auto chances = foreign_.chances();
-    const auto between_others = links_.chances(simulator_.places());
-    chances.insert(chances.end(), between_others.begin(), between_others.end());
+    auto chances = links_.chances(simulator_.places());
+    chances.insert(chances.end(), foreign_.chances().begin(), foreign_.chances().end());
     return judge_.look(*editor_, chances, result_);
   }
 
@@ -436,7 +436,7 @@ class Run final : public RunningSystem {
       if (const auto stepped = simulator_.make_steps(
               steps, [this] { return check_children(); }, show);
           !stepped) {
-        result_.simulated_s = simulator_.time().value_or(result_.simulated_s);
+        result_.simulated_s = simulator_.time().value_or(simulator_.last_time());
         return stepped;
       }
       left -= steps;

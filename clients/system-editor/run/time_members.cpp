@@ -140,7 +140,8 @@ bool ticks_on_its_own(const ComponentView& component) {
   return own != component.contexts.end() && property(own->properties, "type") == "ExtTrigExecutionContext";
 }
 
-Result<void> join_time(const Editor& editor, const std::string& path, const std::string& proxy, TimeMember::How how) {
+Result<void> join_time(const Editor& editor, const std::string& path, const std::string& proxy, TimeMember::How how,
+                       std::chrono::milliseconds patience) {
   const auto component = editor.component(path, {.contexts = true});
   if (!component) return component.error();
   if (simulated_context(*component)) return Error{"component " + component->path + ": takes part in simulated time already (rtse leave)"};
@@ -152,8 +153,7 @@ Result<void> join_time(const Editor& editor, const std::string& path, const std:
   if (!was_active) return was_active.error();
   RTC::ReturnCode_t code = RTC::RTC_ERROR;
   const auto what = "component " + component->path + ": joining simulated time";
-  constexpr std::chrono::seconds patience{20};  // the context asks the component in turn
-  const CallLimit limited(patience);
+  const CallLimit limited(patience);  // the context asks the component in turn
   const auto called = remote(what, [&] { code = host->contexts.front().object->add_component(component->object); });
   if (!called) return called.error();
   if (const auto added = check(what, code, "it does not answer attach_context, or has refused; the log of its process may say why"); !added)

@@ -2,6 +2,7 @@
 // SimTimeContext it becomes a member of. What it asks of such a component stands in docs/testing-a-robot-system.md. One thread at a time.
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,8 +59,9 @@ bool ticks_on_its_own(const ComponentView& component);
 
 // Brings a component into the context of its proxy. Where it was active in contexts of its own it is deactivated there and activated here;
 // these contexts run on. With `tick` its own first context is ticked instead, and its state there stays. A component that takes part
-// already, or is in its error state, is refused.
-Result<void> join_time(const Editor& editor, const std::string& component, const std::string& proxy, TimeMember::How how);
+// already, or is in its error state, is refused. `patience`: with its attach_context.
+Result<void> join_time(const Editor& editor, const std::string& component, const std::string& proxy, TimeMember::How how,
+                       std::chrono::milliseconds patience);
 // Undoes it: active here becomes active in its own first context. The proxy ends.
 Result<void> leave_time(const Editor& editor, const std::string& component);
 

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/text.h"
+#include "yaml_keys.h"
 
 namespace editor {
 namespace {
@@ -139,6 +140,7 @@ class YamlReader {
 
   Result<NewComponent> read() {
     const auto root = YAML::LoadFile(file_);
+    expect_unique_keys(root);
     only(root, {"name", "description", "version", "vendor", "category", "rate", "in_ports", "out_ports", "parameters", "services",
                 "idl_files", "actions"});
     NewComponent component;

@@ -1,0 +1,11 @@
+// What YAML forbids and yaml-cpp lets pass. Any thread.
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+namespace editor {
+
+// Throws a YAML::Exception at a key that a map has twice; of two values the second would be lost without a word.
+void expect_unique_keys(const YAML::Node& root);
+
+}  // namespace editor
