@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "base/chance.h"
@@ -12,6 +13,7 @@
 #include "corba/cdr.h"
 #include "corba/connector_keys.h"
 #include "corba/local_connections.h"
+#include "corba/member_watch.h"
 #include "corba/object_names.h"
 #include "corba/out_engine.h"
 #include "corba/payload.h"
@@ -182,7 +184,11 @@ rt::PortStatus InConnection::keep(rt::Sample sample, std::uint64_t moment, std::
 rt::PortStatus InConnection::fetch(bool only_new) {
   if (!fetcher_) return rt::PortStatus::ok;
   rt::Sample sample;
+  const auto watch = base::tick_in_lock_step() ? port_watch() : nullptr;
+  std::optional<MemberWatch::Call> call;
+  if (watch) call.emplace(*watch, plan_.port, "get", &plan_.name);
   const rt::PortStatus status = fetcher_->fetch(sample);
+  call.reset();
   switch (status) {
     case rt::PortStatus::ok:
       break;

@@ -7,18 +7,47 @@
 
 namespace corba {
 
+namespace {
+
+struct PortWatch {
+  std::shared_ptr<MemberWatch> watch;
+  bool is_over = false;
+};
+
+base::Guarded<PortWatch, base::Rank::registry>& watch_of_ports() {
+  static auto& watch = *new base::Guarded<PortWatch, base::Rank::registry>;  // never destroyed: calls may end at the very end
+  return watch;
+}
+
+}  // namespace
+
+std::shared_ptr<MemberWatch> port_watch() {
+  auto ports = watch_of_ports().lock();
+  if (!ports->watch && !ports->is_over) ports->watch = std::make_shared<MemberWatch>();
+  return ports->watch;
+}
+
+// Whoever calls still holds it.
+void end_port_watch() {
+  std::shared_ptr<MemberWatch> last;
+  auto ports = watch_of_ports().lock();
+  ports->is_over = true;
+  last.swap(ports->watch);
+}
+
 MemberWatch::~MemberWatch() {
   shared_.lock()->stopping = true;
   changed_.notify_all();
   thread_.join();
 }
 
-MemberWatch::Call::Call(MemberWatch& watch, const std::string& member, rt::Action action) : watch_(watch) {
+MemberWatch::Call::Call(MemberWatch& watch, const std::string& who, std::string_view operation, const std::string* connection)
+    : watch_(watch) {
   bool sleeps = false;
   {
     auto data = watch_.shared_.lock();
     number_ = ++data->last;
-    data->running.push_back({number_, &member, action, Clock::now(), false});
+    data->running.push_back({number_, &who, operation, connection, Clock::now(), false});
     sleeps = std::exchange(data->sleeps, false);
   }
   if (sleeps) watch_.changed_.notify_all();
@@ -34,11 +63,15 @@ MemberWatch::Call::~Call() {
   }
   if (!call.is_told) return;
   const std::chrono::duration<double> took = Clock::now() - call.since;
-  base::log(base::Level::warn, *call.member, "has returned from {} after {:.1f} s", rt::callback_of(call.action), took.count());
+  base::log(base::Level::warn, *call.who, "{} has returned from {} after {:.1f} s", text_of(call), call.operation, took.count());
+}
+
+std::string MemberWatch::text_of(const Running& call) {
+  return call.connection ? std::string(port_waits_mark.substr(2)) + *call.connection : "component of another process";
 }
 
 bool MemberWatch::look(std::uint64_t& seen) {
-  std::vector<std::pair<std::string, rt::Action>> long_ones;  // copies: who is called may have gone when it is told
+  std::vector<std::pair<std::string, std::string>> long_ones;  // copies: who is called may have gone when it is told
   {
     auto data = shared_.lock();
     // While calls come and go nobody has to wake this thread.
@@ -53,12 +86,10 @@ bool MemberWatch::look(std::uint64_t& seen) {
     for (Running& call : data->running) {
       if (call.is_told || Clock::now() - call.since < long_time) continue;
       call.is_told = true;
-      long_ones.emplace_back(*call.member, call.action);
+      long_ones.emplace_back(*call.who, text_of(call) + " has not returned from " + std::string(call.operation));
     }
   }
-  for (const auto& [member, action] : long_ones)
-    base::log(base::Level::warn, member, "component of another process has not returned from {} for {} s; it is waited for",
-              rt::callback_of(action), long_time.count());
+  for (const auto& [who, what] : long_ones) base::log(base::Level::warn, who, "{} for {} s; it is waited for", what, long_time.count());
   return true;
 }
 

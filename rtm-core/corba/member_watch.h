@@ -1,16 +1,18 @@
-// Tells of members of other processes that take long: the log names each call that has lasted a second, once, and how long it took in the
-// end. Nothing depends on it. One per execution context that has such members; any thread. Its own thread sleeps while nobody is called.
+// Tells of other processes that take long, where time waits for them: the log names each call that has lasted a second, once, and how long
+// it took in the end. Nothing depends on it. One per execution context that has members of other processes, and one for the ports of this
+// process; any thread. Its own thread sleeps while nobody is called.
 #pragma once
 
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
 #include "base/guarded.h"
-#include "core/lifecycle.h"
 
 namespace corba {
 
@@ -23,10 +25,11 @@ class MemberWatch {
   MemberWatch(const MemberWatch&) = delete;
   MemberWatch& operator=(const MemberWatch&) = delete;
 
-  // A call that runs as long as this lives. The name must live as long.
+  // A call that runs as long as this lives. All must live as long. `who`: the member that is called, or the port that calls; then
+  // `connection` is the one whose other end is called.
   class Call {
    public:
-    Call(MemberWatch& watch, const std::string& member, rt::Action action);
+    Call(MemberWatch& watch, const std::string& who, std::string_view operation, const std::string* connection = nullptr);
     ~Call();
     Call(const Call&) = delete;
     Call& operator=(const Call&) = delete;
@@ -40,8 +43,9 @@ class MemberWatch {
   using Clock = std::chrono::steady_clock;
   struct Running {
     std::uint64_t number;
-    const std::string* member;
-    rt::Action action;
+    const std::string* who;
+    std::string_view operation;
+    const std::string* connection;
     Clock::time_point since;
     bool is_told;
   };
@@ -53,10 +57,18 @@ class MemberWatch {
   };
   void run();
   bool look(std::uint64_t& seen);
+  static std::string text_of(const Running& call);
 
   base::Guarded<Data, base::Rank::connector> shared_;
   std::condition_variable changed_;
   std::thread thread_;  // last: it works with what is above
 };
+
+// What the log says of a port whose peer takes long; its name stands before it, the connection's behind it.
+inline constexpr std::string_view port_waits_mark = ": the other end of connection ";
+
+// Of the ports of this process: made with the first call, gone with the ORB; nullptr after that.
+std::shared_ptr<MemberWatch> port_watch();
+void end_port_watch();
 
 }  // namespace corba

@@ -21,6 +21,7 @@
 #include "corba/call_timeout.h"
 #include "corba/call_watch.h"
 #include "corba/farewell.h"
+#include "corba/member_watch.h"
 #include "corba/peer_watch.h"
 #include "corba/sample_room.h"
 
@@ -340,6 +341,7 @@ Orb::Orb() = default;
 
 Orb::~Orb() {
   watch_.reset();
+  end_port_watch();
   end_farewells();
   try {
     if (!CORBA::is_nil(orb_)) orb_->destroy();

@@ -10,6 +10,7 @@
 #include "base/tick.h"
 #include "corba/connector_keys.h"
 #include "corba/local_connections.h"
+#include "corba/member_watch.h"
 #include "corba/nv_list.h"
 #include "core/fault.h"
 
@@ -137,13 +138,21 @@ struct OutConnection::Line {
     return sample;
   }
 
+  // While time waits for it, whoever waits for the peer is told of.
+  rt::PortStatus send_watched(Payload& payload) {
+    const auto watch = !is_direct() && base::tick_in_lock_step() ? port_watch() : nullptr;
+    if (!watch) return sender->send(payload);
+    const MemberWatch::Call call(*watch, plan.port, "put", &plan.name);
+    return sender->send(payload);
+  }
+
   rt::PortStatus send(Payload& payload, bool is_flush) {
     Changed changed(payload);
     if (plan.settings.stamp == rt::StampPolicy::on_send || (is_flush && plan.settings.stamp == rt::StampPolicy::on_write)) {
       changed.stamp(plan.caller_time());
     }
     tell(DataEvent::send, changed);
-    const rt::PortStatus status = sender->send(changed.now());
+    const rt::PortStatus status = send_watched(changed.now());
     switch (status) {
       case rt::PortStatus::ok:
         tell(DataEvent::received, changed);

@@ -87,7 +87,7 @@ bool RemoteParticipant::prepare(rt::Action action) {
 
 rt::ReturnCode RemoteParticipant::call(rt::Action action) {
   if (!prepare(action)) return rt::ReturnCode::error;
-  const MemberWatch::Call watched(*watch_, name_, action);
+  const MemberWatch::Call watched(*watch_, name_, rt::callback_of(action));
   try {
     const auto code = from_wire(call_action(action, *component_, CORBA::is_nil(data_flow_) ? nullptr : data_flow_.in(), handle_));
     state_.lock()->is_lost = false;

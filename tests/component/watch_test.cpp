@@ -62,7 +62,7 @@ TEST(MemberWatch, a_call_that_lasts_costs_no_processor) {
   const std::string name = "Arm0";
   const auto before = processor_time();
   {
-    const corba::MemberWatch::Call call(watch, name, rt::Action::execute);
+    const corba::MemberWatch::Call call(watch, name, "onExecute");
     std::this_thread::sleep_for(800ms);
   }
   EXPECT_LT(processor_time() - before, 30ms);

@@ -203,6 +203,9 @@ def faulty():
                 assert "on_aborting 1000" in calls and calls.count("on_error 1000") > 5, (fault, calls)
             if fault == "die@3":
                 assert "killed by signal 9" in err, err
+        # Who hangs while it takes a sample is named beside the one who waits for it.
+        code, err, read, calls = r.run("--hang-timeout", "3", start=r.start("--late 100000@3"))
+        assert code == 1 and "From: has not ended its tick at 0.2 s" in err and "From.out waits for Alien.in" in err, (code, err)
         # It is told at once, by its own name and the time, where the command lives on.
         for options in ("--fault die@3", "--fault die@3 --context triggered --active"):
             system = r.system()

@@ -44,6 +44,8 @@ class RunHosts {
     std::optional<double> time{};  // [s], simulated: of the tick in which it was called
   };
   std::vector<Gone> gone_members();
+  // Those of `system` for whom ports of ours wait: "; From.out waits for Alien.in". Empty: nobody.
+  std::string who_is_waited_for(const SavedSystem& system) const;
   bool has(const std::string& instance) const;
   // Its host was killed and is not there again.
   bool is_killed(const std::string& instance) const;

@@ -437,7 +437,7 @@ class Run final : public RunningSystem {
               steps, [this] { return check_children(); }, show);
           !stepped) {
         result_.simulated_s = simulator_.time().value_or(simulator_.last_time());
-        return stepped;
+        return fail(stepped.error().message + hosts_.who_is_waited_for(system_));
       }
       left -= steps;
       done += steps;
