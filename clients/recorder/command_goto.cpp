@@ -16,6 +16,7 @@
 #include "command.h"
 #include "recorded_run.h"
 #include "recorder_commands.h"
+#include "ring.h"
 #include "run/child_process.h"
 #include "run/interrupt.h"
 #include "sample_text.h"
@@ -243,7 +244,7 @@ void add_goto(base::Command& app, editor::Chosen& chosen) {
   auto options = std::make_shared<GotoOptions>();
   command->add_option("RUN", options->what, "A recording of rtse run --record, or an RTSProfile with --world")
       ->required()
-      ->check(base::existing_file());
+      ->check(check_recording);
   auto* time = command->add_option("TIME", options->time_s, "Simulated seconds")->seconds_between(0.0, 1e7);
   command->add_option("--until", options->time_s, "The same")->seconds_between(0.0, 1e7)->excludes(time);
   command->add_option(

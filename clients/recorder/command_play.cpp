@@ -14,6 +14,7 @@
 #include "idl_text.h"
 #include "mcap/mcap.h"
 #include "recorder_commands.h"
+#include "ring.h"
 #include "run/interrupt.h"
 #include "run_clock.h"
 #include "sample_text.h"
@@ -209,7 +210,7 @@ bool play_once(Editor& editor, mcap::Reader& reader, const PlayOptions& options,
 }
 
 void play(Editor& editor, const PlayOptions& options) {
-  auto reader = mcap::Reader::open(options.file);
+  auto reader = open_recording(options.file);
   if (!reader) return editor.fail(reader.error());
   if (reader->damage()) std::cerr << "rtse: " << *reader->damage() << '\n';
   Routes routes;

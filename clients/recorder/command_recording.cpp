@@ -1,5 +1,6 @@
 // recording info, ls, cat, export, compare, repair.
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <map>
@@ -15,6 +16,7 @@
 #include "mcap/mcap.h"
 #include "output.h"
 #include "recorder_commands.h"
+#include "ring.h"
 #include "sample_export.h"
 #include "sample_text.h"
 #include "selection.h"
@@ -162,7 +164,29 @@ void cat(Editor& editor, const Selection& selection) {
 
 // ---- repair ----
 
+// Whether there are pieces of a ring, and no file that was made of them later.
+bool has_newer_pieces(const std::string& file, const std::vector<RingPiece>& pieces) {
+  std::error_code error;  // of a file that is not there: its time is the earliest
+  const auto time = std::filesystem::last_write_time(file, error);
+  return std::ranges::any_of(pieces, [&](const RingPiece& piece) {
+    std::error_code gone;
+    return error || std::filesystem::last_write_time(piece.path, gone) > time;
+  });
+}
+
+// The pieces of a recorder that was killed.
+void put_together(Editor& editor, const std::vector<RingPiece>& pieces, const std::string& file, const std::string& output) {
+  const auto done = join_ring(pieces, output.empty() ? file : output);
+  if (!done) return editor.fail(done.error());
+  if (output.empty()) remove_pieces(pieces);
+  if (editor.json())
+    return editor.print(Json{{"samples", done->samples}, {"pieces", pieces.size()}, {"damage", done->damage.value_or("")}});
+  std::cout << done->samples << " samples kept of " << names_of(pieces) << '\n';
+  if (done->damage) std::cout << *done->damage << '\n';
+}
+
 void repair(Editor& editor, const std::string& file, const std::string& output) {
+  if (const auto pieces = ring_pieces(file); has_newer_pieces(file, pieces)) return put_together(editor, pieces, file, output);
   const auto done = mcap::repair(file, output.empty() ? file : output);
   if (!done) return editor.fail(done.error());
   if (editor.json())
@@ -228,7 +252,8 @@ void add_recording(base::Command& app, editor::Chosen& chosen) {
     compare(editor, *compared);
   });
 
-  auto* repair_command = recording->add_subcommand("repair", "Give a file that was cut off its summary again");
+  auto* repair_command =
+      recording->add_subcommand("repair", "Give a file that was cut off its summary again, or put a ring's pieces together");
   auto file = std::make_shared<std::string>();
   auto output = std::make_shared<std::string>();
   repair_command->add_option("FILE", *file, "The recording")->required();

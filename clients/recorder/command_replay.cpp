@@ -12,6 +12,7 @@
 #include "recorded_run.h"
 #include "recorder_commands.h"
 #include "replay.h"
+#include "ring.h"
 #include "run/interrupt.h"
 
 namespace recorder {
@@ -64,7 +65,7 @@ base::Result<std::vector<ReplayLink>> links_of(const editor::SavedSystem& system
 
 // What the recording cannot give the component is said, and left out.
 base::Result<std::vector<ReplayLink>> possible(std::vector<ReplayLink> links, const editor::SavedSystem& system, const Options& options) {
-  auto reader = mcap::Reader::open(options.file);
+  auto reader = open_recording(options.file);
   if (!reader) return reader.error();
   std::erase_if(links, [&](const ReplayLink& link) {
     if (std::ranges::any_of(reader->channels(), [&](const auto& one) { return one.second.topic == link.topic; })) return false;
@@ -108,7 +109,7 @@ base::Result<void> configure(editor::SavedComponent& component, const std::vecto
 
 // That in which it ran; the profile may say something else.
 base::Result<void> take_rate(editor::SavedComponent& component, const std::string& file) {
-  auto reader = mcap::Reader::open(file);
+  auto reader = open_recording(file);
   if (!reader) return reader.error();
   for (const auto& [id, channel] : reader->channels()) {
     const auto period = channel.metadata.find("period_ns");

@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "read_ahead.h"
 #include "remote.h"
+#include "ring.h"
 #include "shm/lockstep.h"
 #include "tap.h"
 
@@ -151,7 +152,7 @@ base::Result<void> Player::connect() {
     outputs_.push_back(std::move(output));
   }
   for (const auto& [channel, input] : by_channel_) wanted.channels.push_back(channel);
-  auto reader = mcap::Reader::open(options_.file);
+  auto reader = open_recording(options_.file);
   if (!reader) return reader.error();
   ahead_.emplace(std::move(*reader), std::move(wanted));
   return {};
@@ -382,7 +383,7 @@ base::Result<ReplayResult> Player::run() {
 }  // namespace
 
 base::Result<ReplayResult> replay(CORBA::ORB_ptr orb, editor::RunningSystem& system, const ReplayOptions& options) {
-  auto recording = mcap::Reader::open(options.file);
+  auto recording = open_recording(options.file);
   if (!recording) return recording.error();
   return Player(orb, system, options, std::move(*recording)).run();
 }

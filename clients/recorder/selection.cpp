@@ -7,6 +7,7 @@
 
 #include "base/descriptors.h"
 #include "base/text.h"
+#include "ring.h"
 
 namespace recorder {
 
@@ -40,7 +41,7 @@ base::Result<mcap::Query> query_of(const mcap::Reader& reader, const Selection& 
 }
 
 std::optional<mcap::Reader> open(editor::Editor& editor, const std::string& file) {
-  auto reader = mcap::Reader::open(file);
+  auto reader = open_recording(file);
   if (!reader) {
     editor.fail(reader.error());
     return std::nullopt;
