@@ -189,9 +189,25 @@ void repair(Editor& editor, const std::string& file, const std::string& output) 
   if (const auto pieces = ring_pieces(file); has_newer_pieces(file, pieces)) return put_together(editor, pieces, file, output);
   const auto done = mcap::repair(file, output.empty() ? file : output);
   if (!done) return editor.fail(done.error());
-  if (editor.json())
-    return editor.print(Json{{"samples", done->messages}, {"octets_lost", done->octets_lost}, {"damage", done->damage.value_or("")}});
-  std::cout << done->messages << " samples kept, " << done->octets_lost << " octets lost\n";
+  if (done->broken_chunks > 0) editor.set_failed();
+  if (editor.json()) {
+    Json json = {{"samples", done->messages},
+                 {"octets_lost", done->octets_lost},
+                 {"broken_chunks", done->broken_chunks},
+                 {"samples_lost", nullptr},
+                 {"damage", done->damage.value_or("")}};
+    if (done->messages_lost) json["samples_lost"] = *done->messages_lost;
+    return editor.print(json);
+  }
+  std::cout << done->messages << " samples kept, " << done->octets_lost << " octets lost";
+  if (done->broken_chunks > 0) {
+    std::cout << ", " << done->broken_chunks << (done->broken_chunks == 1 ? " broken chunk with " : " broken chunks with ");
+    if (done->messages_lost)
+      std::cout << *done->messages_lost << " samples";
+    else
+      std::cout << "samples that nobody counted";
+  }
+  std::cout << '\n';
   if (done->damage) std::cout << *done->damage << '\n';
 }
 

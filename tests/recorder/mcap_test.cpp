@@ -203,6 +203,30 @@ TEST_P(Single, a_flipped_octet_in_a_chunk_costs_that_chunk_alone_and_is_told) {
   EXPECT_GT(lines.size(), 90U);
 }
 
+TEST_P(Single, a_repair_says_what_a_broken_chunk_costs_and_keeps_the_others) {
+  record(50, {.chunk_size = 200});
+  std::string broken = octets();
+  const auto place = broken.find("zstd");  // of the first chunk, which alone describes the channels
+  broken[place + 24] = static_cast<char>(broken[place + 24] ^ 0x55);
+  put(broken);
+  std::uint64_t length = 0;
+  const auto start = place - 4 - 4 - 3 * 8 - 9;
+  std::memcpy(&length, broken.data() + start + 1, sizeof length);
+
+  const auto repaired = repair(path_, path_);
+  ASSERT_TRUE(repaired) << repaired.error().message;
+  EXPECT_EQ(repaired->broken_chunks, 1U);
+  EXPECT_EQ(repaired->octets_lost, 9 + length);
+  ASSERT_TRUE(repaired->messages_lost.has_value());
+  EXPECT_GT(*repaired->messages_lost, 0U);
+  EXPECT_EQ(repaired->messages + *repaired->messages_lost, 100U);
+  EXPECT_NE(repaired->damage->find("the chunk"), std::string::npos) << *repaired->damage;
+  const auto lines = read();
+  EXPECT_EQ(lines.size(), repaired->messages) << lines.front();
+  EXPECT_EQ(lines.back(), "/log 49500000 ");
+  EXPECT_TRUE(Reader::open(path_)->damage().has_value()) << "its octets stay, and are told";
+}
+
 TEST_P(Single, a_chunk_bomb_is_refused_without_memory) {
   // Zeros compress a thousand times; the length that the chunk announces is a lie.
   auto writer = Writer::create(path_, {.compression = Compression::zstd, .chunk_size = 64 << 20});

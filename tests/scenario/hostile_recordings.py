@@ -3,6 +3,7 @@
 import ctypes
 import json
 import os
+import re
 import resource
 import stat
 import struct
@@ -123,6 +124,17 @@ def targets():
     refused("record", "--views", "-s", "9999", "-o", file, says="no simulation")
     assert open(file, "rb").read() == before
     refused("recording", "cat", file, "--from", "5", "--to", "1", says="expected a time behind --from 5")
+
+
+# A flipped octet costs a chunk, which is said.
+def flipped():
+    file = recording("flipped.mcap", [("/a", "json", "", "", "")], [(1, b'{"v":"%d"}' % n) for n in range(100)])
+    octets = bytearray(open(file, "rb").read())
+    octets[octets.index(b"zstd") + 20] ^= 0x55
+    with open(file, "wb") as out:
+        out.write(octets)
+    done = rtse("recording", "repair", file)
+    assert done.returncode == 1 and re.match(rb"0 samples kept, \d\d+ octets lost, 1 broken chunk with samples that nobody counted\n.*the chunk", done.stdout), done
 
 
 with tempfile.TemporaryDirectory() as folder:

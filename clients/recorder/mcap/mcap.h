@@ -153,7 +153,9 @@ class Reader final {
 
 struct Repair {
   std::uint64_t messages = 0;     // kept
-  std::uint64_t octets_lost = 0;  // behind the last whole record
+  std::uint64_t octets_lost = 0;  // behind the last whole record, and in broken chunks
+  std::uint64_t broken_chunks = 0;
+  std::optional<std::uint64_t> messages_lost;  // in broken chunks; nothing when the file does not say how many there were
   std::optional<std::string> damage;
 };
 
