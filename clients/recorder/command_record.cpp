@@ -124,6 +124,7 @@ std::chrono::nanoseconds nanoseconds(double seconds) { return std::chrono::nanos
 // OutPorts that the command line names, or all there are.
 base::Result<std::vector<Editor::Port>> chosen_ports(Editor& editor, const RecordOptions& options) {
   std::vector<Editor::Port> ports;
+  std::size_t excluded = 0;
   if (!options.all) {
     for (const auto& path : options.ports) {
       auto port = editor.port(path, true);
@@ -140,10 +141,16 @@ base::Result<std::vector<Editor::Port>> chosen_ports(Editor& editor, const Recor
   for (const auto& component : editor::read_components(*tree, {.connectors = true}, editor.limit())) {
     if (!component.problem.empty()) editor.fail({"component " + component.instance + ": " + component.problem});
     for (const auto& port : component.ports) {
-      if (port.port_type() == "DataOutPort" && !is_excluded(options, component.instance + ":" + port.name))
+      if (port.port_type() != "DataOutPort") continue;
+      if (is_excluded(options, component.instance + ":" + port.name))
+        ++excluded;
+      else
         ports.push_back({component, port});
     }
   }
+  if (ports.empty() && excluded > 0)
+    return base::Error{"record: --exclude leaves none of the " + std::to_string(excluded) + " OutPorts of the naming service " +
+                       editor.server()};
   if (ports.empty()) return base::Error{"record: the naming service " + editor.server() + " has no component with an OutPort"};
   return ports;
 }
@@ -249,13 +256,15 @@ void wait_for_end(const RecordOptions& options, channels::Exchange& exchange, co
 
 // The views of the simulator; nothing when none are wanted, or there is no simulator and nobody named them.
 base::Result<std::unique_ptr<channels::WorldSource>> open_views(channels::Exchange& exchange, const RecordOptions& options,
-                                                                const RunClock& clock, std::function<void(channels::Time)> each_second) {
+                                                                const RunClock& clock, std::function<void(channels::Time)> each_second,
+                                                                const std::shared_ptr<EndHandle>& end) {
   if (!options.views && (!options.all || options.only_ports || !clock.is_simulated())) return std::unique_ptr<channels::WorldSource>();
   return channels::WorldSource::open(exchange, {.server_id = static_cast<std::uint32_t>(options.server_id),
                                                 .pictures = options.raw_pictures ? channels::Pictures::raw : channels::Pictures::jpeg,
                                                 .wants_all = true,
                                                 .excluded = options.excluded,
-                                                .each_second = std::move(each_second)});
+                                                .each_second = std::move(each_second),
+                                                .gone = [end] { end->raise(); }});
 }
 
 // A file with what makes the run again.
@@ -321,7 +330,8 @@ bool record_into(Editor& editor, const RecordOptions& options, const RunClock& c
     const editor::CallLimit limited(editor.limit());
     components.diagnose(now, source);
   };
-  const auto views = open_views(exchange, options, clock, components.size() > 0 ? std::function<void(channels::Time)>(diagnose) : nullptr);
+  const auto views =
+      open_views(exchange, options, clock, components.size() > 0 ? std::function<void(channels::Time)>(diagnose) : nullptr, end);
   if (!views) {
     editor.fail(views.error());
     return false;
@@ -333,7 +343,11 @@ bool record_into(Editor& editor, const RecordOptions& options, const RunClock& c
   if (!stale.empty() && !options.quiet)
     std::cerr << "rtse: " << names_of(stale) << ": of an earlier ring that was not put together, replaced\n";
   wait_for_end(options, exchange, end, [&] { look_again(editor, source, components); });
-  if (end->is_raised() && !exchange.failure() && !options.quiet) std::cerr << "a component is in its error state\n";
+  if (exchange.failure() || !end->is_raised()) return true;
+  if (*views && !(*views)->is_live())
+    editor.fail({"record: the simulator has ended, and the recording with it"});
+  else if (!options.quiet)
+    std::cerr << "a component is in its error state\n";
   return true;
 }
 

@@ -601,8 +601,22 @@ def refused(*words, says):
     assert done.returncode == 1 and says in done.stderr and done.stderr.count("\n") == 1, done
 
 
+# The end of the simulator is the end of a recording of what it shows, and is said.
+def simulator_ends():
+    server = rig.server("--lockstep", "--rtf", "0", "-u")
+    process = recording("--views")
+    seconds(1)
+    server.terminate()
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 1 and "record: the simulator has ended, and the recording with it" in err and "recorded " in err, (out, err)
+    assert len([s for s in lines("cat", file) if s["topic"] == "/clock"]) >= 49
+    done = rig.try_rtse("recording", "info", file)
+    assert done.returncode == 0 and done.stderr == "", done
+
+
 def bad_input():
     up()
+    refused("record", "-o", file, "--all", "--exclude", "*", says="--exclude leaves none of the 4 OutPorts")
     refused("record", "-o", file, "RTCPosition2d0:velocity", says="record reads OutPorts")
     refused("record", "-o", "/no/such/folder/x.mcap", "RTCLaser0:range", says="cannot be written")
     refused("recording", "info", "/no/such/file", says="cannot be read: No such file or directory")
