@@ -112,6 +112,15 @@ class Player {
 
 // ---- wiring ----
 
+// "; it has a, b"
+std::string in_ports(const editor::ComponentView& component) {
+  std::vector<std::string> names;
+  for (const auto& port : component.ports) {
+    if (port.port_type() == "DataInPort") names.push_back(port.name);
+  }
+  return names.empty() ? ", it has none at all" : "; it has " + base::join(names, ", ");
+}
+
 base::Result<void> Player::connect() {
   editor::Editor editor(orb_, system_.naming(), false, std::chrono::milliseconds(call_limit));
   auto component = editor.component(options_.component + ".rtc", {.contexts = true, .connectors = true});
@@ -124,7 +133,10 @@ base::Result<void> Player::connect() {
   for (const auto& link : options_.links) {
     const auto* port = component->port(link.port);
     const auto channel = topics.find(link.topic);
-    if (port == nullptr || channel == topics.end()) return base::Error{"link of " + link.topic + " with " + link.port + ": is not there"};
+    if (port == nullptr || port->port_type() != "DataInPort")
+      return base::Error{"link of " + link.topic + ": component " + options_.component + " has no InPort " + base::in_quotes(link.port) +
+                         in_ports(*component)};
+    if (channel == topics.end()) return base::Error{"link of " + link.topic + " with " + link.port + ": is not there"};
     auto tap = editor::Tap::connect(orb_, *port, link.properties, {});
     if (!tap) return tap.error();
     Input& input = by_channel_[channel->second];

@@ -338,6 +338,10 @@ def replayed():
     place = f"first difference at tick {round(turned['time'] * 10)} ({turned['time']:g} s): data.va: "
     assert other.returncode == 1 and place in other.stderr, (place, other)
     refused("replay", path, "--into", "Nobody0", says="components: RTCLaser0, LaserObstacleAvoid0, RTCPosition2d0")
+    refused(*call, "--link", "A:b=range", says='link "A:b=range": the recording has no channel "/A/b"')
+    refused(*call, "--link", "RTCLaser0:range=c", says='has no InPort "c"; it has range')
+    refused(*call, "--set", "speed_gain=abc", says='parameter default.speed_gain cannot be "abc", expected a number')
+    refused("replay", path, "--into", "RTCLaser0", says="refuses to be activated alone; one that uses the simulator's devices finds none")
 
 
 def said(samples, topic, member):
@@ -530,6 +534,20 @@ def hashed():
     assert [t["value"] for t in foreign(path)[:-1] if t["topic"] == "/hashes"] == [t["value"] for t in ticks]
 
 
+# Contexts of real time: their ticks are not in the recording, which is said.
+def replayed_from_real_time():
+    rig.naming()
+    rig.server()
+    rig.host(rig.device("RTCLaser"), "LaserObstacleAvoid", rig.device("RTCPosition2d"))
+    rig.there("RTCLaser0", "LaserObstacleAvoid0", "RTCPosition2d0")
+    rig.rtse("con", "RTCLaser0:range", "LaserObstacleAvoid0:range")
+    rig.rtse("act", "RTCLaser0", "LaserObstacleAvoid0")
+    rig.rtse("record", "-s", str(rig.server_id), "-o", file, "--all", "--only-ports", "-t", "1",
+                    "--attach", f"system.xml={rig.source}/worlds/systems/obstacle_avoidance.xml", "-q")
+    done = rig.try_rtse("replay", file, "--into", "LaserObstacleAvoid0", "--compare")
+    assert "LaserObstacleAvoid0 was recorded outside of lock step: in which tick it read a sample is not known" in done.stderr, done
+
+
 # A component whose inputs were not recorded: it is said which.
 def replayed_without_inputs():
     up()
@@ -571,7 +589,10 @@ def gone_to():
     before = json.loads(rig.rtse(*call, "--back", "2").split("\n", 1)[0])
     assert abs(before["time"] - (fast["time"] - 0.2)) < 1e-9, (before, fast)
     refused("goto", path, "--break", "LaserObstacleAvoid0:velocity.data.vx >", says="expected a value")
-    refused("goto", path, "1", "--break", "time > 7", says="does not hold up to 1 s")
+    refused("goto", path, "1", "--break", "time > 7", says="does not hold up to 1 s\n")
+    refused("goto", path, "1", "--break", "LaserObstacleAvoid0:velocity.data.foo > 7", says="1 s; LaserObstacleAvoid0:velocity has no number data.foo\n")
+    refused("goto", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "1", says="is no recording; with a system's profile say its world: -w WORLD")
+    assert "rtse: the recorded run ended at 6 s\n" == rig.try_rtse("goto", path, "7", "--then", "true").stderr
     done = subprocess.run([f"{rig.bin_dir}/rtse", "--json", "goto", path, "1"], input="n\nb 2\nt 0.5\nq\n", stdout=subprocess.PIPE, timeout=120, text=True)
     times = [json.loads(line)["time"] for line in done.stdout.splitlines()]
     assert times == [1, 1.1, 0.9, 0.5] and done.returncode == 0, done
