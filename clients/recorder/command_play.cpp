@@ -105,7 +105,8 @@ base::Result<void> add_recorded_routes(Editor& editor, const mcap::Reader& reade
   if (links.empty())
     return base::Error{"recording: does not say which InPorts its channels were connected to; expected COMPONENT:PORT=INPORT"};
   for (const auto& link : links) {
-    if (const auto added = add_route(editor, reader, link, routes); !added) std::cerr << "rtse: " << added.error().message << '\n';
+    if (const auto added = add_route(editor, reader, link, routes); !added)
+      std::cerr << "rtse: " << base::printable(added.error().message) << '\n';
   }
   if (routes.empty()) return base::Error{"recording: none of the InPorts that its channels were connected to is there"};
   return {};

@@ -76,13 +76,14 @@ base::Result<std::vector<ReplayLink>> possible(std::vector<ReplayLink> links, co
   }
   std::erase_if(links, [&](const ReplayLink& link) {
     if (has(link.topic)) return false;
-    std::cerr << "rtse: input " << options.component << ":" << link.port << ": missing, the recording has no " << link.topic << '\n';
+    std::cerr << "rtse: input " << options.component << ":" << link.port << ": missing, the recording has no "
+              << base::printable(link.topic) << '\n';
     return true;
   });
   for (const auto& connector : system.connectors) {
     if (connector.is_data || (connector.target.instance != options.component && connector.source.instance != options.component)) continue;
-    std::cerr << "rtse: service port " << connector.source.port_name << ": missing, calls of " << connector.target.port_name
-              << " are not recorded\n";
+    std::cerr << "rtse: service port " << base::printable(connector.source.port_name) << ": missing, calls of "
+              << base::printable(connector.target.port_name) << " are not recorded\n";
   }
   return links;
 }

@@ -55,7 +55,7 @@ Result<Editor::Port> Editor::port(const std::string& path, bool with_connectors)
 void Editor::fail(const Error& error) {
   if (!is_silent_) {
     std::cout.flush();
-    std::cerr << "rtse: " + error.message + "\n";
+    std::cerr << "rtse: " + base::printable(error.message, "\n\t") + "\n";  // texts of others are in it
   }
   failed_ = true;
   if (problem_.empty()) problem_ = error.message;

@@ -29,7 +29,9 @@ std::optional<bool> parse_bool(std::string_view text);
 // The shortest text that reads back as the same number.
 std::string format_number(double value);
 
-// A value that comes from outside, fit for one line of a message: control characters escaped, cut after 120 characters.
+// A text that comes from outside, fit for a terminal: control characters as \x1b, those of C1 in UTF-8, too, but for `kept` ones.
+std::string printable(std::string_view text, std::string_view kept = {});
+// The same for one line of a message: in quotes, cut after 120 characters.
 std::string in_quotes(std::string_view text);
 
 }  // namespace base
