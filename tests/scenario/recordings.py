@@ -181,6 +181,12 @@ def compared():
         ended(process)
         rig.simctl("reset")
     assert rig.rtse("recording", "compare", files[0], files[1]).startswith("equal: ")
+    file = rig.path("d.mcap")
+    process = recording("RTCLaser0:range")
+    seconds(1)
+    ended(process)
+    lonely = rig.try_rtse("recording", "compare", files[0], file)
+    assert lonely.returncode == 1 and lonely.stdout == f"channel /LaserObstacleAvoid0/velocity is in {files[0]} only\n", lonely
     done = rig.try_rtse("recording", "compare", files[0], files[2])
     assert done.returncode == 1 and re.match(r"first difference at time [\d.]+ s, tick \d+: /LaserObstacleAvoid0/velocity data.vx: \S+ and \S+\n", done.stdout), done
 
@@ -532,6 +538,12 @@ def hashed():
     leaves = set().union(*(t["value"]["leaves"] for t in ticks))
     assert any("LaserObstacleAvoid0:velocity" in leaf for leaf in leaves), leaves
     assert [t["value"] for t in foreign(path)[:-1] if t["topic"] == "/hashes"] == [t["value"] for t in ticks]
+    # A run without a hash log is the same run; one without a port is not.
+    without, _ = recorded_run("without.mcap", 2)
+    done = rig.try_rtse("recording", "compare", path, without)
+    assert done.returncode == 0 and done.stderr == f"rtse: channel /hashes is in {path} only, and is left out\n", done
+    done = rig.try_rtse("recording", "compare", path, without, "--channel", "/*/velocity", "--channel", "/hashes")
+    assert done.returncode == 1 and 'has no channel "/hashes"' in done.stderr, done
 
 
 # Contexts of real time: their ticks are not in the recording, which is said.
