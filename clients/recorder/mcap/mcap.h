@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -140,6 +141,12 @@ class Reader final {
   // The first one of that name.
   base::Result<Attachment> attachment(const std::string& name);
   base::Result<std::vector<Metadata>> metadata();
+
+  // [octets] of all chunks.
+  std::uint64_t uncompressed() const;
+  // Channel and time of each message as the indexes of the chunks say, of each chunk in the order of channels and times; no chunk is
+  // decompressed. False when they are not whole, or are not of as many messages as the summary says: what was told counts for nothing then.
+  bool for_each_time(const std::function<void(std::uint16_t channel, Time time)>& take) const;
 
   // Starts over: next() gives the messages of the query in the order of their log times, and of the file where these are equal.
   void seek(Query query = {});
