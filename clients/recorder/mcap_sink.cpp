@@ -77,6 +77,7 @@ base::Result<void> McapSink::begin_file(channels::Time begun) {
     if (const auto flushed = writer_->flush(); !flushed) return flushed;
   }
   begun_with_ = writer_->size();
+  chunk_begun_ = begun;
   return {};
 }
 
@@ -121,6 +122,11 @@ base::Result<void> McapSink::take(const channels::Sample& sample) {
     if (const auto begun = begin_file(sample.log_time); !begun) return begun;
   } else if (is_full(sample)) {
     if (const auto begun = begin_file(sample.log_time); !begun) return begun;
+  }
+  // A run that is faster than real time loses no more of its own last second.
+  if (split_.is_ring && sample.log_time - chunk_begun_ >= flush_period) {
+    chunk_begun_ = sample.log_time;
+    if (const auto flushed = writer_->flush(); !flushed) return flushed;
   }
   if (!first_) first_ = sample.log_time;
   latest_ = std::max(latest_, sample.log_time);

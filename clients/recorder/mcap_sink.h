@@ -61,6 +61,7 @@ class McapSink final : public channels::Sink {
   std::uint64_t resets_ = 0;      // of time, since the first file was begun
   std::optional<channels::Time> first_;
   channels::Time latest_{0};                                              // of a ring
+  channels::Time chunk_begun_{0};                                         // likewise
   std::map<channels::ChannelId, channels::Channel> channels_;             // those that every file gets
   std::map<channels::ChannelId, channels::Sample> latched_;               // the latest of those, of channels that hold
   std::vector<std::uint16_t> ids_;                                        // in the file, by channel
