@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* record_name = "ring";
+constexpr std::size_t most_held = 256 << 20;  // [octets] of latched samples
 
 std::uint64_t number_at(const mcap::Texts& texts, const char* key) {
   const auto found = texts.find(key);
@@ -60,6 +61,7 @@ class Joint {
   };
 
   base::Result<void> take(const mcap::Message& message);
+  base::Result<void> hold(std::uint16_t channel, const mcap::Message& message);
   base::Result<void> put_held();
   base::Result<void> put(std::uint16_t channel, const mcap::Message& message, std::string_view data, mcap::Time time);
 
@@ -72,6 +74,7 @@ class Joint {
   std::map<std::uint16_t, std::uint16_t> ids_;                            // of the piece that is copied
   std::set<std::uint16_t> latched_;                                       // by their new numbers, as all below
   std::map<std::uint16_t, Held> held_;
+  std::size_t held_octets_ = 0;
   std::map<std::uint16_t, Mark> seen_;
 };
 
@@ -107,9 +110,20 @@ base::Result<void> Joint::put(std::uint16_t channel, const mcap::Message& messag
 
 // What held before the time that is kept still holds in it.
 base::Result<void> Joint::put_held() {
+  held_octets_ = 0;
   for (const auto& [channel, held] : std::exchange(held_, {})) {
     if (const auto done = put(channel, held.message, held.data, std::max(held.message.log_time, *first_)); !done) return done;
   }
+  return {};
+}
+
+base::Result<void> Joint::hold(std::uint16_t channel, const mcap::Message& message) {
+  Held& held = held_[channel];
+  held_octets_ += message.data.size();
+  held_octets_ -= held.data.size();
+  if (held_octets_ > most_held)
+    return base::Error{"what holds in a ring is more than " + std::to_string(most_held >> 20) + " MiB, which is not put together"};
+  held = {message, std::string(message.data)};
   return {};
 }
 
@@ -118,7 +132,7 @@ base::Result<void> Joint::take(const mcap::Message& message) {
   if (latched_.contains(channel)) {
     const Mark mark{message.sequence, message.publish_time};
     if (const auto [seen, is_first] = seen_.try_emplace(channel, mark); !is_first && std::exchange(seen->second, mark) == mark) return {};
-    if (message.log_time < from_) return held_[channel] = {message, std::string(message.data)}, base::Result<void>();
+    if (message.log_time < from_) return hold(channel, message);
   }
   if (message.log_time < from_) return {};
   if (!first_) first_ = message.log_time;

@@ -8,52 +8,8 @@ import signal
 import subprocess
 import sys
 
-from rig import Rig, await_
-
-case, *folders = sys.argv[1:]
-rig = Rig(*folders)
-file = rig.path("run.mcap")
-
-
-# The obstacle system in lock step, wired and active, before its first step.
-def up():
-    rig.naming()
-    rig.server("--lockstep", "--rtf", "0", "-u", "--wait-for", "3")
-    host = rig.host(rig.device("RTCLaser"), "LaserObstacleAvoid", rig.device("RTCPosition2d"), options=(
-        "-o", "manager.modules.preload:SimTimeContext.so", "-o", "exec_cxt.periodic.type:SimTimeContext"))
-    rig.there("RTCLaser0", "LaserObstacleAvoid0", "RTCPosition2d0")
-    rig.rtse("con", "RTCLaser0:range", "LaserObstacleAvoid0:range")
-    rig.rtse("con", "LaserObstacleAvoid0:velocity", "RTCPosition2d0:velocity")
-    rig.rtse("act", "RTCLaser0", "LaserObstacleAvoid0", "RTCPosition2d0")
-    return host
-
-
-def recorder(*words):
-    return subprocess.Popen([f"{rig.bin_dir}/rtse", "--ns", rig.names, "record", "-s", str(rig.server_id), "-o", file, *words],
-                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-
-
-# Until its connections stand: it says so.
-def recording(*words):
-    process = recorder(*words)
-    line = process.stderr.readline()
-    assert line.startswith("recording "), line
-    return process
-
-
-def ended(process):
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=60)
-    assert process.returncode == 0, (process.returncode, out, err)
-    return err
-
-
-def seconds(count):
-    rig.simctl("step", str(round(count * 1000)))
-
-
-def lines(*words):
-    return [json.loads(line) for line in rig.rtse("recording", *words).splitlines()]
+from recording_rig import ended, file, lines, recording, refused, rig, run_case, seconds, up
+from rig import await_
 
 
 # Each sample of each port is there with the time of its tick, and other people's readers find the same.
@@ -168,21 +124,18 @@ def full_disk():
 
 # Two runs are equal sample by sample; another parameter is found at its first effect.
 def compared():
-    global file
     files = []
     up()
     for name in ("a", "b", "c"):
-        file = rig.path(f"{name}.mcap")
-        files.append(file)
+        files.append(rig.path(f"{name}.mcap"))
         if name == "c":
             rig.rtse("conf", "LaserObstacleAvoid0", "set", "speed_gain", "0.01")
-        process = recording("RTCLaser0:range", "LaserObstacleAvoid0:velocity")
+        process = recording("RTCLaser0:range", "LaserObstacleAvoid0:velocity", to=files[-1])
         seconds(4)
         ended(process)
         rig.simctl("reset")
     assert rig.rtse("recording", "compare", files[0], files[1]).startswith("equal: ")
-    file = rig.path("d.mcap")
-    process = recording("RTCLaser0:range")
+    process = recording("RTCLaser0:range", to=file)
     seconds(1)
     ended(process)
     lonely = rig.try_rtse("recording", "compare", files[0], file)
@@ -233,8 +186,8 @@ def kept():
                                            "RTCLaser0:range", *words], stderr=subprocess.PIPE, text=True))
         assert processes[-1].stderr.readline().startswith("recording ")
     seconds(3.5)
-    for process in processes:
-        ended(process)
+    said = [ended(process) for process in processes]
+    assert f'in "{rig.path("split-001.mcap")}" to "{rig.path("split-004.mcap")}"\n' in said[0], said
     def times(name):
         return [round(s["time"], 3) for s in lines("cat", rig.path(name))]
     parts = [times(f"split-00{n}.mcap") for n in range(1, 5)]
@@ -394,139 +347,6 @@ def excluded():
     assert topics["/LaserObstacleAvoid0/velocity"] > 0 and topics["/clock"] > 0 and topics["/tf_static"] == 1, topics
 
 
-# A ring is for those who look for what went wrong: of a run that passes nothing is kept.
-def ring():
-    kept = rig.path("ring.mcap")
-    call = ["run", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "-w", f"{rig.source}/worlds/obstacle_course.sdf", "-d", "4s", "--record", kept, "--last", "1s"]
-    rig.rtse(*call)
-    assert not [name for name in os.listdir(rig.work) if name.startswith("ring")], os.listdir(rig.work)
-    failed = rig.try_rtse(*call, "-x", f"{rig.source}/tests/scenario/impossible.yaml", "--hash-log", rig.path("run.hashlog"))
-    assert failed.returncode == 1, failed
-    info = json.loads(rig.rtse("--json", "recording", "info", kept))
-    scans = next(c for c in info["channels"] if c["topic"] == "/RTCLaser0/range")
-    assert 9 <= scans["samples"] <= 12 and scans["first"] >= 2.8, scans
-    assert next(c for c in info["channels"] if c["topic"] == "/tf_static")["samples"] == 1, info
-    assert next(c for c in info["channels"] if c["topic"] == "/hashes")["first"] >= 2.8, info
-    assert not [name for name in os.listdir(rig.work) if name.startswith("ring-")], os.listdir(rig.work)
-    assert refused_without_record().returncode == 2
-
-
-def pieces():
-    return sorted(name for name in os.listdir(rig.work) if re.fullmatch(r"run-\d+\.mcap", name))
-
-
-def scan_times(name):
-    done = rig.try_rtse("recording", "cat", rig.path(name), "RTCLaser0:range")  # a piece that has no end is told
-    return [round(json.loads(line)["time"], 3) for line in done.stdout.splitlines()]
-
-
-# A ring whose recorder is killed has two pieces, each complete in itself, which are put together; what held before is in it.
-def ring_killed():
-    up()
-    process = recording("RTCLaser0:range", "--views", "--last", "2")
-    for _ in range(5):
-        seconds(1.1)
-    await_("the last scan is in a piece", lambda: pieces() and 5.5 in scan_times(pieces()[-1]))
-    process.kill()
-    process.wait()
-    names = pieces()
-    assert len(names) == 2 and names[0] != "run-001.mcap", names
-    for name in names:
-        info = json.loads(rig.try_rtse("--json", "recording", "info", rig.path(name)).stdout)
-        assert [a["name"] for a in info["attachments"]] == ["world.sdf"] and info["run"]["lockstep"] == "yes", info
-        assert next(c for c in info["channels"] if c["topic"] == "/tf_static")["samples"] == 1, info
-    refused("recording", "info", file, says=f'is not there, but "{rig.path(names[0])}" and "{rig.path(names[1])}" of its ring; rtse recording repair {file} puts')
-    assert rig.rtse("recording", "repair", file).startswith(f"{len(lines('cat', file))} samples kept of ")
-    times = scan_times("run.mcap")
-    assert times == [round(t / 10, 1) for t in range(35, 56)], times
-    info = json.loads(rig.rtse("--json", "recording", "info", file))
-    held = {c["topic"]: c["samples"] for c in info["channels"]}
-    assert held["/tf_static"] == held["/sim/shapes"] == 1 and 3.3 < info["first"] and [a["name"] for a in info["attachments"]] == ["world.sdf"], info
-    assert pieces() == []
-
-
-# The pieces of a ring that was killed do not become part of the next one; files that only have such names stay.
-def ring_again():
-    up()
-    first = recording("RTCLaser0:range", "--last", "1")
-    seconds(3)
-    await_("pieces are there", lambda: len(pieces()) == 2)
-    first.kill()
-    first.wait()
-    with open(rig.path("run-077.mcap"), "w") as out:
-        out.write("somebody's own")
-    second = recording("RTCLaser0:range", "--last", "1")
-    assert "of an earlier ring that was not put together, replaced" in second.stderr.readline()
-    seconds(0.5)
-    said = ended(second)
-    assert f'in "{file}"' in said and pieces() == ["run-077.mcap"], (said, pieces())
-    times = scan_times("run.mcap")
-    assert 3 <= min(times) and max(times) - min(times) <= 1 and f"recorded {len(times)} samples of 1 channels" in said, (times, said)
-    assert rig.try_rtse("record", "-o", file, "RTCLaser0:range", "--last", "1", "--split", "1s").returncode == 2
-
-
-# Time that begins anew is another run: its last seconds count.
-def ring_reset():
-    up()
-    process = recording("RTCLaser0:range", "--views", "--last", "1")
-    seconds(5)
-    rig.simctl("reset")
-    seconds(2.5)
-    ended(process)
-    times = scan_times("run.mcap")
-    assert times and 1.4 <= min(times) and max(times) <= 2.5, times
-    assert pieces() == [] and max(s["time"] for s in lines("cat", file)) <= 2.5
-
-
-# A full disk: what is in the pieces stays, and is told as it is.
-def ring_full_disk():
-    up()
-
-    def small():
-        resource.setrlimit(resource.RLIMIT_FSIZE, (400000, 400000))
-    process = subprocess.Popen([f"{rig.bin_dir}/rtse", "--ns", rig.names, "record", "-s", str(rig.server_id), "-o", file, "RTCLaser0:range", "--last", "1h"],
-                               stderr=subprocess.PIPE, text=True, preexec_fn=small)
-    assert process.stderr.readline().startswith("recording ")
-    for _ in range(100):
-        if process.poll() is None:
-            seconds(4)
-    err = process.communicate(timeout=60)[1]
-    piece = rig.path("run-001.mcap")
-    assert process.returncode == 1 and err.count("\n") == 1, err
-    assert f'"{piece}": cannot be written: File too large; what came before is in "{piece}", rtse recording repair {file} puts it together' in err, err
-    kept = len(scan_times("run-001.mcap"))
-    assert kept > 0 and rig.rtse("recording", "repair", file) == f'{kept} samples kept of "{piece}"\n', kept
-    assert len(scan_times("run.mcap")) == kept
-
-
-# A recorder that is killed in the middle of a run fails the run, which says where the pieces are.
-def ring_of_a_run():
-    call = [f"{rig.bin_dir}/rtse", "run", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "-w", f"{rig.source}/worlds/obstacle_course.sdf",
-            "-d", "2000", "--record", file, "--last", "1s"]
-    run = subprocess.Popen(call, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    await_("pieces are there", lambda: len(pieces()) == 2)
-    killed = [int(pid) for pid in os.listdir("/proc") if pid.isdigit() and is_recorder(pid)]
-    assert len(killed) == 1, killed
-    os.kill(killed[0], signal.SIGKILL)
-    out, err = run.communicate(timeout=200)
-    assert run.returncode == 1 and f"rtse recording repair {file} puts it together" in out + err, (out, err)
-    assert len(pieces()) == 2
-    assert "samples kept of" in rig.rtse("recording", "repair", file) and scan_times("run.mcap")
-
-
-def is_recorder(pid):
-    try:
-        with open(f"/proc/{pid}/cmdline", "rb") as text:
-            words = text.read().split(b"\0")
-    except OSError:
-        return False  # it has ended
-    return words[0].endswith(b"/rtse-recorder") and file.encode() in words
-
-
-def refused_without_record():
-    return rig.try_rtse("run", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "-w", f"{rig.source}/worlds/obstacle_course.sdf", "--last", "1")
-
-
 # The hashes of a run's ticks are a channel: those of the hash log.
 def hashed():
     path = rig.path("run.mcap")
@@ -629,11 +449,6 @@ def like():
     assert other["seed"] == 5 and other["simulated"] == 2, other
 
 
-def refused(*words, says):
-    done = rig.try_rtse(*words)
-    assert done.returncode == 1 and says in done.stderr and done.stderr.count("\n") == 1, done
-
-
 # The end of the simulator is the end of a recording of what it shows, and is said.
 def simulator_ends():
     server = rig.server("--lockstep", "--rtf", "0", "-u")
@@ -661,6 +476,4 @@ def bad_input():
     assert rig.try_rtse("record", "-o", file).returncode == 2
 
 
-with rig:
-    globals()[case]()
-print("ok")
+run_case(globals())
