@@ -289,6 +289,7 @@ struct Sinks {
 base::Result<std::vector<RingPiece>> make_room_for_ring(const std::string& file) {
   if (const auto good = mcap::File::check_name(file); !good) return good.error();
   auto stale = ring_pieces(file);
+  if (const auto at_rest = check_at_rest(stale); !at_rest) return at_rest.error();
   remove_pieces(stale);
   std::remove(file.c_str());
   return stale;

@@ -209,6 +209,7 @@ bool has_newer_pieces(const std::string& file, const std::vector<RingPiece>& pie
 
 // The pieces of a recorder that was killed.
 void put_together(Editor& editor, const std::vector<RingPiece>& pieces, const std::string& file, const std::string& output) {
+  if (const auto at_rest = check_at_rest(pieces); !at_rest) return editor.fail(at_rest.error());
   const auto done = join_ring(pieces, output.empty() ? file : output);
   if (!done) return editor.fail(done.error());
   if (output.empty()) remove_pieces(pieces);

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "mcap/file.h"
 
 namespace recorder {
 
@@ -202,6 +203,14 @@ std::vector<RingPiece> ring_pieces(const std::string& path) {
   }
   std::ranges::sort(pieces, {}, &RingPiece::number);
   return pieces;
+}
+
+base::Result<void> check_at_rest(const std::vector<RingPiece>& pieces) {
+  for (const auto& piece : pieces) {
+    if (mcap::File::is_being_written(piece.path))
+      return base::Error{base::in_quotes(piece.path) + ": is a piece of a ring that is still being recorded"};
+  }
+  return {};
 }
 
 void remove_pieces(const std::vector<RingPiece>& pieces) {

@@ -28,6 +28,8 @@ std::string numbered_path(const std::string& path, std::size_t number);
 mcap::Metadata ring_metadata(const RingPiece& piece);
 // Those of the ring of this name, the oldest first. What only has such a name is none.
 std::vector<RingPiece> ring_pieces(const std::string& path);
+// An error when a recorder is writing them.
+base::Result<void> check_at_rest(const std::vector<RingPiece>& pieces);
 void remove_pieces(const std::vector<RingPiece>& pieces);
 // "a-001.mcap" and "a-002.mcap"
 std::string names_of(const std::vector<RingPiece>& pieces);

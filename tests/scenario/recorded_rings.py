@@ -74,6 +74,8 @@ def again():
     second = recording("RTCLaser0:range", "--last", "1")
     assert "of an earlier ring that was not put together, replaced" in second.stderr.readline()
     seconds(0.5)
+    for words in (["recording", "repair", file], ["record", "-o", file, "RTCLaser0:range", "--last", "1"]):
+        refused(*words, says=f'"{rig.path("run-001.mcap")}": is a piece of a ring that is still being recorded')
     said = ended(second)
     assert f'in "{file}"' in said and pieces() == ["run-077.mcap"], (said, pieces())
     times = scan_times("run.mcap")
