@@ -2,12 +2,17 @@
 rtmsim_test(mcap_test recorder/mcap_test.cpp LIBRARIES mcap)
 rtmsim_test(ros_messages_test recorder/ros_messages_test.cpp LIBRARIES recorder)
 rtmsim_test(expression_test recorder/expression_test.cpp LIBRARIES recorder)
-foreach(case views excluded whole_run same_run killed full_disk compared played kept of_a_run replayed repeated lives ring hashed replayed_without_inputs gone_to gone_to_with_others like bad_input)
+foreach(case views excluded whole_run same_run killed full_disk compared played kept of_a_run replayed repeated lives hashed replayed_without_inputs replayed_from_real_time gone_to gone_to_with_others like simulator_ends bad_input)
   add_test(NAME recordings.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/recordings.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(recordings.${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
-foreach(case bombs letters pictures names targets)
+foreach(case of_a_run killed again reset full_disk of_a_killed_recorder)
+  add_test(NAME recorded_rings.${case}
+    COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/recorded_rings.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+  set_tests_properties(recorded_rings.${case} PROPERTIES LABELS integration TIMEOUT 300)
+endforeach()
+foreach(case bombs flipped large letters many_broken pictures names targets terminal)
   add_test(NAME hostile_recordings.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/hostile_recordings.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(hostile_recordings.${case} PROPERTIES LABELS integration TIMEOUT 300)

@@ -175,6 +175,25 @@ base::Result<std::unique_ptr<BreakWatch>> BreakWatch::start(CORBA::ORB_ptr orb, 
 
 std::optional<std::chrono::nanoseconds> BreakWatch::hit() const { return state_->hit.snapshot(); }
 
+std::vector<std::string> BreakWatch::missing() const {
+  std::vector<std::string> all;
+  for (const auto& value : state_->condition.values()) {
+    if (state_->look_up(value, std::chrono::nanoseconds(0))) continue;
+    switch (value.kind) {
+      case ValueKind::port:
+        all.push_back(value.name +
+                      (state_->ports.at(value.name)->latest.snapshot().is_there ? " has no number " + value.member : " has sent nothing"));
+        break;
+      case ValueKind::state:
+        all.push_back("component " + value.name + " does not say its state");
+        break;
+      default:
+        all.push_back("model " + value.name + " has no pose");
+    }
+  }
+  return all;
+}
+
 base::Result<std::chrono::nanoseconds> tick_of(const std::string& simulator, double step_s) {
   auto simulation = shm::Iface::open(number_of(simulator), shm::IfaceType::simulation, "world");
   if (!simulation) return simulation.error();

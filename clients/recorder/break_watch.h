@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "editor.h"
 #include "expression.h"
@@ -22,6 +23,8 @@ class BreakWatch {
 
   // The time of the tick in which the condition held; the simulation is paused then.
   std::optional<std::chrono::nanoseconds> hit() const;
+  // What the condition needs and is not there at this moment, as "A0:out has no member data.x"; while time stands still.
+  std::vector<std::string> missing() const;
 
   struct State;
   explicit BreakWatch(std::unique_ptr<State> state);

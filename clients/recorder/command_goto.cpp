@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -14,8 +15,10 @@
 #include "base/text.h"
 #include "break_watch.h"
 #include "command.h"
+#include "mcap/bytes.h"
 #include "recorded_run.h"
 #include "recorder_commands.h"
+#include "ring.h"
 #include "run/child_process.h"
 #include "run/interrupt.h"
 #include "sample_text.h"
@@ -93,8 +96,9 @@ base::Result<void> Stand::go_to_condition() {
     return {};
   }
   if (!made) return made;
+  const auto missing = (*watch)->missing();
   return base::Error{"goto: the condition " + base::in_quotes(options_.condition) + " does not hold up to " + base::format_number(time_s_) +
-                     " s"};
+                     " s" + (missing.empty() ? "" : "; " + base::join(missing, ", "))};
 }
 
 void Stand::say() const {
@@ -188,6 +192,14 @@ base::Result<void> Stand::drive(editor::RunningSystem& system) {
   return options_.then.empty() ? listen() : then();
 }
 
+// Somebody has forgotten the world of a profile.
+bool is_recording(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string head(mcap::magic.size(), '\0');
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head == mcap::magic;
+}
+
 void go(Editor& editor, const GotoOptions& options) {
   std::optional<Expression> condition;
   if (!options.condition.empty()) {
@@ -198,11 +210,15 @@ void go(Editor& editor, const GotoOptions& options) {
   std::optional<RecordedRun> recorded;
   editor::RunOptions call;
   if (options.world.empty()) {
+    if (!is_recording(options.what))
+      return editor.fail({base::in_quotes(options.what) + ": is no recording; with a system's profile say its world: -w WORLD"});
     auto run = RecordedRun::unpack(options.what);
     if (!run) return editor.fail(run.error());
     if (const auto lost = run->lost(); !lost.empty()) std::cerr << "rtse: " << lost << '\n';
     recorded.emplace(std::move(*run));
     call = recorded->options();
+    if (options.time_s.value_or(0) > call.duration_s)
+      std::cerr << "rtse: the recorded run ended at " << base::format_number(call.duration_s) << " s\n";
   } else {
     call.system = options.what;
     call.world = options.world;
@@ -243,7 +259,7 @@ void add_goto(base::Command& app, editor::Chosen& chosen) {
   auto options = std::make_shared<GotoOptions>();
   command->add_option("RUN", options->what, "A recording of rtse run --record, or an RTSProfile with --world")
       ->required()
-      ->check(base::existing_file());
+      ->check(check_recording);
   auto* time = command->add_option("TIME", options->time_s, "Simulated seconds")->seconds_between(0.0, 1e7);
   command->add_option("--until", options->time_s, "The same")->seconds_between(0.0, 1e7)->excludes(time);
   command->add_option(

@@ -14,6 +14,7 @@
 #include "idl_text.h"
 #include "mcap/mcap.h"
 #include "recorder_commands.h"
+#include "ring.h"
 #include "run/interrupt.h"
 #include "run_clock.h"
 #include "sample_text.h"
@@ -104,7 +105,8 @@ base::Result<void> add_recorded_routes(Editor& editor, const mcap::Reader& reade
   if (links.empty())
     return base::Error{"recording: does not say which InPorts its channels were connected to; expected COMPONENT:PORT=INPORT"};
   for (const auto& link : links) {
-    if (const auto added = add_route(editor, reader, link, routes); !added) std::cerr << "rtse: " << added.error().message << '\n';
+    if (const auto added = add_route(editor, reader, link, routes); !added)
+      std::cerr << "rtse: " << base::printable(added.error().message) << '\n';
   }
   if (routes.empty()) return base::Error{"recording: none of the InPorts that its channels were connected to is there"};
   return {};
@@ -209,7 +211,7 @@ bool play_once(Editor& editor, mcap::Reader& reader, const PlayOptions& options,
 }
 
 void play(Editor& editor, const PlayOptions& options) {
-  auto reader = mcap::Reader::open(options.file);
+  auto reader = open_recording(options.file);
   if (!reader) return editor.fail(reader.error());
   if (reader->damage()) std::cerr << "rtse: " << *reader->damage() << '\n';
   Routes routes;

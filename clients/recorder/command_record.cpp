@@ -24,10 +24,12 @@
 #include "command.h"
 #include "component_source.h"
 #include "hash_channel.h"
+#include "mcap/file.h"
 #include "mcap_sink.h"
 #include "port_source.h"
 #include "recorder_commands.h"
 #include "remote.h"
+#include "ring.h"
 #include "run/interrupt.h"
 #include "run_clock.h"
 #include "sample_filters.h"
@@ -117,9 +119,12 @@ bool is_excluded(const RecordOptions& options, const std::string& name) {
                      [&](const std::string& pattern) { return ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0; });
 }
 
+std::chrono::nanoseconds nanoseconds(double seconds) { return std::chrono::nanoseconds(std::llround(seconds * 1e9)); }
+
 // OutPorts that the command line names, or all there are.
 base::Result<std::vector<Editor::Port>> chosen_ports(Editor& editor, const RecordOptions& options) {
   std::vector<Editor::Port> ports;
+  std::size_t excluded = 0;
   if (!options.all) {
     for (const auto& path : options.ports) {
       auto port = editor.port(path, true);
@@ -136,10 +141,16 @@ base::Result<std::vector<Editor::Port>> chosen_ports(Editor& editor, const Recor
   for (const auto& component : editor::read_components(*tree, {.connectors = true}, editor.limit())) {
     if (!component.problem.empty()) editor.fail({"component " + component.instance + ": " + component.problem});
     for (const auto& port : component.ports) {
-      if (port.port_type() == "DataOutPort" && !is_excluded(options, component.instance + ":" + port.name))
+      if (port.port_type() != "DataOutPort") continue;
+      if (is_excluded(options, component.instance + ":" + port.name))
+        ++excluded;
+      else
         ports.push_back({component, port});
     }
   }
+  if (ports.empty() && excluded > 0)
+    return base::Error{"record: --exclude leaves none of the " + std::to_string(excluded) + " OutPorts of the naming service " +
+                       editor.server()};
   if (ports.empty()) return base::Error{"record: the naming service " + editor.server() + " has no component with an OutPort"};
   return ports;
 }
@@ -210,18 +221,6 @@ std::map<std::string, std::map<std::string, std::string>> lockstep_facts(const R
   return facts;
 }
 
-void report(Editor& editor, const RecordOptions& options, const McapSink& sink, const channels::Exchange& exchange) {
-  if (const auto failure = exchange.failure()) return editor.fail({failure->message + "; what came before is in it"});
-  for (const auto& [topic, count] : exchange.dropped()) {
-    editor.fail(
-        {"record: " + std::to_string(count) + " samples of " + topic + " were dropped, they came faster than they could be written"});
-  }
-  if (options.quiet) return;
-  std::cerr << "recorded " << sink.samples() << " samples of " << sink.channels() << " channels in " << base::in_quotes(options.file);
-  if (options.split.octets > 0 || options.split.time.count() > 0) std::cerr << ", " << sink.files() << " files";
-  std::cerr << '\n';
-}
-
 // Components that were killed and are there again go on in their channels. Who is not there need not be.
 void look_again(Editor& editor, PortSource& source, ComponentSource& components) {
   if (const auto tree = editor.tree()) {
@@ -257,13 +256,15 @@ void wait_for_end(const RecordOptions& options, channels::Exchange& exchange, co
 
 // The views of the simulator; nothing when none are wanted, or there is no simulator and nobody named them.
 base::Result<std::unique_ptr<channels::WorldSource>> open_views(channels::Exchange& exchange, const RecordOptions& options,
-                                                                const RunClock& clock, std::function<void(channels::Time)> each_second) {
+                                                                const RunClock& clock, std::function<void(channels::Time)> each_second,
+                                                                const std::shared_ptr<EndHandle>& end) {
   if (!options.views && (!options.all || options.only_ports || !clock.is_simulated())) return std::unique_ptr<channels::WorldSource>();
   return channels::WorldSource::open(exchange, {.server_id = static_cast<std::uint32_t>(options.server_id),
                                                 .pictures = options.raw_pictures ? channels::Pictures::raw : channels::Pictures::jpeg,
                                                 .wants_all = true,
                                                 .excluded = options.excluded,
-                                                .each_second = std::move(each_second)});
+                                                .each_second = std::move(each_second),
+                                                .gone = [end] { end->raise(); }});
 }
 
 // A file with what makes the run again.
@@ -281,25 +282,32 @@ base::Result<mcap::Writer> new_file(const std::string& path, const RecordOptions
 // What is wanted of what comes, on its way into the file.
 struct Sinks {
   std::shared_ptr<McapSink> file;
-  std::shared_ptr<LastSink> last;  // if there is one
   std::shared_ptr<channels::Sink> first;
 };
 
+// A ring keeps nothing of the one before it, as every file that is written anew.
+base::Result<std::vector<RingPiece>> make_room_for_ring(const std::string& file) {
+  if (const auto good = mcap::File::check_name(file); !good) return good.error();
+  auto stale = ring_pieces(file);
+  if (const auto at_rest = check_at_rest(stale); !at_rest) return at_rest.error();
+  remove_pieces(stale);
+  std::remove(file.c_str());
+  return stale;
+}
+
 base::Result<Sinks> open_sinks(const RecordOptions& options, const RunClock& clock) {
-  auto file = McapSink::create(options.file, options.split, [&](const std::string& path) { return new_file(path, options, clock); });
+  Split split = options.split;
+  if (options.last_s > 0) split = {.time = nanoseconds(options.last_s), .is_ring = true, .compression = options.compression};
+  auto file = McapSink::create(options.file, split, [&](const std::string& path) { return new_file(path, options, clock); });
   if (!file) return file.error();
-  Sinks sinks{*file, nullptr, *file};
-  if (options.last_s > 0) {
-    sinks.last = std::make_shared<LastSink>(sinks.first, std::chrono::nanoseconds(std::llround(options.last_s * 1e9)));
-    sinks.first = sinks.last;
-  }
+  Sinks sinks{*file, *file};
   if (options.rate > 0) sinks.first = std::make_shared<RateSink>(sinks.first, options.rate);
   return sinks;
 }
 
 // From all sources into the sink, until it is to end. False when there is nothing to record.
 bool record_into(Editor& editor, const RecordOptions& options, const RunClock& clock, const std::vector<Editor::Port>& ports,
-                 channels::Exchange& exchange) {
+                 channels::Exchange& exchange, const std::vector<RingPiece>& stale) {
   const auto end = std::make_shared<EndHandle>();
   PortSource source(editor.orb(), exchange, clock);
   ComponentSource components(editor.orb(), exchange, clock);
@@ -323,7 +331,8 @@ bool record_into(Editor& editor, const RecordOptions& options, const RunClock& c
     const editor::CallLimit limited(editor.limit());
     components.diagnose(now, source);
   };
-  const auto views = open_views(exchange, options, clock, components.size() > 0 ? std::function<void(channels::Time)>(diagnose) : nullptr);
+  const auto views =
+      open_views(exchange, options, clock, components.size() > 0 ? std::function<void(channels::Time)>(diagnose) : nullptr, end);
   if (!views) {
     editor.fail(views.error());
     return false;
@@ -332,8 +341,14 @@ bool record_into(Editor& editor, const RecordOptions& options, const RunClock& c
   if (!options.quiet)
     std::cerr << "recording " << source.size() << " ports" << (*views ? " and the simulator" : "") << " into "
               << base::in_quotes(options.file) << "; Ctrl-C ends it\n";
+  if (!stale.empty() && !options.quiet)
+    std::cerr << "rtse: " << names_of(stale) << ": of an earlier ring that was not put together, replaced\n";
   wait_for_end(options, exchange, end, [&] { look_again(editor, source, components); });
-  if (end->is_raised() && !exchange.failure() && !options.quiet) std::cerr << "a component is in its error state\n";
+  if (exchange.failure() || !end->is_raised()) return true;
+  if (*views && !(*views)->is_live())
+    editor.fail({"record: the simulator has ended, and the recording with it"});
+  else if (!options.quiet)
+    std::cerr << "a component is in its error state\n";
   return true;
 }
 
@@ -353,6 +368,39 @@ base::Result<void> keep_hashes(channels::Exchange& exchange, const std::string& 
   return put_hashes(exchange, file);
 }
 
+// The names of the files that a split made, and are there.
+std::string files_of(const RecordOptions& options, const McapSink& sink) {
+  if (options.split.is_one()) return base::in_quotes(options.file);
+  const std::string first = base::in_quotes(numbered_path(options.file, 1));
+  return sink.files() == 1 ? first : first + " to " + base::in_quotes(numbered_path(options.file, sink.files()));
+}
+
+void report(const RecordOptions& options, std::uint64_t samples, std::uint32_t channels, const std::string& files) {
+  if (!options.quiet) std::cerr << "recorded " << samples << " samples of " << channels << " channels in " << files << '\n';
+}
+
+// The end of a file that was written to the end, or why it was not.
+void finish_file(Editor& editor, const RecordOptions& options, const McapSink& sink, const base::Result<void>& written) {
+  if (!written) return editor.fail({written.error().message + "; what came before is in it"});
+  report(options, sink.samples(), sink.channels(), files_of(options, sink));
+}
+
+// What is in the pieces stays there until it is in the file.
+void finish_ring(Editor& editor, const RecordOptions& options, const base::Result<void>& written) {
+  const auto pieces = ring_pieces(options.file);
+  const auto fail = [&](const base::Error& error) {
+    editor.fail({error.message + "; " +
+                 (pieces.empty()
+                      ? "nothing was recorded"
+                      : "what came before is in " + names_of(pieces) + ", rtse recording repair " + options.file + " puts it together")});
+  };
+  if (!written) return fail(written.error());
+  const auto joined = join_ring(pieces, options.file);
+  if (!joined) return fail(joined.error());
+  remove_pieces(pieces);
+  report(options, joined->samples, joined->channels, base::in_quotes(options.file));
+}
+
 void record(Editor& editor, const RecordOptions& options) {
   const RunClock clock(static_cast<std::uint32_t>(options.server_id));
   const auto ports = chosen_ports(editor, options);
@@ -362,24 +410,36 @@ void record(Editor& editor, const RecordOptions& options) {
     const auto simulation = shm::Iface::open(static_cast<std::uint32_t>(options.server_id), shm::IfaceType::simulation, "world");
     if (!simulation) return editor.fail(simulation.error());
   }
+  const bool is_ring = options.last_s > 0;
+  const auto stale = is_ring ? make_room_for_ring(options.file) : std::vector<RingPiece>();
+  if (!stale) return editor.fail(stale.error());
   auto sinks = open_sinks(options, clock);
   if (!sinks) return editor.fail(sinks.error());
   editor::catch_interrupts();
   const LookSignal caught;
+  base::Result<void> written;
   {
     channels::Exchange exchange;
     exchange.attach(sinks->first, {.patience = clock.is_lockstep() ? lockstep_patience : std::chrono::seconds(0)});
-    if (!record_into(editor, options, clock, *ports, exchange)) return;
+    if (!record_into(editor, options, clock, *ports, exchange, *stale)) {
+      if (is_ring) remove_pieces(ring_pieces(options.file));
+      return;
+    }
     if (!options.hashes.empty()) {
       if (const auto kept = keep_hashes(exchange, options.hashes); !kept) editor.fail(kept.error());
     }
     if (!exchange.drain(std::chrono::seconds(30))) editor.fail({"record: the file took no more samples for 30 s; the last ones are lost"});
-    if (sinks->last && !exchange.failure()) {
-      if (const auto done = sinks->last->hand_on(); !done) editor.fail(done.error());
+    if (const auto failure = exchange.failure()) written = *failure;
+    for (const auto& [topic, count] : written ? exchange.dropped() : decltype(exchange.dropped())()) {
+      editor.fail(
+          {"record: " + std::to_string(count) + " samples of " + topic + " were dropped, they came faster than they could be written"});
     }
-    report(editor, options, *sinks->file, exchange);
   }
-  if (const auto closed = sinks->file->close(); !closed && !editor.failed()) editor.fail(closed.error());
+  if (const auto closed = sinks->file->close(); !closed && written) written = closed;
+  if (is_ring)
+    finish_ring(editor, options, written);
+  else
+    finish_file(editor, options, *sinks->file, written);
 }
 
 }  // namespace
@@ -404,14 +464,16 @@ void add_record(base::Command& app, editor::Chosen& chosen) {
   command->add_option("-o,--output", options->file, "The file to write")->required();
   command->add_option("-t,--duration", options->duration_s, "End after so many seconds of real time")->seconds_between(0.0, 1e9);
   auto split = std::make_shared<std::string>();
-  command->add_option("--split", *split, "Begin a new file after so many octets (500M) or so much time (10m)")
-      ->check([](const std::string& text) {
-        const auto parsed = parse_split(text);
-        return parsed ? std::string() : parsed.error().message;
-      });
+  auto* splitting = command->add_option("--split", *split, "Begin a new file after so many octets (500M) or so much time (10m)")
+                        ->check([](const std::string& text) {
+                          const auto parsed = parse_split(text);
+                          return parsed ? std::string() : parsed.error().message;
+                        });
   command->add_option("--rate", options->rate, "At most so many samples of each channel in a second")
       ->check(base::number_between(1e-3, 1e6));
-  command->add_option("--last", options->last_s, "Keep only so many seconds before the end")->seconds_between(0.1, 1e6);
+  command->add_option("--last", options->last_s, "Keep only so many seconds before the end")
+      ->seconds_between(0.1, 1e6)
+      ->excludes(splitting);
   command->add_flag("--until-error", options->until_error, "End when a component is in its error state");
   command->add_option("--hashes", options->hashes, "The hash log of the run, which is there at a second interrupt; rtse run uses it");
   command->add_option("--compression", options->compression, "zstd, lz4 or none")

@@ -1,5 +1,6 @@
 // recording info, ls, cat, export, compare, repair.
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <map>
@@ -15,6 +16,7 @@
 #include "mcap/mcap.h"
 #include "output.h"
 #include "recorder_commands.h"
+#include "ring.h"
 #include "sample_export.h"
 #include "sample_text.h"
 #include "selection.h"
@@ -27,9 +29,12 @@ using editor::Editor;
 
 // ---- info, ls ----
 
+constexpr std::uint64_t most_read = 2ull << 30;  // [octets] of all samples; of more than that the indexes have to do
+
 // What a channel has, and its longest silence.
 struct ChannelFacts {
   std::uint64_t samples = 0;
+  bool is_read = true;  // else octets and missing samples are not known
   std::uint64_t octets = 0;
   std::uint64_t missing = 0;  // by their numbers
   mcap::Time first{0};
@@ -39,21 +44,22 @@ struct ChannelFacts {
   std::uint32_t next_sequence = 0;
 };
 
-void take_in(ChannelFacts& facts, const mcap::Message& message) {
+void take_in(ChannelFacts& facts, mcap::Time time) {
   if (facts.samples == 0) {
-    facts.first = message.log_time;
-  } else {
-    const mcap::Time gap = message.log_time - facts.last;
-    if (gap > facts.longest_gap) {
-      facts.longest_gap = gap;
-      facts.longest_gap_at = facts.last;
-    }
-    if (message.sequence > facts.next_sequence) facts.missing += message.sequence - facts.next_sequence;
+    facts.first = time;
+  } else if (const mcap::Time gap = time - facts.last; gap > facts.longest_gap) {
+    facts.longest_gap = gap;
+    facts.longest_gap_at = facts.last;
   }
-  facts.next_sequence = message.sequence + 1;
-  facts.last = message.log_time;
-  facts.octets += message.data.size();
+  facts.last = time;
   ++facts.samples;
+}
+
+void take_in(ChannelFacts& facts, const mcap::Message& message) {
+  if (facts.samples > 0 && message.sequence > facts.next_sequence) facts.missing += message.sequence - facts.next_sequence;
+  facts.next_sequence = message.sequence + 1;
+  facts.octets += message.data.size();
+  take_in(facts, message.log_time);
 }
 
 double rate_of(const ChannelFacts& facts) {
@@ -61,8 +67,28 @@ double rate_of(const ChannelFacts& facts) {
   return duration > 0 ? static_cast<double>(facts.samples - 1) / duration : 0;
 }
 
-std::map<std::uint16_t, ChannelFacts> facts_of(Editor& editor, mcap::Reader& reader, const std::string& file) {
-  std::map<std::uint16_t, ChannelFacts> facts;
+using Facts = std::map<std::uint16_t, ChannelFacts>;
+
+// What the indexes of the messages say, which stand outside of what is compressed; nothing when the file has not all of them, or does not
+// have its messages in the order of time.
+std::optional<Facts> indexed_facts(mcap::Reader& reader) {
+  Facts facts;
+  for (const auto& [id, channel] : reader.channels()) facts[id].is_read = false;
+  bool is_in_order = true;
+  const bool has_all = reader.for_each_time([&](std::uint16_t channel, mcap::Time time) {
+    const auto found = facts.find(channel);
+    if (found == facts.end()) return;
+    is_in_order = is_in_order && (found->second.samples == 0 || time >= found->second.last);
+    take_in(found->second, time);
+  });
+  return has_all && is_in_order ? std::optional(std::move(facts)) : std::nullopt;
+}
+
+Facts facts_of(Editor& editor, mcap::Reader& reader, const std::string& file) {
+  if (reader.uncompressed() > most_read) {
+    if (auto facts = indexed_facts(reader)) return std::move(*facts);
+  }
+  Facts facts;
   for (const auto& [id, channel] : reader.channels()) facts[id];
   for_each(editor, reader, {.file = file, .topics = {}}, [&](const mcap::Message& message) {
     take_in(facts[message.channel], message);
@@ -73,26 +99,31 @@ std::map<std::uint16_t, ChannelFacts> facts_of(Editor& editor, mcap::Reader& rea
 
 Json channel_json(const mcap::Reader& reader, const mcap::Channel& channel, const ChannelFacts& facts) {
   const auto schema = reader.schemas().find(channel.schema);
+  const auto read = [&](std::uint64_t count) { return facts.is_read ? Json(count) : Json(nullptr); };
   return {{"topic", channel.topic},
           {"type", schema == reader.schemas().end() ? "" : schema->second.name},
           {"encoding", channel.encoding},
           {"samples", facts.samples},
-          {"octets", facts.octets},
+          {"octets", read(facts.octets)},
           {"rate", rate_of(facts)},
           {"first", seconds(facts.first)},
           {"last", seconds(facts.last)},
-          {"missing", facts.missing},
+          {"missing", read(facts.missing)},
           {"longest_gap", seconds(facts.longest_gap)},
           {"longest_gap_at", seconds(facts.longest_gap_at)}};
 }
 
 void print_channel(const Json& channel) {
   char line[512];
-  std::snprintf(line, sizeof line, "%-40s %-28s %8llu samples  %8.2f Hz  %10llu octets", channel["topic"].get<std::string>().c_str(),
-                channel["type"].get<std::string>().c_str(), channel["samples"].get<unsigned long long>(), channel["rate"].get<double>(),
-                channel["octets"].get<unsigned long long>());
+  std::snprintf(line, sizeof line, "%-40s %-28s %8llu samples  %8.2f Hz", base::printable(channel["topic"].get<std::string>()).c_str(),
+                base::printable(channel["type"].get<std::string>()).c_str(), channel["samples"].get<unsigned long long>(),
+                channel["rate"].get<double>());
   std::cout << line;
-  if (channel["missing"] != 0) std::cout << "  " << channel["missing"] << " missing";
+  if (!channel["octets"].is_null()) {
+    std::snprintf(line, sizeof line, "  %10llu octets", channel["octets"].get<unsigned long long>());
+    std::cout << line;
+    if (channel["missing"] != 0) std::cout << "  " << channel["missing"] << " missing";
+  }
   std::cout << '\n';
 }
 
@@ -122,13 +153,17 @@ void list(Editor& editor, const std::string& file, bool with_run) {
     all["channels"].push_back(channel_json(*reader, channel, found == facts.end() ? ChannelFacts{} : found->second));
   }
   if (editor.json()) return editor.print(with_run ? all : all["channels"]);
+  if (std::ranges::any_of(facts, [](const auto& one) { return !one.second.is_read; }))
+    std::cerr << "rtse: samples of more than " << (most_read >> 30)
+              << " GiB are counted by their indexes: without octets and missing ones\n";
   if (with_run) {
-    std::cout << "file        " << file << "\nwritten by  " << reader->library() << "\ntime        "
+    std::cout << "file        " << file << "\nwritten by  " << base::printable(reader->library()) << "\ntime        "
               << seconds_text(reader->statistics().first) << " to " << seconds_text(reader->statistics().last) << " s\nsamples     "
               << reader->statistics().messages << '\n';
-    for (const auto& [key, value] : all["run"].items()) std::cout << "run         " << key << " = " << value.get<std::string>() << '\n';
+    for (const auto& [key, value] : all["run"].items())
+      std::cout << "run         " << base::printable(key) << " = " << base::printable(value.get<std::string>()) << '\n';
     for (const auto& one : all["attachments"])
-      std::cout << "attachment  " << one["name"].get<std::string>() << ", " << one["octets"] << " octets\n";
+      std::cout << "attachment  " << base::printable(one["name"].get<std::string>()) << ", " << one["octets"] << " octets\n";
   }
   for (const auto& channel : all["channels"]) {
     if (with_run) std::cout << "channel     ";
@@ -162,12 +197,51 @@ void cat(Editor& editor, const Selection& selection) {
 
 // ---- repair ----
 
+// Whether there are pieces of a ring, and no file that was made of them later.
+bool has_newer_pieces(const std::string& file, const std::vector<RingPiece>& pieces) {
+  std::error_code error;  // of a file that is not there: its time is the earliest
+  const auto time = std::filesystem::last_write_time(file, error);
+  return std::ranges::any_of(pieces, [&](const RingPiece& piece) {
+    std::error_code gone;
+    return error || std::filesystem::last_write_time(piece.path, gone) > time;
+  });
+}
+
+// The pieces of a recorder that was killed.
+void put_together(Editor& editor, const std::vector<RingPiece>& pieces, const std::string& file, const std::string& output) {
+  if (const auto at_rest = check_at_rest(pieces); !at_rest) return editor.fail(at_rest.error());
+  const auto done = join_ring(pieces, output.empty() ? file : output);
+  if (!done) return editor.fail(done.error());
+  if (output.empty()) remove_pieces(pieces);
+  if (editor.json())
+    return editor.print(Json{{"samples", done->samples}, {"pieces", pieces.size()}, {"damage", done->damage.value_or("")}});
+  std::cout << done->samples << " samples kept of " << names_of(pieces) << '\n';
+  if (done->damage) std::cout << *done->damage << '\n';
+}
+
 void repair(Editor& editor, const std::string& file, const std::string& output) {
+  if (const auto pieces = ring_pieces(file); has_newer_pieces(file, pieces)) return put_together(editor, pieces, file, output);
   const auto done = mcap::repair(file, output.empty() ? file : output);
   if (!done) return editor.fail(done.error());
-  if (editor.json())
-    return editor.print(Json{{"samples", done->messages}, {"octets_lost", done->octets_lost}, {"damage", done->damage.value_or("")}});
-  std::cout << done->messages << " samples kept, " << done->octets_lost << " octets lost\n";
+  if (done->broken_chunks > 0) editor.set_failed();
+  if (editor.json()) {
+    Json json = {{"samples", done->messages},
+                 {"octets_lost", done->octets_lost},
+                 {"broken_chunks", done->broken_chunks},
+                 {"samples_lost", nullptr},
+                 {"damage", done->damage.value_or("")}};
+    if (done->messages_lost) json["samples_lost"] = *done->messages_lost;
+    return editor.print(json);
+  }
+  std::cout << done->messages << " samples kept, " << done->octets_lost << " octets lost";
+  if (done->broken_chunks > 0) {
+    std::cout << ", " << done->broken_chunks << (done->broken_chunks == 1 ? " broken chunk with " : " broken chunks with ");
+    if (done->messages_lost)
+      std::cout << *done->messages_lost << " samples";
+    else
+      std::cout << "samples that nobody counted";
+  }
+  std::cout << '\n';
   if (done->damage) std::cout << *done->damage << '\n';
 }
 
@@ -228,7 +302,8 @@ void add_recording(base::Command& app, editor::Chosen& chosen) {
     compare(editor, *compared);
   });
 
-  auto* repair_command = recording->add_subcommand("repair", "Give a file that was cut off its summary again");
+  auto* repair_command =
+      recording->add_subcommand("repair", "Give a file that was cut off its summary again, or put a ring's pieces together");
   auto file = std::make_shared<std::string>();
   auto output = std::make_shared<std::string>();
   repair_command->add_option("FILE", *file, "The recording")->required();

@@ -12,6 +12,7 @@
 #include "recorded_run.h"
 #include "recorder_commands.h"
 #include "replay.h"
+#include "ring.h"
 #include "run/interrupt.h"
 
 namespace recorder {
@@ -62,19 +63,27 @@ base::Result<std::vector<ReplayLink>> links_of(const editor::SavedSystem& system
   return links;
 }
 
-// What the recording cannot give the component is said, and left out.
+// What the recording cannot give the component is said, and left out; what the command line names has to be there.
 base::Result<std::vector<ReplayLink>> possible(std::vector<ReplayLink> links, const editor::SavedSystem& system, const Options& options) {
-  auto reader = mcap::Reader::open(options.file);
+  auto reader = open_recording(options.file);
   if (!reader) return reader.error();
+  const auto has = [&](const std::string& topic) {
+    return std::ranges::any_of(reader->channels(), [&](const auto& one) { return one.second.topic == topic; });
+  };
+  for (std::size_t i = 0; i < options.links.size(); ++i) {  // they come first
+    if (!has(links[i].topic))
+      return base::Error{"link " + base::in_quotes(options.links[i]) + ": the recording has no channel " + base::in_quotes(links[i].topic)};
+  }
   std::erase_if(links, [&](const ReplayLink& link) {
-    if (std::ranges::any_of(reader->channels(), [&](const auto& one) { return one.second.topic == link.topic; })) return false;
-    std::cerr << "rtse: input " << options.component << ":" << link.port << ": missing, the recording has no " << link.topic << '\n';
+    if (has(link.topic)) return false;
+    std::cerr << "rtse: input " << options.component << ":" << link.port << ": missing, the recording has no "
+              << base::printable(link.topic) << '\n';
     return true;
   });
   for (const auto& connector : system.connectors) {
     if (connector.is_data || (connector.target.instance != options.component && connector.source.instance != options.component)) continue;
-    std::cerr << "rtse: service port " << connector.source.port_name << ": missing, calls of " << connector.target.port_name
-              << " are not recorded\n";
+    std::cerr << "rtse: service port " << base::printable(connector.source.port_name) << ": missing, calls of "
+              << base::printable(connector.target.port_name) << " are not recorded\n";
   }
   return links;
 }
@@ -106,17 +115,24 @@ base::Result<void> configure(editor::SavedComponent& component, const std::vecto
   return {};
 }
 
-// That in which it ran; the profile may say something else.
+// The rate in which it ran; the profile may say something else. Of a component that was recorded outside of lock step it is not known, as
+// is the tick in which it read a sample.
 base::Result<void> take_rate(editor::SavedComponent& component, const std::string& file) {
-  auto reader = mcap::Reader::open(file);
+  auto reader = open_recording(file);
   if (!reader) return reader.error();
+  bool is_recorded = false;
   for (const auto& [id, channel] : reader->channels()) {
+    if (!channel.topic.starts_with("/" + component.instance + "/")) continue;
+    is_recorded = true;
     const auto period = channel.metadata.find("period_ns");
-    if (!channel.topic.starts_with("/" + component.instance + "/") || period == channel.metadata.end()) continue;
+    if (period == channel.metadata.end()) continue;
     const auto number = base::parse_integer(period->second).value_or(0);
     if (number > 0 && !component.contexts.empty()) component.contexts.front().rate = base::format_number(1e9 / static_cast<double>(number));
     return {};
   }
+  if (is_recorded)
+    std::cerr << "rtse: " << component.instance
+              << " was recorded outside of lock step: in which tick it read a sample is not known, so that its outputs may differ\n";
   return {};
 }
 
@@ -247,6 +263,11 @@ void replay_file(Editor& editor, const Options& options) {
   editor::catch_interrupts();
   const auto made = editor::run_system(editor.orb(), call);
   std::string problem = made.problem;
+  // Of all that can be refused this has a reason that the component's log does not give.
+  if (problem.find(": activating ") != std::string::npos)
+    problem = "replay: " + options.component +
+              " refuses to be activated alone; one that uses the simulator's devices finds none in the empty world of a replay (" +
+              problem + ")";
   if (problem.empty()) {
     report(editor, options, result);
     problem = nothing_compared(options, result);

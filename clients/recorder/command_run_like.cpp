@@ -11,6 +11,7 @@
 #include "command.h"
 #include "recorded_run.h"
 #include "recorder_commands.h"
+#include "ring.h"
 #include "run/child_process.h"
 #include "run/interrupt.h"
 
@@ -78,7 +79,7 @@ void run_like(Editor& editor, const LikeOptions& options) {
 void add_run_like(base::Command& app, editor::Chosen& chosen) {
   auto* command = app.add_subcommand("run", "Make a recorded run again; all options of rtse run besides");
   auto options = std::make_shared<LikeOptions>();
-  command->add_option("--like", options->file, "A recording of rtse run --record")->required()->check(base::existing_file());
+  command->add_option("--like", options->file, "A recording of rtse run --record")->required()->check(check_recording);
   command->allow_extras();
   command->fallthrough(false);
   command->callback([&chosen, options, command] {

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "base/text.h"
@@ -22,15 +24,23 @@ class Side {
   base::Result<void> begin() {
     auto query = query_of(reader_, selection_);
     if (!query) return query.error();
-    if (selection_.topics.empty()) {
-      query->channels.push_back(0);  // none but these
-      for (const auto& [id, channel] : reader_.channels()) {
-        const auto wish = channel.metadata.find("compare");
-        if (wish == channel.metadata.end() || wish->second != "no") query->channels.push_back(id);
-      }
+    for (const auto& [id, channel] : reader_.channels()) {
+      const auto wish = channel.metadata.find("compare");
+      const bool is_meant = selection_.topics.empty() ? wish == channel.metadata.end() || wish->second != "no"
+                                                      : std::ranges::find(query->channels, id) != query->channels.end();
+      if (is_meant) chosen_.emplace(channel.topic, channel.metadata.contains("late") || channel.topic == "/hashes");
     }
-    reader_.seek(std::move(*query));
     return {};
+  }
+  // Those that count, and whether they are about the run rather than of it: a hash log is there or not.
+  const std::map<std::string, bool>& chosen() const { return chosen_; }
+  void leave_out(const std::string& topic) { chosen_.erase(topic); }
+  void seek() {
+    mcap::Query query{.channels = {0}};  // none but these
+    for (const auto& [id, channel] : reader_.channels()) {
+      if (chosen_.contains(channel.topic)) query.channels.push_back(id);
+    }
+    reader_.seek(std::move(query));
   }
   base::Result<std::optional<mcap::Message>> next() { return reader_.next(); }
   const mcap::Reader& reader() const { return reader_; }
@@ -41,6 +51,7 @@ class Side {
   mcap::Reader reader_;
   Selection selection_;
   SampleValues values_;
+  std::map<std::string, bool> chosen_;
 };
 
 struct Entry {
@@ -102,6 +113,25 @@ std::optional<std::string> difference(const DifferenceOptions& options, Side& fi
   return "octets differ";
 }
 
+// Channels that only one of them has; those of hash logs are noted and left out.
+std::vector<std::string> lonely_channels(const CompareOptions& options, Side& first, Side& second) {
+  std::vector<std::string> differences;
+  for (const auto& [one, other, file] : {std::tuple(&first, &second, &options.first), std::tuple(&second, &first, &options.second)}) {
+    const auto chosen = one->chosen();
+    for (const auto& [topic, is_late] : chosen) {
+      if (other->chosen().contains(topic)) continue;
+      const std::string what = "channel " + base::printable(topic) + " is in " + *file + " only";
+      if (!is_late) {
+        differences.push_back(what);
+        continue;
+      }
+      std::cerr << "rtse: " << what << ", and is left out\n";
+      one->leave_out(topic);
+    }
+  }
+  return differences;
+}
+
 }  // namespace
 
 void compare(editor::Editor& editor, const CompareOptions& options) {
@@ -112,11 +142,19 @@ void compare(editor::Editor& editor, const CompareOptions& options) {
     sides.push_back(std::make_unique<Side>(std::move(*reader), Selection{.file = file, .topics = options.topics}));
     if (const auto begun = sides.back()->begin(); !begun) return editor.fail(begun.error());
   }
+  if (const auto lonely = lonely_channels(options, *sides[0], *sides[1]); !lonely.empty()) {
+    if (editor.json())
+      editor.print(Json{{"equal", false}, {"difference", base::join(lonely, ", ")}});
+    else
+      for (const auto& one : lonely) std::cout << one << '\n';
+    return editor.set_failed();
+  }
+  for (const auto& side : sides) side->seek();
   Moments first(*sides[0]);
   Moments second(*sides[1]);
   std::uint64_t samples = 0;
   const auto differ = [&](mcap::Time time, const std::string& topic, const std::string& how) {
-    const std::string what = topic + " " + how;
+    const std::string what = base::printable(topic) + " " + base::printable(how);
     const std::string place = "time " + seconds_text(time) + " s" + tick_text(*sides[0], topic, time) + ": " + what;
     if (editor.json())
       editor.print(Json{{"equal", false}, {"time", seconds(time)}, {"difference", what}});

@@ -26,7 +26,7 @@ std::string text_of(std::uint64_t hash) {
 base::Result<void> put_hashes(channels::Exchange& exchange, const std::string& file) {
   auto log = base::HashLogReader::open(file);
   if (!log) return log.error();
-  const auto channel = exchange.open({"/hashes", "json", {"rtmsim.Hashes", "jsonschema", schema_text}, {}});
+  const auto channel = exchange.open({"/hashes", "json", {"rtmsim.Hashes", "jsonschema", schema_text}, {{"late", "yes"}}});
   if (!channel) return channel.error();
   base::HashTick tick;
   for (;;) {

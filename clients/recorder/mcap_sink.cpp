@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <utility>
 
 #include "base/text.h"
+#include "ring.h"
 
 namespace recorder {
 
@@ -14,13 +14,7 @@ namespace {
 
 constexpr std::chrono::milliseconds flush_period{500};  // what a kill may cost, with the time that a rest may take
 
-// "run.mcap" -> "run-002.mcap"
-std::string numbered(const std::string& path, std::size_t number) {
-  char text[24];
-  std::snprintf(text, sizeof text, "-%03zu", number);
-  const std::filesystem::path whole(path);
-  return (whole.parent_path() / (whole.stem().string() + text + whole.extension().string())).string();
-}
+constexpr std::chrono::seconds least_reset{1};  // back in time; less than that is a sample that came late
 
 }  // namespace
 
@@ -58,10 +52,17 @@ base::Result<void> McapSink::begin_file(channels::Time begun) {
     if (const auto closed = writer_->close(); !closed) return closed;
   }
   ++files_;
-  const bool is_one = split_.octets == 0 && split_.time.count() == 0;
-  auto writer = make_(is_one ? path_ : numbered(path_, files_));
+  // The one before spans all that a ring keeps.
+  if (split_.is_ring && files_ > 2) std::remove(numbered_path(path_, files_ - 2).c_str());
+  const std::string path = split_.is_one() ? path_ : numbered_path(path_, files_);
+  auto writer = make_(path);
+  if (!writer && split_.is_ring) std::remove(path.c_str());  // what has no metadata yet is no piece
   if (!writer) return writer.error();
   writer_.emplace(std::move(*writer));
+  if (split_.is_ring) {
+    if (const auto added = writer_->add_metadata(ring_metadata({"", files_, resets_, split_.time, split_.compression})); !added)
+      return added;
+  }
   ids_.assign(ids_.size(), 0);
   schemas_.clear();
   first_.reset();
@@ -76,6 +77,7 @@ base::Result<void> McapSink::begin_file(channels::Time begun) {
     if (const auto flushed = writer_->flush(); !flushed) return flushed;
   }
   begun_with_ = writer_->size();
+  chunk_begun_ = begun;
   return {};
 }
 
@@ -83,6 +85,13 @@ base::Result<void> McapSink::begin_file(channels::Time begun) {
 bool McapSink::is_full(const channels::Sample& sample) const {
   if (split_.octets > 0 && writer_->size() >= std::max(split_.octets, 2 * begun_with_)) return true;
   return split_.time.count() > 0 && first_ && sample.log_time - *first_ >= split_.time;
+}
+
+// Simulated time has begun again. What is known only behind the run (hashes) says nothing of time.
+bool McapSink::has_reset(const channels::Sample& sample) const {
+  if (!split_.is_ring || sample.log_time >= latest_ - std::max<channels::Time>(split_.time, least_reset)) return false;
+  const auto channel = channels_.find(sample.channel);
+  return channel == channels_.end() || !channel->second.metadata.contains("late");
 }
 
 base::Result<void> McapSink::add(channels::ChannelId id, const channels::Channel& channel) {
@@ -101,15 +110,26 @@ base::Result<void> McapSink::add(channels::ChannelId id, const channels::Channel
 }
 
 base::Result<void> McapSink::open(channels::ChannelId id, const channels::Channel& channel) {
-  if (split_.octets > 0 || split_.time.count() > 0) channels_.emplace(id, channel);
+  if (!split_.is_one()) channels_.emplace(id, channel);
   return add(id, channel);
 }
 
 base::Result<void> McapSink::take(const channels::Sample& sample) {
-  if (is_full(sample)) {
+  if (has_reset(sample)) {
+    ++resets_;
+    latest_ = channels::Time(0);
+    for (auto& [id, held] : latched_) held.log_time = sample.log_time;
+    if (const auto begun = begin_file(sample.log_time); !begun) return begun;
+  } else if (is_full(sample)) {
     if (const auto begun = begin_file(sample.log_time); !begun) return begun;
   }
+  // A run that is faster than real time loses no more of its own last second.
+  if (split_.is_ring && sample.log_time - chunk_begun_ >= flush_period) {
+    chunk_begun_ = sample.log_time;
+    if (const auto flushed = writer_->flush(); !flushed) return flushed;
+  }
   if (!first_) first_ = sample.log_time;
+  latest_ = std::max(latest_, sample.log_time);
   if (const auto channel = channels_.find(sample.channel); channel != channels_.end() && channel->second.is_latched())
     latched_.insert_or_assign(sample.channel, copy_of(sample));
   return write(sample);

@@ -18,6 +18,9 @@ namespace recorder {
 struct Split {
   std::uint64_t octets = 0;
   std::chrono::nanoseconds time{0};  // by the samples' own clock
+  bool is_ring = false;              // only the latest two stay, with the metadata of pieces, see ring.h
+  std::string compression = "zstd";  // of a ring, once it is put together
+  bool is_one() const { return octets == 0 && time.count() == 0; }
 };
 
 // "500M", "2G", "64k" octets; "30s", "10m", "1h".
@@ -37,6 +40,7 @@ class McapSink final : public channels::Sink {
   base::Result<void> close();
   std::uint64_t samples() const { return samples_ + writer_->statistics().messages; }
   std::uint32_t channels() const { return writer_->statistics().channels; }  // of the last file
+  // Of those that are there, the latest is the last.
   std::size_t files() const { return files_; }
 
  private:
@@ -45,6 +49,7 @@ class McapSink final : public channels::Sink {
   base::Result<void> write(const channels::Sample& sample);
   base::Result<void> add(channels::ChannelId id, const channels::Channel& channel);
   bool is_full(const channels::Sample& sample) const;
+  bool has_reset(const channels::Sample& sample) const;
 
   const std::string path_;
   const Split split_;
@@ -53,7 +58,10 @@ class McapSink final : public channels::Sink {
   std::size_t files_ = 0;
   std::uint64_t begun_with_ = 0;  // [octets] of what stands in every file, in this one
   std::uint64_t samples_ = 0;     // in the files before
+  std::uint64_t resets_ = 0;      // of time, since the first file was begun
   std::optional<channels::Time> first_;
+  channels::Time latest_{0};                                              // of a ring
+  channels::Time chunk_begun_{0};                                         // likewise
   std::map<channels::ChannelId, channels::Channel> channels_;             // those that every file gets
   std::map<channels::ChannelId, channels::Sample> latched_;               // the latest of those, of channels that hold
   std::vector<std::uint16_t> ids_;                                        // in the file, by channel

@@ -5,6 +5,7 @@
 
 #include "mcap/mcap.h"
 #include "remote.h"
+#include "ring.h"
 
 namespace recorder {
 
@@ -58,7 +59,7 @@ const char* text_of(Kind kind) {
 }  // namespace
 
 base::Result<RecordedLife> RecordedLife::read(const std::string& file, const std::string& component) {
-  auto reader = mcap::Reader::open(file);
+  auto reader = open_recording(file);
   if (!reader) return reader.error();
   RecordedLife life;
   mcap::Query query{.channels = {0}};  // none but these

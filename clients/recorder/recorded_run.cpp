@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "ring.h"
 
 namespace recorder {
 
@@ -45,7 +46,7 @@ RecordedRun::~RecordedRun() {
 }
 
 base::Result<RecordedRun> RecordedRun::unpack(const std::string& recording, Needs needs) {
-  auto reader = mcap::Reader::open(recording);
+  auto reader = open_recording(recording);
   if (!reader) return reader.error();
   RecordedRun run;
   run.end_s_ = std::chrono::duration<double>(reader->statistics().last).count();

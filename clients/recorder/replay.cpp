@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "read_ahead.h"
 #include "remote.h"
+#include "ring.h"
 #include "shm/lockstep.h"
 #include "tap.h"
 
@@ -111,6 +112,15 @@ class Player {
 
 // ---- wiring ----
 
+// "; it has a, b"
+std::string in_ports(const editor::ComponentView& component) {
+  std::vector<std::string> names;
+  for (const auto& port : component.ports) {
+    if (port.port_type() == "DataInPort") names.push_back(port.name);
+  }
+  return names.empty() ? ", it has none at all" : "; it has " + base::join(names, ", ");
+}
+
 base::Result<void> Player::connect() {
   editor::Editor editor(orb_, system_.naming(), false, std::chrono::milliseconds(call_limit));
   auto component = editor.component(options_.component + ".rtc", {.contexts = true, .connectors = true});
@@ -123,7 +133,10 @@ base::Result<void> Player::connect() {
   for (const auto& link : options_.links) {
     const auto* port = component->port(link.port);
     const auto channel = topics.find(link.topic);
-    if (port == nullptr || channel == topics.end()) return base::Error{"link of " + link.topic + " with " + link.port + ": is not there"};
+    if (port == nullptr || port->port_type() != "DataInPort")
+      return base::Error{"link of " + link.topic + ": component " + options_.component + " has no InPort " + base::in_quotes(link.port) +
+                         in_ports(*component)};
+    if (channel == topics.end()) return base::Error{"link of " + link.topic + " with " + link.port + ": is not there"};
     auto tap = editor::Tap::connect(orb_, *port, link.properties, {});
     if (!tap) return tap.error();
     Input& input = by_channel_[channel->second];
@@ -151,7 +164,7 @@ base::Result<void> Player::connect() {
     outputs_.push_back(std::move(output));
   }
   for (const auto& [channel, input] : by_channel_) wanted.channels.push_back(channel);
-  auto reader = mcap::Reader::open(options_.file);
+  auto reader = open_recording(options_.file);
   if (!reader) return reader.error();
   ahead_.emplace(std::move(*reader), std::move(wanted));
   return {};
@@ -382,7 +395,7 @@ base::Result<ReplayResult> Player::run() {
 }  // namespace
 
 base::Result<ReplayResult> replay(CORBA::ORB_ptr orb, editor::RunningSystem& system, const ReplayOptions& options) {
-  auto recording = mcap::Reader::open(options.file);
+  auto recording = open_recording(options.file);
   if (!recording) return recording.error();
   return Player(orb, system, options, std::move(*recording)).run();
 }

@@ -107,7 +107,25 @@ std::vector<std::pair<std::string, Json>> members_of(const Json& value, std::siz
 
 std::string place_of(const std::string& outer, const std::string& key) { return outer.empty() ? key : outer + "." + key; }
 
-std::string json_text(const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }
+// JSON takes these as they are, a terminal obeys them.
+std::string json_text(const Json& value) {
+  const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string safe;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const auto next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0;
+    const bool is_c1 = byte == 0xc2 && next >= 0x80 && next < 0xa0;
+    if (!is_c1 && byte != 0x7f) {
+      safe += text[i];
+      continue;
+    }
+    char code[8];
+    std::snprintf(code, sizeof code, "\\u%04x", is_c1 ? next : byte);
+    safe += code;
+    i += is_c1 ? 1 : 0;
+  }
+  return safe;
+}
 
 std::string seconds_text(mcap::Time time) {
   char text[40];

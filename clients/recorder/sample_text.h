@@ -33,7 +33,7 @@ std::vector<std::pair<std::string, Json>> members_of(const Json& value, std::siz
 // "data" and "vx" -> "data.vx".
 std::string place_of(const std::string& outer, const std::string& key);
 
-// In one line. What is no UTF-8 is replaced.
+// In one line. What is no UTF-8 is replaced, control characters are escaped.
 std::string json_text(const Json& value);
 
 // "12.345000000"

@@ -7,10 +7,13 @@
 
 #include "base/descriptors.h"
 #include "base/text.h"
+#include "ring.h"
 
 namespace recorder {
 
 namespace {
+
+constexpr std::size_t most_told = 5;  // broken chunks
 
 mcap::Time to_time(double seconds) { return mcap::Time(static_cast<std::uint64_t>(std::llround(seconds * 1e9))); }
 
@@ -32,7 +35,7 @@ base::Result<mcap::Query> query_of(const mcap::Reader& reader, const Selection& 
     }
     if (query.channels.size() != before) continue;
     std::vector<std::string> topics;
-    for (const auto& [id, channel] : reader.channels()) topics.push_back(channel.topic);
+    for (const auto& [id, channel] : reader.channels()) topics.push_back(base::printable(channel.topic));
     return base::Error{base::in_quotes(selection.file) + ": has no channel " + base::in_quotes(pattern) +
                        "; channels: " + base::join(topics, ", ")};
   }
@@ -40,7 +43,7 @@ base::Result<mcap::Query> query_of(const mcap::Reader& reader, const Selection& 
 }
 
 std::optional<mcap::Reader> open(editor::Editor& editor, const std::string& file) {
-  auto reader = mcap::Reader::open(file);
+  auto reader = open_recording(file);
   if (!reader) {
     editor.fail(reader.error());
     return std::nullopt;
@@ -54,16 +57,17 @@ void for_each(editor::Editor& editor, mcap::Reader& reader, const Selection& sel
   auto query = query_of(reader, selection);
   if (!query) return editor.fail(query.error());
   reader.seek(std::move(*query));
+  std::size_t broken = 0;  // chunks
   for (int n = 0; selection.count <= 0 || n < selection.count;) {
     const auto message = reader.next();
     if (!message) {
-      editor.fail(message.error());
+      if (++broken <= most_told) editor.fail(message.error());
       continue;
     }
-    if (!message->has_value() || base::output_is_closed()) return;
-    if (!take(**message)) return;
+    if (!message->has_value() || base::output_is_closed() || !take(**message)) break;
     ++n;
   }
+  if (broken > most_told) editor.fail({base::in_quotes(selection.file) + ": ... and " + std::to_string(broken - most_told) + " more"});
 }
 
 }  // namespace recorder

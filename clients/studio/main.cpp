@@ -13,6 +13,7 @@
 #include "orb.h"
 #include "recorded_studio.h"
 #include "remote.h"
+#include "ring.h"
 #include "started_run.h"
 #include "studio.h"
 
@@ -30,7 +31,7 @@ void add_options(base::Command& app, Settings& settings) {
   app.add_option("-w,--world", settings.start.world, "SDFormat world: start a simulator of it, paused")->check(base::existing_file());
   app.add_option("FILE", settings.start.system,
                  "RTSProfile: start its components and a simulator of --world, as rtse run does, paused; or a recording (MCAP): show it")
-      ->check(base::existing_file());
+      ->check(recorder::check_recording);
   app.add_option("--ns", settings.studio.name_server,
                  "Name server HOST[:PORT] of what runs already (a system that is started here gets one of its own); default: the first of "
                  "$RTCTREE_NAMESERVERS, else localhost:2809");

@@ -8,6 +8,7 @@
 
 #include "base/text.h"
 #include "mcap/bytes.h"
+#include "ring.h"
 #include "sample_text.h"
 
 namespace studio {
@@ -252,7 +253,7 @@ nanoseconds RecordingFacts::time_of(double seconds) const {
 }
 
 Result<RecordingFacts> RecordingFacts::read(const std::string& file) {
-  auto reader = mcap::Reader::open(file);
+  auto reader = recorder::open_recording(file);
   if (!reader) return reader.error();
   RecordingFacts facts;
   facts.file = file;

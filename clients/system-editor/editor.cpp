@@ -53,8 +53,10 @@ Result<Editor::Port> Editor::port(const std::string& path, bool with_connectors)
 }
 
 void Editor::fail(const Error& error) {
-  std::cout.flush();
-  std::cerr << "rtse: " + error.message + "\n";
+  if (!is_silent_) {
+    std::cout.flush();
+    std::cerr << "rtse: " + base::printable(error.message, "\n\t") + "\n";  // texts of others are in it
+  }
   failed_ = true;
   if (problem_.empty()) problem_ = error.message;
 }

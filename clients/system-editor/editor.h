@@ -33,6 +33,8 @@ class Editor {
   void fail(const Error& error);
   // For what is told in another way than by a line on standard error.
   void set_failed() { failed_ = true; }
+  // Whoever uses it tells its problem: fail() says nothing from now on.
+  void be_silent() { is_silent_ = true; }
   bool failed() const { return failed_; }
   // What was said first.
   const std::string& problem() const { return problem_; }
@@ -44,6 +46,7 @@ class Editor {
   bool json_;
   std::chrono::milliseconds limit_;
   bool failed_ = false;
+  bool is_silent_ = false;
   std::string problem_;
 };
 

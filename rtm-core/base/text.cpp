@@ -108,19 +108,31 @@ std::string format_number(double value) {
   return error == std::errc{} ? std::string(text, end) : std::string("?");
 }
 
-std::string in_quotes(std::string_view text) {
-  std::string result = "\"";
-  for (const char c : text.substr(0, longest_quoted)) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7f) {
-      char escape[8];
-      std::snprintf(escape, sizeof escape, "\\x%02x", static_cast<unsigned>(byte));
-      result += escape;
+std::string printable(std::string_view text, std::string_view kept) {
+  std::string result;
+  const auto escape = [&](unsigned char byte) {
+    char code[8];
+    std::snprintf(code, sizeof code, "\\x%02x", static_cast<unsigned>(byte));
+    result += code;
+  };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const auto next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0;
+    if (byte == 0xc2 && next >= 0x80 && next < 0xa0) {  // U+0080 to U+009F, as U+009B, which begins sequences as ESC [ does
+      escape(byte);
+      escape(next);
+      ++i;
+    } else if ((byte < 0x20 || byte == 0x7f) && kept.find(text[i]) == std::string_view::npos) {
+      escape(byte);
     } else {
-      result += c;
+      result += text[i];
     }
   }
-  return result + (text.size() > longest_quoted ? "\"..." : "\"");
+  return result;
+}
+
+std::string in_quotes(std::string_view text) {
+  return '"' + printable(text.substr(0, longest_quoted)) + (text.size() > longest_quoted ? "\"..." : "\"");
 }
 
 }  // namespace base

@@ -32,7 +32,9 @@ std::string format_number(double value);
 // [s] The number nearest to the time: 60 ms are 0.06, whose text is short.
 inline double to_seconds(std::chrono::nanoseconds time) { return static_cast<double>(time.count()) / 1e9; }
 
-// A value that comes from outside, fit for one line of a message: control characters escaped, cut after 120 characters.
+// A text that comes from outside, fit for a terminal: control characters as \x1b, those of C1 in UTF-8, too, but for `kept` ones.
+std::string printable(std::string_view text, std::string_view kept = {});
+// The same for one line of a message: in quotes, cut after 120 characters.
 std::string in_quotes(std::string_view text);
 
 }  // namespace base

@@ -41,6 +41,7 @@ TEST(Text, formatted_numbers_read_back_the_same) {
 
 TEST(Text, foreign_text_fits_one_line) {
   EXPECT_EQ(in_quotes("a\nb"), "\"a\\x0ab\"");
+  EXPECT_EQ(printable("\x1b[2Jä\xc2\x9b\x7f\n", "\n"), "\\x1b[2Jä\\xc2\\x9b\\x7f\n");
   EXPECT_EQ(in_quotes(std::string(1000, 'x')).size(), 125u);
 }
 

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -201,6 +202,62 @@ TEST_P(Single, a_flipped_octet_in_a_chunk_costs_that_chunk_alone_and_is_told) {
       std::count_if(lines.begin(), lines.end(), [](const std::string& line) { return line.find("the chunk") != std::string::npos; });
   EXPECT_EQ(errors, 1);
   EXPECT_GT(lines.size(), 90U);
+}
+
+TEST_P(Single, times_of_messages_are_known_without_their_chunks) {
+  record(50, {.chunk_size = 200});
+  const auto times = [&] {
+    std::map<std::uint16_t, std::vector<std::uint64_t>> all;
+    auto reader = Reader::open(path_);
+    if (!reader->for_each_time([&](std::uint16_t channel, Time time) { all[channel].push_back(time.count()); })) all.clear();
+    return all;
+  };
+  std::map<std::uint16_t, std::vector<std::uint64_t>> expected;
+  for (std::uint64_t n = 0; n < 50; ++n) {
+    expected[1].push_back(n * 1'000'000);
+    expected[2].push_back(n * 1'000'000 + 500'000);
+  }
+  EXPECT_EQ(times(), expected);
+
+  std::string broken = octets();
+  const auto place = broken.find("zstd") + 24;
+  broken[place] = static_cast<char>(broken[place] ^ 0x55);
+  put(broken);
+  EXPECT_EQ(times(), expected) << "a broken chunk is not looked at";
+
+  // The first message index of the first chunk becomes a record that nobody knows.
+  std::uint64_t length = 0;
+  const auto chunk = broken.find("zstd") - 4 - 4 - 3 * 8 - 9;
+  std::memcpy(&length, broken.data() + chunk + 1, sizeof length);
+  const auto index = chunk + 9 + length;
+  ASSERT_EQ(broken[index], 7);
+  broken[index] = 99;
+  put(broken);
+  EXPECT_TRUE(times().empty());
+}
+
+TEST_P(Single, a_repair_says_what_a_broken_chunk_costs_and_keeps_the_others) {
+  record(50, {.chunk_size = 200});
+  std::string broken = octets();
+  const auto place = broken.find("zstd");  // of the first chunk, which alone describes the channels
+  broken[place + 24] = static_cast<char>(broken[place + 24] ^ 0x55);
+  put(broken);
+  std::uint64_t length = 0;
+  const auto start = place - 4 - 4 - 3 * 8 - 9;
+  std::memcpy(&length, broken.data() + start + 1, sizeof length);
+
+  const auto repaired = repair(path_, path_);
+  ASSERT_TRUE(repaired) << repaired.error().message;
+  EXPECT_EQ(repaired->broken_chunks, 1U);
+  EXPECT_EQ(repaired->octets_lost, 9 + length);
+  ASSERT_TRUE(repaired->messages_lost.has_value());
+  EXPECT_GT(*repaired->messages_lost, 0U);
+  EXPECT_EQ(repaired->messages + *repaired->messages_lost, 100U);
+  EXPECT_NE(repaired->damage->find("the chunk"), std::string::npos) << *repaired->damage;
+  const auto lines = read();
+  EXPECT_EQ(lines.size(), repaired->messages) << lines.front();
+  EXPECT_EQ(lines.back(), "/log 49500000 ");
+  EXPECT_TRUE(Reader::open(path_)->damage().has_value()) << "its octets stay, and are told";
 }
 
 TEST_P(Single, a_chunk_bomb_is_refused_without_memory) {

@@ -3,12 +3,14 @@
 import ctypes
 import json
 import os
+import re
 import resource
 import stat
 import struct
 import subprocess
 import sys
 import tempfile
+import time
 
 case, bin_dir, *_ = sys.argv[1:]
 magic = b"\x89MCAP0\r\n"
@@ -39,11 +41,33 @@ def recording(path, channels, messages):
     for n, (topic, encoding, *schema) in enumerate(channels, 1):
         body += record(3, struct.pack("<H", n) + b"".join(map(text, schema)))
         body += record(4, struct.pack("<HH", n, n) + text(topic) + text(encoding) + text(""))
-    body += b"".join(record(5, struct.pack("<HIQQ", channel, 0, time, time) + octets) for time, (channel, octets) in enumerate(messages))
+    body += b"".join(record(5, struct.pack("<HIQQ", channel, 0, moment, moment) + octets) for moment, (channel, octets) in enumerate(messages))
     packed = compressed(body)
     chunk = struct.pack("<QQQI", 0, len(messages), len(body), 0) + text("zstd") + struct.pack("<Q", len(packed)) + packed
     with open(path, "wb") as out:
         out.write(magic + record(1, text("") + text("")) + record(6, chunk) + record(15, bytes(4)) + record(2, bytes(20)) + magic)
+    return path
+
+
+# With a summary: a chunk of its own for each message of one JSON channel, at each second.
+def summarized(path, messages):
+    channel = record(4, struct.pack("<HH", 1, 0) + text("/a") + text("json") + text(""))
+    data = magic + record(1, text("") + text(""))
+    places = b""
+    for n, octets in enumerate(messages):
+        at = n * 10**9
+        body = (channel if n == 0 else b"") + record(5, struct.pack("<HIQQ", 1, n, at, at) + octets)
+        packed = compressed(body)
+        chunk = record(6, struct.pack("<QQQI", at, at, len(body), 0) + text("zstd") + struct.pack("<Q", len(packed)) + packed)
+        index = record(7, struct.pack("<HIQQ", 1, 16, at, 0))
+        places += record(8, struct.pack("<QQQQIHQQ", at, at, len(data), len(chunk), 10, 1, len(data) + len(chunk), len(index)) +
+                         text("zstd") + struct.pack("<QQ", len(packed), len(body)))
+        data += chunk + index
+    count = len(messages)
+    statistics = record(11, struct.pack("<QHIIIIQQIHQ", count, 0, 1, 0, 0, count, 0, (count - 1) * 10**9, 10, 1, count))
+    data += record(15, bytes(4))
+    with open(path, "wb") as out:
+        out.write(data + channel + statistics + places + record(2, struct.pack("<QQI", len(data), 0, 0)) + magic)
     return path
 
 
@@ -123,6 +147,62 @@ def targets():
     refused("record", "--views", "-s", "9999", "-o", file, says="no simulation")
     assert open(file, "rb").read() == before
     refused("recording", "cat", file, "--from", "5", "--to", "1", says="expected a time behind --from 5")
+
+
+# What a terminal would obey is shown as what it is.
+def terminal():
+    evil, c1 = "\x1b]0;evil\x07", "\u009b31m"
+    file = recording("terminal.mcap", [("/a" + evil + c1, "json", evil, "", ""), ("/b" + c1, "cdr" + evil, "t" + c1, "x", "")],
+                     [(1, f'{{"v":"{c1}\x7f"}}'.encode()), (2, b"")])
+    other = recording("other.mcap", [("/c" + evil + c1, "json", evil, "", "")], [(1, b"1")])
+    for words in (["info", file], ["ls", file], ["cat", file], ["cat", file, "/nope"], ["compare", file, other], ["export", file, "-o", "out"]):
+        done = rtse("recording", *words)
+        said = (done.stdout + done.stderr).decode()
+        assert said and not [c for c in said if c != "\n" and (ord(c) < 32 or 127 <= ord(c) < 160)], (words, done)
+    value = json.loads(rtse("recording", "cat", file).stdout)["value"]
+    assert value == {"v": c1 + "\x7f"}, value
+
+
+# A file of many broken chunks is told in a few lines.
+def many_broken():
+    file = summarized("broken.mcap", [b'{"v":"%d"}' % n for n in range(200)])
+    octets = bytearray(open(file, "rb").read())
+    at = octets.find(b"zstd", octets.find(b"zstd") + 4)  # the first one describes the channel
+    for _ in range(199):
+        octets[at + 16] ^= 0x55
+        at = octets.find(b"zstd", at + 4)
+    with open(file, "wb") as out:
+        out.write(octets)
+    refused("recording", "cat", file, says='"broken.mcap": ... and 194 more', lines=6)
+    refused("recording", "export", file, "-o", "out", says='"broken.mcap": ... and 194 more', lines=6)
+
+
+# Gigabytes of zeros in a small file: what the indexes say is told without them.
+def large():
+    chunk = b'{"v":"' + b"0" * (127 << 20) + b'"}'
+    file = summarized("large.mcap", [chunk] * int(os.environ.get("LARGE_CHUNKS", "20")))
+    assert os.path.getsize(file) < 10 << 20
+    began = time.monotonic()
+    done = rtse("--json", "recording", "info", file)
+    took = time.monotonic() - began
+    info = json.loads(done.stdout)
+    channel = info["channels"][0]
+    assert channel["samples"] == info["samples"] >= 20 and channel["longest_gap"] == 1 and channel["rate"] > 0.9, channel
+    assert channel["octets"] is channel["missing"] is None, channel
+    print(f"{os.path.getsize(file)} octets, info in {took:.3f} s")
+    said = rtse("recording", "info", file)
+    assert b"counted by their indexes: without octets" in said.stderr and b"Hz\n" in said.stdout, said
+
+
+# A flipped octet costs a chunk, which is said.
+def flipped():
+    file = recording("flipped.mcap", [("/a", "json", "", "", "")], [(1, b'{"v":"%d"}' % n) for n in range(100)])
+    octets = bytearray(open(file, "rb").read())
+    octets[octets.index(b"zstd") + 20] ^= 0x55
+    with open(file, "wb") as out:
+        out.write(octets)
+    done = rtse("recording", "repair", file)
+    assert done.returncode == 1 and re.match(rb"0 samples kept, \d\d+ octets lost, 1 broken chunk with samples that nobody counted\n.*the chunk", done.stdout), done
 
 
 with tempfile.TemporaryDirectory() as folder:

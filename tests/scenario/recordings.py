@@ -8,52 +8,8 @@ import signal
 import subprocess
 import sys
 
-from rig import Rig, await_
-
-case, *folders = sys.argv[1:]
-rig = Rig(*folders)
-file = rig.path("run.mcap")
-
-
-# The obstacle system in lock step, wired and active, before its first step.
-def up():
-    rig.naming()
-    rig.server("--lockstep", "--rtf", "0", "-u", "--wait-for", "3")
-    host = rig.host(rig.device("RTCLaser"), "LaserObstacleAvoid", rig.device("RTCPosition2d"), options=(
-        "-o", "manager.modules.preload:SimTimeContext.so", "-o", "exec_cxt.periodic.type:SimTimeContext"))
-    rig.there("RTCLaser0", "LaserObstacleAvoid0", "RTCPosition2d0")
-    rig.rtse("con", "RTCLaser0:range", "LaserObstacleAvoid0:range")
-    rig.rtse("con", "LaserObstacleAvoid0:velocity", "RTCPosition2d0:velocity")
-    rig.rtse("act", "RTCLaser0", "LaserObstacleAvoid0", "RTCPosition2d0")
-    return host
-
-
-def recorder(*words):
-    return subprocess.Popen([f"{rig.bin_dir}/rtse", "--ns", rig.names, "record", "-s", str(rig.server_id), "-o", file, *words],
-                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-
-
-# Until its connections stand: it says so.
-def recording(*words):
-    process = recorder(*words)
-    line = process.stderr.readline()
-    assert line.startswith("recording "), line
-    return process
-
-
-def ended(process):
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=60)
-    assert process.returncode == 0, (process.returncode, out, err)
-    return err
-
-
-def seconds(count):
-    rig.simctl("step", str(round(count * 1000)))
-
-
-def lines(*words):
-    return [json.loads(line) for line in rig.rtse("recording", *words).splitlines()]
+from recording_rig import ended, file, lines, recording, refused, rig, run_case, seconds, up
+from rig import await_
 
 
 # Each sample of each port is there with the time of its tick, and other people's readers find the same.
@@ -168,19 +124,22 @@ def full_disk():
 
 # Two runs are equal sample by sample; another parameter is found at its first effect.
 def compared():
-    global file
     files = []
     up()
     for name in ("a", "b", "c"):
-        file = rig.path(f"{name}.mcap")
-        files.append(file)
+        files.append(rig.path(f"{name}.mcap"))
         if name == "c":
             rig.rtse("conf", "LaserObstacleAvoid0", "set", "speed_gain", "0.01")
-        process = recording("RTCLaser0:range", "LaserObstacleAvoid0:velocity")
+        process = recording("RTCLaser0:range", "LaserObstacleAvoid0:velocity", to=files[-1])
         seconds(4)
         ended(process)
         rig.simctl("reset")
     assert rig.rtse("recording", "compare", files[0], files[1]).startswith("equal: ")
+    process = recording("RTCLaser0:range", to=file)
+    seconds(1)
+    ended(process)
+    lonely = rig.try_rtse("recording", "compare", files[0], file)
+    assert lonely.returncode == 1 and lonely.stdout == f"channel /LaserObstacleAvoid0/velocity is in {files[0]} only\n", lonely
     done = rig.try_rtse("recording", "compare", files[0], files[2])
     assert done.returncode == 1 and re.match(r"first difference at time [\d.]+ s, tick \d+: /LaserObstacleAvoid0/velocity data.vx: \S+ and \S+\n", done.stdout), done
 
@@ -227,8 +186,8 @@ def kept():
                                            "RTCLaser0:range", *words], stderr=subprocess.PIPE, text=True))
         assert processes[-1].stderr.readline().startswith("recording ")
     seconds(3.5)
-    for process in processes:
-        ended(process)
+    said = [ended(process) for process in processes]
+    assert f'in "{rig.path("split-001.mcap")}" to "{rig.path("split-004.mcap")}"\n' in said[0], said
     def times(name):
         return [round(s["time"], 3) for s in lines("cat", rig.path(name))]
     parts = [times(f"split-00{n}.mcap") for n in range(1, 5)]
@@ -338,6 +297,10 @@ def replayed():
     place = f"first difference at tick {round(turned['time'] * 10)} ({turned['time']:g} s): data.va: "
     assert other.returncode == 1 and place in other.stderr, (place, other)
     refused("replay", path, "--into", "Nobody0", says="components: RTCLaser0, LaserObstacleAvoid0, RTCPosition2d0")
+    refused(*call, "--link", "A:b=range", says='link "A:b=range": the recording has no channel "/A/b"')
+    refused(*call, "--link", "RTCLaser0:range=c", says='has no InPort "c"; it has range')
+    refused(*call, "--set", "speed_gain=abc", says='parameter default.speed_gain cannot be "abc", expected a number')
+    refused("replay", path, "--into", "RTCLaser0", says="refuses to be activated alone; one that uses the simulator's devices finds none")
 
 
 def said(samples, topic, member):
@@ -384,25 +347,6 @@ def excluded():
     assert topics["/LaserObstacleAvoid0/velocity"] > 0 and topics["/clock"] > 0 and topics["/tf_static"] == 1, topics
 
 
-# A ring is for those who look for what went wrong: of a run that passes nothing is kept.
-def ring():
-    kept = rig.path("ring.mcap")
-    call = ["run", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "-w", f"{rig.source}/worlds/obstacle_course.sdf", "-d", "4s", "--record", kept, "--last", "1s"]
-    rig.rtse(*call)
-    assert not os.path.exists(kept)
-    failed = rig.try_rtse(*call, "-x", f"{rig.source}/tests/scenario/impossible.yaml", "--hash-log", rig.path("run.hashlog"))
-    assert failed.returncode == 1, failed
-    info = json.loads(rig.rtse("--json", "recording", "info", kept))
-    scans = next(c for c in info["channels"] if c["topic"] == "/RTCLaser0/range")
-    assert 9 <= scans["samples"] <= 12 and scans["first"] >= 2.8, scans
-    assert next(c for c in info["channels"] if c["topic"] == "/tf_static")["samples"] == 1, info
-    assert refused_without_record().returncode == 2
-
-
-def refused_without_record():
-    return rig.try_rtse("run", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "-w", f"{rig.source}/worlds/obstacle_course.sdf", "--last", "1")
-
-
 # The hashes of a run's ticks are a channel: those of the hash log.
 def hashed():
     path = rig.path("run.mcap")
@@ -414,6 +358,26 @@ def hashed():
     leaves = set().union(*(t["value"]["leaves"] for t in ticks))
     assert any("LaserObstacleAvoid0:velocity" in leaf for leaf in leaves), leaves
     assert [t["value"] for t in foreign(path)[:-1] if t["topic"] == "/hashes"] == [t["value"] for t in ticks]
+    # A run without a hash log is the same run; one without a port is not.
+    without, _ = recorded_run("without.mcap", 2)
+    done = rig.try_rtse("recording", "compare", path, without)
+    assert done.returncode == 0 and done.stderr == f"rtse: channel /hashes is in {path} only, and is left out\n", done
+    done = rig.try_rtse("recording", "compare", path, without, "--channel", "/*/velocity", "--channel", "/hashes")
+    assert done.returncode == 1 and 'has no channel "/hashes"' in done.stderr, done
+
+
+# Contexts of real time: their ticks are not in the recording, which is said.
+def replayed_from_real_time():
+    rig.naming()
+    rig.server()
+    rig.host(rig.device("RTCLaser"), "LaserObstacleAvoid", rig.device("RTCPosition2d"))
+    rig.there("RTCLaser0", "LaserObstacleAvoid0", "RTCPosition2d0")
+    rig.rtse("con", "RTCLaser0:range", "LaserObstacleAvoid0:range")
+    rig.rtse("act", "RTCLaser0", "LaserObstacleAvoid0")
+    rig.rtse("record", "-s", str(rig.server_id), "-o", file, "--all", "--only-ports", "-t", "1",
+                    "--attach", f"system.xml={rig.source}/worlds/systems/obstacle_avoidance.xml", "-q")
+    done = rig.try_rtse("replay", file, "--into", "LaserObstacleAvoid0", "--compare")
+    assert "LaserObstacleAvoid0 was recorded outside of lock step: in which tick it read a sample is not known" in done.stderr, done
 
 
 # A component whose inputs were not recorded: it is said which.
@@ -457,7 +421,10 @@ def gone_to():
     before = json.loads(rig.rtse(*call, "--back", "2").split("\n", 1)[0])
     assert abs(before["time"] - (fast["time"] - 0.2)) < 1e-9, (before, fast)
     refused("goto", path, "--break", "LaserObstacleAvoid0:velocity.data.vx >", says="expected a value")
-    refused("goto", path, "1", "--break", "time > 7", says="does not hold up to 1 s")
+    refused("goto", path, "1", "--break", "time > 7", says="does not hold up to 1 s\n")
+    refused("goto", path, "1", "--break", "LaserObstacleAvoid0:velocity.data.foo > 7", says="1 s; LaserObstacleAvoid0:velocity has no number data.foo\n")
+    refused("goto", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "1", says="is no recording; with a system's profile say its world: -w WORLD")
+    assert "rtse: the recorded run ended at 6 s\n" == rig.try_rtse("goto", path, "7", "--then", "true").stderr
     done = subprocess.run([f"{rig.bin_dir}/rtse", "--json", "goto", path, "1"], input="n\nb 2\nt 0.5\nq\n", stdout=subprocess.PIPE, timeout=120, text=True)
     times = [json.loads(line)["time"] for line in done.stdout.splitlines()]
     assert times == [1, 1.1, 0.9, 0.5] and done.returncode == 0, done
@@ -482,13 +449,22 @@ def like():
     assert other["seed"] == 5 and other["simulated"] == 2, other
 
 
-def refused(*words, says):
-    done = rig.try_rtse(*words)
-    assert done.returncode == 1 and says in done.stderr and done.stderr.count("\n") == 1, done
+# The end of the simulator is the end of a recording of what it shows, and is said.
+def simulator_ends():
+    server = rig.server("--lockstep", "--rtf", "0", "-u")
+    process = recording("--views")
+    seconds(1)
+    server.terminate()
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 1 and "record: the simulator has ended, and the recording with it" in err and "recorded " in err, (out, err)
+    assert len([s for s in lines("cat", file) if s["topic"] == "/clock"]) >= 49
+    done = rig.try_rtse("recording", "info", file)
+    assert done.returncode == 0 and done.stderr == "", done
 
 
 def bad_input():
     up()
+    refused("record", "-o", file, "--all", "--exclude", "*", says="--exclude leaves none of the 4 OutPorts")
     refused("record", "-o", file, "RTCPosition2d0:velocity", says="record reads OutPorts")
     refused("record", "-o", "/no/such/folder/x.mcap", "RTCLaser0:range", says="cannot be written")
     refused("recording", "info", "/no/such/file", says="cannot be read: No such file or directory")
@@ -500,6 +476,4 @@ def bad_input():
     assert rig.try_rtse("record", "-o", file).returncode == 2
 
 
-with rig:
-    globals()[case]()
-print("ok")
+run_case(globals())

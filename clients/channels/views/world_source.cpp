@@ -235,6 +235,7 @@ void WorldSource::State::run() {
   leave();
   shared.lock()->is_ready = true;
   changed.notify_all();
+  if (!is_live.load(std::memory_order_relaxed) && options.gone) options.gone();
 }
 
 WorldSource::WorldSource(std::unique_ptr<State> state) : state_(std::move(state)) {}

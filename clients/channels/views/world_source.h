@@ -32,6 +32,7 @@ struct WorldSourceOptions {
   bool wants_all = false;             // else nothing until want()
   std::vector<std::string> excluded;  // with wants_all: topics that fit one of these patterns have no channel
   std::function<void(Time)> each_second{};  // of simulated time; called on the source's thread, of one that takes part within its tick
+  std::function<void()> gone{};             // the simulator has ended; called on the source's thread, once
 };
 
 class WorldSource {

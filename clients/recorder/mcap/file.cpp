@@ -1,6 +1,7 @@
 #include "mcap/file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/uio.h>
 #include <unistd.h>
@@ -34,7 +35,16 @@ base::Result<File> File::create(const std::string& path) {
   if (const auto good = check_name(path); !good) return good.error();
   const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0644);
   if (descriptor < 0) return cannot(path, "written", errno);
+  (void)::flock(descriptor, LOCK_EX | LOCK_NB);  // for is_being_written(); a file system without locks has none
   return File(descriptor, path);
+}
+
+bool File::is_being_written(const std::string& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) return false;
+  const bool is_locked = ::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(descriptor);
+  return is_locked;
 }
 
 base::Result<File> File::open(const std::string& path) {

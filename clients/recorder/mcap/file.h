@@ -15,6 +15,8 @@ class File final {
   static base::Result<File> create(const std::string& path);
   // Whether a recording may have this name: nothing is there, or a regular file.
   static base::Result<void> check_name(const std::string& path);
+  // Whether somebody has it from create() at this moment, and lives.
+  static bool is_being_written(const std::string& path);
   static base::Result<File> open(const std::string& path);
   File(File&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)), path_(std::move(other.path_)) {}
   File& operator=(File&& other) noexcept {

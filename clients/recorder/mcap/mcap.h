@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -141,6 +142,12 @@ class Reader final {
   base::Result<Attachment> attachment(const std::string& name);
   base::Result<std::vector<Metadata>> metadata();
 
+  // [octets] of all chunks.
+  std::uint64_t uncompressed() const;
+  // Channel and time of each message as the indexes of the chunks say, of each chunk in the order of channels and times; no chunk is
+  // decompressed. False when they are not whole, or are not of as many messages as the summary says: what was told counts for nothing then.
+  bool for_each_time(const std::function<void(std::uint16_t channel, Time time)>& take) const;
+
   // Starts over: next() gives the messages of the query in the order of their log times, and of the file where these are equal.
   void seek(Query query = {});
   base::Result<std::optional<Message>> next();
@@ -153,7 +160,9 @@ class Reader final {
 
 struct Repair {
   std::uint64_t messages = 0;     // kept
-  std::uint64_t octets_lost = 0;  // behind the last whole record
+  std::uint64_t octets_lost = 0;  // behind the last whole record, and in broken chunks
+  std::uint64_t broken_chunks = 0;
+  std::optional<std::uint64_t> messages_lost;  // in broken chunks; nothing when the file does not say how many there were
   std::optional<std::string> damage;
 };
 

@@ -244,6 +244,44 @@ base::Result<std::vector<Metadata>> Reader::metadata() {
   return all;
 }
 
+std::uint64_t Reader::uncompressed() const {
+  std::uint64_t octets = 0;
+  for (const ChunkEntry& chunk : state_->index.summary.chunks) {
+    if (chunk.uncompressed <= largest_chunk) octets += chunk.uncompressed;  // larger ones are not read
+  }
+  return octets;
+}
+
+bool Reader::for_each_time(const std::function<void(std::uint16_t, Time)>& take) const {
+  std::vector<const ChunkEntry*> chunks;
+  for (const ChunkEntry& chunk : state_->index.summary.chunks) chunks.push_back(&chunk);
+  std::ranges::stable_sort(chunks, {}, &ChunkEntry::first);
+  std::map<std::uint16_t, std::uint64_t> counts;
+  std::string octets;
+  for (const ChunkEntry* chunk : chunks) {
+    if (chunk->index_length > most_octets || !state_->file.read(chunk->start + chunk->length, chunk->index_length, octets)) return false;
+    bool is_whole = true;
+    const auto walked = for_each_record(octets, [&](Opcode opcode, std::string_view content, std::uint64_t) {
+      Octets in(content);
+      const auto channel = in.number<std::uint16_t>();
+      Octets entries = in.part(in.number<std::uint32_t>());
+      while (is_whole && !entries.is_empty()) {
+        const Time time = entries.time();
+        (void)entries.number<std::uint64_t>();  // where it is
+        is_whole = entries.ok();
+        if (!is_whole) return;
+        ++counts[channel];
+        take(channel, time);
+      }
+      is_whole = is_whole && opcode == Opcode::message_index && in.ok();
+    });
+    if (!walked || !is_whole) return false;
+  }
+  auto expected = state_->index.summary.statistics.messages_of;
+  std::erase_if(expected, [](const auto& one) { return one.second == 0; });
+  return !state_->index.damage && counts == expected;
+}
+
 void Reader::seek(Query query) { state_->begin(std::move(query)); }
 base::Result<std::optional<Message>> Reader::next() { return state_->next(); }
 

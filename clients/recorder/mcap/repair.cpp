@@ -15,7 +15,8 @@ constexpr std::uint64_t piece_size = 1 << 20;  // [octets]
 
 }  // namespace
 
-// The octets of the data stay as they are, whoever wrote them; what follows the last whole record is replaced by a summary.
+// The octets of the data stay as they are, whoever wrote them; what follows the last whole record is replaced by a summary,
+// which does not name broken chunks.
 base::Result<Repair> repair(const std::string& from, const std::string& to) {
   auto file = File::open(from);
   if (!file) return file.error();
@@ -47,7 +48,10 @@ base::Result<Repair> repair(const std::string& from, const std::string& to) {
   if (std::rename(whole.c_str(), to.c_str()) != 0) {
     return give_up({base::in_quotes(to) + ": cannot be written: " + std::strerror(errno)});
   }
-  return Repair{index->summary.statistics.messages, index->has_data_end ? 0 : *size - index->data_end, index->damage};
+  const BrokenChunks& broken = index->broken;
+  const std::uint64_t behind = index->has_data_end ? 0 : *size - index->data_end;
+  return Repair{index->summary.statistics.messages, behind + broken.octets, broken.count,
+                broken.are_counted ? std::optional(broken.messages) : std::nullopt, index->damage};
 }
 
 }  // namespace mcap

@@ -220,17 +220,43 @@ class Scanner {
         note(index_, at(file_, offset, "the last record is cut off; what stands before it is read"));
         return {};
       }
-      if ((*head)->opcode == Opcode::data_end || (*head)->opcode == Opcode::footer) return index_.has_data_end = true, base::Result<void>();
+      if ((*head)->opcode == Opcode::data_end || (*head)->opcode == Opcode::footer) {
+        index_.has_data_end = true;
+        end_broken();
+        if (index_.broken.count > 0) describe_from_summary(offset, end);
+        return {};
+      }
       if (const auto done = take(**head, offset); !done) return done;
       offset += record_head + (*head)->length;
     }
     index_.data_end = std::min(offset, end);
+    end_broken();
     return {};
   }
 
  private:
+  // A broken chunk may have been the only place in the data where a channel was described; the summary has all of them. What of it cannot
+  // be read does not help.
+  void describe_from_summary(std::uint64_t offset, std::uint64_t end) {
+    while (const auto head = read_head(file_, offset, end)) {
+      if (!head->has_value()) return;
+      if ((*head)->opcode == Opcode::schema || (*head)->opcode == Opcode::channel) {
+        if ((*head)->length > most_descriptions || !file_.read(offset + record_head, (*head)->length, octets_)) return;
+        if (!collector_.describe((*head)->opcode, octets_, offset)) return;
+      }
+      offset += record_head + (*head)->length;
+    }
+  }
+
+  // Behind the indexes of a chunk.
+  void end_broken() {
+    if (is_in_broken_ && !has_broken_index_) index_.broken.are_counted = false;
+    is_in_broken_ = has_broken_index_ = false;
+  }
+
   base::Result<void> take(const RecordHead& head, std::uint64_t offset) {
     const std::uint64_t content = offset + record_head;
+    if (head.opcode != Opcode::message_index) end_broken();
     switch (head.opcode) {
       case Opcode::schema:
       case Opcode::channel: {
@@ -269,8 +295,13 @@ class Scanner {
   }
 
   base::Result<void> take_chunk_record(const RecordHead& head, std::uint64_t offset) {
-    if (const auto done = read_chunk(file_, offset, record_head + head.length, octets_); !done)
-      return note(index_, done.error()), base::Result<void>();
+    if (const auto done = read_chunk(file_, offset, record_head + head.length, octets_); !done) {
+      note(index_, done.error());
+      ++index_.broken.count;
+      index_.broken.octets += record_head + head.length;
+      is_in_broken_ = true;
+      return {};
+    }
     ChunkEntry entry;
     entry.start = offset;
     entry.length = record_head + head.length;
@@ -317,6 +348,12 @@ class Scanner {
 
   // Only where it stands, for the index of a repaired file.
   base::Result<void> take_message_index(const RecordHead& head, std::uint64_t offset) {
+    constexpr std::uint64_t index_head = 2 + 4, index_entry = 16;  // [octets]
+    if (is_in_broken_) {
+      has_broken_index_ = true;
+      if (head.length >= index_head) index_.broken.messages += (head.length - index_head) / index_entry;
+      return {};
+    }
     if (index_.summary.chunks.empty() || head.length < 2) return {};
     if (const auto done = file_.read(offset + record_head, 2, octets_); !done) return done;
     ChunkEntry& chunk = index_.summary.chunks.back();
@@ -349,6 +386,8 @@ class Scanner {
   Index& index_;
   Collector collector_;
   std::string octets_;
+  bool is_in_broken_ = false;      // behind a chunk that cannot be read, among its indexes
+  bool has_broken_index_ = false;  // of which there is one at least
 };
 
 }  // namespace

@@ -21,6 +21,14 @@ struct LooseMessage {
   std::uint64_t length = 0;  // [octets] of its content
 };
 
+// Chunks that cannot be read, of a file that was walked over.
+struct BrokenChunks {
+  std::uint64_t count = 0;
+  std::uint64_t octets = 0;    // of their records
+  std::uint64_t messages = 0;  // as far as the indexes behind them say
+  bool are_counted = true;     // each has an index, so that no message is missing in the number
+};
+
 struct Index {
   std::string profile;
   std::string library;
@@ -29,6 +37,7 @@ struct Index {
   std::optional<std::string> damage;
   std::uint64_t data_end = 0;  // [octets] where the last whole record of the data ends
   bool has_data_end = false;   // and a record says so: what follows is no data
+  BrokenChunks broken;
 };
 
 // Schemas and channels together [octets]; more is refused, since every one of them is kept in memory.

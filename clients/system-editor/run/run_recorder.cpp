@@ -24,6 +24,8 @@ std::string RunRecorder::said() const {
 
 base::Result<void> RunRecorder::start(const RecorderCall& call, const Wait& wait_until) {
   log_ = place_.new_file("recorder.log");
+  file_ = call.file;
+  is_ring_ = call.last_s > 0;
   ProgramCall program{{own_program("rtse-recorder"), "--ns", call.server, "record", "--all", "-s", call.simulator, "-o", call.file,
                        "--attach", "system.xml=" + call.system},
                       {},
@@ -82,8 +84,14 @@ base::Result<void> RunRecorder::finish() {
   const bool is_good = has_ended && process_->exit_code() == 0;
   const auto lines = base::split_list(said(), '\n');
   const std::string how = has_ended ? process_->how_it_ended() : "does not end";
+  const bool was_killed = has_ended && process_->exit_code() >= 128;
   process_.reset();
   if (is_good) return {};
+  // A recorder that ends by itself says what is where.
+  if (was_killed && is_ring_)
+    return base::Error{"recorder: " + how + "; what came before is in pieces of the ring, rtse recording repair " + file_ +
+                       " puts it together"};
+  if (was_killed) return base::Error{"recorder: " + how + "; what came before is in the file"};
   return base::Error{"recorder: " + how + (lines.empty() ? "" : ": " + lines.back())};
 }
 

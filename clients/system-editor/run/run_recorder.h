@@ -47,6 +47,8 @@ class RunRecorder {
   const Workplace& place_;
   std::optional<ChildProcess> process_;
   std::string log_;
+  std::string file_;
+  bool is_ring_ = false;
   bool takes_hashes_ = false;
 };
 

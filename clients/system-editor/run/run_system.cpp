@@ -263,6 +263,7 @@ class Run final : public RunningSystem {
     result_.notes.insert(result_.notes.end(), links.begin(), links.end());
     if (const auto written = write_system(system_, file); !written) return written;
     editor_.emplace(orb_, naming_.address(), false, std::chrono::milliseconds(editor_limit));
+    if (options_.driver) editor_->be_silent();  // who drives the run tells its problem alone
     load(*editor_, {.file = file});
     if (!editor_->failed() && !foreign_.empty()) {
       if (const auto joined = foreign_.join(*editor_, system_, start_patience()); !joined) return joined;

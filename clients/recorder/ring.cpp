@@ -1,0 +1,277 @@
+#include "ring.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "base/text.h"
+#include "mcap/file.h"
+
+namespace recorder {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* record_name = "ring";
+constexpr std::size_t most_held = 256 << 20;  // [octets] of latched samples
+
+std::uint64_t number_at(const mcap::Texts& texts, const char* key) {
+  const auto found = texts.find(key);
+  return found == texts.end() ? 0 : static_cast<std::uint64_t>(std::max<std::int64_t>(0, base::parse_integer(found->second).value_or(0)));
+}
+
+// Nothing when the file is none, or none that can be read.
+std::optional<RingPiece> read_piece(const std::string& path) {
+  auto reader = mcap::Reader::open(path);
+  if (!reader) return std::nullopt;
+  const auto metadata = reader->metadata();
+  if (!metadata) return std::nullopt;
+  for (const auto& one : *metadata) {
+    if (one.name != record_name) continue;
+    const auto compression = one.texts.find("compression");
+    return RingPiece{path, number_at(one.texts, "number"), number_at(one.texts, "resets"),
+                     std::chrono::nanoseconds(number_at(one.texts, "span_ns")),
+                     compression == one.texts.end() ? "zstd" : compression->second};
+  }
+  return std::nullopt;
+}
+
+// Puts messages of the pieces into one file.
+class Joint {
+ public:
+  Joint(mcap::Writer& writer, mcap::Time from) : writer_(writer), from_(from) {}
+
+  base::Result<void> describe(const mcap::Reader& piece);
+  base::Result<void> copy(mcap::Reader& piece);
+  // What could not be read first; nothing when all could.
+  const std::optional<std::string>& damage() const { return damage_; }
+
+ private:
+  // The number and the time of a sample tell it from a repetition, with which each piece begins.
+  using Mark = std::pair<std::uint32_t, mcap::Time>;
+  struct Held {
+    mcap::Message message;
+    std::string data;
+  };
+
+  base::Result<void> take(const mcap::Message& message);
+  base::Result<void> hold(std::uint16_t channel, const mcap::Message& message);
+  base::Result<void> put_held();
+  base::Result<void> put(std::uint16_t channel, const mcap::Message& message, std::string_view data, mcap::Time time);
+
+  mcap::Writer& writer_;
+  const mcap::Time from_;
+  std::optional<mcap::Time> first_;  // that was kept
+  std::optional<std::string> damage_;
+  std::map<std::pair<std::string, std::uint16_t>, std::uint16_t> known_;  // by topic and number in the pieces, which all give it the same
+  std::map<std::pair<std::string, std::string>, std::uint16_t> schemas_;  // by name and text
+  std::map<std::uint16_t, std::uint16_t> ids_;                            // of the piece that is copied
+  std::set<std::uint16_t> latched_;                                       // by their new numbers, as all below
+  std::map<std::uint16_t, Held> held_;
+  std::size_t held_octets_ = 0;
+  std::map<std::uint16_t, Mark> seen_;
+};
+
+base::Result<void> Joint::describe(const mcap::Reader& piece) {
+  ids_.clear();
+  for (const auto& [id, channel] : piece.channels()) {
+    auto& known = known_[{channel.topic, id}];
+    if (known == 0) {
+      const auto schema = piece.schemas().find(channel.schema);
+      std::uint16_t new_schema = 0;
+      if (schema != piece.schemas().end()) {
+        auto& one = schemas_[{schema->second.name, schema->second.data}];
+        if (one == 0) {
+          const auto added = writer_.add_schema(schema->second.name, schema->second.encoding, schema->second.data);
+          if (!added) return added.error();
+          one = *added;
+        }
+        new_schema = one;
+      }
+      const auto added = writer_.add_channel(new_schema, channel.topic, channel.encoding, channel.metadata);
+      if (!added) return added.error();
+      known = *added;
+      if (channel.metadata.contains("latched")) latched_.insert(known);
+    }
+    ids_[id] = known;
+  }
+  return {};
+}
+
+base::Result<void> Joint::put(std::uint16_t channel, const mcap::Message& message, std::string_view data, mcap::Time time) {
+  return writer_.write({channel, message.sequence, time, message.publish_time, data});
+}
+
+// What held before the time that is kept still holds in it.
+base::Result<void> Joint::put_held() {
+  held_octets_ = 0;
+  for (const auto& [channel, held] : std::exchange(held_, {})) {
+    if (const auto done = put(channel, held.message, held.data, std::max(held.message.log_time, *first_)); !done) return done;
+  }
+  return {};
+}
+
+base::Result<void> Joint::hold(std::uint16_t channel, const mcap::Message& message) {
+  Held& held = held_[channel];
+  held_octets_ += message.data.size();
+  held_octets_ -= held.data.size();
+  if (held_octets_ > most_held)
+    return base::Error{"what holds in a ring is more than " + std::to_string(most_held >> 20) + " MiB, which is not put together"};
+  held = {message, std::string(message.data)};
+  return {};
+}
+
+base::Result<void> Joint::take(const mcap::Message& message) {
+  const auto channel = ids_.at(message.channel);
+  if (latched_.contains(channel)) {
+    const Mark mark{message.sequence, message.publish_time};
+    if (const auto [seen, is_first] = seen_.try_emplace(channel, mark); !is_first && std::exchange(seen->second, mark) == mark) return {};
+    if (message.log_time < from_) return hold(channel, message);
+  }
+  if (message.log_time < from_) return {};
+  if (!first_) first_ = message.log_time;
+  if (const auto done = put_held(); !done) return done;
+  return put(channel, message, message.data, message.log_time);
+}
+
+// What of a piece cannot be read is left out and told.
+base::Result<void> Joint::copy(mcap::Reader& piece) {
+  if (const auto done = describe(piece); !done) return done;
+  for (;;) {
+    const auto message = piece.next();
+    if (!message) {
+      if (!damage_) damage_ = message.error().message;
+      continue;
+    }
+    if (!message->has_value()) return first_ ? put_held() : base::Result<void>();
+    if (const auto done = take(**message); !done) return done;
+  }
+}
+
+base::Result<void> copy_surroundings(mcap::Reader& piece, mcap::Writer& writer) {
+  const auto metadata = piece.metadata();
+  if (!metadata) return metadata.error();
+  for (const auto& one : *metadata) {
+    if (one.name == record_name) continue;
+    if (const auto done = writer.add_metadata(one); !done) return done;
+  }
+  for (const auto& entry : piece.attachments()) {
+    const auto attachment = piece.attachment(entry.name);
+    if (!attachment) return attachment.error();
+    if (const auto done = writer.attach(*attachment); !done) return done;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string numbered_path(const std::string& path, std::size_t number) {
+  char text[24];
+  std::snprintf(text, sizeof text, "-%03zu", number);
+  const fs::path whole(path);
+  return (whole.parent_path() / (whole.stem().string() + text + whole.extension().string())).string();
+}
+
+mcap::Metadata ring_metadata(const RingPiece& piece) {
+  return {record_name,
+          {{"span_ns", std::to_string(piece.span.count())},
+           {"number", std::to_string(piece.number)},
+           {"resets", std::to_string(piece.resets)},
+           {"compression", piece.compression}}};
+}
+
+std::vector<RingPiece> ring_pieces(const std::string& path) {
+  const fs::path whole(path);
+  const fs::path folder = whole.parent_path();
+  const std::string head = whole.stem().string() + "-";
+  std::vector<RingPiece> pieces;
+  std::error_code error;  // a folder that cannot be read has none
+  for (fs::directory_iterator one(folder.empty() ? fs::path(".") : folder, error), end; !error && one != end; one.increment(error)) {
+    const std::string name = one->path().filename().string();
+    if (!name.starts_with(head) || one->path().extension() != whole.extension()) continue;
+    const auto number = base::parse_integer(one->path().stem().string().substr(head.size()));
+    const std::string piece_path = (folder / name).string();
+    if (!number || *number < 1 || numbered_path(path, static_cast<std::size_t>(*number)) != piece_path) continue;
+    if (auto piece = read_piece(piece_path)) pieces.push_back(std::move(*piece));
+  }
+  std::ranges::sort(pieces, {}, &RingPiece::number);
+  return pieces;
+}
+
+base::Result<void> check_at_rest(const std::vector<RingPiece>& pieces) {
+  for (const auto& piece : pieces) {
+    if (mcap::File::is_being_written(piece.path))
+      return base::Error{base::in_quotes(piece.path) + ": is a piece of a ring that is still being recorded"};
+  }
+  return {};
+}
+
+void remove_pieces(const std::vector<RingPiece>& pieces) {
+  for (const auto& piece : pieces) std::remove(piece.path.c_str());
+}
+
+std::string names_of(const std::vector<RingPiece>& pieces) {
+  std::vector<std::string> names;
+  for (const auto& piece : pieces) names.push_back(base::in_quotes(piece.path));
+  return base::join(names, " and ");
+}
+
+base::Result<JoinedRing> join_ring(const std::vector<RingPiece>& pieces, const std::string& path) {
+  if (pieces.empty()) return base::Error{base::in_quotes(path) + ": has no pieces of a ring"};
+  std::vector<mcap::Reader> readers;
+  const RingPiece& newest = pieces.back();
+  for (const auto& piece : pieces) {
+    if (piece.resets != newest.resets) continue;  // its time is another one
+    auto reader = mcap::Reader::open(piece.path);
+    if (!reader) return reader.error();
+    readers.push_back(std::move(*reader));
+  }
+  std::uint64_t last = 0;
+  for (const auto& reader : readers) last = std::max(last, reader.statistics().last.count());
+  const auto span = static_cast<std::uint64_t>(newest.span.count());
+  const auto compression = newest.compression == "lz4"    ? mcap::Compression::lz4
+                           : newest.compression == "none" ? mcap::Compression::none
+                                                          : mcap::Compression::zstd;
+  const std::string whole = path + ".part";
+  const auto give_up = [&](const base::Error& error) {
+    std::remove(whole.c_str());
+    return error;
+  };
+  auto writer = mcap::Writer::create(whole, {.profile = "", .compression = compression});
+  if (!writer) return writer.error();
+  if (const auto done = copy_surroundings(readers.back(), *writer); !done) return give_up(done.error());
+  Joint joint(*writer, mcap::Time(last > span ? last - span : 0));
+  for (auto& reader : readers) {
+    if (const auto done = joint.copy(reader); !done) return give_up(done.error());
+  }
+  if (const auto done = writer->close(); !done) return give_up(done.error());
+  if (std::rename(whole.c_str(), path.c_str()) != 0)
+    return give_up({base::in_quotes(path) + ": cannot be written: " + std::strerror(errno)});
+  return JoinedRing{writer->statistics().messages, writer->statistics().channels, joint.damage()};
+}
+
+base::Result<mcap::Reader> open_recording(const std::string& path) {
+  auto reader = mcap::Reader::open(path);
+  std::error_code error;
+  if (reader || fs::exists(path, error)) return reader;
+  const auto pieces = ring_pieces(path);
+  if (pieces.empty()) return reader;
+  return base::Error{base::in_quotes(path) + ": is not there, but " + names_of(pieces) + " of its ring; rtse recording repair " + path +
+                     " puts them together"};
+}
+
+std::string check_recording(const std::string& path) {
+  std::error_code error;
+  if (fs::exists(path, error)) return "";
+  const auto reader = open_recording(path);
+  return reader ? "" : reader.error().message;
+}
+
+}  // namespace recorder

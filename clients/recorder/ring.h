@@ -1,0 +1,51 @@
+// The pieces of a ring: what `rtse record --last` writes while it records, so that a kill costs no more than of any recording. "ring.mcap"
+// has the pieces ring-001.mcap, ring-002.mcap, ..., of which the latest two are there; each spans the ring's time, can be read alone, and
+// says in its metadata `ring` what it is. At the end they are put together. Any thread, but one at a time for a ring.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "mcap/mcap.h"
+
+namespace recorder {
+
+struct RingPiece {
+  std::string path;
+  std::uint64_t number = 0;
+  std::uint64_t resets = 0;          // of simulated time, before it
+  std::chrono::nanoseconds span{0};  // that is kept of all pieces
+  std::string compression;           // "zstd", "lz4", "none"
+};
+
+// "run.mcap" -> "run-002.mcap"
+std::string numbered_path(const std::string& path, std::size_t number);
+
+mcap::Metadata ring_metadata(const RingPiece& piece);
+// Those of the ring of this name, the oldest first. What only has such a name is none.
+std::vector<RingPiece> ring_pieces(const std::string& path);
+// An error when a recorder is writing them.
+base::Result<void> check_at_rest(const std::vector<RingPiece>& pieces);
+void remove_pieces(const std::vector<RingPiece>& pieces);
+// "a-001.mcap" and "a-002.mcap"
+std::string names_of(const std::vector<RingPiece>& pieces);
+
+struct JoinedRing {
+  std::uint64_t samples = 0;
+  std::uint32_t channels = 0;
+  std::optional<std::string> damage{};  // what could not be read of the pieces, but for the end that a kill costs
+};
+// The last samples of the pieces as one file: those within the span, and before them what held at its beginning, of channels that are
+// latched. The pieces stay. Whatever was there under this name is replaced when the new file is whole.
+base::Result<JoinedRing> join_ring(const std::vector<RingPiece>& pieces, const std::string& path);
+
+// The reader of a recording. When there are only pieces of it the error says so.
+base::Result<mcap::Reader> open_recording(const std::string& path);
+// For options of the command line: why it cannot be a recording; empty: it is there.
+std::string check_recording(const std::string& path);
+
+}  // namespace recorder
