@@ -73,6 +73,15 @@ void tell_of_value(base::Tick& tick, const Read& read, const InConnection& conne
   }
 }
 
+// A copy, as others may have the block, too.
+std::shared_ptr<const rt::Block> without_leftovers(const Shape& shape, const rt::Block& block, rt::ByteOrder order) {
+  auto clean = std::make_shared<rt::Block>(block.size());
+  clean->set_size(block.size());
+  std::ranges::copy(block.octets(), clean->data());
+  shape.clear_leftovers({clean->data(), clean->size()}, order);
+  return clean;
+}
+
 void tell_tick(const rt::Sample& sample, const InConnection& connection) {
   base::Tick* tick = tick_that_keeps();
   if (!tick) return;
@@ -101,6 +110,7 @@ std::uint64_t ConnectionPlan::era() const { return clock ? clock->era() : 0; }
 std::uint64_t ConnectionPlan::moment() const { return clock ? clock->moment() : 0; }
 
 std::string port_text(const ConnectionPlan& plan) { return port_text(plan.port); }
+std::string connection_text(const ConnectionPlan& plan) { return plan.name + " (" + plan.id + ")"; }
 
 TypeOps with_codec(const TypeOps& ops, const std::shared_ptr<Codec>& codec) {
   TypeOps own = ops;
@@ -127,11 +137,13 @@ rt::PortStatus InConnection::receive(rt::Sample sample) {
 }
 
 rt::PortStatus InConnection::keep(rt::Sample sample, std::uint64_t moment, std::chrono::nanoseconds most) {
-  if (sample.block && !ops_.codec && !ops_.shape.fits(sample.block->octets(), sample.order)) {
+  bool has_leftovers = false;
+  if (sample.block && !ops_.codec && !ops_.shape.fits(sample.block->octets(), sample.order, &has_leftovers)) {
     base::log(base::Level::warn, "data port", "connection {}: {} octets that are no {} are refused", base::in_quotes(plan_.name),
               sample.block->size(), ops_.type_id);
     return rt::PortStatus::error;
   }
+  if (has_leftovers) sample.block = without_leftovers(ops_.shape, *sample.block, sample.order);
   if (plan_.settings.stamp == rt::StampPolicy::on_received) sample.received = plan_.port_time();
   const std::uint64_t era = plan_.era();
   ConnectorEvents& events = *plan_.events;
@@ -184,9 +196,11 @@ rt::PortStatus InConnection::keep(rt::Sample sample, std::uint64_t moment, std::
 rt::PortStatus InConnection::fetch(bool only_new) {
   if (!fetcher_) return rt::PortStatus::ok;
   rt::Sample sample;
-  const auto watch = base::tick_in_lock_step() ? port_watch() : nullptr;
+  const bool is_watched = plan_.settings.interface != rt::Interface::direct && base::tick_in_lock_step();
+  const auto watch = is_watched ? port_watch() : nullptr;
+  const std::string peer = watch ? connection_text(plan_) : std::string();
   std::optional<MemberWatch::Call> call;
-  if (watch) call.emplace(*watch, plan_.port, "get", &plan_.name);
+  if (watch) call.emplace(*watch, plan_.port, "get", &peer);
   const rt::PortStatus status = fetcher_->fetch(sample);
   call.reset();
   switch (status) {

@@ -18,6 +18,8 @@ namespace corba {
 
 // "port LaserObstacleAvoid0:velocity"
 std::string port_text(const ConnectionPlan& plan);
+// "link1 (ID)"
+std::string connection_text(const ConnectionPlan& plan);
 
 TypeOps with_codec(const TypeOps& ops, const std::shared_ptr<Codec>& codec);
 

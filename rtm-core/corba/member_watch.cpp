@@ -1,6 +1,7 @@
 #include "corba/member_watch.h"
 
 #include <algorithm>
+#include <system_error>
 #include <utility>
 
 #include "base/log.h"
@@ -11,7 +12,7 @@ namespace {
 
 struct PortWatch {
   std::shared_ptr<MemberWatch> watch;
-  bool is_over = false;
+  bool is_over = true;
 };
 
 base::Guarded<PortWatch, base::Rank::registry>& watch_of_ports() {
@@ -21,9 +22,18 @@ base::Guarded<PortWatch, base::Rank::registry>& watch_of_ports() {
 
 }  // namespace
 
+void begin_port_watch() { watch_of_ports().lock()->is_over = false; }
+
+// Without a thread for it nobody is told of anything, and that is all.
 std::shared_ptr<MemberWatch> port_watch() {
   auto ports = watch_of_ports().lock();
-  if (!ports->watch && !ports->is_over) ports->watch = std::make_shared<MemberWatch>();
+  if (!ports->watch && !ports->is_over) {
+    try {
+      ports->watch = std::make_shared<MemberWatch>();
+    } catch (const std::system_error&) {
+      ports->is_over = true;
+    }
+  }
   return ports->watch;
 }
 

@@ -67,7 +67,8 @@ class MemberWatch {
 // What the log says of a port whose peer takes long; its name stands before it, the connection's behind it.
 inline constexpr std::string_view port_waits_mark = ": the other end of connection ";
 
-// Of the ports of this process: made with the first call, gone with the ORB; nullptr after that.
+// Of the ports of this process, made with the first call; nullptr while there is no ORB.
+void begin_port_watch();
 std::shared_ptr<MemberWatch> port_watch();
 void end_port_watch();
 

@@ -329,6 +329,7 @@ base::Result<std::unique_ptr<Orb>> Orb::start(const OrbSettings& settings) {
       base::log(base::Level::info, "orb", "open over TLS to whoever has a certificate of {}", base::in_quotes(settings.tls.authority));
     }
     begin_farewells();
+    begin_port_watch();
     if (settings.peer_check_interval.count() > 0) result->watch_ = std::make_unique<PeerWatch>(settings.peer_check_interval);
     return result;
   }

@@ -125,6 +125,7 @@ struct OutConnection::Line {
   const std::unique_ptr<Sender> sender;
   const std::shared_ptr<LossHandler> loss;
   const std::shared_ptr<rt::BlockPool> pool = rt::BlockPool::make();
+  const std::string peer = connection_text(plan);
 
   bool is_direct() const { return plan.settings.interface == rt::Interface::direct; }
   rt::ByteOrder order() const { return plan.settings.order; }
@@ -142,7 +143,7 @@ struct OutConnection::Line {
   rt::PortStatus send_watched(Payload& payload) {
     const auto watch = !is_direct() && base::tick_in_lock_step() ? port_watch() : nullptr;
     if (!watch) return sender->send(payload);
-    const MemberWatch::Call call(*watch, plan.port, "put", &plan.name);
+    const MemberWatch::Call call(*watch, plan.port, "put", &peer);
     return sender->send(payload);
   }
 

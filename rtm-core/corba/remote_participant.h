@@ -50,9 +50,8 @@ class RemoteParticipant final : public rt::Participant {
  public:
   // What else is asked than callbacks.
   static constexpr std::chrono::milliseconds call_timeout = MemberPatience::usual;
-  // The same where the other answer would be part of a repeatable run: when members are waited for without end. Who asks for the member to
-  // be added gives up sooner.
-  static constexpr std::chrono::minutes long_call_timeout{10};
+  // The same where the other answer would be part of a repeatable run: when members are waited for without end.
+  static constexpr std::chrono::minutes long_call_timeout{1};
 
   // An impatient_copy.
   static RTC::LightweightRTObject_ptr impatient(RTC::LightweightRTObject_ptr component, std::chrono::milliseconds timeout = call_timeout);

@@ -16,6 +16,8 @@ constexpr int deepest = 32;
 class Shape::Walk {
  public:
   Walk(std::span<const std::byte> octets, rt::ByteOrder order) : octets_(octets), order_(order) {}
+  // One that clears leftovers.
+  Walk(std::span<std::byte> octets, rt::ByteOrder order) : octets_(octets), order_(order), cleared_(octets.data()) {}
 
   // False once nothing more can be said: is_wrong() tells why.
   bool pass(const Node& node) {
@@ -38,6 +40,7 @@ class Shape::Walk {
     return false;
   }
   bool is_wrong() const { return is_wrong_; }
+  bool has_leftovers() const { return has_leftovers_; }
 
  private:
   bool wrong() {
@@ -49,6 +52,10 @@ class Shape::Walk {
     if (count == 0) return true;
     const std::size_t start = (at_ + size - 1) / size * size;
     if (start > octets_.size() || (octets_.size() - start) / size < count) return wrong();
+    for (; at_ < start; ++at_) {
+      has_leftovers_ = has_leftovers_ || octets_[at_] != std::byte{0};
+      if (cleared_) cleared_[at_] = std::byte{0};
+    }
     at_ = start + size * count;
     return true;
   }
@@ -88,8 +95,10 @@ class Shape::Walk {
 
   const std::span<const std::byte> octets_;
   const rt::ByteOrder order_;
+  std::byte* const cleared_ = nullptr;
   std::size_t at_ = 0;
   bool is_wrong_ = false;
+  bool has_leftovers_ = false;
 };
 
 Shape::Node Shape::compile(CORBA::TypeCode_ptr code, int depth) {
@@ -179,10 +188,13 @@ std::optional<std::uint64_t> Shape::most_octets(const Node& node) {
 
 Shape::Shape(CORBA::TypeCode_ptr code) : root_(compile(code, 0)) {}
 
-bool Shape::fits(std::span<const std::byte> octets, rt::ByteOrder order) const {
+bool Shape::fits(std::span<const std::byte> octets, rt::ByteOrder order, bool* has_leftovers) const {
   Walk walk(octets, order);
   walk.pass(root_);
+  if (has_leftovers) *has_leftovers = walk.has_leftovers();
   return !walk.is_wrong();
 }
+
+void Shape::clear_leftovers(std::span<std::byte> octets, rt::ByteOrder order) const { Walk(octets, order).pass(root_); }
 
 }  // namespace corba

@@ -24,7 +24,11 @@ class Shape {
   // `octets`: CDR without a head, aligned from the first octet (CORBA 3.1 part 2, 9.3). Never refuses what omniORB decodes; of types with
   // wide text, unions, references, any, fixed and long double it says no more than up to the first of those. What follows the value is not
   // looked at. Never throws; takes time with the number of elements, but not for arrays of numbers.
-  bool fits(std::span<const std::byte> octets, rt::ByteOrder order) const;
+  // `has_leftovers`: whether the octets that align the members of the value, which say nothing, are other than zero: senders leave in them
+  // what was there before, so that equal values have other octets in each run.
+  bool fits(std::span<const std::byte> octets, rt::ByteOrder order, bool* has_leftovers = nullptr) const;
+  // Makes them zero, as our own encoder does.
+  void clear_leftovers(std::span<std::byte> octets, rt::ByteOrder order) const;
 
   // No value is longer [octets]. Nothing when there is no such number: the type has a sequence or a text of any length, or more than can be
   // said of it.

@@ -422,8 +422,11 @@ bool ManagerImpl::load_and_create(const std::string& module) {
   if (facade.load(module) != RTC_OK) return false;
   const auto file = modules->findFile(module);
   std::vector<std::string> types;
-  for (const auto& registered : state.lock()->factories) {
-    if (registered.module == file) types.push_back(to_text(id_of(registered.factory->profile())));
+  {
+    auto known = state.lock();
+    for (const auto& registered : known->factories) {
+      if (registered.module == file) types.push_back(to_text(id_of(registered.factory->profile())));
+    }
   }
   if (types.empty()) RTC_WARN(("module %s: registers no component", base::in_quotes(module).c_str()));
   bool ok = true;

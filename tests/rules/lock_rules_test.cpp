@@ -42,10 +42,8 @@ const std::map<std::string, std::string> allowed = {
     {"rtm-core/openrtm/include/rtm/StaticFSM.h", "an author's header, a template"},
 };
 
-// "file:line", one per raw lock, sorted.
-Names raw_locks(const fs::path& root) {
-  static const std::regex lock(
-      R"(\b(std::(recursive_|timed_|recursive_timed_|shared_|shared_timed_)?mutex|pthread_(mutex|rwlock|spin)\w*|omni_mutex|std::binary_semaphore)\b)");
+// "file:line", one per line of code with this, sorted.
+Names lines_with(const std::regex& wanted, const fs::path& root) {
   Names found;
   for (const char* top : {"rtm-core", "sim-server", "iface-components", "clients", "idl"}) {
     if (!fs::exists(root / top)) continue;
@@ -57,12 +55,24 @@ Names raw_locks(const fs::path& root) {
       std::string line;
       for (int number = 1; std::getline(in, line); ++number) {
         const auto code = line.substr(0, line.find("//"));
-        if (std::regex_search(code, lock)) found.push_back(file + ":" + std::to_string(number));
+        if (std::regex_search(code, wanted)) found.push_back(file + ":" + std::to_string(number));
       }
     }
   }
   std::sort(found.begin(), found.end());
   return found;
+}
+
+Names raw_locks(const fs::path& root) {
+  static const std::regex lock(
+      R"(\b(std::(recursive_|timed_|recursive_timed_|shared_|shared_timed_)?mutex|pthread_(mutex|rwlock|spin)\w*|omni_mutex|std::binary_semaphore)\b)");
+  return lines_with(lock, root);
+}
+
+// The lock of `for (auto& one : data.lock()->list)` is gone before the first turn of the loop (C++20).
+Names loops_without_their_lock(const fs::path& root) {
+  static const std::regex loop(R"(\bfor \(.*[^:]:[^:].*\.lock\(\)->)");
+  return lines_with(loop, root);
 }
 
 std::string file_of(const std::string& place) { return place.substr(0, place.rfind(':')); }
@@ -87,6 +97,18 @@ TEST(LockRules, raw_locks_of_every_kind_are_found) {
   const auto found = raw_locks(root);
   fs::remove_all(root);
   EXPECT_EQ(found, (Names{"sim-server/a.cpp:2", "sim-server/a.cpp:4", "sim-server/a.cpp:6", "sim-server/a.cpp:7"}));
+}
+
+TEST(LockRules, no_loop_has_a_lock_that_ends_before_it) { EXPECT_EQ(loops_without_their_lock(paths::source_dir), Names()); }
+
+TEST(LockRules, a_loop_whose_lock_ends_before_it_is_found) {
+  const fs::path root = fs::path(testing::TempDir()) / ("lock_loops_" + std::to_string(getpid()));
+  fs::create_directories(root / "clients");
+  std::ofstream(root / "clients" / "a.cpp") << "for (auto& a : data.lock()->list) {}\nfor (;;) data.lock()->push_back(std::string());\n"
+                                               "const auto all = data.lock();\nfor (auto& a : all->list) {}\n";
+  const auto found = loops_without_their_lock(root);
+  fs::remove_all(root);
+  EXPECT_EQ(found, Names{"clients/a.cpp:1"});
 }
 
 }  // namespace

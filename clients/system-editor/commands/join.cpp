@@ -25,6 +25,7 @@ using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr auto start_limit = 30s;
+constexpr auto join_limit = 70s;  // the context waits for a minute, and says then that nobody has answered
 constexpr auto participant_limit = 10s;
 constexpr int highest_server = 9999;
 // [s]; a proxy that has nobody to serve any more ends after so long, whether somebody says `leave` or not.
@@ -163,7 +164,7 @@ void join(Editor& editor, const JoinOptions& options) {
     return editor.fail(there.error());
   }
   for (const auto& one : all) {
-    if (const auto joined = join_time(editor, one.path, proxy_name(one.member.instance) + ".rtc", one.member.how, start_limit); !joined) {
+    if (const auto joined = join_time(editor, one.path, proxy_name(one.member.instance) + ".rtc", one.member.how, join_limit); !joined) {
       end_proxy_of(editor, one);
       editor.fail(joined.error());
     }

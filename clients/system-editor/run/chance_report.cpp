@@ -15,14 +15,24 @@
 namespace editor {
 namespace {
 
+// The component that a line is about: "port My Arm:out was ..." is about My Arm, "component Arm had ..." about Arm.
+const PlaceInTime* place_of(const std::string& what, const PlacesInTime& places) {
+  const PlacesInTime::value_type* longest = nullptr;
+  for (const auto& one : places) {
+    const bool fits = what.starts_with("port " + one.first + ":") || what.starts_with("component " + one.first + " ");
+    if (fits && (!longest || one.first.size() > longest->first.size())) longest = &one;
+  }
+  return longest ? &longest->second : nullptr;
+}
+
 // "port A:out ... at 0.06 s" of a component that is called each 10 ms: ", in tick 6". What came between two ticks counts as of the first.
 std::string tick_text(const std::string& what, const PlacesInTime& places) {
   const auto words = base::split_list(what, ' ');
   if (words.size() < 4 || words.back() != "s") return "";
-  const auto place = places.find(words[1].substr(0, words[1].find(':')));
+  const auto* place = place_of(what, places);
   const auto time = base::parse_number(words[words.size() - 2]);
-  if (place == places.end() || place->second.period.count() <= 0 || !time) return "";
-  return ", in tick " + std::to_string(std::llround(*time * 1e9) / place->second.period.count());
+  if (!place || place->period.count() <= 0 || !time) return "";
+  return ", in tick " + std::to_string(std::llround(*time * 1e9) / place->period.count());
 }
 
 // As services of that kind and their users set it.

@@ -20,7 +20,7 @@ bool tells_of_chance(const RunOptions& options);
 // Who takes part in the lock step, by instance: when they are called.
 struct PlaceInTime {
   std::int64_t phase = 0;
-  std::chrono::nanoseconds period{0};
+  std::chrono::nanoseconds period{0};  // between two calls: at least a step
 };
 using PlacesInTime = std::map<std::string, PlaceInTime>;
 

@@ -1,6 +1,7 @@
 // What components of others send each other in a run. It passes no port of ours, so each such OutPort is listened to, as a recorder does:
-// for the hash log, where its samples stand as those of an OutPort of ours, and for what depends on chance. A stamp of the sender's own
-// clock, which differs in each run, is left out: where the first member of the type is an RTC::Time, it counts as 0.
+// for the hash log, where its samples stand as those of an OutPort of ours, and for what depends on chance. Left out is what differs in
+// each run and is no data: the stamp of the sender's own clock (where the first member of the type is an RTC::Time, it counts as 0), and
+// the octets that align members.
 //
 // A sample belongs to the simulated time in which it comes: its sender waits for the listener, and in lock step time waits for the sender.
 // One thread at a time; samples come on the ORB's threads, and end() returns when none is under way any more.
@@ -8,6 +9,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <span>
@@ -16,9 +18,9 @@
 
 #include "base/guarded.h"
 #include "base/hash_log.h"
+#include "corba/shape.h"
 #include "editor.h"
 #include "profile/rts_profile.h"
-#include "run/chance_report.h"
 #include "run/foreign_processes.h"
 #include "shm/client.h"
 #include "tap.h"
@@ -27,37 +29,37 @@ namespace editor {
 
 class ForeignLinks {
  public:
-  // `log`: where the part of the hash log goes; empty: nowhere. To be called while time stands still. What cannot be listened to is named,
-  // for the user: it is no reason to end a run.
+  // `log`: where the part of the hash log goes; empty: nowhere. To be called once, while time stands still. What cannot be listened to is
+  // named, for the user: it is no reason to end a run.
   Result<std::vector<std::string>> listen(CORBA::ORB_ptr orb, const Editor& editor, const SavedSystem& system,
                                           const ForeignProcesses& foreign, const std::string& simulator, const std::string& log);
-  // Samples that came while no phase ran. One line for each port.
-  std::vector<std::string> chances(const PlacesInTime& places) const;
-  // Listens no more; the log is whole then.
-  void end();
+  // Samples that came while no phase ran. One line for each port, with the time.
+  std::vector<std::string> chances();
+  // Listens no more. An error when not all of the log could be written. Peers that hang cost a second each.
+  Result<void> end();
 
  private:
   struct Port {
     std::string name;  // "Alien:out"
-    std::uint32_t key = 0;
+    corba::Shape shape;
     bool has_stamp = false;
+    std::uint32_t key = 0;
+    // In the turn of samples:
     std::uint64_t samples = 0;                                // in this tick
     std::uint64_t hash = 0;                                   // of these
     std::string value;                                        // of the last one
     std::optional<std::chrono::nanoseconds> between_ticks{};  // the first that came so
   };
-  struct Data {
-    std::optional<shm::Iface> simulation;
-    std::optional<base::HashLogWriter> log;
-    std::uint32_t resets = 0;
-    std::chrono::nanoseconds time{0};  // of the samples that are not in the log yet
-    std::vector<Port> ports;
-  };
-  Result<void> listen_on(CORBA::ORB_ptr orb, const Editor& editor, const ForeignProcesses& foreign, const std::string& name);
-  static void write(Data& data);
-  void take(std::size_t port, std::span<const unsigned char> payload, bool is_little_endian);
+  Result<void> listen_on(CORBA::ORB_ptr orb, const Editor& editor, const ForeignProcesses& foreign, const SavedTarget& target);
+  void take(Port& port, std::span<const unsigned char> payload, bool is_little_endian);
+  void write();
 
-  base::Guarded<Data, base::Rank::buffer> data_;
+  base::Turn<> turn_;  // of samples, one after the other, with what follows
+  std::optional<shm::Iface> simulation_;
+  std::optional<base::HashLogWriter> log_;
+  std::uint32_t resets_ = 0;
+  std::chrono::nanoseconds time_{0};  // of the samples that are not in the log yet
+  std::deque<Port> ports_;            // stay where they are
   std::vector<std::unique_ptr<Tap>> taps_;
 };
 

@@ -20,14 +20,16 @@ bool has(const std::vector<std::string>& names, const std::string& name) { retur
 }  // namespace
 
 Result<void> LostMembers::check() {
+  if (told_) return *told_;
   auto ended = foreign_.ended();
   auto gone = hosts_.gone_members();
-  return ended || !gone.empty() ? tell(std::move(ended), std::move(gone)) : Result<void>();
+  if (!ended && gone.empty()) return {};
+  return told_.emplace(tell(std::move(ended), std::move(gone)));
 }
 
 // Who was called then, and when, the contexts say; how its process has ended is known where that was the command itself. Both are there in
 // a moment.
-Result<void> LostMembers::tell(std::optional<ForeignProcesses::Ended> ended, std::vector<RunHosts::Gone> gone) {
+Error LostMembers::tell(std::optional<ForeignProcesses::Ended> ended, std::vector<RunHosts::Gone> gone) {
   for (const auto end = Clock::now() + end_of_process; Clock::now() < end && (!ended || gone.empty());
        std::this_thread::sleep_for(pause_between_looks)) {
     if (!ended) ended = foreign_.ended();

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "run/foreign_processes.h"
 #include "run/run_hosts.h"
@@ -20,12 +22,13 @@ class LostMembers {
   Result<void> check();
 
  private:
-  Result<void> tell(std::optional<ForeignProcesses::Ended> ended, std::vector<RunHosts::Gone> gone);
+  Error tell(std::optional<ForeignProcesses::Ended> ended, std::vector<RunHosts::Gone> gone);
 
   ForeignProcesses& foreign_;
   RunHosts& hosts_;
   const RunSimulator& simulator_;
   const std::function<bool(const std::string&)> answers_;
+  std::optional<Error> told_;  // is told again: what the contexts have said is read once
 };
 
 }  // namespace editor

@@ -141,22 +141,23 @@ std::vector<RunHosts::Gone> RunHosts::gone_members() {
 }
 
 std::string RunHosts::who_is_waited_for(const SavedSystem& system) const {
-  std::map<std::pair<std::string, std::string>, bool> waits;  // by port and connection, as told last
+  std::map<std::pair<std::string, std::string>, bool> waits;  // by port and id of the connection, as told last
   for (const auto& host : hosts_) {
     for (const auto& line : lines_of(host.log)) {
       const auto at = line.find(corba::port_waits_mark);
       if (at == std::string::npos) continue;
       const auto begin = line.rfind(' ', at) + 1;
       const auto rest = line.substr(at + corba::port_waits_mark.size());
-      const auto name_end = rest.rfind(" has ");
-      if (name_end == std::string::npos) continue;
-      waits[{line.substr(begin, at - begin), rest.substr(0, name_end)}] = rest.find(" has not ", name_end) != std::string::npos;
+      const auto id_end = rest.rfind(") has ");
+      if (id_end == std::string::npos) continue;
+      const auto id = rest.substr(0, id_end).substr(rest.rfind('(', id_end) + 1);
+      waits[{line.substr(begin, at - begin), id}] = rest.find(" has not ", id_end) != std::string::npos;
     }
   }
   std::string text;
   for (const auto& connector : system.connectors) {
     for (const auto& [own, peer] : {std::pair(&connector.source, &connector.target), std::pair(&connector.target, &connector.source)}) {
-      const auto found = waits.find({own->port_name, connector.name});
+      const auto found = waits.find({own->port_name, connector.id});
       if (found != waits.end() && found->second) text += "; " + own->port_name + " waits for " + peer->port_name;
     }
   }

@@ -53,7 +53,7 @@ void RunJudge::check_chances(const std::vector<std::string>& known, RunResult& r
   if (!tells_of_chance(options_)) return;
   const auto places = simulator_.places();
   auto chances = chances_in(hosts_.logs(), places);
-  chances.insert(chances.end(), known.begin(), known.end());
+  for (const auto& one : known) chances.push_back(with_tick(one, places));
   for (auto& pair : services_of_one_phase(system_, places)) chances.push_back(std::move(pair));
   for (auto& pair : callers_of_one_phase(system_, places, providers_)) chances.push_back(std::move(pair));
   if (options_.strict) {

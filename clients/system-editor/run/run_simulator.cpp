@@ -116,11 +116,12 @@ std::set<std::string> RunSimulator::participants() const {
 }
 
 PlacesInTime RunSimulator::places() const {
+  const std::chrono::nanoseconds step(std::llround(step_s_ * 1e9));
   PlacesInTime places;
   const auto json = parsed(simctl({"--json", "participants"}, call_limit));
   for (const auto& participant : json.is_array() ? json : nlohmann::json::array())
     places[participant.value("name", "")] = {participant.value("phase", std::int64_t{0}),
-                                             std::chrono::nanoseconds(participant.value("period_ns", std::int64_t{0}))};
+                                             std::max(std::chrono::nanoseconds(participant.value("period_ns", std::int64_t{0})), step)};
   return places;
 }
 

@@ -64,7 +64,7 @@ class Run final : public RunningSystem {
       result_.logs = last_words();
     }
     ports_.end();
-    links_.end();
+    if (const auto ended = links_.end(); !ended) result_.verdicts.push_back({"hash log", ended.error().message});
     recorder_.end();
     if (!hashes_.is_wanted()) keep_recording();
     const auto warnings = hosts_.warnings();
@@ -380,7 +380,7 @@ class Run final : public RunningSystem {
     judge_.take_values(ports_.end());
     naming_.set_running(true);  // what is judged now is found by it
     if (const auto answer = naming_.ask(); !answer) return answer;
-    auto chances = links_.chances(simulator_.places());
+    auto chances = links_.chances();
     chances.insert(chances.end(), foreign_.chances().begin(), foreign_.chances().end());
     return judge_.look(*editor_, chances, result_);
   }
@@ -437,7 +437,7 @@ class Run final : public RunningSystem {
       if (const auto stepped = simulator_.make_steps(
               steps, [this] { return check_children(); }, show);
           !stepped) {
-        result_.simulated_s = simulator_.time().value_or(simulator_.last_time());
+        result_.simulated_s = simulator_.time().value_or(std::max(simulator_.last_time(), result_.simulated_s));
         return fail(stepped.error().message + hosts_.who_is_waited_for(system_));
       }
       left -= steps;

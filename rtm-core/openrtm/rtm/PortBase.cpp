@@ -1,6 +1,7 @@
 #include "rtm/PortBase.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <limits>
 
@@ -56,6 +57,10 @@ class PortBase::Servant final : public corba::PortServant {
 PortBase::PortBase(const char* name) : rtclog(name), name_(name), servant_(std::make_unique<Servant>(*this, name)) {}
 
 PortBase::~PortBase() { shut(); }
+
+void PortBase::setPortConnectListenerHolder(PortConnectListeners* listeners) {
+  std::atomic_ref(m_portconnListeners).store(listeners, std::memory_order_release);  // pairs with the acquire in on_step
+}
 
 void PortBase::shut() { servant_->shut(); }
 void PortBase::deactivate() { servant_->deactivate(); }
@@ -126,7 +131,7 @@ void PortBase::Servant::on_step(Step step, ConnectorProfile& profile, ReturnCode
   const auto call = [&](ConnectionCallback* callback) {
     if (callback) (*callback)(profile);
   };
-  PortConnectListeners* const listeners = port_.m_portconnListeners;
+  PortConnectListeners* const listeners = std::atomic_ref(port_.m_portconnListeners).load(std::memory_order_acquire);
   const auto tell = [&](PortConnectListenerType type) {
     if (listeners) listeners->portconnect_[type].notify(port_.getName(), profile);
   };

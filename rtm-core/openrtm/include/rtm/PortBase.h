@@ -76,7 +76,7 @@ class PortBase {
   void setOnDisconnected(ConnectionCallback* callback) { m_onDisconnected = callback; }
   void setOnConnectionLost(ConnectionCallback* callback) { m_onConnectionLost = callback; }
   // Not owned; must outlive the port or be replaced by nullptr.
-  void setPortConnectListenerHolder(PortConnectListeners* listeners) { m_portconnListeners = listeners; }
+  void setPortConnectListenerHolder(PortConnectListeners* listeners);
 
   // No call from outside is accepted after this; connections stay.
   void deactivate();
@@ -114,7 +114,7 @@ class PortBase {
   ConnectionCallback* m_onUnsubscribeInterfaces = nullptr;
   ConnectionCallback* m_onDisconnected = nullptr;
   ConnectionCallback* m_onConnectionLost = nullptr;
-  PortConnectListeners* m_portconnListeners = nullptr;
+  PortConnectListeners* m_portconnListeners = nullptr;  // a connection may be made or ended by others while it changes
 
  private:
   class Servant;
