@@ -8,7 +8,7 @@ foreach(case chain_forward chain_backward chain_mixed_at_a_rate_that_is_no_multi
 endforeach()
 
 # Components of another make, and what becomes of a run when one of them is slow, wrong or dead.
-foreach(case join_and_leave started same_state faulty late_receiver one_phase one_phase_in_a_circle between_others wrong_start ticked ticked_by_hand ticked_together ticked_afterwards faulty_ticked clock together one_context host_dies forgotten)
+foreach(case join_and_leave started same_state faulty late_receiver one_phase one_phase_in_a_circle between_others interrupted kept_hang_timeout recorded lost_link wrong_start ticked ticked_by_hand ticked_together ticked_afterwards faulty_ticked clock together one_context host_dies forgotten)
   add_test(NAME lockstep.foreign_${case}
     COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/scenario/foreign_members.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(lockstep.foreign_${case} PROPERTIES LABELS integration TIMEOUT 300)

@@ -46,7 +46,7 @@ std::unique_ptr<LoggerService> LoggerService::attach(const editor::ComponentView
     profile.interface_type = type;
     profile.properties = editor::to_nv_list(properties);
     profile.service = SDOPackage::SDOService::_duplicate(reference);
-    const SDOPackage::Configuration_var configuration = service->component_->get_configuration();
+    const SDOPackage::Configuration_var configuration = editor::configuration_of(service->component_);
     configuration->add_service_profile(profile);
   } catch (const CORBA::Exception&) {
     return nullptr;
@@ -61,7 +61,7 @@ std::unique_ptr<LoggerService> LoggerService::of_log(const editor::ComponentView
 
 LoggerService::~LoggerService() {
   try {
-    const SDOPackage::Configuration_var configuration = component_->get_configuration();
+    const SDOPackage::Configuration_var configuration = editor::configuration_of(component_);
     configuration->remove_service_profile(id_.c_str());
   } catch (const CORBA::Exception&) {
     // It has gone, or never knew it.

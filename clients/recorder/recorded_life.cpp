@@ -112,7 +112,7 @@ base::Result<void> LifePlayer::make(const RecordedChange& change) {
     if (change.kind == Kind::deactivate) context->object->deactivate_component(component_.object);
     if (change.kind == Kind::reset) context->object->reset_component(component_.object);
     if (change.kind != Kind::configure || change.values.empty()) return;
-    const SDOPackage::Configuration_var configuration = component_.object->get_configuration();
+    const SDOPackage::Configuration_var configuration = editor::configuration_of(component_.object);
     const SDOPackage::ConfigurationSet_var set = configuration->get_configuration_set(change.set.c_str());
     auto all = editor::to_properties(set->configuration_data);
     for (const auto& [name, value] : change.values) all[name] = value;

@@ -57,9 +57,16 @@ std::string describe(const CORBA::Exception& exception) {
   if (dynamic_cast<const CORBA::NO_PERMISSION*>(&exception)) return "does not let this call in (its log says why)";
   if (dynamic_cast<const CORBA::BAD_PARAM*>(&exception)) return "has an address that is none, expected HOST:PORT (BAD_PARAM)";
   if (dynamic_cast<const CORBA::COMM_FAILURE*>(&exception)) return "closed the connection in the middle of the call";
+  if (dynamic_cast<const CORBA::NO_IMPLEMENT*>(&exception)) return "does not have this service (NO_IMPLEMENT)";
   if (dynamic_cast<const CORBA::MARSHAL*>(&exception)) return "sent an answer that cannot be read (MARSHAL)";
   if (dynamic_cast<const CORBA::BAD_OPERATION*>(&exception)) return "does not know this operation (BAD_OPERATION)";
   return std::string("failed with ") + exception._name();
+}
+
+SDOPackage::Configuration_var configuration_of(RTC::RTObject_ptr component) {
+  SDOPackage::Configuration_var configuration = component->get_configuration();
+  if (CORBA::is_nil(configuration)) throw CORBA::NO_IMPLEMENT();
+  return configuration;
 }
 
 Result<void> remote(const std::string& what, const std::function<void()>& call) {

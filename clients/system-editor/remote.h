@@ -48,6 +48,9 @@ class CallLimit {
 void in_parallel(std::size_t count, std::chrono::milliseconds limit, const std::function<void(std::size_t)>& work,
                  std::size_t threads = 32);
 
+// Its service for parameters. Throws CORBA::NO_IMPLEMENT when the component has none, and what the call throws.
+SDOPackage::Configuration_var configuration_of(RTC::RTObject_ptr component);
+
 std::string state_text(RTC::LifeCycleState state);
 std::string kind_text(RTC::ExecutionKind kind);
 

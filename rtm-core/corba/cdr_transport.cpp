@@ -245,14 +245,14 @@ class OutServant final : public Names::OutSkeleton, public PortableServer::RefCo
 
 // Calls the peer. A connection that ends while the answer is awaited may only have been idle too long for the peer's taste: once more then.
 template <class Call>
-rt::PortStatus calling(Call call) {
+rt::PortStatus calling(const Line& line, Call call) {
   for (bool is_second = false;; is_second = true) {
     try {
       return call();
     } catch (const CORBA::COMM_FAILURE& e) {
-      if (is_second || e.minor() != omni::COMM_FAILURE_WaitingForReply) return status_of(e, "data port");
+      if (is_second || e.minor() != omni::COMM_FAILURE_WaitingForReply) return status_of(e, line);
     } catch (const CORBA::SystemException& e) {
-      return status_of(e, "data port");
+      return status_of(e, line);
     }
   }
 }
@@ -260,17 +260,17 @@ rt::PortStatus calling(Call call) {
 template <class Names>
 class CdrSender final : public Sender {
  public:
-  CdrSender(typename Names::InStub::_ptr_type in_port, const Line& line) : in_port_(in_port), order_(line.order) {}
+  CdrSender(typename Names::InStub::_ptr_type in_port, const Line& line) : in_port_(in_port), line_(line) {}
 
   rt::PortStatus send(Payload& payload) override {
     const Pieces* pieces = nullptr;
     try {
-      pieces = &payload.pieces(order_);
+      pieces = &payload.pieces(line_.order);
     } catch (const CORBA::SystemException& e) {
-      base::log(base::Level::error, "data port", "a {} cannot be encoded: {}", payload.ops().type_id, e._name());
+      base::log(base::Level::error, line_.port, "a {} cannot be encoded: {}", payload.ops().type_id, e._name());
       return rt::PortStatus::error;
     }
-    return calling([&] {
+    return calling(line_, [&] {
       PutCall<Names> call(*pieces);
       in_port_->_PR_getobj()->_invoke(call);
       return from_put(call.status());
@@ -279,7 +279,7 @@ class CdrSender final : public Sender {
 
  private:
   typename Names::InStub::_var_type in_port_;
-  rt::ByteOrder order_;
+  const Line line_;
 };
 
 // get, the caller's side.
@@ -312,15 +312,15 @@ class GetCall final : public omniCallDescriptor {
 template <class Names>
 class CdrFetcher final : public Fetcher {
  public:
-  CdrFetcher(typename Names::OutStub::_ptr_type out_port, const Line& line) : out_port_(out_port), order_(line.order) {}
+  CdrFetcher(typename Names::OutStub::_ptr_type out_port, const Line& line) : out_port_(out_port), line_(line) {}
 
   rt::PortStatus fetch(rt::Sample& sample) override {
-    return calling([&] {
+    return calling(line_, [&] {
       GetCall<Names> call(*pool_);
       out_port_->_PR_getobj()->_invoke(call);
       if (call.status == WireStatus::ok) {
         sample.block = std::move(call.block);
-        sample.order = order_;
+        sample.order = line_.order;
       }
       return from_get(call.status);
     });
@@ -328,7 +328,7 @@ class CdrFetcher final : public Fetcher {
 
  private:
   typename Names::OutStub::_var_type out_port_;
-  rt::ByteOrder order_;
+  const Line line_;
   std::shared_ptr<rt::BlockPool> pool_ = rt::BlockPool::make();
 };
 
@@ -366,11 +366,19 @@ CORBA::ORB_var orb() {
   return CORBA::ORB_init(argc, nullptr);
 }
 
-rt::PortStatus status_of(const CORBA::SystemException& problem, std::string_view name) {
+rt::PortStatus status_of(const CORBA::SystemException& problem, const Line& line) {
   // The sample is to blame, not the peer: it exceeds the longest message of this ORB, or cannot be encoded.
   const bool is_about_the_sample = dynamic_cast<const CORBA::MARSHAL*>(&problem) || dynamic_cast<const CORBA::BAD_PARAM*>(&problem);
-  base::log(base::Level::warn, name, "{}: {} ({})", is_about_the_sample ? "a sample cannot be sent" : "the peer does not answer",
-            problem._name(), problem.NP_minorString() ? problem.NP_minorString() : "no minor code");
+  const bool is_unreachable = dynamic_cast<const CORBA::COMM_FAILURE*>(&problem) || dynamic_cast<const CORBA::TRANSIENT*>(&problem) ||
+                              dynamic_cast<const CORBA::TIMEOUT*>(&problem);
+  const std::string why =
+      std::string(problem._name()) + " (" + (problem.NP_minorString() ? problem.NP_minorString() : "no minor code") + ")";
+  if (is_about_the_sample) {
+    base::log(base::Level::warn, line.port, "connection {}: a sample cannot be sent: {}", line.connection, why);
+  } else {
+    base::log(base::Level::warn, line.port, "connection {}{}{} {}", line.connection, lost_mark,
+              is_unreachable ? "the peer does not answer:" : "the peer throws", why);
+  }
   return is_about_the_sample ? rt::PortStatus::error : rt::PortStatus::connection_lost;
 }
 

@@ -112,6 +112,13 @@ std::uint64_t ConnectionPlan::moment() const { return clock ? clock->moment() : 
 std::string port_text(const ConnectionPlan& plan) { return port_text(plan.port); }
 std::string connection_text(const ConnectionPlan& plan) { return plan.name + " (" + plan.id + ")"; }
 
+Line line_of(const ConnectionPlan& plan) {
+  Line line = line_of(plan.settings);
+  line.port = plan.port;
+  line.connection = connection_text(plan);
+  return line;
+}
+
 TypeOps with_codec(const TypeOps& ops, const std::shared_ptr<Codec>& codec) {
   TypeOps own = ops;
   own.codec = codec;
@@ -273,7 +280,7 @@ rt::Refusal InEngine::provide(ConnectionPlan plan, RTC::ConnectorProfile& profil
   const auto settings = plan.settings;
   const std::string id = plan.id;
   auto connection = std::make_shared<InConnection>(ops_, std::move(plan), mailbox_);
-  const Line line = line_of(settings);
+  const Line line = line_of(connection->plan_);
   switch (settings.interface) {
     case rt::Interface::corba_cdr:
     case rt::Interface::data_service:
@@ -301,7 +308,7 @@ rt::Refusal InEngine::consume(ConnectionPlan plan, const RTC::ConnectorProfile& 
   const auto settings = plan.settings;
   const std::string id = plan.id;
   auto connection = std::make_shared<InConnection>(ops_, std::move(plan), mailbox_);
-  const Line line = line_of(settings);
+  const Line line = line_of(connection->plan_);
   if (settings.interface == rt::Interface::direct) {
     const auto source = find_local_out(id);
     if (!source) return {rt::ReturnCode::error, "interface_type direct: the OutPort is not in this process"};

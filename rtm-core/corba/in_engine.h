@@ -20,6 +20,7 @@ namespace corba {
 std::string port_text(const ConnectionPlan& plan);
 // "link1 (ID)"
 std::string connection_text(const ConnectionPlan& plan);
+Line line_of(const ConnectionPlan& plan);
 
 TypeOps with_codec(const TypeOps& ops, const std::shared_ptr<Codec>& codec);
 

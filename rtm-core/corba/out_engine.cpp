@@ -319,7 +319,7 @@ rt::Refusal OutEngine::provide(ConnectionPlan plan, RTC::ConnectorProfile& profi
   const auto settings = plan.settings;
   const std::string id = plan.id;
   auto connection = std::make_shared<OutConnection>(ops_, plan);
-  const corba::Line line = line_of(settings);
+  const corba::Line line = line_of(plan);
   switch (settings.interface) {
     case rt::Interface::corba_cdr:
     case rt::Interface::data_service:
@@ -344,7 +344,7 @@ rt::Refusal OutEngine::provide(ConnectionPlan plan, RTC::ConnectorProfile& profi
 
 rt::Refusal OutEngine::consume(ConnectionPlan plan, const RTC::ConnectorProfile& profile) {
   const auto settings = plan.settings;
-  const corba::Line line = line_of(settings);
+  const corba::Line line = line_of(plan);
   std::unique_ptr<Sender> sender;
   if (settings.interface == rt::Interface::direct) {
     auto receiver = find_local_in(plan.id);

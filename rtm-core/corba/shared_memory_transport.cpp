@@ -223,7 +223,7 @@ class SharedMemorySender final : public Sender {
           return rt::PortStatus::error;
       }
     } catch (const CORBA::SystemException& e) {
-      return status_of(e, "data port");
+      return status_of(e, line_);
     }
   }
 
@@ -301,7 +301,7 @@ class SharedMemoryFetcher final : public Fetcher {
           return rt::PortStatus::error;
       }
     } catch (const CORBA::SystemException& e) {
-      return status_of(e, "data port");
+      return status_of(e, line_);
     }
     auto read = servant_->inlet.read(*pool_);
     if (!read) return rt::PortStatus::error;

@@ -75,13 +75,18 @@ struct Line {
   rt::ByteOrder order = rt::ByteOrder::little;
   std::chrono::milliseconds call_timeout{10000};
   std::size_t shared_memory_size = std::size_t{2} << 20;
+  std::string port = "data port";  // whose it is, and what it is called, for messages
+  std::string connection{};
 };
 
 // The ORB of this process.
 CORBA::ORB_var orb();
 
-// What an exception of a call says about the connection; logs it under `name`.
-rt::PortStatus status_of(const CORBA::SystemException& problem, std::string_view name);
+// What the log says of a connection over which nothing more comes, before the reason.
+inline constexpr std::string_view lost_mark = ": nothing more comes over it: ";
+
+// What an exception of a call says about the connection; logs it.
+rt::PortStatus status_of(const CORBA::SystemException& problem, const Line& line);
 
 // nullptr if the object is nil, unreachable or of another interface.
 std::unique_ptr<Sender> make_cdr_sender(rt::Interface interface, CORBA::Object_ptr in_port, const Line& line);

@@ -3,14 +3,16 @@
 behaves as those of OpenRTM-aist do towards contexts of others, and knows nothing of simulated time.
 
     foreign_component.py NAME [--names HOST:PORT] [--source] [--journal FILE] [--fault KIND@N] [--context periodic|triggered|logical|afterwards] [--clock PERIOD]
-                         [--late MS@N] [--race clock|thread] [--attach-late MS]
+                         [--late MS@N] [--race clock|thread] [--attach-late MS] [--activate-late MS] [--throw-at N]
 
 It is bound as NAME.rtc in the root of the naming service. InPort `in` and OutPort `out` carry RTC::TimedLong: with --source it counts its
 calls, else it sends on what came, plus one. --fault: in its Nth on_execute it sleeps so many ms ("300@5"; "300@*" in each), or does what the
 word says: fail, throw, die, hang, or meet: it waits until as many components have done so as the files of that name tell ("meet/PATH@5"). The
 journal gets a line "callback handle value" for each call, and "tick seconds value" for each tick of its own context, when that is one that is
 ticked; `afterwards`: one that is ticked, and calls the component on a thread of its own. --late: it answers so many ms after it
-has got its Nth sample; --attach-late: so many after it was asked to join a context. --race: what it sends depends on the clock of the machine, or it sends on a thread
+has got its Nth sample; --attach-late, --activate-late: so many after it was asked to join a context, or to
+be active. --throw-at: it throws when it gets its Nth
+sample. --race: what it sends depends on the clock of the machine, or it sends on a thread
 of its own, some time later. --clock: it subscribes that to the ClockGenerator, with its period in seconds, and unsubscribes at the end.
 """
 import argparse
@@ -48,6 +50,9 @@ class Port(ForeignPort):
     # A sample.
     def serve(self, operation, data, out):
         super().serve(operation, data, out)
+        if self.owner.options.throw_at == self.count + 1:
+            self.count += 1
+            raise SystemException("UNKNOWN")
         late, _, at = self.owner.options.late.partition("@")
         self.count += 1
         if at == str(self.count):
@@ -171,6 +176,9 @@ class Component:
         return self.note("on_shutdown", handle)
 
     def on_activated(self, handle):
+        if self.options.activate_late:
+            self.note("asked", handle)
+            time.sleep(self.options.activate_late / 1000)
         self.calls = self.value = 0
         self.into.received.clear()
         return self.note("on_activated", handle)
@@ -230,7 +238,9 @@ class Component:
 
     # What contexts and tools ask.
     def attach_context(self, context):
-        time.sleep(self.options.attach_late / 1000)
+        if self.options.attach_late:
+            self.note("asked", 0)
+            time.sleep(self.options.attach_late / 1000)
         self.others.append(context)
         return first_other_handle + len(self.others) - 1
 
@@ -293,6 +303,8 @@ def main():
     parser.add_argument("--fault", default="")
     parser.add_argument("--late", default="")
     parser.add_argument("--attach-late", type=float, default=0)
+    parser.add_argument("--activate-late", type=float, default=0)
+    parser.add_argument("--throw-at", type=int, default=0)
     parser.add_argument("--race", default="", choices=["", "clock", "thread"])
     parser.add_argument("--context", default="periodic", choices=["periodic", "triggered", "logical", "afterwards"])
     parser.add_argument("--clock", type=float, default=0)

@@ -96,7 +96,7 @@ Result<void> set_values(const ComponentView& component, const std::string& id,
       set.configuration_data[i].name = values[i].first.c_str();
       set.configuration_data[i].value <<= values[i].second.c_str();
     }
-    SDOPackage::Configuration_var configuration = component.object->get_configuration();
+    SDOPackage::Configuration_var configuration = configuration_of(component.object);
     accepted = configuration->set_configuration_set_values(set);
   });
   if (called && !accepted) return Error{what + ": refused"};
@@ -107,7 +107,7 @@ Result<void> use_set(const ComponentView& component, const std::string& id) {
   const auto what = "component " + component.path + ": activating configuration set " + id;
   bool accepted = false;
   auto called = remote(what, [&] {
-    SDOPackage::Configuration_var configuration = component.object->get_configuration();
+    SDOPackage::Configuration_var configuration = configuration_of(component.object);
     accepted = configuration->activate_configuration_set(id.c_str());
   });
   if (called && !accepted) return Error{what + ": refused"};

@@ -217,7 +217,10 @@ Result<void> restore_configuration(const Matched& matched, const SavedComponent&
     if (const auto done = set_values(*component, set.id, values); !done) return done;
   }
   const auto active = saved.active_set.empty() ? component->active_set : saved.active_set;
-  if (!active.empty() && !options.dry_run) {
+  // A set without parameters, of a component that knows no sets: there is nothing to choose.
+  const auto has_values = [&](const auto& set) { return set.id == active && !set.values.empty(); };
+  const bool is_nothing = component->configuration_sets.empty() && std::ranges::none_of(saved.configuration_sets, has_values);
+  if (!active.empty() && !is_nothing && !options.dry_run) {
     if (const auto used = use_set(*component, active); !used) return used;
   }
   if (problems.empty()) return {};

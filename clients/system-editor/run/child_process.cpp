@@ -163,7 +163,10 @@ Ending ChildProcess::wait_or_interrupt(std::chrono::milliseconds limit) {
 
 void ChildProcess::terminate() {
   if (pid_ > 0 && watched_ >= 0 && reap_watched()) return;  // its number may belong to another one already
-  if (pid_ > 0 && !std::exchange(is_told_, true)) kill(ends_as_group_ ? -pid_ : pid_, SIGTERM);
+  if (pid_ <= 0 || std::exchange(is_told_, true)) return;
+  const pid_t whom = ends_as_group_ ? -pid_ : pid_;
+  kill(whom, SIGTERM);
+  kill(whom, SIGCONT);  // one that was stopped hears of it, too
 }
 
 std::string ChildProcess::how_it_ended() const {

@@ -1,8 +1,11 @@
 #include "run/foreign_processes.h"
 
+#include <signal.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <tuple>
 
 #include "base/text.h"
 #include "run/call_order.h"
@@ -240,8 +243,23 @@ std::string ForeignProcesses::last_words() const {
   return text;
 }
 
+void ForeignProcesses::kill() const {
+  for (const auto& one : running_) ::kill(-one.process.pid(), SIGKILL);
+}
+
 void ForeignProcesses::terminate() {
   for (auto& one : running_) one.process.terminate();
+}
+
+std::string ForeignProcesses::who_may_be_waited_for(const SavedSystem& system, const std::vector<std::string>& late) const {
+  std::string text;
+  for (const auto& connector : system.connectors) {
+    const auto& [source, target] = std::tie(connector.source, connector.target);
+    const bool is_late = std::ranges::find(late, source.instance) != late.end();
+    if (connector.is_data && is_late && has(source.instance) && source.instance != target.instance)
+      text += "; " + source.port_name + " sends to " + target.port_name;
+  }
+  return text;
 }
 
 std::vector<std::string> ForeignProcesses::set_links(SavedSystem& system) const {

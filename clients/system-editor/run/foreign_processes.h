@@ -55,11 +55,15 @@ class ForeignProcesses {
   std::string last_words() const;
   std::vector<RunningSystem::Process> processes() const;  // the shells that run the commands
   void terminate();
+  // With SIGKILL, all that the commands have started. Any thread.
+  void kill() const;
   void end() { running_.clear(); }
 
   // Links into our ports get stamps of simulated time, unless the system says otherwise, and links from components of others send at once
   // (flush), as a thread of theirs belongs to no tick. What there is to say of that.
   std::vector<std::string> set_links(SavedSystem& system) const;
+  // Those to whom late components of others send, who may hang in taking it: "; Alien.out sends to Other.in". Empty: nobody.
+  std::string who_may_be_waited_for(const SavedSystem& system, const std::vector<std::string>& late) const;
   // What depends on chance because it cannot be ordered; known after join().
   const std::vector<std::string>& chances() const { return chances_; }
 

@@ -1,5 +1,6 @@
 #include "run/interrupt.h"
 
+#include <poll.h>
 #include <signal.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
@@ -7,6 +8,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdint>
+#include <utility>
 
 namespace editor {
 namespace {
@@ -35,5 +37,18 @@ void catch_interrupts() {
 bool is_interrupted() { return interrupted.load(std::memory_order_relaxed); }
 
 int interrupt_handle() { return handle.load(std::memory_order_relaxed); }
+
+OnInterrupt::OnInterrupt(std::function<void()> act)
+    : end_(::eventfd(0, EFD_CLOEXEC)), thread_([this, act = std::move(act)] {
+        pollfd handles[2] = {{interrupt_handle(), POLLIN, 0}, {end_, POLLIN, 0}};
+        while (::poll(handles, 2, -1) < 0 && errno == EINTR) continue;
+        if (handles[0].revents != 0) act();
+      }) {}
+
+OnInterrupt::~OnInterrupt() {
+  (void)::eventfd_write(end_, 1);
+  thread_.join();
+  ::close(end_);
+}
 
 }  // namespace editor

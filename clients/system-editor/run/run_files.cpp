@@ -120,4 +120,10 @@ std::string printable(std::string_view text) {
   return result;
 }
 
+std::string folder_problem(const std::filesystem::filesystem_error& error) {
+  const char* temporary = std::getenv("TMPDIR");
+  const auto path = error.path1().empty() ? std::filesystem::path(temporary ? temporary : "/tmp") : error.path1();
+  return "folder " + base::in_quotes(path.string()) + ": " + error.code().message();
+}
+
 }  // namespace editor

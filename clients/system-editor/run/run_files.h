@@ -26,6 +26,9 @@ class Workplace {
   std::filesystem::path scratch_, files_;
 };
 
+// Of the folder of a run.
+std::string folder_problem(const std::filesystem::filesystem_error& error);
+
 std::vector<std::string> lines_of(const std::string& file);
 // Of a line of a log of rtcd or sim-server.
 enum class LogLevel { none, info, warning, error };

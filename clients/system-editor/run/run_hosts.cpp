@@ -10,6 +10,7 @@
 
 #include "base/text.h"
 #include "corba/remote_participant.h"
+#include "corba/transport.h"
 #include "run/same_math.h"
 #include "run/time_members.h"
 #include "run/warm_program.h"
@@ -164,6 +165,22 @@ std::string RunHosts::who_is_waited_for(const SavedSystem& system) const {
   return text;
 }
 
+std::vector<std::string> RunHosts::lost_connections(const SavedSystem& system) const {
+  std::vector<std::string> lost;
+  for (const auto& host : hosts_) {
+    for (const auto& line : lines_of(host.log)) {
+      const auto at = line.find(corba::lost_mark);
+      if (at == std::string::npos) continue;
+      const auto is_it = [&](const SavedConnector& one) { return line.substr(0, at).ends_with("(" + one.id + ")"); };
+      const auto connector = std::ranges::find_if(system.connectors, is_it);
+      if (connector == system.connectors.end()) continue;  // a tool's
+      auto text = connector->source.port_name + " to " + connector->target.port_name + ": " + line.substr(at + corba::lost_mark.size());
+      if (std::ranges::find(lost, text) == lost.end()) lost.push_back(std::move(text));
+    }
+  }
+  return lost;
+}
+
 bool RunHosts::has(const std::string& instance) const { return host_of(hosts_, instance) != hosts_.end(); }
 
 bool RunHosts::is_killed(const std::string& instance) const { return host_of(killed_, instance) != killed_.end(); }
@@ -207,8 +224,19 @@ std::string RunHosts::last_words() const {
   return text;
 }
 
+void RunHosts::kill() const {
+  if (options_.warm) return;  // somebody else's, whose numbers may belong to others already
+  for (const auto& host : hosts_) ::kill(host.process.pid(), SIGKILL);
+}
+
 void RunHosts::terminate() {
   for (auto& host : hosts_) host.process.terminate();
+}
+
+std::set<std::string> instances_of(const RunHosts::Members& members) {
+  std::set<std::string> instances;
+  for (const auto* member : members) instances.insert(member->instance);
+  return instances;
 }
 
 }  // namespace editor

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,8 @@ class RunHosts {
   std::vector<Gone> gone_members();
   // Those of `system` for whom ports of ours wait: "; From.out waits for Alien.in". Empty: nobody.
   std::string who_is_waited_for(const SavedSystem& system) const;
+  // Over which nothing more comes, and why: "From.out to Alien.in: the peer throws UNKNOWN".
+  std::vector<std::string> lost_connections(const SavedSystem& system) const;
   bool has(const std::string& instance) const;
   // Its host was killed and is not there again.
   bool is_killed(const std::string& instance) const;
@@ -57,6 +60,8 @@ class RunHosts {
   std::vector<std::string> warnings() const;
   std::string last_words() const;
   void terminate();
+  // All of them, with SIGKILL, where they are our own children. Any thread.
+  void kill() const;
   void end() { hosts_.clear(); }
 
  private:
@@ -81,5 +86,6 @@ class RunHosts {
 };
 
 std::string names_of(const RunHosts::Members& members);
+std::set<std::string> instances_of(const RunHosts::Members& members);
 
 }  // namespace editor

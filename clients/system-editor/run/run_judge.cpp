@@ -44,6 +44,8 @@ Result<void> RunJudge::look(const Editor& editor, const std::vector<std::string>
     if (view) providers_.merge(providers_of(*view));
   }
   check_states(result);
+  // What a script takes down takes its connections with it.
+  if (!options_.script) result.verdicts.push_back({"no connection is lost", base::join(hosts_.lost_connections(system_), "; ")});
   check_chances(chances, result);
   return {};
 }

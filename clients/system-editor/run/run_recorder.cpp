@@ -2,6 +2,7 @@
 
 #include <signal.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <iterator>
@@ -22,6 +23,12 @@ std::string RunRecorder::said() const {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+// The line may come after others: what the ORB has to say of a component.
+bool RunRecorder::has_begun() const {
+  const auto lines = base::split_list(said(), '\n');
+  return std::ranges::any_of(lines, [](const std::string& line) { return line.starts_with("recording "); });
+}
+
 base::Result<void> RunRecorder::start(const RecorderCall& call, const Wait& wait_until) {
   log_ = place_.new_file("recorder.log");
   file_ = call.file;
@@ -37,7 +44,7 @@ base::Result<void> RunRecorder::start(const RecorderCall& call, const Wait& wait
   auto started = ChildProcess::start(program);
   if (!started) return started.error();
   process_.emplace(std::move(*started));
-  const auto ready = wait_until("recorder", [&] { return said().starts_with("recording ") || !process_->is_running(); });
+  const auto ready = wait_until("recorder", [&] { return has_begun() || !process_->is_running(); });
   if (!ready) return ready;
   if (process_->is_running()) return {};
   const auto lines = base::split_list(said(), '\n');

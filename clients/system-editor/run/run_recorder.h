@@ -42,6 +42,7 @@ class RunRecorder {
 
  private:
   std::string said() const;
+  bool has_begun() const;
   bool await_word(const char* word);
 
   const Workplace& place_;

@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "run/same_math.h"
 #include "run/warm_program.h"
+#include "shm/client.h"
 
 namespace editor {
 namespace {
@@ -18,10 +19,10 @@ using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr auto call_limit = 5s;
-constexpr auto look_period = 100ms;  // at the processes: one that dies is named within it
-constexpr std::chrono::milliseconds shortest_ask_period = 1s, longest_ask_period = 2s;  // for the time, while steps are made
-constexpr auto long_time = 1s;                                                          // without a step: somebody is named
-constexpr int lowest_server = 5000, highest_server = 9999;                              // those below are for people and their scripts
+constexpr auto look_period = 100ms;                         // at the processes: one that dies is named within it
+constexpr auto show_period = 1s;                            // of progress
+constexpr auto long_time = 1s;                              // without a step: somebody is named
+constexpr int lowest_server = 5000, highest_server = 9999;  // those below are for people and their scripts
 const std::string log_name = "sim-server.log";
 
 nlohmann::json parsed(const Result<std::string>& text) { return text ? nlohmann::json::parse(*text, nullptr, false) : nlohmann::json(); }
@@ -139,11 +140,13 @@ Result<void> RunSimulator::make_steps(std::int64_t steps, const std::function<Re
   if (options_.in_real_time) call.words.push_back("--paced");
   auto stepping = start_program(options_.warm, call);
   if (!stepping) return stepping.error();
+  auto clock =
+      shm::Iface::open(static_cast<std::uint32_t>(base::parse_integer(id_).value_or(0)), shm::IfaceType::simulation, "world");
+  if (!clock) return clock.error();
   std::uint64_t last = 0;
-  auto moved = Clock::now();
+  auto moved = Clock::now(), shown = moved;
   bool is_told = false;
-  std::chrono::milliseconds ask_period = shortest_ask_period;  // each question costs a program's start
-  for (auto asked = moved;;) {
+  for (;;) {
     const auto ending = stepping->wait_or_interrupt(look_period);
     if (ending == Ending::interrupted) return Error{"run: interrupted"};
     if (const auto good = alive(); !good) return good;
@@ -151,19 +154,18 @@ Result<void> RunSimulator::make_steps(std::int64_t steps, const std::function<Re
       const auto said = output_of(*stepping);
       return said ? Result<void>() : said.error();
     }
-    if (Clock::now() - asked < ask_period) continue;
-    asked = Clock::now();
-    const auto stats = statistics(1s);
-    const auto now = stats.value("steps", last);
-    last_time_ = stats.value("sim_time", last_time_);
-    const bool has_moved = std::exchange(last, now) != now;
-    if (has_moved) {
-      moved = Clock::now();
+    const auto now = Clock::now();
+    if (clock->read()) {
+      const auto& sample = clock->sample<shm::SimulationSample>();
+      last_time_ = base::to_seconds(std::chrono::nanoseconds(sample.stamp.sim_time_ns));
+      if (std::exchange(last, sample.steps) != sample.steps) moved = now;
+    }
+    if (now - shown > show_period) {
+      shown = now;
       passed(last_time_);
     }
-    ask_period = has_moved ? std::min(2 * ask_period, longest_ask_period) : shortest_ask_period;
-    if (Clock::now() - moved > long_time && !std::exchange(is_told, true)) std::fprintf(stderr, "rtse: %s\n", who_waits().c_str());
-    if (Clock::now() - moved > std::chrono::duration<double>(options_.hang_timeout_s)) return Error{who_hangs()};
+    if (now - moved > long_time && !std::exchange(is_told, true)) std::fprintf(stderr, "rtse: %s\n", who_waits().c_str());
+    if (now - moved > std::chrono::duration<double>(options_.hang_timeout_s)) return Error{who_hangs()};
   }
 }
 

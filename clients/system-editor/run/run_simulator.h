@@ -50,6 +50,7 @@ class RunSimulator {
   double last_time() const { return last_time_; }  // as it was when it was asked last
   std::set<std::string> participants() const;
   PlacesInTime places() const;
+  std::vector<std::string> late() const;  // participants that have not ended their tick
   std::vector<std::string> models() const;
 
   // So many steps; given up when `alive` has something to say, or when time stands still for longer than a tick may take. `passed` is told
@@ -60,7 +61,6 @@ class RunSimulator {
  private:
   Result<void> try_start(const Wait& wait_until);
   std::optional<pid_t> owner() const;
-  std::vector<std::string> late() const;  // participants
   std::string who_waits() const;
   std::string who_hangs() const;
   std::string segment_prefix() const;

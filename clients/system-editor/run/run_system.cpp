@@ -37,12 +37,6 @@ using namespace std::chrono_literals;
 
 constexpr auto editor_limit = 5s;
 
-std::set<std::string> instances_of(const RunHosts::Members& members) {
-  std::set<std::string> instances;
-  for (const auto* member : members) instances.insert(member->instance);
-  return instances;
-}
-
 // Everything of one run. Its end takes the processes down, the components before the simulator before the naming service.
 class Run final : public RunningSystem {
  public:
@@ -98,7 +92,9 @@ class Run final : public RunningSystem {
   Result<void> run() {
     for (auto step : {&Run::read, &Run::start_naming, &Run::start_simulator, &Run::start_foreign, &Run::start_hosts, &Run::wire,
                       &Run::listen, &Run::record, &Run::begin_script, &Run::drive, &Run::look, &Run::run_commands, &Run::judge_all}) {
-      if (const auto done = (this->*step)(); !done || (options_.driver && step == &Run::drive)) return done;
+      const auto done = (this->*step)();
+      if (!done && is_interrupted()) return fail("run: interrupted");
+      if (!done || (options_.driver && step == &Run::drive)) return done;
     }
     return {};
   }
@@ -248,8 +244,9 @@ class Run final : public RunningSystem {
                 (why.empty() ? foreign_.about(missing) : why));
   }
 
-  // The profile as it is for this run: the simulator has an id of its own.
+  // The profile as it is for this run: the simulator has an id of its own. Who joins or is activated may hang in it.
   Result<void> wire() {
+    const OnInterrupt early([this] { foreign_.kill(), hosts_.kill(); });
     for (auto& component : system_.components) {
       for (auto& set : component.configuration_sets) {
         if (set.is_hidden()) continue;
@@ -438,7 +435,8 @@ class Run final : public RunningSystem {
               steps, [this] { return check_children(); }, show);
           !stepped) {
         result_.simulated_s = simulator_.time().value_or(std::max(simulator_.last_time(), result_.simulated_s));
-        return fail(stepped.error().message + hosts_.who_is_waited_for(system_));
+        return fail(stepped.error().message + hosts_.who_is_waited_for(system_) +
+                    foreign_.who_may_be_waited_for(system_, simulator_.late()));
       }
       left -= steps;
       done += steps;
@@ -457,6 +455,7 @@ class Run final : public RunningSystem {
     if (!naming_.ask()) naming_.end();  // nobody need wait for it
     foreign_.terminate();
     hosts_.terminate();
+    if (!result_.problem.empty()) foreign_.end();  // a host may wait for one that hangs
     hosts_.end();
     foreign_.end();
     simulator_.end();
@@ -492,8 +491,7 @@ RunResult run_system(CORBA::ORB_ptr orb, const RunOptions& options) {
   } catch (const std::filesystem::filesystem_error& error) {
     RunResult result;
     result.seed = options.seed;
-    const auto path = error.path1().empty() ? std::filesystem::path(std::getenv("TMPDIR") ? std::getenv("TMPDIR") : "/tmp") : error.path1();
-    result.problem = "folder " + base::in_quotes(path.string()) + ": " + error.code().message();
+    result.problem = folder_problem(error);
     return result;
   }
 }

@@ -367,10 +367,21 @@ ReturnCode_t disconnect_all_by_name(const std::string& port_name) { return disco
 
 // --- configuration
 
+namespace {
+
+// A component may have none.
+SDOPackage::Configuration_ptr configuration_of(const RTC::RTObject_ptr rtc) {
+  SDOPackage::Configuration_var configuration = rtc->get_configuration();
+  if (CORBA::is_nil(configuration)) throw CORBA::NO_IMPLEMENT();
+  return configuration._retn();
+}
+
+}  // namespace
+
 coil::Properties get_configuration(const RTC::RTObject_ptr rtc, const std::string& set_name) {
   if (CORBA::is_nil(rtc)) return {};
   return guarded(coil::Properties(), [&] {
-    SDOPackage::Configuration_var configuration = rtc->get_configuration();
+    SDOPackage::Configuration_var configuration = configuration_of(rtc);
     SDOPackage::ConfigurationSet_var set = configuration->get_configuration_set(set_name.c_str());
     coil::Properties properties;
     NVUtil::copyToProperties(properties, set->configuration_data);
@@ -381,7 +392,7 @@ coil::Properties get_configuration(const RTC::RTObject_ptr rtc, const std::strin
 std::string get_active_configuration_name(const RTC::RTObject_ptr rtc) {
   if (CORBA::is_nil(rtc)) return {};
   return guarded(std::string(), [&] {
-    SDOPackage::Configuration_var configuration = rtc->get_configuration();
+    SDOPackage::Configuration_var configuration = configuration_of(rtc);
     SDOPackage::ConfigurationSet_var set = configuration->get_active_configuration_set();
     return std::string(set->id);
   });
@@ -390,7 +401,7 @@ std::string get_active_configuration_name(const RTC::RTObject_ptr rtc) {
 coil::Properties get_active_configuration(const RTC::RTObject_ptr rtc) {
   if (CORBA::is_nil(rtc)) return {};
   return guarded(coil::Properties(), [&] {
-    SDOPackage::Configuration_var configuration = rtc->get_configuration();
+    SDOPackage::Configuration_var configuration = configuration_of(rtc);
     SDOPackage::ConfigurationSet_var set = configuration->get_active_configuration_set();
     coil::Properties properties;
     NVUtil::copyToProperties(properties, set->configuration_data);
@@ -406,7 +417,7 @@ bool set_configuration(const RTC::RTObject_ptr rtc, const std::string& set_name,
   if (CORBA::is_nil(rtc)) return false;
   const auto active = get_active_configuration_name(rtc);
   return guarded(false, [&] {
-    SDOPackage::Configuration_var configuration = rtc->get_configuration();
+    SDOPackage::Configuration_var configuration = configuration_of(rtc);
     SDOPackage::ConfigurationSet_var set = configuration->get_configuration_set(set_name.c_str());
     NVUtil::setStringValue(set->configuration_data, key.c_str(), value.c_str());
     if (!configuration->set_configuration_set_values(set)) return false;

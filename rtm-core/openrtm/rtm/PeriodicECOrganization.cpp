@@ -122,7 +122,7 @@ bool PeriodicECOrganization::join(const Member& member) {
     for (CORBA::ULong i = 0; i < contexts->length(); ++i) in_time(contexts[i])->stop();
     Configuration_var configuration = sdo->get_configuration();
     Organization_var self = getObjRef();
-    configuration->add_organization(self);
+    if (!CORBA::is_nil(configuration)) configuration->add_organization(self);
     RTC::ExecutionContext_var context = own_context(composite_);
     if (!CORBA::is_nil(context)) context->add_component(component);
     // A composite inside a composite: its members run here, too.
@@ -153,7 +153,7 @@ void PeriodicECOrganization::leave(const Member& member) {
     }
     Configuration_var configuration = sdo->get_configuration();
     CORBA::String_var id = get_organization_id();
-    configuration->remove_organization(id);
+    if (!CORBA::is_nil(configuration)) configuration->remove_organization(id);
     RTC::ExecutionContextList_var contexts = component->get_owned_contexts();
     for (CORBA::ULong i = 0; i < contexts->length(); ++i) in_time(contexts[i])->start();
   });
