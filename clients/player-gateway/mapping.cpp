@@ -10,6 +10,7 @@
 
 #include "base/text.h"
 #include "device_kinds.h"
+#include "yaml_keys.h"
 
 namespace gateway {
 namespace {
@@ -210,7 +211,9 @@ base::Result<std::vector<ListedIface>> parse_list(std::string_view json) {
 
 base::Result<std::vector<ConfiguredPort>> read_config(const std::string& path) {
   try {
-    return configured_ports(YAML::LoadFile(path));
+    const auto root = YAML::LoadFile(path);
+    yaml::expect_unique_keys(root);
+    return configured_ports(root);
   } catch (const Wrong& wrong) {
     return base::Error{path + ":" + std::to_string(wrong.mark.line + 1) + ": " + wrong.what};
   } catch (const YAML::BadFile&) {

@@ -50,6 +50,7 @@ const std::vector<Layer> layers = {
     {"clients/examples", {"rtm", "coil", "base", "stubs"}},
     {"clients/obstacle-avoidance", {"rtm", "coil", "base", "stubs"}},
     {"clients/video-player", {"rtm", "coil", "base", "stubs"}, {"SDL2", "X11", "JPEG", "PNG"}},
+    {"clients/yaml", {"base"}, {"YAML"}},
     {"clients/system-editor", {"corba", "shm", "base", "stubs"}, {"omniORB", "pugixml", "JSON", "YAML", "spdlog", "ncurses"}},
     {"clients/channels/views", {"views", "ros", "shm", "base"}, {"JSON", "JPEG"}},
     {"clients/channels", {"ros", "base", "stubs"}},

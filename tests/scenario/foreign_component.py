@@ -3,7 +3,7 @@
 behaves as those of OpenRTM-aist do towards contexts of others, and knows nothing of simulated time.
 
     foreign_component.py NAME [--names HOST:PORT] [--source] [--journal FILE] [--fault KIND@N] [--context periodic|triggered|logical|afterwards] [--clock PERIOD]
-                         [--late MS@N] [--race clock|thread] [--attach-late MS] [--activate-late MS] [--throw-at N]
+                         [--late MS@N] [--race clock|thread] [--attach-late MS] [--activate-late MS] [--die attach|activate] [--throw-at N]
 
 It is bound as NAME.rtc in the root of the naming service. InPort `in` and OutPort `out` carry RTC::TimedLong: with --source it counts its
 calls, else it sends on what came, plus one. --fault: in its Nth on_execute it sleeps so many ms ("300@5"; "300@*" in each), or does what the
@@ -11,7 +11,7 @@ word says: fail, throw, die, hang, or meet: it waits until as many components ha
 journal gets a line "callback handle value" for each call, and "tick seconds value" for each tick of its own context, when that is one that is
 ticked; `afterwards`: one that is ticked, and calls the component on a thread of its own. --late: it answers so many ms after it
 has got its Nth sample; --attach-late, --activate-late: so many after it was asked to join a context, or to
-be active. --throw-at: it throws when it gets its Nth
+be active; --die: when it is asked. --throw-at: it throws when it gets its Nth
 sample. --race: what it sends depends on the clock of the machine, or it sends on a thread
 of its own, some time later. --clock: it subscribes that to the ClockGenerator, with its period in seconds, and unsubscribes at the end.
 """
@@ -176,6 +176,8 @@ class Component:
         return self.note("on_shutdown", handle)
 
     def on_activated(self, handle):
+        if self.options.die == "activate":
+            os.kill(os.getpid(), signal.SIGKILL)
         if self.options.activate_late:
             self.note("asked", handle)
             time.sleep(self.options.activate_late / 1000)
@@ -238,6 +240,8 @@ class Component:
 
     # What contexts and tools ask.
     def attach_context(self, context):
+        if self.options.die == "attach":
+            os.kill(os.getpid(), signal.SIGKILL)
         if self.options.attach_late:
             self.note("asked", 0)
             time.sleep(self.options.attach_late / 1000)
@@ -303,6 +307,7 @@ def main():
     parser.add_argument("--fault", default="")
     parser.add_argument("--late", default="")
     parser.add_argument("--attach-late", type=float, default=0)
+    parser.add_argument("--die", default="", choices=["", "attach", "activate"])
     parser.add_argument("--activate-late", type=float, default=0)
     parser.add_argument("--throw-at", type=int, default=0)
     parser.add_argument("--race", default="", choices=["", "clock", "thread"])

@@ -226,6 +226,17 @@ def faulty():
         done = subprocess.run([f"{bin_dir}/rtse", "run", system, "--world", empty, "--module-path", lib_dir, "--duration", "1000000", *starts],
                               text=True, capture_output=True, timeout=120)
         assert done.returncode == 1 and "process of Other (" in done.stderr and ", at 0.2 s" in done.stderr, done
+        # Also of one command that has started both; and a command whose components all answer is named alone.
+        both = f"{r.command(name='Alien')} & {r.command('--fault die@3', name='Other')}"
+        for commands, why in (((both,), "process of Other ("), (("true", r.command(name="Alien"), r.command(name="Other")), "process (true) ended with exit code 0")):
+            starts = [word for command in commands for word in ("--start", command)]
+            done = subprocess.run([f"{bin_dir}/rtse", "run", system, "--world", empty, "--module-path", lib_dir, "--duration", "1000000", *starts],
+                                  text=True, capture_output=True, timeout=120)
+            assert done.returncode == 1 and why in done.stderr, done
+        # Who dies before the first tick has died, whatever else does not work then.
+        for die in ("attach", "activate"):
+            code, err, read, calls = r.run(start=r.start(f"--die {die}"))
+            assert code == 1 and re.search(r"process of Alien \(.*\) was killed by signal 9", err), (die, err)
 
 
 def late_receiver():

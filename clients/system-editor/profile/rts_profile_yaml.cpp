@@ -278,7 +278,7 @@ Result<SavedSystem> parse_yaml(const std::string& content, const std::string& fi
   YAML::Node root;
   try {
     root = YAML::Load(content);
-    expect_unique_keys(root);
+    yaml::expect_unique_keys(root);
     if (!root.IsMap() || !root["rtsProfile"]) return Error{file + ": holds no rtsProfile"};
     const auto profile = root["rtsProfile"];
     SavedSystem system;

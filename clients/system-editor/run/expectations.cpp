@@ -249,7 +249,7 @@ Result<std::vector<Expectation>> to_expectations(const std::function<std::vector
     const auto documents = load();
     if (documents.size() > 1) return Error{place(0) + "holds " + std::to_string(documents.size()) + " YAML documents, expected one"};
     auto root = documents.empty() ? YAML::Node() : documents.front();
-    expect_unique_keys(root);
+    yaml::expect_unique_keys(root);
     if (root.IsMap() && root["expect"]) root = root["expect"];
     if (!root.IsSequence()) return Error{place(0) + "must hold a list of expectations"};
     std::vector<Expectation> expectations;

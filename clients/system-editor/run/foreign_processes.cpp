@@ -216,14 +216,16 @@ Result<void> ForeignProcesses::join(const Editor& editor, SavedSystem& system, s
   return {};
 }
 
-std::string ForeignProcesses::Ended::text() const { return "process of " + base::join(components, ", ") + " (" + command + ") " + how; }
-
 std::optional<ForeignProcesses::Ended> ForeignProcesses::ended() {
   for (std::size_t i = 0; i < running_.size(); ++i) {
     auto& one = running_[i];
     if (!one.process.is_running())
-      return Ended{components_of(processes_[i]), processes_[i].components.empty(), shortened(processes_[i].command),
-                   one.process.how_it_ended() + ": " + telling_line(one.log)};
+      return Ended{components_of(processes_[i]),
+                   processes_[i].components.empty(),
+                   std::ranges::count_if(processes_, [](const auto& process) { return process.components.empty(); }) == 1,
+                   shortened(processes_[i].command),
+                   one.process.how_it_ended(),
+                   telling_line(one.log)};
   }
   return std::nullopt;
 }

@@ -43,10 +43,10 @@ class ForeignProcesses {
   // those in these contexts.
   Result<void> join(const Editor& editor, SavedSystem& system, std::chrono::milliseconds patience);
   struct Ended {
-    std::vector<std::string> components;  // at least one of them is of this process, if `is_open`
-    bool is_open = false;                 // nobody has said whose components they are
-    std::string command, how;             // "sh start.sh", "was killed by signal 9: " and a telling line
-    std::string text() const;
+    std::vector<std::string> components;  // those of all open ones, if it is open: nobody has said whose components they are
+    bool is_open = false;
+    bool is_only_one = false;        // that is open
+    std::string command, how, said;  // "sh start.sh", "was killed by signal 9", its last telling line
   };
   // The first process that has.
   std::optional<Ended> ended();

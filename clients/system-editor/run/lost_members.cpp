@@ -27,6 +27,14 @@ Result<void> LostMembers::check() {
   return told_.emplace(tell(std::move(ended), std::move(gone)));
 }
 
+Error LostMembers::with_reason(const Error& problem) {
+  if (foreign_.empty()) return problem;
+  const auto end = Clock::now() + end_of_process;
+  auto whole = check();
+  for (; whole && Clock::now() < end; std::this_thread::sleep_for(pause_between_looks)) whole = check();
+  return whole || problem.message.starts_with(whole.error().message) ? problem : Error{whole.error().message + "; " + problem.message};
+}
+
 // Who was called then, and when, the contexts say; how its process has ended is known where that was the command itself. Both are there in
 // a moment.
 Error LostMembers::tell(std::optional<ForeignProcesses::Ended> ended, std::vector<RunHosts::Gone> gone) {
@@ -36,15 +44,19 @@ Error LostMembers::tell(std::optional<ForeignProcesses::Ended> ended, std::vecto
     if (gone.empty()) gone = hosts_.gone_members();
   }
   if (!ended) return Error{"component " + gone.front().said};
+  // Those that were called when they had gone: the first of them before the others, which may have been ended with it.
   const auto known = std::ranges::find_if(gone, [&](const auto& one) { return has(ended->components, one.instance); });
   const auto time = known == gone.end() ? simulator_.time() : known->time;
-  if (ended->is_open && ended->components.size() > 1) {
-    // Those that answer are not of the process that has ended.
-    auto silent = ended->components;
-    std::erase_if(silent, answers_);
-    if (!silent.empty()) ended->components = std::move(silent);
+  auto names = ended->components;
+  if (known != gone.end()) {
+    names = {known->instance};
+  } else if (ended->is_open && can_ask_()) {
+    std::erase_if(names, answers_);  // are of another process
+  } else if (ended->is_open && !ended->is_only_one) {
+    names.clear();
   }
-  return Error{ended->text() + (time && *time > 0 ? ", at " + base::format_number(*time) + " s" : "")};
+  return Error{"process " + (names.empty() ? "" : "of " + base::join(names, ", ") + " ") + "(" + ended->command + ") " + ended->how +
+               (time && *time > 0 ? ", at " + base::format_number(*time) + " s" : "") + ": " + ended->said};
 }
 
 }  // namespace editor

@@ -15,11 +15,14 @@ namespace editor {
 
 class LostMembers {
  public:
-  // All must live as long. `answers`: whether the component of that name does.
-  LostMembers(ForeignProcesses& foreign, RunHosts& hosts, const RunSimulator& simulator, std::function<bool(const std::string&)> answers)
-      : foreign_(foreign), hosts_(hosts), simulator_(simulator), answers_(std::move(answers)) {}
+  // All must live as long. `answers`: whether the component of that name does, once it can be asked.
+  LostMembers(ForeignProcesses& foreign, RunHosts& hosts, const RunSimulator& simulator, std::function<bool()> can_ask,
+              std::function<bool(const std::string&)> answers)
+      : foreign_(foreign), hosts_(hosts), simulator_(simulator), can_ask_(std::move(can_ask)), answers_(std::move(answers)) {}
 
   Result<void> check();
+  // A problem that somebody's end may be the reason of, which is seen a moment later: who has died answers nothing.
+  Error with_reason(const Error& problem);
 
  private:
   Error tell(std::optional<ForeignProcesses::Ended> ended, std::vector<RunHosts::Gone> gone);
@@ -27,6 +30,7 @@ class LostMembers {
   ForeignProcesses& foreign_;
   RunHosts& hosts_;
   const RunSimulator& simulator_;
+  const std::function<bool()> can_ask_;
   const std::function<bool(const std::string&)> answers_;
   std::optional<Error> told_;  // is told again: what the contexts have said is read once
 };

@@ -103,7 +103,7 @@ ForeignProcess process_of(const YAML::Node& node, const std::filesystem::path& b
 
 std::vector<ForeignProcess> all_of(const std::string& text, const std::filesystem::path& beside) {
   const auto root = YAML::Load(text);
-  expect_unique_keys(root);
+  yaml::expect_unique_keys(root);
   expect_map(root, "run file", {"processes"});
   const auto list = root["processes"];
   if (!list || !list.IsSequence() || list.size() == 0) throw FailureAt{"run file needs a list of processes", root.Mark()};

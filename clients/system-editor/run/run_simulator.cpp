@@ -140,8 +140,7 @@ Result<void> RunSimulator::make_steps(std::int64_t steps, const std::function<Re
   if (options_.in_real_time) call.words.push_back("--paced");
   auto stepping = start_program(options_.warm, call);
   if (!stepping) return stepping.error();
-  auto clock =
-      shm::Iface::open(static_cast<std::uint32_t>(base::parse_integer(id_).value_or(0)), shm::IfaceType::simulation, "world");
+  auto clock = shm::Iface::open(static_cast<std::uint32_t>(base::parse_integer(id_).value_or(0)), shm::IfaceType::simulation, "world");
   if (!clock) return clock.error();
   std::uint64_t last = 0;
   auto moved = Clock::now(), shown = moved;

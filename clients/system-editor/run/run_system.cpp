@@ -93,8 +93,8 @@ class Run final : public RunningSystem {
     for (auto step : {&Run::read, &Run::start_naming, &Run::start_simulator, &Run::start_foreign, &Run::start_hosts, &Run::wire,
                       &Run::listen, &Run::record, &Run::begin_script, &Run::drive, &Run::look, &Run::run_commands, &Run::judge_all}) {
       const auto done = (this->*step)();
-      if (!done && is_interrupted()) return fail("run: interrupted");
-      if (!done || (options_.driver && step == &Run::drive)) return done;
+      if (!done) return is_interrupted() ? fail("run: interrupted") : lost_.with_reason(done.error());
+      if (options_.driver && step == &Run::drive) return done;
     }
     return {};
   }
@@ -473,7 +473,8 @@ class Run final : public RunningSystem {
   RunSimulator simulator_;
   RunHosts hosts_;
   ForeignProcesses foreign_;
-  LostMembers lost_{foreign_, hosts_, simulator_, [this](const auto& instance) { return !editor_ || component(instance, {}).ok(); }};
+  LostMembers lost_{foreign_, hosts_, simulator_, [this] { return editor_.has_value(); },
+                    [this](const auto& instance) { return component(instance, {}).ok(); }};
   RunRecorder recorder_{place_};
   std::optional<Editor> editor_;
   std::optional<NamingTree> names_;  // while the naming service is stopped by a script

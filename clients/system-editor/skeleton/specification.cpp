@@ -140,7 +140,7 @@ class YamlReader {
 
   Result<NewComponent> read() {
     const auto root = YAML::LoadFile(file_);
-    expect_unique_keys(root);
+    yaml::expect_unique_keys(root);
     only(root, {"name", "description", "version", "vendor", "category", "rate", "in_ports", "out_ports", "parameters", "services",
                 "idl_files", "actions"});
     NewComponent component;

@@ -3,9 +3,9 @@
 
 #include <yaml-cpp/yaml.h>
 
-namespace editor {
+namespace yaml {
 
 // Throws a YAML::Exception at a key that a map has twice; of two values the second would be lost without a word.
 void expect_unique_keys(const YAML::Node& root);
 
-}  // namespace editor
+}  // namespace yaml

@@ -6,7 +6,7 @@
 
 #include "base/text.h"
 
-namespace editor {
+namespace yaml {
 
 // By a list, not by calls: a file may nest as deep as its reader lets it. Aliases can make a small file a tree without end; what comes
 // after so many nodes is not looked at.
@@ -30,4 +30,4 @@ void expect_unique_keys(const YAML::Node& root) {
   }
 }
 
-}  // namespace editor
+}  // namespace yaml
