@@ -210,6 +210,12 @@ base::Result<void> write_report(const Options& options, const ReplayResult& resu
   return editor::write_junit(options.junit, names, {run});
 }
 
+// It is of another maker: its stamps are those of its own clock.
+bool has_own_stamps(const RecordedRun& run, const std::string& component) {
+  const auto others = base::split_list(run.note("others"), '\n');
+  return std::ranges::find(others, component) != others.end();
+}
+
 void replay_file(Editor& editor, const Options& options) {
   const auto run = RecordedRun::unpack(options.file);
   if (!run) return editor.fail(run.error());
@@ -222,6 +228,7 @@ void replay_file(Editor& editor, const Options& options) {
   }
   ReplayOptions replayed{.file = options.file, .component = options.component, .compares = options.compares};
   replayed.tolerated.ignored = options.ignored;
+  if (has_own_stamps(*run, options.component)) replayed.tolerated.ignored.emplace_back("tm");
   for (const auto& text : options.tolerances) replayed.tolerated.tolerances.insert(*parse_tolerance(text));
   const auto links = links_of(*system, options);
   if (!links) return editor.fail(links.error());

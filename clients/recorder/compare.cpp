@@ -30,7 +30,15 @@ class Side {
                                                       : std::ranges::find(query->channels, id) != query->channels.end();
       if (is_meant) chosen_.emplace(channel.topic, channel.metadata.contains("late") || channel.topic == "/hashes");
     }
+    others_ = others_of(reader_);
     return {};
+  }
+  // The samples of a topic have stamps of their sender's own clock.
+  bool has_own_stamps(const std::string& topic) const {
+    return std::ranges::any_of(reader_.channels(), [&](const auto& one) {
+      const auto component = one.second.metadata.find("component");
+      return one.second.topic == topic && component != one.second.metadata.end() && std::ranges::count(others_, component->second) > 0;
+    });
   }
   // Those that count, and whether they are about the run rather than of it: a hash log is there or not.
   const std::map<std::string, bool>& chosen() const { return chosen_; }
@@ -52,6 +60,7 @@ class Side {
   Selection selection_;
   SampleValues values_;
   std::map<std::string, bool> chosen_;
+  std::vector<std::string> others_;
 };
 
 struct Entry {
@@ -109,8 +118,10 @@ std::optional<std::string> difference(const DifferenceOptions& options, Side& fi
   if (a.octets == b.octets) return std::nullopt;
   const auto left = value_of(first, a);
   const auto right = value_of(second, b);
-  if (left && right) return difference(options, *left, *right);
-  return "octets differ";
+  if (!left || !right) return "octets differ";
+  auto tolerated = options;
+  if (first.has_own_stamps(a.topic) && second.has_own_stamps(b.topic)) tolerated.ignored.emplace_back("tm");
+  return difference(tolerated, *left, *right);
 }
 
 // Channels that only one of them has; those of hash logs are noted and left out.

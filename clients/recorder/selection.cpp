@@ -52,6 +52,15 @@ std::optional<mcap::Reader> open(editor::Editor& editor, const std::string& file
   return std::move(*reader);
 }
 
+std::vector<std::string> others_of(mcap::Reader& reader) {
+  const auto metadata = reader.metadata();
+  for (const auto& one : metadata ? *metadata : std::vector<mcap::Metadata>()) {
+    const auto names = one.name == "run" ? one.texts.find("others") : one.texts.end();
+    if (names != one.texts.end()) return base::split_list(names->second, '\n');
+  }
+  return {};
+}
+
 void for_each(editor::Editor& editor, mcap::Reader& reader, const Selection& selection,
               const std::function<bool(const mcap::Message&)>& take) {
   auto query = query_of(reader, selection);

@@ -21,13 +21,16 @@ struct Selection {
 };
 
 // [s]
-inline double seconds(mcap::Time time) { return static_cast<double>(time.count()) * 1e-9; }
+inline double seconds(mcap::Time time) { return static_cast<double>(time.count()) / 1e9; }
 
 // Fails for a pattern that no channel fits.
 base::Result<mcap::Query> query_of(const mcap::Reader& reader, const Selection& selection);
 
 // Nothing, and the editor has said why, when the file can't be read. Damage is told on stderr.
 std::optional<mcap::Reader> open(editor::Editor& editor, const std::string& file);
+
+// The components of other makers in the run, whose samples have stamps of their own clocks (`tm`), which differ in each run.
+std::vector<std::string> others_of(mcap::Reader& reader);
 
 // Calls `take` with each message of the selection until it says false; broken chunks are told and passed over.
 void for_each(editor::Editor& editor, mcap::Reader& reader, const Selection& selection,

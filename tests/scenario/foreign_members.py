@@ -288,6 +288,11 @@ def recorded():
         done = subprocess.run([f"{bin_dir}/rtse", "--json", "recording", "info", f"{r.path}/run.mcap"], text=True, capture_output=True, timeout=60)
         samples = {channel["topic"]: channel["samples"] for channel in json.loads(done.stdout)["channels"]}
         assert samples["/Alien/out"] == 11 and samples["/From/out"] == 11, samples
+        # A second one is equal: stamps of a clock of the machine do not count.
+        code, err, read, calls = r.run("--record", f"{r.path}/again.mcap", start=r.start())
+        assert code == 0, err
+        done = subprocess.run([f"{bin_dir}/rtse", "recording", "compare", f"{r.path}/run.mcap", f"{r.path}/again.mcap", "--channel", "/Alien/out"], text=True, capture_output=True, timeout=60)
+        assert done.returncode == 0 and "equal" in done.stdout, done
 
 
 def lost_link():

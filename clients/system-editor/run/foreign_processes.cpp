@@ -181,6 +181,12 @@ Result<void> ForeignProcesses::start(const std::string& naming, const std::strin
   return {};
 }
 
+std::vector<std::string> ForeignProcesses::names() const {
+  std::vector<std::string> names;
+  for (const auto& member : members_) names.push_back(member.instance);
+  return names;
+}
+
 std::vector<std::string> ForeignProcesses::proxies() const {
   std::vector<std::string> names;
   for (const auto& member : members_) {

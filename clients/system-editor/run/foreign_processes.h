@@ -32,6 +32,7 @@ class ForeignProcesses {
   bool has(const std::string& instance) const;
   // In the order of the system.
   const std::vector<TimeMember>& members() const { return members_; }
+  std::vector<std::string> names() const;
   // The longest that somebody waits for the components of a process.
   std::chrono::duration<double> patience(std::chrono::duration<double> usual) const;
 

@@ -76,7 +76,7 @@ Result<std::vector<ComponentProperty>> read_wishes(const RunOptions& options, co
   return properties;
 }
 
-std::vector<std::pair<std::string, std::string>> notes_on(const RunOptions& options) {
+std::vector<std::pair<std::string, std::string>> notes_on(const RunOptions& options, const std::vector<std::string>& others) {
   const auto absolute = [](std::vector<std::string> paths) {
     for (auto& path : paths) path = std::filesystem::absolute(path).string();
     return base::join(paths, "\n");
@@ -87,6 +87,7 @@ std::vector<std::pair<std::string, std::string>> notes_on(const RunOptions& opti
           {"start", base::join(options.start, "\n")},
           {"start_folder", options.start_folder.empty() ? std::filesystem::current_path().string() : options.start_folder},
           {"run_file", options.run_file.empty() ? "" : std::filesystem::absolute(options.run_file).string()},
+          {"others", base::join(others, "\n")},
           {"script", options.script != nullptr ? "yes" : "no"},
           {"module_paths", absolute(options.module_paths)},
           {"resource_paths", absolute(options.resource_paths)}};

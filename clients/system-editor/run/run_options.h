@@ -27,6 +27,6 @@ void add_recording_options(base::Command& run, RunOptions& options);
 base::Result<std::vector<ComponentProperty>> read_wishes(const RunOptions& options, const SavedSystem& system);
 
 // What makes a run again, beside the profile and the world.
-std::vector<std::pair<std::string, std::string>> notes_on(const RunOptions& options);
+std::vector<std::pair<std::string, std::string>> notes_on(const RunOptions& options, const std::vector<std::string>& others);
 
 }  // namespace editor

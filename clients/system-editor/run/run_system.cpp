@@ -219,9 +219,7 @@ class Run final : public RunningSystem {
     std::vector<std::string> expected = foreign_.proxies();
     for (const auto* component : all) expected.push_back(component->instance);
     if (const auto there = await_components(expected, start_limit()); !there) return there;
-    expected.clear();
-    for (const auto& member : foreign_.members()) expected.push_back(member.instance);
-    return await_components(expected, foreign_.patience(start_limit()));
+    return await_components(foreign_.names(), foreign_.patience(start_limit()));
   }
 
   Result<void> await_components(const std::vector<std::string>& expected, std::chrono::duration<double> limit) {
@@ -345,8 +343,7 @@ class Run final : public RunningSystem {
 
   // Every context on simulated time takes part before the first step, or the run would not be the same each time.
   Result<void> wait_for_participants() {
-    std::vector<std::string> expected;
-    for (const auto& member : foreign_.members()) expected.push_back(member.instance);
+    auto expected = foreign_.names();
     for (const auto& component : system_.components) {
       if (!hosts_.has(component.instance)) continue;  // killed by a script
       const auto view = editor_->component(component.instance + ".rtc", {.contexts = true});
@@ -396,7 +393,7 @@ class Run final : public RunningSystem {
     if (options_.record.empty()) return {};
     return recorder_.start(
         {naming_.address(), simulator_.id(), place_.file("system.xml"), std::filesystem::absolute(options_.record).string(),
-         options_.record_last_s, hashes_.file(), notes_on(options_)},
+         options_.record_last_s, hashes_.file(), notes_on(options_, foreign_.names())},
         wait());
   }
 
