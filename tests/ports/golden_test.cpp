@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "base/tick.h"
 #include "corba/cdr.h"
 #include "ports/support.h"
 #include "support/paths.h"
@@ -30,6 +31,23 @@ const nlohmann::json& golden() {
       nlohmann::json::parse(std::ifstream(std::string(paths::source_dir) + "/tests/golden/cdr_payloads.json"));
   return all;
 }
+
+// Keeps what a hash log would take a hash of.
+class OctetsTick final : public base::Tick {
+ public:
+  std::chrono::nanoseconds time() const override { return std::chrono::nanoseconds(0); }
+  std::uint64_t moment() const override { return 0; }
+  void at_end(std::function<void(Tick&)>) override {}
+  bool keeps_data() const override { return true; }
+  void passed(const base::Passage& passage) override {
+    for (const auto& part : passage.octets) {
+      const auto* first = reinterpret_cast<const unsigned char*>(part.data());
+      octets.insert(octets.end(), first, first + part.size());
+    }
+  }
+  bool passed_again(const base::Passage&, std::uint64_t) override { return false; }
+  Bytes octets;
+};
 
 // The far end of the OutPort: keeps what arrives.
 class Keeper : public POA_OpenRTM::InPortCdr {
@@ -162,8 +180,14 @@ TYPED_TEST(GoldenPayload, is_read_and_written_by_ports) {
       // Only padding may differ: another octet there makes no other value.
       Bytes changed = wanted;
       changed[i] = static_cast<unsigned char>(~changed[i]);
-      const auto value = little.put(changed);
+      OctetsTick tick;
+      std::optional<TypeParam> value;
+      {
+        const base::ScopedTick in_tick(tick);
+        value = little.put(changed);
+      }
       ASSERT_TRUE(value) << id << " octet " << i;
+      EXPECT_EQ(tick.octets, written) << id << ": another octet that says nothing makes another hash";
       EXPECT_EQ(writer.write(*value), written) << id << " octet " << i;
     }
   }
