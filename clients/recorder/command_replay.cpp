@@ -35,11 +35,12 @@ struct Options {
 
 std::string after_dot(const std::string& port_name) { return port_name.substr(port_name.find('.') + 1); }
 
-// The properties that decide what an InPort keeps: its buffer.
-editor::Properties buffer_of(const editor::SavedConnector& connector) {
+// The properties that decide what an InPort keeps: its buffer, and the stamps that it gives.
+editor::Properties of_receiver(const editor::SavedConnector& connector) {
   editor::Properties kept;
   for (const auto& [key, value] : connector.properties) {
-    if (key.starts_with("dataport.") && key.find("buffer") != std::string::npos) kept[key] = value;
+    const bool is_kept = key.find("buffer") != std::string::npos || key.ends_with("timestamp_policy");
+    if (key.starts_with("dataport.") && is_kept) kept[key] = value;
   }
   return kept;
 }
@@ -58,7 +59,7 @@ base::Result<std::vector<ReplayLink>> links_of(const editor::SavedSystem& system
     if (!connector.is_data || connector.target.instance != options.component) continue;
     const std::string port = after_dot(connector.target.port_name);
     if (std::ranges::any_of(links, [&](const ReplayLink& link) { return link.port == port; })) continue;
-    links.push_back({"/" + connector.source.instance + "/" + after_dot(connector.source.port_name), port, buffer_of(connector)});
+    links.push_back({"/" + connector.source.instance + "/" + after_dot(connector.source.port_name), port, of_receiver(connector)});
   }
   return links;
 }
@@ -270,6 +271,8 @@ void replay_file(Editor& editor, const Options& options) {
   editor::catch_interrupts();
   const auto made = editor::run_system(editor.orb(), call);
   std::string problem = made.problem;
+  if (!problem.empty() && options.start.empty() && has_own_stamps(*run, options.component))
+    problem += "; it was in a process of others, which --start COMMAND starts here";
   // Of all that can be refused this has a reason that the component's log does not give.
   if (problem.find(": activating ") != std::string::npos)
     problem = "replay: " + options.component +

@@ -30,7 +30,7 @@ const channels::Schema state_schema =
     json_schema("rtmsim.State", R"("context":{"type":"integer"},"state":{"type":"string"},"is_in_tick":{"type":"boolean"})");
 const channels::Schema configuration_schema = json_schema(
     "rtmsim.Configuration",
-    R"("set":{"type":"string"},"values":{"type":"object","additionalProperties":{"type":"string"}},"is_change":{"type":"boolean"},"is_in_tick":{"type":"boolean"})");
+    R"("set":{"type":"string"},"values":{"type":"object","additionalProperties":{"type":"string"}},"all":{"type":"object","additionalProperties":{"type":"string"}},"is_change":{"type":"boolean"},"is_in_tick":{"type":"boolean"})");
 const channels::Schema event_schema = json_schema("rtmsim.Event", R"("kind":{"type":"string"},"event":{"type":"string"})");
 
 std::uint8_t ros_level(OpenRTM::LogLevel level) {
@@ -131,13 +131,14 @@ class ComponentSource::Watched {
   State& state_;
   const editor::ComponentView view_;
   channels::ChannelId states_ = 0, configuration_ = 0;
+  Json values_ = Json::object();  // of parameters, as they are now: who reads a part of the recording knows all of them
   base::Guarded<std::optional<channels::ChannelId>, base::Rank::registry> events_;  // when there is the first one
   std::unique_ptr<LoggerService> own_events_, log_;                                 // last: they call the others
 };
 
 base::Result<void> ComponentSource::Watched::open() {
   const auto states = channel("state", state_schema, true);
-  const auto configuration = channel("configuration", configuration_schema);
+  const auto configuration = channel("configuration", configuration_schema, true);
   if (!states || !configuration) return (states ? configuration : states).error();
   states_ = *states;
   configuration_ = *configuration;
@@ -165,6 +166,7 @@ void ComponentSource::Watched::put_first() {
     for (const auto& [name, value] : set.values) {
       if (name != simulator_parameter) values[name] = value;
     }
+    values_ = values;
     state_.put(configuration_, now, {{"set", set.id}, {"values", values}, {"is_change", false}, {"is_in_tick", false}});
   }
 }
@@ -185,8 +187,10 @@ void ComponentSource::Watched::take(const OpenRTM::LogRecord& record) {
     return state_.put(states_, event.time, {{"context", state->first}, {"state", state->second}, {"is_in_tick", event.is_in_tick}});
   if (const auto parameter = parameter_in(event.event)) {
     const auto& [set, name, value] = *parameter;
+    if (name == simulator_parameter) return;
+    values_[name] = value;
     return state_.put(configuration_, event.time,
-                      {{"set", set}, {"values", {{name, value}}}, {"is_change", true}, {"is_in_tick", event.is_in_tick}});
+                      {{"set", set}, {"values", {{name, value}}}, {"all", values_}, {"is_change", true}, {"is_in_tick", event.is_in_tick}});
   }
   auto id = events_.snapshot();
   if (!id) {

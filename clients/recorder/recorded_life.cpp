@@ -32,14 +32,15 @@ void add_state(RecordedLife& life, std::string& state, const mcap::Message& mess
   }
 }
 
-// Parameters that took effect in one tick are one change.
+// Parameters that took effect in one tick are one change. A part of a recording may begin with a change, which says all values then.
 void add_values(RecordedLife& life, const mcap::Message& message, const Json& json) {
   RecordedChange change{.time = time_of(message), .is_in_tick = json.value("is_in_tick", true), .set = json.value("set", "")};
-  const auto values = json.value("values", Json::object());
+  const bool is_first = !json.value("is_change", true) || (!life.configuration && json.contains("all"));
+  const auto values = json.value(is_first && json.contains("all") ? "all" : "values", Json::object());
   for (const auto& [name, value] : values.items()) {
     if (value.is_string()) change.values.emplace_back(name, value.get<std::string>());
   }
-  if (!json.value("is_change", true)) {
+  if (is_first) {
     life.configuration = std::move(change);
     return;
   }
@@ -58,6 +59,24 @@ const char* text_of(Kind kind) {
 
 }  // namespace
 
+namespace {
+
+// That in which the component worked: one of others, which it has joined, before its own. Nothing when no state was recorded.
+base::Result<std::optional<int>> working_context(mcap::Reader& reader, std::uint16_t states) {
+  std::optional<int> highest;
+  reader.seek({.channels = {0, states}});
+  for (;;) {
+    const auto message = reader.next();
+    if (!message) return message.error();
+    if (!message->has_value()) return highest;
+    const auto json = Json::parse((*message)->data, nullptr, false);
+    const auto context = json.is_object() ? json.find("context") : json.end();
+    if (context != json.end() && context->is_number_integer()) highest = std::max(highest.value_or(0), context->get<int>());
+  }
+}
+
+}  // namespace
+
 base::Result<RecordedLife> RecordedLife::read(const std::string& file, const std::string& component) {
   auto reader = open_recording(file);
   if (!reader) return reader.error();
@@ -70,6 +89,8 @@ base::Result<RecordedLife> RecordedLife::read(const std::string& file, const std
   }
   life.is_recorded = states != 0 && configurations != 0;
   query.channels.insert(query.channels.end(), {states, configurations});
+  const auto context = working_context(*reader, states);
+  if (!context) return context.error();
   reader->seek(std::move(query));
   for (std::string state;;) {
     const auto message = reader->next();
@@ -79,7 +100,7 @@ base::Result<RecordedLife> RecordedLife::read(const std::string& file, const std
     if (!json.is_object()) return base::Error{"component " + component + ": what was recorded of its life cycle is no JSON"};
     try {
       if ((*message)->channel == states) {
-        add_state(life, state, **message, json);
+        if (json.value("context", 0) == context->value_or(0)) add_state(life, state, **message, json);
       } else {
         add_values(life, **message, json);
       }

@@ -293,6 +293,13 @@ def recorded():
         assert code == 0, err
         done = subprocess.run([f"{bin_dir}/rtse", "recording", "compare", f"{r.path}/run.mcap", f"{r.path}/again.mcap", "--channel", "/Alien/out"], text=True, capture_output=True, timeout=60)
         assert done.returncode == 0 and "equal" in done.stdout, done
+        # Whoever is replayed reads what it has read: from one of others with the receiver's stamps, and one of others in its own process.
+        for into, start in (("To", ()), ("Alien", ("--start", r.start()[0]))):
+            done = subprocess.run([f"{bin_dir}/rtse", "replay", f"{r.path}/run.mcap", "--into", into, "--compare", "--module-path", lib_dir, *start],
+                                  text=True, capture_output=True, timeout=60)
+            assert done.returncode == 0 and f"/{into}/out: 11 samples, equal" in done.stdout, done
+        done = subprocess.run([f"{bin_dir}/rtse", "replay", f"{r.path}/run.mcap", "--into", "Alien", "--compare"], text=True, capture_output=True, timeout=60)
+        assert done.returncode == 1 and "--start COMMAND starts here" in done.stderr, done
 
 
 def lost_link():

@@ -310,7 +310,10 @@ def said(samples, topic, member):
 # What components say of themselves is in the recording, at its tick; a replay does to the component what was done to it in the run.
 def lives():
     up()
-    process = recording("--all", "--attach", f"system.xml={rig.source}/worlds/systems/obstacle_avoidance.xml")
+    profile = f"system.xml={rig.source}/worlds/systems/obstacle_avoidance.xml"
+    process = recording("--all", "--attach", profile)
+    part = rig.path("part.mcap")
+    ring = recording("--all", "--attach", profile, "--last", "3", to=part)
     seconds(2)
     rig.rtse("conf", "LaserObstacleAvoid0", "set", "speed_gain", "0.002")
     seconds(1)
@@ -319,6 +322,7 @@ def lives():
     rig.rtse("act", "LaserObstacleAvoid0")
     seconds(2)
     ended(process)
+    ended(ring)
     ours, theirs = lines("cat", file), foreign(file)[:-1]
     assert len(ours) == len(theirs) and all(a["topic"] == b["topic"] and same(a["value"], b["value"]) for a, b in zip(ours, theirs))
     states = [s for s in ours if s["topic"] == "/rtc/LaserObstacleAvoid0/state"]
@@ -332,6 +336,9 @@ def lives():
     assert any(one["LaserObstacleAvoid0"][0] == "Inactive" for one in seen), seen
     done = json.loads(rig.rtse("--json", "replay", file, "--into", "LaserObstacleAvoid0", "--compare"))
     assert done["changes"] >= 3 and done["outputs"][0]["different"] == 0 and done["outputs"][0]["recorded"] > 40, done
+    # A part begins with the values that hold then, though they were set before.
+    done = json.loads(rig.rtse("--json", "replay", part, "--into", "LaserObstacleAvoid0", "--compare"))
+    assert done["outputs"][0]["different"] == 0 and done["outputs"][0]["recorded"] > 10, done
     other = rig.try_rtse("replay", file, "--into", "LaserObstacleAvoid0", "--compare", "--set", "speed_gain=0.001")
     assert other.returncode == 1 and "(2.1 s): data.vx: 0.4 and 0.2" in other.stderr, other
 
