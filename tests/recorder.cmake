@@ -7,12 +7,12 @@ foreach(case views excluded whole_run same_run killed full_disk compared played 
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/recordings.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(recordings.${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
-foreach(case of_a_run killed again reset full_disk of_a_killed_recorder)
+foreach(case of_a_run killed again reset taken full_disk of_a_killed_recorder)
   add_test(NAME recorded_rings.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/recorded_rings.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(recorded_rings.${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
-foreach(case bombs flipped large letters many_broken pictures names targets terminal)
+foreach(case astray bombs broken_ring flipped large letters many_broken pictures names targets terminal)
   add_test(NAME hostile_recordings.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/hostile_recordings.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(hostile_recordings.${case} PROPERTIES LABELS integration TIMEOUT 300)

@@ -288,8 +288,10 @@ struct Sinks {
 // A ring keeps nothing of the one before it, as every file that is written anew.
 base::Result<std::vector<RingPiece>> make_room_for_ring(const std::string& file) {
   if (const auto good = mcap::File::check_name(file); !good) return good.error();
+  if (mcap::File::is_being_written(file)) return base::Error{base::in_quotes(file) + ": is being written by another process"};
   auto stale = ring_pieces(file);
   if (const auto at_rest = check_at_rest(stale); !at_rest) return at_rest.error();
+  if (const auto free = check_names(file); !free) return free.error();
   remove_pieces(stale);
   std::remove(file.c_str());
   return stale;
@@ -395,9 +397,10 @@ void finish_ring(Editor& editor, const RecordOptions& options, const base::Resul
                       : "what came before is in " + names_of(pieces) + ", rtse recording repair " + options.file + " puts it together")});
   };
   if (!written) return fail(written.error());
-  const auto joined = join_ring(pieces, options.file);
+  const auto joined = join_ring(pieces, options.file, options.file);
   if (!joined) return fail(joined.error());
-  remove_pieces(pieces);
+  for (const auto& line : joined->losses) editor.fail({line});
+  if (joined->losses.empty()) remove_pieces(pieces);
   report(options, joined->samples, joined->channels, base::in_quotes(options.file));
 }
 
@@ -411,6 +414,7 @@ void record(Editor& editor, const RecordOptions& options) {
     if (!simulation) return editor.fail(simulation.error());
   }
   const bool is_ring = options.last_s > 0;
+  if (const auto free = check_no_live_ring(options.file); !free) return editor.fail(free.error());
   const auto stale = is_ring ? make_room_for_ring(options.file) : std::vector<RingPiece>();
   if (!stale) return editor.fail(stale.error());
   auto sinks = open_sinks(options, clock);

@@ -210,37 +210,47 @@ bool has_newer_pieces(const std::string& file, const std::vector<RingPiece>& pie
 // The pieces of a recorder that was killed.
 void put_together(Editor& editor, const std::vector<RingPiece>& pieces, const std::string& file, const std::string& output) {
   if (const auto at_rest = check_at_rest(pieces); !at_rest) return editor.fail(at_rest.error());
-  const auto done = join_ring(pieces, output.empty() ? file : output);
+  const auto done = join_ring(pieces, file, output.empty() ? file : output);
   if (!done) return editor.fail(done.error());
-  if (output.empty()) remove_pieces(pieces);
-  if (editor.json())
-    return editor.print(Json{{"samples", done->samples}, {"pieces", pieces.size()}, {"damage", done->damage.value_or("")}});
+  if (!done->losses.empty())
+    editor.set_failed();
+  else if (output.empty())
+    remove_pieces(pieces);
+  if (editor.json()) {
+    return editor.print(Json{{"samples", done->samples},
+                             {"pieces", pieces.size()},
+                             {"samples_lost", done->samples_lost},
+                             {"damage", base::join(done->losses, "\n")}});
+  }
   std::cout << done->samples << " samples kept of " << names_of(pieces) << '\n';
-  if (done->damage) std::cout << *done->damage << '\n';
+  for (const auto& line : done->losses) std::cout << line << '\n';
+  if (!done->losses.empty()) std::cout << "the pieces stay\n";
 }
 
 void repair(Editor& editor, const std::string& file, const std::string& output) {
   if (const auto pieces = ring_pieces(file); has_newer_pieces(file, pieces)) return put_together(editor, pieces, file, output);
   const auto done = mcap::repair(file, output.empty() ? file : output);
   if (!done) return editor.fail(done.error());
-  if (done->broken_chunks > 0) editor.set_failed();
+  if (done->has_losses()) editor.set_failed();
   if (editor.json()) {
     Json json = {{"samples", done->messages},
                  {"octets_lost", done->octets_lost},
                  {"broken_chunks", done->broken_chunks},
                  {"samples_lost", nullptr},
+                 {"attachments_lost", done->attachments_lost},
+                 {"metadata_lost", done->metadata_lost},
                  {"damage", done->damage.value_or("")}};
     if (done->messages_lost) json["samples_lost"] = *done->messages_lost;
     return editor.print(json);
   }
   std::cout << done->messages << " samples kept, " << done->octets_lost << " octets lost";
-  if (done->broken_chunks > 0) {
-    std::cout << ", " << done->broken_chunks << (done->broken_chunks == 1 ? " broken chunk with " : " broken chunks with ");
-    if (done->messages_lost)
-      std::cout << *done->messages_lost << " samples";
-    else
-      std::cout << "samples that nobody counted";
-  }
+  const std::string samples = done->messages_lost ? std::to_string(*done->messages_lost) + " samples" : "samples that nobody counted";
+  if (done->broken_chunks > 0)
+    std::cout << ", " << done->broken_chunks << (done->broken_chunks == 1 ? " broken chunk with " : " broken chunks with ") << samples;
+  else if (done->messages_lost != 0)
+    std::cout << ", " << samples << " lost";
+  if (done->attachments_lost > 0) std::cout << ", " << done->attachments_lost << " attachments lost";
+  if (done->metadata_lost > 0) std::cout << ", " << done->metadata_lost << " metadata lost";
   std::cout << '\n';
   if (done->damage) std::cout << *done->damage << '\n';
 }

@@ -27,20 +27,37 @@ std::uint64_t number_at(const mcap::Texts& texts, const char* key) {
   return found == texts.end() ? 0 : static_cast<std::uint64_t>(std::max<std::int64_t>(0, base::parse_integer(found->second).value_or(0)));
 }
 
-// Nothing when the file is none, or none that can be read.
-std::optional<RingPiece> read_piece(const std::string& path) {
+// An error when the file is none, or none that can be read.
+base::Result<RingPiece> read_piece(const std::string& path) {
   auto reader = mcap::Reader::open(path);
-  if (!reader) return std::nullopt;
-  const auto metadata = reader->metadata();
-  if (!metadata) return std::nullopt;
-  for (const auto& one : *metadata) {
-    if (one.name != record_name) continue;
-    const auto compression = one.texts.find("compression");
-    return RingPiece{path, number_at(one.texts, "number"), number_at(one.texts, "resets"),
-                     std::chrono::nanoseconds(number_at(one.texts, "span_ns")),
-                     compression == one.texts.end() ? "zstd" : compression->second};
+  if (!reader) return reader.error();
+  for (std::size_t n = 0; n < reader->metadata_count(); ++n) {
+    const auto one = reader->metadata(n);
+    if (!one || one->name != record_name) continue;
+    const auto compression = one->texts.find("compression");
+    return RingPiece{path, number_at(one->texts, "number"), number_at(one->texts, "resets"),
+                     std::chrono::nanoseconds(number_at(one->texts, "span_ns")),
+                     compression == one->texts.end() ? "zstd" : compression->second};
   }
-  return std::nullopt;
+  return base::Error{base::in_quotes(path) + ": does not say that it is a piece of a ring"};
+}
+
+// The files with names of pieces, by the numbers in these.
+std::map<std::uint64_t, std::string> files_with_numbers(const std::string& path) {
+  const fs::path whole(path);
+  const fs::path folder = whole.parent_path();
+  const std::string head = whole.stem().string() + "-";
+  std::map<std::uint64_t, std::string> files;
+  std::error_code error;  // a folder that cannot be read has none
+  for (fs::directory_iterator one(folder.empty() ? fs::path(".") : folder, error), end; !error && one != end; one.increment(error)) {
+    const std::string name = one->path().filename().string();
+    if (!name.starts_with(head) || one->path().extension() != whole.extension()) continue;
+    const auto number = base::parse_integer(one->path().stem().string().substr(head.size()));
+    const std::string file = (folder / name).string();
+    if (!number || *number < 1 || numbered_path(path, static_cast<std::size_t>(*number)) != file) continue;
+    files[static_cast<std::uint64_t>(*number)] = file;
+  }
+  return files;
 }
 
 // Puts messages of the pieces into one file.
@@ -49,9 +66,10 @@ class Joint {
   Joint(mcap::Writer& writer, mcap::Time from) : writer_(writer), from_(from) {}
 
   base::Result<void> describe(const mcap::Reader& piece);
-  base::Result<void> copy(mcap::Reader& piece);
-  // What could not be read first; nothing when all could.
-  const std::optional<std::string>& damage() const { return damage_; }
+  base::Result<void> copy(mcap::Reader& piece, const std::string& path);
+  // What could not be read, a line for each piece.
+  const std::vector<std::string>& losses() const { return losses_; }
+  std::uint64_t samples_lost() const { return samples_lost_; }
 
  private:
   // The number and the time of a sample tell it from a repetition, with which each piece begins.
@@ -65,11 +83,13 @@ class Joint {
   base::Result<void> hold(std::uint16_t channel, const mcap::Message& message);
   base::Result<void> put_held();
   base::Result<void> put(std::uint16_t channel, const mcap::Message& message, std::string_view data, mcap::Time time);
+  void note_losses(const mcap::Reader& piece, const std::string& path, std::uint64_t read, const std::optional<std::string>& damage);
 
   mcap::Writer& writer_;
   const mcap::Time from_;
   std::optional<mcap::Time> first_;  // that was kept
-  std::optional<std::string> damage_;
+  std::vector<std::string> losses_;
+  std::uint64_t samples_lost_ = 0;
   std::map<std::pair<std::string, std::uint16_t>, std::uint16_t> known_;  // by topic and number in the pieces, which all give it the same
   std::map<std::pair<std::string, std::string>, std::uint16_t> schemas_;  // by name and text
   std::map<std::uint16_t, std::uint16_t> ids_;                            // of the piece that is copied
@@ -141,33 +161,63 @@ base::Result<void> Joint::take(const mcap::Message& message) {
   return put(channel, message, message.data, message.log_time);
 }
 
+// An end that is missing costs nothing: a kill leaves it so.
+void Joint::note_losses(const mcap::Reader& piece, const std::string& path, std::uint64_t read, const std::optional<std::string>& damage) {
+  const auto unread = piece.unread();
+  const std::uint64_t told = piece.statistics().messages;
+  const std::uint64_t samples = unread.messages + told - std::min(told, read);
+  if (!damage && samples == 0 && unread.octets == 0) return;
+  std::string line = base::in_quotes(path) + ": not all can be read:";
+  if (samples > 0) line += " " + std::to_string(samples) + " samples are lost;";
+  if (unread.octets > 0) line += " " + std::to_string(unread.octets) + " octets are lost;";
+  samples_lost_ += samples;
+  losses_.push_back(line + " " + damage.value_or(piece.damage().value_or("it has fewer samples than it says")));
+}
+
 // What of a piece cannot be read is left out and told.
-base::Result<void> Joint::copy(mcap::Reader& piece) {
+base::Result<void> Joint::copy(mcap::Reader& piece, const std::string& path) {
   if (const auto done = describe(piece); !done) return done;
-  for (;;) {
-    const auto message = piece.next();
-    if (!message) {
-      if (!damage_) damage_ = message.error().message;
-      continue;
+  std::optional<std::string> damage;
+  for (std::uint64_t read = 0;; ++read) {
+    auto message = piece.next();
+    for (; !message; message = piece.next()) {
+      if (!damage) damage = message.error().message;
     }
-    if (!message->has_value()) return first_ ? put_held() : base::Result<void>();
+    if (!message->has_value()) {
+      note_losses(piece, path, read, damage);
+      return first_ ? put_held() : base::Result<void>();
+    }
     if (const auto done = take(**message); !done) return done;
   }
 }
 
-base::Result<void> copy_surroundings(mcap::Reader& piece, mcap::Writer& writer) {
-  const auto metadata = piece.metadata();
-  if (!metadata) return metadata.error();
-  for (const auto& one : *metadata) {
-    if (one.name == record_name) continue;
-    if (const auto done = writer.add_metadata(one); !done) return done;
+// Each piece has all of them; what cannot be read of the newest one is told.
+base::Result<void> copy_surroundings(mcap::Reader& piece, mcap::Writer& writer, std::vector<std::string>& losses) {
+  for (std::size_t n = 0; n < piece.metadata_count(); ++n) {
+    const auto one = piece.metadata(n);
+    if (!one) losses.push_back(one.error().message);
+    if (!one || one->name == record_name) continue;
+    if (const auto done = writer.add_metadata(*one); !done) return done;
   }
-  for (const auto& entry : piece.attachments()) {
-    const auto attachment = piece.attachment(entry.name);
-    if (!attachment) return attachment.error();
-    if (const auto done = writer.attach(*attachment); !done) return done;
+  for (std::size_t n = 0; n < piece.attachments().size(); ++n) {
+    const auto attachment = piece.attachment(n);
+    if (!attachment) {
+      losses.push_back(attachment.error().message);
+    } else if (const auto done = writer.attach(*attachment); !done) {
+      return done;
+    }
   }
   return {};
+}
+
+// Files that stand where the ring had another piece: only the two latest are there, so that it is next to the others.
+std::vector<std::string> left_out(const std::string& path, const std::vector<RingPiece>& pieces) {
+  std::vector<std::string> lines;
+  for (const auto& [number, file] : files_with_numbers(path)) {
+    if (number + 1 < pieces.front().number || number > pieces.back().number + 1) continue;
+    if (const auto piece = read_piece(file); !piece) lines.push_back(piece.error().message + "; it is left out");
+  }
+  return lines;
 }
 
 }  // namespace
@@ -188,21 +238,33 @@ mcap::Metadata ring_metadata(const RingPiece& piece) {
 }
 
 std::vector<RingPiece> ring_pieces(const std::string& path) {
-  const fs::path whole(path);
-  const fs::path folder = whole.parent_path();
-  const std::string head = whole.stem().string() + "-";
   std::vector<RingPiece> pieces;
-  std::error_code error;  // a folder that cannot be read has none
-  for (fs::directory_iterator one(folder.empty() ? fs::path(".") : folder, error), end; !error && one != end; one.increment(error)) {
-    const std::string name = one->path().filename().string();
-    if (!name.starts_with(head) || one->path().extension() != whole.extension()) continue;
-    const auto number = base::parse_integer(one->path().stem().string().substr(head.size()));
-    const std::string piece_path = (folder / name).string();
-    if (!number || *number < 1 || numbered_path(path, static_cast<std::size_t>(*number)) != piece_path) continue;
-    if (auto piece = read_piece(piece_path)) pieces.push_back(std::move(*piece));
+  for (const auto& [number, file] : files_with_numbers(path)) {
+    if (auto piece = read_piece(file)) pieces.push_back(std::move(*piece));
   }
-  std::ranges::sort(pieces, {}, &RingPiece::number);
+  std::ranges::stable_sort(pieces, {}, &RingPiece::number);
   return pieces;
+}
+
+base::Result<void> check_names(const std::string& path) {
+  for (const auto& [number, file] : files_with_numbers(path)) {
+    if (!read_piece(file))
+      return base::Error{base::in_quotes(file) + ": is no piece of a ring, and has a name that a piece of this one may take; " +
+                         "give the ring another name"};
+  }
+  return {};
+}
+
+base::Result<void> check_no_live_ring(const std::string& path) {
+  if (const auto at_rest = check_at_rest(ring_pieces(path)); !at_rest) return at_rest;
+  const fs::path whole(path);
+  const std::string stem = whole.stem().string();
+  const auto dash = stem.rfind('-');
+  if (dash == std::string::npos) return {};
+  const auto number = base::parse_integer(stem.substr(dash + 1));
+  const std::string ring = (whole.parent_path() / (stem.substr(0, dash) + whole.extension().string())).string();
+  if (!number || *number < 1 || numbered_path(ring, static_cast<std::size_t>(*number)) != whole.string()) return {};
+  return check_at_rest(ring_pieces(ring));
 }
 
 base::Result<void> check_at_rest(const std::vector<RingPiece>& pieces) {
@@ -223,15 +285,17 @@ std::string names_of(const std::vector<RingPiece>& pieces) {
   return base::join(names, " and ");
 }
 
-base::Result<JoinedRing> join_ring(const std::vector<RingPiece>& pieces, const std::string& path) {
+base::Result<JoinedRing> join_ring(const std::vector<RingPiece>& pieces, const std::string& ring, const std::string& path) {
   if (pieces.empty()) return base::Error{base::in_quotes(path) + ": has no pieces of a ring"};
   std::vector<mcap::Reader> readers;
+  std::vector<std::string> paths, losses = left_out(ring, pieces);
   const RingPiece& newest = pieces.back();
   for (const auto& piece : pieces) {
     if (piece.resets != newest.resets) continue;  // its time is another one
     auto reader = mcap::Reader::open(piece.path);
     if (!reader) return reader.error();
     readers.push_back(std::move(*reader));
+    paths.push_back(piece.path);
   }
   std::uint64_t last = 0;
   for (const auto& reader : readers) last = std::max(last, reader.statistics().last.count());
@@ -239,6 +303,7 @@ base::Result<JoinedRing> join_ring(const std::vector<RingPiece>& pieces, const s
   const auto compression = newest.compression == "lz4"    ? mcap::Compression::lz4
                            : newest.compression == "none" ? mcap::Compression::none
                                                           : mcap::Compression::zstd;
+  if (mcap::File::is_being_written(path)) return base::Error{base::in_quotes(path) + ": is being written by another process"};
   const std::string whole = path + ".part";
   const auto give_up = [&](const base::Error& error) {
     std::remove(whole.c_str());
@@ -246,15 +311,16 @@ base::Result<JoinedRing> join_ring(const std::vector<RingPiece>& pieces, const s
   };
   auto writer = mcap::Writer::create(whole, {.profile = "", .compression = compression});
   if (!writer) return writer.error();
-  if (const auto done = copy_surroundings(readers.back(), *writer); !done) return give_up(done.error());
+  if (const auto done = copy_surroundings(readers.back(), *writer, losses); !done) return give_up(done.error());
   Joint joint(*writer, mcap::Time(last > span ? last - span : 0));
-  for (auto& reader : readers) {
-    if (const auto done = joint.copy(reader); !done) return give_up(done.error());
+  for (std::size_t n = 0; n < readers.size(); ++n) {
+    if (const auto done = joint.copy(readers[n], paths[n]); !done) return give_up(done.error());
   }
   if (const auto done = writer->close(); !done) return give_up(done.error());
   if (std::rename(whole.c_str(), path.c_str()) != 0)
     return give_up({base::in_quotes(path) + ": cannot be written: " + std::strerror(errno)});
-  return JoinedRing{writer->statistics().messages, writer->statistics().channels, joint.damage()};
+  losses.insert(losses.end(), joint.losses().begin(), joint.losses().end());
+  return JoinedRing{writer->statistics().messages, writer->statistics().channels, joint.samples_lost(), std::move(losses)};
 }
 
 base::Result<mcap::Reader> open_recording(const std::string& path) {

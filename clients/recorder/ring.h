@@ -30,6 +30,10 @@ mcap::Metadata ring_metadata(const RingPiece& piece);
 std::vector<RingPiece> ring_pieces(const std::string& path);
 // An error when a recorder is writing them.
 base::Result<void> check_at_rest(const std::vector<RingPiece>& pieces);
+// An error when a file that is no piece has a name that a ring of this name may give to one.
+base::Result<void> check_names(const std::string& path);
+// An error when a ring of this name, or one of which a file of this name would be a piece, is being recorded.
+base::Result<void> check_no_live_ring(const std::string& path);
 void remove_pieces(const std::vector<RingPiece>& pieces);
 // "a-001.mcap" and "a-002.mcap"
 std::string names_of(const std::vector<RingPiece>& pieces);
@@ -37,11 +41,12 @@ std::string names_of(const std::vector<RingPiece>& pieces);
 struct JoinedRing {
   std::uint64_t samples = 0;
   std::uint32_t channels = 0;
-  std::optional<std::string> damage{};  // what could not be read of the pieces, but for the end that a kill costs
+  std::uint64_t samples_lost = 0;     // as far as the pieces say
+  std::vector<std::string> losses{};  // lines: what could not be read of the pieces, but for an end that is missing, and files left out
 };
 // The last samples of the pieces as one file: those within the span, and before them what held at its beginning, of channels that are
-// latched. The pieces stay. Whatever was there under this name is replaced when the new file is whole.
-base::Result<JoinedRing> join_ring(const std::vector<RingPiece>& pieces, const std::string& path);
+// latched. The pieces of `ring` stay. Whatever was there under this name is replaced when the new file is whole.
+base::Result<JoinedRing> join_ring(const std::vector<RingPiece>& pieces, const std::string& ring, const std::string& path);
 
 // The reader of a recording. When there are only pieces of it the error says so.
 base::Result<mcap::Reader> open_recording(const std::string& path);

@@ -33,17 +33,32 @@ class FileNames {
     std::string& name = names_[channel];
     if (!name.empty()) return name;
     constexpr std::size_t longest = 200;
-    std::string wanted = topic.substr(topic.starts_with("/") ? 1 : 0, longest);
-    for (char& c : wanted) {
-      if (c == '/' || c == '\0') c = '.';
-    }
-    if (wanted.empty() || wanted.starts_with(".")) wanted.insert(0, "_");
+    const std::string wanted = harmless(topic.substr(topic.starts_with("/") ? 1 : 0, longest));
     name = wanted;
     for (int n = 2; !used_.insert(name).second; ++n) name = wanted + "-" + std::to_string(n);
     return name;
   }
 
  private:
+  // No path, no option of a command, nothing hidden, and nothing that a terminal obeys when it lists the files.
+  static std::string harmless(std::string_view text) {
+    std::string name;
+    while (!text.empty()) {
+      const auto character = base::first_character(text);
+      const std::size_t size = character ? character->size : 1;
+      if (text[0] == '/')
+        name += '.';
+      else if (!character || base::is_obeyed(character->code))
+        name += '_';
+      else
+        name += text.substr(0, size);
+      text.remove_prefix(size);
+    }
+    if (name.empty()) return "_";
+    if (name[0] == '.' || name[0] == '-') name[0] = '_';
+    return name;
+  }
+
   std::map<std::uint16_t, std::string> names_;
   std::set<std::string> used_;
 };

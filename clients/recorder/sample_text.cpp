@@ -111,18 +111,17 @@ std::string place_of(const std::string& outer, const std::string& key) { return 
 std::string json_text(const Json& value) {
   const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
   std::string safe;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const auto next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0;
-    const bool is_c1 = byte == 0xc2 && next >= 0x80 && next < 0xa0;
-    if (!is_c1 && byte != 0x7f) {
-      safe += text[i];
-      continue;
+  for (std::string_view rest = text; !rest.empty();) {
+    const auto character = base::first_character(rest);
+    const std::size_t size = character ? character->size : 1;
+    if (character && base::is_obeyed(character->code)) {
+      char code[8];
+      std::snprintf(code, sizeof code, "\\u%04x", static_cast<unsigned>(character->code));
+      safe += code;
+    } else {
+      safe += rest.substr(0, size);
     }
-    char code[8];
-    std::snprintf(code, sizeof code, "\\u%04x", is_c1 ? next : byte);
-    safe += code;
-    i += is_c1 ? 1 : 0;
+    rest.remove_prefix(size);
   }
   return safe;
 }

@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::string_view blanks = " \t\r\n\v\f";
 constexpr std::size_t longest_quoted = 120;
+constexpr std::string_view replacement = "\xef\xbf\xbd";  // U+FFFD
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
@@ -108,31 +109,54 @@ std::string format_number(double value) {
   return error == std::errc{} ? std::string(text, end) : std::string("?");
 }
 
+std::optional<Character> first_character(std::string_view text) {
+  const auto byte = [&](std::size_t n) { return n < text.size() ? static_cast<unsigned char>(text[n]) : 0u; };
+  const unsigned first = byte(0);
+  if (first < 0x80) return Character{first, 1};
+  const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+  if (first < 0xc2 || first > 0xf4 || text.size() < length) return std::nullopt;
+  char32_t code = first & (0x7fu >> length);
+  for (std::size_t n = 1; n < length; ++n) {
+    if ((byte(n) & 0xc0) != 0x80) return std::nullopt;
+    code = code << 6 | (byte(n) & 0x3f);
+  }
+  const char32_t least = length == 4 ? 0x10000 : length == 3 ? 0x800 : 0x80;
+  if (code < least || code > 0x10ffff || (code >= 0xd800 && code < 0xe000)) return std::nullopt;
+  return Character{code, length};
+}
+
+bool is_obeyed(char32_t code) {
+  const bool is_control = code < 0x20 || (code >= 0x7f && code < 0xa0);  // U+009B begins sequences as ESC [ does
+  const bool is_direction = (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+  return is_control || is_direction;
+}
+
 std::string printable(std::string_view text, std::string_view kept) {
   std::string result;
-  const auto escape = [&](unsigned char byte) {
-    char code[8];
-    std::snprintf(code, sizeof code, "\\x%02x", static_cast<unsigned>(byte));
-    result += code;
-  };
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const auto next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0;
-    if (byte == 0xc2 && next >= 0x80 && next < 0xa0) {  // U+0080 to U+009F, as U+009B, which begins sequences as ESC [ does
-      escape(byte);
-      escape(next);
-      ++i;
-    } else if ((byte < 0x20 || byte == 0x7f) && kept.find(text[i]) == std::string_view::npos) {
-      escape(byte);
+  while (!text.empty()) {
+    const auto character = first_character(text);
+    const std::size_t size = character ? character->size : 1;
+    if (!character) {
+      result += replacement;
+    } else if (is_obeyed(character->code) && !(size == 1 && kept.find(text[0]) != std::string_view::npos)) {
+      for (const char c : text.substr(0, size)) {
+        char code[8];
+        std::snprintf(code, sizeof code, "\\x%02x", static_cast<unsigned>(static_cast<unsigned char>(c)));
+        result += code;
+      }
     } else {
-      result += text[i];
+      result += text.substr(0, size);
     }
+    text.remove_prefix(size);
   }
   return result;
 }
 
 std::string in_quotes(std::string_view text) {
-  return '"' + printable(text.substr(0, longest_quoted)) + (text.size() > longest_quoted ? "\"..." : "\"");
+  if (text.size() <= longest_quoted) return '"' + printable(text) + '"';
+  std::size_t end = longest_quoted;  // not within a character
+  for (int n = 0; n < 3 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80; ++n) --end;
+  return '"' + printable(text.substr(0, end)) + "\"...";
 }
 
 }  // namespace base

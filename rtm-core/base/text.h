@@ -32,7 +32,16 @@ std::string format_number(double value);
 // [s] The number nearest to the time: 60 ms are 0.06, whose text is short.
 inline double to_seconds(std::chrono::nanoseconds time) { return static_cast<double>(time.count()) / 1e9; }
 
-// A text that comes from outside, fit for a terminal: control characters as \x1b, those of C1 in UTF-8, too, but for `kept` ones.
+struct Character {
+  char32_t code = 0;
+  std::size_t size = 0;  // [octets]
+};
+// What a text that is not empty begins with; nothing when that is no UTF-8.
+std::optional<Character> first_character(std::string_view text);
+// Whether a terminal does not show the character but obeys it: controls, those of C1 too, and those that turn the direction of writing.
+bool is_obeyed(char32_t code);
+// A text that comes from outside, fit for a terminal: what would be obeyed as \x1b, but for `kept` ones, and U+FFFD for each octet that is
+// no UTF-8.
 std::string printable(std::string_view text, std::string_view kept = {});
 // The same for one line of a message: in quotes, cut after 120 characters.
 std::string in_quotes(std::string_view text);

@@ -45,6 +45,20 @@ TEST(Text, foreign_text_fits_one_line) {
   EXPECT_EQ(in_quotes(std::string(1000, 'x')).size(), 125u);
 }
 
+TEST(Text, what_a_terminal_obeys_or_cannot_read_is_not_given_to_it) {
+  EXPECT_EQ(printable("a\x9b"
+                      "31m\xff"),
+            "a\xef\xbf\xbd"
+            "31m\xef\xbf\xbd");
+  EXPECT_EQ(printable("\xe2\x80\xae"
+                      "gpj\xe2\x81\xa6"),
+            "\\xe2\\x80\\xaegpj\\xe2\\x81\\xa6")
+      << "U+202E, U+2066";
+  EXPECT_EQ(printable("\xc2\x85\xc0\x80\xed\xa0\x80"), "\\xc2\\x85\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd");
+  EXPECT_EQ(printable("\xe6\x97\xa5\xf0\x9f\xa4\x96"), "\xe6\x97\xa5\xf0\x9f\xa4\x96");
+  EXPECT_EQ(in_quotes(std::string(119, 'x') + "\xc3\xa4" + "yy"), '"' + std::string(119, 'x') + "\"...") << "not cut within a character";
+}
+
 TEST(Id, uuids_differ_and_have_the_usual_form) {
   const auto a = make_uuid();
   EXPECT_EQ(a.size(), 36u);

@@ -260,6 +260,99 @@ TEST_P(Single, a_repair_says_what_a_broken_chunk_costs_and_keeps_the_others) {
   EXPECT_TRUE(Reader::open(path_)->damage().has_value()) << "its octets stay, and are told";
 }
 
+// Whatever bit of a file is flipped: a repair keeps what a reader gives, and says so when anything is lost.
+TEST_P(Single, a_repair_of_a_flipped_bit_never_costs_what_could_be_read) {
+  record(6, {.chunk_size = 100});
+  const std::string whole = octets();
+  const auto all_of = [](const std::string& path) {
+    auto reader = Reader::open(path);
+    if (!reader) return std::pair(std::uint64_t{0}, std::string());
+    std::uint64_t messages = 0;
+    std::string all;
+    for (;;) {
+      const auto message = reader->next();
+      if (!message) continue;
+      if (!message->has_value()) break;
+      ++messages;
+      all += std::to_string((*message)->log_time.count()) + std::string((*message)->data) + "\n";
+    }
+    if (const auto attachment = reader->attachment("system.xml")) all += attachment->data;
+    for (std::size_t n = 0; n < reader->metadata_count(); ++n) {
+      if (const auto one = reader->metadata(n)) all += one->name + one->texts.begin()->first + one->texts.begin()->second;
+    }
+    return std::pair(messages, all);
+  };
+  const auto expected = all_of(path_).second;
+  for (std::size_t n = 8; n < whole.size(); ++n) {
+    for (const int bit : {0, 3, 7}) {
+      std::string broken = whole;
+      broken[n] = static_cast<char>(broken[n] ^ (1 << bit));
+      put(broken);
+      const auto [messages, before] = all_of(path_);
+      const auto repaired = repair(path_, path_ + ".again");
+      const auto place = "bit " + std::to_string(bit) + " of octet " + std::to_string(n);
+      if (!repaired) {
+        EXPECT_EQ(messages, 0U) << place << ": " << repaired.error().message;
+        continue;
+      }
+      const auto [kept, after] = all_of(path_ + ".again");
+      EXPECT_GE(kept, messages) << place;
+      EXPECT_EQ(kept, repaired->messages) << place;
+      if (!repaired->has_losses()) {
+        EXPECT_EQ(after, expected) << place;
+      }
+    }
+  }
+}
+
+TEST_P(Single, a_repair_after_a_flipped_length_keeps_all_samples) {
+  record(50, {.chunk_size = 200});
+  std::string broken = octets();
+  const auto place = broken.find("system.xml") - 4 - 16 - 8;  // the length of the attachment
+  broken[place + 2] = static_cast<char>(broken[place + 2] ^ 1);
+  put(broken);
+  EXPECT_EQ(read().size(), 100U);
+  const auto repaired = repair(path_, path_);
+  ASSERT_TRUE(repaired) << repaired.error().message;
+  EXPECT_EQ(repaired->messages, 100U);
+  EXPECT_FALSE(repaired->has_losses());
+  EXPECT_EQ(read().size(), 100U);
+  EXPECT_FALSE(Reader::open(path_)->damage().has_value());
+  EXPECT_EQ(Reader::open(path_)->attachment("system.xml")->data, "<rts/>");
+}
+
+TEST_P(Single, a_repair_tells_of_attachments_and_metadata_that_are_lost) {
+  record(10);
+  std::string broken = octets();
+  const auto attachment = broken.find("<rts/>");
+  broken[attachment] = static_cast<char>(broken[attachment] ^ 1);
+  const auto metadata = broken.find("\x03\0\0\0run", attachment, 7) - 9;
+  ASSERT_EQ(broken[metadata], 12);
+  broken[metadata] = 44;
+  put(broken);
+  const auto repaired = repair(path_, path_);
+  ASSERT_TRUE(repaired) << repaired.error().message;
+  EXPECT_EQ(repaired->attachments_lost, 1U);
+  EXPECT_EQ(repaired->metadata_lost, 1U);
+  EXPECT_GT(repaired->octets_lost, 0U);
+  EXPECT_TRUE(repaired->has_losses());
+  auto again = Reader::open(path_);
+  EXPECT_FALSE(again->damage().has_value()) << *again->damage();
+  EXPECT_EQ(again->attachments().size() + again->metadata_count(), 0U);
+  EXPECT_EQ(read().size(), 20U);
+}
+
+TEST_P(Single, a_file_that_is_being_written_is_not_begun_again) {
+  auto writer = Writer::create(path_);
+  ASSERT_TRUE(writer->add_channel(0, "t", "json"));
+  const auto size = octets().size();
+  const auto other = Writer::create(path_);
+  ASSERT_FALSE(other);
+  EXPECT_EQ(other.error().message, "\"" + path_ + "\": is being written by another process");
+  EXPECT_EQ(repair(path_, path_).error().message, other.error().message);
+  EXPECT_EQ(octets().size(), size);
+}
+
 TEST_P(Single, a_chunk_bomb_is_refused_without_memory) {
   // Zeros compress a thousand times; the length that the chunk announces is a lie.
   auto writer = Writer::create(path_, {.compression = Compression::zstd, .chunk_size = 64 << 20});

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import zlib
 
 case, bin_dir, *_ = sys.argv[1:]
 magic = b"\x89MCAP0\r\n"
@@ -128,12 +129,12 @@ def pictures():
 
 # Topics that look like paths, are the same as a file, or are longer than names may be.
 def names():
-    topics = ["/../../up", "/a/b", "/a.b", "/" + "x" * 5000, "/" + "x" * 5001, ""]
-    file = recording("names.mcap", [(topic, "json", "", "", "") for topic in topics], [(n, b'{"v":%d}' % n) for n in range(1, 7)])
+    topics = ["/../../up", "/a/b", "/a.b", "/" + "x" * 5000, "/" + "x" * 5001, "", "-rf", b"/c\x1b[2J\xff\xe2\x80\xae"]
+    file = recording("names.mcap", [(topic, "json", "", "", "") for topic in topics], [(n, b'{"v":%d}' % n) for n in range(1, 9)])
     done = rtse("recording", "export", file, "-o", "tables")
     assert done.returncode == 0, done
     long = "x" * 200
-    assert sorted(os.listdir("tables")) == sorted(f"{n}.csv" for n in ("_......up", "a.b", "a.b-2", long, long + "-2", "_")), os.listdir("tables")
+    assert sorted(os.listdir("tables")) == sorted(f"{n}.csv" for n in ("_.....up", "a.b", "a.b-2", long, long + "-2", "_", "_rf", "c_[2J__")), os.listdir("tables")
     assert open("tables/a.b-2.csv").read() == "time,v\n0.000000002,3\n"
 
 
@@ -161,6 +162,14 @@ def terminal():
         assert said and not [c for c in said if c != "\n" and (ord(c) < 32 or 127 <= ord(c) < 160)], (words, done)
     value = json.loads(rtse("recording", "cat", file).stdout)["value"]
     assert value == {"v": c1 + "\x7f"}, value
+    turned = "\u202egpj\u2066"
+    raw = b"\x9b31m\xff" + turned.encode()
+    file = recording("raw.mcap", [(b"/a" + raw, "json", raw, "", ""), (b"/b" + raw, b"cdr" + raw, b"t" + raw, "x", "")],
+                     [(1, f'{{"v":"{turned}"}}'.encode()), (2, b"")])
+    for words in (["info", file], ["ls", file], ["cat", file], ["cat", file, "/nope"], ["compare", file, other], ["export", file, "-o", "raw"]):
+        done = rtse("recording", *words)
+        said = (done.stdout + done.stderr).decode()  # it is UTF-8
+        assert said and not [c for c in said if c in turned and ord(c) > 127], (words, done)
 
 
 # A file of many broken chunks is told in a few lines.
@@ -203,6 +212,93 @@ def flipped():
         out.write(octets)
     done = rtse("recording", "repair", file)
     assert done.returncode == 1 and re.match(rb"0 samples kept, \d\d+ octets lost, 1 broken chunk with samples that nobody counted\n.*the chunk", done.stdout), done
+
+
+# A flipped bit in the length of a record in the middle leads a walk astray; the summary still knows the way.
+def astray():
+    file = summarized("astray.mcap", [b'{"v":"%d"}' % n for n in range(50)])
+    octets = bytearray(open(file, "rb").read())
+    index = octets.index(record(7, b"")[:1] + struct.pack("<Q", 22), 100)  # of the first chunk
+    octets[index + 3] ^= 1
+    with open(file, "wb") as out:
+        out.write(octets)
+    assert json.loads(rtse("--json", "recording", "info", file).stdout)["samples"] == 50
+    done = rtse("recording", "repair", file)
+    assert done.returncode == 0 and done.stdout.startswith(b"50 samples kept, 0 octets lost\n"), done
+    assert len(rtse("recording", "cat", file).stdout.splitlines()) == 50
+    octets[octets.index(b"zstd", octets.index(b"zstd") + 4) + 16] ^= 0x55
+    with open(file, "wb") as out:
+        out.write(octets)
+    done = rtse("recording", "repair", file)
+    assert done.returncode == 1 and done.stdout.startswith(b"49 samples kept, ") and b", 1 broken chunk with 1 samples\n" in done.stdout, done
+    assert len(rtse("recording", "cat", file).stdout.splitlines()) == 49
+
+
+# A piece of a ring that a kill has left, with a chunk of its own for each message, at so many seconds.
+def piece(path, number, times):
+    texts = text("number") + text(str(number)) + text("resets") + text("0") + text("span_ns") + text(str(10**12)) + text("compression") + text("zstd")
+    data = magic + record(1, text("") + text("rtm-sim")) + record(12, text("ring") + text(texts))
+    for n, seconds in enumerate(times):
+        at = seconds * 10**9
+        body = record(4, struct.pack("<HH", 1, 0) + text("/a") + text("json") + text("")) if n == 0 else b""
+        body += record(5, struct.pack("<HIQQ", 1, seconds, at, at) + b'{"v":%d}' % seconds)
+        packed = compressed(body)
+        data += record(6, struct.pack("<QQQI", at, at, len(body), zlib.crc32(body)) + text("zstd") + struct.pack("<Q", len(packed)) + packed)
+        data += record(7, struct.pack("<HIQQ", 1, 16, at, 0))
+    with open(path, "wb") as out:
+        out.write(data)
+    return path
+
+
+def flip(path, *changes):
+    octets = bytearray(open(path, "rb").read())
+    for place, bits in changes:
+        octets[place] ^= bits
+    with open(path, "wb") as out:
+        out.write(octets)
+
+
+def chunk_of(path, number):
+    octets, place = open(path, "rb").read(), -1
+    for _ in range(number):
+        place = octets.index(b"zstd", place + 1 if place > 0 else octets.index(b"zstd") + 1)  # the first one is among the metadata
+    return place - 41
+
+
+# What is lost of a ring is told, and its pieces stay.
+def broken_ring():
+    def fresh():
+        for name in os.listdir("."):
+            os.remove(name)
+        piece("r-004.mcap", 4, range(10))
+        return piece("r-005.mcap", 5, range(10, 20))
+
+    def repaired(code, kept, *said):
+        done = rtse("recording", "repair", "r.mcap")
+        assert done.returncode == code and done.stdout.decode().startswith(f"{kept} samples kept of "), done
+        assert not [text for text in said if text not in done.stdout.decode()], (said, done)
+        assert len(rtse("recording", "cat", "r.mcap").stdout.splitlines()) == kept
+        assert sorted(n for n in os.listdir(".") if n.startswith("r-")) == sorted(there) if code else os.listdir(".") == ["r.mcap"], os.listdir(".")
+
+    fresh()
+    repaired(0, 20)
+    there = ["r-004.mcap", "r-005.mcap"]
+    newer = fresh()
+    flip(newer, (chunk_of(newer, 3) + 4, 1))  # its length
+    repaired(1, 12, '"r-005.mcap": not all can be read: ', " octets are lost; ", "the last record is cut off", "the pieces stay")
+    newer = fresh()
+    flip(newer, (chunk_of(newer, 3), 0x80))  # its opcode
+    repaired(1, 19, '"r-005.mcap": not all can be read: 1 samples are lost; ', "a record of kind 134 among the data")
+    newer = fresh()
+    flip(newer, (chunk_of(newer, 3) + 60, 0x55))
+    repaired(1, 19, '"r-005.mcap": not all can be read: 1 samples are lost; ', "the chunk")
+    for octets in (b"", b"garbage", open(fresh(), "rb").read()[:30]):
+        fresh()
+        with open("r-004.mcap", "wb") as out:
+            out.write(octets)
+        repaired(1, 10, '"r-004.mcap": ', "it is left out", "the pieces stay")
+    json_said = fresh() and rtse("--json", "recording", "repair", "r.mcap").stdout
+    assert json.loads(json_said) == {"samples": 20, "pieces": 2, "samples_lost": 0, "damage": ""}, json_said
 
 
 with tempfile.TemporaryDirectory() as folder:

@@ -61,7 +61,7 @@ def killed():
     assert pieces() == []
 
 
-# The pieces of a ring that was killed do not become part of the next one; files that only have such names stay.
+# The pieces of a ring that was killed do not become part of the next one.
 def again():
     up()
     first = recording("RTCLaser0:range", "--last", "1")
@@ -69,15 +69,13 @@ def again():
     await_("pieces are there", lambda: len(pieces()) == 2)
     first.kill()
     first.wait()
-    with open(rig.path("run-077.mcap"), "w") as out:
-        out.write("somebody's own")
     second = recording("RTCLaser0:range", "--last", "1")
     assert "of an earlier ring that was not put together, replaced" in second.stderr.readline()
     seconds(0.5)
     for words in (["recording", "repair", file], ["record", "-o", file, "RTCLaser0:range", "--last", "1"]):
         refused(*words, says=f'"{rig.path("run-001.mcap")}": is a piece of a ring that is still being recorded')
     said = ended(second)
-    assert f'in "{file}"' in said and pieces() == ["run-077.mcap"], (said, pieces())
+    assert f'in "{file}"' in said and pieces() == [], (said, pieces())
     times = scan_times("run.mcap")
     assert 3 <= min(times) and max(times) - min(times) <= 1 and f"recorded {len(times)} samples of 1 channels" in said, (times, said)
     assert rig.try_rtse("record", "-o", file, "RTCLaser0:range", "--last", "1", "--split", "1s").returncode == 2
@@ -88,9 +86,42 @@ def again():
     third.send_signal(signal.SIGINT)
     err = third.communicate(timeout=60)[1]
     assert third.returncode == 1 and err.count("\n") == 1 and f'"{file}": cannot be written: Is a directory; what came before is in "' in err, err
-    assert len(pieces()) == 3 and not os.path.exists(file + ".part"), pieces()
+    assert len(pieces()) == 2 and not os.path.exists(file + ".part"), pieces()
     os.rmdir(file)
     assert "samples kept of" in rig.rtse("recording", "repair", file) and len(scan_times("run.mcap")) in (10, 11)
+
+
+# Files that only have names of pieces stay, and so do those of a ring that is being recorded.
+def taken():
+    up()
+    own = rig.path("run-077.mcap")
+    with open(own, "w") as out:
+        out.write("somebody's own")
+    refused("record", "-o", file, "RTCLaser0:range", "--last", "1", says=f'"{own}": is no piece of a ring, and has a name that a piece of this one may take')
+    os.remove(own)
+    split = recording("RTCLaser0:range", "--split", "1s")
+    seconds(2.5)
+    ended(split)
+    before = {name: open(rig.path(name), "rb").read() for name in pieces()}
+    refused("record", "-o", file, "RTCLaser0:range", "--last", "1", says=f'"{rig.path("run-001.mcap")}": is no piece of a ring')
+    assert before == {name: open(rig.path(name), "rb").read() for name in pieces()} and len(before) >= 2, list(before)
+    for name in before:
+        os.remove(rig.path(name))
+    ring = recording("RTCLaser0:range", "--last", "1")
+    seconds(1.5)
+    await_("two pieces are there", lambda: len(pieces()) == 2)
+    live = f'"{rig.path("run-002.mcap")}": is a piece of a ring that is still being recorded'
+    for words in ([file], [file, "--split", "10m"], [rig.path("run-001.mcap")], [rig.path("run-002.mcap")]):
+        refused("record", "RTCLaser0:range", "-o", *words, says=live)
+    said = ended(ring)
+    assert f'in "{file}"' in said and pieces() == [] and len(scan_times("run.mcap")) in (10, 11), said
+    plain = recording("RTCLaser0:range")
+    seconds(0.5)
+    for words in ([], ["--last", "1"]):
+        refused("record", "-o", file, "RTCLaser0:range", *words, says=f'"{file}": is being written by another process')
+    refused("recording", "repair", file, says=f'"{file}": is being written by another process')
+    ended(plain)
+    assert scan_times("run.mcap")
 
 
 # Time that begins anew is another run: its last seconds count.

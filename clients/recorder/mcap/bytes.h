@@ -13,8 +13,9 @@
 namespace mcap {
 
 inline constexpr std::string_view magic{"\x89MCAP0\r\n", 8};
-inline constexpr std::size_t record_head = 9;    // [octets] opcode and length
-inline constexpr std::size_t message_head = 22;  // [octets] of a message's content before its data
+inline constexpr std::string_view own_library = "rtm-sim";  // in the header of files that our writer made
+inline constexpr std::size_t record_head = 9;               // [octets] opcode and length
+inline constexpr std::size_t message_head = 22;             // [octets] of a message's content before its data
 inline constexpr std::size_t footer_record = record_head + 20;
 
 enum class Opcode : std::uint8_t {

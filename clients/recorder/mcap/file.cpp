@@ -33,10 +33,14 @@ base::Result<void> File::check_name(const std::string& path) {
 
 base::Result<File> File::create(const std::string& path) {
   if (const auto good = check_name(path); !good) return good.error();
-  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0644);
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0644);
   if (descriptor < 0) return cannot(path, "written", errno);
-  (void)::flock(descriptor, LOCK_EX | LOCK_NB);  // for is_being_written(); a file system without locks has none
-  return File(descriptor, path);
+  File file(descriptor, path);
+  // A file system without locks has none.
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    return base::Error{base::in_quotes(path) + ": is being written by another process"};
+  if (::ftruncate(descriptor, 0) != 0) return file.failed("written");
+  return file;
 }
 
 bool File::is_being_written(const std::string& path) {

@@ -12,6 +12,7 @@ namespace mcap {
 
 class File final {
  public:
+  // A file that is there becomes empty, unless another process writes it.
   static base::Result<File> create(const std::string& path);
   // Whether a recording may have this name: nothing is there, or a regular file.
   static base::Result<void> check_name(const std::string& path);

@@ -140,7 +140,18 @@ class Reader final {
   std::vector<AttachmentEntry> attachments() const;
   // The first one of that name.
   base::Result<Attachment> attachment(const std::string& name);
+  base::Result<Attachment> attachment(std::size_t number);  // of those of attachments()
   base::Result<std::vector<Metadata>> metadata();
+  std::size_t metadata_count() const;
+  base::Result<Metadata> metadata(std::size_t number);
+
+  // What a file without a summary has and open() could not read; the indexes of broken chunks say of how many messages.
+  struct Unread {
+    std::uint64_t octets = 0;
+    std::uint64_t messages = 0;
+    bool are_counted = true;  // no message is missing in the number
+  };
+  Unread unread() const;
 
   // [octets] of all chunks.
   std::uint64_t uncompressed() const;
@@ -160,14 +171,19 @@ class Reader final {
 
 struct Repair {
   std::uint64_t messages = 0;     // kept
-  std::uint64_t octets_lost = 0;  // behind the last whole record, and in broken chunks
+  std::uint64_t octets_lost = 0;  // behind the last whole record, and in records that cannot be read
   std::uint64_t broken_chunks = 0;
-  std::optional<std::uint64_t> messages_lost;  // in broken chunks; nothing when the file does not say how many there were
-  std::optional<std::string> damage;
+  std::optional<std::uint64_t> messages_lost = 0;  // nothing when the file does not say how many there were
+  std::uint64_t attachments_lost = 0;
+  std::uint64_t metadata_lost = 0;
+  bool is_changed = false;  // the data do not match their CRC, or have records of no known kind
+  std::optional<std::string> damage{};
+  // More than what a writer that was killed did not end.
+  bool has_losses() const { return broken_chunks + attachments_lost + metadata_lost > 0 || messages_lost != 0 || is_changed; }
 };
 
 // Writes to `to` all that can be read of `from`, with a new summary. Both may be the same path: the file is replaced when the new one is
-// whole.
+// whole, and never by one with fewer messages than a Reader gives of it.
 base::Result<Repair> repair(const std::string& from, const std::string& to);
 
 }  // namespace mcap

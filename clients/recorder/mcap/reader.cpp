@@ -196,8 +196,16 @@ std::vector<Reader::AttachmentEntry> Reader::attachments() const {
 base::Result<Attachment> Reader::attachment(const std::string& name) {
   const auto& places = state_->index.summary.attachments;
   const auto place = std::find_if(places.begin(), places.end(), [&](const AttachmentPlace& one) { return one.name == name; });
+  if (place == places.end()) {
+    return base::Error{base::in_quotes(state_->file.path()) + ": has no attachment " + base::in_quotes(name)};
+  }
+  return attachment(static_cast<std::size_t>(place - places.begin()));
+}
+
+base::Result<Attachment> Reader::attachment(std::size_t number) {
+  const AttachmentPlace* place = &state_->index.summary.attachments.at(number);
   const std::string& path = state_->file.path();
-  if (place == places.end()) return base::Error{base::in_quotes(path) + ": has no attachment " + base::in_quotes(name)};
+  const std::string& name = place->name;
   std::string octets;
   if (const auto done = state_->file.read(place->start, place->length, octets); !done) return done.error();
   const auto wrong = [&](const char* what) {
@@ -225,23 +233,36 @@ base::Result<Attachment> Reader::attachment(const std::string& name) {
 base::Result<std::vector<Metadata>> Reader::metadata() {
   std::vector<Metadata> all;
   std::uint64_t total = 0;
-  for (const MetadataPlace& place : state_->index.summary.metadata) {
-    total += place.length;
+  for (std::size_t n = 0; n < metadata_count(); ++n) {
+    total += state_->index.summary.metadata[n].length;
     if (total > most_descriptions)
       return base::Error{base::in_quotes(state_->file.path()) + ": metadata of more than " + std::to_string(most_descriptions) +
                          " octets are not read"};
-    std::string octets;
-    if (const auto done = state_->file.read(place.start, place.length, octets); !done) return done.error();
-    Octets in(octets);
-    const auto opcode = static_cast<Opcode>(in.number<std::uint8_t>());
-    (void)in.number<std::uint64_t>();
-    Metadata metadata{std::string(in.text()), in.texts()};
-    if (opcode != Opcode::metadata || !in.ok()) {
-      return base::Error{base::in_quotes(state_->file.path()) + ": octet " + std::to_string(place.start) + ": expected metadata"};
-    }
-    all.push_back(std::move(metadata));
+    auto one = metadata(n);
+    if (!one) return one.error();
+    all.push_back(std::move(*one));
   }
   return all;
+}
+
+std::size_t Reader::metadata_count() const { return state_->index.summary.metadata.size(); }
+
+base::Result<Metadata> Reader::metadata(std::size_t number) {
+  const MetadataPlace& place = state_->index.summary.metadata.at(number);
+  std::string octets;
+  if (place.length > most_descriptions) return at(state_->file, place.start, "metadata are longer than any are");
+  if (const auto done = state_->file.read(place.start, place.length, octets); !done) return done.error();
+  Octets in(octets);
+  const auto opcode = static_cast<Opcode>(in.number<std::uint8_t>());
+  (void)in.number<std::uint64_t>();
+  Metadata metadata{std::string(in.text()), in.texts()};
+  if (opcode != Opcode::metadata || !in.ok()) return at(state_->file, place.start, "expected metadata");
+  return metadata;
+}
+
+Reader::Unread Reader::unread() const {
+  const Broken& broken = state_->index.broken;
+  return {broken.octets + state_->index.cut_off, broken.messages, broken.are_counted && state_->index.cut_off == 0};
 }
 
 std::uint64_t Reader::uncompressed() const {

@@ -10,28 +10,6 @@ namespace mcap {
 
 namespace {
 
-base::Error at(const File& file, std::uint64_t offset, const std::string& what) {
-  return {base::in_quotes(file.path()) + ": octet " + std::to_string(offset) + ": " + what};
-}
-
-struct RecordHead {
-  Opcode opcode{};
-  std::uint64_t length = 0;  // [octets] of its content
-};
-
-// Nothing when the record does not lie whole before `end`.
-base::Result<std::optional<RecordHead>> read_head(const File& file, std::uint64_t offset, std::uint64_t end) {
-  if (offset > end || end - offset < record_head) return std::optional<RecordHead>();
-  std::string octets;
-  if (const auto done = file.read(offset, record_head, octets); !done) return done.error();
-  Octets in(octets);
-  RecordHead head;
-  head.opcode = static_cast<Opcode>(in.number<std::uint8_t>());
-  head.length = in.number<std::uint64_t>();
-  if (head.length > end - offset - record_head) return std::optional<RecordHead>();
-  return std::optional<RecordHead>(head);
-}
-
 // Schemas, channels and the rest of what an index keeps, as they are met.
 class Collector {
  public:
@@ -167,43 +145,6 @@ bool is_enough(const Index& index, bool has_statistics, std::uint64_t header_end
   return std::all_of(seen.begin(), seen.end(), [&](std::uint16_t channel) { return summary.channels.contains(channel); });
 }
 
-// Nothing when there is no summary, or one that does not say enough; `damage` tells what is broken rather than left out.
-base::Result<std::optional<Index>> read_summary(const File& file, std::uint64_t size, std::optional<std::string>& damage) {
-  Index index;
-  const auto header_end = read_header(file, size, index);
-  if (!header_end) return header_end.error();
-  const auto footer = read_footer(file, size);
-  if (!footer) return footer.error();
-  const auto broken = [&](std::uint64_t offset, const char* what) {
-    damage = at(file, offset, what).message;
-    return std::optional<Index>();
-  };
-  if (!footer->has_value()) return broken(size, "the file has no end: its writer did not close it, or it is cut off; what it has is read");
-  if ((*footer)->summary_start == 0) return std::optional<Index>();
-  if ((*footer)->summary_start < *header_end || (*footer)->summary_start > (*footer)->offset) {
-    return broken((*footer)->offset, "the footer points outside of the file; the file is read without a summary");
-  }
-  const std::uint64_t start = (*footer)->summary_start;
-  std::string octets;
-  if (const auto done = file.read(start, size - magic.size() - start, octets); !done) return done.error();
-  const std::string_view all = octets;
-  if ((*footer)->crc != 0 && crc32(0, all.substr(0, all.size() - 4)) != (*footer)->crc) {
-    return broken(start, "the summary's octets do not match their CRC; the file is read without it");
-  }
-
-  Collector collector(file, index);
-  bool has_statistics = false;
-  base::Result<void> result;
-  const auto walked = for_each_record(all, [&](Opcode opcode, std::string_view content, std::uint64_t offset) {
-    if (result) result = take_summary_record(file, opcode, content, start + offset, start, collector, index, has_statistics);
-  });
-  if (!walked) return broken(start, "the summary is cut off; the file is read without it");
-  if (!result) return damage = result.error().message, std::optional<Index>();
-  if (!is_enough(index, has_statistics, *header_end, start)) return std::optional<Index>();
-  index.data_end = start;
-  return std::optional<Index>(std::move(index));
-}
-
 // Walks over the data of a file.
 class Scanner {
  public:
@@ -218,12 +159,14 @@ class Scanner {
       if (!head) return head.error();
       if (!head->has_value()) {
         note(index_, at(file_, offset, "the last record is cut off; what stands before it is read"));
+        index_.cut_off = end - offset;
+        end_broken();
         return {};
       }
-      if ((*head)->opcode == Opcode::data_end || (*head)->opcode == Opcode::footer) {
+      if (is_end(**head)) {
         index_.has_data_end = true;
         end_broken();
-        if (index_.broken.count > 0) describe_from_summary(offset, end);
+        if (index_.broken.chunks > 0) describe_from_summary(offset, end);
         return {};
       }
       if (const auto done = take(**head, offset); !done) return done;
@@ -235,6 +178,12 @@ class Scanner {
   }
 
  private:
+  // Another record whose opcode was changed into one of these has another length.
+  static bool is_end(const RecordHead& head) {
+    return (head.opcode == Opcode::data_end && head.length == sizeof(std::uint32_t)) ||
+           (head.opcode == Opcode::footer && head.length == footer_record - record_head);
+  }
+
   // A broken chunk may have been the only place in the data where a channel was described; the summary has all of them. What of it cannot
   // be read does not help.
   void describe_from_summary(std::uint64_t offset, std::uint64_t end) {
@@ -250,8 +199,15 @@ class Scanner {
 
   // Behind the indexes of a chunk.
   void end_broken() {
-    if (is_in_broken_ && !has_broken_index_) index_.broken.are_counted = false;
-    is_in_broken_ = has_broken_index_ = false;
+    if (in_broken_ == In::chunk && !has_broken_index_) index_.broken.are_counted = false;
+    in_broken_ = In::none;
+    has_broken_index_ = false;
+  }
+
+  void lose(std::uint64_t& count, const RecordHead& head, const base::Error& why) {
+    note(index_, why);
+    ++count;
+    index_.broken.octets += record_head + head.length;
   }
 
   base::Result<void> take(const RecordHead& head, std::uint64_t offset) {
@@ -276,13 +232,26 @@ class Scanner {
         if (head.length > most_descriptions) return at(file_, offset, "metadata are longer than any are");
         if (const auto done = file_.read(content, head.length, octets_); !done) return done;
         Octets in(octets_);
-        index_.summary.metadata.push_back({offset, record_head + head.length, std::string(in.text())});
+        std::string name(in.text());
+        (void)in.texts();
+        if (!in.ok())
+          return lose(index_.broken.metadata, head, at(file_, offset, "metadata are cut off; they are left out")), base::Result<void>();
+        index_.summary.metadata.push_back({offset, record_head + head.length, std::move(name)});
         ++index_.summary.statistics.metadata;
         return {};
       }
       default:
-        return {};
+        return take_unknown(head, offset), base::Result<void>();
     }
+  }
+
+  // The format leaves opcodes to others, who may know what to do with their records; we write none of these.
+  void take_unknown(const RecordHead& head, std::uint64_t offset) {
+    constexpr int first_private = 0x80;
+    if (static_cast<int>(head.opcode) >= first_private && index_.library != own_library) return;
+    lose(index_.broken.others, head,
+         at(file_, offset, "a record of kind " + std::to_string(static_cast<int>(head.opcode)) + " among the data is left out"));
+    in_broken_ = In::unknown;
   }
 
   base::Result<void> take_loose(const RecordHead& head, std::uint64_t offset) {
@@ -296,10 +265,8 @@ class Scanner {
 
   base::Result<void> take_chunk_record(const RecordHead& head, std::uint64_t offset) {
     if (const auto done = read_chunk(file_, offset, record_head + head.length, octets_); !done) {
-      note(index_, done.error());
-      ++index_.broken.count;
-      index_.broken.octets += record_head + head.length;
-      is_in_broken_ = true;
+      lose(index_.broken.chunks, head, done.error());
+      in_broken_ = In::chunk;
       return {};
     }
     ChunkEntry entry;
@@ -349,7 +316,12 @@ class Scanner {
   // Only where it stands, for the index of a repaired file.
   base::Result<void> take_message_index(const RecordHead& head, std::uint64_t offset) {
     constexpr std::uint64_t index_head = 2 + 4, index_entry = 16;  // [octets]
-    if (is_in_broken_) {
+    if (in_broken_ == In::unknown) {                               // it was a chunk
+      in_broken_ = In::chunk;
+      --index_.broken.others;
+      ++index_.broken.chunks;
+    }
+    if (in_broken_ == In::chunk) {
       has_broken_index_ = true;
       if (head.length >= index_head) index_.broken.messages += (head.length - index_head) / index_entry;
       return {};
@@ -376,56 +348,43 @@ class Scanner {
     place.name = in.text();
     place.media_type = in.text();
     place.size = in.number<std::uint64_t>();
-    if (!in.ok()) return note(index_, at(file_, offset, "an attachment is cut off; it is left out")), base::Result<void>();
+    const std::uint64_t before = std::min<std::uint64_t>(head.length, 64 * 1024) - in.rest().size();
+    if (!in.ok() || place.size > head.length - before || head.length - before - place.size < sizeof(std::uint32_t))
+      return lose(index_.broken.attachments, head, at(file_, offset, "an attachment is cut off; it is left out")), base::Result<void>();
+    const auto is_good = has_good_crc(offset + record_head, before + place.size);
+    if (!is_good) return is_good.error();
+    if (!*is_good)
+      return lose(index_.broken.attachments, head, at(file_, offset, "an attachment does not match its CRC; it is left out")),
+             base::Result<void>();
     index_.summary.attachments.push_back(std::move(place));
     ++index_.summary.statistics.attachments;
     return {};
+  }
+
+  // Of an attachment, by so many octets; behind them stands their CRC, or 0.
+  base::Result<bool> has_good_crc(std::uint64_t offset, std::uint64_t size) {
+    constexpr std::uint64_t most_at_once = 1 << 20;  // [octets]
+    if (const auto done = file_.read(offset + size, sizeof(std::uint32_t), octets_); !done) return done.error();
+    const auto wanted = Octets(octets_).number<std::uint32_t>();
+    if (wanted == 0) return true;
+    std::uint32_t crc = 0;
+    for (std::uint64_t done = 0; done < size; done += octets_.size()) {
+      if (const auto read = file_.read(offset + done, std::min(most_at_once, size - done), octets_); !read) return read.error();
+      crc = crc32(crc, octets_);
+    }
+    return crc == wanted;
   }
 
   const File& file_;
   Index& index_;
   Collector collector_;
   std::string octets_;
-  bool is_in_broken_ = false;      // behind a chunk that cannot be read, among its indexes
+  enum class In { none, chunk, unknown };
+  In in_broken_ = In::none;        // behind a record that cannot be read, among the indexes of what may have been a chunk
   bool has_broken_index_ = false;  // of which there is one at least
 };
 
 }  // namespace
-
-base::Result<void> for_each_record(std::string_view records, const std::function<void(Opcode, std::string_view, std::uint64_t)>& take) {
-  std::uint64_t offset = 0;
-  while (offset < records.size()) {
-    Octets in(records.substr(offset));
-    if (in.rest() == magic) return {};  // the end of the file behind its footer
-    const auto opcode = static_cast<Opcode>(in.number<std::uint8_t>());
-    const auto length = in.number<std::uint64_t>();
-    if (!in.ok() || length > in.rest().size()) return base::Error{"the record at octet " + std::to_string(offset) + " is cut off"};
-    take(opcode, in.rest().substr(0, length), offset + record_head);
-    offset += record_head + length;
-  }
-  return {};
-}
-
-base::Result<void> read_chunk(const File& file, std::uint64_t offset, std::uint64_t length, std::string& records) {
-  std::string octets;
-  if (length < record_head) return at(file, offset, "the chunk is shorter than any is");
-  if (const auto done = file.read(offset, length, octets); !done) return done;
-  Octets in(octets);
-  const auto opcode = static_cast<Opcode>(in.number<std::uint8_t>());
-  const auto size = in.number<std::uint64_t>();
-  const auto chunk = opcode == Opcode::chunk && size == in.rest().size() ? take_chunk(in.rest()) : std::nullopt;
-  if (!chunk) return at(file, offset, "expected a chunk of " + std::to_string(length) + " octets");
-  if (chunk->uncompressed > Reader::largest_chunk) {
-    return at(file, offset,
-              "the chunk announces " + std::to_string(chunk->uncompressed) + " octets; at most " + std::to_string(Reader::largest_chunk) +
-                  " are read");
-  }
-  if (const auto done = decompress(chunk->compression, chunk->records, chunk->uncompressed, records); !done) {
-    return at(file, offset, "the chunk " + done.error().message);
-  }
-  if (chunk->crc != 0 && crc32(0, records) != chunk->crc) return at(file, offset, "the chunk's octets do not match their CRC");
-  return {};
-}
 
 base::Result<Index> scan(const File& file) {
   const auto size = file.size();
@@ -435,6 +394,42 @@ base::Result<Index> scan(const File& file) {
   if (!start) return start.error();
   if (const auto done = Scanner(file, index).walk(*start, *size); !done) return done.error();
   return index;
+}
+
+base::Result<std::optional<Index>> read_summary(const File& file, std::uint64_t size, std::optional<std::string>& damage) {
+  Index index;
+  const auto header_end = read_header(file, size, index);
+  if (!header_end) return header_end.error();
+  const auto footer = read_footer(file, size);
+  if (!footer) return footer.error();
+  const auto broken = [&](std::uint64_t offset, const char* what) {
+    damage = at(file, offset, what).message;
+    return std::optional<Index>();
+  };
+  if (!footer->has_value()) return broken(size, "the file has no end: its writer did not close it, or it is cut off; what it has is read");
+  if ((*footer)->summary_start == 0) return std::optional<Index>();
+  if ((*footer)->summary_start < *header_end || (*footer)->summary_start > (*footer)->offset) {
+    return broken((*footer)->offset, "the footer points outside of the file; the file is read without a summary");
+  }
+  const std::uint64_t start = (*footer)->summary_start;
+  std::string octets;
+  if (const auto done = file.read(start, size - magic.size() - start, octets); !done) return done.error();
+  const std::string_view all = octets;
+  if ((*footer)->crc != 0 && crc32(0, all.substr(0, all.size() - 4)) != (*footer)->crc) {
+    return broken(start, "the summary's octets do not match their CRC; the file is read without it");
+  }
+
+  Collector collector(file, index);
+  bool has_statistics = false;
+  base::Result<void> result;
+  const auto walked = for_each_record(all, [&](Opcode opcode, std::string_view content, std::uint64_t offset) {
+    if (result) result = take_summary_record(file, opcode, content, start + offset, start, collector, index, has_statistics);
+  });
+  if (!walked) return broken(start, "the summary is cut off; the file is read without it");
+  if (!result) return damage = result.error().message, std::optional<Index>();
+  if (!is_enough(index, has_statistics, *header_end, start)) return std::optional<Index>();
+  index.data_end = start;
+  return std::optional<Index>(std::move(index));
 }
 
 base::Result<Index> read_index(const File& file) {

@@ -3,13 +3,13 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "mcap/file.h"
+#include "mcap/records.h"
 #include "mcap/summary.h"
 
 namespace mcap {
@@ -21,12 +21,15 @@ struct LooseMessage {
   std::uint64_t length = 0;  // [octets] of its content
 };
 
-// Chunks that cannot be read, of a file that was walked over.
-struct BrokenChunks {
-  std::uint64_t count = 0;
-  std::uint64_t octets = 0;    // of their records
-  std::uint64_t messages = 0;  // as far as the indexes behind them say
-  bool are_counted = true;     // each has an index, so that no message is missing in the number
+// Records that cannot be read, of a file that was walked over.
+struct Broken {
+  std::uint64_t chunks = 0;
+  std::uint64_t attachments = 0;
+  std::uint64_t metadata = 0;
+  std::uint64_t others = 0;    // of a kind that is none of the data
+  std::uint64_t octets = 0;    // of all of them
+  std::uint64_t messages = 0;  // in the chunks, as far as the indexes behind them say
+  bool are_counted = true;     // each chunk has an index, so that no message is missing in the number
 };
 
 struct Index {
@@ -37,21 +40,17 @@ struct Index {
   std::optional<std::string> damage;
   std::uint64_t data_end = 0;  // [octets] where the last whole record of the data ends
   bool has_data_end = false;   // and a record says so: what follows is no data
-  BrokenChunks broken;
+  Broken broken;
+  std::uint64_t cut_off = 0;  // [octets] behind the last whole record, where no record says that the data end
 };
 
 // Schemas and channels together [octets]; more is refused, since every one of them is kept in memory.
 inline constexpr std::uint64_t most_descriptions = 16ull << 20;
 
 base::Result<Index> read_index(const File& file);
+// By the summary alone. Nothing when there is none, or one that does not say enough; `damage` tells what is broken rather than left out.
+base::Result<std::optional<Index>> read_summary(const File& file, std::uint64_t size, std::optional<std::string>& damage);
 // Walks over all records, whatever the summary says. Chunks are decompressed and checked.
 base::Result<Index> scan(const File& file);
-
-// The records of a chunk, decompressed and checked. An error names the file and the octet.
-base::Result<void> read_chunk(const File& file, std::uint64_t offset, std::uint64_t length, std::string& records);
-
-// Calls `take` with each record of a chunk's octets and the offset of its content; an error when the last one is cut off.
-base::Result<void> for_each_record(std::string_view records,
-                                   const std::function<void(Opcode opcode, std::string_view content, std::uint64_t offset)>& take);
 
 }  // namespace mcap

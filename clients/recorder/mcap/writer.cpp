@@ -12,7 +12,6 @@ namespace mcap {
 
 namespace {
 
-constexpr std::string_view library = "rtm-sim";
 constexpr std::size_t most = 65535;  // schemas, channels: ids have 16 bits
 
 struct IndexEntry {
@@ -83,7 +82,7 @@ base::Result<void> Writer::State::append_chunk(std::string_view records, std::ui
 base::Result<void> Writer::State::begin() {
   std::string content;
   put_text(content, options.profile);
-  put_text(content, library);
+  put_text(content, own_library);
   std::string start(magic);
   put_record(start, Opcode::header, content);
   return append(start);
