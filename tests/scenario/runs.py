@@ -100,7 +100,7 @@ def kinds():
         code, out, err = place.run(avoidance, course, "--duration", "5", "--expect", met)
         assert code == 0 and err == "" and out.startswith("passed"), (code, out, err)
         verdicts = place.verdicts()
-        assert len(verdicts) == 11 and not any(verdicts.values()), verdicts
+        assert len(verdicts) == 12 and not any(verdicts.values()), verdicts
 
         unmet = place.write("unmet.yaml", expectations(
             "path_length: {model: pioneer2dx, max: 0.1}", "reach: {model: pioneer2dx, region: [50, 50, 60, 60]}", "stay: {model: pioneer2dx, region: [50, 50, 60, 60]}",

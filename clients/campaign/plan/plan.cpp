@@ -13,7 +13,6 @@
 
 #include "base/text.h"
 #include "plan/grammar.h"
-#include "yaml_keys.h"
 
 namespace campaign {
 namespace {
@@ -287,7 +286,6 @@ Result<Plan> read_plan(const std::string& file) {
   try {
     const auto documents = YAML::LoadAll(text.str());
     if (documents.size() != 1) return fail(0, 0, "must hold one YAML document");
-    yaml::expect_unique_keys(documents.front());
     auto plan = to_plan(documents.front(), file);
     plan.text = text.str();
     return plan;
