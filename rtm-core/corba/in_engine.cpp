@@ -127,6 +127,7 @@ TypeOps with_codec(const TypeOps& ops, const std::shared_ptr<Codec>& codec) {
 
 InConnection::InConnection(const TypeOps& ops, ConnectionPlan plan, std::shared_ptr<rt::Mailbox> mailbox)
     : plan_(std::move(plan)),
+      peer_(connection_text(plan_)),
       ops_(with_codec(ops, plan_.codec)),
       mailbox_(std::move(mailbox)),
       channel_(mailbox_->open(plan_.settings.buffer, plan_.name + " " + plan_.id)) {
@@ -205,9 +206,8 @@ rt::PortStatus InConnection::fetch(bool only_new) {
   rt::Sample sample;
   const bool is_watched = plan_.settings.interface != rt::Interface::direct && base::tick_in_lock_step();
   const auto watch = is_watched ? port_watch() : nullptr;
-  const std::string peer = watch ? connection_text(plan_) : std::string();
   std::optional<MemberWatch::Call> call;
-  if (watch) call.emplace(*watch, plan_.port, "get", &peer);
+  if (watch) call.emplace(*watch, plan_.port, "get", &peer_);
   const rt::PortStatus status = fetcher_->fetch(sample);
   call.reset();
   switch (status) {

@@ -60,7 +60,8 @@ class InConnection final : public Receiver, public Waiting {
   rt::PortStatus keep(rt::Sample sample, std::uint64_t moment, std::chrono::nanoseconds most);
 
   const ConnectionPlan plan_;
-  const TypeOps ops_;  // with the connection's codec
+  const std::string peer_;  // what the connection is called in messages
+  const TypeOps ops_;       // with the connection's codec
   const std::shared_ptr<rt::Mailbox> mailbox_;
   const rt::Channel channel_;
   const std::shared_ptr<rt::BlockPool> pool_ = rt::BlockPool::make();

@@ -33,12 +33,8 @@ const nlohmann::json& golden() {
 }
 
 // Keeps what a hash log would take a hash of.
-class OctetsTick final : public base::Tick {
+class OctetsTick final : public ports::LookingTick {
  public:
-  std::chrono::nanoseconds time() const override { return std::chrono::nanoseconds(0); }
-  std::uint64_t moment() const override { return 0; }
-  void at_end(std::function<void(Tick&)>) override {}
-  bool keeps_data() const override { return true; }
   void passed(const base::Passage& passage) override {
     for (const auto& part : passage.octets) {
       const auto* first = reinterpret_cast<const unsigned char*>(part.data());

@@ -10,16 +10,27 @@
 
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <initializer_list>
 #include <string>
 #include <thread>
 #include <utility>
 
+#include "base/tick.h"
 #include "corba/orb.h"
 #include "support/paths.h"
 #include "support/process.h"
 
 namespace ports {
+
+// A tick without a lock step, for those who look at what passes in it.
+class LookingTick : public base::Tick {
+ public:
+  std::chrono::nanoseconds time() const override { return std::chrono::nanoseconds(0); }
+  std::uint64_t moment() const override { return 0; }
+  void at_end(std::function<void(Tick&)>) override {}
+  bool keeps_data() const override { return true; }
+};
 
 using Pairs = std::initializer_list<std::pair<const char*, std::string>>;
 

@@ -42,12 +42,8 @@ INSTANTIATE_TEST_SUITE_P(Ways, Transport,
                          name_of);
 
 // Keeps a hash of each sample that passes.
-class KeepingTick final : public base::Tick {
+class KeepingTick final : public ports::LookingTick {
  public:
-  std::chrono::nanoseconds time() const override { return std::chrono::nanoseconds(0); }
-  std::uint64_t moment() const override { return 0; }
-  void at_end(std::function<void(Tick&)>) override {}
-  bool keeps_data() const override { return true; }
   void passed(const base::Passage& passage) override {
     base::Hash64 hash;
     for (const auto& part : passage.octets) hash.add(part);
