@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -69,18 +71,17 @@ std::string path_of(const Verb& verb) {
 }  // namespace
 
 void become_program_of_verb(int argc, char** argv) {
-  if (const Verb* verb = verb_of(argc, argv)) ::execv(path_of(*verb).c_str(), argv);
+  const Verb* verb = verb_of(argc, argv);
+  if (!verb) return;
+  const auto path = path_of(*verb);
+  ::execv(path.c_str(), argv);
+  if (std::string_view(argv[1]) == "--complete") return;
+  std::fprintf(stderr, "rtse: program %s: cannot be started; expected it beside rtse\n", path.c_str());
+  std::_Exit(1);
 }
 
-void add_verbs_elsewhere(base::Command& app, Chosen& chosen) {
-  for (const Verb& verb : verbs) {
-    auto* command = app.add_subcommand(std::string(verb.name), std::string(verb.description));
-    command->prefix_command();
-    command->callback([&chosen, &verb] {
-      chosen.needs_orb = false;
-      chosen.work = [&verb](Editor& editor) { editor.fail({"program " + path_of(verb) + ": cannot be started; expected it beside rtse"}); };
-    });
-  }
+void add_verbs_elsewhere(base::Command& app, Chosen&) {
+  for (const Verb& verb : verbs) app.add_subcommand(std::string(verb.name), std::string(verb.description))->prefix_command();
 }
 
 }  // namespace editor

@@ -1,4 +1,4 @@
-// Verbs of rtse whose code needs what rtse itself does not load (shared memory, recordings): programs beside it carry them out. One thread.
+// Verbs of rtse whose code needs what rtse itself does not load (recordings, campaigns): programs beside it carry them out. One thread.
 #pragma once
 
 namespace base {
@@ -9,8 +9,8 @@ namespace editor {
 
 struct Chosen;
 
-// When the command line names such a verb this process becomes its program, with the same words. Returns when it names none, or when the
-// program is missing, which run_program() then tells.
+// When the command line names such a verb this process becomes its program, with the same words. When that is missing it says so and ends.
+// Returns when the command line names none.
 void become_program_of_verb(int argc, char** argv);
 
 // For --help and completion.

@@ -4,6 +4,7 @@ import json
 import os
 import re
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -470,6 +471,13 @@ def simulator_ends():
 
 
 def bad_input():
+    # rtse without the program that knows recordings says so, whatever follows the verb.
+    os.makedirs(rig.path("alone/bin"))
+    shutil.copy(f"{rig.bin_dir}/rtse", rig.path("alone/bin"))
+    os.symlink(rig.lib_dir, rig.path("alone/lib"))
+    for words in (("recording", "info", file), ("record", "--all", "-o", file), ("run", "--like", file)):
+        done = subprocess.run([rig.path("alone/bin/rtse"), *words], text=True, capture_output=True, timeout=30)
+        assert done.returncode == 1 and done.stderr.endswith("rtse-recorder: cannot be started; expected it beside rtse\n"), done
     up()
     refused("record", "-o", file, "--all", "--exclude", "*", says="--exclude leaves none of the 4 OutPorts")
     refused("record", "-o", file, "RTCPosition2d0:velocity", says="record reads OutPorts")
