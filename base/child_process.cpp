@@ -1,4 +1,4 @@
-#include "run/child_process.h"
+#include "base/child_process.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -16,8 +16,8 @@
 #include <filesystem>
 #include <utility>
 
+#include "base/interrupt.h"
 #include "base/text.h"
-#include "run/interrupt.h"
 
 namespace editor {
 namespace {

@@ -1,4 +1,4 @@
-#include "run/interrupt.h"
+#include "base/interrupt.h"
 
 #include <poll.h>
 #include <signal.h>

@@ -1,6 +1,6 @@
 // A program that does what it does first in every start (its libraries, and more if it likes), and then makes others like it by forking
 // whenever it is asked to. Each is as one that was started alone: its own words, environment, output and process group. Who asks is rtse
-// (system-editor/run/warm_program.h), over the socket that is standard input.
+// (run/warm_program.h), over the socket that is standard input.
 //
 // A request is one packet: words, an empty word, then the environment, each with a 0 at its end; and two descriptors: where the process
 // writes, and a pipe that tells how it is: its process id, and when it has ended its status as wait() has it, both as int. When the socket

@@ -1,4 +1,4 @@
-#include "yaml_keys.h"
+#include "base/yaml_keys.h"
 
 #include <set>
 #include <string>

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/shared-memory.md: the tables come from sim-server/shm/rtmsim_layout.h and iface_types.h, offsets and sizes from the compiler.
+"""Writes docs/shared-memory.md: the tables come from shm/rtmsim_layout.h and iface_types.h, offsets and sizes from the compiler.
     docs/make_shared_memory.py            writes the page
     docs/make_shared_memory.py --check    exit code 1 when the page is not what it would write"""
 import pathlib
@@ -79,9 +79,9 @@ Every device of a simulated world is an *iface*: a segment of POSIX shared memor
     rtmsim-<uid>-<server>.<type>.<iface name>
 
 with the type in words (`laser`, `position2d`, ...) and the iface name as model names joined by `::`, then the sensor or plugin name. The file
-`sim-server/shm/rtmsim_layout.h` (C11 and C++) is the authority; the tables below are made from it by `docs/make_shared_memory.py`. `simctl dump IFACE` shows a living one.
+`shm/rtmsim_layout.h` (C11 and C++) is the authority; the tables below are made from it by `docs/make_shared_memory.py`. `simctl dump IFACE` shows a living one.
 When another user has made a file of that name, which he alone can remove, the segment is in the folder `rtmsim-<uid>.<random letters>` of the user who is meant.
-For C there are functions in `sim-server/shm/rtmsim_iface.h`, for C++ in `sim-server/shm/client.h`.
+For C there are functions in `shm/rtmsim_iface.h`, for C++ in `shm/client.h`.
 
 All numbers are little endian; areas start at multiples of 64. Units: m, rad, s, kg, N; times are int64 nanoseconds; x forward, y left, z up,
 counter-clockwise positive; quaternions are (w, x, y, z). Fields marked [atomic] are written while others read them.
@@ -115,7 +115,7 @@ for one in types:
     out += f"| {one['number']} | `{c_names[one['number']]}` | `{one['name']}` | {one['meaning']} | {str(one['most']) + unit if one['most'] else ''} |\n"
 out += """
 The largest count is that of beams, transducers, contacts or pixels; an iface with more, or with none, is not made and not opened. The table of types is
-`sim-server/shm/iface_types.h`: number, name, constants, samples and fields of a type stand there once, and programs, checks and this page follow.
+`shm/iface_types.h`: number, name, constants, samples and fields of a type stand there once, and programs, checks and this page follow.
 
 """
 

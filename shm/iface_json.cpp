@@ -1,4 +1,4 @@
-#include "iface_json.h"
+#include "shm/iface_json.h"
 
 #include <charconv>
 #include <cmath>

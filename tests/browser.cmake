@@ -5,6 +5,6 @@ foreach(flows page act late system lockstep picture recording end)
   set_tests_properties(studio.${flows}_flows PROPERTIES LABELS browser TIMEOUT 900 SKIP_RETURN_CODE 77)
 endforeach()
 add_test(NAME studio.page_has_its_types
-  COMMAND ${NODE_PROGRAM} ${CMAKE_BINARY_DIR}/clients/studio/web/page/node_modules/typescript/bin/tsc --noEmit -p ${CMAKE_BINARY_DIR}/clients/studio/web/page)
+  COMMAND ${NODE_PROGRAM} ${CMAKE_BINARY_DIR}/tools/studio/web/page/node_modules/typescript/bin/tsc --noEmit -p ${CMAKE_BINARY_DIR}/tools/studio/web/page)
 add_test(NAME studio.lock_files_name_no_registry COMMAND ${NODE_PROGRAM} ${CMAKE_CURRENT_SOURCE_DIR}/studio/locks.mjs ${PROJECT_SOURCE_DIR})
 set_tests_properties(studio.page_has_its_types studio.lock_files_name_no_registry PROPERTIES LABELS browser)

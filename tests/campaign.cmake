@@ -1,9 +1,9 @@
 # Campaigns: plans, rows, results, and whole sweeps.
-rtmsim_test(campaign_test campaigns/fault_test.cpp campaigns/plan_test.cpp campaigns/rows_test.cpp campaigns/store_test.cpp LIBRARIES campaign rt_core)
+rtmsim_test(campaign_test campaign/fault_test.cpp campaign/plan_test.cpp campaign/rows_test.cpp campaign/store_test.cpp LIBRARIES campaign rt_core)
 function(campaign_cases script)
   foreach(case ${ARGN})
     add_test(NAME campaigns.${case}
-      COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/campaigns/${script} ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+      COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/campaign/${script} ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
     set_tests_properties(campaigns.${case} PROPERTIES LABELS integration TIMEOUT 300)
   endforeach()
 endfunction()
@@ -12,9 +12,9 @@ campaign_cases(trouble.py kills shared machine finds)
 # On a cluster of one machine; skipped where Slurm is not installed (scripts/setup --with-slurm).
 foreach(case rows broken killed other_rows)
   add_test(NAME campaigns.slurm_${case}
-    COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/campaigns/slurm.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+    COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/campaign/slurm.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(campaigns.slurm_${case} PROPERTIES LABELS integration TIMEOUT 600 SKIP_RETURN_CODE 77)
 endforeach()
 
-# What hunts look for. hunt/hunt.py runs them all, by hand.
-rtmsim_component(HuntSubject hunt/hunt_subject.cpp)
+# What hunts look for. campaign/hunt/hunt.py runs them all, by hand.
+rtmsim_component(HuntSubject campaign/hunt/hunt_subject.cpp)

@@ -1,7 +1,7 @@
 # Recordings: the file format.
-rtmsim_test(mcap_test recorder/mcap_test.cpp LIBRARIES mcap)
-rtmsim_test(ros_messages_test recorder/ros_messages_test.cpp LIBRARIES recorder)
-rtmsim_test(expression_test recorder/expression_test.cpp LIBRARIES recorder)
+rtmsim_test(mcap_test recording/mcap_test.cpp LIBRARIES mcap)
+rtmsim_test(ros_messages_test recording/ros_messages_test.cpp LIBRARIES recorder)
+rtmsim_test(expression_test recording/expression_test.cpp LIBRARIES recorder)
 foreach(case views excluded whole_run same_run killed full_disk compared played kept of_a_run replayed repeated lives hashed replayed_without_inputs replayed_from_real_time gone_to gone_to_with_others like simulator_ends bad_input)
   add_test(NAME recordings.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/recordings.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
@@ -20,7 +20,7 @@ endforeach()
 # By hand: RECORDING_REPEATS=100 python3 tests/scenario/recordings.py repeated build/release/bin build/release/lib .
 
 # The format as others read and write it: libraries from npm.
-rtmsim_test(mcap_foreign_test recorder/mcap_foreign_test.cpp LIBRARIES mcap LABELS foreign)
+rtmsim_test(mcap_foreign_test recording/mcap_foreign_test.cpp LIBRARIES mcap LABELS foreign)
 
 # A component with one constant changed, under the name of the good one in a folder of its own: a replay tells them apart.
 set(changed_sources)

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "base/text.h"
+#include "base/yaml_keys.h"
 #include "device_kinds.h"
-#include "yaml_keys.h"
 
 namespace gateway {
 namespace {

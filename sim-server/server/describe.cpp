@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/log.h"
-#include "simctl/iface_json.h"
+#include "shm/iface_json.h"
 #include "world/iface_names.h"
 
 namespace sim {

@@ -17,7 +17,7 @@
 #include <string_view>
 #include <vector>
 
-#include "mcap/mcap.h"
+#include "recording/mcap/mcap.h"
 
 namespace {
 

@@ -390,7 +390,7 @@ module_path: {lib_dir}
 hunt:
   faults: [{{sensor: "pioneer2dx::laser", is: [stuck, dropout]}}]
 """, "hunt.yaml"))
-    p.write_text(p.read_text().replace(f"{source}/worlds/systems/obstacle_avoidance.xml", f"{source}/tests/hunt/hunt_subject.xml"))
+    p.write_text(p.read_text().replace(f"{source}/worlds/systems/obstacle_avoidance.xml", f"{source}/tests/campaign/hunt/hunt_subject.xml"))
     first, second = (json.loads(rtse("--json", "hunt", p, "--finds", 1, "--cases", 40, "-j", 2, code=1).stdout) for _ in range(2))
     find = first["finds"][0]
     assert find["repeatable"] and find["deeds"] == 1 and "NaN" in find["problem"] and "stuck" in find["what"], first
@@ -407,9 +407,9 @@ hunt:
     way.write_text("\n".join(line for line in lines if "drop" not in line and line != "faults:"))
     rtse("sweep", way, "--row", 1)
     # A system that nobody can start is no find.
-    system = pathlib.Path(f"{source}/tests/hunt/hunt_subject.xml").read_text()
+    system = pathlib.Path(f"{source}/tests/campaign/hunt/hunt_subject.xml").read_text()
     (folder / "nobody.xml").write_text(system.replace(":HuntSubject:", ":NoSubject:"))
-    p.write_text(p.read_text().replace(f"{source}/tests/hunt/hunt_subject.xml", "nobody.xml"))
+    p.write_text(p.read_text().replace(f"{source}/tests/campaign/hunt/hunt_subject.xml", "nobody.xml"))
     done = rtse("hunt", p, "--cases", 8, code=1)
     assert "does not start: component HuntSubject0" in done.stderr or "does not start: host of" in done.stderr, done
     assert len(done.stderr.splitlines()) == 1 and done.stdout == "", done

@@ -1,4 +1,4 @@
-#include "plan/plan.h"
+#include "campaign/plan/plan.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -7,7 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "plan/grammar.h"
+#include "campaign/plan/grammar.h"
 #include "support/paths.h"
 
 namespace campaign {
@@ -107,9 +107,9 @@ TEST_F(Plans, refuse_what_happens_in_no_run) {
 }
 
 TEST(PlanSchema, is_the_one_that_is_published) {
-  std::ifstream in(std::string(paths::source_dir) + "/clients/campaign/campaign-plan.schema.json");
+  std::ifstream in(std::string(paths::source_dir) + "/tools/campaign/campaign-plan.schema.json");
   EXPECT_EQ(nlohmann::ordered_json::parse(in, nullptr, false), plan_schema())
-      << "rtse sweep --schema > clients/campaign/campaign-plan.schema.json";
+      << "rtse sweep --schema > tools/campaign/campaign-plan.schema.json";
 }
 
 }  // namespace

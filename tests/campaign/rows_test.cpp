@@ -1,4 +1,4 @@
-#include "rows/rows.h"
+#include "campaign/rows/rows.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,10 +8,10 @@
 #include <fstream>
 #include <set>
 
-#include "results/statistics.h"
-#include "rows/content_hash.h"
-#include "rows/random.h"
-#include "rows/samples.h"
+#include "campaign/results/statistics.h"
+#include "campaign/rows/content_hash.h"
+#include "campaign/rows/random.h"
+#include "campaign/rows/samples.h"
 #include "support/paths.h"
 
 namespace campaign {

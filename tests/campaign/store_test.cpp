@@ -1,5 +1,5 @@
 // Results of many rows: what is stored, read and drawn of them. RTMSIM_ROWS=100000 makes a large campaign of it.
-#include "results/store.h"
+#include "campaign/results/store.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,9 +10,9 @@
 #include <sstream>
 
 #include "base/text.h"
-#include "results/report.h"
-#include "slurm/outcome_line.h"
-#include "slurm/task_folder.h"
+#include "campaign/results/report.h"
+#include "campaign/slurm/outcome_line.h"
+#include "campaign/slurm/task_folder.h"
 
 namespace campaign {
 namespace {

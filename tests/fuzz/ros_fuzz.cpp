@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "expression.h"
-#include "ros/messages.h"
-#include "ros_text.h"
+#include "channels/ros/messages.h"
+#include "recording/expression.h"
+#include "recording/ros_text.h"
 
 namespace {
 

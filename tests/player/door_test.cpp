@@ -1,4 +1,4 @@
-#include "door.h"
+#include "studio/door.h"
 
 #include <gtest/gtest.h>
 

@@ -46,7 +46,7 @@ TEST(NewPlayerInterface, what_one_interface_needs_stands_in_the_files_of_the_pag
   const auto files = listed_files();
   const std::regex name("\\b(aio|Interface::aio|Analog|analog_device|encode_voltages)\\b");
   std::set<std::string> unlisted;
-  for (const auto* folder : {"clients/player-gateway", "tests", "docs"}) {
+  for (const auto* folder : {"gateways/player", "tests", "docs"}) {
     for (const auto& entry : fs::recursive_directory_iterator(source / folder)) {
       const auto extension = entry.path().extension();
       if (extension != ".h" && extension != ".cpp" && extension != ".py" && extension != ".txt" && extension != ".md") continue;

@@ -1,11 +1,11 @@
 // Conditions of rtse goto --break, and differences of samples.
-#include "expression.h"
+#include "recording/expression.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
-#include "sample_difference.h"
+#include "recording/sample_difference.h"
 
 namespace recorder {
 namespace {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "mcap/mcap.h"
+#include "recording/mcap/mcap.h"
 #include "support/paths.h"
 
 namespace mcap {

@@ -1,4 +1,4 @@
-#include "mcap/mcap.h"
+#include "recording/mcap/mcap.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -1,9 +1,9 @@
 // Messages of ROS 2: their definitions, their octets, and what is read back of both.
-#include "ros/messages.h"
+#include "channels/ros/messages.h"
 
 #include <gtest/gtest.h>
 
-#include "ros_text.h"
+#include "recording/ros_text.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "skeleton/specification.h"
+#include "rtse/skeleton/specification.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "skeleton/idl_operations.h"
+#include "rtse/skeleton/idl_operations.h"
 
 namespace editor {
 namespace {

@@ -23,12 +23,12 @@ struct Layer {
   std::string folder;
   Names may_include;
   Names libraries{};
-  Names never{};  // headers that it may not include though others of their part it may
+  Names never{};  // headers, or folders of them, that it may not include although it may include others of their part
 };
 
 // The first folder that a file lies in counts.
 const std::vector<Layer> layers = {
-    {"rtm-core/base", {"base"}, {"spdlog", "CLI11", "uuid"}},
+    {"base", {"base"}, {"spdlog", "CLI11", "uuid", "YAML"}},
     {"rtm-core/core", {"core", "base"}},
     {"rtm-core/corba", {"corba", "core", "base", "stubs"}, {"omniORB"}},
     {"rtm-core/openrtm/include/coil", {"coil"}},
@@ -38,28 +38,36 @@ const std::vector<Layer> layers = {
     {"rtm-core/manager", {"manager", "managed", "rtm", "coil", "corba", "core", "base", "stubs"}, {"omniORB"}, {"rtm/RTObject.h"}},
     {"rtm-core/openrtm", {"openrtm", "manager", "component", "rtm", "coil", "corba", "core", "base", "stubs"}, {"omniORB"}},
     {"rtm-core/rtcd", {"rtm", "coil", "corba", "core", "base", "stubs"}},
-    {"sim-server/shm", {"shm", "base"}},
+    {"shm", {"shm", "base"}, {"JSON"}},
     {"sim-server/world", {"world", "base"}, {"SDFormat", "pugixml", "Assimp", "PNG", "Eigen", "spdlog"}},
     {"sim-server/physics", {"physics", "world", "base"}, {"ODE", "Eigen", "spdlog"}},
     {"sim-server/rays", {"rays", "world", "base"}, {"Embree", "Eigen", "spdlog"}},
     {"sim-server/render", {"render", "world", "base"}, {"OpenGL", "Assimp", "PNG", "JPEG", "Eigen", "spdlog"}},
-    {"sim-server",
-     {"devices", "server", "simctl", "shm", "world", "physics", "rays", "render", "base"},
-     {"Eigen", "JSON", "PNG", "spdlog"}},
+    {"sim-server", {"devices", "server", "shm", "world", "physics", "rays", "render", "base"}, {"Eigen", "JSON", "PNG", "spdlog"}},
     {"iface-components", {"rtm", "coil", "shm", "base", "stubs"}, {"JPEG"}},
+    {"gateways/player/protocol", {"protocol", "base"}},
+    {"gateways/player", {"protocol", "shm", "base"}, {"JSON", "YAML", "spdlog"}},
+    {"tools/system", {"system", "corba", "shm", "base", "stubs"}, {"omniORB", "pugixml", "JSON", "YAML"}},
+    {"tools/channels/views", {"channels", "shm", "base"}, {"JSON", "JPEG"}},
+    {"tools/channels", {"channels", "base", "stubs"}, {}, {"channels/views/"}},
+    {"tools/recording/mcap", {"recording", "base"}, {"zstd", "lz4", "deflate"}},
+    {"tools/recording", {"recording", "channels", "system", "shm", "base", "stubs"}, {"omniORB", "JSON", "PNG", "JPEG"}},
+    {"tools/run",
+     {"run", "recording", "channels", "system", "rtse", "corba", "shm", "base", "stubs"},
+     {"omniORB", "pugixml", "YAML", "JSON"}},
+    {"tools/campaign",
+     {"campaign", "run", "recording", "system", "rtse", "base", "stubs"},
+     {"omniORB", "pugixml", "JSON", "YAML", "Eigen", "SQLite"}},
+    {"tools/rtse",
+     {"rtse", "campaign", "run", "recording", "channels", "system", "corba", "shm", "base", "stubs"},
+     {"omniORB", "pugixml", "JSON", "YAML", "spdlog", "ncurses"}},
+    {"tools/simctl", {"simctl", "shm", "base"}, {"JSON", "PNG"}},
+    {"tools/studio",
+     {"studio", "rtse", "run", "recording", "channels", "system", "shm", "base", "stubs"},
+     {"omniORB", "Boost", "JSON", "deflate", "JPEG"}},
     {"clients/examples", {"rtm", "coil", "base", "stubs"}},
     {"clients/obstacle-avoidance", {"rtm", "coil", "base", "stubs"}},
     {"clients/video-player", {"rtm", "coil", "base", "stubs"}, {"SDL2", "X11", "JPEG", "PNG"}},
-    {"clients/yaml", {"base"}, {"YAML"}},
-    {"clients/system-editor", {"corba", "shm", "base", "stubs"}, {"omniORB", "pugixml", "JSON", "YAML", "spdlog", "ncurses"}},
-    {"clients/channels/views", {"views", "ros", "shm", "base"}, {"JSON", "JPEG"}},
-    {"clients/channels", {"ros", "base", "stubs"}},
-    {"clients/recorder/mcap", {"mcap", "base"}, {"zstd", "lz4", "deflate"}},
-    {"clients/recorder", {"mcap", "ros", "views", "shm", "base", "stubs"}, {"omniORB", "JSON", "PNG", "JPEG"}},
-    {"clients/campaign", {"base", "stubs"}, {"omniORB", "pugixml", "JSON", "YAML", "Eigen", "SQLite"}},
-    {"clients/studio", {"mcap", "views", "simctl", "shm", "base", "stubs"}, {"omniORB", "Boost", "JSON", "deflate", "JPEG"}},
-    {"clients/player-gateway/protocol", {"protocol", "base"}},
-    {"clients/player-gateway", {"protocol", "shm", "base"}, {"JSON", "YAML", "spdlog"}},
     {"clients/follow", {"protocol", "base"}},
 };
 
@@ -81,13 +89,18 @@ std::string owner(const std::string& header) {
       {"render/", "render"},
       {"devices/", "devices"},
       {"server/", "server"},
-      {"simctl/", "simctl"},
       {"shm/", "shm"},
       {"world/", "world"},
-      {"ros/", "ros"},
-      {"views/", "views"},
       {"physics/", "physics"},
       {"protocol/", "protocol"},
+      {"system/", "system"},
+      {"channels/", "channels"},
+      {"recording/", "recording"},
+      {"run/", "run"},
+      {"campaign/", "campaign"},
+      {"rtse/", "rtse"},
+      {"simctl/", "simctl"},
+      {"studio/", "studio"},
       {"omniORB4/", "omniORB"},
       {"omnithread", "omniORB"},
       {"COS/", "omniORB"},
@@ -112,7 +125,6 @@ std::string owner(const std::string& header) {
       {"X11/", "X11"},
       {"uuid/", "uuid"},
       {"ncurses", "ncurses"},
-      {"mcap/", "mcap"},
       {"zstd", "zstd"},
       {"lz4", "lz4"},
       {"libdeflate", "deflate"},
@@ -165,7 +177,7 @@ std::string source_text(const fs::path& path) {
 Names offences(const fs::path& root) {
   static const std::regex include_line(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"].*)");
   Names found;
-  for (const char* top : {"rtm-core", "sim-server", "iface-components", "clients"}) {
+  for (const char* top : {"base", "shm", "rtm-core", "sim-server", "iface-components", "gateways", "tools", "clients"}) {
     if (!fs::exists(root / top)) continue;
     for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
       const std::string extension = entry.path().extension().string();
@@ -186,10 +198,14 @@ Names offences(const fs::path& root) {
         const auto has = [&](const Names& names) { return std::count(names.begin(), names.end(), part) != 0; };
         const std::string at = file + ":" + std::to_string(number) + ": ";
         if (part.empty()) {
-          // With quotation marks it is a neighbour in the same folder.
           if (match[1] == "<" && !is_everybodys(header)) found.push_back(at + "<" + header + "> is of no library in the table");
+          // A quoted name without a part is a header of the same room. Among the tools every name begins with its room.
+          const bool is_here = header.ends_with("Stub.h") || header.ends_with("Skel.h") ||  // made from IDL
+                               fs::exists(entry.path().parent_path() / header) || fs::exists(root / layer->folder / header);
+          if (match[1] == "\"" && (!is_here || file.starts_with("tools/")))
+            found.push_back(at + "\"" + header + "\" is no header of " + layer->folder);
         } else if ((!has(layer->may_include) && !has(layer->libraries)) ||
-                   std::count(layer->never.begin(), layer->never.end(), header) != 0) {
+                   std::any_of(layer->never.begin(), layer->never.end(), [&](const auto& name) { return header.starts_with(name); })) {
           found.push_back(at + layer->folder + " may not include <" + header + "> of " + part);
         }
       }
@@ -260,31 +276,44 @@ TEST_F(PlantedTree, every_kind_of_offence_is_found) {
   plant("rtm-core/openrtm/include/rtm/k.h", "#include \"component/component_impl.h\"\n#include <rtm/idl/RTCSkel.h>\n");
   plant("sim-server/render/f.cpp", "#include <GL/gl.h>\n#include <ode/ode.h>\n");
   plant("clients/unknown/g.cpp", "\n");
-  plant("clients/player-gateway/protocol/h.cpp", "#include \"protocol/xdr.h\"\n#include \"shm/client.h\"\n");
+  plant("gateways/player/protocol/h.cpp", "#include \"protocol/xdr.h\"\n#include \"shm/client.h\"\n");
+  plant("gateways/player/m.cpp", "#include \"editor.h\"\n#include \"system/editor.h\"\n#include \"m.h\"\n");
+  plant("gateways/player/m.h", "");
+  plant("tools/system/n.cpp", "#include \"n.h\"\n#include \"run/run_system.h\"\n");
+  plant("tools/system/n.h", "");
+  plant("shm/o.cpp", "#include \"world/world_def.h\"\n");
+  plant("rtm-core/corba/p.cpp", "#include \"shm/client.h\"\n");
   EXPECT_EQ(offences(root_),
             (Names{
-                "clients/player-gateway/protocol/h.cpp:2: clients/player-gateway/protocol may not include <shm/client.h> of shm",
                 "clients/unknown/g.cpp: is in no layer of the table",
                 "clients/video-player/d.cpp:1: clients/video-player may not include <shm/segment.h> of shm",
+                "gateways/player/m.cpp:1: \"editor.h\" is no header of gateways/player",
+                "gateways/player/m.cpp:2: gateways/player may not include <system/editor.h> of system",
+                "gateways/player/protocol/h.cpp:2: gateways/player/protocol may not include <shm/client.h> of shm",
                 "iface-components/c.cpp:2: iface-components may not include <core/registry.h> of core",
                 "rtm-core/component/i.h:2: rtm-core/component may not include <manager/manager_impl.h> of manager",
+                "rtm-core/corba/p.cpp:1: rtm-core/corba may not include <shm/client.h> of shm",
                 "rtm-core/core/a.h:2: rtm-core/core may not include <omniORB4/CORBA.h> of omniORB",
                 "rtm-core/core/a.h:3: rtm-core/core may not include <corba/orb.h> of corba",
+                "rtm-core/core/j.cpp:2: \"neighbour.h\" is no header of rtm-core/core",
                 "rtm-core/core/j.cpp:3: <poco/any.h> is of no library in the table",
                 "rtm-core/core/j.cpp:4: rtm-core/core may not include <Eigen/Core> of Eigen",
                 "rtm-core/manager/l.cpp:1: rtm-core/manager may not include <rtm/RTObject.h> of rtm",
                 "rtm-core/manager/l.cpp:3: rtm-core/manager may not include <component/component_impl.h> of component",
                 "rtm-core/openrtm/include/coil/e.h:1: rtm-core/openrtm/include/coil may not include <rtm/idl/RTCSkel.h> of stubs",
                 "rtm-core/openrtm/include/rtm/k.h:1: rtm-core/openrtm/include may not include <component/component_impl.h> of component",
+                "shm/o.cpp:1: shm may not include <world/world_def.h> of world",
                 "sim-server/devices/b.cpp:2: sim-server may not include <rtm/Manager.h> of rtm",
                 "sim-server/render/f.cpp:2: sim-server/render may not include <ode/ode.h> of ODE",
+                "tools/system/n.cpp:1: \"n.h\" is no header of tools/system",
+                "tools/system/n.cpp:2: tools/system may not include <run/run_system.h> of run",
             }));
 }
 
 TEST_F(PlantedTree, a_clean_tree_is_clean) {
   plant("rtm-core/core/a.h", "#include \"base/result.h\"\n#include <string>\n");
   plant("rtm-core/corba/b.cpp", "#include <omniORB4/CORBA.h>\n#include <rtm/idl/RTCSkel.h>\n#include \"core/a.h\"\n");
-  plant("clients/system-editor/c.cpp", "const char* text = R\"x(\n#include <rtm/Manager.h>\n)x\";\n");
+  plant("tools/rtse/c.cpp", "const char* text = R\"x(\n#include <rtm/Manager.h>\n)x\";\n");
   EXPECT_EQ(offences(root_), Names{});
 }
 

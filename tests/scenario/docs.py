@@ -34,7 +34,7 @@ def check_links(page):
             problems.append(f"{page.relative_to(source)}: link {target}: there is no such heading")
 
 
-# `sim-server/world/model_path` and `tests/campaign/fragments.py`: a file or folder, or one with its ending left out.
+# `sim-server/world/model_path` and `tests/robustness/fragments.py`: a file or folder, or one with its ending left out.
 def check_names(page):
     folders = "cmake|clients|docs|idl|iface-components|packaging|rtm-core|scripts|sim-server|tests|worlds"
     for name in re.findall(rf"`((?:{folders})/[\w./+-]*\w)`", text_of(page)):

@@ -101,7 +101,7 @@ def follow_the_list():
             sources = []
         if name_of_page == "new-device":
             write_page(root)
-            sources += ["sim-server/simctl/iface_json.cpp", "sim-server/devices/make_devices.cpp"]  # which read the table
+            sources += ["shm/iface_json.cpp", "sim-server/devices/make_devices.cpp"]  # which read the table
         for name in sources:
             compiles(root, name)
 

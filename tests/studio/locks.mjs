@@ -9,7 +9,7 @@ const complain = (text) => {
   console.log(text);
 };
 
-for (const folder of ['clients/studio/web', 'tests/studio', 'tests/foreign']) {
+for (const folder of ['tools/studio/web', 'tests/studio', 'tests/foreign']) {
   const wanted = JSON.parse(readFileSync(join(source, folder, 'package.json'), 'utf8'));
   const text = readFileSync(join(source, folder, 'package-lock.json'), 'utf8');
   const lock = JSON.parse(text);

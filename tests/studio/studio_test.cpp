@@ -8,18 +8,18 @@
 #include <random>
 #include <set>
 
-#include "acts.h"
-#include "client_message.h"
-#include "door.h"
-#include "foxglove.h"
-#include "hall.h"
-#include "late_models.h"
-#include "outbox.h"
-#include "pose_board.h"
-#include "ros/messages.h"
-#include "shown_picture.h"
-#include "signal_book.h"
-#include "signals.h"
+#include "channels/ros/messages.h"
+#include "studio/acts.h"
+#include "studio/client_message.h"
+#include "studio/door.h"
+#include "studio/foxglove.h"
+#include "studio/hall.h"
+#include "studio/late_models.h"
+#include "studio/outbox.h"
+#include "studio/pose_board.h"
+#include "studio/shown_picture.h"
+#include "studio/signal_book.h"
+#include "studio/signals.h"
 
 namespace {
 

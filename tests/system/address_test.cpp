@@ -1,4 +1,4 @@
-#include "address.h"
+#include "system/address.h"
 
 #include <gtest/gtest.h>
 

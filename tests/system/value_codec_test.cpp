@@ -1,4 +1,4 @@
-#include "value_codec.h"
+#include "system/value_codec.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/paths.h"
-#include "typed_value.h"
+#include "system/typed_value.h"
 
 namespace editor {
 namespace {

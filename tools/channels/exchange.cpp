@@ -1,4 +1,4 @@
-#include "exchange.h"
+#include "channels/exchange.h"
 
 #include <algorithm>
 #include <condition_variable>

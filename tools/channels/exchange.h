@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "channel.h"
+#include "channels/channel.h"
 
 namespace channels {
 

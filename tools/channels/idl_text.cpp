@@ -1,4 +1,4 @@
-#include "idl_text.h"
+#include "channels/idl_text.h"
 
 #include <set>
 #include <string_view>

@@ -1,4 +1,4 @@
-#include "compare.h"
+#include "recording/compare.h"
 
 #include <algorithm>
 #include <iostream>
@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "base/text.h"
-#include "mcap/mcap.h"
-#include "sample_text.h"
-#include "selection.h"
+#include "recording/mcap/mcap.h"
+#include "recording/sample_text.h"
+#include "recording/selection.h"
 
 namespace recorder {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "editor.h"
-#include "sample_difference.h"
+#include "recording/sample_difference.h"
+#include "system/editor.h"
 
 namespace recorder {
 

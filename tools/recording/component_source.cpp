@@ -1,4 +1,4 @@
-#include "component_source.h"
+#include "recording/component_source.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -7,9 +7,9 @@
 
 #include "base/guarded.h"
 #include "base/text.h"
-#include "logger_service.h"
-#include "remote.h"
-#include "ros/messages.h"
+#include "channels/ros/messages.h"
+#include "recording/logger_service.h"
+#include "system/remote.h"
 
 namespace recorder {
 

@@ -19,9 +19,9 @@
 
 #include "base/clock.h"
 #include "base/result.h"
-#include "component_view.h"
-#include "exchange.h"
-#include "port_source.h"
+#include "channels/exchange.h"
+#include "recording/port_source.h"
+#include "system/component_view.h"
 
 namespace recorder {
 

@@ -1,4 +1,4 @@
-#include "expression.h"
+#include "recording/expression.h"
 
 #include <algorithm>
 #include <cctype>

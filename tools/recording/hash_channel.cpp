@@ -1,4 +1,4 @@
-#include "hash_channel.h"
+#include "recording/hash_channel.h"
 
 #include <cstdio>
 #include <nlohmann/json.hpp>

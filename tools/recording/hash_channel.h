@@ -4,7 +4,7 @@
 #include <string>
 
 #include "base/result.h"
-#include "exchange.h"
+#include "channels/exchange.h"
 
 namespace recorder {
 

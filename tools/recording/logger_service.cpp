@@ -1,10 +1,10 @@
-#include "logger_service.h"
+#include "recording/logger_service.h"
 
 #include <utility>
 
 #include "base/guarded.h"
 #include "base/id.h"
-#include "remote.h"
+#include "system/remote.h"
 
 namespace recorder {
 

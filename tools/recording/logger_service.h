@@ -6,8 +6,8 @@
 #include <memory>
 #include <optional>
 
-#include "component_view.h"
 #include "rtm/idl/LoggerSkel.h"
+#include "system/component_view.h"
 
 namespace recorder {
 

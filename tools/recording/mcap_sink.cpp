@@ -1,4 +1,4 @@
-#include "mcap_sink.h"
+#include "recording/mcap_sink.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/text.h"
-#include "ring.h"
+#include "recording/ring.h"
 
 namespace recorder {
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "exchange.h"
-#include "mcap/mcap.h"
+#include "channels/exchange.h"
+#include "recording/mcap/mcap.h"
 
 namespace recorder {
 

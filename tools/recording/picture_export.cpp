@@ -1,4 +1,4 @@
-#include "picture_export.h"
+#include "recording/picture_export.h"
 
 #include <png.h>
 #include <turbojpeg.h>

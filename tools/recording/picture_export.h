@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/result.h"
-#include "sample_text.h"
+#include "recording/sample_text.h"
 
 namespace recorder {
 

@@ -1,12 +1,12 @@
-#include "port_source.h"
+#include "recording/port_source.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "base/text.h"
-#include "idl_text.h"
-#include "remote.h"
-#include "value_codec.h"
+#include "channels/idl_text.h"
+#include "system/remote.h"
+#include "system/value_codec.h"
 
 namespace recorder {
 

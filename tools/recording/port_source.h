@@ -11,9 +11,9 @@
 
 #include "base/clock.h"
 #include "base/result.h"
-#include "component_view.h"
-#include "exchange.h"
-#include "tap.h"
+#include "channels/exchange.h"
+#include "system/component_view.h"
+#include "system/tap.h"
 
 namespace recorder {
 

@@ -1,4 +1,4 @@
-#include "read_ahead.h"
+#include "recording/read_ahead.h"
 
 #include <chrono>
 #include <utility>

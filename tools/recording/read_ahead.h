@@ -11,7 +11,7 @@
 
 #include "base/guarded.h"
 #include "base/result.h"
-#include "mcap/mcap.h"
+#include "recording/mcap/mcap.h"
 
 namespace recorder {
 

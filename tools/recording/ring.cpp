@@ -1,4 +1,4 @@
-#include "ring.h"
+#include "recording/ring.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "base/text.h"
-#include "mcap/file.h"
+#include "recording/mcap/file.h"
 
 namespace recorder {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "mcap/mcap.h"
+#include "recording/mcap/mcap.h"
 
 namespace recorder {
 

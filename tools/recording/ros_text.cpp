@@ -1,4 +1,4 @@
-#include "ros_text.h"
+#include "recording/ros_text.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "run_clock.h"
+#include "recording/run_clock.h"
 
 #include <cstdlib>
 #include <optional>

@@ -1,4 +1,4 @@
-#include "sample_difference.h"
+#include "recording/sample_difference.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sample_text.h"
+#include "recording/sample_text.h"
 
 namespace recorder {
 

@@ -1,4 +1,4 @@
-#include "sample_export.h"
+#include "recording/sample_export.h"
 
 #include <cstdint>
 #include <cstdio>
@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "base/text.h"
-#include "mcap/mcap.h"
-#include "picture_export.h"
-#include "sample_text.h"
+#include "recording/mcap/mcap.h"
+#include "recording/picture_export.h"
+#include "recording/sample_text.h"
 
 namespace recorder {
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "editor.h"
-#include "selection.h"
+#include "recording/selection.h"
+#include "system/editor.h"
 
 namespace recorder {
 

@@ -1,4 +1,4 @@
-#include "sample_filters.h"
+#include "recording/sample_filters.h"
 
 #include <algorithm>
 #include <cmath>

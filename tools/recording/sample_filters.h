@@ -6,7 +6,7 @@
 #include <memory>
 #include <set>
 
-#include "exchange.h"
+#include "channels/exchange.h"
 
 namespace recorder {
 

@@ -1,9 +1,9 @@
-#include "sample_text.h"
+#include "recording/sample_text.h"
 
 #include <cstdio>
 
 #include "base/text.h"
-#include "value_codec.h"
+#include "system/value_codec.h"
 
 namespace recorder {
 

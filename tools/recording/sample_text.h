@@ -6,8 +6,8 @@
 #include <string>
 
 #include "base/result.h"
-#include "mcap/mcap.h"
-#include "ros_text.h"
+#include "recording/mcap/mcap.h"
+#include "recording/ros_text.h"
 
 namespace recorder {
 

@@ -1,4 +1,4 @@
-#include "selection.h"
+#include "recording/selection.h"
 
 #include <fnmatch.h>
 
@@ -7,7 +7,7 @@
 
 #include "base/descriptors.h"
 #include "base/text.h"
-#include "ring.h"
+#include "recording/ring.h"
 
 namespace recorder {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/result.h"
-#include "editor.h"
-#include "mcap/mcap.h"
+#include "recording/mcap/mcap.h"
+#include "system/editor.h"
 
 namespace recorder {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/command.h"
-#include "editor.h"
+#include "system/editor.h"
 
 namespace editor {
 

@@ -1,7 +1,7 @@
 // rtse, the command-line system editor: lists, wires, configures, starts and saves systems of RT components.
-#include "commands/commands.h"
-#include "program.h"
-#include "verbs_elsewhere.h"
+#include "rtse/commands/commands.h"
+#include "rtse/program.h"
+#include "rtse/verbs_elsewhere.h"
 
 int main(int argc, char** argv) {
   editor::become_program_of_verb(argc, argv);

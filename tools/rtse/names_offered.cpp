@@ -1,4 +1,4 @@
-#include "names_offered.h"
+#include "rtse/names_offered.h"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "base/text.h"
-#include "editor.h"
-#include "orb.h"
+#include "system/editor.h"
+#include "system/orb.h"
 
 namespace editor {
 namespace {

@@ -1,4 +1,4 @@
-#include "output.h"
+#include "rtse/output.h"
 
 #include <unistd.h>
 

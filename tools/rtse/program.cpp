@@ -1,4 +1,4 @@
-#include "program.h"
+#include "rtse/program.h"
 
 #include <unistd.h>
 
@@ -6,10 +6,10 @@
 #include <memory>
 
 #include "base/command_line.h"
-#include "command.h"
-#include "names_offered.h"
-#include "orb.h"
-#include "output.h"
+#include "rtse/command.h"
+#include "rtse/names_offered.h"
+#include "rtse/output.h"
+#include "system/orb.h"
 
 namespace editor {
 

@@ -1,4 +1,4 @@
-#include "verbs_elsewhere.h"
+#include "rtse/verbs_elsewhere.h"
 
 #include <unistd.h>
 
@@ -11,7 +11,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "command.h"
+#include "rtse/command.h"
 
 namespace editor {
 

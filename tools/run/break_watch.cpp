@@ -1,4 +1,4 @@
-#include "break_watch.h"
+#include "run/break_watch.h"
 
 #include <omnithread.h>
 
@@ -9,12 +9,12 @@
 
 #include "base/guarded.h"
 #include "base/text.h"
-#include "remote.h"
-#include "sample_text.h"
+#include "recording/sample_text.h"
 #include "shm/lockstep.h"
 #include "shm/request_board.h"
-#include "tap.h"
-#include "value_codec.h"
+#include "system/remote.h"
+#include "system/tap.h"
+#include "system/value_codec.h"
 
 namespace recorder {
 

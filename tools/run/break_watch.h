@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "editor.h"
-#include "expression.h"
+#include "recording/expression.h"
 #include "run/run_system.h"
+#include "system/editor.h"
 
 namespace recorder {
 

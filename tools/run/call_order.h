@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "profile/rts_profile.h"
+#include "system/profile/rts_profile.h"
 
 namespace editor {
 

@@ -7,10 +7,10 @@
 
 #include "base/chance.h"
 #include "base/text.h"
-#include "component_view.h"
-#include "profile/rts_profile.h"
 #include "run/run_files.h"
 #include "run/run_system.h"
+#include "system/component_view.h"
+#include "system/profile/rts_profile.h"
 
 namespace editor {
 namespace {

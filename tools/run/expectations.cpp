@@ -14,9 +14,9 @@
 #include <utility>
 
 #include "base/text.h"
+#include "base/yaml_keys.h"
 #include "run/flow_text.h"
-#include "value_failure.h"
-#include "yaml_keys.h"
+#include "system/value_failure.h"
 
 namespace editor {
 namespace {

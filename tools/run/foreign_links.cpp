@@ -5,9 +5,9 @@
 
 #include "base/text.h"
 #include "base/tick.h"
-#include "remote.h"
 #include "shm/lockstep.h"
-#include "value_codec.h"
+#include "system/remote.h"
+#include "system/value_codec.h"
 
 namespace editor {
 

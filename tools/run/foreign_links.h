@@ -19,11 +19,11 @@
 #include "base/guarded.h"
 #include "base/hash_log.h"
 #include "corba/shape.h"
-#include "editor.h"
-#include "profile/rts_profile.h"
 #include "run/foreign_processes.h"
 #include "shm/client.h"
-#include "tap.h"
+#include "system/editor.h"
+#include "system/profile/rts_profile.h"
+#include "system/tap.h"
 
 namespace editor {
 

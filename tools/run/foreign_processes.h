@@ -13,11 +13,11 @@
 #include <string>
 #include <vector>
 
-#include "profile/rts_profile.h"
-#include "run/child_process.h"
+#include "base/child_process.h"
 #include "run/run_file.h"
 #include "run/run_files.h"
 #include "run/run_system.h"
+#include "system/profile/rts_profile.h"
 
 namespace editor {
 

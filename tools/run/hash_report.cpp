@@ -7,7 +7,7 @@
 
 #include "base/text.h"
 #include "run/run_hashes.h"
-#include "value_codec.h"
+#include "system/value_codec.h"
 
 namespace editor {
 namespace {

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
-#include "value_codec.h"
+#include "system/value_codec.h"
 
 namespace editor {
 namespace {

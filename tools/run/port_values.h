@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "base/guarded.h"
-#include "editor.h"
 #include "run/expectations.h"
-#include "tap.h"
+#include "system/editor.h"
+#include "system/tap.h"
 
 namespace editor {
 

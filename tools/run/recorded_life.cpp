@@ -1,11 +1,11 @@
-#include "recorded_life.h"
+#include "run/recorded_life.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "mcap/mcap.h"
-#include "remote.h"
-#include "ring.h"
+#include "recording/mcap/mcap.h"
+#include "recording/ring.h"
+#include "system/remote.h"
 
 namespace recorder {
 

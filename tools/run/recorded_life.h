@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "component_view.h"
+#include "system/component_view.h"
 
 namespace recorder {
 

@@ -1,4 +1,4 @@
-#include "recorded_run.h"
+#include "run/recorded_run.h"
 
 #include <unistd.h>
 
@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/text.h"
-#include "ring.h"
+#include "recording/ring.h"
 
 namespace recorder {
 

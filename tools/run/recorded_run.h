@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "mcap/mcap.h"
+#include "recording/mcap/mcap.h"
 #include "run/run_system.h"
 
 namespace recorder {

@@ -1,4 +1,4 @@
-#include "replay.h"
+#include "run/replay.h"
 
 #include <omnithread.h>
 
@@ -10,11 +10,11 @@
 
 #include "base/guarded.h"
 #include "base/text.h"
-#include "read_ahead.h"
-#include "remote.h"
-#include "ring.h"
+#include "recording/read_ahead.h"
+#include "recording/ring.h"
 #include "shm/lockstep.h"
-#include "tap.h"
+#include "system/remote.h"
+#include "system/tap.h"
 
 namespace recorder {
 

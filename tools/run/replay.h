@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "editor.h"
-#include "mcap/mcap.h"
-#include "recorded_life.h"
+#include "recording/mcap/mcap.h"
+#include "recording/sample_difference.h"
+#include "run/recorded_life.h"
 #include "run/run_system.h"
-#include "sample_difference.h"
+#include "system/editor.h"
 
 namespace recorder {
 

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "base/text.h"
-#include "yaml_keys.h"
+#include "base/yaml_keys.h"
 
 namespace editor {
 namespace {

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "base/child_process.h"
 #include "base/text.h"
 #include "run/chance_report.h"
-#include "run/child_process.h"
 #include "run/run_script.h"
 
 namespace editor {

@@ -8,13 +8,13 @@
 #include <utility>
 #include <vector>
 
-#include "editor.h"
-#include "profile/rts_profile.h"
 #include "run/expectations.h"
 #include "run/run_files.h"
 #include "run/run_hosts.h"
 #include "run/run_simulator.h"
 #include "run/run_system.h"
+#include "system/editor.h"
+#include "system/profile/rts_profile.h"
 
 namespace editor {
 

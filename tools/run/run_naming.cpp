@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "base/own_account.h"
-#include "remote.h"
+#include "system/remote.h"
 
 namespace editor {
 namespace {

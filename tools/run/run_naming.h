@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "run/child_process.h"
+#include "base/child_process.h"
 #include "run/run_files.h"
 #include "run/run_simulator.h"
 

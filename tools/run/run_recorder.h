@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "run/child_process.h"
+#include "base/child_process.h"
 #include "run/run_files.h"
 
 namespace editor {

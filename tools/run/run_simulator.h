@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "base/child_process.h"
 #include "run/chance_report.h"
-#include "run/child_process.h"
 #include "run/run_files.h"
 #include "run/run_hashes.h"
 #include "run/run_system.h"

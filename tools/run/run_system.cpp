@@ -9,13 +9,12 @@
 #include <set>
 #include <thread>
 
+#include "base/interrupt.h"
 #include "base/text.h"
-#include "commands/state.h"
-#include "commands/system.h"
-#include "remote.h"
+#include "rtse/commands/state.h"
+#include "rtse/commands/system.h"
 #include "run/foreign_links.h"
 #include "run/foreign_processes.h"
-#include "run/interrupt.h"
 #include "run/lost_members.h"
 #include "run/port_values.h"
 #include "run/run_files.h"
@@ -28,6 +27,7 @@
 #include "run/run_script.h"
 #include "run/run_simulator.h"
 #include "run/time_members.h"
+#include "system/remote.h"
 
 namespace editor {
 namespace {

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "editor.h"
-#include "profile/rts_profile.h"
 #include "run/expectations.h"
+#include "system/editor.h"
+#include "system/profile/rts_profile.h"
 
 namespace editor {
 

@@ -4,10 +4,10 @@
 #include <filesystem>
 
 #include "base/text.h"
-#include "commands/conf.h"
-#include "commands/state.h"
 #include "rtm/idl/LogicalTimeTriggeredECStub.h"
 #include "rtm/idl/OpenRTMStub.h"
+#include "rtse/commands/conf.h"
+#include "rtse/commands/state.h"
 
 namespace editor {
 namespace {

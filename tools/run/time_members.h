@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "editor.h"
-#include "run/child_process.h"
+#include "base/child_process.h"
+#include "system/editor.h"
 
 namespace editor {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "run/child_process.h"
+#include "base/child_process.h"
 
 namespace editor {
 

@@ -12,7 +12,7 @@
 #include "base/text.h"
 #include "base/whole_file.h"
 #include "shm/request_board.h"
-#include "simctl.h"
+#include "simctl/simctl.h"
 
 namespace simctl {
 

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
-#include "simctl.h"
+#include "simctl/simctl.h"
 
 namespace simctl {
 

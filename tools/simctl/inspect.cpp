@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
-#include "iface_json.h"
+#include "shm/iface_json.h"
 #include "shm/lockstep.h"
-#include "simctl.h"
+#include "simctl/simctl.h"
 
 namespace simctl {
 

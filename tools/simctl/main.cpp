@@ -7,9 +7,9 @@
 #include "base/command_line.h"
 #include "base/text.h"
 #include "base/warm_start.h"
-#include "offers.h"
 #include "shm/fault_kinds.h"
-#include "simctl.h"
+#include "simctl/offers.h"
+#include "simctl/simctl.h"
 
 namespace {
 

@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "simctl.h"
+#include "simctl/simctl.h"
 
 namespace simctl {
 

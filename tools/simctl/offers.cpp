@@ -1,4 +1,4 @@
-#include "offers.h"
+#include "simctl/offers.h"
 
 #include <algorithm>
 #include <array>

@@ -19,7 +19,7 @@
 
 #include "base/bayer.h"
 #include "base/text.h"
-#include "simctl.h"
+#include "simctl/simctl.h"
 
 namespace simctl {
 namespace {

@@ -1,4 +1,4 @@
-#include "acts.h"
+#include "studio/acts.h"
 
 #include <algorithm>
 

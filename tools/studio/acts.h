@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "client_message.h"
 #include "shm/layout.h"
+#include "studio/client_message.h"
 
 namespace studio {
 

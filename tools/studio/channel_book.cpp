@@ -1,11 +1,11 @@
-#include "channel_book.h"
+#include "studio/channel_book.h"
 
 #include <boost/asio/post.hpp>
 
 #include "base/clock.h"
-#include "editor.h"
-#include "idl_text.h"
-#include "value_codec.h"
+#include "channels/idl_text.h"
+#include "system/editor.h"
+#include "system/value_codec.h"
 
 namespace studio {
 

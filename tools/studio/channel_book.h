@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "exchange.h"
-#include "signals.h"
-#include "tap.h"
-#include "views/world_source.h"
+#include "channels/exchange.h"
+#include "channels/views/world_source.h"
+#include "studio/signals.h"
+#include "system/tap.h"
 
 namespace studio {
 

@@ -1,4 +1,4 @@
-#include "client_message.h"
+#include "studio/client_message.h"
 
 #include <algorithm>
 #include <cmath>

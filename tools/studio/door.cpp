@@ -1,4 +1,4 @@
-#include "door.h"
+#include "studio/door.h"
 
 #include <arpa/inet.h>
 #include <sys/random.h>

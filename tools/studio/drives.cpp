@@ -1,4 +1,4 @@
-#include "drives.h"
+#include "studio/drives.h"
 
 namespace studio {
 namespace {

@@ -1,4 +1,4 @@
-#include "foxglove.h"
+#include "studio/foxglove.h"
 
 #include <bit>
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "client_message.h"
+#include "studio/client_message.h"
 
 namespace studio {
 

@@ -1,11 +1,11 @@
-#include "hall.h"
+#include "studio/hall.h"
 
 #include <algorithm>
 #include <boost/asio/post.hpp>
 #include <chrono>
 
-#include "acts.h"
 #include "base/text.h"
+#include "studio/acts.h"
 
 namespace studio {
 namespace {

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "client_message.h"
-#include "recorded_studio.h"
-#include "web.h"
-#include "workers.h"
+#include "studio/client_message.h"
+#include "studio/recorded_studio.h"
+#include "studio/web.h"
+#include "studio/workers.h"
 
 namespace studio {
 

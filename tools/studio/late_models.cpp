@@ -1,4 +1,4 @@
-#include "late_models.h"
+#include "studio/late_models.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "client_message.h"
-#include "recorded_scene.h"
+#include "studio/client_message.h"
+#include "studio/recorded_scene.h"
 
 namespace studio {
 

@@ -1,11 +1,11 @@
-#include "log_book.h"
+#include "studio/log_book.h"
 
 #include <algorithm>
 #include <boost/asio/post.hpp>
 #include <set>
 
-#include "editor.h"
-#include "remote.h"
+#include "system/editor.h"
+#include "system/remote.h"
 
 namespace studio {
 namespace {

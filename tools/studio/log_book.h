@@ -11,9 +11,9 @@
 #include <optional>
 #include <string>
 
-#include "logger_service.h"
-#include "signals.h"
-#include "workers.h"
+#include "recording/logger_service.h"
+#include "studio/signals.h"
+#include "studio/workers.h"
 
 namespace studio {
 

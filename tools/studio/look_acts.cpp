@@ -3,14 +3,14 @@
 #include <array>
 #include <cmath>
 
-#include "acts.h"
 #include "base/text.h"
-#include "editor.h"
 #include "run/time_members.h"
 #include "shm/client.h"
+#include "shm/iface_json.h"
 #include "shm/request_board.h"
-#include "simctl/iface_json.h"
-#include "value_codec.h"
+#include "studio/acts.h"
+#include "system/editor.h"
+#include "system/value_codec.h"
 
 namespace studio {
 namespace {

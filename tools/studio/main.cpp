@@ -9,13 +9,13 @@
 
 #include "base/command_line.h"
 #include "base/text.h"
-#include "hall.h"
-#include "orb.h"
-#include "recorded_studio.h"
-#include "remote.h"
-#include "ring.h"
-#include "started_run.h"
-#include "studio.h"
+#include "recording/ring.h"
+#include "studio/hall.h"
+#include "studio/recorded_studio.h"
+#include "studio/started_run.h"
+#include "studio/studio.h"
+#include "system/orb.h"
+#include "system/remote.h"
 
 namespace {
 

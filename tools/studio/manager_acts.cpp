@@ -8,11 +8,11 @@
 #include <fstream>
 #include <map>
 
-#include "acts.h"
+#include "base/child_process.h"
 #include "base/text.h"
-#include "profile/rts_profile.h"
-#include "run/child_process.h"
 #include "run/time_members.h"
+#include "studio/acts.h"
+#include "system/profile/rts_profile.h"
 
 namespace studio {
 namespace {

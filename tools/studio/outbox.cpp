@@ -1,4 +1,4 @@
-#include "outbox.h"
+#include "studio/outbox.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "page_files.h"
+#include "studio/page_files.h"
 
 #include <libdeflate.h>
 

@@ -1,12 +1,12 @@
-#include "pictures.h"
+#include "studio/pictures.h"
 
 #include <algorithm>
 #include <optional>
 
-#include "foxglove.h"
+#include "channels/views/jpeg.h"
 #include "shm/client.h"
-#include "shown_picture.h"
-#include "views/jpeg.h"
+#include "studio/foxglove.h"
+#include "studio/shown_picture.h"
 
 namespace studio {
 namespace {

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "base/guarded.h"
-#include "signals.h"
+#include "studio/signals.h"
 
 namespace studio {
 

@@ -1,10 +1,10 @@
-#include "playhead.h"
+#include "studio/playhead.h"
 
 #include <algorithm>
 
 #include "base/text.h"
-#include "foxglove.h"
-#include "shown_picture.h"
+#include "studio/foxglove.h"
+#include "studio/shown_picture.h"
 
 namespace studio {
 namespace {

@@ -10,14 +10,14 @@
 #include <string>
 #include <vector>
 
-#include "late_models.h"
-#include "mcap/mcap.h"
-#include "outbox.h"
-#include "pose_board.h"
-#include "recorded_scene.h"
-#include "recording_facts.h"
-#include "sample_text.h"
-#include "signals.h"
+#include "recording/mcap/mcap.h"
+#include "recording/sample_text.h"
+#include "studio/late_models.h"
+#include "studio/outbox.h"
+#include "studio/pose_board.h"
+#include "studio/recorded_scene.h"
+#include "studio/recording_facts.h"
+#include "studio/signals.h"
 
 namespace studio {
 

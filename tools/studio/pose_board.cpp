@@ -1,9 +1,9 @@
-#include "pose_board.h"
+#include "studio/pose_board.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "foxglove.h"
+#include "studio/foxglove.h"
 
 namespace studio {
 namespace {

@@ -1,14 +1,14 @@
-#include "recorded_scene.h"
+#include "studio/recorded_scene.h"
 
 #include <unistd.h>
 
 #include <cstring>
 
 #include "base/text.h"
-#include "recorded_run.h"
-#include "scene.h"
+#include "run/recorded_run.h"
 #include "shm/request_board.h"
-#include "started_run.h"
+#include "studio/scene.h"
+#include "studio/started_run.h"
 
 namespace studio {
 namespace {

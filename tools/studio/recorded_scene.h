@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/result.h"
-#include "client_message.h"
-#include "web.h"
+#include "studio/client_message.h"
+#include "studio/web.h"
 
 namespace studio {
 

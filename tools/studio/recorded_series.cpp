@@ -1,8 +1,8 @@
-#include "recorded_series.h"
+#include "studio/recorded_series.h"
 
 #include "base/text.h"
-#include "sample_text.h"
-#include "signals.h"
+#include "recording/sample_text.h"
+#include "studio/signals.h"
 
 namespace studio {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/result.h"
-#include "client_message.h"
-#include "recording_facts.h"
+#include "studio/client_message.h"
+#include "studio/recording_facts.h"
 
 namespace studio {
 

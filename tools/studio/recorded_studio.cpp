@@ -1,4 +1,4 @@
-#include "recorded_studio.h"
+#include "studio/recorded_studio.h"
 
 #include <algorithm>
 #include <boost/asio/post.hpp>
@@ -7,8 +7,8 @@
 
 #include "base/id.h"
 #include "base/text.h"
-#include "foxglove.h"
-#include "scene.h"
+#include "studio/foxglove.h"
+#include "studio/scene.h"
 
 namespace studio {
 namespace {

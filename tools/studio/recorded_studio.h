@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "client_message.h"
-#include "playhead.h"
-#include "recorded_series.h"
-#include "web.h"
-#include "workers.h"
+#include "studio/client_message.h"
+#include "studio/playhead.h"
+#include "studio/recorded_series.h"
+#include "studio/web.h"
+#include "studio/workers.h"
 
 namespace studio {
 

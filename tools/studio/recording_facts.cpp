@@ -1,4 +1,4 @@
-#include "recording_facts.h"
+#include "studio/recording_facts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <set>
 
 #include "base/text.h"
-#include "mcap/bytes.h"
-#include "ring.h"
-#include "sample_text.h"
+#include "recording/mcap/bytes.h"
+#include "recording/ring.h"
+#include "recording/sample_text.h"
 
 namespace studio {
 namespace {

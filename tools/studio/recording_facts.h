@@ -7,9 +7,9 @@
 #include <string>
 
 #include "base/result.h"
-#include "client_message.h"
-#include "mcap/mcap.h"
-#include "profile/rts_profile.h"
+#include "recording/mcap/mcap.h"
+#include "studio/client_message.h"
+#include "system/profile/rts_profile.h"
 
 namespace studio {
 

@@ -1,4 +1,4 @@
-#include "scene.h"
+#include "studio/scene.h"
 
 #include "shm/request_board.h"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "web.h"
+#include "studio/web.h"
 
 namespace studio {
 

@@ -1,4 +1,4 @@
-#include "shown_picture.h"
+#include "studio/shown_picture.h"
 
 #include <turbojpeg.h>
 

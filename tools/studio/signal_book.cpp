@@ -1,4 +1,4 @@
-#include "signal_book.h"
+#include "studio/signal_book.h"
 
 #include <utility>
 

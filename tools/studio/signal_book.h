@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "client_message.h"
+#include "studio/client_message.h"
 
 namespace studio {
 

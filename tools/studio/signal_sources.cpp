@@ -4,12 +4,12 @@
 #include <deque>
 #include <optional>
 
-#include "editor.h"
 #include "shm/client.h"
-#include "signals.h"
-#include "simctl/iface_json.h"
-#include "tap.h"
-#include "value_codec.h"
+#include "shm/iface_json.h"
+#include "studio/signals.h"
+#include "system/editor.h"
+#include "system/tap.h"
+#include "system/value_codec.h"
 
 namespace studio {
 namespace {

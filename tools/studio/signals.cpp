@@ -1,4 +1,4 @@
-#include "signals.h"
+#include "studio/signals.h"
 
 #include <omnithread.h>
 
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/text.h"
-#include "client_message.h"
+#include "studio/client_message.h"
 
 namespace studio {
 namespace {

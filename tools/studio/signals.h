@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "base/guarded.h"
-#include "client_message.h"
-#include "workers.h"
+#include "studio/client_message.h"
+#include "studio/workers.h"
 
 namespace studio {
 

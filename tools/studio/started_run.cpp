@@ -1,4 +1,4 @@
-#include "started_run.h"
+#include "studio/started_run.h"
 
 #include <omnithread.h>
 
@@ -7,9 +7,9 @@
 #include <optional>
 #include <thread>
 
+#include "base/child_process.h"
 #include "base/guarded.h"
 #include "base/text.h"
-#include "run/child_process.h"
 #include "run/run_script.h"
 #include "shm/request_board.h"
 

@@ -1,16 +1,16 @@
-#include "studio.h"
+#include "studio/studio.h"
 
 #include <algorithm>
 #include <boost/asio/post.hpp>
 #include <utility>
 
-#include "acts.h"
 #include "base/id.h"
 #include "base/log.h"
 #include "base/text.h"
-#include "foxglove.h"
-#include "remote.h"
-#include "scene.h"
+#include "studio/acts.h"
+#include "studio/foxglove.h"
+#include "studio/scene.h"
+#include "system/remote.h"
 
 namespace studio {
 namespace {

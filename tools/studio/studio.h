@@ -11,19 +11,19 @@
 #include <string>
 #include <vector>
 
-#include "acts.h"
-#include "channel_book.h"
-#include "client_message.h"
-#include "drives.h"
-#include "log_book.h"
-#include "pictures.h"
-#include "pose_board.h"
-#include "signal_book.h"
-#include "signals.h"
-#include "system_watch.h"
-#include "web.h"
-#include "workers.h"
-#include "world_watch.h"
+#include "studio/acts.h"
+#include "studio/channel_book.h"
+#include "studio/client_message.h"
+#include "studio/drives.h"
+#include "studio/log_book.h"
+#include "studio/pictures.h"
+#include "studio/pose_board.h"
+#include "studio/signal_book.h"
+#include "studio/signals.h"
+#include "studio/system_watch.h"
+#include "studio/web.h"
+#include "studio/workers.h"
+#include "studio/world_watch.h"
 
 namespace studio {
 

@@ -2,14 +2,14 @@
 #include <algorithm>
 #include <set>
 
-#include "acts.h"
 #include "base/id.h"
 #include "base/text.h"
-#include "commands/conf.h"
-#include "commands/connect.h"
-#include "commands/state.h"
-#include "editor.h"
-#include "system_json.h"
+#include "rtse/commands/conf.h"
+#include "rtse/commands/connect.h"
+#include "rtse/commands/state.h"
+#include "studio/acts.h"
+#include "studio/system_json.h"
+#include "system/editor.h"
 
 namespace studio {
 namespace {

@@ -1,4 +1,4 @@
-#include "system_json.h"
+#include "studio/system_json.h"
 
 #include <map>
 #include <set>

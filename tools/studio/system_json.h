@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "client_message.h"
-#include "component_view.h"
+#include "studio/client_message.h"
+#include "system/component_view.h"
 
 namespace studio {
 

@@ -1,12 +1,12 @@
-#include "system_watch.h"
+#include "studio/system_watch.h"
 
 #include <omnithread.h>
 
 #include <algorithm>
 #include <utility>
 
-#include "component_view.h"
-#include "system_json.h"
+#include "studio/system_json.h"
+#include "system/component_view.h"
 
 namespace studio {
 namespace {

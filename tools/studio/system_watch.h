@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "base/guarded.h"
-#include "client_message.h"
+#include "studio/client_message.h"
 
 namespace studio {
 

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "base/result.h"
-#include "door.h"
-#include "outbox.h"
-#include "page_files.h"
+#include "studio/door.h"
+#include "studio/outbox.h"
+#include "studio/page_files.h"
 
 namespace boost::asio {
 class io_context;

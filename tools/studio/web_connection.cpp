@@ -5,8 +5,8 @@
 
 #include "base/peer_account.h"
 #include "base/text.h"
-#include "foxglove.h"
-#include "web_shared.h"
+#include "studio/foxglove.h"
+#include "studio/web_shared.h"
 
 namespace studio {
 namespace {

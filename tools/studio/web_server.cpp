@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/log.h"
-#include "web_shared.h"
+#include "studio/web_shared.h"
 
 namespace studio {
 namespace {

@@ -10,7 +10,7 @@
 #include <set>
 #include <string>
 
-#include "web.h"
+#include "studio/web.h"
 
 namespace studio {
 

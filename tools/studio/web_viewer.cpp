@@ -6,9 +6,9 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
 
-#include "client_message.h"
-#include "foxglove.h"
-#include "web_shared.h"
+#include "studio/client_message.h"
+#include "studio/foxglove.h"
+#include "studio/web_shared.h"
 
 namespace studio {
 namespace {

@@ -1,4 +1,4 @@
-#include "workers.h"
+#include "studio/workers.h"
 
 #include <omnithread.h>
 

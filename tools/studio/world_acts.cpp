@@ -1,10 +1,10 @@
 // Acts on the simulated world.
 #include <algorithm>
 
-#include "acts.h"
 #include "base/text.h"
 #include "shm/lockstep.h"
 #include "shm/request_board.h"
+#include "studio/acts.h"
 
 namespace studio {
 namespace {

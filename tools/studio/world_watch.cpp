@@ -1,11 +1,11 @@
-#include "world_watch.h"
+#include "studio/world_watch.h"
 
 #include <algorithm>
 #include <cstring>
 #include <utility>
 
+#include "shm/iface_json.h"
 #include "shm/lockstep.h"
-#include "simctl/iface_json.h"
 
 namespace studio {
 namespace {

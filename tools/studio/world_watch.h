@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "base/guarded.h"
-#include "client_message.h"
 #include "shm/request_board.h"
+#include "studio/client_message.h"
 
 namespace studio {
 

@@ -1,4 +1,4 @@
-#include "component_view.h"
+#include "system/component_view.h"
 
 #include <algorithm>
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "naming_tree.h"
-#include "parameter_check.h"
+#include "system/naming_tree.h"
+#include "system/parameter_check.h"
 
 namespace editor {
 

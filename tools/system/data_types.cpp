@@ -4,7 +4,7 @@
 #include "rtm/ext/CameraCommonInterfaceStub.h"
 #include "rtm/ext/ManipulatorCommonInterface_DataTypesStub.h"
 #include "rtm/idl/InterfaceDataTypesStub.h"
-#include "value_codec.h"
+#include "system/value_codec.h"
 
 namespace editor {
 namespace {

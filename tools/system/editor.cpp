@@ -1,4 +1,4 @@
-#include "editor.h"
+#include "system/editor.h"
 
 #include <cstdlib>
 #include <iostream>

@@ -5,7 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "component_view.h"
+#include "system/component_view.h"
 
 namespace editor {
 

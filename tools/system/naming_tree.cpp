@@ -1,4 +1,4 @@
-#include "naming_tree.h"
+#include "system/naming_tree.h"
 
 #include <omniORB4/Naming.hh>
 

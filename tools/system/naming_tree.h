@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "address.h"
-#include "remote.h"
 #include "rtm/idl/ManagerStub.h"
+#include "system/address.h"
+#include "system/remote.h"
 
 namespace editor {
 

@@ -1,4 +1,4 @@
-#include "orb.h"
+#include "system/orb.h"
 
 #include <array>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "parameter_check.h"
+#include "system/parameter_check.h"
 
 #include <algorithm>
 #include <cctype>

@@ -1,4 +1,4 @@
-#include "remote.h"
+#include "system/remote.h"
 
 #include <omniORB4/minorCode.h>
 #include <omnithread.h>

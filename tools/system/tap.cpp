@@ -1,4 +1,4 @@
-#include "tap.h"
+#include "system/tap.h"
 
 #include "base/guarded.h"
 #include "base/id.h"

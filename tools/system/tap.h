@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "component_view.h"
+#include "system/component_view.h"
 
 namespace editor {
 

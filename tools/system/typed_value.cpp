@@ -1,12 +1,12 @@
-#include "typed_value.h"
+#include "system/typed_value.h"
 
 #include <algorithm>
 #include <cctype>
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
-#include "value_codec.h"
-#include "value_failure.h"
+#include "system/value_codec.h"
+#include "system/value_failure.h"
 
 namespace editor {
 namespace {

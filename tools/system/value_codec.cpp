@@ -1,4 +1,4 @@
-#include "value_codec.h"
+#include "system/value_codec.h"
 
 #include <bit>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
-#include "value_failure.h"
+#include "system/value_failure.h"
 
 namespace editor {
 

@@ -1,4 +1,4 @@
-#include "hunt/hunt.h"
+#include "campaign/hunt/hunt.h"
 
 #include <algorithm>
 #include <cctype>
@@ -8,12 +8,12 @@
 #include <map>
 #include <optional>
 
+#include "base/interrupt.h"
 #include "base/text.h"
-#include "remote.h"
-#include "results/disk_room.h"
-#include "run/iface_faults.h"
-#include "run/interrupt.h"
+#include "campaign/results/disk_room.h"
+#include "campaign/run/iface_faults.h"
 #include "run/warm_program.h"
+#include "system/remote.h"
 
 namespace campaign {
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "hunt/hunt_case.h"
-#include "run/row_run.h"
+#include "campaign/hunt/hunt_case.h"
+#include "campaign/run/row_run.h"
 
 namespace campaign {
 

@@ -1,4 +1,4 @@
-#include "hunt/hunt_case.h"
+#include "campaign/hunt/hunt_case.h"
 
 #include <yaml-cpp/yaml.h>
 
@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "base/text.h"
-#include "plan/grammar.h"
+#include "campaign/plan/grammar.h"
 #include "run/flow_text.h"
 
 namespace campaign {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "rows/random.h"
-#include "run/campaign.h"
-#include "run/deeds_runner.h"
+#include "campaign/rows/random.h"
+#include "campaign/run/campaign.h"
+#include "campaign/run/deeds_runner.h"
 
 namespace campaign {
 

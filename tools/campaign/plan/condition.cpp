@@ -1,11 +1,11 @@
-#include "plan/condition.h"
+#include "campaign/plan/condition.h"
 
 #include <yaml-cpp/yaml.h>
 
 #include <utility>
 
 #include "base/text.h"
-#include "plan/grammar.h"
+#include "campaign/plan/grammar.h"
 #include "run/flow_text.h"
 
 namespace campaign {

@@ -1,4 +1,4 @@
-#include "plan/deeds.h"
+#include "campaign/plan/deeds.h"
 
 #include <yaml-cpp/yaml.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/text.h"
-#include "plan/grammar.h"
+#include "campaign/plan/grammar.h"
 #include "run/flow_text.h"
 
 namespace campaign {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "plan/condition.h"
+#include "campaign/plan/condition.h"
 
 namespace campaign {
 

@@ -1,4 +1,4 @@
-#include "plan/grammar.h"
+#include "campaign/plan/grammar.h"
 
 #include <yaml-cpp/yaml.h>
 

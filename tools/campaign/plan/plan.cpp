@@ -1,4 +1,4 @@
-#include "plan/plan.h"
+#include "campaign/plan/plan.h"
 
 #include <yaml-cpp/yaml.h>
 
@@ -12,7 +12,7 @@
 #include <sstream>
 
 #include "base/text.h"
-#include "plan/grammar.h"
+#include "campaign/plan/grammar.h"
 
 namespace campaign {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/result.h"
-#include "plan/condition.h"
-#include "plan/deeds.h"
+#include "campaign/plan/condition.h"
+#include "campaign/plan/deeds.h"
 
 namespace campaign {
 

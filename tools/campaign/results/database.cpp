@@ -1,4 +1,4 @@
-#include "results/database.h"
+#include "campaign/results/database.h"
 
 #include <fcntl.h>
 #include <sqlite3.h>
@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "base/text.h"
-#include "results/disk_room.h"
+#include "campaign/results/disk_room.h"
 
 namespace campaign {
 namespace {

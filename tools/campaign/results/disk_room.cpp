@@ -1,4 +1,4 @@
-#include "results/disk_room.h"
+#include "campaign/results/disk_room.h"
 
 #include <cerrno>
 #include <cstdlib>

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
-#include "results/report.h"
-#include "results/report_page.h"
+#include "campaign/results/report.h"
+#include "campaign/results/report_page.h"
 
 namespace campaign {
 namespace {

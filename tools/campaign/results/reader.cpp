@@ -1,4 +1,4 @@
-#include "results/reader.h"
+#include "campaign/results/reader.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "results/database.h"
-#include "results/statistics.h"
-#include "results/store.h"
+#include "campaign/results/database.h"
+#include "campaign/results/statistics.h"
+#include "campaign/results/store.h"
 
 namespace campaign {
 

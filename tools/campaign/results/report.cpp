@@ -1,12 +1,12 @@
-#include "results/report.h"
+#include "campaign/results/report.h"
 
 #include <algorithm>
 #include <iomanip>
 #include <pugixml.hpp>
 
 #include "base/text.h"
+#include "campaign/run/shell_word.h"
 #include "run/run_files.h"
-#include "run/shell_word.h"
 
 namespace campaign {
 namespace {

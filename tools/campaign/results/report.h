@@ -4,7 +4,7 @@
 #include <ostream>
 #include <string>
 
-#include "results/reader.h"
+#include "campaign/results/reader.h"
 
 namespace campaign {
 

@@ -1,4 +1,4 @@
-#include "results/statistics.h"
+#include "campaign/results/statistics.h"
 
 #include <algorithm>
 #include <cmath>

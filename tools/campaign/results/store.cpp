@@ -1,4 +1,4 @@
-#include "results/store.h"
+#include "campaign/results/store.h"
 
 #include <filesystem>
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "results/database.h"
-#include "rows/rows.h"
-#include "run/row_run.h"
+#include "campaign/results/database.h"
+#include "campaign/rows/rows.h"
+#include "campaign/run/row_run.h"
 
 namespace campaign {
 

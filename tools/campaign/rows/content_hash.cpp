@@ -1,4 +1,4 @@
-#include "rows/content_hash.h"
+#include "campaign/rows/content_hash.h"
 
 #include <cstdio>
 #include <cstring>

@@ -1,4 +1,4 @@
-#include "rows/footprint.h"
+#include "campaign/rows/footprint.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "rows/model_files.h"
+#include "campaign/rows/model_files.h"
 
 #include <cstdlib>
 
+#include "base/child_process.h"
 #include "base/text.h"
-#include "run/child_process.h"
 
 namespace campaign {
 namespace fs = std::filesystem;

@@ -1,4 +1,4 @@
-#include "rows/outlines.h"
+#include "campaign/rows/outlines.h"
 
 #include <cmath>
 #include <numbers>

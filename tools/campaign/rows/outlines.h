@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <pugixml.hpp>
 
-#include "rows/footprint.h"
-#include "rows/model_files.h"
+#include "campaign/rows/footprint.h"
+#include "campaign/rows/model_files.h"
 
 namespace campaign {
 

@@ -1,4 +1,4 @@
-#include "rows/random.h"
+#include "campaign/rows/random.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,13 +1,13 @@
-#include "rows/rows.h"
+#include "campaign/rows/rows.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "base/text.h"
-#include "rows/model_files.h"
-#include "rows/random.h"
-#include "rows/samples.h"
+#include "campaign/rows/model_files.h"
+#include "campaign/rows/random.h"
+#include "campaign/rows/samples.h"
 
 namespace campaign {
 namespace {

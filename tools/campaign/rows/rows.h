@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "plan/plan.h"
-#include "rows/world_file.h"
+#include "campaign/plan/plan.h"
+#include "campaign/rows/world_file.h"
 
 namespace campaign {
 

@@ -1,11 +1,11 @@
-#include "rows/samples.h"
+#include "campaign/rows/samples.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
 
-#include "rows/random.h"
+#include "campaign/rows/random.h"
 
 namespace campaign {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "plan/plan.h"
+#include "campaign/plan/plan.h"
 
 namespace campaign {
 

@@ -1,4 +1,4 @@
-#include "rows/world_file.h"
+#include "campaign/rows/world_file.h"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 #include <pugixml.hpp>
 
 #include "base/text.h"
-#include "rows/model_files.h"
-#include "rows/outlines.h"
+#include "campaign/rows/model_files.h"
+#include "campaign/rows/outlines.h"
 
 namespace campaign {
 namespace fs = std::filesystem;

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "rows/footprint.h"
+#include "campaign/rows/footprint.h"
 
 namespace campaign {
 

@@ -1,4 +1,4 @@
-#include "run/campaign.h"
+#include "campaign/run/campaign.h"
 
 #include <unistd.h>
 
@@ -8,13 +8,13 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/child_process.h"
 #include "base/text.h"
-#include "rows/content_hash.h"
-#include "run/child_process.h"
-#include "run/deed_checks.h"
-#include "run/iface_faults.h"
-#include "run/spawned_models.h"
-#include "run/subject_checks.h"
+#include "campaign/rows/content_hash.h"
+#include "campaign/run/deed_checks.h"
+#include "campaign/run/iface_faults.h"
+#include "campaign/run/spawned_models.h"
+#include "campaign/run/subject_checks.h"
 
 namespace campaign {
 namespace fs = std::filesystem;

@@ -6,10 +6,10 @@
 #include <set>
 #include <string>
 
-#include "plan/plan.h"
-#include "profile/rts_profile.h"
-#include "rows/rows.h"
-#include "rows/world_file.h"
+#include "campaign/plan/plan.h"
+#include "campaign/rows/rows.h"
+#include "campaign/rows/world_file.h"
+#include "system/profile/rts_profile.h"
 
 namespace campaign {
 

@@ -1,11 +1,11 @@
-#include "run/deed_checks.h"
+#include "campaign/run/deed_checks.h"
 
 #include <algorithm>
 #include <set>
 
 #include "base/text.h"
+#include "campaign/run/subject_checks.h"
 #include "run/expectations.h"
-#include "run/subject_checks.h"
 
 namespace campaign {
 namespace {

@@ -1,4 +1,4 @@
-#include "run/deeds_runner.h"
+#include "campaign/run/deeds_runner.h"
 
 #include <algorithm>
 #include <chrono>
@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "base/text.h"
-#include "remote.h"
-#include "rows/random.h"
+#include "campaign/rows/random.h"
+#include "system/remote.h"
 
 namespace campaign {
 namespace {

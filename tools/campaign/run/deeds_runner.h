@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "plan/plan.h"
+#include "campaign/plan/plan.h"
 #include "run/run_script.h"
 
 namespace campaign {

@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <chrono>
 
+#include "base/child_process.h"
 #include "base/text.h"
-#include "commands/conf.h"
-#include "commands/connect.h"
-#include "commands/state.h"
-#include "profile/matched_system.h"
-#include "run/child_process.h"
-#include "run/deeds_runner.h"
+#include "campaign/run/deeds_runner.h"
+#include "rtse/commands/conf.h"
+#include "rtse/commands/connect.h"
+#include "rtse/commands/state.h"
+#include "system/profile/matched_system.h"
 
 namespace campaign {
 namespace {

@@ -1,11 +1,11 @@
-#include "run/iface_faults.h"
+#include "campaign/run/iface_faults.h"
 
 #include <algorithm>
 #include <chrono>
 
+#include "base/child_process.h"
 #include "base/text.h"
-#include "run/child_process.h"
-#include "run/deeds_runner.h"
+#include "campaign/run/deeds_runner.h"
 
 namespace campaign {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "run/campaign.h"
+#include "campaign/run/campaign.h"
 
 namespace campaign {
 

@@ -1,4 +1,4 @@
-#include "run/measures.h"
+#include "campaign/run/measures.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "plan/plan.h"
-#include "rows/world_file.h"
+#include "campaign/plan/plan.h"
+#include "campaign/rows/world_file.h"
 #include "run/run_system.h"
 
 namespace campaign {

@@ -1,4 +1,4 @@
-#include "run/row_locks.h"
+#include "campaign/run/row_locks.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -7,7 +7,7 @@
 #include <chrono>
 #include <thread>
 
-#include "run/interrupt.h"
+#include "base/interrupt.h"
 
 namespace campaign {
 namespace {

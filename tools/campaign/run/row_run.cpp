@@ -1,13 +1,13 @@
-#include "run/row_run.h"
+#include "campaign/run/row_run.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 
+#include "base/interrupt.h"
 #include "base/text.h"
-#include "run/interrupt.h"
-#include "run/row_script.h"
-#include "run/value_script.h"
+#include "campaign/run/row_script.h"
+#include "campaign/run/value_script.h"
 #include "run/warm_program.h"
 
 namespace campaign {

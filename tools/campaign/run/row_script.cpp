@@ -1,10 +1,10 @@
-#include "run/row_script.h"
+#include "campaign/run/row_script.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
-#include "run/measures.h"
+#include "campaign/run/measures.h"
 
 namespace campaign {
 

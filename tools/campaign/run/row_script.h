@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "run/campaign.h"
-#include "run/deeds_runner.h"
+#include "campaign/run/campaign.h"
+#include "campaign/run/deeds_runner.h"
 #include "run/run_script.h"
 
 namespace campaign {

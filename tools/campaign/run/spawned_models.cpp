@@ -1,9 +1,9 @@
-#include "run/spawned_models.h"
+#include "campaign/run/spawned_models.h"
 
 #include <filesystem>
 
 #include "base/text.h"
-#include "rows/model_files.h"
+#include "campaign/rows/model_files.h"
 
 namespace campaign {
 namespace {

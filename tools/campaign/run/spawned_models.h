@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-#include "plan/plan.h"
+#include "campaign/plan/plan.h"
 
 namespace campaign {
 

@@ -1,4 +1,4 @@
-#include "run/subject_checks.h"
+#include "campaign/run/subject_checks.h"
 
 #include <algorithm>
 #include <set>
@@ -7,7 +7,7 @@
 #include "base/text.h"
 #include "run/expectations.h"
 #include "run/run_system.h"
-#include "value_codec.h"
+#include "system/value_codec.h"
 
 namespace campaign {
 namespace {

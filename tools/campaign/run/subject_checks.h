@@ -4,9 +4,9 @@
 #include <map>
 #include <string>
 
-#include "plan/plan.h"
-#include "profile/rts_profile.h"
-#include "rows/world_file.h"
+#include "campaign/plan/plan.h"
+#include "campaign/rows/world_file.h"
+#include "system/profile/rts_profile.h"
 
 namespace campaign {
 

@@ -1,14 +1,14 @@
-#include "run/sweep.h"
+#include "campaign/run/sweep.h"
 
 #include <filesystem>
 
+#include "base/interrupt.h"
 #include "base/text.h"
-#include "remote.h"
-#include "results/disk_room.h"
-#include "run/interrupt.h"
-#include "run/row_locks.h"
-#include "run/tally.h"
+#include "campaign/results/disk_room.h"
+#include "campaign/run/row_locks.h"
+#include "campaign/run/tally.h"
 #include "run/warm_program.h"
+#include "system/remote.h"
 
 namespace campaign {
 namespace fs = std::filesystem;

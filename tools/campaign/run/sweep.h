@@ -7,8 +7,8 @@
 #include <functional>
 #include <string>
 
-#include "results/store.h"
-#include "run/campaign.h"
+#include "campaign/results/store.h"
+#include "campaign/run/campaign.h"
 
 namespace campaign {
 

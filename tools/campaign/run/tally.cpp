@@ -1,10 +1,10 @@
-#include "run/tally.h"
+#include "campaign/run/tally.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "rows/random.h"
-#include "run/interrupt.h"
+#include "base/interrupt.h"
+#include "campaign/rows/random.h"
 
 namespace campaign {
 namespace {

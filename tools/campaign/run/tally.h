@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "base/guarded.h"
-#include "results/store.h"
-#include "run/campaign.h"
-#include "run/sweep.h"
+#include "campaign/results/store.h"
+#include "campaign/run/campaign.h"
+#include "campaign/run/sweep.h"
 
 namespace campaign {
 

@@ -1,10 +1,10 @@
-#include "run/value_script.h"
+#include "campaign/run/value_script.h"
 
 #include <map>
 #include <utility>
 
 #include "base/text.h"
-#include "commands/conf.h"
+#include "rtse/commands/conf.h"
 
 namespace campaign {
 

@@ -1,4 +1,4 @@
-#include "slurm/outcome_line.h"
+#include "campaign/slurm/outcome_line.h"
 
 #include <nlohmann/json.hpp>
 #include <utility>

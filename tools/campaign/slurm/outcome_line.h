@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "run/row_run.h"
+#include "campaign/run/row_run.h"
 
 namespace campaign {
 

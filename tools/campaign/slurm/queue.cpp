@@ -1,12 +1,12 @@
-#include "slurm/queue.h"
+#include "campaign/slurm/queue.h"
 
 #include <unistd.h>
 
 #include <chrono>
 
+#include "base/child_process.h"
 #include "base/text.h"
-#include "run/campaign.h"
-#include "run/child_process.h"
+#include "campaign/run/campaign.h"
 
 namespace campaign::slurm {
 namespace {

@@ -1,4 +1,4 @@
-#include "slurm/slurm_sweep.h"
+#include "campaign/slurm/slurm_sweep.h"
 
 #include <poll.h>
 
@@ -8,12 +8,12 @@
 #include <fstream>
 #include <map>
 
+#include "base/interrupt.h"
 #include "base/text.h"
-#include "run/interrupt.h"
-#include "run/shell_word.h"
-#include "run/tally.h"
-#include "slurm/queue.h"
-#include "slurm/task_folder.h"
+#include "campaign/run/shell_word.h"
+#include "campaign/run/tally.h"
+#include "campaign/slurm/queue.h"
+#include "campaign/slurm/task_folder.h"
 
 namespace campaign {
 namespace fs = std::filesystem;

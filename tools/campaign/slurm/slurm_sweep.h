@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "run/sweep.h"
+#include "campaign/run/sweep.h"
 
 namespace campaign {
 

@@ -7,13 +7,13 @@
 #include <string_view>
 
 #include "base/guarded.h"
+#include "base/interrupt.h"
 #include "base/text.h"
-#include "remote.h"
-#include "results/disk_room.h"
-#include "run/interrupt.h"
+#include "campaign/results/disk_room.h"
+#include "campaign/slurm/slurm_sweep.h"
+#include "campaign/slurm/task_folder.h"
 #include "run/warm_program.h"
-#include "slurm/slurm_sweep.h"
-#include "slurm/task_folder.h"
+#include "system/remote.h"
 
 namespace campaign {
 namespace fs = std::filesystem;

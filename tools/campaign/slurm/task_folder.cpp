@@ -1,4 +1,4 @@
-#include "slurm/task_folder.h"
+#include "campaign/slurm/task_folder.h"
 
 #include <algorithm>
 #include <filesystem>

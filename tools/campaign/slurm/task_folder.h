@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "slurm/outcome_line.h"
+#include "campaign/slurm/outcome_line.h"
 
 namespace campaign {
 

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "channel.h"
+#include "channels/channel.h"
 
 namespace ros {
 

@@ -1,4 +1,4 @@
-#include "ros/messages.h"
+#include "channels/ros/messages.h"
 
 #include <algorithm>
 

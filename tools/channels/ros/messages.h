@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "ros/cdr.h"
+#include "channels/ros/cdr.h"
 
 namespace ros {
 

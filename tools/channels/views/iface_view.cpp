@@ -1,4 +1,4 @@
-#include "views/iface_view.h"
+#include "channels/views/iface_view.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <optional>
 
-#include "views/jpeg.h"
+#include "channels/views/jpeg.h"
 
 namespace channels {
 

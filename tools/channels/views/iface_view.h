@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "base/result.h"
-#include "channel.h"
-#include "exchange.h"
-#include "ros/messages.h"
+#include "channels/channel.h"
+#include "channels/exchange.h"
+#include "channels/ros/messages.h"
 #include "shm/client.h"
 
 namespace channels {

@@ -1,4 +1,4 @@
-#include "views/jpeg.h"
+#include "channels/views/jpeg.h"
 
 #include <turbojpeg.h>
 

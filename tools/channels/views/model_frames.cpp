@@ -1,12 +1,12 @@
-#include "views/model_frames.h"
+#include "channels/views/model_frames.h"
 
 #include <algorithm>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "views/iface_view.h"
-#include "views/shapes.h"
+#include "channels/views/iface_view.h"
+#include "channels/views/shapes.h"
 
 namespace channels {
 

@@ -1,4 +1,4 @@
-#include "views/shapes.h"
+#include "channels/views/shapes.h"
 
 #include <algorithm>
 #include <array>

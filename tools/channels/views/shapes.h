@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "ros/messages.h"
+#include "channels/ros/messages.h"
 
 namespace channels {
 

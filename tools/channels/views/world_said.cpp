@@ -3,8 +3,8 @@
 #include <iterator>
 #include <utility>
 
-#include "views/shapes.h"
-#include "views/world_source_state.h"
+#include "channels/views/shapes.h"
+#include "channels/views/world_source_state.h"
 
 namespace channels {
 

@@ -1,4 +1,4 @@
-#include "views/world_source.h"
+#include "channels/views/world_source.h"
 
 #include <fnmatch.h>
 #include <sys/resource.h>
@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "views/world_source_state.h"
+#include "channels/views/world_source_state.h"
 
 namespace channels {
 

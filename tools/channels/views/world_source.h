@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "base/result.h"
-#include "exchange.h"
-#include "views/iface_view.h"
+#include "channels/exchange.h"
+#include "channels/views/iface_view.h"
 
 namespace channels {
 

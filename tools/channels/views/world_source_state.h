@@ -16,10 +16,10 @@
 #include <vector>
 
 #include "base/guarded.h"
+#include "channels/views/model_frames.h"
+#include "channels/views/world_source.h"
 #include "shm/lockstep.h"
 #include "shm/words.h"
-#include "views/model_frames.h"
-#include "views/world_source.h"
 
 namespace channels {
 

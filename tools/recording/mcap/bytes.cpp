@@ -1,4 +1,4 @@
-#include "mcap/bytes.h"
+#include "recording/mcap/bytes.h"
 
 namespace mcap {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "mcap/mcap.h"
+#include "recording/mcap/mcap.h"
 
 namespace mcap {
 

@@ -1,4 +1,4 @@
-#include "mcap/compression.h"
+#include "recording/mcap/compression.h"
 
 #include <libdeflate.h>
 #include <lz4frame.h>

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "mcap/mcap.h"
+#include "recording/mcap/mcap.h"
 
 namespace mcap {
 

@@ -1,4 +1,4 @@
-#include "mcap/file.h"
+#include "recording/mcap/file.h"
 
 #include <fcntl.h>
 #include <sys/file.h>

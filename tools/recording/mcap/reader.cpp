@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "base/text.h"
-#include "mcap/compression.h"
-#include "mcap/scan.h"
+#include "recording/mcap/compression.h"
+#include "recording/mcap/scan.h"
 
 namespace mcap {
 

@@ -1,7 +1,7 @@
-#include "mcap/records.h"
+#include "recording/mcap/records.h"
 
 #include "base/text.h"
-#include "mcap/compression.h"
+#include "recording/mcap/compression.h"
 
 namespace mcap {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "mcap/bytes.h"
-#include "mcap/file.h"
+#include "recording/mcap/bytes.h"
+#include "recording/mcap/file.h"
 
 namespace mcap {
 

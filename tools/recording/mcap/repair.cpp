@@ -5,8 +5,8 @@
 #include <map>
 
 #include "base/text.h"
-#include "mcap/compression.h"
-#include "mcap/scan.h"
+#include "recording/mcap/compression.h"
+#include "recording/mcap/scan.h"
 
 namespace mcap {
 

@@ -1,10 +1,10 @@
-#include "mcap/scan.h"
+#include "recording/mcap/scan.h"
 
 #include <algorithm>
 #include <set>
 
 #include "base/text.h"
-#include "mcap/compression.h"
+#include "recording/mcap/compression.h"
 
 namespace mcap {
 

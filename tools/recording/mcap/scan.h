@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "mcap/file.h"
-#include "mcap/records.h"
-#include "mcap/summary.h"
+#include "recording/mcap/file.h"
+#include "recording/mcap/records.h"
+#include "recording/mcap/summary.h"
 
 namespace mcap {
 

@@ -1,8 +1,8 @@
-#include "mcap/summary.h"
+#include "recording/mcap/summary.h"
 
 #include <algorithm>
 
-#include "mcap/compression.h"
+#include "recording/mcap/compression.h"
 
 namespace mcap {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "mcap/bytes.h"
+#include "recording/mcap/bytes.h"
 
 namespace mcap {
 

@@ -3,10 +3,10 @@
 #include <vector>
 
 #include "base/text.h"
-#include "mcap/bytes.h"
-#include "mcap/compression.h"
-#include "mcap/file.h"
-#include "mcap/summary.h"
+#include "recording/mcap/bytes.h"
+#include "recording/mcap/compression.h"
+#include "recording/mcap/file.h"
+#include "recording/mcap/summary.h"
 
 namespace mcap {
 

@@ -8,12 +8,12 @@
 #include <nlohmann/json.hpp>
 
 #include "base/command_line.h"
+#include "base/interrupt.h"
 #include "base/text.h"
-#include "campaign_commands.h"
-#include "command.h"
-#include "hunt/hunt.h"
-#include "run/interrupt.h"
-#include "run/shell_word.h"
+#include "campaign/hunt/hunt.h"
+#include "campaign/run/shell_word.h"
+#include "rtse/campaign/campaign_commands.h"
+#include "rtse/command.h"
 
 namespace campaign {
 namespace {

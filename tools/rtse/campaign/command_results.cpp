@@ -6,9 +6,9 @@
 
 #include "base/command_line.h"
 #include "base/text.h"
-#include "campaign_commands.h"
-#include "command.h"
-#include "results/report.h"
+#include "campaign/results/report.h"
+#include "rtse/campaign/campaign_commands.h"
+#include "rtse/command.h"
 
 namespace campaign {
 namespace {

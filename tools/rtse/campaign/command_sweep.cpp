@@ -13,17 +13,17 @@
 #include <tuple>
 #include <utility>
 
+#include "base/child_process.h"
 #include "base/command_line.h"
+#include "base/interrupt.h"
 #include "base/text.h"
-#include "campaign_commands.h"
-#include "command.h"
-#include "plan/grammar.h"
-#include "results/statistics.h"
-#include "run/child_process.h"
-#include "run/interrupt.h"
-#include "run/shell_word.h"
-#include "run/sweep.h"
-#include "slurm/slurm_sweep.h"
+#include "campaign/plan/grammar.h"
+#include "campaign/results/statistics.h"
+#include "campaign/run/shell_word.h"
+#include "campaign/run/sweep.h"
+#include "campaign/slurm/slurm_sweep.h"
+#include "rtse/campaign/campaign_commands.h"
+#include "rtse/command.h"
 
 namespace campaign {
 namespace fs = std::filesystem;

@@ -1,8 +1,8 @@
 // rtse-campaign: the verbs of rtse that are about campaigns. rtse becomes this program when it meets one of them.
 #include <csignal>
 
-#include "campaign_commands.h"
-#include "program.h"
+#include "rtse/campaign/campaign_commands.h"
+#include "rtse/program.h"
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is told like a full disk

@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
-#include "command.h"
-#include "commands/commands.h"
-#include "profile/matched_system.h"
+#include "rtse/command.h"
+#include "rtse/commands/commands.h"
+#include "system/profile/matched_system.h"
 
 namespace editor {
 namespace {

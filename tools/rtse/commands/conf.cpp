@@ -3,10 +3,10 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
-#include "command.h"
-#include "commands/commands.h"
-#include "commands/conf.h"
-#include "parameter_check.h"
+#include "rtse/command.h"
+#include "rtse/commands/commands.h"
+#include "rtse/commands/conf.h"
+#include "system/parameter_check.h"
 
 namespace editor {
 namespace {

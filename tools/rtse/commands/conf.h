@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "component_view.h"
+#include "system/component_view.h"
 
 namespace editor {
 

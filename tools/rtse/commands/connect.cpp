@@ -4,10 +4,10 @@
 #include <set>
 
 #include "base/text.h"
-#include "command.h"
-#include "commands/commands.h"
-#include "commands/connect.h"
 #include "corba/peer_watch.h"
+#include "rtse/command.h"
+#include "rtse/commands/commands.h"
+#include "rtse/commands/connect.h"
 
 namespace editor {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "component_view.h"
+#include "system/component_view.h"
 
 namespace editor {
 

@@ -5,8 +5,8 @@
 
 #include "base/command_line.h"
 #include "base/text.h"
-#include "command.h"
-#include "commands/commands.h"
+#include "rtse/command.h"
+#include "rtse/commands/commands.h"
 
 namespace editor {
 namespace {

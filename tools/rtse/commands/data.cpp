@@ -12,12 +12,12 @@
 #include "base/descriptors.h"
 #include "base/guarded.h"
 #include "base/text.h"
-#include "command.h"
-#include "commands/commands.h"
-#include "output.h"
-#include "tap.h"
-#include "typed_value.h"
-#include "value_codec.h"
+#include "rtse/command.h"
+#include "rtse/commands/commands.h"
+#include "rtse/output.h"
+#include "system/tap.h"
+#include "system/typed_value.h"
+#include "system/value_codec.h"
 
 namespace editor {
 namespace {

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "command.h"
-#include "commands/commands.h"
-#include "run/child_process.h"
+#include "base/child_process.h"
+#include "rtse/command.h"
+#include "rtse/commands/commands.h"
 #include "run/hash_report.h"
 #include "run/run_hashes.h"
 

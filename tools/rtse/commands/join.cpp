@@ -14,8 +14,8 @@
 
 #include "base/command_line.h"
 #include "base/text.h"
-#include "command.h"
-#include "commands/commands.h"
+#include "rtse/command.h"
+#include "rtse/commands/commands.h"
 #include "run/time_members.h"
 
 namespace editor {

@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "base/text.h"
-#include "command.h"
-#include "commands/commands.h"
+#include "rtse/command.h"
+#include "rtse/commands/commands.h"
 
 namespace editor {
 namespace {

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
-#include "command.h"
-#include "commands/commands.h"
+#include "rtse/command.h"
+#include "rtse/commands/commands.h"
 
 namespace editor {
 namespace {

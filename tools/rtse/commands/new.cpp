@@ -7,9 +7,9 @@
 
 #include "base/command_line.h"
 #include "base/text.h"
-#include "command.h"
-#include "commands/commands.h"
-#include "skeleton/specification.h"
+#include "rtse/command.h"
+#include "rtse/commands/commands.h"
+#include "rtse/skeleton/specification.h"
 
 namespace editor {
 namespace {

@@ -7,13 +7,13 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "base/child_process.h"
 #include "base/command_line.h"
 #include "base/guarded.h"
+#include "base/interrupt.h"
 #include "base/text.h"
-#include "command.h"
-#include "commands/commands.h"
-#include "run/child_process.h"
-#include "run/interrupt.h"
+#include "rtse/command.h"
+#include "rtse/commands/commands.h"
 #include "run/run_options.h"
 #include "run/run_system.h"
 #include "run/run_twice.h"

@@ -6,9 +6,9 @@
 
 #include "base/command_line.h"
 #include "base/text.h"
-#include "command.h"
-#include "commands/commands.h"
-#include "commands/state.h"
+#include "rtse/command.h"
+#include "rtse/commands/commands.h"
+#include "rtse/commands/state.h"
 
 namespace editor {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-#include "component_view.h"
+#include "system/component_view.h"
 
 namespace editor {
 

@@ -6,14 +6,14 @@
 #include <set>
 
 #include "base/text.h"
-#include "command.h"
-#include "commands/commands.h"
-#include "commands/conf.h"
-#include "commands/connect.h"
-#include "commands/state.h"
-#include "commands/system.h"
-#include "profile/matched_system.h"
-#include "tap.h"
+#include "rtse/command.h"
+#include "rtse/commands/commands.h"
+#include "rtse/commands/conf.h"
+#include "rtse/commands/connect.h"
+#include "rtse/commands/state.h"
+#include "rtse/commands/system.h"
+#include "system/profile/matched_system.h"
+#include "system/tap.h"
 
 namespace editor {
 namespace {

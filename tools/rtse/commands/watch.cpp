@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "base/text.h"
-#include "command.h"
-#include "commands/commands.h"
+#include "rtse/command.h"
+#include "rtse/commands/commands.h"
 
 namespace editor {
 namespace {

@@ -11,17 +11,17 @@
 #include <memory>
 #include <optional>
 
+#include "base/child_process.h"
 #include "base/command_line.h"
+#include "base/interrupt.h"
 #include "base/text.h"
-#include "break_watch.h"
-#include "command.h"
-#include "mcap/bytes.h"
-#include "recorded_run.h"
-#include "recorder_commands.h"
-#include "ring.h"
-#include "run/child_process.h"
-#include "run/interrupt.h"
-#include "sample_text.h"
+#include "recording/mcap/bytes.h"
+#include "recording/ring.h"
+#include "recording/sample_text.h"
+#include "rtse/command.h"
+#include "rtse/recorder/recorder_commands.h"
+#include "run/break_watch.h"
+#include "run/recorded_run.h"
 
 namespace recorder {
 

@@ -9,17 +9,17 @@
 #include <set>
 
 #include "base/command_line.h"
+#include "base/interrupt.h"
 #include "base/text.h"
-#include "command.h"
-#include "idl_text.h"
-#include "mcap/mcap.h"
-#include "recorder_commands.h"
-#include "ring.h"
-#include "run/interrupt.h"
-#include "run_clock.h"
-#include "sample_text.h"
+#include "channels/idl_text.h"
+#include "recording/mcap/mcap.h"
+#include "recording/ring.h"
+#include "recording/run_clock.h"
+#include "recording/sample_text.h"
+#include "rtse/command.h"
+#include "rtse/recorder/recorder_commands.h"
 #include "shm/lockstep.h"
-#include "tap.h"
+#include "system/tap.h"
 
 namespace recorder {
 

@@ -6,14 +6,14 @@
 #include <memory>
 
 #include "base/command_line.h"
+#include "base/interrupt.h"
 #include "base/text.h"
-#include "command.h"
-#include "profile/rts_profile.h"
-#include "recorded_run.h"
-#include "recorder_commands.h"
-#include "replay.h"
-#include "ring.h"
-#include "run/interrupt.h"
+#include "recording/ring.h"
+#include "rtse/command.h"
+#include "rtse/recorder/recorder_commands.h"
+#include "run/recorded_run.h"
+#include "run/replay.h"
+#include "system/profile/rts_profile.h"
 
 namespace recorder {
 

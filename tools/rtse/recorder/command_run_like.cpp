@@ -7,13 +7,13 @@
 #include <iostream>
 #include <memory>
 
+#include "base/child_process.h"
+#include "base/interrupt.h"
 #include "base/text.h"
-#include "command.h"
-#include "recorded_run.h"
-#include "recorder_commands.h"
-#include "ring.h"
-#include "run/child_process.h"
-#include "run/interrupt.h"
+#include "recording/ring.h"
+#include "rtse/command.h"
+#include "rtse/recorder/recorder_commands.h"
+#include "run/recorded_run.h"
 
 namespace recorder {
 

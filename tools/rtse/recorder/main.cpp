@@ -1,6 +1,6 @@
 // rtse-recorder: the verbs of rtse that are about recordings. rtse becomes this program when it meets one of them.
-#include "program.h"
-#include "recorder_commands.h"
+#include "rtse/program.h"
+#include "rtse/recorder/recorder_commands.h"
 
 int main(int argc, char** argv) {
   return editor::run_program(

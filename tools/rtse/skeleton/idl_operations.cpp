@@ -1,4 +1,4 @@
-#include "skeleton/idl_operations.h"
+#include "rtse/skeleton/idl_operations.h"
 
 #include <spawn.h>
 #include <sys/wait.h>

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "skeleton/skeleton.h"
+#include "rtse/skeleton/skeleton.h"
 
 namespace editor {
 

@@ -1,4 +1,4 @@
-#include "skeleton/skeleton.h"
+#include "rtse/skeleton/skeleton.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -8,7 +8,7 @@
 #include <set>
 
 #include "base/text.h"
-#include "skeleton/idl_operations.h"
+#include "rtse/skeleton/idl_operations.h"
 
 namespace editor {
 namespace {

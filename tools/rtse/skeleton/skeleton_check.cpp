@@ -6,10 +6,10 @@
 #include <set>
 
 #include "base/text.h"
-#include "parameter_check.h"
-#include "skeleton/idl_operations.h"
-#include "skeleton/skeleton.h"
-#include "value_codec.h"
+#include "rtse/skeleton/idl_operations.h"
+#include "rtse/skeleton/skeleton.h"
+#include "system/parameter_check.h"
+#include "system/value_codec.h"
 
 namespace editor {
 namespace {

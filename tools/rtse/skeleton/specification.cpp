@@ -1,4 +1,4 @@
-#include "skeleton/specification.h"
+#include "rtse/skeleton/specification.h"
 
 #include <yaml-cpp/yaml.h>
 
@@ -8,7 +8,7 @@
 #include <set>
 
 #include "base/text.h"
-#include "yaml_keys.h"
+#include "base/yaml_keys.h"
 
 namespace editor {
 namespace {

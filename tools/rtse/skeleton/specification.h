@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "skeleton/skeleton.h"
+#include "rtse/skeleton/skeleton.h"
 
 namespace editor {
 

@@ -1,4 +1,4 @@
-#include "profile/matched_system.h"
+#include "system/profile/matched_system.h"
 
 #include "base/text.h"
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "editor.h"
-#include "profile/rts_profile.h"
+#include "system/editor.h"
+#include "system/profile/rts_profile.h"
 
 namespace editor {
 

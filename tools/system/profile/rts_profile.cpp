@@ -1,4 +1,4 @@
-#include "profile/rts_profile.h"
+#include "system/profile/rts_profile.h"
 
 #include <algorithm>
 #include <filesystem>

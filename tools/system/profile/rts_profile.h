@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "parameter_check.h"
+#include "system/parameter_check.h"
 
 namespace editor {
 

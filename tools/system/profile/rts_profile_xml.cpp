@@ -2,7 +2,7 @@
 #include <sstream>
 
 #include "base/text.h"
-#include "profile/rts_profile.h"
+#include "system/profile/rts_profile.h"
 
 namespace editor {
 namespace {

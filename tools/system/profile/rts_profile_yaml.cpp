@@ -3,8 +3,8 @@
 #include <cstdio>
 
 #include "base/text.h"
-#include "profile/rts_profile.h"
-#include "yaml_keys.h"
+#include "base/yaml_keys.h"
+#include "system/profile/rts_profile.h"
 
 namespace editor {
 namespace {
