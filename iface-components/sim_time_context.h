@@ -12,7 +12,8 @@
 //                                 without end, since its error would be part of the run
 //
 // Members may be components of other processes and of any maker: they join and leave by add_component and remove_component, and
-// are called in the tick of this context, in its phase, whatever their own contexts do. Rights and failures: corba/remote_participant.h.
+// are called in the tick of this context, in its phase, whatever their own contexts do. Rights and failures:
+// corba/members/remote_participant.h.
 //
 // In lock step what components write in a phase can be read in later phases only (base/tick.h), and what they send with subscription `new`
 // or `periodic` is sent at the end of their tick.

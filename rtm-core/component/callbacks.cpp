@@ -8,8 +8,8 @@
 
 #include "base/text.h"
 #include "base/tick.h"
-#include "corba/call_context.h"
-#include "corba/orb.h"
+#include "corba/orb/call_context.h"
+#include "corba/orb/orb.h"
 
 namespace RTC {
 

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "base/guarded.h"
-#include "corba/remote_participant.h"
+#include "corba/members/remote_participant.h"
 #include "core/execution_context.h"
 
 namespace RTC {

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 
-#include "corba/action_call.h"
-#include "corba/asker.h"
-#include "corba/object_names.h"
-#include "corba/orb.h"
-#include "corba/remote_participant.h"
-#include "corba/return_code.h"
+#include "corba/members/action_call.h"
+#include "corba/members/remote_participant.h"
+#include "corba/orb/asker.h"
+#include "corba/orb/object_names.h"
+#include "corba/orb/orb.h"
+#include "corba/orb/return_code.h"
 #include "core/key_limits.h"
 
 namespace RTC {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "base/guarded.h"
-#include "corba/gate.h"
+#include "corba/orb/gate.h"
 
 namespace RTC {
 

@@ -2,7 +2,7 @@
 #include <rtm/ExecutionContextBase.h>
 #include <rtm/RTObject.h>
 
-#include "corba/orb.h"
+#include "corba/orb/orb.h"
 
 namespace RTC {
 

@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "base/text.h"
-#include "corba/courier.h"
-#include "corba/orb.h"
+#include "corba/members/courier.h"
+#include "corba/orb/orb.h"
 
 namespace RTC {
 

@@ -20,8 +20,8 @@
 #include "base/guarded.h"
 #include "base/text.h"
 #include "base/tick.h"
-#include "corba/courier.h"
-#include "corba/orb.h"
+#include "corba/members/courier.h"
+#include "corba/orb/orb.h"
 
 namespace RTC {
 

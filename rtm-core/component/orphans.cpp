@@ -3,8 +3,8 @@
 // Within two seconds, unless other peers hang; the manager looks at that interval (leaveTheDead).
 #include "component/component_impl.h"
 
-#include "corba/call_timeout.h"
-#include "corba/orb.h"
+#include "corba/orb/call_timeout.h"
+#include "corba/orb/orb.h"
 
 namespace RTC {
 namespace {

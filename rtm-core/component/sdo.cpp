@@ -2,9 +2,9 @@
 #include "component/component_impl.h"
 
 #include "base/text.h"
-#include "corba/asker.h"
-#include "corba/call_timeout.h"
-#include "corba/orb.h"
+#include "corba/orb/asker.h"
+#include "corba/orb/call_timeout.h"
+#include "corba/orb/orb.h"
 
 namespace RTC {
 

@@ -3,7 +3,7 @@
 
 #include "base/log.h"
 #include "base/text.h"
-#include "corba/asker.h"
+#include "corba/orb/asker.h"
 #include "core/config_file.h"
 #include "core/name_format.h"
 #include "core/remote_rights.h"

@@ -13,7 +13,7 @@
 
 #include "base/guarded.h"
 #include "component/managed.h"
-#include "corba/orb.h"
+#include "corba/orb/orb.h"
 #include "core/component_argument.h"
 #include "core/key_limits.h"
 #include "core/signal_watcher.h"

@@ -8,9 +8,9 @@
 
 #include "base/log.h"
 #include "base/text.h"
-#include "corba/asker.h"
-#include "corba/naming.h"
-#include "corba/orb.h"
+#include "corba/orb/asker.h"
+#include "corba/orb/naming.h"
+#include "corba/orb/orb.h"
 #include "manager/manager_impl.h"
 #include "rtm/CORBA_IORUtil.h"
 #include "rtm/ManagerServant.h"

@@ -6,9 +6,9 @@
 #include <thread>
 
 #include "base/log.h"
-#include "corba/asker.h"
-#include "corba/call_timeout.h"
-#include "corba/orb.h"
+#include "corba/orb/asker.h"
+#include "corba/orb/call_timeout.h"
+#include "corba/orb/orb.h"
 #include "core/remote_rights.h"
 #include "manager/manager_impl.h"
 #include "rtm/Manager.h"

@@ -5,7 +5,7 @@
 
 #include "base/log.h"
 #include "base/text.h"
-#include "corba/orb.h"
+#include "corba/orb/orb.h"
 #include "core/name_format.h"
 #include "manager/manager_impl.h"
 #include "rtm/CORBA_RTCUtil.h"

@@ -9,8 +9,8 @@
 
 #include "base/clock.h"
 #include "base/guarded.h"
-#include "corba/data_port.h"
-#include "corba/port_servant.h"
+#include "corba/ports/data_port.h"
+#include "corba/ports/port_servant.h"
 
 namespace RTC::detail {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "base/text.h"
-#include "corba/connector_keys.h"
-#include "corba/nv_list.h"
+#include "corba/orb/nv_list.h"
+#include "corba/ports/connector_keys.h"
 #include "openrtm/interface_plugins.h"
 #include "rtm/CORBA_SeqUtil.h"
 #include "rtm/NVUtil.h"

@@ -5,7 +5,7 @@
 
 #include "base/guarded.h"
 #include "base/text.h"
-#include "corba/payload.h"
+#include "corba/transport/payload.h"
 #include "rtm/InPortConsumer.h"
 #include "rtm/InPortProvider.h"
 #include "rtm/NVUtil.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "corba/transport.h"
+#include "corba/transport/transport.h"
 #include "rtm/ConnectorBase.h"
 
 namespace RTC::detail {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "corba/type_ops.h"
+#include "corba/transport/type_ops.h"
 
 namespace RTC::detail {
 

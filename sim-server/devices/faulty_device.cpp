@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "devices/position2d.h"
+#include "devices/drives/position2d.h"
 #include "shm/iface_types.h"
 
 namespace sim {

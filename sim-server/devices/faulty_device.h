@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "devices/device.h"
-#include "devices/sensor_fault.h"
+#include "devices/sensors/sensor_fault.h"
 
 namespace sim {
 

@@ -2,13 +2,13 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "base/text.h"
-#include "devices/camera.h"
 #include "devices/device.h"
-#include "devices/position2d.h"
-#include "devices/position3d.h"
-#include "devices/sensor_makers.h"
-#include "devices/sonar.h"
-#include "devices/truth.h"
+#include "devices/drives/position2d.h"
+#include "devices/drives/position3d.h"
+#include "devices/sensors/camera.h"
+#include "devices/sensors/sensor_makers.h"
+#include "devices/sensors/sonar.h"
+#include "devices/sensors/truth.h"
 #include "world/iface_names.h"
 #include "world/plugin_kind.h"
 

@@ -7,8 +7,8 @@
 #include <map>
 
 #include "base/text.h"
-#include "devices/camera.h"
-#include "devices/laser.h"
+#include "devices/sensors/camera.h"
+#include "devices/sensors/laser.h"
 
 namespace sim {
 namespace {

@@ -11,10 +11,10 @@
 
 #include "base/result.h"
 #include "devices/device.h"
-#include "devices/joint_hold.h"
+#include "devices/drives/joint_hold.h"
 #include "devices/ray_world.h"
 #include "devices/render_world.h"
-#include "devices/sensor_fault.h"
+#include "devices/sensors/sensor_fault.h"
 #include "physics/physics.h"
 #include "server/statistics.h"
 #include "shm/server.h"

@@ -16,7 +16,7 @@
 #include <thread>
 #include <vector>
 
-#include "corba/orb.h"
+#include "corba/orb/orb.h"
 
 namespace {
 

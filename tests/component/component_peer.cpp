@@ -9,7 +9,7 @@
 #include <csignal>
 #include <cstdio>
 
-#include "corba/orb.h"
+#include "corba/orb/orb.h"
 #include "support/component_fixture.h"
 
 namespace {

@@ -15,7 +15,7 @@
 #include <semaphore>
 #include <thread>
 
-#include "corba/call_timeout.h"
+#include "corba/orb/call_timeout.h"
 #include "support/component_fixture.h"
 
 namespace {

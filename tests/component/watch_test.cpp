@@ -6,8 +6,8 @@
 #include <string>
 #include <thread>
 
-#include "corba/call_watch.h"
-#include "corba/member_watch.h"
+#include "corba/members/member_watch.h"
+#include "corba/orb/call_watch.h"
 
 namespace {
 

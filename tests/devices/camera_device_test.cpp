@@ -6,7 +6,7 @@
 #include <cstring>
 #include <map>
 
-#include "devices/camera.h"
+#include "devices/sensors/camera.h"
 #include "render/camera.h"
 #include "support/simulation_fixture.h"
 

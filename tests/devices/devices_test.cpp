@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "devices/gps.h"
+#include "devices/sensors/gps.h"
 #include "shm/requests.h"
 #include "support/simulation_fixture.h"
 

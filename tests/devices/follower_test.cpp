@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "devices/device.h"
-#include "devices/path.h"
+#include "devices/drives/path.h"
 #include "support/simulation_fixture.h"
 
 namespace sim {

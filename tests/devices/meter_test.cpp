@@ -1,5 +1,5 @@
 // force_torque, altimeter, magnetometer and air_pressure sensors against the truth.
-#include "devices/air_pressure.h"
+#include "devices/sensors/air_pressure.h"
 
 #include <gtest/gtest.h>
 

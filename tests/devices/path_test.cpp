@@ -1,5 +1,5 @@
 // Way points against closed forms: places, headings and times of straight ways, rounded corners, turns on the spot and rounds.
-#include "devices/path.h"
+#include "devices/drives/path.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "devices/traction.h"
+#include "devices/drives/traction.h"
 #include "support/simulation_fixture.h"
 #include "world/world_loader.h"
 

@@ -1,5 +1,5 @@
 // GiopGate: messages reach the ORB whole, whatever comes.
-#include "corba/giop_gate.h"
+#include "corba/orb/giop_gate.h"
 
 #include <gtest/gtest.h>
 

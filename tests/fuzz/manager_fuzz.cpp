@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/text.h"
-#include "corba/naming.h"
+#include "corba/orb/naming.h"
 #include "core/component_argument.h"
 #include "core/config_file.h"
 #include "core/config_keys.h"

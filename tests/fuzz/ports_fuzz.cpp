@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "corba/cdr.h"
-#include "corba/event_data.h"
+#include "corba/transport/cdr.h"
+#include "corba/transport/event_data.h"
 
 namespace {
 

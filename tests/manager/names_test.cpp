@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "corba/naming.h"
+#include "corba/orb/naming.h"
 #include "core/component_argument.h"
 #include "core/name_format.h"
 #include "core/preconnect.h"

@@ -1,11 +1,11 @@
-#include "corba/orb.h"
+#include "corba/orb/orb.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <fstream>
 
-#include "corba/naming.h"
+#include "corba/orb/naming.h"
 #include "support/naming_service.h"
 
 namespace corba {

@@ -12,8 +12,8 @@
 #include <thread>
 #include <vector>
 
-#include "corba/naming.h"
-#include "corba/orb.h"
+#include "corba/orb/naming.h"
+#include "corba/orb/orb.h"
 #include "support/naming_service.h"
 #include "support/paths.h"
 

@@ -4,9 +4,9 @@
 #include <cstring>
 
 #include "base/id.h"
-#include "corba/call_timeout.h"
-#include "corba/farewell.h"
-#include "corba/nv_list.h"
+#include "corba/orb/call_timeout.h"
+#include "corba/orb/nv_list.h"
+#include "corba/ports/farewell.h"
 #include "ports/support.h"
 #include "support/memory_limit.h"
 

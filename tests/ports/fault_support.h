@@ -8,7 +8,7 @@
 #include <functional>
 #include <memory>
 
-#include "corba/nv_list.h"
+#include "corba/orb/nv_list.h"
 #include "ports/support.h"
 
 namespace ports {

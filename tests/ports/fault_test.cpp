@@ -14,7 +14,7 @@
 #include <future>
 #include <iterator>
 
-#include "corba/call_timeout.h"
+#include "corba/orb/call_timeout.h"
 #include "ports/fault_support.h"
 
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/tick.h"
-#include "corba/cdr.h"
+#include "corba/transport/cdr.h"
 #include "ports/support.h"
 #include "support/paths.h"
 

@@ -20,9 +20,9 @@
 #include <span>
 #include <vector>
 
-#include "corba/call_timeout.h"
-#include "corba/connector_keys.h"
-#include "corba/sample_room.h"
+#include "corba/orb/call_timeout.h"
+#include "corba/ports/connector_keys.h"
+#include "corba/ports/sample_room.h"
 #include "ports/support.h"
 #include "support/hanging.h"
 
@@ -80,7 +80,7 @@ TEST_F(Hostile, names_too_deep_or_too_many_are_refused_at_every_door) {
   EXPECT_EQ(out.connect(good), RTC::RTC_OK);
 }
 
-// The key of the object at the InPort's end, which the guard of an end point knows it by (corba/giop_gate.h).
+// The key of the object at the InPort's end, which the guard of an end point knows it by (corba/orb/giop_gate.h).
 std::vector<std::byte> key_of(corba::Orb& orb, const RTC::ConnectorProfile& connection) {
   const auto ior_text = NVUtil::toString(connection.properties, "dataport.corba_cdr.inport_ior");
   const CORBA::Object_var object = orb.orb()->string_to_object(ior_text.c_str());

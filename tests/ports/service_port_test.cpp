@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <rtm/idl/DataPort_OpenRTMSkel.h>
 
-#include "corba/call_timeout.h"
+#include "corba/orb/call_timeout.h"
 #include "ports/support.h"
 
 namespace {

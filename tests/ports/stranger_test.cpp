@@ -1,7 +1,7 @@
-// This thread works for another account, and the peer is a process of ours that is closed (corba/asker.h).
+// This thread works for another account, and the peer is a process of ours that is closed (corba/orb/asker.h).
 #include <gtest/gtest.h>
 
-#include "corba/asker.h"
+#include "corba/orb/asker.h"
 #include "ports/support.h"
 
 namespace {

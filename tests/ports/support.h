@@ -17,7 +17,7 @@
 #include <utility>
 
 #include "base/tick.h"
-#include "corba/orb.h"
+#include "corba/orb/orb.h"
 #include "support/paths.h"
 #include "support/process.h"
 

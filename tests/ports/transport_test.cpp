@@ -11,8 +11,8 @@
 
 #include "base/hash64.h"
 #include "base/tick.h"
-#include "corba/call_timeout.h"
-#include "corba/cdr.h"
+#include "corba/orb/call_timeout.h"
+#include "corba/transport/cdr.h"
 #include "ports/support.h"
 
 namespace {

@@ -33,7 +33,7 @@ const std::vector<Layer> layers = {
     {"rtm-core/corba", {"corba", "core", "base", "stubs"}, {"omniORB"}},
     {"rtm-core/openrtm/include/coil", {"coil"}},
     {"rtm-core/openrtm/include", {"rtm", "coil", "stubs"}, {"omniORB"}},
-    {"rtm-core/openrtm/coil", {"coil"}},
+    {"rtm-core/coil", {"coil"}},
     {"rtm-core/component", {"component", "managed", "rtm", "coil", "corba", "core", "base", "stubs"}, {"omniORB"}, {"rtm/Manager.h"}},
     {"rtm-core/manager", {"manager", "managed", "rtm", "coil", "corba", "core", "base", "stubs"}, {"omniORB"}, {"rtm/RTObject.h"}},
     {"rtm-core/openrtm", {"openrtm", "manager", "component", "rtm", "coil", "corba", "core", "base", "stubs"}, {"omniORB"}},
@@ -218,13 +218,13 @@ Names offences(const fs::path& root) {
 // Headers with a source of their own are compiled alone by that (cmake/headers_alone.cmake): it must include them before anything else.
 Names not_own_first(const fs::path& root) {
   Names found;
-  for (const char* folder :
-       {"rtm-core/openrtm/rtm", "rtm-core/openrtm/coil", "rtm-core/component", "rtm-core/manager", "rtm-core/openrtm"}) {
+  for (const char* folder : {"rtm-core/openrtm/rtm", "rtm-core/coil", "rtm-core/component", "rtm-core/manager", "rtm-core/openrtm"}) {
     if (!fs::exists(root / folder)) continue;
     for (const auto& entry : fs::directory_iterator(root / folder)) {
       if (entry.path().extension() != ".cpp") continue;
       const std::string name = entry.path().stem().string() + ".h";
-      const std::string part = entry.path().parent_path().filename().string();
+      std::string part = entry.path().parent_path().filename().string();
+      if (part == "extensions") part = "rtm";  // whose headers lie among those of <rtm/...>
       const bool has_header = fs::exists(entry.path().parent_path() / name) || fs::exists(root / "rtm-core/openrtm/include" / part / name);
       const std::string text = source_text(entry.path());
       const auto line = text.substr(std::min(text.find("#include"), text.size()), 200);
@@ -265,7 +265,7 @@ TEST_F(PlantedTree, a_source_that_does_not_begin_with_its_own_header_is_found) {
 }
 
 TEST_F(PlantedTree, every_kind_of_offence_is_found) {
-  plant("rtm-core/core/a.h", "#pragma once\n#include <omniORB4/CORBA.h>\n#include \"corba/orb.h\"\n#include <vector>\n");
+  plant("rtm-core/core/a.h", "#pragma once\n#include <omniORB4/CORBA.h>\n#include \"corba/orb/orb.h\"\n#include <vector>\n");
   plant("sim-server/devices/b.cpp", "#include \"shm/segment.h\"\n  #  include <rtm/Manager.h>\n");
   plant("iface-components/c.cpp", "#include <rtm/Manager.h>\n#include \"core/registry.h\"\n");
   plant("clients/video-player/d.cpp", "#include \"shm/segment.h\"\n");
@@ -294,7 +294,7 @@ TEST_F(PlantedTree, every_kind_of_offence_is_found) {
                 "rtm-core/component/i.h:2: rtm-core/component may not include <manager/manager_impl.h> of manager",
                 "rtm-core/corba/p.cpp:1: rtm-core/corba may not include <shm/client.h> of shm",
                 "rtm-core/core/a.h:2: rtm-core/core may not include <omniORB4/CORBA.h> of omniORB",
-                "rtm-core/core/a.h:3: rtm-core/core may not include <corba/orb.h> of corba",
+                "rtm-core/core/a.h:3: rtm-core/core may not include <corba/orb/orb.h> of corba",
                 "rtm-core/core/j.cpp:2: \"neighbour.h\" is no header of rtm-core/core",
                 "rtm-core/core/j.cpp:3: <poco/any.h> is of no library in the table",
                 "rtm-core/core/j.cpp:4: rtm-core/core may not include <Eigen/Core> of Eigen",

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "corba/orb.h"
+#include "corba/orb/orb.h"
 
 namespace support {
 

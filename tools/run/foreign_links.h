@@ -18,7 +18,7 @@
 
 #include "base/guarded.h"
 #include "base/hash_log.h"
-#include "corba/shape.h"
+#include "corba/transport/shape.h"
 #include "run/foreign_processes.h"
 #include "shm/client.h"
 #include "system/editor.h"

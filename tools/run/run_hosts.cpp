@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "base/text.h"
-#include "corba/remote_participant.h"
-#include "corba/transport.h"
+#include "corba/members/remote_participant.h"
+#include "corba/transport/transport.h"
 #include "run/same_math.h"
 #include "run/time_members.h"
 #include "run/warm_program.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/text.h"
-#include "corba/naming.h"
+#include "corba/orb/naming.h"
 
 namespace editor {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/text.h"
-#include "corba/guarded_transport.h"
-#include "corba/tls.h"
+#include "corba/orb/guarded_transport.h"
+#include "corba/orb/tls.h"
 
 namespace editor {
 

@@ -7,8 +7,8 @@
 #include <atomic>
 #include <thread>
 
-#include "corba/return_code.h"
-#include "corba/tls.h"
+#include "corba/orb/return_code.h"
+#include "corba/orb/tls.h"
 
 namespace editor {
 

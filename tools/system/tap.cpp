@@ -3,7 +3,7 @@
 #include "base/guarded.h"
 #include "base/id.h"
 #include "base/text.h"
-#include "corba/return_code.h"
+#include "corba/orb/return_code.h"
 #include "rtm/idl/DataPort_OpenRTMSkel.h"
 #include "rtm/idl/RTCSkel.h"
 

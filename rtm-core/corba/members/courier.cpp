@@ -1,11 +1,11 @@
-#include "corba/courier.h"
+#include "corba/members/courier.h"
 
 #include <omniORB4/CORBA.h>
 
 #include <algorithm>
 
 #include "base/log.h"
-#include "corba/orb.h"
+#include "corba/orb/orb.h"
 
 namespace corba {
 

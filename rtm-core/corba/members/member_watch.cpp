@@ -1,4 +1,4 @@
-#include "corba/member_watch.h"
+#include "corba/members/member_watch.h"
 
 #include <algorithm>
 #include <system_error>

@@ -1,4 +1,4 @@
-#include "corba/remote_participant.h"
+#include "corba/members/remote_participant.h"
 
 #include <algorithm>
 #include <utility>
@@ -6,11 +6,11 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/text.h"
-#include "corba/action_call.h"
-#include "corba/call_timeout.h"
-#include "corba/orb.h"
-#include "corba/peer_watch.h"
-#include "corba/return_code.h"
+#include "corba/members/action_call.h"
+#include "corba/orb/call_timeout.h"
+#include "corba/orb/orb.h"
+#include "corba/orb/return_code.h"
+#include "corba/ports/peer_watch.h"
 #include "rtm/idl/SDOPackageStub.h"
 
 namespace corba {

@@ -5,7 +5,7 @@
 //
 // States, beside those of every member (core/lifecycle.h): it answers, or it is lost. Failures:
 //   answers with another code than RTC_OK, or throws   an error, as of a component of this process
-//   takes long                            named in the log after a second (corba/member_watch.h), and waited for
+//   takes long                            named in the log after a second (corba/members/member_watch.h), and waited for
 //   takes longer than the patience        an error; it is lost
 //   its process has ended, or the object has gone   noticed at the call, or at once during one; named; an error; it is lost
 // Who is lost is called no more, so that nobody waits for it again and again, until it is reset.
@@ -20,7 +20,7 @@
 
 #include "base/guarded.h"
 #include "base/result.h"
-#include "corba/member_watch.h"
+#include "corba/members/member_watch.h"
 #include "core/execution_context.h"
 #include "rtm/idl/RTCStub.h"
 

@@ -1,4 +1,4 @@
-#include "corba/asker.h"
+#include "corba/orb/asker.h"
 
 // Each needs the one before it.
 // clang-format off
@@ -21,10 +21,10 @@
 #include "base/guarded.h"
 #include "base/hash64.h"
 #include "base/log.h"
-#include "corba/call_context.h"
-#include "corba/guarded_transport.h"
-#include "corba/orb.h"
-#include "corba/remote_participant.h"
+#include "corba/members/remote_participant.h"
+#include "corba/orb/call_context.h"
+#include "corba/orb/guarded_transport.h"
+#include "corba/orb/orb.h"
 
 namespace corba {
 namespace {

@@ -16,7 +16,7 @@ enum class Asker : std::uint32_t {
   own,          // this account, root, or nobody: a thread that carries out no request
   host,         // another account of this machine
   network,      // another host
-  certificate,  // another host with a certificate (corba/tls.h)
+  certificate,  // another host with a certificate (corba/orb/tls.h)
 };
 
 // Who sent the request that this thread carries out.

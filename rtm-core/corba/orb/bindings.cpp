@@ -6,8 +6,8 @@
 #include "base/guarded.h"
 #include "base/log.h"
 #include "base/text.h"
-#include "corba/naming.h"
-#include "corba/orb.h"
+#include "corba/orb/naming.h"
+#include "corba/orb/orb.h"
 
 namespace corba {
 namespace {

@@ -1,4 +1,4 @@
-#include "corba/call_context.h"
+#include "corba/orb/call_context.h"
 
 // Each needs the one before it.
 // clang-format off

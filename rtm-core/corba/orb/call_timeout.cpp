@@ -1,4 +1,4 @@
-#include "corba/call_timeout.h"
+#include "corba/orb/call_timeout.h"
 
 #include <omniORB4/minorCode.h>
 #include <omniORB4/omniORB.h>

@@ -1,4 +1,4 @@
-#include "corba/call_watch.h"
+#include "corba/orb/call_watch.h"
 
 // Each needs the one before it.
 // clang-format off
@@ -16,8 +16,8 @@
 #include "base/chance.h"
 #include "base/clock.h"
 #include "base/tick.h"
-#include "corba/call_context.h"
-#include "corba/object_names.h"
+#include "corba/orb/call_context.h"
+#include "corba/orb/object_names.h"
 
 namespace corba {
 namespace {

@@ -1,4 +1,4 @@
-#include "corba/gate.h"
+#include "corba/orb/gate.h"
 
 namespace corba {
 

@@ -1,4 +1,4 @@
-#include "corba/giop_gate.h"
+#include "corba/orb/giop_gate.h"
 
 #include <algorithm>
 #include <cstring>

@@ -22,7 +22,8 @@ struct GiopLimits {
   std::size_t total = std::size_t{512} << 20;   // collected and claimed by all connections of the process together
   // false: no octet of the message after is read with one, for who looks at the connection itself to learn whether there is more.
   bool reads_ahead = true;
-  // [octets] of samples that the object with that key needs (corba/sample_room.h); never less than a request may have. Null: `sample`.
+  // [octets] of samples that the object with that key needs (corba/ports/sample_room.h); never less than a request may have. Null:
+  // `sample`.
   std::size_t (*room)(std::span<const std::byte> object_key) = nullptr;
 };
 

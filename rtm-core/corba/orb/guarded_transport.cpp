@@ -1,4 +1,4 @@
-#include "corba/guarded_transport.h"
+#include "corba/orb/guarded_transport.h"
 
 #include <omniORB4/CORBA.h>
 
@@ -30,8 +30,8 @@
 #include "base/log.h"
 #include "base/peer_account.h"
 #include "base/text.h"
-#include "corba/asker.h"
-#include "corba/call_context.h"
+#include "corba/orb/asker.h"
+#include "corba/orb/call_context.h"
 
 namespace corba {
 namespace {

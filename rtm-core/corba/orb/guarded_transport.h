@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "corba/giop_gate.h"
+#include "corba/orb/giop_gate.h"
 
 namespace corba {
 
@@ -18,7 +18,7 @@ enum class OpenTo {
 
 struct DoorSettings {
   OpenTo open_to = OpenTo::account;
-  bool has_tls = false;  // there are end points of TLS: who comes in there is known by a certificate (corba/tls.h), not by an account
+  bool has_tls = false;  // there are end points of TLS: who comes in there is known by a certificate (corba/orb/tls.h), not by an account
   GiopLimits limits{};
 };
 

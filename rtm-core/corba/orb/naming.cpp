@@ -1,7 +1,7 @@
-#include "corba/naming.h"
+#include "corba/orb/naming.h"
 
 #include "base/text.h"
-#include "corba/orb.h"
+#include "corba/orb/orb.h"
 
 namespace corba {
 

@@ -1,4 +1,4 @@
-#include "corba/nv_list.h"
+#include "corba/orb/nv_list.h"
 
 #include "core/key_limits.h"
 

@@ -1,4 +1,4 @@
-#include "corba/object_names.h"
+#include "corba/orb/object_names.h"
 
 #include <omniORB4/omniIOR.h>
 

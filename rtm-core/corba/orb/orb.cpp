@@ -1,4 +1,4 @@
-#include "corba/orb.h"
+#include "corba/orb/orb.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -17,13 +17,13 @@
 #include "base/guarded.h"
 #include "base/log.h"
 #include "base/text.h"
-#include "corba/call_context.h"
-#include "corba/call_timeout.h"
-#include "corba/call_watch.h"
-#include "corba/farewell.h"
-#include "corba/member_watch.h"
-#include "corba/peer_watch.h"
-#include "corba/sample_room.h"
+#include "corba/members/member_watch.h"
+#include "corba/orb/call_context.h"
+#include "corba/orb/call_timeout.h"
+#include "corba/orb/call_watch.h"
+#include "corba/ports/farewell.h"
+#include "corba/ports/peer_watch.h"
+#include "corba/ports/sample_room.h"
 
 namespace corba {
 namespace {
@@ -293,7 +293,7 @@ base::Result<std::unique_ptr<Orb>> Orb::start(const OrbSettings& settings) {
   set_port_call_timeout(call_timeout_of(*arguments));
   const DoorSettings doors = doors_of(settings, *arguments);
   set_doors(doors);
-  // An answer to "are you there?" may move a reference past those who look at answers to calls (corba/asker.h).
+  // An answer to "are you there?" may move a reference past those who look at answers to calls (corba/orb/asker.h).
   if (doors_are_open()) arguments->insert(arguments->end(), {"-ORBverifyObjectExistsAndType", "0"});
   std::vector<char*> argv;
   for (auto& argument : *arguments) argv.push_back(argument.data());

@@ -1,6 +1,6 @@
 // The ORB as a value: made with settings, gone with its destructor. One per process at a time (omniORB's rule). Any thread after start.
 // Listens on the loopback interface unless told otherwise, on tcp and on a unix socket in a private folder; both are published, and guarded
-// (corba/guarded_transport.h).
+// (corba/orb/guarded_transport.h).
 #pragma once
 
 #include <omniORB4/CORBA.h>
@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "base/result.h"
-#include "corba/guarded_transport.h"
-#include "corba/tls.h"
+#include "corba/orb/guarded_transport.h"
+#include "corba/orb/tls.h"
 
 namespace corba {
 

@@ -28,7 +28,7 @@
 #include "base/descriptors.h"
 #include "base/guarded.h"
 #include "base/peer_account.h"
-#include "corba/giop_gate.h"
+#include "corba/orb/giop_gate.h"
 
 namespace {
 

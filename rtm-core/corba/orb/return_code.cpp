@@ -1,4 +1,4 @@
-#include "corba/return_code.h"
+#include "corba/orb/return_code.h"
 
 namespace corba {
 

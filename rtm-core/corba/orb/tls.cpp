@@ -1,4 +1,4 @@
-#include "corba/tls.h"
+#include "corba/orb/tls.h"
 
 #include <dlfcn.h>
 #include <unistd.h>

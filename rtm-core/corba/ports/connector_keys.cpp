@@ -1,12 +1,12 @@
-#include "corba/connector_keys.h"
+#include "corba/ports/connector_keys.h"
 
 #include <algorithm>
 #include <string>
 
 #include "base/text.h"
-#include "corba/asker.h"
-#include "corba/call_timeout.h"
-#include "corba/nv_list.h"
+#include "corba/orb/asker.h"
+#include "corba/orb/call_timeout.h"
+#include "corba/orb/nv_list.h"
 
 namespace corba {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "corba/asker.h"
-#include "corba/transport.h"
+#include "corba/orb/asker.h"
+#include "corba/transport/transport.h"
 #include "core/connector_settings.h"
 #include "rtm/idl/RTCStub.h"
 
@@ -31,8 +31,8 @@ class ForGivers {
   std::optional<ForAsker> asker_;
 };
 
-// Whether the ports of a profile but for the one in that place may be kept (corba/asker.h): they are watched, connected again, told of the
-// end.
+// Whether the ports of a profile but for the one in that place may be kept (corba/orb/asker.h): they are watched, connected again, told of
+// the end.
 bool may_keep_ports(const RTC::PortServiceList& ports, int self);
 
 }  // namespace corba

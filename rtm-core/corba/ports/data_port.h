@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "corba/event_data.h"
-#include "corba/transport.h"
+#include "corba/transport/event_data.h"
+#include "corba/transport/transport.h"
 #include "core/connector_settings.h"
 #include "core/port_status.h"
 #include "rtm/idl/RTCStub.h"

@@ -1,4 +1,4 @@
-#include "corba/farewell.h"
+#include "corba/ports/farewell.h"
 
 #include <omnithread.h>
 
@@ -16,8 +16,8 @@
 #include "base/guarded.h"
 #include "base/log.h"
 #include "base/text.h"
-#include "corba/call_timeout.h"
-#include "corba/peer_watch.h"
+#include "corba/orb/call_timeout.h"
+#include "corba/ports/peer_watch.h"
 
 namespace corba {
 namespace {

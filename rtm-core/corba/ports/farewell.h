@@ -7,7 +7,7 @@
 
 #include <optional>
 
-#include "corba/call_timeout.h"
+#include "corba/orb/call_timeout.h"
 #include "rtm/idl/RTCStub.h"
 
 namespace corba {

@@ -1,4 +1,4 @@
-#include "corba/in_engine.h"
+#include "corba/ports/in_engine.h"
 
 #include <algorithm>
 #include <limits>
@@ -10,13 +10,13 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "base/tick.h"
-#include "corba/cdr.h"
-#include "corba/connector_keys.h"
-#include "corba/local_connections.h"
-#include "corba/member_watch.h"
-#include "corba/object_names.h"
-#include "corba/out_engine.h"
-#include "corba/payload.h"
+#include "corba/members/member_watch.h"
+#include "corba/orb/object_names.h"
+#include "corba/ports/connector_keys.h"
+#include "corba/ports/local_connections.h"
+#include "corba/ports/out_engine.h"
+#include "corba/transport/cdr.h"
+#include "corba/transport/payload.h"
 
 namespace corba {
 namespace {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/guarded.h"
-#include "corba/data_port.h"
-#include "corba/sample_room.h"
+#include "corba/ports/data_port.h"
+#include "corba/ports/sample_room.h"
 #include "core/mailbox.h"
 #include "rtm/idl/RTCStub.h"
 

@@ -1,4 +1,4 @@
-#include "corba/local_connections.h"
+#include "corba/ports/local_connections.h"
 
 #include <map>
 

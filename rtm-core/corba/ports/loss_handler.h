@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "corba/gate.h"
+#include "corba/orb/gate.h"
 
 namespace corba {
 

@@ -1,4 +1,4 @@
-#include "corba/out_engine.h"
+#include "corba/ports/out_engine.h"
 
 #include <algorithm>
 #include <optional>
@@ -8,10 +8,10 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/tick.h"
-#include "corba/connector_keys.h"
-#include "corba/local_connections.h"
-#include "corba/member_watch.h"
-#include "corba/nv_list.h"
+#include "corba/members/member_watch.h"
+#include "corba/orb/nv_list.h"
+#include "corba/ports/connector_keys.h"
+#include "corba/ports/local_connections.h"
 #include "core/fault.h"
 
 namespace corba {

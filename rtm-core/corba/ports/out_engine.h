@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "base/guarded.h"
-#include "corba/data_port.h"
-#include "corba/in_engine.h"
-#include "corba/loss_handler.h"
+#include "corba/ports/data_port.h"
+#include "corba/ports/in_engine.h"
+#include "corba/ports/loss_handler.h"
 #include "core/mailbox.h"
 #include "core/publisher.h"
 

@@ -1,4 +1,4 @@
-#include "corba/peer_watch.h"
+#include "corba/ports/peer_watch.h"
 
 #include <omniORB4/omniORB.h>
 
@@ -11,8 +11,8 @@
 
 #include "base/guarded.h"
 #include "base/log.h"
-#include "corba/call_timeout.h"
-#include "corba/transport.h"
+#include "corba/orb/call_timeout.h"
+#include "corba/transport/transport.h"
 
 namespace corba {
 namespace {

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <thread>
 
-#include "corba/loss_handler.h"
+#include "corba/ports/loss_handler.h"
 #include "rtm/idl/RTCStub.h"
 
 namespace corba {

@@ -1,4 +1,4 @@
-#include "corba/port_servant.h"
+#include "corba/ports/port_servant.h"
 
 #include <algorithm>
 #include <cstring>
@@ -7,11 +7,11 @@
 #include "base/id.h"
 #include "base/log.h"
 #include "base/text.h"
-#include "corba/connector_keys.h"
-#include "corba/farewell.h"
-#include "corba/nv_list.h"
-#include "corba/object_names.h"
-#include "corba/peer_watch.h"
+#include "corba/orb/nv_list.h"
+#include "corba/orb/object_names.h"
+#include "corba/ports/connector_keys.h"
+#include "corba/ports/farewell.h"
+#include "corba/ports/peer_watch.h"
 #include "core/key_limits.h"
 
 namespace corba {

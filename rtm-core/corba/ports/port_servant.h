@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "base/guarded.h"
-#include "corba/call_timeout.h"
-#include "corba/gate.h"
-#include "corba/loss_handler.h"
+#include "corba/orb/call_timeout.h"
+#include "corba/orb/gate.h"
+#include "corba/ports/loss_handler.h"
 #include "core/connector_settings.h"
 #include "rtm/idl/RTCSkel.h"
 

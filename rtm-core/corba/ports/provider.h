@@ -3,7 +3,7 @@
 
 #include <omniORB4/CORBA.h>
 
-#include "corba/transport.h"
+#include "corba/transport/transport.h"
 
 namespace corba {
 

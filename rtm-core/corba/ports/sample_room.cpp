@@ -1,11 +1,11 @@
-#include "corba/sample_room.h"
+#include "corba/ports/sample_room.h"
 
 #include <map>
 #include <string>
 #include <string_view>
 
 #include "base/guarded.h"
-#include "corba/object_names.h"
+#include "corba/orb/object_names.h"
 
 namespace corba {
 namespace {

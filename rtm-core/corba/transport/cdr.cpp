@@ -1,9 +1,9 @@
-#include "corba/cdr.h"
+#include "corba/transport/cdr.h"
 
 #include <cstdint>
 #include <cstring>
 
-#include "corba/payload.h"
+#include "corba/transport/payload.h"
 
 namespace corba {
 namespace {

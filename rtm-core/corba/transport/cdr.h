@@ -5,7 +5,7 @@
 #include <memory>
 #include <span>
 
-#include "corba/type_ops.h"
+#include "corba/transport/type_ops.h"
 #include "core/sample.h"
 
 namespace corba {

@@ -11,9 +11,9 @@
 #include <cstring>
 
 #include "base/log.h"
-#include "corba/call_timeout.h"
-#include "corba/provider.h"
-#include "corba/transport.h"
+#include "corba/orb/call_timeout.h"
+#include "corba/ports/provider.h"
+#include "corba/transport/transport.h"
 #include "rtm/idl/DataPortSkel.h"
 #include "rtm/idl/DataPort_OpenRTMSkel.h"
 

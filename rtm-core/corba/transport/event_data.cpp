@@ -1,10 +1,10 @@
-#include "corba/event_data.h"
+#include "corba/transport/event_data.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "corba/cdr.h"
-#include "corba/payload.h"
+#include "corba/transport/cdr.h"
+#include "corba/transport/payload.h"
 
 namespace corba {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <span>
 
-#include "corba/type_ops.h"
+#include "corba/transport/type_ops.h"
 #include "core/sample.h"
 
 namespace corba {

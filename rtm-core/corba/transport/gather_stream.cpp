@@ -1,6 +1,6 @@
-#include "corba/gather_stream.h"
+#include "corba/transport/gather_stream.h"
 
-#include "corba/cdr.h"
+#include "corba/transport/cdr.h"
 
 namespace corba {
 namespace {

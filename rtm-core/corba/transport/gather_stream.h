@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "corba/payload.h"
+#include "corba/transport/payload.h"
 #include "core/sample.h"
 
 namespace corba {

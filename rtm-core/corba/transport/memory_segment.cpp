@@ -1,4 +1,4 @@
-#include "corba/memory_segment.h"
+#include "corba/transport/memory_segment.h"
 
 #include <fcntl.h>
 #include <sys/mman.h>

@@ -10,7 +10,7 @@
 
 #include "base/cut_guard.h"
 #include "base/result.h"
-#include "corba/payload.h"
+#include "corba/transport/payload.h"
 #include "core/sample.h"
 
 namespace corba {

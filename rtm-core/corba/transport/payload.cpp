@@ -1,11 +1,11 @@
-#include "corba/payload.h"
+#include "corba/transport/payload.h"
 
 #include <cstring>
 #include <utility>
 
 #include "base/guarded.h"
-#include "corba/cdr.h"
-#include "corba/gather_stream.h"
+#include "corba/transport/cdr.h"
+#include "corba/transport/gather_stream.h"
 
 namespace corba {
 namespace {

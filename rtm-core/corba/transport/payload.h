@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "corba/type_ops.h"
+#include "corba/transport/type_ops.h"
 #include "core/sample.h"
 
 namespace corba {

@@ -1,4 +1,4 @@
-#include "corba/shape.h"
+#include "corba/transport/shape.h"
 
 #include <algorithm>
 #include <bit>

@@ -10,10 +10,10 @@
 #include "base/guarded.h"
 #include "base/id.h"
 #include "base/log.h"
-#include "corba/call_timeout.h"
-#include "corba/memory_segment.h"
-#include "corba/provider.h"
-#include "corba/transport.h"
+#include "corba/orb/call_timeout.h"
+#include "corba/ports/provider.h"
+#include "corba/transport/memory_segment.h"
+#include "corba/transport/transport.h"
 #include "rtm/idl/SharedMemorySkel.h"
 
 namespace corba {

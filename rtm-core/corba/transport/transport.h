@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "corba/payload.h"
+#include "corba/transport/payload.h"
 #include "core/connector_settings.h"
 #include "core/port_status.h"
 #include "core/sample.h"

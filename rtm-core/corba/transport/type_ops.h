@@ -10,7 +10,7 @@
 #include <string>
 #include <typeinfo>
 
-#include "corba/shape.h"
+#include "corba/transport/shape.h"
 #include "core/sample.h"
 
 namespace corba {

@@ -1,7 +1,7 @@
 #include "rtm/EventPort.h"
 
-#include "corba/cdr.h"
-#include "corba/event_data.h"
+#include "corba/transport/cdr.h"
+#include "corba/transport/event_data.h"
 
 namespace RTC::detail {
 namespace {

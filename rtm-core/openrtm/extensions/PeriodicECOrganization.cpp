@@ -8,10 +8,10 @@
 
 #include "base/log.h"
 #include "base/text.h"
-#include "corba/asker.h"
-#include "corba/call_timeout.h"
-#include "corba/orb.h"
-#include "corba/remote_participant.h"
+#include "corba/members/remote_participant.h"
+#include "corba/orb/asker.h"
+#include "corba/orb/call_timeout.h"
+#include "corba/orb/orb.h"
 #include "core/workers.h"
 
 namespace SDOPackage {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "corba/event_data.h"
+#include "corba/transport/event_data.h"
 #include "rtm/ByteDataStreamBase.h"
 
 namespace RTC {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "corba/cdr.h"
+#include "corba/transport/cdr.h"
 
 namespace RTC {
 

@@ -4,7 +4,7 @@
 
 #include "base/log.h"
 #include "base/text.h"
-#include "corba/orb.h"
+#include "corba/orb/orb.h"
 #include "rtm/Manager.h"
 #include "rtm/NVUtil.h"
 #include "rtm/NamingManager.h"

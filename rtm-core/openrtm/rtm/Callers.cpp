@@ -1,6 +1,6 @@
 #include "rtm/Callers.h"
 
-#include "corba/asker.h"
+#include "corba/orb/asker.h"
 
 namespace RTC {
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "corba/data_port.h"
+#include "corba/ports/data_port.h"
 
 namespace RTC {
 

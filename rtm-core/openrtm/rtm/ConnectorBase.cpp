@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "base/guarded.h"
-#include "corba/transport.h"
+#include "corba/transport/transport.h"
 #include "rtm/ByteData.h"
 #include "rtm/PortBase.h"
 

@@ -3,8 +3,8 @@
 #include <exception>
 
 #include "base/log.h"
-#include "corba/cdr.h"
-#include "corba/event_data.h"
+#include "corba/transport/cdr.h"
+#include "corba/transport/event_data.h"
 #include "openrtm/type_names.h"
 
 namespace RTC {

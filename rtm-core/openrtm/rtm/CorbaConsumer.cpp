@@ -1,8 +1,8 @@
 #include "rtm/CorbaConsumer.h"
 
-#include "corba/asker.h"
-#include "corba/call_timeout.h"
-#include "corba/transport.h"
+#include "corba/orb/asker.h"
+#include "corba/orb/call_timeout.h"
+#include "corba/transport/transport.h"
 
 namespace RTC {
 namespace {

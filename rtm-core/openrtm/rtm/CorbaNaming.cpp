@@ -2,8 +2,8 @@
 
 #include <chrono>
 
-#include "corba/naming.h"
-#include "corba/orb.h"
+#include "corba/orb/naming.h"
+#include "corba/orb/orb.h"
 
 namespace RTC {
 namespace {

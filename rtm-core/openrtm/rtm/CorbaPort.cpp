@@ -5,11 +5,11 @@
 
 #include "base/guarded.h"
 #include "base/text.h"
-#include "corba/connector_keys.h"
-#include "corba/nv_list.h"
-#include "corba/object_names.h"
-#include "corba/port_servant.h"
-#include "corba/transport.h"
+#include "corba/orb/nv_list.h"
+#include "corba/orb/object_names.h"
+#include "corba/ports/connector_keys.h"
+#include "corba/ports/port_servant.h"
+#include "corba/transport/transport.h"
 
 namespace RTC {
 namespace {

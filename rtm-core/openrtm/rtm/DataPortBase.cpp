@@ -1,7 +1,7 @@
 #include "rtm/DataPortBase.h"
 
 #include "base/text.h"
-#include "corba/nv_list.h"
+#include "corba/orb/nv_list.h"
 #include "openrtm/data_port_core.h"
 #include "openrtm/data_port_support.h"
 

@@ -1,7 +1,7 @@
 #include "rtm/DataType.h"
 
 #include "base/clock.h"
-#include "corba/type_ops.h"
+#include "corba/transport/type_ops.h"
 
 namespace RTC::detail {
 

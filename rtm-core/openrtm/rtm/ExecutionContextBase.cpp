@@ -10,9 +10,9 @@
 
 #include "base/clock.h"
 #include "base/text.h"
-#include "corba/call_context.h"
-#include "corba/orb.h"
-#include "corba/return_code.h"
+#include "corba/orb/call_context.h"
+#include "corba/orb/orb.h"
+#include "corba/orb/return_code.h"
 
 namespace RTC {
 

@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "base/text.h"
-#include "corba/nv_list.h"
+#include "corba/orb/nv_list.h"
 #include "rtm/CORBA_SeqUtil.h"
 
 namespace NVUtil {

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "base/text.h"
-#include "corba/nv_list.h"
-#include "corba/port_servant.h"
+#include "corba/orb/nv_list.h"
+#include "corba/ports/port_servant.h"
 
 namespace RTC {
 

@@ -10,10 +10,10 @@
 #include <algorithm>
 
 #include "base/text.h"
-#include "corba/asker.h"
-#include "corba/object_names.h"
-#include "corba/orb.h"
-#include "corba/remote_participant.h"
+#include "corba/members/remote_participant.h"
+#include "corba/orb/asker.h"
+#include "corba/orb/object_names.h"
+#include "corba/orb/orb.h"
 
 namespace RTC {
 

@@ -7,8 +7,8 @@
 
 #include "base/text.h"
 #include "base/tick.h"
-#include "corba/gate.h"
-#include "corba/nv_list.h"
+#include "corba/orb/gate.h"
+#include "corba/orb/nv_list.h"
 #include "core/key_limits.h"
 
 namespace SDOPackage {

@@ -7,8 +7,8 @@
 #include "base/guarded.h"
 #include "base/id.h"
 #include "base/text.h"
-#include "corba/call_timeout.h"
-#include "corba/orb.h"
+#include "corba/orb/call_timeout.h"
+#include "corba/orb/orb.h"
 #include "core/key_limits.h"
 
 namespace SDOPackage {

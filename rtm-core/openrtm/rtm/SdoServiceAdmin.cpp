@@ -10,7 +10,7 @@
 #include "base/guarded.h"
 #include "base/log.h"
 #include "base/text.h"
-#include "corba/asker.h"
+#include "corba/orb/asker.h"
 
 namespace RTC {
 

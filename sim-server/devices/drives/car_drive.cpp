@@ -7,7 +7,7 @@
 
 #include "base/text.h"
 #include "devices/angle.h"
-#include "devices/drive_train.h"
+#include "devices/drives/drive_train.h"
 
 namespace sim {
 namespace {

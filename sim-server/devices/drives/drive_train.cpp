@@ -1,4 +1,4 @@
-#include "devices/drive_train.h"
+#include "devices/drives/drive_train.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "devices/joint_hold.h"
+#include "devices/drives/joint_hold.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -7,7 +7,7 @@
 
 #include "base/text.h"
 #include "devices/angle.h"
-#include "devices/drive_train.h"
+#include "devices/drives/drive_train.h"
 #include "world/plugin_kind.h"
 #include "world/xml_values.h"
 

@@ -1,4 +1,4 @@
-#include "devices/path.h"
+#include "devices/drives/path.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "devices/position2d.h"
+#include "devices/drives/position2d.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,9 +5,9 @@
 #include <array>
 #include <optional>
 
-#include "devices/drive_train.h"
-#include "devices/sensor.h"
-#include "devices/traction.h"
+#include "devices/drives/drive_train.h"
+#include "devices/drives/traction.h"
+#include "devices/sensors/sensor.h"
 
 namespace sim {
 

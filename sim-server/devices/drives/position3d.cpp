@@ -1,4 +1,4 @@
-#include "devices/position3d.h"
+#include "devices/drives/position3d.h"
 
 #include <algorithm>
 #include <cmath>

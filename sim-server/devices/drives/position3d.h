@@ -7,8 +7,8 @@
 // way points alone.
 #pragma once
 
-#include "devices/path.h"
-#include "devices/sensor.h"
+#include "devices/drives/path.h"
+#include "devices/sensors/sensor.h"
 
 namespace sim {
 

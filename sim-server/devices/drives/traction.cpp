@@ -1,4 +1,4 @@
-#include "devices/traction.h"
+#include "devices/drives/traction.h"
 
 #include <spdlog/fmt/fmt.h>
 

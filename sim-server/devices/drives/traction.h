@@ -6,7 +6,7 @@
 #include <array>
 #include <string>
 
-#include "devices/drive_train.h"
+#include "devices/drives/drive_train.h"
 
 namespace sim {
 

@@ -1,9 +1,9 @@
-#include "devices/air_pressure.h"
+#include "devices/sensors/air_pressure.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "devices/sensor_makers.h"
+#include "devices/sensors/sensor_makers.h"
 
 namespace sim {
 

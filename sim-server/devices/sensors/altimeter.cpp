@@ -1,4 +1,4 @@
-#include "devices/sensor_makers.h"
+#include "devices/sensors/sensor_makers.h"
 
 namespace sim {
 namespace {

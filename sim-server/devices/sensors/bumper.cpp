@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "devices/sensor_makers.h"
+#include "devices/sensors/sensor_makers.h"
 
 namespace sim {
 namespace {

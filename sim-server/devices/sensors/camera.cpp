@@ -1,4 +1,4 @@
-#include "devices/camera.h"
+#include "devices/sensors/camera.h"
 
 #include <algorithm>
 #include <condition_variable>
@@ -9,7 +9,7 @@
 #include "base/guarded.h"
 #include "base/log.h"
 #include "devices/render_world.h"
-#include "devices/sensor.h"
+#include "devices/sensors/sensor.h"
 #include "render/pixels.h"
 #include "shm/server.h"
 #include "world/iface_names.h"

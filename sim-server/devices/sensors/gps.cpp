@@ -1,9 +1,9 @@
-#include "devices/gps.h"
+#include "devices/sensors/gps.h"
 
 #include <cmath>
 #include <numbers>
 
-#include "devices/sensor_makers.h"
+#include "devices/sensors/sensor_makers.h"
 
 namespace sim {
 namespace {

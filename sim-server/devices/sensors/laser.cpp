@@ -1,9 +1,9 @@
-#include "devices/laser.h"
+#include "devices/sensors/laser.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "devices/sensor_makers.h"
+#include "devices/sensors/sensor_makers.h"
 
 namespace sim {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "devices/ray_world.h"
-#include "devices/sensor.h"
+#include "devices/sensors/sensor.h"
 
 namespace sim {
 

@@ -1,4 +1,4 @@
-#include "devices/sensor.h"
+#include "devices/sensors/sensor.h"
 
 #include <algorithm>
 

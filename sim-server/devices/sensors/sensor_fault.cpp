@@ -1,4 +1,4 @@
-#include "devices/sensor_fault.h"
+#include "devices/sensors/sensor_fault.h"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "devices/sensor.h"
+#include "devices/sensors/sensor.h"
 
 namespace sim {
 

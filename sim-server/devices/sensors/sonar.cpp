@@ -1,4 +1,4 @@
-#include "devices/sonar.h"
+#include "devices/sensors/sonar.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // thread rule.
 #pragma once
 
-#include "devices/sensor.h"
+#include "devices/sensors/sensor.h"
 
 namespace sim {
 

@@ -1,4 +1,4 @@
-#include "devices/truth.h"
+#include "devices/sensors/truth.h"
 
 namespace sim {
 namespace {

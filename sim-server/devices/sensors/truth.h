@@ -1,7 +1,7 @@
 // The true pose and velocity of a model that can move. See device.h for the thread rule.
 #pragma once
 
-#include "devices/sensor.h"
+#include "devices/sensors/sensor.h"
 
 namespace sim {
 

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "base/text.h"
-#include "corba/peer_watch.h"
+#include "corba/ports/peer_watch.h"
 #include "rtse/command.h"
 #include "rtse/commands/commands.h"
 #include "rtse/commands/connect.h"

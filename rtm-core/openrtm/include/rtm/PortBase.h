@@ -90,8 +90,8 @@ class PortBase {
   bool appendInterface(const char* instance_name, const char* type_name, PortInterfacePolarity polarity);
   bool deleteInterface(const char* name, PortInterfacePolarity polarity);
 
-  // For the ports of this library, in the order in which a connection calls them (corba/port_servant.h). The terms are what read_terms has
-  // found in the profile when the port heard of the connection.
+  // For the ports of this library, in the order in which a connection calls them (corba/ports/port_servant.h). The terms are what
+  // read_terms has found in the profile when the port heard of the connection.
   virtual void complete_profile(ConnectorProfile&) {}
   virtual std::shared_ptr<corba::ConnectionTerms> read_terms(const ConnectorProfile& profile);
   virtual ReturnCode_t prepare(ConnectorProfile&, const corba::ConnectionTerms&) { return RTC_OK; }
