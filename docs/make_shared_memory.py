@@ -9,7 +9,7 @@ import sys
 import tempfile
 
 here = pathlib.Path(__file__).resolve().parent
-header = here.parent / "sim-server" / "shm" / "rtmsim_layout.h"
+header = here.parent / "shm" / "rtmsim_layout.h"
 page = here / "shared-memory.md"
 text = header.read_text()
 
@@ -24,7 +24,7 @@ for match in re.finditer(r"((?:/\*(?:(?!\*/).)*\*/\n)?)typedef struct \{\n(.*?)\
     fields = []
     for part in re.finditer(r"^\s*(?!/\*)([\w ]+?)\s+([^;/]+);[ \t]*(?:/\*(.*?)\*/)?", body, re.M | re.S):
         kind, names, comment = part.groups()
-        for one in re.findall(r"(\w+)(\[\w+\])?", names):
+        for one in re.findall(r"(\w+)(\[[^\]]+\])?", names):
             fields.append((kind, one[0], one[1], clean(comment or "")))
     structs.append((name, clean(re.sub(r"^/\*|\*/\s*$", "", intro.strip()).strip()) if intro.strip() else "", fields))
 
@@ -65,7 +65,7 @@ int main() {
 }
 """
 types = []
-for line in printed_by(["c++", "-std=c++20", f"-I{here.parent / 'sim-server'}"], ".cpp", table_program):
+for line in printed_by(["c++", "-std=c++20", f"-I{here.parent}"], ".cpp", table_program):
     what, *words = line.split("\t")
     if what == "type":
         types.append({"number": words[0], "name": words[1], "meaning": words[2], "frames": words[3] == "1", "most": int(words[4]), "info": [], "sample": [], "element": []})
@@ -97,8 +97,8 @@ counter-clockwise positive; quaternions are (w, x, y, z). Fields marked [atomic]
   back. To give a lease back store 0 in `owner` and add 1 to `lease_epoch`. Then add 1 to `attention` of the simulation iface and wake it if `attention_waiting` is set: a sensor that is
   switched on while time stands still shows the present at once, where the server would find the lease within a second. Such a sample disturbs nothing that comes later, not even the noise.
 - **Frames.** Put slot + 1 into a `holds` word of the own lease, then check that the slot's `lock` still is the frame; the writer leaves held slots alone and counts what it must drop.
-- **Commands** lie in the leases: make `command_lock` odd, write the command, make it even; then store (number of commands + 1) << 16 | index of the lease in `command_latest` of the header,
-  which names the one in force. When its owner dies or lets go, the robot stops. Who takes a lease or gives it back first writes a command of kind 0xffffffff into it
+- **Commands** are in the leases: make `command_lock` odd, write the command and the `command_values` doubles behind it, make the lock even; then store (number of commands + 1) << 16 | index
+  of the lease in `command_latest` of the header, which names the one in force. The iface chooses `command_values` (layout version 2; version 1 had twelve). When its owner dies or lets go, the robot stops. Who takes a lease or gives it back first writes a command of kind 0xffffffff into it
   in the same way, since the place may still hold one, or half of one, of somebody else; the server does so for the dead.
 - **Requests** go through a slot of one's own: `idle` - `asked` - `replying` - `replied`; texts longer than a piece travel in several rounds of the same id.
 - **Stale segments** (pid, start time, boot id of the server) are replaced by the next server; a living server's name is refused. Mode 0600 unless `--shm-mode` or `--shm-group` say otherwise.

@@ -388,20 +388,25 @@ std::optional<HeldFrame> Iface::hold() {
 base::Result<void> Iface::command(CommandKind kind, std::span<const double> values) {
   State& state = *state_;
   const auto fail = [&](const std::string& what) { return base::Error{describe(type(), name()) + ": command " + what}; };
-  Command fresh{};
-  if (values.size() > std::size(fresh.values)) return fail("of " + std::to_string(values.size()) + " values, at most 12 are possible");
+  const std::size_t most = state.segment.facts().command_values;
+  if (most == 0) return fail("is not possible: this iface takes none");
+  if (values.size() > most)
+    return fail("of " + std::to_string(values.size()) + " values, at most " + std::to_string(most) + " are possible");
   for (double value : values) {
     if (!(std::abs(value) <= 1e9)) return fail("value must be finite and within 1e9, got " + base::format_number(value));
   }
   if (auto good = state.ensure_lease(); !good) return good;
   if (state.status(true) != Status::live) return fail("has nobody to follow it: the server has ended");
   Lease& lease = state.own_lease();
+  CommandHead fresh{};
   fresh.sequence = load(lease.command.sequence, std::memory_order_relaxed) + 1;
   fresh.kind = static_cast<std::uint32_t>(kind);
-  std::copy(values.begin(), values.end(), fresh.values);
   const std::uint64_t lock = load(lease.command_lock, std::memory_order_relaxed) & ~std::uint64_t{1};
   store(lease.command_lock, lock + 1, std::memory_order_relaxed);  // seen by whoever sees a word of the copy
   copy_in(&lease.command, &fresh, sizeof fresh);
+  double* shared = command_values_of(lease);
+  copy_in(shared, values.data(), values.size_bytes());
+  for (std::size_t i = values.size(); i < most; ++i) store(shared[i], 0.0);
   store(lease.command_lock, lock + 2);  // pairs with the acquire in IfaceWriter::poll_command
   auto latest = word(state.header().command_latest);
   std::uint64_t before = latest.load(std::memory_order_relaxed);

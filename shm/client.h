@@ -126,7 +126,7 @@ class Iface {
   std::optional<HeldFrame> hold();
 
   // ---- commands ----
-  // The latest command of all clients counts. Refuses values that are not finite.
+  // The latest command of all clients counts. Missing values are 0. Refuses values that are not finite, and more than the iface has.
   base::Result<void> command(CommandKind kind, std::span<const double> values);
   base::Result<void> command_velocity(double vx, double vy, double va);
   // True while this handle's command is the one in force.

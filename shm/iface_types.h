@@ -65,7 +65,7 @@ struct IfaceRow {
   std::string_view name, meaning;
   std::size_t info_size, sample_size;  // fixed parts; a type without samples publishes frames
   std::span<const Field> info, sample;
-  bool takes_commands = false;
+  std::uint32_t command_values = 0;  // of each command, for types whose ifaces have all as many; 0: no commands, or the iface says
   std::uint64_t (*count)(const void* info) = nullptr;  // elements of an array of its tails, or pixels of a frame
   std::uint64_t most = 0;                              // of those; at least one
   Tail info_tail{}, sample_tail{};
@@ -293,7 +293,7 @@ inline constexpr std::array iface_types{
              .sample_size = detail::size<Position2dSample, 200>(),
              .info = detail::position2d_info,
              .sample = detail::position2d_sample,
-             .takes_commands = true},
+             .command_values = 3},
     IfaceRow{.type = IfaceType::position3d,
              .name = "position3d",
              .meaning = "drive of a robot that flies",
@@ -301,7 +301,7 @@ inline constexpr std::array iface_types{
              .sample_size = detail::size<Position3dSample, 304>(),
              .info = detail::position3d_info,
              .sample = detail::position3d_sample,
-             .takes_commands = true},
+             .command_values = 6},
     detail::frames(IfaceType::camera, "camera", "ring of images"),
     detail::frames(IfaceType::depth, "depth", "ring of float images [m]"),
     detail::frames(IfaceType::points, "points", "ring of float x y z (and intensity)"),

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 #include "shm/rtmsim_layout.h"
@@ -14,7 +15,7 @@ using ProcessMark = ::rtmsim_process;
 using Area = ::rtmsim_area;
 using Header = ::rtmsim_header;
 using Lease = ::rtmsim_lease;
-using Command = ::rtmsim_command;
+using CommandHead = ::rtmsim_command;
 using Stamp = ::rtmsim_stamp;
 using Pose = ::rtmsim_pose;
 using Part = ::rtmsim_part;
@@ -29,6 +30,7 @@ inline constexpr std::uint32_t layout_version = RTMSIM_LAYOUT_VERSION;
 inline constexpr std::size_t max_name_length = 200;
 inline constexpr std::size_t text_piece = RTMSIM_TEXT_PIECE;
 inline constexpr unsigned max_holds = RTMSIM_HOLDS;
+inline constexpr std::uint32_t most_command_values = 65536;
 inline constexpr Pose identity_pose{0, 0, 0, 1, 0, 0, 0};
 
 enum class AreaIndex : std::size_t {
@@ -41,14 +43,25 @@ enum class AreaIndex : std::size_t {
   participants = RTMSIM_AREA_PARTICIPANTS,
 };
 
+enum class CommandKind : std::uint32_t { stop = RTMSIM_COMMAND_STOP, velocity = RTMSIM_COMMAND_VELOCITY, pose = RTMSIM_COMMAND_POSE };
+
+// A command as a device sees it.
+struct Command {
+  std::uint64_t sequence = 0;  // counts the commands of one client
+  CommandKind kind = CommandKind::stop;
+  std::span<const double> values;  // as many as the iface has, finite; valid until the writer polls again
+};
+
+// The values of the command of a lease, which lies in shared memory.
+inline double* command_values_of(Lease& lease) { return reinterpret_cast<double*>(&lease + 1); }
+inline const double* command_values_of(const Lease& lease) { return reinterpret_cast<const double*>(&lease + 1); }
+
 // Copies text into a fixed field, cut at its end and always terminated.
 template <std::size_t size>
 void set_text(char (&field)[size], std::string_view text) {
   const std::size_t length = text.size() < size ? text.size() : size - 1;
   for (std::size_t i = 0; i < size; ++i) field[i] = i < length ? text[i] : '\0';
 }
-
-enum class CommandKind : std::uint32_t { stop = RTMSIM_COMMAND_STOP, velocity = RTMSIM_COMMAND_VELOCITY, pose = RTMSIM_COMMAND_POSE };
 
 enum class Format : std::uint32_t {
   rgb8 = RTMSIM_FORMAT_RGB8,
@@ -93,7 +106,8 @@ constexpr std::uint32_t bytes_per_pixel(Format format) {
 
 static_assert(sizeof(Header) == 1024 && offsetof(Header, server) == 32 && offsetof(Header, areas) == 320 &&
               offsetof(Header, state) == 512 && offsetof(Header, sequence) == 576 && offsetof(Header, wake_word) == 592);
-static_assert(sizeof(Lease) == 256 && offsetof(Lease, holds) == 64 && offsetof(Lease, command_lock) == 128 && sizeof(Command) == 120);
+static_assert(sizeof(Lease) == 160 && offsetof(Lease, holds) == 64 && offsetof(Lease, command_lock) == 128 && sizeof(CommandHead) == 24);
+static_assert(offsetof(Header, command_values) == 316);
 static_assert(sizeof(Stamp) == 32 && sizeof(Pose) == 56 && sizeof(Part) == 40);
 static_assert(sizeof(FrameHead) == 128);  // those of infos and samples: iface_types.h
 static_assert(sizeof(RequestBody) == 408 && sizeof(ReplyBody) == 416 && sizeof(RequestSlot) == 1024 && offsetof(RequestSlot, body) == 64);

@@ -17,7 +17,7 @@ void change_epoch(const Segment& segment) { word(segment.header().lease_epoch).f
 // Nobody is to be taken for the author of what the one before has written, which may have died in the middle of it. For whoever owns the
 // lease alone.
 void forget_command(Lease& lease) {
-  Command none{};
+  CommandHead none{};
   none.sequence = load(lease.command.sequence, std::memory_order_relaxed);
   none.kind = no_command;
   const std::uint64_t lock = load(lease.command_lock, std::memory_order_relaxed) | 1;

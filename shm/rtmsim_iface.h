@@ -55,7 +55,7 @@ typedef struct rtmsim_held rtmsim_held;
 rtmsim_held* rtmsim_hold(rtmsim_iface* iface, const rtmsim_frame** head, const void** data);
 void rtmsim_release(rtmsim_held* held);
 
-/* kind: RTMSIM_COMMAND_*; at most 12 finite values. */
+/* kind: RTMSIM_COMMAND_*; finite values, at most as many as the header of the iface says (command_values); missing ones are 0. */
 int rtmsim_command_iface(rtmsim_iface* iface, uint32_t kind, const double* values, size_t count);
 
 /* 1 while the server lives and the iface is its. */

@@ -15,7 +15,7 @@ extern "C" {
 #endif
 
 #define RTMSIM_MAGIC "RTMSIM\r\n" /* 8 bytes, without the final zero */
-#define RTMSIM_LAYOUT_VERSION 1u
+#define RTMSIM_LAYOUT_VERSION 2u
 #define RTMSIM_AREAS 8
 #define RTMSIM_NAME_SIZE 224 /* iface names have at most 200 characters */
 #define RTMSIM_HOLDS 4       /* frames that one client can hold at a time */
@@ -83,7 +83,8 @@ typedef struct {
   uint32_t server_id;
   uint32_t uid;
   char type_name[24];
-  char name[RTMSIM_NAME_SIZE];
+  char name[RTMSIM_NAME_SIZE - 4];
+  uint32_t command_values; /* doubles behind the command of each lease */
   rtmsim_area areas[RTMSIM_AREAS];
   uint32_t state;       /* [atomic] RTMSIM_STATE_* ; closed: nothing will ever come again, open the name anew */
   uint32_t lease_epoch; /* [atomic] changes with every lease taken or given back */
@@ -103,13 +104,13 @@ typedef struct {
  * of dead processes back. */
 enum { RTMSIM_LEASE_SUBSCRIBER = 1 }; /* flag: the sensor works as long as one lease has it */
 
+/* What a client commands. header.command_values doubles follow it; what a client does not give is 0. Velocity: position2d vx vy va;
+ * position3d vx vy vz wx wy wz (body frame). Pose: position2d x y a; position3d x y z roll pitch yaw. */
 typedef struct {
   uint64_t sequence;   /* counts the commands of this lease */
   int64_t sim_time_ns; /* when the commander saw the clock, or 0 */
   uint32_t kind;       /* RTMSIM_COMMAND_* */
   uint32_t flags;      /* 0 */
-  double values[12];   /* velocity: position2d vx vy va; position3d vx vy vz wx wy wz (body frame). pose: position2d x y a; position3d x y z
-                          roll pitch yaw */
 } rtmsim_command;
 
 enum { RTMSIM_COMMAND_STOP = 0, RTMSIM_COMMAND_VELOCITY = 1, RTMSIM_COMMAND_POSE = 2 };
@@ -123,7 +124,7 @@ typedef struct {
   uint32_t holds[RTMSIM_HOLDS]; /* [atomic] slot + 1 of each frame held; the writer leaves these slots alone */
   uint8_t reserved[48];
   uint64_t command_lock;  /* [atomic] odd while the owner writes the command */
-  rtmsim_command command; /* [atomic words] */
+  rtmsim_command command; /* [atomic words], as are the values behind it: a lease is as long as its area's stride says */
 } rtmsim_lease;
 
 /* ---- samples: each starts with a stamp ---- */

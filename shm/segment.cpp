@@ -91,6 +91,8 @@ Mapping map_file(int file, std::size_t size) {
   return {std::move(mapping), size};
 }
 
+constexpr std::size_t lease_size(std::uint32_t command_values) { return sizeof(Lease) + command_values * sizeof(double); }
+
 // Places all areas; returns the total size.
 std::uint64_t lay_out(const Geometry& geometry, Header& header) {
   std::uint64_t end = sizeof(Header);
@@ -102,7 +104,7 @@ std::uint64_t lay_out(const Geometry& geometry, Header& header) {
   };
   add(AreaIndex::info, geometry.info_size, 1);
   if (geometry.sample_size > 0) add(AreaIndex::cells, 8 + geometry.sample_size, geometry.cells);
-  add(AreaIndex::leases, sizeof(Lease), geometry.leases);
+  add(AreaIndex::leases, lease_size(geometry.command_values), geometry.leases);
   if (geometry.request_slots > 0) {
     add(AreaIndex::control, sizeof(Control), 1);
     add(AreaIndex::requests, sizeof(RequestSlot) + 2 * text_piece, geometry.request_slots);
@@ -214,8 +216,9 @@ std::string check_header(const Header& header, const SegmentName& name, std::uin
     return area.count == 0 || (area.stride >= size && area.offset >= sizeof(Header));
   };
   const bool fits = element(AreaIndex::info, 1) && element(AreaIndex::cells, 8 + sizeof(Stamp)) &&
-                    element(AreaIndex::frames, sizeof(FrameHead)) && element(AreaIndex::leases, sizeof(Lease)) &&
-                    element(AreaIndex::control, sizeof(Control)) && element(AreaIndex::requests, sizeof(RequestSlot) + 2 * text_piece) &&
+                    element(AreaIndex::frames, sizeof(FrameHead)) && header.command_values <= most_command_values &&
+                    element(AreaIndex::leases, lease_size(header.command_values)) && element(AreaIndex::control, sizeof(Control)) &&
+                    element(AreaIndex::requests, sizeof(RequestSlot) + 2 * text_piece) &&
                     element(AreaIndex::participants, sizeof(ParticipantSlot));
   return fits ? "" : "has elements that are too small";
 }
@@ -289,6 +292,7 @@ base::Result<Segment> Segment::create(const SegmentName& name, const Geometry& g
   header.layout_version = layout_version;
   header.type = static_cast<std::uint32_t>(name.type);
   header.total_size = size;
+  header.command_values = geometry.command_values;
   header.generation = static_cast<std::uint64_t>(wall_ns());
   header.server = own_mark();
   std::memcpy(header.boot_id, boot_id().data(), boot_id().size());

@@ -46,7 +46,8 @@ struct Geometry {
   std::size_t frame_size = 0;  // data of a frame
   std::uint32_t frame_slots = 4;
   std::uint32_t leases = 32;
-  std::uint32_t request_slots = 0;  // with them come the control block and the participants
+  std::uint32_t command_values = 0;  // doubles of each command
+  std::uint32_t request_slots = 0;   // with them come the control block and the participants
   std::uint32_t participants = 0;
 };
 

@@ -54,7 +54,8 @@ base::Result<std::unique_ptr<IfaceWriter>> Server::create(const IfaceSpec& spec)
   constexpr std::size_t largest = std::size_t{1} << 30;
   const bool is_plausible = geometry.info_size == spec.info.size() && geometry.sample_size < largest && geometry.frame_size < largest &&
                             (geometry.sample_size > 0 || geometry.frame_size > 0) && geometry.cells > 0 && geometry.leases > 0 &&
-                            geometry.frame_slots >= 3 && geometry.frame_slots <= 255 && geometry.leases < 0xffff;
+                            geometry.command_values <= most_command_values && geometry.frame_slots >= 3 && geometry.frame_slots <= 255 &&
+                            geometry.leases < 0xffff;
   if (!is_plausible) {
     return base::Error{std::string(to_text(spec.type)) + " " + base::in_quotes(spec.name) + ": its counts or sizes can't be; samples of " +
                        std::to_string(geometry.sample_size) + " bytes, frames of " + std::to_string(geometry.frame_size)};

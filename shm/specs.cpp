@@ -8,6 +8,7 @@ IfaceSpec iface_spec(IfaceType type, const std::string& name, std::span<const st
   const IfaceRow& row = row_of(type);
   IfaceSpec spec{type, name, {info.begin(), info.end()}, {}};
   spec.geometry.info_size = info.size();
+  spec.geometry.command_values = row.command_values;
   if (info.size() < row.info_size) return spec;  // which cannot be made: it has no samples
   const auto count = plausible_count(row, info.data());
   spec.geometry.sample_size = count && info.size() >= info_size(row, *count) ? sample_size(row, *count) : 0;

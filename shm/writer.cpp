@@ -56,12 +56,13 @@ void IfaceWriter::publish_frame(std::chrono::nanoseconds sim_time, const Pose& p
 
 std::uint64_t IfaceWriter::dropped() const { return impl_->ring.dropped(); }
 
-bool IfaceWriter::Impl::read_command(std::size_t index, Command& command) const {
+bool IfaceWriter::Impl::read_command(std::size_t index, CommandHead& head) {
   const auto& lease = segment.as<Lease>(AreaIndex::leases, index);
   for (int attempt = 0; attempt < 8; ++attempt) {
     const std::uint64_t before = load(lease.command_lock);  // pairs with the release in Iface::command
     if (before % 2 != 0) continue;
-    copy_out(&command, &lease.command, sizeof command);
+    copy_out(&head, &lease.command, sizeof head);
+    copy_out(fresh_values.data(), command_values_of(lease), fresh_values.size() * sizeof(double));
     if (load(lease.command_lock, std::memory_order_relaxed) == before) return true;
   }
   return false;
@@ -84,15 +85,16 @@ CommandChange IfaceWriter::poll_command(Command& command) {
     return impl.commander != 0 && !is_held() ? impl.lose() : CommandChange::none;
   }
   const std::uint64_t owner = load(impl.segment.as<Lease>(AreaIndex::leases, index).owner);
-  Command fresh;
+  CommandHead fresh;
   if (!impl.read_command(index, fresh)) return impl.commander != 0 && !is_held() ? impl.lose() : CommandChange::none;
   impl.seen_command = latest;
   if (owner == 0) return impl.lose();  // commanded and went before we looked
-  const bool is_finite = std::all_of(std::begin(fresh.values), std::end(fresh.values), [](double value) { return std::isfinite(value); });
+  const bool is_finite = std::ranges::all_of(impl.fresh_values, [](double value) { return std::isfinite(value); });
   if (!is_finite || fresh.kind > RTMSIM_COMMAND_POSE) return impl.commander != 0 && !is_held() ? impl.lose() : CommandChange::none;
   impl.commander = owner;
   impl.commander_lease = index;
-  command = fresh;
+  impl.command_values.swap(impl.fresh_values);
+  command = {fresh.sequence, static_cast<CommandKind>(fresh.kind), impl.command_values};
   return CommandChange::fresh;
 }
 

@@ -27,6 +27,8 @@ struct IfaceWriter::Impl {
         sample_size(sample),
         count(elements),
         staging((sample + 7) / 8),
+        command_values(segment.facts().command_values),
+        fresh_values(segment.facts().command_values),
         leases(segment),
         ring(segment) {
     bytes->fetch_add(segment.facts().total_size);
@@ -40,6 +42,7 @@ struct IfaceWriter::Impl {
   std::size_t sample_size;
   std::size_t count;  // elements in each array that follows a sample
   std::vector<std::uint64_t> staging;
+  std::vector<double> command_values, fresh_values;  // of the command in force; of the one that is being read
   LeaseTable leases;
   FrameRing ring;
   std::uint64_t sequence = 0;
@@ -62,7 +65,8 @@ struct IfaceWriter::Impl {
     ring_readers();
   }
   void ring_readers() { shm::ring(segment.header().wake_word, segment.header().waiting); }
-  bool read_command(std::size_t index, Command& command) const;
+  // Fills fresh_values.
+  bool read_command(std::size_t index, CommandHead& head);
   CommandChange lose();
 };
 

@@ -58,7 +58,7 @@ void Drive::take_over(Client& client) {
   if (commander_ != nullptr && iface().is_commander()) {
     commander_ = &client;
   } else {
-    command_velocity(client, std::array<double, 6>{});
+    command_velocity(client, {});
   }
 }
 
@@ -67,7 +67,7 @@ void Drive::forget(Client& client) {
   commander_ = nullptr;
   if (!source() || !iface().is_commander()) return;  // somebody else drives
   // Fails when the simulator is gone, and the robot with it.
-  static_cast<void>(iface().command(shm::CommandKind::velocity, std::array<double, 6>{}));
+  static_cast<void>(iface().command(shm::CommandKind::velocity, {}));
 }
 
 std::optional<Answer> Drive::switch_motors(const std::string& payload, const Later& later) {

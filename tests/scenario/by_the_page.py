@@ -17,7 +17,7 @@ number = {"int32_t": "i", "uint32_t": "I", "int64_t": "q", "uint64_t": "Q", "dou
 values = {m[2]: int(m[1]) for m in re.finditer(r"^\| (\d+) \| `(RTMSIM_\w+)` \|", page, re.M)}
 structs = {}
 for title in re.finditer(r"^### `(\w+)`, (\d+) bytes\n(.*?)(?=^### |\Z)", page, re.S | re.M):
-    rows = re.finditer(r"^\| (\d+) \| (\d+) \| `(\w+)` \| (\w+)(\[\w+\])? \|", title[3], re.M)
+    rows = re.finditer(r"^\| (\d+) \| (\d+) \| `(\w+)` \| (\w+)(\[[^\]]+\])? \|", title[3], re.M)
     structs[title[1]] = (int(title[2]), {row[3]: (int(row[1]), int(row[2]), row[4], row[5]) for row in rows})
 
 
@@ -105,7 +105,8 @@ class Iface:
         lock = self.get("rtmsim_lease", "command_lock", base)
         self.put("rtmsim_lease", "command_lock", base, lock + 1)
         self.put("rtmsim_command", "kind", at, values["RTMSIM_COMMAND_VELOCITY"])
-        struct.pack_into("<12d", self.memory, at + offset("rtmsim_command", "values"), *velocity, *[0.0] * (12 - len(velocity)))
+        count = self.get("rtmsim_header", "command_values", 0)
+        struct.pack_into(f"<{count}d", self.memory, at + size("rtmsim_command"), *velocity, *[0.0] * (count - len(velocity)))
         self.put("rtmsim_lease", "command_lock", base, lock + 2)
         before = self.get("rtmsim_header", "command_latest", 0) >> 16
         self.put("rtmsim_header", "command_latest", 0, (before + 1) << 16 | self.lease)
@@ -129,7 +130,7 @@ server = subprocess.Popen([f"{bin_dir}/sim-server", f"{source}/worlds/obstacle_c
 try:
     await_("the last iface", lambda: opened("truth", "pioneer2dx"))
     clock, laser, drive = opened("simulation", "world"), opened("laser", "pioneer2dx::laser"), opened("position2d", "pioneer2dx::position2d")
-    assert clock.get("rtmsim_header", "magic", 0) == b"RTMSIM\r\n" and clock.get("rtmsim_header", "layout_version", 0) == 1
+    assert clock.get("rtmsim_header", "magic", 0) == b"RTMSIM\r\n" and clock.get("rtmsim_header", "layout_version", 0) == 2
     assert clock.get("rtmsim_header", "state", 0) == values["RTMSIM_STATE_LIVE"]
     assert clock.all("rtmsim_header", 0)["server"]["pid"] == server.pid
     assert clock.info()["world"] == b"obstacle_course", clock.info()

@@ -53,7 +53,7 @@ int run_c_client(uint32_t server) {
   rtmsim_iface* base = rtmsim_open(server, RTMSIM_POSITION2D, "base");
   const double velocity[3] = {0.25, 0, -0.5};
   CHECK(base != NULL && rtmsim_command_iface(base, RTMSIM_COMMAND_VELOCITY, velocity, 3) == 0);
-  CHECK(rtmsim_command_iface(base, RTMSIM_COMMAND_VELOCITY, velocity, 13) == -1);
+  CHECK(rtmsim_command_iface(base, RTMSIM_COMMAND_VELOCITY, velocity, 4) == -1);
 
   rtmsim_requester* requester = rtmsim_open_requester(server);
   CHECK(requester != NULL);

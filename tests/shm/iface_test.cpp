@@ -182,7 +182,7 @@ TEST(Iface, the_latest_command_counts_and_its_end_is_told_once) {
   ASSERT_TRUE(a.command_velocity(1, 2, 3));
   EXPECT_EQ(writer->poll_command(command), CommandChange::fresh);
   EXPECT_EQ(command.values[2], 3);
-  EXPECT_EQ(command.kind, RTMSIM_COMMAND_VELOCITY);
+  EXPECT_EQ(command.kind, CommandKind::velocity);
   EXPECT_EQ(writer->poll_command(command), CommandChange::none);
   EXPECT_EQ(writer->commander(), getpid());
   EXPECT_TRUE(a.is_commander());
@@ -209,6 +209,49 @@ TEST(Iface, a_command_that_is_dropped_before_it_is_taken_never_comes) {
   ASSERT_TRUE(a.command_velocity(2, 0, 0));
   EXPECT_EQ(writer->poll_command(command), CommandChange::fresh);
   EXPECT_EQ(command.values[0], 2);
+}
+
+TEST(Iface, the_size_of_its_commands_is_what_the_iface_chose) {
+  Fixture f;
+  auto spec = iface_spec(IfaceType::position2d, "arm", Position2dInfo{});
+  spec.geometry.command_values = 200;
+  auto writer = f.make(spec);
+  Iface client = f.open(IfaceType::position2d, "arm");
+  std::vector<double> values(200);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i) + 0.5;
+  ASSERT_TRUE(client.command(CommandKind::pose, values));
+  Command command;
+  ASSERT_EQ(writer->poll_command(command), CommandChange::fresh);
+  EXPECT_EQ(command.kind, CommandKind::pose);
+  EXPECT_EQ(std::vector<double>(command.values.begin(), command.values.end()), values);
+  // What a client leaves out is 0, not what the command before had there.
+  ASSERT_TRUE(client.command(CommandKind::pose, std::span(values).first(2)));
+  ASSERT_EQ(writer->poll_command(command), CommandChange::fresh);
+  std::vector<double> expected(200);
+  std::copy_n(values.begin(), 2, expected.begin());
+  EXPECT_EQ(std::vector<double>(command.values.begin(), command.values.end()), expected);
+  values.push_back(1);
+  const auto refused = client.command(CommandKind::pose, values);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("201 values, at most 200"), std::string::npos) << refused.error().message;
+}
+
+TEST(Iface, an_iface_without_commands_refuses_them) {
+  Fixture f;
+  auto writer = f.make(iface_spec(IfaceType::laser, "a", laser_info()));
+  Iface client = f.open(IfaceType::laser, "a");
+  EXPECT_FALSE(client.command_velocity(1, 0, 0));
+}
+
+TEST(Iface, an_iface_whose_commands_are_larger_than_its_leases_is_not_opened) {
+  Fixture f;
+  auto writer = f.make(iface_spec(IfaceType::position2d, "base", Position2dInfo{}));
+  for (const std::uint32_t claimed : {13U, most_command_values, ~0U}) {  // 12 fit into a lease of this iface, which is rounded up
+    writer->segment().header().command_values = claimed;
+    EXPECT_FALSE(Segment::open(writer->segment().name())) << claimed;
+  }
+  writer->segment().header().command_values = 3;
+  EXPECT_TRUE(Segment::open(writer->segment().name()));
 }
 
 TEST(Iface, a_command_that_is_not_finite_is_refused) {
@@ -285,7 +328,7 @@ TEST(Iface, commands_of_a_client_that_went_are_not_taken_for_those_of_the_next) 
     ASSERT_NE(load(lease.owner), 0U);
     if (dies_while_writing) {
       store(lease.command_lock, load(lease.command_lock) + 1);
-      lease.command.values[0] = 2;
+      command_values_of(lease)[0] = 2;
       store(lease.owner, std::uint64_t{0});  // as the server does when it finds the process dead
     }
     first.reset();

@@ -23,7 +23,7 @@ void show_velocity(Control& control, const std::string& name) {
 bool is_position_iface(std::uint32_t server_id, const std::string& name) {
   for (const auto& found : shm::find_segments(server_id)) {
     const std::string type(shm::to_text(found.name.type));
-    const bool is_position = shm::row_of(found.name.type).takes_commands;
+    const bool is_position = shm::row_of(found.name.type).command_values > 0;
     if (is_position && (found.name.iface == name || type + ":" + found.name.iface == name)) return true;
   }
   return false;

@@ -23,7 +23,7 @@ long server_id(const std::vector<std::string>& words) {
 }
 
 bool fits(IfaceType type, const std::string& value, const std::string& command) {
-  const bool is_drive = shm::row_of(type).takes_commands;
+  const bool is_drive = shm::row_of(type).command_values > 0;
   if (value == "MODEL" || value == "--follow") return type == IfaceType::truth;
   if (value == "CAMERA" || value == "--camera") return type == IfaceType::camera;
   if (command == "velocity") return is_drive || type == IfaceType::truth;

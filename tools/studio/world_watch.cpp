@@ -42,7 +42,7 @@ Json ifaces_json(std::uint32_t server_id) {
     ifaces.push_back({{"type", std::string(shm::to_text(found.name.type))},
                       {"name", found.name.iface},
                       {"model", model},
-                      {"commands", shm::row_of(found.name.type).takes_commands},
+                      {"commands", shm::row_of(found.name.type).command_values > 0},
                       {"info", std::move(info)}});
   }
   return ifaces;

@@ -58,7 +58,7 @@ void Position2d::before_step(const Moment& moment) {
     case shm::CommandChange::fresh:
       is_commanded_ = true;
       command_ = {0, 0};
-      if (command.kind == RTMSIM_COMMAND_VELOCITY) command_ = {command.values[0], command.values[2]};
+      if (command.kind == shm::CommandKind::velocity) command_ = {command.values[0], command.values[2]};
       break;
     case shm::CommandChange::lost:
       is_commanded_ = false;

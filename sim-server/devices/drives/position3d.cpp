@@ -93,8 +93,9 @@ void Position3d::before_step(const Moment& moment) {
       is_commanded_ = true;
       goal_.reset();
       command_.setZero();
-      if (command.kind == RTMSIM_COMMAND_VELOCITY) command_ = {command.values[0], command.values[1], command.values[2], command.values[5]};
-      if (command.kind == RTMSIM_COMMAND_POSE)
+      if (command.kind == shm::CommandKind::velocity)
+        command_ = {command.values[0], command.values[1], command.values[2], command.values[5]};
+      if (command.kind == shm::CommandKind::pose)
         goal_ = Eigen::Vector4d(command.values[0], command.values[1], command.values[2], command.values[5]);
       break;
     case shm::CommandChange::lost:
