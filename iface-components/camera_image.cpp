@@ -52,29 +52,29 @@ std::span<const std::byte> for_img(shm::Format format, std::span<const std::byte
   return scratch;
 }
 
-base::Result<std::span<const unsigned char>> to_jpeg(JpegEncoder& encoder, const shm::FrameHead& head,
-                                                     std::span<const std::byte> packed_pixels, int quality,
-                                                     std::vector<std::byte>& scratch) {
+base::Result<std::span<const std::uint8_t>> to_jpeg(base::JpegEncoder& encoder, const shm::FrameHead& head,
+                                                    std::span<const std::byte> packed_pixels, int quality,
+                                                    std::vector<std::byte>& scratch) {
   const auto format = static_cast<shm::Format>(head.format);
   const int width = static_cast<int>(head.width), height = static_cast<int>(head.height);
-  const auto encode = [&](std::span<const std::byte> pixels, JpegEncoder::Pixels kind) {
-    return encoder.encode(pixels, width, height, kind, quality);
+  const auto encode = [&](std::span<const std::byte> pixels, base::JpegPixels kind) {
+    return encoder.encode({reinterpret_cast<const std::uint8_t*>(pixels.data()), pixels.size()}, width, height, 0, kind, quality);
   };
   switch (format) {
     case shm::Format::rgb8:
-      return encode(packed_pixels, JpegEncoder::Pixels::rgb);
+      return encode(packed_pixels, base::JpegPixels::rgb);
     case shm::Format::bgr8:
-      return encode(packed_pixels, JpegEncoder::Pixels::bgr);
+      return encode(packed_pixels, base::JpegPixels::bgr);
     case shm::Format::rgba8:
-      return encode(packed_pixels, JpegEncoder::Pixels::rgba);
+      return encode(packed_pixels, base::JpegPixels::rgba);
     case shm::Format::bgra8:
-      return encode(packed_pixels, JpegEncoder::Pixels::bgra);
+      return encode(packed_pixels, base::JpegPixels::bgra);
     case shm::Format::mono8:
-      return encode(packed_pixels, JpegEncoder::Pixels::grey);
+      return encode(packed_pixels, base::JpegPixels::grey);
     case shm::Format::mono16:
       scratch.resize(packed_pixels.size() / 2);
       for (std::size_t i = 0; i < scratch.size(); ++i) scratch[i] = packed_pixels[2 * i + 1];
-      return encode(scratch, JpegEncoder::Pixels::grey);
+      return encode(scratch, base::JpegPixels::grey);
     default:
       break;
   }
@@ -85,7 +85,7 @@ base::Result<std::span<const unsigned char>> to_jpeg(JpegEncoder& encoder, const
   scratch.resize(3 * count);
   base::demosaic({reinterpret_cast<const std::uint8_t*>(packed_pixels.data()), count}, width, height, head.width, *order,
                  {reinterpret_cast<std::uint8_t*>(scratch.data()), scratch.size()});
-  return encode(scratch, JpegEncoder::Pixels::rgb);
+  return encode(scratch, base::JpegPixels::rgb);
 }
 
 }  // namespace iface

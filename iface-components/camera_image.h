@@ -1,6 +1,7 @@
 // Frames of camera ifaces in the formats of the image types of ports, and as JPEG. Values; any thread.
 #pragma once
 
+#include <base/jpeg.h>
 #include <base/result.h>
 #include <rtm/ext/CameraCommonInterfaceSkel.h>
 #include <shm/client.h>
@@ -8,8 +9,6 @@
 #include <cstddef>
 #include <span>
 #include <vector>
-
-#include "jpeg.h"
 
 namespace iface {
 
@@ -29,8 +28,7 @@ std::span<const std::byte> packed(const shm::FrameHead& head, std::span<const st
 std::span<const std::byte> for_img(shm::Format format, std::span<const std::byte> packed_pixels, std::vector<std::byte>& scratch);
 
 // 16-bit grey by its high bytes, mosaics as the colours that they stand for.
-base::Result<std::span<const unsigned char>> to_jpeg(JpegEncoder& encoder, const shm::FrameHead& head,
-                                                     std::span<const std::byte> packed_pixels, int quality,
-                                                     std::vector<std::byte>& scratch);
+base::Result<std::span<const std::uint8_t>> to_jpeg(base::JpegEncoder& encoder, const shm::FrameHead& head,
+                                                    std::span<const std::byte> packed_pixels, int quality, std::vector<std::byte>& scratch);
 
 }  // namespace iface

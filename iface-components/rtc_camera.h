@@ -15,7 +15,6 @@
 
 #include "camera_image.h"
 #include "iface_component.h"
-#include "jpeg.h"
 
 class RTCCamera : public iface::IfaceComponent {
  public:
@@ -32,7 +31,7 @@ class RTCCamera : public iface::IfaceComponent {
 
   std::string encoding_ = "raw";
   int quality_ = 90;
-  iface::JpegEncoder jpeg_;
+  base::JpegEncoder jpeg_;
   std::string said_;
   std::uint64_t sent_ = 0, missed_ = 0, last_ = 0, attachments_ = 0;
   std::vector<std::byte> packed_, converted_;

@@ -114,7 +114,7 @@ TEST(CameraImage, jpeg_of_every_format_decodes_near_the_frame) {
     const auto head = head_of(format, 64, 48);
     std::vector<int> wanted;
     const auto pixels = gradient(format, 64, 48, wanted);
-    JpegEncoder encoder;
+    base::JpegEncoder encoder;
     Bytes scratch;
     const auto jpeg = to_jpeg(encoder, head, pixels, 95, scratch);
     ASSERT_TRUE(jpeg) << image_format(format).name;
@@ -129,7 +129,7 @@ TEST(CameraImage, jpeg_of_every_format_decodes_near_the_frame) {
 }
 
 TEST(CameraImage, what_jpeg_cannot_encode_is_refused_with_a_line) {
-  JpegEncoder encoder;
+  base::JpegEncoder encoder;
   Bytes scratch;
   EXPECT_FALSE(to_jpeg(encoder, head_of(Format::depth_float, 2, 2), Bytes(16), 90, scratch));
   EXPECT_FALSE(to_jpeg(encoder, head_of(Format::rgb8, 4, 4), Bytes(5), 90, scratch));

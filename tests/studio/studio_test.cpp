@@ -408,17 +408,18 @@ TEST(Hall, only_what_is_in_the_folder_is_opened) {
 bool is_jpeg(const base::Result<std::string>& jpeg) { return jpeg && jpeg->starts_with("\xff\xd8\xff"); }
 
 TEST(ShownPicture, each_form_of_a_camera_becomes_a_jpeg) {
+  base::JpegEncoder encoder;
   for (const std::string_view encoding :
        {"rgb8", "bgr8", "rgba8", "bgra8", "mono8", "mono16", "32FC1", "bayer_rggb8", "bayer_bggr8", "bayer_gbrg8", "bayer_grbg8"}) {
     const std::string data(7 * 4 * 5, '\x3f');
-    EXPECT_TRUE(is_jpeg(studio::jpeg_of({7, 5, 7 * 4, encoding, data}))) << encoding;
-    EXPECT_TRUE(is_jpeg(studio::jpeg_of({1, 1, 4, encoding, data}))) << encoding;
-    EXPECT_FALSE(studio::jpeg_of({7, 6, 7 * 4, encoding, data}).ok()) << encoding;
-    EXPECT_FALSE(studio::jpeg_of({7, 5, 6, encoding, data}).ok()) << encoding;
-    EXPECT_FALSE(studio::jpeg_of({0, 5, 28, encoding, data}).ok()) << encoding;
-    EXPECT_FALSE(studio::jpeg_of({0xffffffff, 0xffffffff, 0xffffffff, encoding, data}).ok()) << encoding;
+    EXPECT_TRUE(is_jpeg(studio::jpeg_of({7, 5, 7 * 4, encoding, data}, encoder))) << encoding;
+    EXPECT_TRUE(is_jpeg(studio::jpeg_of({1, 1, 4, encoding, data}, encoder))) << encoding;
+    EXPECT_FALSE(studio::jpeg_of({7, 6, 7 * 4, encoding, data}, encoder).ok()) << encoding;
+    EXPECT_FALSE(studio::jpeg_of({7, 5, 6, encoding, data}, encoder).ok()) << encoding;
+    EXPECT_FALSE(studio::jpeg_of({0, 5, 28, encoding, data}, encoder).ok()) << encoding;
+    EXPECT_FALSE(studio::jpeg_of({0xffffffff, 0xffffffff, 0xffffffff, encoding, data}, encoder).ok()) << encoding;
   }
-  EXPECT_FALSE(studio::jpeg_of({1, 1, 4, "points", "1234"}).ok());
+  EXPECT_FALSE(studio::jpeg_of({1, 1, 4, "points", "1234"}, encoder).ok());
 }
 
 TEST(ShownPicture, a_camera_is_named_with_its_type_or_without) {

@@ -1,13 +1,13 @@
 #include "recording/picture_export.h"
 
 #include <png.h>
-#include <turbojpeg.h>
 
 #include <array>
 #include <cstdint>
 #include <map>
-#include <memory>
 
+#include "base/base64.h"
+#include "base/jpeg.h"
 #include "base/text.h"
 
 namespace recorder {
@@ -15,26 +15,6 @@ namespace recorder {
 namespace {
 
 constexpr std::uint64_t most_pixels = std::uint64_t{1} << 26;
-
-std::string from_base64(const std::string& text) {
-  std::string octets;
-  std::uint32_t group = 0;
-  int letters = 0;
-  for (const char c : text) {
-    const int value = c >= 'A' && c <= 'Z'   ? c - 'A'
-                      : c >= 'a' && c <= 'z' ? c - 'a' + 26
-                      : c >= '0' && c <= '9' ? c - '0' + 52
-                      : c == '+'             ? 62
-                      : c == '/'             ? 63
-                                             : -1;
-    if (value < 0) break;
-    group = group << 6 | static_cast<std::uint32_t>(value);
-    if (++letters < 2) continue;
-    const int shift = 6 - 2 * ((letters - 1) % 4);
-    if (letters % 4 != 1) octets += static_cast<char>(group >> shift & 0xff);
-  }
-  return octets;
-}
 
 std::uint32_t bytes_of(Picture::Kind kind) {
   switch (kind) {
@@ -67,22 +47,15 @@ base::Result<Picture> from_image(const Json& sample) {
   const auto kind = kinds.find(encoding);
   if (kind == kinds.end()) return base::Error{"its pictures are of encoding " + base::in_quotes(encoding) + ", which PNG does not have"};
   return checked({kind->second, sample.value("width", 0U), sample.value("height", 0U), sample.value("step", std::size_t{0}),
-                  from_base64(sample.value("data", ""))});
+                  base::from_base64(sample.value("data", ""))});
 }
 
 base::Result<Picture> from_jpeg(const std::string& octets) {
-  const std::unique_ptr<void, int (*)(tjhandle)> handle(tjInitDecompress(), tjDestroy);
-  const auto* data = reinterpret_cast<const unsigned char*>(octets.data());
-  int width = 0, height = 0, sampling = 0, colours = 0;
-  const auto wrong = base::Error{"its pictures are no JPEG"};
-  if (!handle || tjDecompressHeader3(handle.get(), data, octets.size(), &width, &height, &sampling, &colours) != 0) return wrong;
-  if (width < 1 || height < 1 || std::uint64_t(width) * std::uint64_t(height) > most_pixels) return wrong;
-  Picture picture{Picture::Kind::rgb, static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), std::size_t(width) * 3, {}};
-  picture.pixels.resize(picture.stride * picture.height);
-  if (tjDecompress2(handle.get(), data, octets.size(), reinterpret_cast<unsigned char*>(picture.pixels.data()), width, 0, height, TJPF_RGB,
-                    0) != 0)
-    return wrong;
-  return picture;
+  auto image = base::decode_jpeg({reinterpret_cast<const std::uint8_t*>(octets.data()), octets.size()}, base::JpegPixels::rgb);
+  if (!image) return base::Error{"its pictures are no JPEG"};
+  const auto width = static_cast<std::uint32_t>(image->width);
+  return Picture{Picture::Kind::rgb, width, static_cast<std::uint32_t>(image->height), std::size_t{width} * 3,
+                 std::string(image->pixels.begin(), image->pixels.end())};
 }
 
 // Of a component: JPEG, or rows of RGB or grey without gaps.
@@ -110,7 +83,7 @@ bool has_pictures(const std::string& type) {
 base::Result<Picture> picture_of(const std::string& type, const Json& sample) {
   try {
     if (type == "sensor_msgs/msg/Image") return from_image(sample);
-    if (type == "sensor_msgs/msg/CompressedImage") return from_jpeg(from_base64(sample.value("data", "")));
+    if (type == "sensor_msgs/msg/CompressedImage") return from_jpeg(base::from_base64(sample.value("data", "")));
     return from_component(sample);
   } catch (const Json::exception&) {
     return base::Error{"its samples say " + base::in_quotes(type) + " and have members of other types"};

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/base64.h"
 #include "base/text.h"
 
 namespace recorder {
@@ -108,18 +109,6 @@ class Cdr {
   std::size_t at_ = 0;
 };
 
-std::string base64(std::string_view octets) {
-  static constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((octets.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < octets.size(); i += 3) {
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (i + k < octets.size() ? static_cast<unsigned char>(octets[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k) text += i + k <= octets.size() ? letters[group >> (18 - 6 * k) & 63U] : '=';
-  }
-  return text;
-}
-
 class Decoder {
  public:
   Decoder(const std::vector<Message>& messages, Cdr cdr)
@@ -157,7 +146,7 @@ class Decoder {
     if (size > cdr_.left()) return std::nullopt;  // each element has an octet at least
     if (field.kind == RosKind::uint8) {
       const auto octets = cdr_.take(size);
-      return octets ? std::optional<Json>(base64(*octets)) : std::nullopt;
+      return octets ? std::optional<Json>(base::to_base64(*octets)) : std::nullopt;
     }
     if (!charge(size)) return std::nullopt;
     Json json = Json::array();

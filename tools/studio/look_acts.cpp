@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/base64.h"
 #include "base/text.h"
 #include "run/time_members.h"
 #include "shm/client.h"
@@ -138,18 +139,6 @@ Result<Plan> statistics(const ActContext& context, const Json&) {
 
 // ---- pictures
 
-std::string base64(std::string_view octets) {
-  constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((octets.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < octets.size(); i += 3) {
-    std::uint32_t bits = 0;
-    for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (i + k < octets.size() ? static_cast<unsigned char>(octets[i + k]) : 0);
-    for (std::size_t k = 0; k < 4; ++k) text += i + k <= octets.size() ? letters[bits >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
-
 // Of the eye that is given: {png} in base64.
 Result<Plan> screenshot(const ActContext& context, const Json& args) {
   const auto pose = numbers_of(args, "pose", 7, 7);
@@ -189,7 +178,7 @@ Result<Plan> screenshot(const ActContext& context, const Json& args) {
                 const auto reply = simulator->ask(request, picture_limit);
                 if (!reply) return reply.error();
                 if (reply->status != shm::RequestStatus::ok) return Error{"screenshot: " + reply->message};
-                return Json{{"png", base64(reply->text)}};
+                return Json{{"png", base::to_base64(reply->text)}};
               }};
 }
 

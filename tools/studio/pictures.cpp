@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "channels/views/jpeg.h"
 #include "shm/client.h"
 #include "studio/foxglove.h"
 #include "studio/shown_picture.h"
@@ -56,18 +55,13 @@ class Pictures::Camera {
     if (!frame) return;
     sequence_ = frame->sequence();
     time_ = std::chrono::nanoseconds(frame->head().stamp.sim_time_ns);
-    if (channels::Jpeg::takes(static_cast<shm::Format>(frame->head().format))) {
-      const auto octets = jpeg_.encode(*frame);
-      problem_ = octets ? "" : "camera " + name_ + ": a frame is cut short";
-      if (octets) picture_.assign(octets->begin(), octets->end());
-      return;
-    }
     const auto& head = frame->head();
     auto jpeg = jpeg_of({head.width,
                          head.height,
                          head.stride,
                          encoding_of(static_cast<shm::Format>(head.format)),
-                         {reinterpret_cast<const char*>(frame->data().data()), frame->data().size()}});
+                         {reinterpret_cast<const char*>(frame->data().data()), frame->data().size()}},
+                        jpeg_);
     problem_ = jpeg ? "" : "camera " + name_ + ": " + jpeg.error().message;
     if (jpeg) picture_ = std::move(*jpeg);
   }
@@ -105,7 +99,7 @@ class Pictures::Camera {
   const std::uint32_t server_id_;
   const std::string name_;
   std::optional<shm::Iface> iface_;
-  channels::Jpeg jpeg_;
+  base::JpegEncoder jpeg_;
   std::uint64_t sequence_ = 0;
   std::chrono::nanoseconds time_{0};
   std::string picture_, problem_;

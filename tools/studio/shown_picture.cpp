@@ -1,14 +1,13 @@
 #include "studio/shown_picture.h"
 
-#include <turbojpeg.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <map>
-#include <memory>
 #include <optional>
+#include <span>
 
+#include "base/bayer.h"
 #include "base/text.h"
 
 namespace studio {
@@ -21,35 +20,28 @@ constexpr std::uint64_t most_pixels = std::uint64_t{1} << 26;
 constexpr int jpeg_quality = 85;
 
 struct Coding {
-  int turbo = -1;         // that the encoder takes as it is; -1: none
-  std::size_t bytes = 1;  // a pixel
+  std::optional<base::JpegPixels> pixels{};  // none: the image is converted before it is encoded
+  std::size_t bytes = 1;                     // per pixel
 };
 
 const std::map<std::string_view, Coding>& codings() {
-  static const std::map<std::string_view, Coding> all = {{"rgb8", {TJPF_RGB, 3}},   {"bgr8", {TJPF_BGR, 3}},   {"rgba8", {TJPF_RGBX, 4}},
-                                                         {"bgra8", {TJPF_BGRX, 4}}, {"mono8", {TJPF_GRAY, 1}}, {"mono16", {-1, 2}},
-                                                         {"32FC1", {-1, 4}},        {"bayer_rggb8", {}},       {"bayer_bggr8", {}},
-                                                         {"bayer_gbrg8", {}},       {"bayer_grbg8", {}}};
+  using enum base::JpegPixels;
+  static const std::map<std::string_view, Coding> all = {{"rgb8", {rgb, 3}},           {"bgr8", {bgr, 3}},   {"rgba8", {rgba, 4}},
+                                                         {"bgra8", {bgra, 4}},         {"mono8", {grey, 1}}, {"mono16", {std::nullopt, 2}},
+                                                         {"32FC1", {std::nullopt, 4}}, {"bayer_rggb8", {}},  {"bayer_bggr8", {}},
+                                                         {"bayer_gbrg8", {}},          {"bayer_grbg8", {}}};
   return all;
 }
 
-Result<std::string> compress(const unsigned char* pixels, const RawPicture& size, std::size_t stride, int format) {
-  const std::unique_ptr<void, int (*)(tjhandle)> handle(tjInitCompress(), tjDestroy);
-  unsigned char* buffer = nullptr;
-  unsigned long length = 0;
-  const int code =
-      !handle ? -1
-              : tjCompress2(handle.get(), pixels, static_cast<int>(size.width), static_cast<int>(stride), static_cast<int>(size.height),
-                            format, &buffer, &length, format == TJPF_GRAY ? TJSAMP_GRAY : TJSAMP_420, jpeg_quality, TJFLAG_FASTDCT);
-  std::string jpeg;
-  if (code == 0) jpeg.assign(reinterpret_cast<const char*>(buffer), length);
-  if (buffer != nullptr) tjFree(buffer);
-  if (code != 0) return Error{"the picture cannot be made a JPEG"};
-  return jpeg;
+Result<std::string> compress(base::JpegEncoder& encoder, std::span<const std::uint8_t> pixels, const RawPicture& size, std::size_t stride,
+                             base::JpegPixels kind) {
+  const auto jpeg = encoder.encode(pixels, static_cast<int>(size.width), static_cast<int>(size.height), stride, kind, jpeg_quality);
+  if (!jpeg) return jpeg.error();
+  return std::string(jpeg->begin(), jpeg->end());
 }
 
-std::vector<unsigned char> upper_octets(const RawPicture& picture) {
-  std::vector<unsigned char> grey;
+std::vector<std::uint8_t> upper_octets(const RawPicture& picture) {
+  std::vector<std::uint8_t> grey;
   grey.reserve(std::size_t{picture.width} * picture.height);
   for (std::size_t y = 0; y < picture.height; ++y) {
     for (std::size_t x = 0; x < picture.width; ++x)
@@ -59,7 +51,7 @@ std::vector<unsigned char> upper_octets(const RawPicture& picture) {
 }
 
 // What has no depth is black.
-std::vector<unsigned char> grey_of_depth(const RawPicture& picture) {
+std::vector<std::uint8_t> grey_of_depth(const RawPicture& picture) {
   const auto at = [&](std::size_t x, std::size_t y) {
     float depth = 0;
     std::memcpy(&depth, picture.data.data() + y * picture.stride + 4 * x, sizeof depth);
@@ -70,7 +62,7 @@ std::vector<unsigned char> grey_of_depth(const RawPicture& picture) {
     for (std::size_t x = 0; x < picture.width; ++x) farthest = std::max(farthest, at(x, y));
   }
   constexpr float white = 255, darkest = 40;  // of what is there
-  std::vector<unsigned char> grey;
+  std::vector<std::uint8_t> grey;
   grey.reserve(std::size_t{picture.width} * picture.height);
   for (std::size_t y = 0; y < picture.height; ++y) {
     for (std::size_t x = 0; x < picture.width; ++x) {
@@ -79,29 +71,6 @@ std::vector<unsigned char> grey_of_depth(const RawPicture& picture) {
     }
   }
   return grey;
-}
-
-// `letters`: the colours of the cell of four, "rggb".
-std::vector<unsigned char> colours_of_mosaic(const RawPicture& picture, std::string_view letters) {
-  std::vector<unsigned char> rgb(std::size_t{picture.width} * picture.height * 3);
-  for (std::size_t y = 0; y < picture.height; ++y) {
-    for (std::size_t x = 0; x < picture.width; ++x) {
-      // The cell that the pixel is in; at an odd border the one before.
-      const std::size_t left = std::min<std::size_t>(x & ~std::size_t{1}, picture.width >= 2 ? picture.width - 2 : 0) & ~std::size_t{1};
-      const std::size_t top = std::min<std::size_t>(y & ~std::size_t{1}, picture.height >= 2 ? picture.height - 2 : 0) & ~std::size_t{1};
-      unsigned sums[3] = {}, counts[3] = {};
-      for (std::size_t i = 0; i < 4; ++i) {
-        const std::size_t px = std::min<std::size_t>(left + i % 2, picture.width - 1),
-                          py = std::min<std::size_t>(top + i / 2, picture.height - 1);
-        const std::size_t colour = letters[i] == 'r' ? 0 : letters[i] == 'g' ? 1 : 2;
-        sums[colour] += static_cast<unsigned char>(picture.data[py * picture.stride + px]);
-        ++counts[colour];
-      }
-      for (std::size_t colour = 0; colour < 3; ++colour)
-        rgb[(y * picture.width + x) * 3 + colour] = static_cast<unsigned char>(sums[colour] / std::max(1U, counts[colour]));
-    }
-  }
-  return rgb;
 }
 
 // Little-endian CDR from behind its head of four octets.
@@ -146,7 +115,7 @@ CameraName camera_name(const std::string& text) {
   return {{"camera", "depth"}, text};
 }
 
-Result<std::string> jpeg_of(const RawPicture& picture) {
+Result<std::string> jpeg_of(const RawPicture& picture, base::JpegEncoder& encoder) {
   const auto coding = codings().find(picture.encoding);
   if (coding == codings().end())
     return Error{"its pictures are of encoding " + base::in_quotes(std::string(picture.encoding)) + ", which is not shown"};
@@ -155,14 +124,17 @@ Result<std::string> jpeg_of(const RawPicture& picture) {
       picture.stride > most_pixels * 4 || picture.data.size() < picture.stride * (picture.height - 1) + row)
     return Error{"a picture of " + std::to_string(picture.width) + " x " + std::to_string(picture.height) + " pixels in " +
                  std::to_string(picture.data.size()) + " octets"};
-  if (coding->second.turbo >= 0)
-    return compress(reinterpret_cast<const unsigned char*>(picture.data.data()), picture, picture.stride, coding->second.turbo);
-  if (picture.encoding.starts_with("bayer_")) {
-    const auto rgb = colours_of_mosaic(picture, picture.encoding.substr(6, 4));
-    return compress(rgb.data(), picture, std::size_t{picture.width} * 3, TJPF_RGB);
+  if (coding->second.pixels)
+    return compress(encoder, {reinterpret_cast<const std::uint8_t*>(picture.data.data()), picture.data.size()}, picture, picture.stride,
+                    *coding->second.pixels);
+  if (const auto order = base::parse_bayer_order(picture.encoding.substr(picture.encoding.find('_') + 1))) {
+    std::vector<std::uint8_t> rgb(std::size_t{picture.width} * picture.height * 3);
+    base::demosaic({reinterpret_cast<const std::uint8_t*>(picture.data.data()), picture.data.size()}, static_cast<int>(picture.width),
+                   static_cast<int>(picture.height), picture.stride, *order, rgb);
+    return compress(encoder, rgb, picture, 0, base::JpegPixels::rgb);
   }
   const auto grey = picture.encoding == "32FC1" ? grey_of_depth(picture) : upper_octets(picture);
-  return compress(grey.data(), picture, picture.width, TJPF_GRAY);
+  return compress(encoder, grey, picture, 0, base::JpegPixels::grey);
 }
 
 Result<std::string> jpeg_in_message(std::string_view type, std::string_view octets) {
@@ -183,7 +155,8 @@ Result<std::string> jpeg_in_message(std::string_view type, std::string_view octe
   const auto step = message.number();
   const auto data = message.octets();
   if (!step || !data) return cut;
-  return jpeg_of({*width, *height, *step, *encoding, *data});
+  base::JpegEncoder encoder;
+  return jpeg_of({*width, *height, *step, *encoding, *data}, encoder);
 }
 
 }  // namespace studio

@@ -1,6 +1,5 @@
-// Pictures of cameras as people can see them in a browser: JPEG of whatever a camera gives. Depth is grey, near bright and far dark, by the
-// farthest of the picture; what a mosaic of colour filters has of a colour stands for its four pixels; of 16 bits the upper eight are
-// shown. Functions; any thread.
+// Converts camera images to JPEG for a browser. Depth becomes grey: near is bright, the farthest pixel is dark. A colour filter mosaic is
+// interpolated. Of 16-bit grey the upper eight bits are used. Functions; any thread.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/jpeg.h"
 #include "base/result.h"
 
 namespace studio {
@@ -28,7 +28,7 @@ struct CameraName {
 };
 CameraName camera_name(const std::string& text);
 
-base::Result<std::string> jpeg_of(const RawPicture& picture);
+base::Result<std::string> jpeg_of(const RawPicture& picture, base::JpegEncoder& encoder);
 
 // A message of this type in CDR with the low octet first, as recordings of ours have it: sensor_msgs/msg/CompressedImage or Image.
 base::Result<std::string> jpeg_in_message(std::string_view type, std::string_view octets);

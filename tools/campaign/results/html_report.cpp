@@ -5,6 +5,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "base/base64.h"
 #include "base/text.h"
 #include "campaign/results/report.h"
 #include "campaign/results/report_page.h"
@@ -17,17 +18,6 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t most_points = 20'000;  // rows that are drawn
 constexpr std::size_t most_failed = 200;     // that are listed
 constexpr std::size_t most_pictures = 24;
-
-std::string base64(const std::string& octets) {
-  constexpr const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < octets.size(); i += 3) {
-    unsigned word = 0;
-    for (std::size_t k = 0; k < 3; ++k) word = word << 8U | (i + k < octets.size() ? static_cast<unsigned char>(octets[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k) text += i + k <= octets.size() ? letters[(word >> (18 - 6 * k)) & 63U] : '=';
-  }
-  return text;
-}
 
 // Of a row that failed: where its files are, also when they were moved together with the results.
 std::string files_of(const Results& results, const ResultRow& row) {
@@ -43,7 +33,7 @@ std::string picture_in(const std::string& folder) {
   std::ifstream in(folder + "/picture.png", std::ios::binary);
   if (folder.empty() || !in) return "";
   const std::string octets((std::istreambuf_iterator<char>(in)), {});
-  return "data:image/png;base64," + base64(octets);
+  return "data:image/png;base64," + base::to_base64(octets);
 }
 
 Json value_json(const std::string& text) {

@@ -6,8 +6,9 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <span>
 
-#include "channels/views/jpeg.h"
+#include "base/jpeg.h"
 
 namespace channels {
 
@@ -274,20 +275,47 @@ ros::Image image_message(const shm::HeldFrame& frame, const ros::Header& header)
           .data = {reinterpret_cast<const std::uint8_t*>(frame.data().data()), frame.data().size()}};
 }
 
+// The images that a JPEG can hold; mosaics of colour filters, depth and 16 bits of grey stay as they are.
+std::optional<base::JpegPixels> jpeg_pixels(shm::Format format) {
+  switch (format) {
+    case shm::Format::rgb8:
+      return base::JpegPixels::rgb;
+    case shm::Format::bgr8:
+      return base::JpegPixels::bgr;
+    case shm::Format::rgba8:
+      return base::JpegPixels::rgba;
+    case shm::Format::bgra8:
+      return base::JpegPixels::bgra;
+    case shm::Format::mono8:
+      return base::JpegPixels::grey;
+    default:
+      return std::nullopt;
+  }
+}
+
+constexpr int jpeg_quality = 85;
+
+base::Result<std::span<const std::uint8_t>> encode(base::JpegEncoder& encoder, const shm::HeldFrame& frame, base::JpegPixels kind) {
+  const auto& head = frame.head();
+  return encoder.encode({reinterpret_cast<const std::uint8_t*>(frame.data().data()), frame.data().size()}, static_cast<int>(head.width),
+                        static_cast<int>(head.height), head.stride, kind, jpeg_quality);
+}
+
 IfaceView camera_view(const shm::Iface& iface, Pictures pictures) {
   IfaceView view;
   const auto format = static_cast<shm::Format>(iface.info<shm::CameraInfo>().format);
-  const bool is_jpeg = pictures == Pictures::jpeg && Jpeg::takes(format);
+  const auto kind = jpeg_pixels(format);
+  const bool is_jpeg = pictures == Pictures::jpeg && kind;
   view.channels = {is_jpeg ? channel<ros::CompressedImage>(iface, "/image") : channel<ros::Image>(iface, "/image"),
                    channel<ros::CameraInfo>(iface, "/camera_info")};
   place<shm::CameraInfo>(view, iface);
   view.frames.push_back(optical_frame(iface.name()));
-  const auto jpeg = is_jpeg ? std::make_shared<Jpeg>() : nullptr;
-  view.tell = [jpeg](shm::Iface& from, const shm::HeldFrame* frame, Said& said) {
+  const auto jpeg = is_jpeg ? std::make_shared<base::JpegEncoder>() : nullptr;
+  view.tell = [jpeg, kind](shm::Iface& from, const shm::HeldFrame* frame, Said& said) {
     if (frame == nullptr || frame->head().stamp.valid == 0) return;
     const auto header = header_of(frame->head().stamp, from.name() + "/optical");
     if (said.is_wanted(0) && jpeg) {
-      const auto octets = jpeg->encode(*frame);
+      const auto octets = encode(*jpeg, *frame, *kind);
       if (octets) said.add(0, ros::CompressedImage{header, "jpeg", *octets});
     } else if (said.is_wanted(0)) {
       said.add(0, image_message(*frame, header));
