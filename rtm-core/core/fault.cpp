@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/random.h"
 #include "base/text.h"
 
 namespace rt {
@@ -38,10 +39,7 @@ std::optional<Fault> parse_one(const std::string& text) {
 
 // From 0 up to, not including, 1; the same for the same seed and count.
 double chance(std::uint64_t seed, std::uint64_t count) {
-  std::uint64_t z = seed * 0xd1342543de82ef95ULL + (count + 1) * 0x9e3779b97f4a7c15ULL;
-  z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
-  return static_cast<double>((z ^ (z >> 31U)) >> 11U) * 0x1.0p-53;
+  return base::unit_interval(base::mix64(seed * 0xd1342543de82ef95ULL + (count + 1) * base::mix64_step));
 }
 
 }  // namespace

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/random.h"
+
 namespace sim {
 
 class StateHash {
@@ -40,10 +42,7 @@ class StateHash {
     std::uint64_t state = 0;
     for (const std::uint64_t word : words()) {
       // One round of splitmix64 over the word and what came before.
-      state = (state ^ word) + 0x9e3779b97f4a7c15U;
-      state = (state ^ (state >> 30)) * 0xbf58476d1ce4e5b9U;
-      state = (state ^ (state >> 27)) * 0x94d049bb133111ebU;
-      state ^= state >> 31;
+      state = base::mix64((state ^ word) + base::mix64_step);
     }
     return state;
   }

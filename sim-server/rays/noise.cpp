@@ -2,15 +2,12 @@
 
 #include <cmath>
 
+#include "base/random.h"
+
 namespace sim {
 namespace {
 
-std::uint64_t mix(std::uint64_t z) {
-  z += 0x9e3779b97f4a7c15U;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
-  return z ^ (z >> 31);
-}
+std::uint64_t mix(std::uint64_t z) { return base::mix64(z + base::mix64_step); }
 
 // The bell curve in layers of equal area (a ziggurat): almost every number costs one draw, one multiplication and one comparison.
 struct Layers {

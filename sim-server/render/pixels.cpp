@@ -6,6 +6,8 @@
 #include <numbers>
 #include <vector>
 
+#include "base/random.h"
+
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
@@ -88,12 +90,7 @@ void rgba_to_mono(std::span<const std::uint8_t> rgba, std::span<std::uint8_t> ou
   }
 }
 
-std::uint64_t mix_seed(std::uint64_t a, std::uint64_t b) {
-  std::uint64_t x = a * 0x9e3779b97f4a7c15ULL + b + 0x632be59bd9b4e019ULL;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
-  return x ^ (x >> 31);
-}
+std::uint64_t mix_seed(std::uint64_t a, std::uint64_t b) { return base::mix64(a * base::mix64_step + b + 0x632be59bd9b4e019ULL); }
 
 NoiseStream::NoiseStream(std::uint64_t seed) {
   for (auto& word : state_) {

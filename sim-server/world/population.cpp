@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "base/random.h"
 #include "base/text.h"
 #include "world/xml_file.h"
 #include "world/xml_values.h"
@@ -23,13 +24,7 @@ class Dice {
     for (const char c : name) state_ = (state_ ^ static_cast<unsigned char>(c)) * 1099511628211U;
   }
   // From 0 to below 1.
-  double roll() {
-    state_ += 0x9e3779b97f4a7c15U;
-    std::uint64_t z = state_;
-    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
-    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
-    return static_cast<double>((z ^ (z >> 31U)) >> 11U) * 0x1p-53;
-  }
+  double roll() { return base::unit_interval(base::mix64(state_ += base::mix64_step)); }
 
  private:
   std::uint64_t state_ = 14695981039346656037U;

@@ -8,9 +8,9 @@
 #include <fstream>
 #include <set>
 
+#include "base/content_hash.h"
+#include "base/random.h"
 #include "campaign/results/statistics.h"
-#include "campaign/rows/content_hash.h"
-#include "campaign/rows/random.h"
 #include "campaign/rows/samples.h"
 #include "support/paths.h"
 
@@ -58,7 +58,7 @@ TEST(PassRates, have_wilsons_interval) {
 
 TEST(ContentHashes, tell_pieces_apart) {
   const auto of = [](const std::vector<std::string>& pieces) {
-    ContentHash hash;
+    base::ContentHash hash;
     for (const auto& piece : pieces) hash.add(piece);
     return hash.text();
   };

@@ -224,7 +224,7 @@ class Hunt {
   const HuntOptions& options_;
   const std::function<void(const HuntProgress&)>& show_;
   CaseMaker maker_;
-  Random random_;
+  base::Random random_;
   std::vector<HuntCase> corpus_;
   std::set<std::string> features_, signatures_;
   Broken broken_;  // the simplest case so far of what is being shrunk

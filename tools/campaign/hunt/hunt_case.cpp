@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 double rounded(double seconds) { return std::round(seconds * 10) / 10; }
 
 // As often the utmost as anything between: most of what can break breaks there.
-double amount(Fault::Kind kind, Random& random) {
+double amount(Fault::Kind kind, base::Random& random) {
   const bool is_utmost = random.below(2) == 0;
   switch (kind) {
     case Fault::Kind::bias:
@@ -55,11 +55,11 @@ CaseMaker::CaseMaker(const Campaign& campaign, const std::vector<HuntTarget>& ta
 }
 
 // The first moment is special: nothing has been measured, sent or remembered yet.
-double CaseMaker::time(Random& random, double duration_s) const {
+double CaseMaker::time(base::Random& random, double duration_s) const {
   return random.below(4) == 0 ? 0 : rounded(random.uniform() * std::max(0.1, duration_s - 0.1));
 }
 
-const CaseMaker::Choice& CaseMaker::draw(Random& random) {
+const CaseMaker::Choice& CaseMaker::draw(base::Random& random) {
   if (deck_.empty()) {
     deck_.resize(choices_.size());
     std::iota(deck_.begin(), deck_.end(), 0);
@@ -70,14 +70,14 @@ const CaseMaker::Choice& CaseMaker::draw(Random& random) {
   return drawn;
 }
 
-void CaseMaker::add_event(HuntCase& to, const Event& wanted, double from_s, Random& random) const {
+void CaseMaker::add_event(HuntCase& to, const Event& wanted, double from_s, base::Random& random) const {
   Event event = wanted;
   if (!event.at_s && !event.when) event.at_s = rounded(from_s + time(random, to.duration_s - from_s));
   to.events.push_back(std::move(event));
 }
 
 // What harms only after something else: an activation after the deactivation that a case has already.
-void CaseMaker::add_consequence(HuntCase& to, Random& random) const {
+void CaseMaker::add_consequence(HuntCase& to, base::Random& random) const {
   const auto& events = campaign_.plan().hunt.events;
   double last_s = 0;
   for (const auto& event : to.events) last_s = std::max(last_s, event.at_s.value_or(0));
@@ -85,7 +85,7 @@ void CaseMaker::add_consequence(HuntCase& to, Random& random) const {
   add_event(to, events[random.below(events.size())], last_s, random);
 }
 
-void CaseMaker::add_deed(HuntCase& to, Random& random) {
+void CaseMaker::add_deed(HuntCase& to, base::Random& random) {
   const auto& choice = draw(random);
   if (choice.event != nullptr) return add_event(to, *choice.event, 0, random);
   Fault fault;
@@ -98,7 +98,7 @@ void CaseMaker::add_deed(HuntCase& to, Random& random) {
   to.faults.push_back(std::move(fault));
 }
 
-HuntCase CaseMaker::fresh(Random& random) {
+HuntCase CaseMaker::fresh(base::Random& random) {
   HuntCase made;
   made.duration_s = campaign_.plan().duration_s;
   const auto row = campaign_.row(1 + random.below(campaign_.rows()));
@@ -111,7 +111,7 @@ HuntCase CaseMaker::fresh(Random& random) {
   return made;
 }
 
-HuntCase CaseMaker::changed(const HuntCase& from, Random& random) {
+HuntCase CaseMaker::changed(const HuntCase& from, base::Random& random) {
   HuntCase made = from;
   const auto way = random.below(4);
   if (way == 0 || made.deeds() == 0) made.row.seed = 1 + random.below(1000);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "campaign/rows/random.h"
+#include "base/random.h"
 #include "campaign/run/campaign.h"
 #include "campaign/run/deeds_runner.h"
 
@@ -27,9 +27,9 @@ class CaseMaker {
   // Of the plan's events and these faults, see hunt_targets(). The campaign must live as long.
   CaseMaker(const Campaign& campaign, const std::vector<HuntTarget>& targets);
 
-  HuntCase fresh(Random& random);
+  HuntCase fresh(base::Random& random);
   // A case that differs a little.
-  HuntCase changed(const HuntCase& from, Random& random);
+  HuntCase changed(const HuntCase& from, base::Random& random);
   bool has_deeds() const { return !choices_.empty(); }
 
  private:
@@ -41,11 +41,11 @@ class CaseMaker {
     std::string target;
   };
   // All are tried in a random order before one is tried again: what is rare among many must not be a matter of luck.
-  const Choice& draw(Random& random);
-  void add_deed(HuntCase& to, Random& random);
-  void add_consequence(HuntCase& to, Random& random) const;
-  void add_event(HuntCase& to, const Event& wanted, double from_s, Random& random) const;
-  double time(Random& random, double duration_s) const;
+  const Choice& draw(base::Random& random);
+  void add_deed(HuntCase& to, base::Random& random);
+  void add_consequence(HuntCase& to, base::Random& random) const;
+  void add_event(HuntCase& to, const Event& wanted, double from_s, base::Random& random) const;
+  double time(base::Random& random, double duration_s) const;
   const Campaign& campaign_;
   std::vector<Choice> choices_;
   std::vector<std::size_t> deck_;  // of choices_, those that are not drawn yet

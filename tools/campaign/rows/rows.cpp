@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/random.h"
 #include "base/text.h"
 #include "campaign/rows/model_files.h"
-#include "campaign/rows/random.h"
 #include "campaign/rows/samples.h"
 
 namespace campaign {
@@ -108,7 +108,7 @@ Result<Row> RowMaker::row(std::size_t number) const {
 
 Result<void> RowMaker::scatter(Row& row, std::size_t sample) const {
   constexpr int tries = 2000;
-  Random random(plan_->sampling_seed, "scatter " + std::to_string(row.seed) + " " + std::to_string(sample));
+  base::Random random(plan_->sampling_seed, "scatter " + std::to_string(row.seed) + " " + std::to_string(sample));
   auto poses = placed_models(row, models_);
   std::map<std::string, std::vector<Polygon>> standing;
   for (const auto& [name, model] : models_) standing[name] = footprint(model.outline, poses[name]);

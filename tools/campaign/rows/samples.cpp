@@ -5,14 +5,14 @@
 #include <cmath>
 #include <numeric>
 
-#include "campaign/rows/random.h"
+#include "base/random.h"
 
 namespace campaign {
 namespace {
 
 using Points = std::vector<std::vector<double>>;
 
-Points random_points(std::size_t count, std::size_t dimensions, Random& random) {
+Points random_points(std::size_t count, std::size_t dimensions, base::Random& random) {
   Points points(count, std::vector<double>(dimensions));
   for (auto& point : points) {
     for (auto& coordinate : point) coordinate = random.uniform();
@@ -21,7 +21,7 @@ Points random_points(std::size_t count, std::size_t dimensions, Random& random) 
 }
 
 // In every dimension each of `count` equal pieces has one point.
-Points latin_points(std::size_t count, std::size_t dimensions, Random& random) {
+Points latin_points(std::size_t count, std::size_t dimensions, base::Random& random) {
   Points points(count, std::vector<double>(dimensions));
   std::vector<std::size_t> pieces(count);
   for (std::size_t d = 0; d < dimensions; ++d) {
@@ -79,7 +79,7 @@ std::array<std::uint32_t, bits> direction_numbers(std::size_t dimension) {
 }
 
 // Shifted by random bits, so that another seed gives other points; their even spread stays.
-Points sobol_points(std::size_t count, std::size_t dimensions, Random& random) {
+Points sobol_points(std::size_t count, std::size_t dimensions, base::Random& random) {
   Points points(count, std::vector<double>(dimensions));
   for (std::size_t d = 0; d < dimensions; ++d) {
     const auto v = direction_numbers(d);
@@ -99,7 +99,7 @@ Points sobol_points(std::size_t count, std::size_t dimensions, Random& random) {
 }  // namespace
 
 Result<Points> unit_samples(Plan::Sampling sampling, std::size_t count, std::size_t dimensions, std::uint64_t seed) {
-  Random random(seed, "samples");
+  base::Random random(seed, "samples");
   switch (sampling) {
     case Plan::Sampling::latin:
       return latin_points(count, dimensions, random);
@@ -117,7 +117,7 @@ Result<Points> unit_samples(Plan::Sampling sampling, std::size_t count, std::siz
 double in_range(const Range& range, double coordinate) {
   switch (range.kind) {
     case Range::Kind::normal:
-      return range.a + range.b * normal_quantile(coordinate);
+      return range.a + range.b * base::normal_quantile(coordinate);
     case Range::Kind::log:
       return range.a * std::pow(range.b / range.a, coordinate);
     case Range::Kind::uniform:

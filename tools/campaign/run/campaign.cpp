@@ -9,8 +9,8 @@
 #include <fstream>
 
 #include "base/child_process.h"
+#include "base/content_hash.h"
 #include "base/text.h"
-#include "campaign/rows/content_hash.h"
 #include "campaign/run/deed_checks.h"
 #include "campaign/run/iface_faults.h"
 #include "campaign/run/spawned_models.h"
@@ -143,7 +143,7 @@ Result<void> set_in_system(SavedSystem& system, const std::string& path, const s
 }
 
 // What a run loads: our programs and libraries, and every module of the plan.
-Result<void> hash_programs(const Plan& plan, ContentHash& hash) {
+Result<void> hash_programs(const Plan& plan, base::ContentHash& hash) {
   std::vector<std::string> files;
   for (const char* name : {"sim-server", "rtcd", "simctl", "rtse-campaign"}) files.push_back(editor::own_program(name));
   const auto libraries = fs::path(editor::own_program("rtcd")).parent_path().parent_path() / "lib";
@@ -249,7 +249,7 @@ Result<void> Campaign::check_axes() const {
 }
 
 Result<void> Campaign::hash_everything() {
-  ContentHash hash;
+  base::ContentHash hash;
   hash.add("rows of a campaign, 1");
   if (const auto added = hash_programs(*plan_, hash); !added) return added;
   const auto world = WorldFile::read(plan_->world, plan_->resource_paths);
@@ -280,7 +280,7 @@ Result<void> Campaign::hash_everything() {
 }
 
 std::string Campaign::key(const Row& row) const {
-  ContentHash hash;
+  base::ContentHash hash;
   hash.add(base_key_);
   hash.add(std::to_string(row.seed));
   for (const auto& [path, value] : row.values) {
@@ -291,7 +291,7 @@ std::string Campaign::key(const Row& row) const {
 }
 
 std::string Campaign::list_key() const {
-  ContentHash hash;
+  base::ContentHash hash;
   hash.add(base_key_);
   hash.add(plan_->text);
   hash.add(fs::absolute(plan_->file).string());

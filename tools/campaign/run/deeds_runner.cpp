@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "base/random.h"
 #include "base/text.h"
-#include "campaign/rows/random.h"
 #include "system/remote.h"
 
 namespace campaign {

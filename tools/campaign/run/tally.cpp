@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "base/interrupt.h"
-#include "campaign/rows/random.h"
+#include "base/random.h"
 
 namespace campaign {
 namespace {

@@ -1,4 +1,4 @@
-// A number of 128 bits that stands for what was added, in its order. Not for secrets: who wants to can make two contents with the same one.
+// A 128-bit hash of contents, in the order in which they are added. It is not cryptographic: an attacker can construct collisions.
 // A value; one thread at a time.
 #pragma once
 
@@ -8,13 +8,13 @@
 
 #include "base/result.h"
 
-namespace campaign {
+namespace base {
 
 class ContentHash {
  public:
   // The length counts too: ("ab", "c") is not ("a", "bc").
   void add(std::string_view text);
-  base::Result<void> add_file(const std::string& file);
+  Result<void> add_file(const std::string& file);
   // 32 digits.
   std::string text() const;
 
@@ -23,4 +23,4 @@ class ContentHash {
   std::uint64_t a_ = 0x243f6a8885a308d3ULL, b_ = 0x13198a2e03707344ULL;
 };
 
-}  // namespace campaign
+}  // namespace base

@@ -1,4 +1,4 @@
-#include "campaign/rows/content_hash.h"
+#include "base/content_hash.h"
 
 #include <cstdio>
 #include <cstring>
@@ -7,7 +7,7 @@
 
 #include "base/text.h"
 
-namespace campaign {
+namespace base {
 
 void ContentHash::mix(std::uint64_t word) {
   a_ = (a_ ^ word) * 0x9e3779b97f4a7c15ULL;
@@ -28,12 +28,12 @@ void ContentHash::add(std::string_view text) {
   mix(word);
 }
 
-base::Result<void> ContentHash::add_file(const std::string& file) {
+Result<void> ContentHash::add_file(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   std::vector<char> piece(1U << 18U);
   while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())) || in.gcount() > 0)
     add({piece.data(), static_cast<std::size_t>(in.gcount())});
-  if (!in.eof() || in.bad()) return base::Error{"file " + base::in_quotes(file) + ": cannot be read"};
+  if (!in.eof() || in.bad()) return Error{"file " + in_quotes(file) + ": cannot be read"};
   return {};
 }
 
@@ -43,4 +43,4 @@ std::string ContentHash::text() const {
   return digits;
 }
 
-}  // namespace campaign
+}  // namespace base

@@ -1,9 +1,9 @@
-#include "campaign/rows/random.h"
+#include "base/random.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace campaign {
+namespace base {
 
 Random::Random(std::uint64_t seed, std::string_view name) : state_(seed) {
   for (const char c : name) {
@@ -12,15 +12,9 @@ Random::Random(std::uint64_t seed, std::string_view name) : state_(seed) {
   }
 }
 
-std::uint64_t Random::next() {
-  state_ += 0x9e3779b97f4a7c15ULL;
-  std::uint64_t z = state_;
-  z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
-  return z ^ (z >> 31U);
-}
+std::uint64_t Random::next() { return mix64(state_ += mix64_step); }
 
-double Random::uniform() { return static_cast<double>(next() >> 11U) * 0x1.0p-53; }
+double Random::uniform() { return unit_interval(next()); }
 
 std::uint64_t Random::below(std::uint64_t count) { return count > 0 ? next() % count : 0; }
 
@@ -34,4 +28,4 @@ double normal_quantile(double p) {
   return (low + high) / 2;
 }
 
-}  // namespace campaign
+}  // namespace base
