@@ -1,8 +1,5 @@
 #include "laser_obstacle_avoid.h"
 
-#include <base/clock.h>
-#include <base/waiting.h>
-
 #include <vector>
 
 // clang-format off
@@ -46,23 +43,15 @@ static const char* const laserobstacleavoid_spec[] = {
 
 namespace {
 
-// How long onExecute waits for a scan in real time, so that a scan is answered when it comes and not when the context looks.
-constexpr std::chrono::milliseconds longest_wait{50};
+// How long onExecute waits for a scan in real time [s], so that a scan is answered when it comes and not when the context looks.
+constexpr double longest_wait = 0.05;
 
-class ScanListener : public RTC::ConnectorDataListenerT<RTC::RangeData> {
- public:
-  explicit ScanListener(LaserObstacleAvoid& owner) : owner_(owner) {}
-  USE_CONNLISTENER_STATUS;
-  ReturnCode operator()(RTC::ConnectorInfo&, RTC::RangeData&) override {
-    owner_.scan_arrived();
-    return NO_CHANGE;
-  }
-
- private:
-  LaserObstacleAvoid& owner_;
-};
-
-bool in_real_time() { return dynamic_cast<const base::SystemClock*>(&base::current_clock()) != nullptr; }
+// Now [s], by the clock of the execution context.
+double now() {
+  RTC::TimedLong stamp;
+  setTimestamp(stamp);
+  return stamp.tm.sec + stamp.tm.nsec * 1e-9;
+}
 
 }  // namespace
 
@@ -72,7 +61,6 @@ LaserObstacleAvoid::LaserObstacleAvoid(RTC::Manager* manager)
 RTC::ReturnCode_t LaserObstacleAvoid::onInitialize() {
   addInPort("range", range_in_);
   addOutPort("velocity", velocity_out_);
-  range_in_.addConnectorDataListener(RTC::ConnectorDataListenerType::ON_BUFFER_WRITE, new ScanListener(*this));
   bindParameter("distance_gain", settings_.distance_gain, "200");
   bindParameter("stop_distance", settings_.stop_distance, "0.5");
   bindParameter("clearance_cap", settings_.clearance_cap, "100");
@@ -85,7 +73,7 @@ RTC::ReturnCode_t LaserObstacleAvoid::onInitialize() {
 
 RTC::ReturnCode_t LaserObstacleAvoid::onActivated(RTC::UniqueId) {
   while (range_in_.isNew()) range_in_.read();  // scans from before would be answered too late
-  last_scan_ = base::current_clock().now();
+  last_scan_ = now();
   is_driving_ = false;
   return RTC::RTC_OK;
 }
@@ -100,29 +88,17 @@ RTC::ReturnCode_t LaserObstacleAvoid::onAborting(RTC::UniqueId) {
   return RTC::RTC_OK;
 }
 
-void LaserObstacleAvoid::scan_arrived() {
-  *has_arrived_.lock() = true;
-  arrived_.notify_one();
-}
-
-void LaserObstacleAvoid::wait_for_scan() {
-  const base::ScopedWait waiting;
-  auto has_arrived = has_arrived_.lock();
-  has_arrived.wait_for(arrived_, longest_wait, [&] { return *has_arrived; });
-  *has_arrived = false;
-}
-
 RTC::ReturnCode_t LaserObstacleAvoid::onExecute(RTC::UniqueId) {
-  if (in_real_time() && !range_in_.isNew()) wait_for_scan();
-  const auto now = base::current_clock().now();
-  if (!range_in_.isNew()) {
+  const bool is_new = range_in_.waitNew(longest_wait);
+  const double time = now();
+  if (!is_new) {
     // A clock that ran backwards is that of a world that was reset.
-    if (now < last_scan_) last_scan_ = now;
-    if (scan_timeout_ > 0 && std::chrono::duration<double>(now - last_scan_).count() > scan_timeout_) stop("no scan comes any more");
+    if (time < last_scan_) last_scan_ = time;
+    if (scan_timeout_ > 0 && time - last_scan_ > scan_timeout_) stop("no scan comes any more");
     return RTC::RTC_OK;
   }
   while (range_in_.isNew()) range_in_.read();  // the newest counts
-  last_scan_ = now;
+  last_scan_ = time;
   const auto count = range_.ranges.length();
   const std::span<const double> ranges(count > 0 ? &range_.ranges[0] : nullptr, count);
   drive(avoidance::avoid(ranges, range_.config.maxRange, settings_), range_.tm);

@@ -6,14 +6,10 @@
 #include <rtm/idl/ExtendedDataTypesSkel.h>
 #include <rtm/idl/InterfaceDataTypesSkel.h>
 
-#include <base/guarded.h>
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/DataInPort.h>
 #include <rtm/DataOutPort.h>
 #include <rtm/Manager.h>
-
-#include <chrono>
-#include <condition_variable>
 
 #include "avoidance.h"
 
@@ -26,11 +22,7 @@ class LaserObstacleAvoid : public RTC::DataFlowComponentBase {
   RTC::ReturnCode_t onAborting(RTC::UniqueId ec_id) override;
   RTC::ReturnCode_t onExecute(RTC::UniqueId ec_id) override;
 
-  // A scan is in the port's buffer. Any thread.
-  void scan_arrived();
-
  private:
-  void wait_for_scan();
   void drive(const avoidance::Velocity& velocity, const RTC::Time& time);
   void stop(const char* why);
 
@@ -42,9 +34,7 @@ class LaserObstacleAvoid : public RTC::DataFlowComponentBase {
   RTC::TimedVelocity2D velocity_;
   RTC::OutPort<RTC::TimedVelocity2D> velocity_out_;
 
-  base::Guarded<bool, base::Rank::buffer> has_arrived_{false};
-  std::condition_variable arrived_;
-  std::chrono::nanoseconds last_scan_{0};
+  double last_scan_ = 0;  // [s] when it was read
   bool is_driving_ = false;
 };
 

@@ -1,8 +1,6 @@
 #include "video_player.h"
 
-#include <base/clock.h>
 #include <base/text.h>
-#include <base/waiting.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -37,22 +35,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::milliseconds longest_wait{50};
+constexpr double longest_wait = 0.05;                                       // [s] for a frame, in real time
 constexpr std::chrono::milliseconds longest_work{100}, longest_tick{1000};  // of reading in one cycle
 constexpr std::chrono::milliseconds title_period{500};
 
-class FrameListener : public RTC::ConnectorDataListenerT<RTC::CameraImage> {
+class DropListener : public RTC::ConnectorDataListenerT<RTC::CameraImage> {
  public:
-  FrameListener(VideoPlayer& owner, void (VideoPlayer::*call)()) : owner_(owner), call_(call) {}
+  explicit DropListener(VideoPlayer& owner) : owner_(owner) {}
   USE_CONNLISTENER_STATUS;
   ReturnCode operator()(RTC::ConnectorInfo&, RTC::CameraImage&) override {
-    (owner_.*call_)();
+    owner_.frame_dropped();
     return NO_CHANGE;
   }
 
  private:
   VideoPlayer& owner_;
-  void (VideoPlayer::*call_)();
 };
 
 // The highest number of the files PREFIX-NUMBER.png in the folder; 0: there are none.
@@ -67,8 +64,6 @@ std::uint64_t last_number(const fs::path& folder, const std::string& prefix) {
   return last;
 }
 
-bool in_real_time() { return dynamic_cast<const base::SystemClock*>(&base::current_clock()) != nullptr; }
-
 }  // namespace
 
 VideoPlayer::VideoPlayer(RTC::Manager* manager) : RTC::DataFlowComponentBase(manager), image_in_("image", image_) {}
@@ -76,10 +71,7 @@ VideoPlayer::~VideoPlayer() = default;
 
 RTC::ReturnCode_t VideoPlayer::onInitialize() {
   addInPort("image", image_in_);
-  image_in_.addConnectorDataListener(RTC::ConnectorDataListenerType::ON_BUFFER_WRITE,
-                                     new FrameListener(*this, &VideoPlayer::frame_arrived));
-  image_in_.addConnectorDataListener(RTC::ConnectorDataListenerType::ON_BUFFER_OVERWRITE,
-                                     new FrameListener(*this, &VideoPlayer::frame_dropped));
+  image_in_.addConnectorDataListener(RTC::ConnectorDataListenerType::ON_BUFFER_OVERWRITE, new DropListener(*this));
   bindParameter("record_dir", record_dir_, "");
   bindParameter("window", window_wanted_, "1");
   return RTC::RTC_OK;
@@ -141,24 +133,12 @@ RTC::ReturnCode_t VideoPlayer::onAborting(RTC::UniqueId) {
   return RTC::RTC_OK;
 }
 
-void VideoPlayer::frame_arrived() {
-  *has_arrived_.lock() = true;
-  arrived_.notify_one();
-}
-
-void VideoPlayer::wait_for_frame() {
-  const base::ScopedWait waiting;
-  auto has_arrived = has_arrived_.lock();
-  has_arrived.wait_for(arrived_, longest_wait, [&] { return *has_arrived; });
-  *has_arrived = false;
-}
-
 RTC::ReturnCode_t VideoPlayer::onExecute(RTC::UniqueId ec_id) {
   if (!open_records()) return RTC::RTC_ERROR;  // it may change meanwhile
-  if (in_real_time() && !image_in_.isNew()) wait_for_frame();
+  image_in_.waitNew(longest_wait);
   // Frames may come faster than they can be recorded. What is left after this time waits for the next cycle, or is dropped: keys,
   // configuration and transitions must have their turn. In simulated time a cycle takes all that has come, as far as anybody can wait.
-  const auto end = Clock::now() + (in_real_time() ? longest_work : longest_tick);
+  const auto end = Clock::now() + (RTC::inSimulatedTime() ? longest_tick : longest_work);
   while (image_in_.isNew() && image_in_.read()) {
     take(image_);
     if (Clock::now() >= end) break;

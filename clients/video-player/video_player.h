@@ -8,14 +8,12 @@
 
 #include <rtm/idl/InterfaceDataTypesSkel.h>
 
-#include <base/guarded.h>
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/DataInPort.h>
 #include <rtm/Manager.h>
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <fstream>
 #include <memory>
@@ -34,8 +32,7 @@ class VideoPlayer : public RTC::DataFlowComponentBase {
   RTC::ReturnCode_t onAborting(RTC::UniqueId ec_id) override;
   RTC::ReturnCode_t onExecute(RTC::UniqueId ec_id) override;
 
-  // Any thread: a frame is in the buffer; a frame was overwritten before it was shown.
-  void frame_arrived();
+  // A frame was overwritten before it was shown. Any thread.
   void frame_dropped() { dropped_.fetch_add(1, std::memory_order_relaxed); }
 
  private:
@@ -43,7 +40,6 @@ class VideoPlayer : public RTC::DataFlowComponentBase {
 
   bool open_records();
   void close_window();
-  void wait_for_frame();
   void take(const RTC::CameraImage& image);
   void handle_events(RTC::UniqueId ec_id);
   void update_title();
@@ -72,9 +68,6 @@ class VideoPlayer : public RTC::DataFlowComponentBase {
   double rate_ = 0;  // [frames/s of real time]
   std::string said_;
   std::ofstream times_;  // of the recorded frames
-
-  base::Guarded<bool, base::Rank::buffer> has_arrived_{false};
-  std::condition_variable arrived_;
 };
 
 extern "C" {

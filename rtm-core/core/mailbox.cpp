@@ -240,6 +240,12 @@ std::size_t Mailbox::unread(Channel channel, std::uint64_t moment) const {
   return count;
 }
 
+bool Mailbox::wait_unread(std::chrono::nanoseconds most) {
+  auto state = state_.lock();
+  return state.wait_for(arrived_, most,
+                        [&] { return std::ranges::any_of(state->entries, [](const Entry& entry) { return entry.readable(0) > 0; }); });
+}
+
 void Mailbox::drop_unread(Channel channel) {
   std::vector<Sample> dropped;  // destroyed without the lock, as in close
   {

@@ -63,6 +63,9 @@ class Mailbox {
   // for a rendezvous: what is written in this phase is not for it. No wait is longer than `most`.
   ReadResult read(Channel channel = Channel::any, std::uint64_t moment = 0, std::chrono::nanoseconds most = as_set);
   std::size_t unread(Channel channel = Channel::any, std::uint64_t moment = 0) const;
+  // Waits until something is unread in any channel, at most `most`; true if so. For readers in real time: in lock step a tick finds what it
+  // may read without waiting.
+  bool wait_unread(std::chrono::nanoseconds most);
   // Throws away what is unread in that channel, and the last sample with it.
   void drop_unread(Channel channel);
   // The same for what is of another era than this one, in all channels.

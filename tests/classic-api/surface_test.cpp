@@ -224,6 +224,9 @@ class Surface : public RTC::DataFlowComponentBase {
     coil::vstring names;
     EXPECT_FALSE(in.isNew(names));
     EXPECT_FALSE(in.isNew("nobody"));
+    EXPECT_FALSE(in.waitNew(0.001));
+    EXPECT_FALSE(in.waitNew(-1));
+    EXPECT_FALSE(RTC::inSimulatedTime());
     EXPECT_FALSE(in.read());
     EXPECT_FALSE(in.read("nobody"));
     in.update();

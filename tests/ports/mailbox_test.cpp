@@ -39,6 +39,17 @@ TEST(Mailbox, a_full_ring_overwrites_the_oldest) {
   EXPECT_EQ(box.read().status, PortStatus::buffer_empty);
 }
 
+TEST(Mailbox, a_reader_that_waits_wakes_when_a_sample_comes_and_not_without) {
+  Mailbox box;
+  EXPECT_FALSE(box.wait_unread(std::chrono::milliseconds(1))) << "no channel";
+  const auto channel = box.open(buffer(FullPolicy::overwrite, EmptyPolicy::do_nothing));
+  EXPECT_FALSE(box.wait_unread(std::chrono::milliseconds(1))) << "nothing came";
+  std::jthread writer([&] { box.write(channel, sample(7)); });
+  EXPECT_TRUE(box.wait_unread(std::chrono::minutes(1)));
+  EXPECT_EQ(number(box.read().sample), 7);
+  EXPECT_FALSE(box.wait_unread(std::chrono::milliseconds(1))) << "it was read";
+}
+
 TEST(Mailbox, a_full_ring_refuses_or_times_out) {
   Mailbox box;
   const auto refuses = box.open(buffer(FullPolicy::do_nothing, EmptyPolicy::do_nothing, 1));

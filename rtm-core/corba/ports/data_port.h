@@ -1,6 +1,7 @@
 // The connections of a data port, of either side: what the facade knows about engines. Any thread; one reader at a time.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -72,6 +73,8 @@ class DataPort {
   // InPorts. Something unread is there (on the connections of that name). Asks the peers of pull connections. `lost`: ids of connections
   // whose peer is gone.
   virtual bool has_new(const std::string& name, std::vector<std::string>& lost) = 0;
+  // Waits until something unread has come over a push connection, at most `most`; true if so.
+  virtual bool wait_new(std::chrono::nanoseconds most) = 0;
   // Decodes the next sample into `value`; ok, or why not. `value` changes only if ok.
   virtual rt::PortStatus read(const std::string& name, void* value, std::vector<std::string>& lost) = 0;
 

@@ -91,6 +91,7 @@ class InEngine final : public DataPort {
   std::vector<rt::PortStatus> statuses() const override;
 
   bool has_new(const std::string& name, std::vector<std::string>& lost) override;
+  bool wait_new(std::chrono::nanoseconds most) override { return mailbox_->wait_unread(most); }
   rt::PortStatus read(const std::string& name, void* value, std::vector<std::string>& lost) override;
 
   bool write(const void*) override { return false; }

@@ -80,6 +80,7 @@ class OutEngine final : public DataPort {
   void stop_telling() override { loss_->close(); }
 
   bool has_new(const std::string&, std::vector<std::string>&) override { return false; }
+  bool wait_new(std::chrono::nanoseconds) override { return false; }
   rt::PortStatus read(const std::string&, void*, std::vector<std::string>&) override { return rt::PortStatus::precondition_not_met; }
 
  private:

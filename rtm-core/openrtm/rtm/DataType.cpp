@@ -2,6 +2,7 @@
 
 #include "base/clock.h"
 #include "corba/transport/type_ops.h"
+#include "rtm/Timestamp.h"
 
 namespace RTC::detail {
 
@@ -47,3 +48,5 @@ Stamp current_stamp() {
 }
 
 }  // namespace RTC::detail
+
+bool RTC::inSimulatedTime() { return base::current_clock().is_simulated(); }

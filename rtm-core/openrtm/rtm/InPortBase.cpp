@@ -1,7 +1,12 @@
 #include "rtm/InPortBase.h"
 
+#include <algorithm>
+#include <chrono>
+
+#include "base/waiting.h"
 #include "openrtm/data_port_core.h"
 #include "rtm/DataType.h"
+#include "rtm/Timestamp.h"
 
 namespace RTC {
 
@@ -27,6 +32,15 @@ bool InPortBase::isNew(coil::vstring& connector_names) {
     if (isNew(name)) connector_names.push_back(name);
   }
   return !connector_names.empty();
+}
+
+bool InPortBase::waitNew(double seconds) {
+  if (isNew()) return true;
+  if (inSimulatedTime() || !(seconds > 0)) return false;
+  constexpr double longest = 1e6;
+  const base::ScopedWait waiting;
+  return core_->port().wait_new(
+      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(std::min(seconds, longest))));
 }
 
 bool InPortBase::readValue(const std::string& connector_name, void* value) {

@@ -20,6 +20,10 @@ class InPortBase : public DataPortBase<InPortConnector> {
   bool isNew(const std::string& connector_name);
   // Also says on which connections.
   bool isNew(coil::vstring& connector_names);
+  // Waits until something unread has come over a push connection, at most `seconds`; true if so. Lets onExecute react when data arrives,
+  // not when its context looks next; the context's statistics count it as waiting. On a context in simulated time it does not wait: the
+  // tick has brought all that can be read. OpenRTM-aist has no such function.
+  bool waitNew(double seconds);
   bool isEmpty() { return !isNew(); }
   bool isEmpty(const std::string& connector_name) { return !isNew(connector_name); }
 

@@ -12,4 +12,8 @@ void setTimestamp(DataType& value) {
 
 namespace RTC {
 using ::setTimestamp;
+
+// True while this thread runs a callback for an execution context in simulated time. Such a callback must not wait for time to pass, and
+// must not let the wall clock decide what it does. OpenRTM-aist has no such function.
+bool inSimulatedTime();
 }
