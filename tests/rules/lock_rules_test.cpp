@@ -1,4 +1,5 @@
-// Every lock is one of base/guarded.h, which has ranks and asserts their order: reads every source of the project and reports raw ones.
+// Every lock is one of base/guarded.h, which has ranks and asserts their order, and every thread is joined: reads every source of the
+// project and reports raw locks and detached threads.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -42,6 +43,18 @@ const std::map<std::string, std::string> allowed = {
     {"rtm-core/openrtm/include/rtm/StaticFSM.h", "an author's header, a template"},
 };
 
+// Files that detach a thread, and why it cannot be joined. docs/ARCHITECTURE.md lists the same threads.
+const std::map<std::string, std::string> detaching = {
+    {"clients/video-player/window.cpp", "at the end of the process, when the X server holds the thread up"},
+    {"rtm-core/coil/PeriodicTask.cpp", "when the function of the task destroys the task"},
+    {"rtm-core/core/publisher.cpp", "when the publisher is destroyed by its own thread, or a peer hangs in a call"},
+    {"rtm-core/core/signal_watcher.cpp", "the call may be the end of the process"},
+    {"rtm-core/corba/ports/farewell.cpp", "a peer may hang; the end of the ORB waits for the count of these threads"},
+    {"rtm-core/manager/end.cpp", "the end of the process is bounded, also when a stream or a call is not"},
+    {"rtm-core/openrtm/include/coil/Async.h", "an author's call that nobody waits for"},
+    {"rtm-core/openrtm/rtm/RTObject.cpp", "when the component is destroyed by the thread of its own exit"},
+};
+
 // "file:line", one per line of code with this, sorted.
 Names lines_with(const std::regex& wanted, const fs::path& root) {
   Names found;
@@ -67,6 +80,11 @@ Names raw_locks(const fs::path& root) {
   static const std::regex lock(
       R"(\b(std::(recursive_|timed_|recursive_timed_|shared_|shared_timed_)?mutex|pthread_(mutex|rwlock|spin)\w*|omni_mutex|std::binary_semaphore)\b)");
   return lines_with(lock, root);
+}
+
+Names detached_threads(const fs::path& root) {
+  static const std::regex detach(R"((\}\)|\bthread\w*|\bexiter)\.detach\(\))");
+  return lines_with(detach, root);
 }
 
 // The lock of `for (auto& one : data.lock()->list)` is gone before the first turn of the loop (C++20).
@@ -97,6 +115,24 @@ TEST(LockRules, raw_locks_of_every_kind_are_found) {
   const auto found = raw_locks(root);
   fs::remove_all(root);
   EXPECT_EQ(found, (Names{"sim-server/a.cpp:2", "sim-server/a.cpp:4", "sim-server/a.cpp:6", "sim-server/a.cpp:7"}));
+}
+
+TEST(LockRules, a_thread_is_joined_or_named_as_an_exception) {
+  Names files;
+  for (const auto& place : detached_threads(paths::source_dir)) {
+    files.push_back(file_of(place));
+    EXPECT_TRUE(detaching.contains(files.back())) << place << ": a detached thread; expected an owner that joins it";
+  }
+  for (const auto& [file, reason] : detaching) EXPECT_TRUE(std::ranges::count(files, file) > 0) << file << " (" << reason << ")";
+}
+
+TEST(LockRules, detached_threads_are_found) {
+  const fs::path root = fs::path(testing::TempDir()) / ("detached_" + std::to_string(getpid()));
+  fs::create_directories(root / "tools");
+  std::ofstream(root / "tools" / "a.cpp") << "std::thread([] {}).detach();\nthread_.detach();\nlink_.detach();  // no thread\n";
+  const auto found = detached_threads(root);
+  fs::remove_all(root);
+  EXPECT_EQ(found, (Names{"tools/a.cpp:1", "tools/a.cpp:2"}));
 }
 
 TEST(LockRules, no_loop_has_a_lock_that_ends_before_it) { EXPECT_EQ(loops_without_their_lock(paths::source_dir), Names()); }
