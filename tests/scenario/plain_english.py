@@ -1,7 +1,7 @@
 # Words that docs/glossary.md rejects do not appear in pages, help texts and messages.  plain_english.py SOURCE_DIR [--shrink]
 # Pages: all of docs, README, CONTRIBUTING, SECURITY, without code. Sources: string literals that contain a blank (names and JSON keys are interfaces).
 # plain_english.allow lists what is not rewritten yet: FILE: WORD N. A file with more is reported, and so is one with fewer, so that the list
-# only shrinks. --shrink removes what is no longer needed; it never adds a row.
+# only shrinks. --shrink removes what is no longer needed, and follows a file that was moved; it never allows more.
 import collections
 import pathlib
 import re
@@ -71,6 +71,10 @@ assert list(literals_of(planted)) == [(2, "so "), (3, 'a "raw" text'), (3, r'one
 assert list(literals_of('f("so "\n  "many");')) == [(1, "so many")]
 places, allow = found(rejected_words()), allowed()
 if "--shrink" in sys.argv:
+    for (file, word), number in list(allow.items()):  # a file that was moved keeps its rows
+        homes = sorted({home for home, _ in places if pathlib.Path(home).name == pathlib.Path(file).name} if not (source / file).exists() else [])
+        if len(homes) == 1:
+            allow[homes[0], word] = allow.get((homes[0], word), 0) + allow.pop((file, word))
     kept = {key: min(number, len(places[key])) for key, number in allow.items() if places.get(key)}
     comment = "\n".join(line for line in allow_file.read_text().splitlines() if line.startswith("#"))
     allow_file.write_text(comment + "\n" + "".join(f"{file}: {word} {number}\n" for (file, word), number in sorted(kept.items())))
