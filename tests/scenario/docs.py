@@ -1,5 +1,5 @@
 # The pages are true.  docs.py MODE SOURCE_DIR [BUILD_DIR]
-#   pages       links and names of files lead somewhere; the index has every page
+#   pages       links and names of files lead somewhere; the index has every page; the table of layers is that of include_rules_test
 #   promises    each promise of docs/promises.md names tests that exist
 import pathlib
 import re
@@ -36,14 +36,30 @@ def check_links(page):
 
 # `sim-server/world/model_path` and `tests/robustness/fragments.py`: a file or folder, or one with its ending left out.
 def check_names(page):
-    folders = "cmake|clients|docs|idl|iface-components|packaging|rtm-core|scripts|sim-server|tests|worlds"
+    folders = "base|clients|cmake|docs|gateways|idl|iface-components|packaging|rtm-core|scripts|shm|sim-server|tests|tools|worlds"
     for name in re.findall(rf"`((?:{folders})/[\w./+-]*\w)`", text_of(page)):
         path = source / name
         if not path.exists() and not list(path.parent.glob(path.name + ".*")) and not list(path.parent.glob(path.name + "_test.cpp")):
             problems.append(f"{page.relative_to(source)}: `{name}`: there is no such file")
 
 
+# The table of layers in ARCHITECTURE is that of the test: folders in the same order, what they may include, libraries.
+def check_layers():
+    rules = (source / "tests/rules/include_rules_test.cpp").read_text().split("layers = {", 1)[1].split("\n};", 1)[0]
+    names = lambda words: ", ".join(re.findall(r'"([^"]+)"', words))
+    layers = [(row[0], names(row[1]), names(row[2])) for row in re.findall(r'\{"([^"]+)",\s*\{([^}]*)\}(?:,\s*\{([^}]*)\})?(?:,\s*\{[^}]*\})?\}', rules)]
+    section = (docs / "ARCHITECTURE.md").read_text().split("\n## Layers\n", 1)[1].split("\n## ", 1)[0]
+    rows = [tuple(row) for row in re.findall(r"^\| `([^`]+)` \| ([^|]*?) \| ([^|]*?) ?\|$", section, re.M)]
+    assert len(layers) > 20, layers
+    for row in [*layers, *rows]:
+        if row not in layers or row not in rows:
+            problems.append(f"docs/ARCHITECTURE.md: layers: {row}: {'not in the page' if row in layers else 'not in tests/rules/include_rules_test.cpp'}")
+    if set(rows) == set(layers) and rows != layers:
+        problems.append("docs/ARCHITECTURE.md: layers: not in the order of tests/rules/include_rules_test.cpp")
+
+
 def check_pages():
+    check_layers()
     for page in pages:
         check_links(page)
         if not page.name.startswith("new-"):  # these name files that are still to be made
