@@ -26,6 +26,7 @@ executed = {
     "README.md": "",
     "docs/tutorial-first-system.md": "",
     "docs/testing-a-robot-system.md": "",
+    "docs/third-party-components.md": "",
     "docs/recordings.md": avoidance,
     "docs/hash-logs.md": "",
     "docs/pictures.md": "sim-server worlds/farm.sdf --rtf 5",
