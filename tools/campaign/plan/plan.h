@@ -1,4 +1,4 @@
-// A plan of a campaign: what is run, what varies, what is measured, what happens and what breaks. docs/campaigns.md has the format. Values;
+// A plan of a campaign: what is run, what varies, what is measured, what happens and what breaks. docs/campaign-plan.md has the format. Values;
 // any thread.
 #pragma once
 

@@ -1,4 +1,4 @@
-// The results of a campaign: one SQLite file. Its schema is written down in docs/campaigns.md; what has been stored survives the end of the
+// The results of a campaign: one SQLite file. Its schema is documented in docs/campaigns-on-a-cluster.md; what has been stored survives the end of the
 // process at any moment, also by SIGKILL. One thread at a time.
 #pragma once
 

@@ -104,7 +104,7 @@ void hunt_plan(Editor& editor, const HuntCall& call) {
 void add_hunt(base::Command& app, editor::Chosen& chosen) {
   auto* command = app.add_subcommand("hunt", "Look for faults, events and parameters that break what a plan expects");
   auto call = std::make_shared<HuntCall>();
-  command->add_option("PLAN", call->plan, "Plan, YAML (docs/campaigns.md)")->required()->check(base::existing_file());
+  command->add_option("PLAN", call->plan, "Plan, YAML (docs/campaign-plan.md)")->required()->check(base::existing_file());
   command->add_option("--budget", call->budget, "How long: 90s, 10m, 2h")->capture_default_str()->check([](const std::string& text) {
     return seconds_of(text) ? std::string() : "expected a time as 90s, 10m or 2h, got " + base::in_quotes(text);
   });

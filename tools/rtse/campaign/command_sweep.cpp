@@ -253,7 +253,7 @@ void add_engines(base::Command& command, SweepCall& call) {
 void add_sweep(base::Command& app, editor::Chosen& chosen) {
   auto* command = app.add_subcommand("sweep", "Run all rows of a plan and store their results");
   auto call = std::make_shared<SweepCall>();
-  auto* plan = command->add_option("PLAN", call->plan, "Plan, YAML (docs/campaigns.md)")->check(base::existing_file());
+  auto* plan = command->add_option("PLAN", call->plan, "Plan, YAML (docs/campaign-plan.md)")->check(base::existing_file());
   command->add_option("-j,--jobs", call->jobs, "So many rows at a time")->check(base::integer_between(1, 256))->capture_default_str();
   command->add_option("-o,--results", call->results, "SQLite file; default: the plan's name with .db");
   command->add_option("--keep", call->keep, "Folder for files of rows that fail; default: the results' name with .runs");
