@@ -78,6 +78,8 @@ class Command final {
   Option* option(const std::string& name);  // one that was added
 
   Command* add_subcommand(const std::string& name, const std::string& description = "");
+  // The help and the manual page list these subcommands below `title`. Names that were not added are ignored.
+  Command* group_subcommands(const std::string& title, const std::vector<std::string>& names);
   Command* callback(std::function<void()> work);  // when the command line has been read, and names this command
   Command* require_subcommand(int count);
   Command* fallthrough(bool falls = true);

@@ -10,6 +10,8 @@ foreach(mode pages promises)
 endforeach()
 add_test(NAME docs.words COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/plain_english.py ${PROJECT_SOURCE_DIR})
 set_tests_properties(docs.words PROPERTIES LABELS docs)
+add_test(NAME docs.help COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/help.py ${PROJECT_BINARY_DIR} ${PROJECT_SOURCE_DIR})
+set_tests_properties(docs.help PROPERTIES LABELS docs)
 add_test(NAME docs.commands COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/scenario/docs_commands.py ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR})
 set_tests_properties(docs.commands PROPERTIES LABELS docs)
 set(pages README.md docs/campaigns.md docs/hash-logs.md docs/pictures.md docs/player.md docs/recordings.md docs/security.md docs/simulator.md

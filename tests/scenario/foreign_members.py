@@ -299,7 +299,7 @@ def recorded():
                                   text=True, capture_output=True, timeout=60)
             assert done.returncode == 0 and f"/{into}/out: 11 samples, equal" in done.stdout, done
         done = subprocess.run([f"{bin_dir}/rtse", "replay", f"{r.path}/run.mcap", "--into", "Alien", "--compare"], text=True, capture_output=True, timeout=60)
-        assert done.returncode == 1 and "--start COMMAND starts here" in done.stderr, done
+        assert done.returncode == 1 and "start that with --start COMMAND" in done.stderr, done
 
 
 def lost_link():

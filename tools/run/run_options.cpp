@@ -32,18 +32,17 @@ Result<void> check_folders(const std::string& kind, const std::vector<std::strin
 
 void add_repeatability_options(base::Command& run, RunOptions& options) {
   const auto* group = "Repeatability";
-  run.add_option("--hash-log", options.hash_log, "Write hashes of the world, the components and what went through each port, for rtse diff")
-      ->group(group);
-  run.add_option("--hash-period", options.hash_period_s, "Hash the world each so many simulated seconds (when components are called)")
+  run.add_option("--hash-log", options.hash_log, "Write hashes of world, components and samples, for rtse diff")->group(group);
+  run.add_option("--hash-period", options.hash_period_s, "Simulated seconds between world hashes (default: every component tick)")
       ->seconds_between(1e-6, 1e6)
       ->group(group);
-  run.add_flag("--twice", options.twice, "Run it twice and name the first difference")->group(group);
-  run.add_flag("--strict", options.strict, "Fail when something happened that could depend on chance")->group(group);
+  run.add_flag("--twice", options.twice, "Run twice and print the first difference")->group(group);
+  run.add_flag("--strict", options.strict, "Fail if the run had a nondeterministic event")->group(group);
 }
 
 void add_recording_options(base::Command& run, RunOptions& options) {
-  auto* record = run.add_option("--record", options.record, "Write what all ports send, components say and the simulator shows, as MCAP");
-  run.add_option("--last", options.record_last_s, "With --record: only so many seconds, the last ones, and only of a run that fails")
+  auto* record = run.add_option("--record", options.record, "Record all ports, component logs and simulator state (MCAP)");
+  run.add_option("--last", options.record_last_s, "With --record: keep only the last N seconds, and only if the run fails")
       ->needs(record)
       ->seconds_between(0.1, 1e6);
 }

@@ -255,46 +255,46 @@ void run(Editor& editor, const RunOptions& options, const std::optional<std::str
 }  // namespace
 
 void add_run(base::Command& app, Chosen& chosen) {
-  auto* run = app.add_subcommand("run", "Run a saved system against a simulated world in lock step, and judge it");
+  auto* run = app.add_subcommand("run", "Run a saved system in a simulated world, in lock step, and check the expectations");
   auto options = std::make_shared<RunOptions>();
   auto seeds = std::make_shared<std::optional<std::string>>();
   auto jobs = std::make_shared<int>(1);
   run->add_option("SYSTEM", options->system, "RTSProfile, XML or YAML")->required()->check(base::existing_file());
   run->add_option("-w,--world", options->world, "SDFormat world")->required()->check(base::existing_file());
-  run->add_option("-d,--duration", options->duration_s, "Simulated seconds")->seconds_between(0.001, 1e7)->capture_default_str();
-  run->add_option("-x,--expect", options->expectations, "Expectations, YAML")->check(base::existing_file());
+  run->add_option("-d,--duration", options->duration_s, "Duration [simulated s]")->seconds_between(0.001, 1e7)->capture_default_str();
+  run->add_option("-x,--expect", options->expectations, "Expectations (YAML)")->check(base::existing_file());
   auto* seed =
-      run->add_option("--seed", options->seed, "Seed of the world's noise")->capture_default_str()->check(base::number_between(0, 1e18));
-  run->add_option("--seeds", *seeds, "A run for each seed FIRST..LAST")->excludes(seed)->check([](const std::string& text) {
+      run->add_option("--seed", options->seed, "Seed of the sensor noise")->capture_default_str()->check(base::number_between(0, 1e18));
+  run->add_option("--seeds", *seeds, "Run once per seed FIRST..LAST")->excludes(seed)->check([](const std::string& text) {
     const auto parsed = parse_seeds(text);
     return parsed ? std::string() : parsed.error().message;
   });
-  run->add_option("-j,--jobs", *jobs, "So many seeds at a time")->check(base::integer_between(1, 64))->capture_default_str();
-  run->add_flag("--one-process-each", options->one_process_each, "A process for every component instead of one for all");
-  run->add_flag("--realtime", options->in_real_time, "No faster than real time");
-  run->add_option("--start", options->start, "Command that starts components of others, those that have no module")
+  run->add_option("-j,--jobs", *jobs, "Number of seeds to run in parallel")->check(base::integer_between(1, 64))->capture_default_str();
+  run->add_flag("--one-process-each", options->one_process_each, "Start one process per component (default: one for all)");
+  run->add_flag("--realtime", options->in_real_time, "Run in real time");
+  run->add_option("--start", options->start, "Command that starts third-party components (those without a module)")
       ->allow_extra_args(false);
-  run->add_option("--start-folder", options->start_folder, "Where these commands are started; default: here");
-  run->add_option("--run-file", options->run_file, "Processes of others and their components, YAML")->check(base::existing_file());
+  run->add_option("--start-folder", options->start_folder, "Working directory of the --start commands (default: current directory)");
+  run->add_option("--run-file", options->run_file, "YAML file of third-party processes and their components")->check(base::existing_file());
   run->add_option("--module-path", options->module_paths, "Folder with modules of components")->allow_extra_args(false);
   run->add_option("--resource-path", options->resource_paths, "Folder with models")->allow_extra_args(false);
-  run->add_option("--property", options->properties, "INSTANCE:KEY=VALUE, a property that a component is created with")
+  run->add_option("--property", options->properties, "Property of a component at its creation: INSTANCE:KEY=VALUE")
       ->allow_extra_args(false)
       ->check([](const std::string& text) {
         const auto parsed = parse_property(text);
         return parsed ? std::string() : parsed.error().message;
       });
-  run->add_option("--hang-timeout", options->hang_timeout_s, "Seconds of real time that one tick may take")
+  run->add_option("--hang-timeout", options->hang_timeout_s, "Timeout of one tick [wall-clock s]")
       ->check(base::number_between(0.1, 1e6))
       ->capture_default_str();
-  run->add_option("--start-timeout", options->start_timeout_s, "Seconds of real time for the simulator's start, and for the components'")
+  run->add_option("--start-timeout", options->start_timeout_s, "Timeout for starting the simulator, and the components [wall-clock s]")
       ->check(base::number_between(0.1, 1e6))
       ->capture_default_str();
   run->add_option("--junit", options->junit, "Write the verdicts as JUnit XML");
-  run->add_option("--picture", options->picture, "Write the world at the end as PNG");
+  run->add_option("--picture", options->picture, "Save an image of the final world (PNG)");
   add_recording_options(*run, *options);
   add_repeatability_options(*run, *options);
-  run->add_option("--keep", options->keep, "Keep logs and the record in this folder");
+  run->add_option("--keep", options->keep, "Folder for logs and the pose log");
   run->callback([&chosen, options, seeds, jobs] { chosen.work = [=](Editor& e) { editor::run(e, *options, *seeds, *jobs); }; });
 }
 

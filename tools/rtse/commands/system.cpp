@@ -395,12 +395,12 @@ void start(Editor& editor, const std::string& file, bool dry_run) { move_all(edi
 void add_system(base::Command& app, Chosen& chosen) {
   auto* save = app.add_subcommand("save", "Save the running system as RTSProfile (XML; YAML by the file's ending)");
   auto options = std::make_shared<SaveOptions>();
-  save->add_option("FILE", options->file, "Where to; default: standard output");
+  save->add_option("FILE", options->file, "Output file (default: standard output)");
   save->add_option("-n,--name", options->name, "System name")->capture_default_str();
   save->add_option("-e,--vendor", options->vendor, "Vendor")->capture_default_str();
   save->add_option("-v,--version", options->version, "Version of the system")->capture_default_str();
-  save->add_option("-a,--abstract", options->abstract, "What it is");
-  save->add_flag("-y,--yaml", options->yaml, "YAML on standard output");
+  save->add_option("-a,--abstract", options->abstract, "Description");
+  save->add_flag("-y,--yaml", options->yaml, "Write YAML to standard output");
   save->callback([&chosen, options] { chosen.work = [options](Editor& e) { editor::save(e, *options); }; });
 
   const auto add = [&](const char* name, const char* help, void (*function)(Editor&, const std::string&, bool)) {
@@ -408,15 +408,15 @@ void add_system(base::Command& app, Chosen& chosen) {
     auto file = std::make_shared<std::string>();
     auto dry_run = std::make_shared<bool>(false);
     command->add_option("FILE", *file, "RTSProfile, XML or YAML; -: standard input")->required();
-    command->add_flag("--dry-run", *dry_run, "Say what would be done");
+    command->add_flag("--dry-run", *dry_run, "Print the actions without executing them");
     command->callback([&chosen, file, dry_run, function] { chosen.work = [=](Editor& e) { function(e, *file, *dry_run); }; });
   };
   auto* load = app.add_subcommand("load", "Restore connections and configuration of a saved system");
   auto load_options = std::make_shared<LoadOptions>();
   load->add_option("FILE", load_options->file, "RTSProfile, XML or YAML; -: standard input")->required();
-  load->add_flag("--dry-run", load_options->dry_run, "Say what would be done");
-  load->add_flag("--states", load_options->with_states, "The components' states too: activate, deactivate and reset as saved");
-  load->add_flag("--force", load_options->force, "Set also values that the components' own types and constraints forbid");
+  load->add_flag("--dry-run", load_options->dry_run, "Print the actions without executing them");
+  load->add_flag("--states", load_options->with_states, "Also restore component states (activate, deactivate, reset)");
+  load->add_flag("--force", load_options->force, "Also set values that violate the components' types and constraints");
   load->callback([&chosen, load_options] { chosen.work = [load_options](Editor& e) { editor::load(e, *load_options); }; });
   add("start", "Activate the components of a saved system", start);
   add("stop", "Deactivate the components of a saved system", stop);

@@ -254,29 +254,30 @@ void go(Editor& editor, const GotoOptions& options) {
 }  // namespace
 
 void add_goto(base::Command& app, editor::Chosen& chosen) {
-  auto* command =
-      app.add_subcommand("goto", "Make a recorded run again, as fast as it can, and stand at a moment of it with all processes alive");
+  auto* command = app.add_subcommand("goto", "Repeat a recorded run and stop at a given time, with all processes running");
   auto options = std::make_shared<GotoOptions>();
-  command->add_option("RUN", options->what, "A recording of rtse run --record, or an RTSProfile with --world")
+  command->add_option("RUN", options->what, "Recording of rtse run --record, or an RTSProfile with --world")
       ->required()
       ->check(check_recording);
-  auto* time = command->add_option("TIME", options->time_s, "Simulated seconds")->seconds_between(0.0, 1e7);
-  command->add_option("--until", options->time_s, "The same")->seconds_between(0.0, 1e7)->excludes(time);
+  auto* time = command->add_option("TIME", options->time_s, "Time to stop at [simulated s]")->seconds_between(0.0, 1e7);
+  command->add_option("--until", options->time_s, "Same as TIME")->seconds_between(0.0, 1e7)->excludes(time);
   command->add_option(
       "--break", options->condition,
-      "Stand at the first tick in which this holds, e.g. 'pose(pioneer2dx).x > 2 && A0:out.data < 0.1'; TIME ends the search");
-  command->add_option("--back", options->back, "So many ticks before that")->check(base::integer_between(0, 1000000));
-  command->add_option("-w,--world", options->world, "With a profile: SDFormat world")->check(base::existing_file());
-  command->add_option("--then", options->then, "Run this shell command there and end, instead of reading commands");
-  command->add_option("--seed", options->seed, "Seed of the world's noise, if not the recorded one")->check(base::number_between(0, 1e18));
-  command->add_option("--start", options->start, "Command that starts components of others, in the place of the recorded ones")
+      "Stop at the first tick where this condition is true, e.g. 'pose(pioneer2dx).x > 2 && A0:out.data < 0.1'; TIME limits the search");
+  command->add_option("--back", options->back, "Stop N ticks earlier")->check(base::integer_between(0, 1000000));
+  command->add_option("-w,--world", options->world, "SDFormat world, for an RTSProfile")->check(base::existing_file());
+  command->add_option("--then", options->then, "Run this shell command at that time and exit, instead of reading commands");
+  command->add_option("--seed", options->seed, "Seed of the sensor noise (default: the recorded one)")
+      ->check(base::number_between(0, 1e18));
+  command->add_option("--start", options->start, "Command that starts third-party components (default: the recorded commands)")
       ->allow_extra_args(false);
-  command->add_option("--run-file", options->run_file, "Processes of others and their components, YAML")->check(base::existing_file());
+  command->add_option("--run-file", options->run_file, "YAML file of third-party processes and their components")
+      ->check(base::existing_file());
   command->add_option("--module-path", options->module_paths, "Folder with modules of components")->allow_extra_args(false);
   command->add_option("--resource-path", options->resource_paths, "Folder with models")->allow_extra_args(false);
-  command->add_option("--property", options->properties, "INSTANCE:KEY=VALUE, a property that a component is created with")
+  command->add_option("--property", options->properties, "Property of a component at its creation: INSTANCE:KEY=VALUE")
       ->allow_extra_args(false);
-  command->add_option("--hang-timeout", options->hang_timeout_s, "Seconds of real time that one tick may take")
+  command->add_option("--hang-timeout", options->hang_timeout_s, "Timeout of one tick [wall-clock s]")
       ->check(base::number_between(0.1, 1e6))
       ->capture_default_str();
   command->callback([&chosen, options] {

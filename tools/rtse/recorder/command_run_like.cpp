@@ -77,9 +77,9 @@ void run_like(Editor& editor, const LikeOptions& options) {
 }  // namespace
 
 void add_run_like(base::Command& app, editor::Chosen& chosen) {
-  auto* command = app.add_subcommand("run", "Make a recorded run again; all options of rtse run besides");
+  auto* command = app.add_subcommand("run", "Repeat a recorded run; accepts all options of rtse run");
   auto options = std::make_shared<LikeOptions>();
-  command->add_option("--like", options->file, "A recording of rtse run --record")->required()->check(check_recording);
+  command->add_option("--like", options->file, "Recording of rtse run --record")->required()->check(check_recording);
   command->allow_extras();
   command->fallthrough(false);
   command->callback([&chosen, options, command] {
