@@ -42,7 +42,7 @@ never: [{component: RTCLaser0, is: Inactive}]
     away = away.replace("faults: [", "faults:\n  - ").replace("is: kill}]", "is: kill}", 1)
     done = rtse("sweep", plan(away, "away.yaml"), "--row", 1)
     for text in ("disconnect: range-to-avoidance}: did nothing: component LaserObstacleAvoid0 was killed", "deactivate: LaserObstacleAvoid0}: did nothing: ",
-                 "its host starts again when the naming service is back", 'at: 0.4, for: 0.1, component: "LaserObstacleAvoid0", is: kill}: did nothing: '):
+                 "its host restarts when the name server responds again", 'at: 0.4, for: 0.1, component: "LaserObstacleAvoid0", is: kill}: did nothing: '):
         assert done.stderr.count(text) == 1, (text, done.stderr)
     assert done.stderr.count("did nothing") == 4, done.stderr
     twice(away, "away.yaml")

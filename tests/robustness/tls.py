@@ -118,7 +118,7 @@ class Tls(unittest.TestCase):
             self.assertIsNone(self.sees(server, **more, **who), who)
         # Afterwards it still serves those who belong to it.
         self.assertIsNotNone(self.sees(server, **more, **certificate("lab")), text(log))
-        self.assertIn("open over TLS to whoever has a certificate", text(log))
+        self.assertIn("open over TLS to every owner of a certificate", text(log))
 
     def test_who_has_a_certificate_comes_in(self):
         server, log = self.system("127.0.0.1")
@@ -160,7 +160,7 @@ class Tls(unittest.TestCase):
                     stream.recv(1)
             except OSError:
                 pass
-            return "sent away: no certificate of corba.tls.authority" in text(log)
+            return "rejected: no certificate of corba.tls.authority" in text(log)
 
         self.until("a line in the log", is_sent_away)
 
