@@ -1,6 +1,6 @@
-// The words of a program's command line: what a program declares of its options, positionals and commands. CLI11 does the work and words
-// the help and the errors; it is a heavy header, so it is included where this is implemented and nowhere else. Methods are named as in
-// CLI11, and do what its documentation says. What is declared lives as long as its Command. One thread at a time.
+// Declares options, positionals and subcommands of a program. CLI11 parses, and writes help and errors; only the implementation includes
+// it, because it is a heavy header. Methods have the names and the meaning of CLI11. Declarations live as long as their Command. One thread
+// at a time.
 #pragma once
 
 #include <cstddef>

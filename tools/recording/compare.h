@@ -1,4 +1,4 @@
-// recording compare: the first difference of two recordings. One thread.
+// Finds the first difference of two recordings (recording compare). One thread.
 #pragma once
 
 #include <string>

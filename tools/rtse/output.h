@@ -1,4 +1,4 @@
-// Standard output as a command sees it. Any thread, but for TerminalGuard: one for each stream, made before others write.
+// Standard output of a command. Any thread, but for TerminalGuard: one per stream, created before other threads write.
 #pragma once
 
 #include <memory>

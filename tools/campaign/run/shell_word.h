@@ -1,4 +1,4 @@
-// Text as one word of a shell's command line, in quotes where it needs them. Any thread.
+// Quotes text as one word of a shell command line. Any thread.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// The configuration sets of a component, for all commands that change some. One thread at a time.
+// Changes configuration sets of a component, for all commands that do so. One thread at a time.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Transitions of a component in one of its contexts, for all commands that make some. One thread at a time.
+// Requests transitions of a component in one of its contexts, for all commands that do so. One thread at a time.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// Whole saved systems, for all commands that bring one up. One thread at a time.
+// Loads, starts and stops saved systems, for all commands that do so. One thread at a time.
 #pragma once
 
 #include <string>
