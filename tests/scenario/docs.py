@@ -1,5 +1,6 @@
 # The pages are true.  docs.py MODE SOURCE_DIR [BUILD_DIR]
 #   pages       links and names of files lead somewhere; the index has every page; the table of layers is that of include_rules_test
+#   layers      writes the table of layers into docs/ARCHITECTURE.md
 #   promises    each promise of docs/promises.md names tests that exist
 import pathlib
 import re
@@ -43,19 +44,30 @@ def check_names(page):
             problems.append(f"{page.relative_to(source)}: `{name}`: there is no such file")
 
 
-# The table of layers in ARCHITECTURE is that of the test: folders in the same order, what they may include, libraries.
-def check_layers():
+# Folders in the order of the test, what they may include, libraries.
+def rows_of_layers():
     rules = (source / "tests/rules/include_rules_test.cpp").read_text().split("layers = {", 1)[1].split("\n};", 1)[0]
+    rows = re.findall(r'\{"([^"]+)",\s*\{([^}]*)\}(?:,\s*\{([^}]*)\})?(?:,\s*\{[^}]*\})?\}', rules)
+    assert len(rows) > 20, rows
     names = lambda words: ", ".join(re.findall(r'"([^"]+)"', words))
-    layers = [(row[0], names(row[1]), names(row[2])) for row in re.findall(r'\{"([^"]+)",\s*\{([^}]*)\}(?:,\s*\{([^}]*)\})?(?:,\s*\{[^}]*\})?\}', rules)]
-    section = (docs / "ARCHITECTURE.md").read_text().split("\n## Layers\n", 1)[1].split("\n## ", 1)[0]
-    rows = [tuple(row) for row in re.findall(r"^\| `([^`]+)` \| ([^|]*?) \| ([^|]*?) ?\|$", section, re.M)]
-    assert len(layers) > 20, layers
-    for row in [*layers, *rows]:
-        if row not in layers or row not in rows:
-            problems.append(f"docs/ARCHITECTURE.md: layers: {row}: {'not in the page' if row in layers else 'not in tests/rules/include_rules_test.cpp'}")
-    if set(rows) == set(layers) and rows != layers:
-        problems.append("docs/ARCHITECTURE.md: layers: not in the order of tests/rules/include_rules_test.cpp")
+    return [f"| `{folder}` | {names(parts)} | {names(libraries)} |" for folder, parts, libraries in rows]
+
+
+# The table in ARCHITECTURE: where it is in the page, and its rows.
+def table_of_layers(text):
+    table = re.search(r"(?<=^\| folder \| may include \| libraries \|\n\| --- \| --- \| --- \|\n)(?:\|.*\|\n)+", text, re.M)
+    return table.span(), table[0].splitlines()
+
+
+def check_layers():
+    for row in sorted(set(rows_of_layers()) ^ set(table_of_layers((docs / "ARCHITECTURE.md").read_text())[1])):
+        problems.append(f"docs/ARCHITECTURE.md: layers are not those of tests/rules/include_rules_test.cpp (docs.py layers . writes them): {row}")
+
+
+def write_layers():
+    text = (docs / "ARCHITECTURE.md").read_text()
+    (start, end), _ = table_of_layers(text)
+    (docs / "ARCHITECTURE.md").write_text(text[:start] + "\n".join(rows_of_layers()) + "\n" + text[end:])
 
 
 def check_pages():
@@ -86,7 +98,9 @@ def check_promises(build):
                 problems.append(f"docs/promises.md: {promise.strip()}: there is no test {name}")
 
 
-if mode == "pages":
+if mode == "layers":
+    write_layers()
+elif mode == "pages":
     check_pages()
 else:
     check_promises(sys.argv[3])
