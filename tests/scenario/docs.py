@@ -1,5 +1,6 @@
 # The pages are true.  docs.py MODE SOURCE_DIR [BUILD_DIR]
-#   pages       links and names of files lead somewhere; the index has every page; the table of layers is that of include_rules_test
+#   pages       links and names of files lead somewhere; the index has every page; the table of layers is that of include_rules_test,
+#               those of bundled components are those of their sources
 #   layers      writes the table of layers into docs/ARCHITECTURE.md
 #   promises    each promise of docs/promises.md names tests that exist
 import pathlib
@@ -70,8 +71,40 @@ def write_layers():
     (docs / "ARCHITECTURE.md").write_text(text[:start] + "\n".join(rows_of_layers()) + "\n" + text[end:])
 
 
+# (component, phase), (component, "out port", type) and (component, parameter, default), from the sources; those of a drive are in a common file.
+def facts_of_components():
+    sources = [*sorted((source / "iface-components").glob("rtc_*.cpp")), source / "clients/obstacle-avoidance/laser_obstacle_avoid.cpp", source / "clients/video-player/video_player.cpp"]
+    drive = (source / "iface-components/drive_component.cpp").read_text()
+    for file in sources:
+        text, header = file.read_text(), file.with_suffix(".h").read_text()
+        name = re.search(r'type_name(?: = |", )"(\w+)"', text)[1]
+        phase = {"sensor_phase": "0", "command_phase": "2"}.get((re.search(r"\.phase = iface::(\w+)", text) or ["", ""])[1]) or re.search(r'sim_time\.phase", "(\d+)"', text)[1]
+        yield "component", name, phase
+        for way, port, member in re.findall(r'add(In|Out)Port\("(\w+)", (\w+)\)', text):
+            yield "port", name, f"{way.lower()} `{port}`", re.search(rf"Port<([\w:]+)> {member};", header)[1]
+        if velocity := re.search(r"Drive\w*<(RTC::Timed\w+)", header):
+            yield "port", name, "in `velocity`", velocity[1]
+        for port, service in re.findall(r'registerProvider\("(\w+)", "([\w:]+)"', text):
+            yield "port", name, f"provides `{port}`", service
+        listed = drive if "drive_parameters()" in text else text
+        for parameter, default in re.findall(r'\{"(\w+)", "([^"]*)", "(?:int|double|string)"', listed) + re.findall(r'"conf\.default\.(\w+)", "([^"]*)"', text):
+            yield "parameter", name, parameter, default
+
+
+def check_components():
+    shown = set()
+    for section in (docs / "components.md").read_text().split("\n## ")[1:]:
+        for line in re.findall(r"^\| (`\w+` \|.*) \|$", section, re.M):
+            cells = [cell.strip() for cell in line.split("|")]
+            name, first = cells[0].strip("`"), cells[1].strip("`")
+            shown.add({"Components": ("component", name, cells[2]), "Ports": ("port", name, cells[1], cells[2].strip("`")), "Parameters": ("parameter", name, first, cells[2])}[section.split("\n")[0]])
+    for row in sorted(shown ^ set(facts_of_components())):
+        problems.append(f"docs/components.md: {row}: {'not in the sources' if row in shown else 'is missing'}")
+
+
 def check_pages():
     check_layers()
+    check_components()
     for page in pages:
         check_links(page)
         if not page.name.startswith("new-"):  # these name files that are still to be made
