@@ -10,7 +10,7 @@ import sys
 
 mode, source = sys.argv[1], pathlib.Path(sys.argv[2])
 docs = source / "docs"
-pages = [source / "README.md", source / "CONTRIBUTING.md", source / "SECURITY.md", *sorted(docs.glob("*.md"))]
+pages = [source / "README.md", source / "CONTRIBUTING.md", source / "SECURITY.md", *sorted(docs.glob("**/*.md"))]
 problems = []
 
 
@@ -110,9 +110,10 @@ def check_pages():
         if not page.name.startswith("new-"):  # these name files that are still to be made
             check_names(page)
     index = (docs / "README.md").read_text()
-    for page in sorted(docs.glob("*.md")):
-        if page.name != "README.md" and f"({page.name})" not in index:
-            problems.append(f"docs/README.md: {page.name} is not in the index")
+    for page in sorted(docs.glob("**/*.md")):
+        name = page.relative_to(docs)
+        if page.name != "README.md" and f"({name})" not in index:
+            problems.append(f"docs/README.md: {name} is not in the index")
 
 
 def check_promises(build):
