@@ -1,5 +1,5 @@
-// The list of files in docs/develop/new-player-interface.md: each is there, and no other file names an interface that is served. A toy device made
-// of what the page names alone is listed and served like the others.
+// The list of files in docs/develop/new-player-interface.md: each is there, and no other file names an interface that is served. A toy
+// device made of what the page names alone is listed and served like the others.
 #include <gtest/gtest.h>
 
 #include <filesystem>
