@@ -9,7 +9,8 @@
 
 namespace editor {
 
-// Text of others, fit for a terminal: control characters (C0, DEL, and C1 as UTF-8 has them) escaped as \x1b, but for line ends and tabs.
+// Text of others, fit for a terminal: what it would obey (base::is_obeyed, and single octets of C1) escaped as \x1b, but for line ends
+// and tabs.
 std::string for_terminal(std::string_view text);
 
 // While it lives, what goes through this stream to a terminal is fit for one: names and values come from peers, and one of them could be
