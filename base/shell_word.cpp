@@ -39,7 +39,10 @@ std::string with_escapes(std::string_view text) {
 }  // namespace
 
 std::string shell_word(std::string_view text) {
-  if (!std::ranges::all_of(text, is_printable_ascii)) return with_escapes(text);
+  return std::ranges::all_of(text, is_printable_ascii) ? script_word(text) : with_escapes(text);
+}
+
+std::string script_word(std::string_view text) {
   const bool is_plain = !text.empty() && text.find_first_not_of(plain) == std::string_view::npos && text[0] != '=' && text[0] != '%';
   return is_plain ? std::string(text) : in_single_quotes(text);
 }
@@ -50,11 +53,20 @@ std::string shell_line(const std::vector<std::string>& words) {
   return line;
 }
 
-std::vector<std::string> command_words(std::vector<std::string> options, const std::vector<std::string>& operands) {
+std::vector<std::string> command_words(std::vector<std::string> verb, const std::vector<std::string>& operands,
+                                       const std::vector<std::string>& options) {
   const auto looks_like_an_option = [](const std::string& word) { return word.starts_with('-') && !parse_number(word); };
-  if (std::ranges::any_of(operands, looks_like_an_option)) options.emplace_back("--");
-  options.insert(options.end(), operands.begin(), operands.end());
-  return options;
+  const bool are_marked = std::ranges::any_of(operands, looks_like_an_option);
+  const auto append = [&](const std::vector<std::string>& words) { verb.insert(verb.end(), words.begin(), words.end()); };
+  if (are_marked) append(options), verb.emplace_back("--");
+  append(operands);
+  if (!are_marked) append(options);
+  return verb;
+}
+
+std::vector<std::string> option_words(const std::string& name, const std::string& value) {
+  if (!value.starts_with('-')) return {name, value};
+  return {name + (name.starts_with("--") ? "=" : "") + value};
 }
 
 }  // namespace base

@@ -101,17 +101,32 @@ TEST(ShellWord, is_read_back_by_zsh_where_there_is_one) {
   EXPECT_EQ(read_by("zsh -f", shell_line(words)), words);
 }
 
+TEST(ScriptWord, is_read_back_by_the_plain_shell) {
+  const auto words = hostile_words();
+  std::string line;
+  for (const auto& word : words) line += script_word(word) + " ";
+  EXPECT_EQ(read_by("sh", line), words);
+}
+
 TEST(ShellWord, stays_readable_where_no_shell_minds) {
   EXPECT_EQ(shell_line({"rtse", "conf", "it's", "", "a b;$(x)", "/h:2809/a.rtc"}), "rtse conf 'it'\\''s' '' 'a b;$(x)' /h:2809/a.rtc");
   EXPECT_EQ(shell_word("a\n1"), "$'a\\x0a1'");
   EXPECT_EQ(shell_word(std::string("a\0b", 3)), "$'ab'");
 }
 
+using Words = std::vector<std::string>;
+
 TEST(CommandWords, no_operand_is_read_as_an_option) {
-  EXPECT_EQ(command_words({"simctl", "pose"}, {"box", "-1", "2", "-0.5"}),
-            (std::vector<std::string>{"simctl", "pose", "box", "-1", "2", "-0.5"}));
-  EXPECT_EQ(command_words({"rtse", "cat"}, {"--help"}), (std::vector<std::string>{"rtse", "cat", "--", "--help"}));
-  EXPECT_EQ(command_words({"rtm-studio"}, {"-"}), (std::vector<std::string>{"rtm-studio", "--", "-"}));
+  EXPECT_EQ(command_words({"simctl", "pose"}, {"box", "-1", "2", "-0.5"}), (Words{"simctl", "pose", "box", "-1", "2", "-0.5"}));
+  EXPECT_EQ(command_words({"rtse", "cat"}, {"a"}, {"-e", "1"}), (Words{"rtse", "cat", "a", "-e", "1"}));
+  EXPECT_EQ(command_words({"rtse", "cat"}, {"--help", "-1"}, {"-e", "1"}), (Words{"rtse", "cat", "-e", "1", "--", "--help", "-1"}));
+  EXPECT_EQ(command_words({"rtm-studio"}, {"-"}), (Words{"rtm-studio", "--", "-"}));
+}
+
+TEST(CommandWords, no_value_is_read_as_an_option) {
+  EXPECT_EQ(option_words("-n", "name"), (Words{"-n", "name"}));
+  EXPECT_EQ(option_words("-n", "-name"), (Words{"-n-name"}));
+  EXPECT_EQ(option_words("--name", "--x"), (Words{"--name=--x"}));
 }
 
 }  // namespace
