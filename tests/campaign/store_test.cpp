@@ -80,7 +80,7 @@ TEST_F(Stores, hold_many_rows_and_show_them_in_a_page_of_bounded_size) {
   print_tables(text, *results, {"component/A0/gain", "model/robot/pose/x"});
   EXPECT_NE(text.str().find("path_length"), std::string::npos);
   EXPECT_LT(text.str().size(), 10'000U);
-  ASSERT_TRUE(write_html(*results, file("page.html")));
+  ASSERT_TRUE(write_html(*results, file("page.html"), file("rows.runs")));
   EXPECT_LT(fs::file_size(file("page.html")), 4U << 20U);
   std::printf("%zu rows: %ju octets in the file, %ju in the page, %.0f MB to read and show, %.0f MB in all\n", count,
               static_cast<std::uintmax_t>(fs::file_size(file("rows.db"))), static_cast<std::uintmax_t>(fs::file_size(file("page.html"))),

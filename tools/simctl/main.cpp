@@ -1,4 +1,6 @@
 // simctl: shows and controls a running simulation. See --help.
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
