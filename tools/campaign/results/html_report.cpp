@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "base/beneath.h"
-#include "base/beneath.h"
 #include "base/text.h"
 #include "base/whole_file.h"
 #include "campaign/results/report.h"

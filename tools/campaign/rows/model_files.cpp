@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "base/child_process.h"
+#include "base/beneath.h"
 #include "base/text.h"
 
 namespace campaign {
@@ -18,7 +19,8 @@ bool is_there(const fs::path& path) {
 std::optional<fs::path> model_in(const fs::path& folder) {
   if (is_there(folder / "model.sdf")) return folder / "model.sdf";
   pugi::xml_document config;
-  if (!config.load_file((folder / "model.config").c_str())) return std::nullopt;
+  const auto file = folder / "model.config";
+  if (!base::check_regular_file(file) || !config.load_file(file.c_str())) return std::nullopt;
   const auto named = folder / config.child("model").child("sdf").text().get();
   std::error_code error;
   return fs::is_regular_file(named, error) ? std::optional(named) : std::nullopt;

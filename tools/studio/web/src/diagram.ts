@@ -8,6 +8,7 @@ import {
   component, component_of_port, components_of, connections_of, is_selected, link_problem, name_of_port, on, port_of, read_only, select, selected_model, shown_state, store, wire,
 } from './store';
 import type { Component, Connection, Port } from './wire';
+import { shell_word } from './shell';
 
 interface Shape { element: SVGGElement; width: number; height: number; ports: Map<string, { x: number; y: number; element: SVGGElement; port: Port }>; component: Component; mark: SVGPathElement; rate: SVGTextElement; is_out: boolean }
 
@@ -66,7 +67,7 @@ export class Diagram {
     let text = '';
     if (wire.status !== 'open') text = store.system.components.length > 0 ? '' : link_problem();
     else if (hello?.recording) text = store.has_system && system.components.length === 0 ? 'This recording has no components.' : '';
-    else if (system.problem) text = `No naming service answers at ${server}. Start one with components: \`rtcd --with-naming -o corba.nameservers:localhost:${port} RTCLaser\`. It appears here by itself.`;
+    else if (system.problem) text = `No naming service answers at ${server}. Start one with components: \`rtcd --with-naming -o ${shell_word(`corba.nameservers:localhost:${port}`)} RTCLaser\`. It appears here by itself.`;
     else if (store.has_system && system.components.length === 0) text = `The naming service at ${server} knows no components. Start some: \`rtcd RTCLaser RTCPosition2d LaserObstacleAvoid\`, or create them in a manager of the tree.`;
     this.element.classList.toggle('stale', wire.status !== 'open' && wire.status !== 'connecting');
     put(this.notice, text ? h('div', { class: 'card' }, h('p', null, ...with_code(text))) : null);

@@ -16,6 +16,7 @@ import { settings } from './settings';
 import { changed, link_problem, on, selected_model, store, wire } from './store';
 import { Trails } from './trails';
 import type { Poses } from './wire';
+import { fetch_data } from './token';
 
 export class WorldView {
   readonly element = h('div', { class: 'world' });
@@ -131,7 +132,7 @@ export class WorldView {
     this.early = null;
     const world = octets && (await read_world(octets));
     if (world && world.version === version) return world;
-    const reply = await fetch(`world.glb?v=${version}${settings.collisions ? '&collisions=1' : ''}`);
+    const reply = await fetch_data(`world.glb?v=${version}${settings.collisions ? '&collisions=1' : ''}`);
     if (!reply.ok) throw new Error((await reply.text()).slice(0, 200) || `world.glb: ${reply.status}`);
     return read_world(await reply.arrayBuffer());
   }
@@ -187,7 +188,7 @@ export class WorldView {
   }
 
   // Asked for before the server has said what it has: most often this is it.
-  private early: Promise<ArrayBuffer | null> | null = fetch('world.glb').then((reply) => (reply.ok ? reply.arrayBuffer() : null), () => null);
+  private early: Promise<ArrayBuffer | null> | null = fetch_data('world.glb').then((reply) => (reply.ok ? reply.arrayBuffer() : null), () => null);
   // The newest of each link that the server has told, by what stands where in which frame: a scene may come long after they did.
   private told = new Map<number, { view: DataView; at: number }>();
   private told_version = -1;
