@@ -246,7 +246,11 @@ const flows = [
   }],
   ['a link holds the view', async ({ page, browser }) => {
     await page.evaluate(() => { window.studio.world.top(); window.studio.select({ kind: 'model', id: 'pioneer2dx' }); });
-    const link = await until('link', () => page.evaluate(() => { const m = /v=([\w-]+)/.exec(location.hash); return m && atob(m[1].replaceAll('-', '+').replaceAll('_', '/')).includes('"mode":"top"') && location.href; }));
+    await until('link', () => page.evaluate(() => { const m = /v=([\w-]+)/.exec(location.hash); return m && atob(m[1].replaceAll('-', '+').replaceAll('_', '/')).includes('"mode":"top"'); }));
+    await page.evaluate(() => Object.assign(navigator.clipboard, { writeText: async (text) => { window.copied = text; } }));
+    await page.locator('#copy-link').click();
+    const link = await until('the copied link', () => page.evaluate(() => window.copied));
+    same((await open(browser, link.replace(/&token=.*/, '')).then(async (other) => { const said = await until('it asks for the token', () => other.locator('.link-state').textContent()); await other.context().close(); return said; })).slice(0, 8), 'no token', 'without the token');
     const other = await open(browser, link);
     await has_world(other);
     same(await other.evaluate(() => [window.studio.world.eye.mode, window.studio.store.selection.id]), ['top', 'pioneer2dx'], 'view');

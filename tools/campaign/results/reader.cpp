@@ -34,7 +34,7 @@ class Budget {
       values_ += count;
       text_ += text * count;
       if (text_ > most_text) return too_much("1 GiB of text");
-      if (values_ > most_values) return too_much("20 million values");
+      if (values_ > most_values) return too_much("30 million values");
       take(*statement);
     }
   }
@@ -49,7 +49,7 @@ class Budget {
   Database& database() { return database_; }
 
  private:
-  static constexpr std::size_t most_values = 20'000'000, most_text = std::size_t{1} << 30;
+  static constexpr std::size_t most_values = 30'000'000, most_text = std::size_t{1} << 30;
 
   Result<void> too_much(const std::string& what) const {
     return Error{"results " + base::in_quotes(database_.file()) + ": hold more than " + what};

@@ -38,7 +38,7 @@ struct Results {
   std::size_t passed_count() const;
 };
 
-// The file may come from others (see Database). Fails when it holds more than a campaign can: 20 million values, 1 GiB of text, 1000
+// The file may come from others (see Database). Fails when it holds more than a campaign can: 30 million values, 1 GiB of text, 1000
 // parameters or measures.
 Result<Results> read_results(const std::string& file, const ReadLimits& limits = {});
 

@@ -10,9 +10,11 @@ namespace campaign {
 namespace fs = std::filesystem;
 namespace {
 
+// What a world may name: no device and no pipe, which could keep us for ever.
 bool is_there(const fs::path& path) {
   std::error_code error;
-  return fs::exists(path, error);
+  const auto status = fs::status(path, error);
+  return fs::is_regular_file(status) || fs::is_directory(status);
 }
 
 // Of a model's folder.
