@@ -182,8 +182,8 @@ const world_panel = h('section', { class: 'panel world-panel', 'aria-label': 'Wo
   world.element, drive.element);
 const system_panel = h('section', { class: 'panel system-panel', 'aria-label': 'System' },
   h('div', { class: 'bar', role: 'toolbar', 'aria-label': 'System' }, h('h2', null, 'System'), h('span', { class: 'counts' }), h('span', { class: 'spring' }),
-    button('Activate every inactive component', { icon: 'run', label: 'All', id: 'activate-all' }, () => all_components('Inactive', 'activate', 'Activate')),
-    button('Deactivate every active component', { icon: 'stop', label: 'All', id: 'deactivate-all' }, () => all_components('Active', 'deactivate', 'Deactivate')),
+    button('Activate every inactive component', { icon: 'run', label: 'All', name: 'Activate all', id: 'activate-all' }, () => all_components('Inactive', 'activate', 'Activate')),
+    button('Deactivate every active component', { icon: 'stop', label: 'All', name: 'Deactivate all', id: 'deactivate-all' }, () => all_components('Active', 'deactivate', 'Deactivate')),
     button('Forget all names whose components are gone', { icon: 'broom', id: 'forget-dead' }, () => act('Forget the names of what is gone', 'forget_dead', {})), diagram.tools()),
   diagram.element);
 const tree_panel = h('nav', { class: 'panel tree-panel', 'aria-label': 'Everything by name' }, tree.element);

@@ -2,7 +2,7 @@
 import { fetch_data, token } from './token';
 
 export interface Port { name: string; kind: 'in' | 'out' | 'service'; data_type: string; interfaces?: { instance: string; type: string; provided: boolean }[]; properties?: Record<string, string>; connections?: string[] }
-export interface Context { index: number; owned: boolean; kind: string; rate: number; running: boolean; state: string; type?: string; properties?: Record<string, string> }
+export interface Context { index: number; owned: boolean; kind: string; rate: number | null; running: boolean; state: string; type?: string; properties?: Record<string, string> }
 export interface Component {
   path: string; instance: string; type: string; category?: string; vendor?: string; version?: string; description?: string; problem?: string;
   state: State; composite?: boolean; members?: string[]; active_set?: string; in_simulated_time?: boolean; contexts: Context[]; ports: Port[];
@@ -44,7 +44,7 @@ interface Events {
   status: 'connecting' | 'open' | 'lost' | 'forbidden' | 'no token';
   hello: Hello;
   system: System;
-  states: { states: Record<string, State>; rates?: Record<string, [number, boolean]> };
+  states: { states: Record<string, State>; rates?: Record<string, [number | null, boolean]> };
   world: WorldEvent;
   time: TimeEvent;
   logs: { lines: LogLine[] };

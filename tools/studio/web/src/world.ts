@@ -137,9 +137,16 @@ export class WorldView {
     return read_world(await reply.arrayBuffer());
   }
 
+  // Which world it is, whatever is in it.
+  private run_key = '';
+
   private show(world: WorldScene): void {
     const is_first = this.world === null;
     if (this.world) this.drop(this.world);
+    const run = `${store.hello?.recording?.file}|${store.world?.server_id}|${store.world?.birth}`;
+    if (run !== this.run_key) this.trails.forget();
+    this.run_key = run;
+    this.trails.keep(new Set(world.models.keys()));
     this.world = world;
     this.is_past = false;
     this.present = null;
