@@ -47,7 +47,9 @@ export class Mock {
     if (path === '/access') return void reply.writeHead(204).end();
     try {
       const file = path === '/world.glb' ? this.glb : join(this.page, normalize(path === '/' ? '/index.html' : path));
-      const content = await readFile(file);
+      let content = await readFile(file);
+      // A scene with another version (one digit), as after a model has come or gone.
+      if (path === '/world.glb' && this.version) content = Buffer.from(content.toString('latin1').replace(/"version":\d\b/, `"version":${this.version}`), 'latin1');
       reply.writeHead(200, { 'Content-Type': types[file.split('.').pop()] ?? 'application/octet-stream' }).end(content);
     } catch {
       reply.writeHead(404).end('nothing there');

@@ -228,9 +228,28 @@ export class WorldView {
     return places;
   }
 
-  // Seven numbers a link: what was. Null: what is.
-  show_past(places: Float32Array | null): void {
+  // Of the links, in their order; the same array as long as the scene is the same.
+  link_names(): string[] {
+    if (!this.world) return [];
+    return (this.world.root.userData.link_names ??= this.world.links.map((link) => link.name));
+  }
+
+  // What was of the links with these names: in the order of now. A link that was not there is far away.
+  private in_order(places: Float32Array, names: string[]): Float32Array {
+    if (names === this.link_names()) return places;
+    const before = new Map(names.map((name, i) => [name, i]));
+    const ordered = new Float32Array(this.link_names().length * 7);
+    this.link_names().forEach((name, i) => {
+      const at = before.get(name);
+      ordered.set(at === undefined ? [0, 0, -1e4, 0, 0, 0, 1] : places.subarray(7 * at, 7 * at + 7), 7 * i);
+    });
+    return ordered;
+  }
+
+  // Seven numbers a link: what was, of links with these names. Null: what is.
+  show_past(was: Float32Array | null, names = this.link_names()): void {
     const links = this.world?.links ?? [];
+    const places = was && this.in_order(was, names);
     if (places && !this.is_past) this.present = this.places();
     const shown = places ?? this.present;
     this.is_past = places !== null;
