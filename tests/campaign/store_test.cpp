@@ -114,18 +114,22 @@ TEST_F(HostileResults, nothing_in_the_file_is_executed) {
   const std::string endless = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT i, 'k', 1 FROM n";
   EXPECT_EQ(problem_of(make("good.db", "")), "");
   EXPECT_TRUE(says(problem_of(make("view.db", "DROP TABLE rows; CREATE VIEW rows(number, key, seed) AS " + endless)), "have the view"));
-  EXPECT_TRUE(says(problem_of(make("trigger.db", "CREATE TRIGGER t AFTER INSERT ON runs BEGIN DELETE FROM rows; END")), "have the trigger"));
+  EXPECT_TRUE(
+      says(problem_of(make("trigger.db", "CREATE TRIGGER t AFTER INSERT ON runs BEGIN DELETE FROM rows; END")), "have the trigger"));
   EXPECT_TRUE(says(problem_of(make("virtual.db", "CREATE VIRTUAL TABLE more USING fts5(text)")), "have the table \"more\""));
-  EXPECT_TRUE(says(problem_of(make("computed.db", "ALTER TABLE audits ADD COLUMN more AS (hex(zeroblob(100000000)))")), "have the computed column"));
+  EXPECT_TRUE(says(problem_of(make("computed.db", "ALTER TABLE audits ADD COLUMN more AS (hex(zeroblob(100000000)))")),
+                   "have the computed column"));
 }
 
 TEST_F(HostileResults, reading_ends_in_time_whatever_is_in_the_file) {
-  const auto many = make("join.db",
-                         "DROP TABLE verdicts; CREATE TABLE verdicts (key, place, expectation, problem, details);"
-                         "DROP INDEX rows_by_key; DELETE FROM rows;"
-                         "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 30000) INSERT INTO rows SELECT i, 'k', 1 FROM n;"
-                         "INSERT INTO verdicts SELECT 'k', number, 'e' || number, 'p', '' FROM rows");
-  EXPECT_TRUE(says(problem_of(many, std::chrono::milliseconds(200)), "take too long to read")) << problem_of(many, std::chrono::milliseconds(200));
+  const auto many =
+      make("join.db",
+           "DROP TABLE verdicts; CREATE TABLE verdicts (key, place, expectation, problem, details);"
+           "DROP INDEX rows_by_key; DELETE FROM rows;"
+           "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 30000) INSERT INTO rows SELECT i, 'k', 1 FROM n;"
+           "INSERT INTO verdicts SELECT 'k', number, 'e' || number, 'p', '' FROM rows");
+  EXPECT_TRUE(says(problem_of(many, std::chrono::milliseconds(200)), "take too long to read"))
+      << problem_of(many, std::chrono::milliseconds(200));
 }
 
 TEST_F(HostileResults, more_than_a_campaign_holds_is_refused) {
@@ -133,10 +137,11 @@ TEST_F(HostileResults, more_than_a_campaign_holds_is_refused) {
                           "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 2000)"
                           "INSERT INTO parameters SELECT 1, 'p' || i, '1' FROM n");
   EXPECT_TRUE(says(problem_of(names), "more than 1000 parameters")) << problem_of(names);
-  const auto copies = make("copies.db",
-                           "DELETE FROM rows; DROP TABLE runs; CREATE TABLE runs (key, passed, problem, state, folder, simulated, wall, logs, ended);"
-                           "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 3000) INSERT INTO rows SELECT i, 'k', 1 FROM n;"
-                           "INSERT INTO runs VALUES ('k', 0, hex(zeroblob(1000000)), '', '', 1, 1, '', '')");
+  const auto copies =
+      make("copies.db",
+           "DELETE FROM rows; DROP TABLE runs; CREATE TABLE runs (key, passed, problem, state, folder, simulated, wall, logs, ended);"
+           "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 3000) INSERT INTO rows SELECT i, 'k', 1 FROM n;"
+           "INSERT INTO runs VALUES ('k', 0, hex(zeroblob(1000000)), '', '', 1, 1, '', '')");
   EXPECT_TRUE(says(problem_of(copies), "more than 1 GiB of text")) << problem_of(copies);
   EXPECT_NE(problem_of(make("long.db", "UPDATE runs SET problem = hex(zeroblob(40000000))")), "");
 }
@@ -205,8 +210,8 @@ TEST_F(HostileResults, pictures_come_from_the_kept_files_alone) {
 
 TEST_F(HostileResults, names_are_text_in_the_page_and_words_in_its_commands) {
   const std::string name = "</script><img src=x onerror=alert(1)>\x1b[201~\n\xe2\x80\xae--help";
-  const auto results = read_results(make("names.db", "UPDATE runs SET problem = '" + name + "', passed = 0; UPDATE campaign SET value = '" + name +
-                                                        "' WHERE name = 'plan_file'"));
+  const auto results = read_results(make("names.db", "UPDATE runs SET problem = '" + name + "', passed = 0; UPDATE campaign SET value = '" +
+                                                         name + "' WHERE name = 'plan_file'"));
   ASSERT_TRUE(results) << results.error().message;
   ASSERT_TRUE(write_html(*results, file("page.html"), file("names.runs")));
   std::ifstream in(file("page.html"));

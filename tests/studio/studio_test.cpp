@@ -102,7 +102,9 @@ TEST(HttpHead, a_request_of_a_browser_is_good) {
   EXPECT_EQ(status_of("GET /world.glb?v=1 HTTP/1.1\r\nHost: 127.0.0.1:8700\r\nUser-Agent: a (b; c) d\r\nAccept:*/*\r\nX:\r\n\r\n"), 200u);
   EXPECT_EQ(status_of("GET / HTTP/1.0\r\n\r\n"), 200u);
   EXPECT_EQ(status_of("GET / HTTP/1.1\r\nhost: a\r\nContent-Length: 0\r\n\r\n"), 200u);
-  EXPECT_EQ(status_of("GET / HTTP/1.1\r\nHost: a\r\nAccept: x\r\nAccept: y\r\nSec-WebSocket-Protocol: a\r\nSec-WebSocket-Protocol: b\r\n\r\n"), 200u);
+  EXPECT_EQ(
+      status_of("GET / HTTP/1.1\r\nHost: a\r\nAccept: x\r\nAccept: y\r\nSec-WebSocket-Protocol: a\r\nSec-WebSocket-Protocol: b\r\n\r\n"),
+      200u);
   EXPECT_EQ(status_of("GET / HTTP/1.1\r\nHost: a\r\n"), 0u);
   const std::string two = "GET / HTTP/1.1\r\nHost: a\r\n\r\n";
   EXPECT_EQ(studio::find_head_end(two + two).size, two.size());
@@ -110,18 +112,41 @@ TEST(HttpHead, a_request_of_a_browser_is_good) {
 
 TEST(HttpHead, what_two_programs_could_read_in_two_ways_is_refused) {
   const std::string host = "Host: a\r\n", get = "GET / HTTP/1.1\r\n";
-  for (const std::string& head :
-       {get + host + "Host: b\r\n\r\n", get + host + "hOST: a\r\n\r\n", get + "\r\n", get + "Host : a\r\n\r\n", get + host + " folded\r\n\r\n",
-        get + " first\r\n" + host + "\r\n", get + host + "X: a\r\n\tb\r\n\r\n", get + host + "X: a\nY: b\r\n\r\n", get + host + "X: a\rY: b\r\n\r\n",
-        std::string("GET / HTTP/1.1\nHost: a\n\n"), get + host + "X y: a\r\n\r\n", get + host + ": a\r\n\r\n", get + host + "no field\r\n\r\n",
-        get + host + std::string("X: \0\r\n\r\n", 8), get + host + "X: \x1b\r\n\r\n", get + host + "Origin: http://a\r\nOrigin: http://a\r\n\r\n",
-        get + host + "Authorization: Bearer a\r\nAuthorization: Bearer b\r\n\r\n", get + host + "Content-Length: 0\r\nContent-Length: 0\r\n\r\n",
-        get + host + "Content-Length: 0\r\nTransfer-Encoding: chunked\r\n\r\n", get + host + "Transfer-Encoding: chunked\r\n\r\n",
-        get + host + "Transfer-Encoding: identity\r\n\r\n", get + host + "Content-Length: 0, 0\r\n\r\n", get + host + "Content-Length: +0\r\n\r\n",
-        get + host + "Content-Length:\r\n\r\n", std::string("GET  / HTTP/1.1\r\nHost: a\r\n\r\n"), std::string("GET / x HTTP/1.1\r\nHost: a\r\n\r\n"),
-        std::string("GET / HTTP/2.0\r\nHost: a\r\n\r\n"), std::string("GET / HTTP/1.1 \r\nHost: a\r\n\r\n"), std::string("GET\t/\tHTTP/1.1\r\nHost: a\r\n\r\n"),
-        std::string("G(T / HTTP/1.1\r\nHost: a\r\n\r\n"), std::string("GET x HTTP/1.1\r\nHost: a\r\n\r\n"), std::string("OPTIONS * HTTP/1.1\r\nHost: a\r\n\r\n"),
-        std::string("CONNECT a:1 HTTP/1.1\r\nHost: a:1\r\n\r\n"), std::string("\r\n\r\n"), std::string("\x16\x03\x01\x02\x00\x01", 6)})
+  for (const std::string& head : {get + host + "Host: b\r\n\r\n",
+                                  get + host + "hOST: a\r\n\r\n",
+                                  get + "\r\n",
+                                  get + "Host : a\r\n\r\n",
+                                  get + host + " folded\r\n\r\n",
+                                  get + " first\r\n" + host + "\r\n",
+                                  get + host + "X: a\r\n\tb\r\n\r\n",
+                                  get + host + "X: a\nY: b\r\n\r\n",
+                                  get + host + "X: a\rY: b\r\n\r\n",
+                                  std::string("GET / HTTP/1.1\nHost: a\n\n"),
+                                  get + host + "X y: a\r\n\r\n",
+                                  get + host + ": a\r\n\r\n",
+                                  get + host + "no field\r\n\r\n",
+                                  get + host + std::string("X: \0\r\n\r\n", 8),
+                                  get + host + "X: \x1b\r\n\r\n",
+                                  get + host + "Origin: http://a\r\nOrigin: http://a\r\n\r\n",
+                                  get + host + "Authorization: Bearer a\r\nAuthorization: Bearer b\r\n\r\n",
+                                  get + host + "Content-Length: 0\r\nContent-Length: 0\r\n\r\n",
+                                  get + host + "Content-Length: 0\r\nTransfer-Encoding: chunked\r\n\r\n",
+                                  get + host + "Transfer-Encoding: chunked\r\n\r\n",
+                                  get + host + "Transfer-Encoding: identity\r\n\r\n",
+                                  get + host + "Content-Length: 0, 0\r\n\r\n",
+                                  get + host + "Content-Length: +0\r\n\r\n",
+                                  get + host + "Content-Length:\r\n\r\n",
+                                  std::string("GET  / HTTP/1.1\r\nHost: a\r\n\r\n"),
+                                  std::string("GET / x HTTP/1.1\r\nHost: a\r\n\r\n"),
+                                  std::string("GET / HTTP/2.0\r\nHost: a\r\n\r\n"),
+                                  std::string("GET / HTTP/1.1 \r\nHost: a\r\n\r\n"),
+                                  std::string("GET\t/\tHTTP/1.1\r\nHost: a\r\n\r\n"),
+                                  std::string("G(T / HTTP/1.1\r\nHost: a\r\n\r\n"),
+                                  std::string("GET x HTTP/1.1\r\nHost: a\r\n\r\n"),
+                                  std::string("OPTIONS * HTTP/1.1\r\nHost: a\r\n\r\n"),
+                                  std::string("CONNECT a:1 HTTP/1.1\r\nHost: a:1\r\n\r\n"),
+                                  std::string("\r\n\r\n"),
+                                  std::string("\x16\x03\x01\x02\x00\x01", 6)})
     EXPECT_EQ(status_of(head), 400u) << head;
   EXPECT_EQ(status_of(get + host + "Content-Length: 5\r\n\r\nhello"), 413u);
   EXPECT_EQ(status_of(get + host + "X: " + std::string(9000, 'x') + "\r\n\r\n"), 431u);
@@ -426,7 +451,8 @@ TEST(Acts, no_name_becomes_a_command_of_the_terminal_or_an_option) {
   EXPECT_EQ(command("activate", {{"path", "-e"}, {"context", 2}}), "rtse act -e 2 -- -e");
   EXPECT_EQ(command("connect", {{"ports", {"-a", "b"}}, {"name", "-n"}, {"properties", {{"-k", "\xc2\x9b"}}}}),
             "rtse con -n-n $'-p-k=\\xc2\\x9b' -- -a b");
-  EXPECT_EQ(command("set_configuration", {{"path", "/a.rtc"}, {"set", "s"}, {"values", {{"--force", "-1"}}}}), "rtse conf -s s -- /a.rtc set --force -1");
+  EXPECT_EQ(command("set_configuration", {{"path", "/a.rtc"}, {"set", "s"}, {"values", {{"--force", "-1"}}}}),
+            "rtse conf -s s -- /a.rtc set --force -1");
 }
 
 Json marker(const char* model, const char* frame, int type = 11) {

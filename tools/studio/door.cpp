@@ -136,7 +136,8 @@ bool Door::knows_origin(std::string_view origin, std::string_view host) const {
 // Each that is brought must be right: an old one in a URL is told, whatever a header says.
 Verdict Door::judge_token(const Caller& caller) const {
   bool is_brought = false, is_right = true;
-  for (const auto& guess : {std::string(bearer(caller.authorization)), protocol_token(caller.protocols), query_value(caller.query, "token")}) {
+  for (const auto& guess :
+       {std::string(bearer(caller.authorization)), protocol_token(caller.protocols), query_value(caller.query, "token")}) {
     if (guess.empty()) continue;
     is_brought = true;
     is_right = is_secret(guess, token_) && is_right;

@@ -102,7 +102,8 @@ std::optional<HeadProblem> check_length(const SingleFields& fields) {
   if (fields.value("transfer-encoding")) return HeadProblem{400, "a request has no body here, so no Transfer-Encoding"};
   const auto length = fields.value("content-length");
   if (!length) return std::nullopt;
-  if (length->empty() || length->find_first_not_of("0123456789") != std::string_view::npos) return HeadProblem{400, "Content-Length is no number"};
+  if (length->empty() || length->find_first_not_of("0123456789") != std::string_view::npos)
+    return HeadProblem{400, "Content-Length is no number"};
   if (length->find_first_not_of('0') != std::string_view::npos) return HeadProblem{413, "a request has no body here"};
   return std::nullopt;
 }
@@ -113,7 +114,9 @@ HeadEnd find_head_end(std::string_view octets) {
   const auto end = octets.find(head_end);
   const auto head = octets.substr(0, end == std::string_view::npos ? octets.size() : end + head_end.size());
   for (std::size_t i = 0; i < std::min(head.size(), most_head); ++i) {
-    if (head[i] == '\r' ? i + 1 < head.size() && head[i + 1] != '\n' : head[i] == '\n' ? i == 0 || head[i - 1] != '\r' : is_control(head[i]))
+    if (head[i] == '\r'   ? i + 1 < head.size() && head[i + 1] != '\n'
+        : head[i] == '\n' ? i == 0 || head[i - 1] != '\r'
+                          : is_control(head[i]))
       return {HeadEnd::State::malformed, 0};
   }
   if (head.size() > most_head) return {HeadEnd::State::too_long, 0};
@@ -130,7 +133,8 @@ std::optional<HeadProblem> check_head(std::string_view head) {
   if (!host && request->version == "HTTP/1.1") return HeadProblem{400, "the request names no Host"};
   const auto authority = authority_of(request->target);
   if (authority.empty() && !request->target.starts_with('/')) return HeadProblem{400, "expected a target that begins with '/'"};
-  if (!authority.empty() && (!host || !base::equal_ignoring_case(authority, *host))) return HeadProblem{400, "the target names another host than Host"};
+  if (!authority.empty() && (!host || !base::equal_ignoring_case(authority, *host)))
+    return HeadProblem{400, "the target names another host than Host"};
   return check_length(fields);
 }
 

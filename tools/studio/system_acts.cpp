@@ -80,7 +80,8 @@ Result<Json> exit_component(const ActContext& context, const std::string& path) 
 Result<Plan> exit(const ActContext& context, const Json& args) {
   const auto path = text_of(args, "path");
   if (!path) return path.error();
-  return Plan{rtse_line(context, base::command_words({"exit"}, {*path})), [context, path = *path] { return exit_component(context, path); }, Touches::system};
+  return Plan{rtse_line(context, base::command_words({"exit"}, {*path})), [context, path = *path] { return exit_component(context, path); },
+              Touches::system};
 }
 
 // ---- connections
@@ -168,8 +169,8 @@ Result<Plan> disconnect(const ActContext& context, const Json& args) {
   const auto path = text_of(args, "port"), id = text_of(args, "id");
   if (!path) return path.error();
   if (!id) return id.error();
-  return Plan{rtse_line(context, base::command_words({"dis"}, {}, base::option_words("-i", *id))), [context, path = *path, id = *id] { return disconnect_port(context, path, id); },
-              Touches::system};
+  return Plan{rtse_line(context, base::command_words({"dis"}, {}, base::option_words("-i", *id))),
+              [context, path = *path, id = *id] { return disconnect_port(context, path, id); }, Touches::system};
 }
 
 // What both ports offer of a property; "any" offers everything that the other has.

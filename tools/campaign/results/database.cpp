@@ -26,8 +26,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::chrono::milliseconds patience = 60s;  // for others that write; a list of a million rows takes half of it
-constexpr std::chrono::seconds turn_patience{5};     // for others that close the file
+constexpr std::chrono::milliseconds patience = 60s;        // for others that write; a list of a million rows takes half of it
+constexpr std::chrono::seconds turn_patience{5};           // for others that close the file
 constexpr std::int64_t most_heap = std::int64_t{1} << 30;  // [byte] of all that SQLite keeps
 
 std::string uri(const std::string& file) {
@@ -156,7 +156,8 @@ Result<Database> Database::open_to_read(const std::string& file, const ReadLimit
   if (error) return Error{"results " + base::in_quotes(file) + ": " + error.message()};
   if (const auto checked = base::check_regular_file(real); !checked) return checked.error();
   for (const char* log : {"-wal", "-shm", "-journal"}) {
-    if (const auto checked = base::check_regular_file(real + log, {.follows = false, .may_be_absent = true}); !checked) return checked.error();
+    if (const auto checked = base::check_regular_file(real + log, {.follows = false, .may_be_absent = true}); !checked)
+      return checked.error();
   }
   const auto log_size = std::filesystem::file_size(real + "-wal", error);
   const bool has_log = !error && log_size > 0;
@@ -213,7 +214,8 @@ Result<void> Database::guard(const ReadLimits& limits) {
   if (const auto set = execute(settings); !set) return set;
   for (const char* others :
        {"SELECT type, name FROM sqlite_master WHERE (type = 'table' AND rootpage < 1) OR type = 'view' OR type = 'trigger' LIMIT 1",
-        "SELECT 'computed column', c.name FROM sqlite_master m, pragma_table_xinfo(m.name) c WHERE m.type = 'table' AND c.hidden > 0 LIMIT 1"}) {
+        "SELECT 'computed column', c.name FROM sqlite_master m, pragma_table_xinfo(m.name) c WHERE m.type = 'table' AND c.hidden > 0 LIMIT "
+        "1"}) {
     auto found = prepare(others);
     if (!found) return found.error();
     const auto is_there = found->next();

@@ -125,9 +125,7 @@ Result<void> read_runs(Budget& budget, Results& results, const RowsByKey& by_key
   results.measures.assign(names.begin(), names.end());
   const std::string unmet =
       "SELECT v.expectation, COUNT(*) FROM verdicts v JOIN rows r ON r.key = v.key WHERE v.problem <> '' GROUP BY 1 ORDER BY 2 DESC, 1";
-  read = budget.for_rows(unmet, [&](Statement& row) {
-    results.unmet.push_back({row.text(0), static_cast<std::size_t>(row.integer(1))});
-  });
+  read = budget.for_rows(unmet, [&](Statement& row) { results.unmet.push_back({row.text(0), static_cast<std::size_t>(row.integer(1))}); });
   if (!read) return read;
   return budget.for_rows("SELECT COUNT(*), COALESCE(SUM(same = 0), 0) FROM audits", [&](Statement& row) {
     results.audits = static_cast<std::size_t>(row.integer(0));

@@ -2,8 +2,8 @@
 
 #include <cstdlib>
 
-#include "base/child_process.h"
 #include "base/beneath.h"
+#include "base/child_process.h"
 #include "base/text.h"
 
 namespace campaign {

@@ -126,7 +126,8 @@ class SlurmSweep {
       const auto left = slurm::count(folder_.name());
       if (left && *left == 0) return {};
     }
-    return Error{"jobs " + folder_.name() + ": are still there after scancel; " + base::shell_line({"scancel", "--name=" + folder_.name()})};
+    return Error{"jobs " + folder_.name() + ": are still there after scancel; " +
+                 base::shell_line({"scancel", "--name=" + folder_.name()})};
   }
 
   std::string script(int attempt) const {

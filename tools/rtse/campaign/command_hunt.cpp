@@ -54,8 +54,8 @@ void tell(const Find& find, std::size_t number) {
   const char* doubt = !find.was_repeated   ? "\n  interrupted: it may not be the simplest, and was not run again"
                       : find.is_repeatable ? ""
                                            : "\n  it was not the same when it was run again";
-  std::printf("find %zu after %.0f s, case %zu: %s\n  %s\n  %s%s\n", number, find.after_s, find.case_number, base::printable(find.problem, "\n\t").c_str(),
-              base::printable(text_of(find.tried), "\n\t").c_str(), again.c_str(), doubt);
+  std::printf("find %zu after %.0f s, case %zu: %s\n  %s\n  %s%s\n", number, find.after_s, find.case_number,
+              base::printable(find.problem, "\n\t").c_str(), base::printable(text_of(find.tried), "\n\t").c_str(), again.c_str(), doubt);
   std::fflush(stdout);
 }
 

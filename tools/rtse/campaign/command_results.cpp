@@ -24,7 +24,7 @@ struct ResultsCall {
 
 std::string runs_of(const ResultsCall& call) {
   if (call.runs.empty()) return std::filesystem::path(call.file).replace_extension(".runs").string();
-  std::error_code absent;  // then there are no pictures
+  std::error_code absent;                                                // then there are no pictures
   return std::filesystem::weakly_canonical(call.runs, absent).string();  // whoever names a link means what it leads to
 }
 
@@ -69,7 +69,8 @@ void add_results(base::Command& app, editor::Chosen& chosen) {
   command->add_flag("--csv", call->csv, "Print one line for each row");
   command->add_option("--junit", call->junit, "Write a test case for each row, JUnit XML");
   command->add_option("--html", call->html, "Write one page with plots and failed runs");
-  command->add_option("--runs", call->runs, "Folder of kept files (sweep --keep), for pictures in the page; default: the results' name with .runs");
+  command->add_option("--runs", call->runs,
+                      "Folder of kept files (sweep --keep), for pictures in the page; default: the results' name with .runs");
   command->callback([&chosen, call] {
     chosen.needs_orb = false;
     chosen.work = [call](Editor& e) { show_results(e, *call); };

@@ -144,7 +144,8 @@ void tell(Editor& editor, const SweepResult& result, const SweepCall& call) {
     std::fprintf(stderr, "rtse: row %zu: %s\nrtse:   again: %s\n", result.failed[i].number,
                  base::printable(result.failed[i].problem, "\n\t").c_str(), base::shell_line(again).c_str());
   }
-  if (p.failed > enough) std::fprintf(stderr, "rtse: and %zu more; %s\n", p.failed - enough,
+  if (p.failed > enough)
+    std::fprintf(stderr, "rtse: and %zu more; %s\n", p.failed - enough,
                  base::shell_line(base::command_words({"rtse", "results"}, {results})).c_str());
   if (p.failed > 0) editor.set_failed();
   if (!result.problem.empty()) editor.fail({result.problem});
@@ -168,8 +169,7 @@ void print_commands(const Campaign& campaign, const SweepCall& call) {
   for (std::size_t first = 1; first <= campaign.rows(); first += call.chunk) {
     const auto last = std::min(campaign.rows(), first + call.chunk - 1);
     std::printf("%s sweep %s --rows %zu..%zu -o %s\n", word(editor::own_program("rtse")).c_str(),
-                word(fs::absolute(call.plan).string()).c_str(), first, last,
-                word(fs::absolute(results_of(call)).string()).c_str());
+                word(fs::absolute(call.plan).string()).c_str(), first, last, word(fs::absolute(results_of(call)).string()).c_str());
   }
 }
 
