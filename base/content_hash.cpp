@@ -5,6 +5,7 @@
 #include <fstream>
 #include <vector>
 
+#include "base/beneath.h"
 #include "base/text.h"
 
 namespace base {
@@ -29,6 +30,7 @@ void ContentHash::add(std::string_view text) {
 }
 
 Result<void> ContentHash::add_file(const std::string& file) {
+  if (const auto checked = check_regular_file(file); !checked) return checked;  // a device has no end
   std::ifstream in(file, std::ios::binary);
   std::vector<char> piece(1U << 18U);
   while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())) || in.gcount() > 0)

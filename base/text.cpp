@@ -127,8 +127,10 @@ std::optional<Character> first_character(std::string_view text) {
 
 bool is_obeyed(char32_t code) {
   const bool is_control = code < 0x20 || (code >= 0x7f && code < 0xa0);  // U+009B begins sequences as ESC [ does
-  const bool is_direction = (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
-  return is_control || is_direction;
+  const bool is_direction =
+      code == 0x061c || code == 0x200e || code == 0x200f || (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+  const bool is_line_end = code == 0x2028 || code == 0x2029;
+  return is_control || is_direction || is_line_end;
 }
 
 std::string printable(std::string_view text, std::string_view kept) {

@@ -38,7 +38,8 @@ struct Character {
 };
 // What a text that is not empty begins with; nothing when that is no UTF-8.
 std::optional<Character> first_character(std::string_view text);
-// Whether a terminal does not show the character but obeys it: controls, those of C1 too, and those that turn the direction of writing.
+// Whether a terminal does not show the character but obeys it: controls, those of C1 too, those that turn the direction of writing, and
+// the line ends of Unicode.
 bool is_obeyed(char32_t code);
 // A text that comes from outside, fit for a terminal: what would be obeyed as \x1b, but for `kept` ones, and U+FFFD for each octet that is
 // no UTF-8.

@@ -11,6 +11,7 @@
 
 #include "base/descriptors.h"
 #include "base/log.h"
+#include "base/text.h"
 
 namespace gateway {
 namespace {
@@ -149,7 +150,7 @@ void Gateway::serve_ports(std::vector<PortPlan> plans) {
     for (const auto& word : port.robot->shown()) line += " " + word;
     if (line == port.said) continue;
     port.said = line;
-    std::printf("%s\n", line.c_str());
+    std::printf("%s\n", base::printable(line).c_str());
     std::fflush(stdout);
   }
   // Of a world that had more robots.

@@ -50,6 +50,8 @@ TEST(Text, what_a_terminal_obeys_or_cannot_read_is_not_given_to_it) {
                       "31m\xff"),
             "a\xef\xbf\xbd"
             "31m\xef\xbf\xbd");
+  for (const auto turn : {"\xd8\x9c", "\xe2\x80\x8e", "\xe2\x80\x8f", "\xe2\x81\xa6", "\xe2\x80\xa8"})
+    EXPECT_EQ(printable(turn).find(turn), std::string::npos) << printable(turn);
   EXPECT_EQ(printable("\xe2\x80\xae"
                       "gpj\xe2\x81\xa6"),
             "\\xe2\\x80\\xaegpj\\xe2\\x81\\xa6")

@@ -56,6 +56,11 @@ TEST(PassRates, have_wilsons_interval) {
   EXPECT_DOUBLE_EQ(wilson(0, 10).low, 0);
 }
 
+TEST(ContentHashes, of_a_device_are_refused) {
+  ContentHash hash;
+  EXPECT_FALSE(hash.add_file("/dev/zero"));
+}
+
 TEST(ContentHashes, tell_pieces_apart) {
   const auto of = [](const std::vector<std::string>& pieces) {
     base::ContentHash hash;

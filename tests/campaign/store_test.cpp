@@ -2,11 +2,14 @@
 #include "campaign/results/store.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include "base/text.h"
@@ -80,12 +83,147 @@ TEST_F(Stores, hold_many_rows_and_show_them_in_a_page_of_bounded_size) {
   print_tables(text, *results, {"component/A0/gain", "model/robot/pose/x"});
   EXPECT_NE(text.str().find("path_length"), std::string::npos);
   EXPECT_LT(text.str().size(), 10'000U);
-  ASSERT_TRUE(write_html(*results, file("page.html")));
+  ASSERT_TRUE(write_html(*results, file("page.html"), file("rows.runs")));
   EXPECT_LT(fs::file_size(file("page.html")), 4U << 20U);
   std::printf("%zu rows: %ju octets in the file, %ju in the page, %.0f MB to read and show, %.0f MB in all\n", count,
               static_cast<std::uintmax_t>(fs::file_size(file("rows.db"))), static_cast<std::uintmax_t>(fs::file_size(file("page.html"))),
               peak_memory() - before, peak_memory());
   EXPECT_LT(peak_memory() - before, 64 + static_cast<double>(count) * 4e-3);  // 4 kB a row
+}
+
+// A file as somebody with bad intentions would make it: that of a campaign, and then more.
+class HostileResults : public Stores {
+ protected:
+  std::string make(const std::string& name, const std::string& sql) const {
+    auto store = Store::open(file(name));
+    EXPECT_TRUE(store && store->begin_rows(Plan{}, "") && store->add_row(row(1), key(1)) && store->end_rows());
+    EXPECT_TRUE(store && store->add_run(key(1), outcome(5), ""));
+    auto database = Database::open(file(name), Database::Access::write);
+    const auto done = database ? database->execute(sql) : Result<void>(database.error());
+    EXPECT_TRUE(done) << sql << ": " << (done ? "" : done.error().message);
+    return file(name);
+  }
+  static std::string problem_of(const std::string& file, std::chrono::milliseconds time = std::chrono::minutes(2)) {
+    const auto results = read_results(file, {time});
+    return results ? "" : results.error().message;
+  }
+  static bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+};
+
+TEST_F(HostileResults, nothing_in_the_file_is_executed) {
+  const std::string endless = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT i, 'k', 1 FROM n";
+  EXPECT_EQ(problem_of(make("good.db", "")), "");
+  EXPECT_TRUE(says(problem_of(make("view.db", "DROP TABLE rows; CREATE VIEW rows(number, key, seed) AS " + endless)), "have the view"));
+  EXPECT_TRUE(
+      says(problem_of(make("trigger.db", "CREATE TRIGGER t AFTER INSERT ON runs BEGIN DELETE FROM rows; END")), "have the trigger"));
+  EXPECT_TRUE(says(problem_of(make("virtual.db", "CREATE VIRTUAL TABLE more USING fts5(text)")), "have the table \"more\""));
+  EXPECT_TRUE(says(problem_of(make("computed.db", "ALTER TABLE audits ADD COLUMN more AS (hex(zeroblob(100000000)))")),
+                   "have the computed column"));
+}
+
+TEST_F(HostileResults, reading_ends_in_time_whatever_is_in_the_file) {
+  const auto many =
+      make("join.db",
+           "DROP TABLE verdicts; CREATE TABLE verdicts (key, place, expectation, problem, details);"
+           "DROP INDEX rows_by_key; DELETE FROM rows;"
+           "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 30000) INSERT INTO rows SELECT i, 'k', 1 FROM n;"
+           "INSERT INTO verdicts SELECT 'k', number, 'e' || number, 'p', '' FROM rows");
+  EXPECT_TRUE(says(problem_of(many, std::chrono::milliseconds(200)), "take too long to read"))
+      << problem_of(many, std::chrono::milliseconds(200));
+}
+
+TEST_F(HostileResults, more_than_a_campaign_holds_is_refused) {
+  const auto names = make("names.db",
+                          "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 2000)"
+                          "INSERT INTO parameters SELECT 1, 'p' || i, '1' FROM n");
+  EXPECT_TRUE(says(problem_of(names), "more than 1000 parameters")) << problem_of(names);
+  const auto copies =
+      make("copies.db",
+           "DELETE FROM rows; DROP TABLE runs; CREATE TABLE runs (key, passed, problem, state, folder, simulated, wall, logs, ended);"
+           "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 3000) INSERT INTO rows SELECT i, 'k', 1 FROM n;"
+           "INSERT INTO runs VALUES ('k', 0, hex(zeroblob(1000000)), '', '', 1, 1, '', '')");
+  EXPECT_TRUE(says(problem_of(copies), "more than 1 GiB of text")) << problem_of(copies);
+  EXPECT_NE(problem_of(make("long.db", "UPDATE runs SET problem = hex(zeroblob(40000000))")), "");
+}
+
+TEST_F(HostileResults, only_regular_files_are_opened) {
+  EXPECT_TRUE(says(problem_of("/dev/zero"), "is not a regular file"));
+  ASSERT_EQ(::mkfifo(file("pipe.db").c_str(), 0600), 0);
+  EXPECT_TRUE(says(problem_of(file("pipe.db")), "is not a regular file"));
+  for (const char* log : {"-wal", "-shm", "-journal"}) {
+    const auto name = make(std::string("log") + log + ".db", "");
+    fs::create_symlink("/dev/zero", name + log);
+    EXPECT_TRUE(says(problem_of(name), "is not a regular file")) << problem_of(name);
+  }
+  const auto good = make("good.db", "");
+  fs::create_symlink(good, file("link.db"));
+  EXPECT_EQ(problem_of(file("link.db")), "") << "the user names it";
+}
+
+// The head of a journal names another file, which SQLite would delete when it may write.
+TEST_F(HostileResults, nothing_is_written_or_deleted_by_reading) {
+  const auto name = make("good.db", "");
+  std::ofstream(name + "-journal", std::ios::binary) << std::string("\xd9\xd5\x05\xf9\x20\xa1\x63\xd7", 8) << std::string(600, '\1');
+  const auto size = fs::file_size(name);
+  static_cast<void>(problem_of(name));
+  EXPECT_TRUE(fs::exists(name + "-journal"));
+  EXPECT_EQ(fs::file_size(name), size);
+  fs::remove(name + "-journal");
+  EXPECT_EQ(problem_of(name), "");
+  std::size_t files = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(name).parent_path())) files += entry.path().string().starts_with(name) ? 1 : 0;
+  EXPECT_EQ(files, 1U) << "nothing beside it";
+}
+
+TEST_F(HostileResults, pictures_come_from_the_kept_files_alone) {
+  const std::string png = "\x89PNG\r\n\x1a\n";
+  const auto page_of = [&](const std::string& folder) {
+    const auto name = make("pictures.db", "UPDATE runs SET folder = '" + folder + "'");
+    const auto results = read_results(name);
+    EXPECT_TRUE(results && write_html(*results, file("page.html"), file("pictures.runs")));
+    std::ifstream in(file("page.html"));
+    const std::string page((std::istreambuf_iterator<char>(in)), {});
+    fs::remove(name);
+    return says(page, "data:image/png;base64,");
+  };
+  fs::create_directories(file("pictures.runs/row-1"));
+  std::ofstream(file("pictures.runs/row-1/picture.png"), std::ios::binary) << png << "kept";
+  EXPECT_TRUE(page_of("/elsewhere/pictures.runs/row-1"));
+  fs::create_directories(file("private"));
+  std::ofstream(file("private/picture.png"), std::ios::binary) << png << "private";
+  EXPECT_FALSE(page_of(file("private")));
+  EXPECT_FALSE(page_of("../private"));
+  EXPECT_FALSE(page_of(".."));
+  fs::create_directory_symlink(file("private"), file("pictures.runs/row-2"));
+  EXPECT_FALSE(page_of("row-2"));
+  for (const char* row : {"row-3", "row-4", "row-5", "row-6"}) fs::create_directories(file(std::string("pictures.runs/") + row));
+  fs::create_symlink("/dev/zero", file("pictures.runs/row-3/picture.png"));
+  EXPECT_FALSE(page_of("row-3"));
+  ASSERT_EQ(::mkfifo(file("pictures.runs/row-4/picture.png").c_str(), 0600), 0);
+  EXPECT_FALSE(page_of("row-4"));
+  std::ofstream(file("pictures.runs/row-5/picture.png")) << "no picture";
+  EXPECT_FALSE(page_of("row-5"));
+  std::ofstream(file("pictures.runs/row-6/picture.png"), std::ios::binary) << png;
+  fs::resize_file(file("pictures.runs/row-6/picture.png"), 1ULL << 40U);
+  EXPECT_FALSE(page_of("row-6"));
+}
+
+TEST_F(HostileResults, names_are_text_in_the_page_and_words_in_its_commands) {
+  const std::string name = "</script><img src=x onerror=alert(1)>\x1b[201~\n\xe2\x80\xae--help";
+  const auto results = read_results(make("names.db", "UPDATE runs SET problem = '" + name + "', passed = 0; UPDATE campaign SET value = '" +
+                                                         name + "' WHERE name = 'plan_file'"));
+  ASSERT_TRUE(results) << results.error().message;
+  ASSERT_TRUE(write_html(*results, file("page.html"), file("names.runs")));
+  std::ifstream in(file("page.html"));
+  const std::string page((std::istreambuf_iterator<char>(in)), {});
+  for (const char* part : {"<img", "\x1b", "\xe2\x80\xae"}) EXPECT_FALSE(says(page, part)) << part;
+  EXPECT_EQ(page.find("</script>"), page.rfind("</script>"));
+  const auto again = command_again(*results, results->rows.front());
+  EXPECT_TRUE(std::ranges::all_of(again, [](char c) { return c >= ' ' && c <= '~'; })) << again;
+  EXPECT_TRUE(says(again, "\\x1b[201~\\x0a")) << again;
+  auto dashed = *results;
+  dashed.plan_file = "-x.yaml";
+  EXPECT_EQ(command_again(dashed, dashed.rows.front()), "rtse sweep --row 1 -- -x.yaml");
 }
 
 TEST_F(Stores, get_outcomes_of_other_machines_as_they_were) {

@@ -212,14 +212,29 @@ def names_of_others():
     up("SourceAll", "SinkAll")
     rig.rtse("con", "SourceAll0:long", "SinkAll0:long", "-n", name)
     assert name in rig.rtse("cat", "SourceAll0:long")
-    for words in (["cat", "SourceAll0:long"], ["cat", "-l", "SourceAll0:long"], ["cat", name]):
-        process = subprocess.Popen([f"{rig.bin_dir}/rtse", "--ns", rig.names, *words], stdout=line, stderr=line)
+    # XML holds no control characters of ASCII, but those of C1, and those that turn the direction of writing.
+    model = "evil\u009b31m\u202e"
+    world = rig.path("evil.sdf")
+    with open(world, "w", encoding="utf-8") as out:
+        out.write(f"<sdf version='1.6'><world name='w'><model name='{model}'><static>true</static><link name='l'/></model></world></sdf>")
+    rig.server(world=world)
+    assert model in rig.simctl("tree")
+    for program, words, shown in (("rtse", ["--ns", rig.names, "cat", "SourceAll0:long"], b"evil\\x1b[31m"), ("rtse", ["--ns", rig.names, "cat", "-l", "SourceAll0:long"], b"evil\\x1b[31m"),
+                                  ("rtse", ["--ns", rig.names, "cat", name], b"evil\\x1b[31m"), ("simctl", ["-s", rig.server_id, "tree"], b"evil\\xc2\\x9b31m\\xe2\\x80\\xae")):
+        process = subprocess.Popen([f"{rig.bin_dir}/{program}", *words], stdout=line, stderr=line)
         said, end = b"", time.monotonic() + 60
         while select.select([terminal], [], [], 0.1)[0] or process.poll() is None:
             assert time.monotonic() < end, f"{words} has not ended"
             if select.select([terminal], [], [], 0)[0]:
                 said += os.read(terminal, 65536)
-        assert b"evil\\x1b[31m" in said and b"\x1b" not in said, said
+        assert shown in said and not any(bad in said for bad in (b"\x1b", b"\xc2\x9b", "\u202e".encode())), said
+    # What the studio offers for copying of names that begin as options do.
+    for words, missing in ((["simctl", "-s", rig.server_id, "pose", "--", "--help", "1", "-2", "0"], "--help"), (["rtse", "--ns", rig.names, "cat", "--", "--help"], "--help"),
+                           (["rtse", "--ns", rig.names, "act", "-e", "2", "--", "-e"], "-e")):
+        done = subprocess.run([f"{rig.bin_dir}/{words[0]}", *words[1:]], capture_output=True, text=True, timeout=60)
+        assert done.returncode == 1 and missing in done.stderr, done
+    rig.rtse("con", "-n-n", "-p-k=v", "--", "SourceAll0:float", "SinkAll0:float")
+    assert "-n" in rig.rtse("cat", "-l", "SourceAll0:float")
 
 
 # Deactivating means that time stands still. A simulator that is gone cannot go on; one that is slow is waited for.

@@ -11,12 +11,12 @@ class Closed(Exception):
     pass
 
 
-def request(port, target="/", headers=None, method="GET", host=None, raw=None, limit=10):
+def request(port, target="/", headers=None, method="GET", host=None, raw=None, limit=10, token=""):
     """Status, headers (names in lower case) and body of one request; status 0 when nothing came back."""
     with socket.create_connection(("127.0.0.1", port), timeout=limit) as line:
         line.settimeout(limit)
         if raw is None:
-            all_headers = {"Host": host or f"127.0.0.1:{port}", "Connection": "close", **(headers or {})}
+            all_headers = {"Host": host or f"127.0.0.1:{port}", "Connection": "close", **({"Authorization": f"Bearer {token}"} if token else {}), **(headers or {})}
             raw = f"{method} {target} HTTP/1.1\r\n".encode() + b"".join(
                 f"{k}: {v}\r\n".encode() for k, v in all_headers.items() if v is not None) + b"\r\n"
         try:
@@ -39,7 +39,8 @@ def request(port, target="/", headers=None, method="GET", host=None, raw=None, l
 class Socket:
     """One WebSocket."""
 
-    def __init__(self, port, token="", protocol="rtmsim.studio.v1", headers=None, limit=10, receive_buffer=0):
+    # The token goes as a subprotocol, as the page sends it; `in_url`: as viewers send it that are given a URL and nothing else.
+    def __init__(self, port, token="", protocol="rtmsim.studio.v1", headers=None, limit=10, receive_buffer=0, in_url=False):
         self.line = socket.socket()
         if receive_buffer:
             self.line.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
@@ -48,8 +49,8 @@ class Socket:
         self.octets = b""
         key = base64.b64encode(os.urandom(16)).decode()
         all_headers = {"Host": f"127.0.0.1:{port}", "Upgrade": "websocket", "Connection": "Upgrade", "Sec-WebSocket-Version": "13",
-                       "Sec-WebSocket-Key": key, "Sec-WebSocket-Protocol": protocol, **(headers or {})}
-        target = "/ws" + (f"?token={token}" if token else "")
+                       "Sec-WebSocket-Key": key, "Sec-WebSocket-Protocol": protocol + (f", token.{token}" if token and not in_url else ""), **(headers or {})}
+        target = "/ws" + (f"?token={token}" if token and in_url else "")
         self.line.sendall(f"GET {target} HTTP/1.1\r\n".encode() + b"".join(
             f"{k}: {v}\r\n".encode() for k, v in all_headers.items() if v is not None) + b"\r\n")
         while b"\r\n\r\n" not in self.octets:

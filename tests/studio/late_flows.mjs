@@ -60,12 +60,12 @@ const flows = [
   }, () => []),
   flow('an old word that the server is gone is not believed', async ({ mock, page }) => {
     await has_world(page);
-    mock.holds_file = (method) => method === 'HEAD';
+    mock.holds_file = (method, path) => path === '/access';
     for (const socket of mock.sockets) socket.destroy();
-    await held(mock, '/');
+    await held(mock, '/access');
     await until('it is back', () => page.evaluate(() => window.studio.wire.status === 'open'));
     mock.refuses = true;
-    const answered = page.waitForResponse((reply) => reply.request().method() === 'HEAD');
+    const answered = page.waitForResponse((reply) => reply.url().endsWith('/access'));
     mock.release_all();
     await answered;
     await two_frames(page);

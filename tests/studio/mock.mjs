@@ -6,6 +6,7 @@ import { createServer } from 'node:http';
 import { join, normalize } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
+export const token = '0123456789abcdef0123456789abcdef';
 const types = { html: 'text/html', js: 'text/javascript', css: 'text/css', glb: 'model/gltf-binary' };
 
 function frame(data) {
@@ -29,7 +30,7 @@ export class Mock {
 
   async start(port = 0) {
     await new Promise((resolve) => this.server.listen(port, '127.0.0.1', resolve));
-    return `http://127.0.0.1:${this.server.address().port}/`;
+    return `http://127.0.0.1:${this.server.address().port}/#token=${token}`;
   }
 
   stop() {
@@ -41,10 +42,14 @@ export class Mock {
     const path = new URL(request.url, 'http://x').pathname;
     if (path === '/world.glb') this.asked.push({ name: path });
     if (this.holds_file(request.method, path)) await new Promise((resolve) => this.held.push({ message: { name: path }, go: resolve }));
-    if (this.refuses) return void reply.writeHead(403).end();
+    const is_data = path === '/world.glb' || path === '/access';
+    if (this.refuses || (is_data && request.headers.authorization !== `Bearer ${token}`)) return void reply.writeHead(403).end();
+    if (path === '/access') return void reply.writeHead(204).end();
     try {
       const file = path === '/world.glb' ? this.glb : join(this.page, normalize(path === '/' ? '/index.html' : path));
-      const content = await readFile(file);
+      let content = await readFile(file);
+      // A scene with another version (one digit), as after a model has come or gone.
+      if (path === '/world.glb' && this.version) content = Buffer.from(content.toString('latin1').replace(/"version":\d\b/, `"version":${this.version}`), 'latin1');
       reply.writeHead(200, { 'Content-Type': types[file.split('.').pop()] ?? 'application/octet-stream' }).end(content);
     } catch {
       reply.writeHead(404).end('nothing there');
@@ -52,6 +57,7 @@ export class Mock {
   }
 
   welcome(request, socket) {
+    if (!request.headers['sec-websocket-protocol']?.split(', ').includes(`token.${token}`)) return void socket.end('HTTP/1.1 403 Forbidden\r\n\r\n');
     const key = createHash('sha1').update(request.headers['sec-websocket-key'] + '258EAFA5-E914-47DA-95CA-C5AB0DC85B11').digest('base64');
     socket.write(`HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Accept: ${key}\r\nSec-WebSocket-Protocol: rtmsim.studio.v1\r\n\r\n`);
     this.sockets.add(socket);

@@ -8,7 +8,7 @@ import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { promisify } from 'node:util';
 
-export const watchdog = 180000; // [ms]; a bound on hanging, not on speed
+export const watchdog = Number(process.env.STUDIO_WATCHDOG ?? 180000); // [ms]; a bound on hanging, not on speed
 
 // The first true answer; one that throws is none.
 export async function until(what, ready, limit = watchdog) {

@@ -14,6 +14,7 @@
 #include "studio/door.h"
 #include "studio/foxglove.h"
 #include "studio/hall.h"
+#include "studio/http_head.h"
 #include "studio/late_models.h"
 #include "studio/outbox.h"
 #include "studio/pose_board.h"
@@ -28,7 +29,7 @@ using studio::Door;
 using studio::Json;
 using studio::Verdict;
 
-Door door() { return {"0123456789abcdef0123456789abcdef", "c00c1e", "rtm-studio-8700", {"robots.example"}, {"https://viewer.example"}}; }
+Door door() { return {"0123456789abcdef0123456789abcdef", {"robots.example"}, {"https://viewer.example"}}; }
 
 Verdict judge(Caller caller) {
   if (caller.host.empty()) caller.host = "127.0.0.1:8700";
@@ -37,19 +38,31 @@ Verdict judge(Caller caller) {
 
 constexpr const char* good_query = "token=0123456789abcdef0123456789abcdef";
 
-TEST(Door, lets_in_by_url_by_header_and_by_cookie) {
+TEST(Door, lets_in_by_header_by_subprotocol_and_by_the_url_of_a_socket) {
   EXPECT_EQ(judge({.query = good_query}), Verdict::granted);
   EXPECT_EQ(judge({.authorization = "Bearer 0123456789abcdef0123456789abcdef"}), Verdict::granted);
-  EXPECT_EQ(judge({.cookie = "a=b; rtm-studio-8700=c00c1e"}), Verdict::granted);
+  EXPECT_EQ(judge({.protocols = "rtmsim.studio.v1, token.0123456789abcdef0123456789abcdef"}), Verdict::granted);
+  EXPECT_EQ(judge({.protocols = "token.0123456789abcdef0123456789abcdef,rtmsim.studio.v1"}), Verdict::granted);
 }
 
 TEST(Door, keeps_out_without_a_token_and_with_a_wrong_one) {
   EXPECT_EQ(judge({}), Verdict::no_token);
-  EXPECT_EQ(judge({.cookie = "rtm-studio-8701=c00c1e"}), Verdict::no_token);
-  EXPECT_EQ(judge({.cookie = "rtm-studio-8700=c00c1f"}), Verdict::no_token);
+  EXPECT_EQ(judge({.authorization = "Basic 0123456789abcdef0123456789abcdef"}), Verdict::no_token);
+  EXPECT_EQ(judge({.protocols = "rtmsim.studio.v1, 0123456789abcdef0123456789abcdef"}), Verdict::no_token);
   EXPECT_EQ(judge({.query = "token=0123456789abcdef0123456789abcdee"}), Verdict::wrong_token);
   EXPECT_EQ(judge({.query = "token=0123"}), Verdict::wrong_token);
-  EXPECT_EQ(judge({.cookie = "rtm-studio-8700=c00c1e", .query = "token=old"}), Verdict::wrong_token);
+  EXPECT_EQ(judge({.protocols = "token.0123456789abcdef0123456789abcde"}), Verdict::wrong_token);
+}
+
+TEST(Door, each_token_that_is_brought_must_be_right) {
+  EXPECT_EQ(judge({.authorization = "Bearer 0123456789abcdef0123456789abcdef", .query = "token=old"}), Verdict::wrong_token);
+  EXPECT_EQ(judge({.authorization = "Bearer old", .query = good_query}), Verdict::wrong_token);
+}
+
+TEST(Door, the_page_itself_is_for_all_whose_host_and_origin_are_known) {
+  EXPECT_EQ(door().judge_sender({.host = "127.0.0.1:8700"}), Verdict::granted);
+  EXPECT_EQ(door().judge_sender({.host = "evil.example"}), Verdict::wrong_host);
+  EXPECT_EQ(door().judge_sender({.host = "127.0.0.1:8700", .origin = "http://evil.example"}), Verdict::wrong_origin);
 }
 
 TEST(Door, knows_numbers_localhost_and_the_names_it_was_told) {
@@ -73,6 +86,80 @@ TEST(Door, makes_secrets_of_128_bits_that_differ) {
   ASSERT_TRUE(one && other);
   EXPECT_EQ(one->size(), 32u);
   EXPECT_NE(*one, *other);
+}
+
+using HeadState = studio::HeadEnd::State;
+
+unsigned status_of(const std::string& head) {
+  const auto end = studio::find_head_end(head);
+  if (end.state == HeadState::too_long) return 431;
+  if (end.state != HeadState::complete) return end.state == HeadState::malformed ? 400 : 0;
+  const auto problem = studio::check_head(std::string_view(head).substr(0, end.size));
+  return problem ? problem->status : 200;
+}
+
+TEST(HttpHead, a_request_of_a_browser_is_good) {
+  EXPECT_EQ(status_of("GET /world.glb?v=1 HTTP/1.1\r\nHost: 127.0.0.1:8700\r\nUser-Agent: a (b; c) d\r\nAccept:*/*\r\nX:\r\n\r\n"), 200u);
+  EXPECT_EQ(status_of("GET / HTTP/1.0\r\n\r\n"), 200u);
+  EXPECT_EQ(status_of("GET / HTTP/1.1\r\nhost: a\r\nContent-Length: 0\r\n\r\n"), 200u);
+  EXPECT_EQ(
+      status_of("GET / HTTP/1.1\r\nHost: a\r\nAccept: x\r\nAccept: y\r\nSec-WebSocket-Protocol: a\r\nSec-WebSocket-Protocol: b\r\n\r\n"),
+      200u);
+  EXPECT_EQ(status_of("GET / HTTP/1.1\r\nHost: a\r\n"), 0u);
+  const std::string two = "GET / HTTP/1.1\r\nHost: a\r\n\r\n";
+  EXPECT_EQ(studio::find_head_end(two + two).size, two.size());
+}
+
+TEST(HttpHead, what_two_programs_could_read_in_two_ways_is_refused) {
+  const std::string host = "Host: a\r\n", get = "GET / HTTP/1.1\r\n";
+  for (const std::string& head : {get + host + "Host: b\r\n\r\n",
+                                  get + host + "hOST: a\r\n\r\n",
+                                  get + "\r\n",
+                                  get + "Host : a\r\n\r\n",
+                                  get + host + " folded\r\n\r\n",
+                                  get + " first\r\n" + host + "\r\n",
+                                  get + host + "X: a\r\n\tb\r\n\r\n",
+                                  get + host + "X: a\nY: b\r\n\r\n",
+                                  get + host + "X: a\rY: b\r\n\r\n",
+                                  std::string("GET / HTTP/1.1\nHost: a\n\n"),
+                                  get + host + "X y: a\r\n\r\n",
+                                  get + host + ": a\r\n\r\n",
+                                  get + host + "no field\r\n\r\n",
+                                  get + host + std::string("X: \0\r\n\r\n", 8),
+                                  get + host + "X: \x1b\r\n\r\n",
+                                  get + host + "Origin: http://a\r\nOrigin: http://a\r\n\r\n",
+                                  get + host + "Authorization: Bearer a\r\nAuthorization: Bearer b\r\n\r\n",
+                                  get + host + "Content-Length: 0\r\nContent-Length: 0\r\n\r\n",
+                                  get + host + "Content-Length: 0\r\nTransfer-Encoding: chunked\r\n\r\n",
+                                  get + host + "Transfer-Encoding: chunked\r\n\r\n",
+                                  get + host + "Transfer-Encoding: identity\r\n\r\n",
+                                  get + host + "Content-Length: 0, 0\r\n\r\n",
+                                  get + host + "Content-Length: +0\r\n\r\n",
+                                  get + host + "Content-Length:\r\n\r\n",
+                                  std::string("GET  / HTTP/1.1\r\nHost: a\r\n\r\n"),
+                                  std::string("GET / x HTTP/1.1\r\nHost: a\r\n\r\n"),
+                                  std::string("GET / HTTP/2.0\r\nHost: a\r\n\r\n"),
+                                  std::string("GET / HTTP/1.1 \r\nHost: a\r\n\r\n"),
+                                  std::string("GET\t/\tHTTP/1.1\r\nHost: a\r\n\r\n"),
+                                  std::string("G(T / HTTP/1.1\r\nHost: a\r\n\r\n"),
+                                  std::string("GET x HTTP/1.1\r\nHost: a\r\n\r\n"),
+                                  std::string("OPTIONS * HTTP/1.1\r\nHost: a\r\n\r\n"),
+                                  std::string("CONNECT a:1 HTTP/1.1\r\nHost: a:1\r\n\r\n"),
+                                  std::string("\r\n\r\n"),
+                                  std::string("\x16\x03\x01\x02\x00\x01", 6)})
+    EXPECT_EQ(status_of(head), 400u) << head;
+  EXPECT_EQ(status_of(get + host + "Content-Length: 5\r\n\r\nhello"), 413u);
+  EXPECT_EQ(status_of(get + host + "X: " + std::string(9000, 'x') + "\r\n\r\n"), 431u);
+  EXPECT_EQ(status_of(get + host + "X: " + std::string(9000, 'x')), 431u);
+}
+
+TEST(HttpHead, an_absolute_target_names_the_same_host) {
+  EXPECT_EQ(status_of("GET http://a:1/x HTTP/1.1\r\nHost: A:1\r\n\r\n"), 200u);
+  for (const char* target : {"http://b/x", "http://a:2/", "http://a:1@b/", "http:///", "http://", "ftp://a:1/"})
+    EXPECT_EQ(status_of("GET " + std::string(target) + " HTTP/1.1\r\nHost: a:1\r\n\r\n"), 400u) << target;
+  EXPECT_EQ(studio::origin_form("http://a:1/x?y"), "/x?y");
+  EXPECT_EQ(studio::origin_form("HTTP://a:1"), "/");
+  EXPECT_EQ(studio::origin_form("/http://a/"), "/http://a/");
 }
 
 TEST(Query, values_are_found_and_decoded) {
@@ -276,11 +363,6 @@ TEST(Foxglove, message_data_has_the_layout_of_the_protocol) {
   EXPECT_EQ(frame, std::string("\x01\x04\x03\x02\x01\x05\x04\x03\x02\x01\0\0\0abc", 16));
 }
 
-TEST(ShellLine, can_be_pasted) {
-  EXPECT_EQ(studio::shell_line({"rtse", "act", "/localhost/a.host_cxt/B0.rtc"}), "rtse act /localhost/a.host_cxt/B0.rtc");
-  EXPECT_EQ(studio::shell_line({"rtse", "conf", "it's", "", "a b;$(x)"}), "rtse conf 'it'\\''s' '' 'a b;$(x)'");
-}
-
 TEST(MemberAt, follows_members_and_indices) {
   const Json value = Json::parse(R"({"a":{"b":[1,{"c":2}]},"d":[3]})");
   EXPECT_EQ(studio::member_at(value, "a.b[1].c"), 2);
@@ -353,6 +435,24 @@ TEST(Acts, of_components_say_what_one_would_type) {
   EXPECT_EQ(command("inject", R"({"port":"/a.rtc:in","value":"{\"data\":1}"})"), rtse + "inject /a.rtc:in '{\"data\":1}'");
   EXPECT_EQ(command("inject", R"({"port":"/a.rtc:in","value":"--count=0"})"), "error: value: expected JSON, or RTC.TYPE({time}, ...)");
   EXPECT_EQ(command("unload_module", R"({"manager":"/m.mgr","file":"A.so"})"), rtse + "mgr unload A.so -m /m.mgr");
+}
+
+// Names come from worlds and peers; what is copied is pasted into a terminal.
+TEST(Acts, no_name_becomes_a_command_of_the_terminal_or_an_option) {
+  const auto command = [&](const char* name, const Json& args) {
+    const auto plan = studio::find_act(name)->plan({.name_server = "localhost"}, args);
+    return plan ? plan->command : "error: " + plan.error().message;
+  };
+  const std::string end_of_paste = "x\x1b[201~\nid\n";
+  EXPECT_EQ(command("delete_model", {{"model", end_of_paste}}), "simctl delete $'x\\x1b[201~\\x0aid\\x0a'");
+  EXPECT_EQ(command("set_pose", {{"model", "--help"}, {"planar", {1, -2, 0}}}), "simctl pose -- --help 1 -2 0");
+  EXPECT_EQ(command("set_pose", {{"model", "a"}, {"planar", {1, -2, 0}}}), "simctl pose a 1 -2 0");
+  EXPECT_EQ(command("push", {{"name", "-x"}, {"force", {1, 0, 0}}, {"seconds", 2}}), "simctl wrench --for 2 -- -x 1 0 0");
+  EXPECT_EQ(command("activate", {{"path", "-e"}, {"context", 2}}), "rtse act -e 2 -- -e");
+  EXPECT_EQ(command("connect", {{"ports", {"-a", "b"}}, {"name", "-n"}, {"properties", {{"-k", "\xc2\x9b"}}}}),
+            "rtse con -n-n $'-p-k=\\xc2\\x9b' -- -a b");
+  EXPECT_EQ(command("set_configuration", {{"path", "/a.rtc"}, {"set", "s"}, {"values", {{"--force", "-1"}}}}),
+            "rtse conf -s s -- /a.rtc set --force -1");
 }
 
 Json marker(const char* model, const char* frame, int type = 11) {

@@ -1,7 +1,10 @@
 // The page in front of the real programs: naming service, simulator, components, rtm-studio. system_flows.mjs BIN_DIR SOURCE_DIR LIB_DIR
 // Flows follow each other in one system: each begins with what the one before has left.
+import { execFile } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
+import { createServer } from 'node:http';
 import { join } from 'node:path';
+import { promisify } from 'node:util';
 import { check, has_world, is_ready, open, Rig, run, same, until } from './rig.mjs';
 
 const [bin, source, lib] = process.argv.slice(2);
@@ -62,14 +65,85 @@ const drives = (rig) => until('the robot drives', async () => (await rig.speed()
 const stands = (rig) => until('the robot stands', async () => Math.abs(await rig.speed()) < 0.01);
 
 const flows = [
-  ['a token that is wrong shows and does nothing', async ({ rig, studio }) => {
-    const url = new URL(studio.url);
-    for (const [path, wanted] of [['/', [401, 403]], ['/?token=wrong', [401, 403]], ['/world.glb', [401, 403]]]) {
-      const reply = await fetch(`${url.origin}${path}`, { redirect: 'manual' });
-      check(wanted.includes(reply.status), `${path}: ${reply.status}`);
-      check(!(await reply.text()).includes('glTF'), 'no world');
+  ['a token that is wrong shows and does nothing', async ({ studio, browser }) => {
+    const { origin } = new URL(studio.url);
+    for (const path of ['/world.glb', '/access', '/world.glb?token=wrong']) {
+      for (const headers of [{}, { Authorization: 'Bearer wrong' }]) {
+        const reply = await fetch(`${origin}${path}`, { headers });
+        check([401, 403].includes(reply.status), `${path}: ${reply.status}`);
+        check(!(await reply.text()).includes('glTF'), 'no world');
+      }
     }
-    void rig;
+    for (const [end, wanted] of [['/', 'no token'], [`/#token=${'0'.repeat(32)}`, 'another token']]) {
+      const page = await open(browser, `${origin}${end}`);
+      await until(wanted, async () => (await page.locator('.link-state').textContent()).includes(wanted));
+      same(await page.locator('.diagram .box').count(), 0, 'boxes');
+      check(await page.evaluate(() => !window.studio.store.hello && !window.studio.store.world), 'it knows nothing');
+      await page.context().close();
+    }
+  }],
+  // Each port of a host gets the cookies of all.
+  ['the token stays in the tab: no cookie, nothing in the address, and nothing for another port', async ({ page, studio }) => {
+    const token = new URL(studio.url).hash.slice('#token='.length);
+    check(/^[0-9a-f]{32}$/.test(token), studio.url);
+    same(await page.context().cookies(), [], 'cookies');
+    check(!(await page.evaluate(() => location.href)).includes(token), 'not in the address bar');
+    check(!(await page.evaluate(() => JSON.stringify(localStorage))).includes(token), 'not on the disk');
+    const heard = [];
+    const neighbour = createServer((request, reply) => {
+      heard.push(JSON.stringify([request.url, request.headers]));
+      reply.setHeader('Access-Control-Allow-Origin', '*');
+      reply.end('<!doctype html><title>neighbour</title>');
+    });
+    await new Promise((resolve) => neighbour.listen(0, '127.0.0.1', resolve));
+    const other = await page.context().newPage();
+    await other.goto(`http://127.0.0.1:${neighbour.address().port}/`);
+    const seen = await other.evaluate(async (origin) => {
+      const asks = new BroadcastChannel('rtm-studio-token');
+      let heard = '';
+      asks.onmessage = ({ data }) => { heard += JSON.stringify(data); };
+      asks.postMessage('who has it?');
+      const reply = await fetch(`${origin}/world.glb`, { credentials: 'include' }).then((r) => r.text(), () => 'refused');
+      const opened = await new Promise((resolve) => {
+        const socket = new WebSocket(`${origin.replace('http', 'ws')}/ws`, ['rtmsim.studio.v1']);
+        socket.onopen = () => resolve('open');
+        socket.onclose = () => resolve('refused');
+      });
+      return [reply, opened, heard, JSON.stringify(sessionStorage)];
+    }, new URL(studio.url).origin);
+    same(seen, ['refused', 'refused', '', '{}'], 'what a page of another port gets');
+    check(heard.length > 0 && heard.every((one) => !one.includes(token)), heard.join('\n'));
+    await other.close();
+    neighbour.close();
+  }],
+  ['it is there again after a reload, in another tab and by a copied link', async ({ page, browser, studio }) => {
+    await page.reload();
+    await is_ready(page);
+    await has_world(page);
+    await boxes(page, 3);
+    const tab = await page.context().newPage();
+    await tab.goto(page.url());
+    await is_ready(tab);
+    await tab.close();
+    await page.evaluate(() => Object.assign(navigator.clipboard, { writeText: async (text) => { window.copied = text; } }));
+    await page.locator('#copy-link').click();
+    const link = await until('the link', () => page.evaluate(() => window.copied));
+    const elsewhere = await open(browser, link);
+    await is_ready(elsewhere);
+    check(!(await elsewhere.evaluate(() => location.href)).includes('token='), 'the token leaves the address bar');
+    // A new URL of the same page: the browser changes what is behind the '#' alone.
+    await elsewhere.evaluate(() => { window.is_old = true; });
+    await elsewhere.goto(studio.url);
+    await elsewhere.waitForFunction(() => !window.is_old);
+    await is_ready(elsewhere);
+    await elsewhere.context().close();
+  }],
+  ['words of a shell are read back by bash, and hold printable ASCII only', async ({ page }) => {
+    const words = ['', 'plain', "it's", '\\', '$(id)', '`id`', '!!', "!$ it's", '\x1b[201~\nid\n', '\r\t\x7f', '\x01ff', '=ls', '%1', '~', '{a,b}', '*', '-rf', 'caf\u00e9', '\u65e5\u672c', '\u202egpj.exe', '\u009b31m', '\u2028', '\u{1f916}', 'a=b', '"'];
+    const line = await page.evaluate((all) => window.studio.shell_line(all), words);
+    check(/^[ -~]*$/.test(line), line);
+    const { stdout } = await promisify(execFile)('bash', ['-c', `set -o history -o histexpand\nprintf '%s\\0' ${line}`], { encoding: 'buffer' });
+    same(stdout.toString('utf8').split('\0').slice(0, -1), words, 'words');
   }],
   ['the world and the system are there', async ({ page }) => {
     same((await page.locator('.diagram .box .name').allTextContents()).sort(), ['LaserObstacleAvoid0', 'RTCLaser0', 'RTCPosition2d0'], 'boxes');

@@ -1,31 +1,12 @@
-// Standard output of a command. Any thread, but for TerminalGuard: one per stream, created before other threads write.
+// Standard output of a command. Any thread.
 #pragma once
 
-#include <memory>
-#include <ostream>
-#include <streambuf>
-#include <string>
-#include <string_view>
+#include "base/terminal.h"
 
 namespace editor {
 
-// Text of others, fit for a terminal: control characters (C0, DEL, and C1 as UTF-8 has them) escaped as \x1b, but for line ends and tabs.
-std::string for_terminal(std::string_view text);
-
-// While it lives, what goes through this stream to a terminal is fit for one: names and values come from peers, and one of them could be
-// a command for the terminal. Into files and pipes octets go as they are, for programs.
-class TerminalGuard {
- public:
-  TerminalGuard(std::ostream& stream, int descriptor);
-  ~TerminalGuard();
-  TerminalGuard(const TerminalGuard&) = delete;
-  TerminalGuard& operator=(const TerminalGuard&) = delete;
-
- private:
-  std::ostream& stream_;
-  std::streambuf* const target_;
-  std::unique_ptr<std::streambuf> filter_;  // none: no terminal
-};
+using base::for_terminal;
+using base::TerminalGuard;
 
 // Writes what is buffered; false when it could not be written and somebody would have wanted it.
 bool flush_output();

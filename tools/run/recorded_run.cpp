@@ -71,7 +71,9 @@ base::Result<RecordedRun> RecordedRun::unpack(const std::string& recording, Need
   // What the world names is found from where its file was.
   const fs::path was = run.note("world_file");
   std::error_code error;
-  if (!was.empty() && fs::is_regular_file(was, error) && text_of(was) == text_of(run.world_)) {
+  // The recording says which file that was: one of another length is not read.
+  const auto is_as_long = [&] { return fs::is_regular_file(was, error) && fs::file_size(was, error) == fs::file_size(run.world_, error); };
+  if (!was.empty() && is_as_long() && text_of(was) == text_of(run.world_)) {
     run.world_ = was.string();
   } else if (!was.empty()) {
     for (const auto& path : {was.parent_path(), was.parent_path() / "models"}) {

@@ -138,8 +138,8 @@ class Run final : public RunningSystem {
       if (now - began > limit) return fail(what + ": not ready after " + base::format_number(limit.count()) + " s (--start-timeout)");
       if (now - told > limit / 3) {
         told = now;
-        std::fprintf(stderr, "rtse: %s: not ready after %.0f s, is waited for up to %s s (--start-timeout)\n", what.c_str(),
-                     Seconds(now - began).count(), base::format_number(limit.count()).c_str());
+        std::fprintf(stderr, "rtse: %s: not ready after %.0f s, is waited for up to %s s (--start-timeout)\n",
+                     base::printable(what).c_str(), Seconds(now - began).count(), base::format_number(limit.count()).c_str());
       }
       std::this_thread::sleep_for(20ms);  // what is waited for is another program's start, which nobody announces
     }

@@ -1,10 +1,13 @@
 // simctl: shows and controls a running simulation. See --help.
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
 
 #include "base/command_line.h"
+#include "base/terminal.h"
 #include "base/text.h"
 #include "base/warm_start.h"
 #include "shm/fault_kinds.h"
@@ -321,6 +324,7 @@ int control(int argc, char** argv) {
       ->group_subcommands("Robots and models", {"pose", "velocity", "wrench", "odometry", "motors", "fault", "spawn", "delete"})
       ->group_subcommands("Record", {"screenshot", "record", "export"})
       ->group_subcommands("Clean up", {"clean"});
+  const base::TerminalGuard output(std::cout, STDOUT_FILENO), errors(std::cerr, STDERR_FILENO);  // a world names what it likes
   if (const auto end = base::parse_command_line(app, "simctl", argc, argv, simctl::offers)) return *end;
   Control server(server_id, json);
   work(server);

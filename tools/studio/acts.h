@@ -39,9 +39,6 @@ struct Act {
 // nullptr: there is none of this name.
 const Act* find_act(std::string_view name);
 
-// Words as a shell would have to be given them.
-std::string shell_line(const std::vector<std::string>& words);
-
 // The first words of a line for this simulator.
 std::vector<std::string> simctl_words(std::uint32_t server_id);
 

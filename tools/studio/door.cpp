@@ -42,20 +42,19 @@ bool is_numeric(std::string_view host) {
   return inet_pton(AF_INET, text.c_str(), address.data()) == 1 || inet_pton(AF_INET6, text.c_str(), address.data()) == 1;
 }
 
-std::string_view cookie_value(std::string_view header, std::string_view name) {
-  while (!header.empty()) {
-    const auto end = std::min(header.find(';'), header.size());
-    const auto pair = base::trim(header.substr(0, end));
-    if (pair.size() > name.size() && pair.starts_with(name) && pair[name.size()] == '=') return pair.substr(name.size() + 1);
-    header.remove_prefix(std::min(end + 1, header.size()));
-  }
-  return {};
-}
-
 std::string_view bearer(std::string_view authorization) {
   constexpr std::string_view scheme = "bearer ";
   if (authorization.size() <= scheme.size() || !base::equal_ignoring_case(authorization.substr(0, scheme.size()), scheme)) return {};
   return base::trim(authorization.substr(scheme.size()));
+}
+
+// Of the subprotocols that a WebSocket offers, the one that is none.
+std::string protocol_token(std::string_view protocols) {
+  constexpr std::string_view begin = "token.";
+  for (const auto& name : base::split_list(protocols)) {
+    if (name.starts_with(begin)) return name.substr(begin.size());
+  }
+  return {};
 }
 
 int hex_digit(char c) {
@@ -97,13 +96,8 @@ std::string_view to_text(Verdict verdict) {
   return "?";
 }
 
-Door::Door(std::string token, std::string cookie_value, std::string cookie_name, std::vector<std::string> hosts,
-           std::vector<std::string> origins)
-    : token_(std::move(token)),
-      cookie_value_(std::move(cookie_value)),
-      cookie_name_(std::move(cookie_name)),
-      hosts_(std::move(hosts)),
-      origins_(std::move(origins)) {}
+Door::Door(std::string token, std::vector<std::string> hosts, std::vector<std::string> origins)
+    : token_(std::move(token)), hosts_(std::move(hosts)), origins_(std::move(origins)) {}
 
 base::Result<std::string> Door::make_secret() {
   std::array<unsigned char, 16> octets{};
@@ -116,14 +110,14 @@ base::Result<std::string> Door::make_secret() {
 }
 
 Verdict Door::judge(const Caller& caller) const {
-  if (!knows_host(caller.host)) return Verdict::wrong_host;
-  if (!caller.origin.empty() && !knows_origin(caller.origin, caller.host)) return Verdict::wrong_origin;
-  return judge_token(caller);
+  const auto sender = judge_sender(caller);
+  return sender == Verdict::granted ? judge_token(caller) : sender;
 }
 
-bool Door::brings_token(const Caller& caller) const { return is_secret(query_value(caller.query, "token"), token_); }
-
-std::string Door::cookie() const { return cookie_name_ + "=" + cookie_value_ + "; HttpOnly; SameSite=Strict; Path=/"; }
+Verdict Door::judge_sender(const Caller& caller) const {
+  if (!knows_host(caller.host)) return Verdict::wrong_host;
+  return caller.origin.empty() || knows_origin(caller.origin, caller.host) ? Verdict::granted : Verdict::wrong_origin;
+}
 
 bool Door::knows_host(std::string_view host) const {
   const auto name = without_port(host);
@@ -139,13 +133,17 @@ bool Door::knows_origin(std::string_view origin, std::string_view host) const {
   return std::find(origins_.begin(), origins_.end(), origin) != origins_.end();
 }
 
-// A token that is brought counts, else the cookie: who opens an old URL is told so, although the cookie is good.
+// Each that is brought must be right: an old one in a URL is told, whatever a header says.
 Verdict Door::judge_token(const Caller& caller) const {
-  const auto in_query = query_value(caller.query, "token");
-  const auto brought = in_query.empty() ? std::string(bearer(caller.authorization)) : in_query;
-  if (!brought.empty()) return is_secret(brought, token_) ? Verdict::granted : Verdict::wrong_token;
-  const auto kept = cookie_value(caller.cookie, cookie_name_);
-  return !kept.empty() && is_secret(kept, cookie_value_) ? Verdict::granted : Verdict::no_token;
+  bool is_brought = false, is_right = true;
+  for (const auto& guess :
+       {std::string(bearer(caller.authorization)), protocol_token(caller.protocols), query_value(caller.query, "token")}) {
+    if (guess.empty()) continue;
+    is_brought = true;
+    is_right = is_secret(guess, token_) && is_right;
+  }
+  if (!is_brought) return Verdict::no_token;
+  return is_right ? Verdict::granted : Verdict::wrong_token;
 }
 
 std::string query_value(std::string_view query, std::string_view name) {

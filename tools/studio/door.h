@@ -2,6 +2,8 @@
 //
 // A page of somebody else's that runs in the user's browser can send requests here. It does not know the token; its Origin is not ours; and
 // a name that it has made to lead here (DNS rebinding) is none of our hosts. Each of the three is enough to keep it out, and all are asked.
+// There is no cookie: browsers send one to every port of a host, so whoever else serves on one would get it. The page keeps the token, and
+// sends it with each request.
 #pragma once
 
 #include <string>
@@ -26,25 +28,22 @@ std::string_view to_text(Verdict verdict);
 struct Caller {
   std::string_view host{};           // "127.0.0.1:8700"
   std::string_view origin{};         // "http://127.0.0.1:8700"
-  std::string_view cookie{};         // the whole header
   std::string_view authorization{};  // "Bearer TOKEN"
-  std::string_view query{};          // what follows the '?' of the target
+  std::string_view protocols{};      // of a WebSocket: "rtmsim.studio.v1, token.TOKEN"; browsers can send nothing else with one
+  std::string_view query{};          // of a WebSocket: "token=TOKEN", from viewers that are given a URL and nothing else
 };
 
 class Door {
  public:
   // `hosts`: names besides localhost and numeric addresses that browsers may know us by; `origins`: of pages of others that may connect.
-  Door(std::string token, std::string cookie_value, std::string cookie_name, std::vector<std::string> hosts,
-       std::vector<std::string> origins);
+  Door(std::string token, std::vector<std::string> hosts, std::vector<std::string> origins);
 
   // A secret of 128 random bits in hexadecimal digits.
   static base::Result<std::string> make_secret();
 
   Verdict judge(const Caller& caller) const;
-  // The URL brings the right token: the cookie is to be set.
-  bool brings_token(const Caller& caller) const;
-  // "NAME=VALUE; HttpOnly; SameSite=Strict; Path=/"
-  std::string cookie() const;
+  // Host and Origin alone: enough for the page itself, which is the same for everybody and shows nothing without the token.
+  Verdict judge_sender(const Caller& caller) const;
   const std::string& token() const { return token_; }
 
  private:
@@ -52,7 +51,7 @@ class Door {
   bool knows_origin(std::string_view origin, std::string_view host) const;
   Verdict judge_token(const Caller& caller) const;
 
-  std::string token_, cookie_value_, cookie_name_;
+  std::string token_;
   std::vector<std::string> hosts_, origins_;
 };
 

@@ -4,6 +4,7 @@
 #include <boost/asio/post.hpp>
 #include <chrono>
 
+#include "base/shell_word.h"
 #include "base/text.h"
 #include "studio/acts.h"
 
@@ -116,7 +117,7 @@ void Hall::list(const Viewer& viewer, std::int64_t id) {
 void Hall::open(const Viewer& viewer, const Request& request) {
   const auto name = text_of(request.args, "file");
   if (!name) return answer(viewer.id(), request.id, name.error());
-  const auto command = shell_line({"rtm-studio", *name});
+  const auto command = base::shell_line(base::command_words({"rtm-studio"}, {*name}));
   if (request.is_dry) return answer(viewer.id(), request.id, Json::object(), command);
   if (options_.is_read_only) return answer(viewer.id(), request.id, Error{"this studio is read-only"}, command);
   const auto file = recording_in(options_.folder, *name);
@@ -136,7 +137,7 @@ void Hall::open(const Viewer& viewer, const Request& request) {
 
 // The answer comes before what is new, so that whoever has asked knows.
 void Hall::has_read(std::uint64_t viewer, std::int64_t id, const std::string& name, const Result<Facts>& facts) {
-  const auto command = shell_line({"rtm-studio", name});
+  const auto command = base::shell_line(base::command_words({"rtm-studio"}, {name}));
   if (!facts) return answer(viewer, id, facts.error(), command);
   answer(viewer, id, Json::object(), command);
   auto recording = RecordedStudio::of(loop_, *facts);

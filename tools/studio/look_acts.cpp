@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/base64.h"
+#include "base/shell_word.h"
 #include "base/text.h"
 #include "run/time_members.h"
 #include "shm/client.h"
@@ -172,7 +173,7 @@ Result<Plan> screenshot(const ActContext& context, const Json& args) {
   if (span > 0) words.insert(words.end(), {"--span", short_number(span)});
   if (request.with_scans) words.emplace_back("--scans");
   if (request.with_collisions) words.insert(words.end(), {"--show", "collisions"});
-  return Plan{shell_line(words), [id = context.server_id, request]() -> Result<Json> {
+  return Plan{base::shell_line(words), [id = context.server_id, request]() -> Result<Json> {
                 auto simulator = shm::Requester::open(id);
                 if (!simulator) return simulator.error();
                 const auto reply = simulator->ask(request, picture_limit);

@@ -58,13 +58,13 @@ int fail(const base::Error& error) {
   return 1;
 }
 
-// As a browser has to be given it.
+// As a browser has to be given it. What follows a '#' stays in the browser: no server, proxy or log gets the token from there.
 std::string url_of(const studio::WebOptions& options, const studio::WebServer& server) {
   const bool is_any = options.address == "0.0.0.0" || options.address == "::";
   const std::string host = is_any                                           ? "localhost"
                            : options.address.find(':') != std::string::npos ? "[" + options.address + "]"
                                                                             : options.address;
-  return "http://" + host + ":" + std::to_string(server.port()) + "/?token=" + server.door().token();
+  return "http://" + host + ":" + std::to_string(server.port()) + "/#token=" + server.door().token();
 }
 
 int serve(boost::asio::io_context& loop, const Settings& settings, const studio::PageFiles& page, studio::WebHandlers first) {
@@ -113,10 +113,8 @@ int run(const Settings& settings) {
 
 int studio_of(int argc, char** argv) {
   base::Command app{
-      "rtm-studio: a simulated world, a system of RT components and its signals in a browser, live or recorded\nPrints a URL with a token; "
-      "without it "
-      "nothing is "
-      "shown or done."};
+      "rtm-studio: a simulated world, a system of RT components and its signals in a browser, live or recorded\nPrints a URL with a "
+      "token; without it nothing is shown or done."};
   base::add_standard_options(app, "rtm-studio", RTMSIM_VERSION);
   Settings settings;
   settings.studio.name_server = editor::default_server();

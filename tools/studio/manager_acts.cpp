@@ -9,6 +9,7 @@
 #include <map>
 
 #include "base/child_process.h"
+#include "base/shell_word.h"
 #include "base/text.h"
 #include "run/time_members.h"
 #include "studio/acts.h"
@@ -37,7 +38,7 @@ std::string rtse_line(const ActContext& context, const std::vector<std::string>&
   std::vector<std::string> line{"rtse"};
   if (context.name_server != "localhost:2809" && context.name_server != "localhost") line.insert(line.end(), {"--ns", context.name_server});
   line.insert(line.end(), words.begin(), words.end());
-  return shell_line(line);
+  return base::shell_line(line);
 }
 
 // What it wrote, or the last line that it wrote, without its own name before it.
@@ -75,7 +76,7 @@ Json names_of(const Json& list, std::initializer_list<const char*> keys) {
 Result<Plan> manager(const ActContext& context, const Json& args) {
   const auto path = text_of(args, "path");
   if (!path) return path.error();
-  const std::vector<std::string> words{"mgr", "list", "-m", *path};
+  const std::vector<std::string> words = base::command_words({"mgr", "list"}, {}, base::option_words("-m", *path));
   return Plan{rtse_line(context, words), [context, words]() -> Result<Json> {
                 const auto said = rtse(context, words, true);
                 if (!said) return said.error();
@@ -103,10 +104,9 @@ Result<Plan> load_module(const ActContext& context, const Json& args) {
   const auto init = text_or(args, "init", "");
   if (file->starts_with('-') || init.starts_with('-'))
     return Error{"file " + base::in_quotes(*file) + ": expected the name of a module, and perhaps that of its function"};
-  std::vector<std::string> words{"mgr", "load", *file};
-  if (!init.empty()) words.push_back(init);
-  words.insert(words.end(), {"-m", *path});
-  return plan(context, words);
+  std::vector<std::string> operands{*file};
+  if (!init.empty()) operands.push_back(init);
+  return plan(context, base::command_words({"mgr", "load"}, operands, base::option_words("-m", *path)));
 }
 
 // "Type?instance_name=...&key=value"
@@ -130,7 +130,7 @@ Result<Plan> create(const ActContext& context, const Json& args) {
   if (!path) return path.error();
   const auto text = creation(args);
   if (!text) return text.error();
-  const std::vector<std::string> words{"mgr", "create", *text, "-m", *path};
+  const auto words = base::command_words({"mgr", "create"}, {*text}, base::option_words("-m", *path));
   return Plan{rtse_line(context, words),
               [context, words]() -> Result<Json> {
                 const auto said = rtse(context, words);
@@ -145,7 +145,7 @@ Result<Plan> delete_component(const ActContext& context, const Json& args) {
   if (!path) return path.error();
   if (!instance) return instance.error();
   if (instance->starts_with('-')) return Error{"instance " + base::in_quotes(*instance) + ": expected the name of a component"};
-  return plan(context, {"mgr", "delete", *instance, "-m", *path});
+  return plan(context, base::command_words({"mgr", "delete"}, {*instance}, base::option_words("-m", *path)));
 }
 
 Result<Plan> unload_module(const ActContext& context, const Json& args) {
@@ -153,7 +153,7 @@ Result<Plan> unload_module(const ActContext& context, const Json& args) {
   if (!path) return path.error();
   if (!file) return file.error();
   if (file->starts_with('-')) return Error{"file " + base::in_quotes(*file) + ": expected the name of a module"};
-  return plan(context, {"mgr", "unload", *file, "-m", *path});
+  return plan(context, base::command_words({"mgr", "unload"}, {*file}, base::option_words("-m", *path)));
 }
 
 // ---- components, by what only rtse does
@@ -162,7 +162,7 @@ Result<Plan> unload_module(const ActContext& context, const Json& args) {
 Result<Plan> disconnect_all(const ActContext& context, const Json& args) {
   const auto path = text_of(args, "path");
   if (!path) return path.error();
-  return plan(context, {"dis", *path});
+  return plan(context, base::command_words({"dis"}, {*path}));
 }
 
 Result<Plan> inject(const ActContext& context, const Json& args) {
@@ -170,7 +170,7 @@ Result<Plan> inject(const ActContext& context, const Json& args) {
   if (!port) return port.error();
   if (!value) return value.error();
   if (value->empty() || value->starts_with('-')) return Error{"value: expected JSON, or RTC.TYPE({time}, ...)"};
-  return plan(context, {"inject", *port, *value}, Touches::nothing);
+  return plan(context, base::command_words({"inject"}, {*port, *value}), Touches::nothing);
 }
 
 // A component that runs takes part in the time of this studio's simulator.
@@ -180,28 +180,28 @@ Result<Plan> join_time(const ActContext& context, const Json& args) {
   const double phase = number_or(args, "phase", 1), turn = number_or(args, "turn", 0), rate = number_or(args, "rate", 0);
   if (phase < 0 || phase > highest_phase || phase != std::floor(phase))
     return Error{"phase: expected a whole number from 0 to " + std::to_string(highest_phase)};
-  std::vector<std::string> words{"join", *path, "-s", std::to_string(context.server_id), "-p", base::format_number(phase)};
+  std::vector<std::string> options{"-s", std::to_string(context.server_id), "-p", base::format_number(phase)};
   if (turn < 0 || turn > highest_turn || turn != std::floor(turn))
     return Error{"turn: expected a whole number from 0 to " + std::to_string(highest_turn)};
-  if (turn > 0) words.insert(words.end(), {"--turn", base::format_number(turn)});
+  if (turn > 0) options.insert(options.end(), {"--turn", base::format_number(turn)});
   if (args.contains("rate")) {
     if (!(rate >= 1e-6 && rate <= 1e6)) return Error{"rate: expected 1e-6 to 1e6 Hz"};
-    words.insert(words.end(), {"-r", base::format_number(rate)});
+    options.insert(options.end(), {"-r", base::format_number(rate)});
   }
-  if (flag_of(args, "tick")) words.emplace_back("--tick");
-  return plan(context, words);
+  if (flag_of(args, "tick")) options.emplace_back("--tick");
+  return plan(context, base::command_words({"join"}, {*path}, options));
 }
 
 Result<Plan> leave_time(const ActContext& context, const Json& args) {
   const auto path = text_of(args, "path");
   if (!path) return path.error();
-  return plan(context, {"leave", *path});
+  return plan(context, base::command_words({"leave"}, {*path}));
 }
 
 Result<Plan> forget(const ActContext& context, const Json& args) {
   const auto path = text_of(args, "path");
   if (!path) return path.error();
-  return plan(context, {"del", *path});
+  return plan(context, base::command_words({"del"}, {*path}));
 }
 
 // All names whose objects are gone.

@@ -6,6 +6,7 @@
 
 #include "base/id.h"
 #include "base/log.h"
+#include "base/shell_word.h"
 #include "base/text.h"
 #include "studio/acts.h"
 #include "studio/foxglove.h"
@@ -164,9 +165,10 @@ void Studio::handle_drive(Guest& guest, const Request& request) {
   if (!velocity || (velocity->size() != 3 && velocity->size() != 6))
     return answer(guest, request.id, Error{"velocity: expected 3 numbers (position2d) or 6 (position3d)"});
   std::vector<std::string> words = simctl_words(options_.server_id);
-  words.insert(words.end(), {"velocity", *iface});
-  for (const double number : *velocity) words.push_back(base::format_number(number));
-  const auto command = shell_line(words);
+  words.emplace_back("velocity");
+  std::vector<std::string> operands{*iface};
+  for (const double number : *velocity) operands.push_back(base::format_number(number));
+  const auto command = base::shell_line(base::command_words(std::move(words), operands));
   if (request.is_dry) return answer(guest, request.id, Json::object(), command);
   if (options_.is_read_only) return answer(guest, request.id, read_only(), command);
   const auto done = drives_.drive(guest.viewer->id(), *iface, *velocity);

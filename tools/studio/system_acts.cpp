@@ -3,6 +3,7 @@
 #include <set>
 
 #include "base/id.h"
+#include "base/shell_word.h"
 #include "base/text.h"
 #include "rtse/commands/conf.h"
 #include "rtse/commands/connect.h"
@@ -30,7 +31,7 @@ std::string rtse_line(const ActContext& context, std::vector<std::string> words)
   std::vector<std::string> line{"rtse"};
   if (context.name_server != "localhost:2809" && context.name_server != "localhost") line.insert(line.end(), {"--ns", context.name_server});
   line.insert(line.end(), words.begin(), words.end());
-  return shell_line(line);
+  return base::shell_line(line);
 }
 
 Result<Json> done(const Result<void>& result) {
@@ -41,7 +42,7 @@ Result<Json> done(const Result<void>& result) {
 Result<Plan> component(const ActContext& context, const Json& args) {
   const auto path = text_of(args, "path");
   if (!path) return path.error();
-  return Plan{rtse_line(context, {"cat", *path}), [context, path = *path]() -> Result<Json> {
+  return Plan{rtse_line(context, base::command_words({"cat"}, {*path})), [context, path = *path]() -> Result<Json> {
                 const auto view =
                     editor_of(context).component(path, {.contexts = true, .connectors = true, .configuration = true, .members = true});
                 if (!view) return view.error();
@@ -55,9 +56,9 @@ Result<Plan> change(const ActContext& context, const Json& args) {
   if (!path) return path.error();
   const int index = static_cast<int>(std::clamp(number_or(args, "context", -1), -1.0, 1000.0));
   const char* verb = transition == Transition::activate ? "act" : transition == Transition::deactivate ? "deact" : "reset";
-  std::vector<std::string> words{verb, *path};
-  if (index > 0) words.insert(words.end(), {"-e", std::to_string(index)});
-  return Plan{rtse_line(context, words),
+  std::vector<std::string> options;
+  if (index > 0) options = {"-e", std::to_string(index)};
+  return Plan{rtse_line(context, base::command_words({verb}, {*path}, options)),
               [context, path = *path, index]() -> Result<Json> {
                 const auto view = editor_of(context).component(path, {.contexts = true});
                 if (!view) return view.error();
@@ -79,7 +80,8 @@ Result<Json> exit_component(const ActContext& context, const std::string& path) 
 Result<Plan> exit(const ActContext& context, const Json& args) {
   const auto path = text_of(args, "path");
   if (!path) return path.error();
-  return Plan{rtse_line(context, {"exit", *path}), [context, path = *path] { return exit_component(context, path); }, Touches::system};
+  return Plan{rtse_line(context, base::command_words({"exit"}, {*path})), [context, path = *path] { return exit_component(context, path); },
+              Touches::system};
 }
 
 // ---- connections
@@ -107,17 +109,19 @@ Result<Plan> connect(const ActContext& context, const Json& args) {
   if (!values) return values.error();
   const auto name = text_or(args, "name", "");
   auto id = text_or(args, "id", "");
-  std::vector<std::string> words{"con"};
-  words.insert(words.end(), paths->begin(), paths->end());
-  if (!name.empty()) words.insert(words.end(), {"-n", name});
-  if (!id.empty()) words.insert(words.end(), {"-i", id});
+  std::vector<std::string> options;
+  const auto add_option = [&](const std::string& option, const std::string& value) {
+    for (auto& word : base::option_words(option, value)) options.push_back(std::move(word));
+  };
+  if (!name.empty()) add_option("-n", name);
+  if (!id.empty()) add_option("-i", id);
   editor::Properties properties;
   for (const auto& [key, value] : *values) {
     properties[key] = value;
-    words.insert(words.end(), {"-p", key + "=" + value});
+    add_option("-p", key + "=" + value);
   }
   if (id.empty()) id = base::make_uuid();
-  return Plan{rtse_line(context, words),
+  return Plan{rtse_line(context, base::command_words({"con"}, *paths, options)),
               [context, paths = *paths, name, id, properties]() -> Result<Json> {
                 const auto ends = find_ends(context, paths);
                 if (!ends) return ends.error();
@@ -165,8 +169,8 @@ Result<Plan> disconnect(const ActContext& context, const Json& args) {
   const auto path = text_of(args, "port"), id = text_of(args, "id");
   if (!path) return path.error();
   if (!id) return id.error();
-  return Plan{rtse_line(context, {"dis", "-i", *id}), [context, path = *path, id = *id] { return disconnect_port(context, path, id); },
-              Touches::system};
+  return Plan{rtse_line(context, base::command_words({"dis"}, {}, base::option_words("-i", *id))),
+              [context, path = *path, id = *id] { return disconnect_port(context, path, id); }, Touches::system};
 }
 
 // What both ports offer of a property; "any" offers everything that the other has.
@@ -328,11 +332,11 @@ Result<Plan> set_configuration(const ActContext& context, const Json& args) {
   const Wish wish{*path, *set, *values, flag_of(args, "use"), flag_of(args, "force")};
   std::string command;
   for (const auto& [name, value] : *values) {
-    std::vector<std::string> words{"conf", *path, "-s", *set, "set", name, value};
-    if (wish.is_forced) words.emplace_back("--force");
-    command += (command.empty() ? "" : " && ") + rtse_line(context, words);
+    auto options = base::option_words("-s", *set);
+    if (wish.is_forced) options.emplace_back("--force");
+    command += (command.empty() ? "" : " && ") + rtse_line(context, base::command_words({"conf"}, {*path, "set", name, value}, options));
   }
-  if (wish.is_used) command += " && " + rtse_line(context, {"conf", *path, "use", *set});
+  if (wish.is_used) command += " && " + rtse_line(context, base::command_words({"conf"}, {*path, "use", *set}));
   return Plan{command, [context, wish] { return configure(context, wish); }, Touches::system};
 }
 
@@ -340,7 +344,7 @@ Result<Plan> use_set(const ActContext& context, const Json& args) {
   const auto path = text_of(args, "path"), set = text_of(args, "set");
   if (!path) return path.error();
   if (!set) return set.error();
-  return Plan{rtse_line(context, {"conf", *path, "use", *set}),
+  return Plan{rtse_line(context, base::command_words({"conf"}, {*path, "use", *set})),
               [context, path = *path, set = *set]() -> Result<Json> {
                 const auto view = editor_of(context).component(path, {.configuration = true});
                 if (!view) return view.error();
@@ -375,10 +379,10 @@ Result<Plan> plan_context(const ActContext& context, const Json& args, const std
   if (!path) return path.error();
   const double index = number_or(args, "context", 0);
   if (index < 0 || index > 1000) return Error{"context: expected its number, from 0"};
-  std::vector<std::string> line{"ec", *path};
-  line.insert(line.end(), words.begin(), words.end());
-  if (index >= 1) line.insert(line.end(), {"-e", std::to_string(static_cast<std::size_t>(index))});
-  return Plan{rtse_line(context, line),
+  std::vector<std::string> operands{*path}, options;
+  operands.insert(operands.end(), words.begin(), words.end());
+  if (index >= 1) options = {"-e", std::to_string(static_cast<std::size_t>(index))};
+  return Plan{rtse_line(context, base::command_words({"ec"}, operands, options)),
               [context, path = *path, index = static_cast<std::size_t>(index), what, call = std::move(call)] {
                 return call_context(context, path, index, what, call);
               },

@@ -6,6 +6,7 @@
 #include "base/peer_account.h"
 #include "base/text.h"
 #include "studio/foxglove.h"
+#include "studio/http_head.h"
 #include "studio/web_shared.h"
 
 namespace studio {
@@ -18,8 +19,7 @@ using Code = boost::system::error_code;
 using Response = http::response<http::span_body<const char>>;
 
 constexpr std::chrono::seconds reading_limit{10}, idle_limit{60}, writing_limit{120};
-constexpr std::uint32_t most_header = 8192;
-constexpr std::size_t most_buffered = 16384;
+constexpr std::size_t most_buffered = 2 * most_head;
 
 std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -60,40 +60,67 @@ class Connection final : public HttpPeer, public std::enable_shared_from_this<Co
   }
 
   void read() {
-    parser_.emplace();
-    parser_->header_limit(most_header);
-    parser_->body_limit(0);
     stream_.expires_after(is_first_ ? reading_limit : idle_limit);
     is_first_ = false;
-    http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](Code code, std::size_t) { self->have_read(code); });
+    have_read({});
   }
 
  private:
+  std::string_view unread() const { return {static_cast<const char*>(buffer_.cdata().data()), buffer_.size()}; }
+
+  // Another request may have come together with the one before.
   void have_read(Code code) {
-    if (code == http::error::header_limit || code == http::error::buffer_overflow) return refuse(431, "the header is longer than 8 KiB");
-    if (code == http::error::body_limit) return refuse(413, "a request has no body here");
-    if (code == http::error::end_of_stream || code == beast::error::timeout) return end();
-    if (code && code.category() == http::make_error_code(http::error::bad_method).category()) return refuse(400, "this is no HTTP request");
+    if (code == boost::asio::error::eof || code == beast::error::timeout) return end();
     if (code) return;
-    request_ = parser_->release();
+    const auto head = find_head_end(unread());
+    if (head.state == HeadEnd::State::too_long) return refuse(431, "the header is longer than 8 KiB");
+    if (head.state == HeadEnd::State::malformed) return refuse(400, "this is no HTTP request");
+    if (head.state == HeadEnd::State::complete) return have_head(head.size);
+    const auto room = std::min<std::size_t>(most_buffered - buffer_.size(), 4096);
+    stream_.async_read_some(buffer_.prepare(room), [self = shared_from_this()](Code problem, std::size_t count) {
+      self->buffer_.commit(count);
+      self->have_read(problem);
+    });
+  }
+
+  void have_head(std::size_t size) {
+    if (const auto problem = check_head(unread().substr(0, size))) return refuse(problem->status, problem->why);
+    http::request_parser<http::empty_body> parser;
+    parser.eager(true);
+    Code code;
+    const auto taken = parser.put(boost::asio::buffer(buffer_.cdata(), size), code);
+    if (code || taken != size || !parser.is_done()) return refuse(400, "this is no HTTP request");
+    buffer_.consume(size);
+    request_ = parser.release();
     answer();
   }
 
+  // Of a field that may come several times, which is one list.
+  std::string all_of(http::field field) const {
+    std::string list;
+    const auto [begin, last] = request_.equal_range(field);
+    for (auto at = begin; at != last; ++at) list += (list.empty() ? "" : ", ") + std::string(view(at->value()));
+    return list;
+  }
+
   void answer() {
-    const auto target = view(request_.target());
+    const auto target = origin_form(view(request_.target()));
     const auto question = std::min(target.find('?'), target.size());
     const std::string path(target.substr(0, question));
     const std::string query(target.substr(std::min(question + 1, target.size())));
-    const Caller caller{view(request_[http::field::host]), view(request_[http::field::origin]), view(request_[http::field::cookie]),
-                        view(request_[http::field::authorization]), query};
-    const auto verdict = shared_->door.judge(caller);
+    const bool is_upgrade = beast::websocket::is_upgrade(request_);
+    const auto protocols = all_of(http::field::sec_websocket_protocol);
+    Caller caller{view(request_[http::field::host]), view(request_[http::field::origin]), view(request_[http::field::authorization])};
+    if (is_upgrade) caller.protocols = protocols, caller.query = query;
+    const PageFile* file = is_upgrade ? nullptr : shared_->page.find(path);
+    const auto verdict = file != nullptr ? shared_->door.judge_sender(caller) : shared_->door.judge(caller);
     if (verdict != Verdict::granted) return refuse(verdict == Verdict::no_token ? 401 : 403, to_text(verdict));
-    standing_.was_granted = true;
+    standing_.was_granted = standing_.was_granted || file == nullptr;
     standing_.last_use = std::chrono::steady_clock::now();
-    if (beast::websocket::is_upgrade(request_)) return upgrade(path);
+    if (is_upgrade) return upgrade(path, protocols);
     if (request_.method() != http::verb::get && request_.method() != http::verb::head) return refuse(405, "only GET and HEAD are answered");
-    if (path == "/" && shared_->door.brings_token(caller)) return send_to_page();
-    if (const PageFile* file = shared_->page.find(path)) return send_file(*file, path != "/");
+    if (file != nullptr) return send_file(*file, path != "/");
+    if (path == "/access") return send_content({204, "", shared_text(""), ""});
     const bool is_fetched = shared_->handlers.fetch(path, query, [self = shared_from_this()](Content content) {
       boost::asio::post(self->stream_.get_executor(), [self, content = std::move(content)] { self->send_content(content); });
     });
@@ -101,8 +128,8 @@ class Connection final : public HttpPeer, public std::enable_shared_from_this<Co
     stream_.expires_never();  // a fetch ends in time
   }
 
-  void upgrade(const std::string& path) {
-    const auto protocol = agreed_protocol(view(request_[http::field::sec_websocket_protocol]));
+  void upgrade(const std::string& path, std::string_view protocols) {
+    const auto protocol = agreed_protocol(protocols);
     if (path != "/ws") return refuse(404, "the WebSocket is at /ws");
     if (protocol.empty()) return refuse(400, "expected the WebSocket subprotocol rtmsim.studio.v1 or foxglove.websocket.v1");
     if (shared_->viewers >= most_viewers) return refuse(503, "there are 32 viewers already");
@@ -122,14 +149,6 @@ class Connection final : public HttpPeer, public std::enable_shared_from_this<Co
     response.set(http::field::cache_control, "no-store");
     response.keep_alive(request_.keep_alive());
     return response;
-  }
-
-  // The token leaves the address bar; what stands behind a '#' stays there.
-  void send_to_page() {
-    auto answer = response(303);
-    answer.set(http::field::location, "/");
-    answer.set(http::field::set_cookie, shared_->door.cookie());
-    send(std::move(answer), shared_text(""));
   }
 
   // Files of assets/ have new names when they change.
@@ -153,7 +172,7 @@ class Connection final : public HttpPeer, public std::enable_shared_from_this<Co
       answer.set(http::field::etag, tag);
       answer.set(http::field::cache_control, "private, no-cache");
     }
-    if (!is_known) answer.set(http::field::content_type, content.type);
+    if (!is_known && !content.type.empty()) answer.set(http::field::content_type, content.type);
     send(std::move(answer), is_known ? shared_text("") : content.octets);
   }
 
@@ -168,7 +187,7 @@ class Connection final : public HttpPeer, public std::enable_shared_from_this<Co
 
   void send(Response answer, std::shared_ptr<const std::string> octets) {
     octets_ = std::move(octets);
-    const bool has_body = answer.result() != http::status::not_modified;
+    const bool has_body = answer.result() != http::status::not_modified && answer.result() != http::status::no_content;
     if (has_body) answer.content_length(octets_->size());
     is_last_ = !answer.keep_alive();
     stream_.expires_after(writing_limit);
@@ -199,7 +218,6 @@ class Connection final : public HttpPeer, public std::enable_shared_from_this<Co
   std::shared_ptr<WebShared> shared_;
   beast::tcp_stream stream_;
   beast::flat_buffer buffer_{most_buffered};
-  std::optional<http::request_parser<http::empty_body>> parser_;
   HttpRequest request_;
   std::unique_ptr<Response> response_;
   std::optional<http::serializer<false, http::span_body<const char>>> serializer_;

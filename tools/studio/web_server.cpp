@@ -101,11 +101,8 @@ base::Result<std::unique_ptr<WebServer>> WebServer::open(boost::asio::io_context
   if (code && options.may_move) code = listen(acceptor, {address, 0});
   if (code) return base::Error{"port " + std::to_string(options.port) + " of " + options.address + ": " + code.message()};
   auto token = Door::make_secret();
-  auto cookie = Door::make_secret();
   if (!token) return token.error();
-  if (!cookie) return cookie.error();
-  const auto port = acceptor.local_endpoint(code).port();
-  Door door(std::move(*token), std::move(*cookie), "rtm-studio-" + std::to_string(port), options.hosts, options.origins);
+  Door door(std::move(*token), options.hosts, options.origins);
   auto shared = std::make_shared<WebShared>(WebShared{loop, std::move(door), page, std::move(handlers)});
   auto listener = std::make_unique<Listener>(std::move(shared), std::move(acceptor));
   listener->accept();

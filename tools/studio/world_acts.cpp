@@ -1,6 +1,7 @@
 // Acts on the simulated world.
 #include <algorithm>
 
+#include "base/shell_word.h"
 #include "base/text.h"
 #include "shm/lockstep.h"
 #include "shm/request_board.h"
@@ -35,9 +36,17 @@ Plan plan(const ActContext& context, shm::Request request, const std::vector<std
           Touches touches = Touches::world, std::chrono::nanoseconds limit = usual_limit) {
   std::vector<std::string> line = simctl_words(context.server_id);
   line.insert(line.end(), words.begin(), words.end());
-  return {words.empty() ? "" : shell_line(line),
+  return {words.empty() ? "" : base::shell_line(line),
           [id = context.server_id, request = std::move(request), read = std::move(read), limit] { return ask(id, request, limit, read); },
           touches};
+}
+
+// `verb` of simctl and what it is about, whose name may be anything.
+std::vector<std::string> about(const std::string& verb, const std::string& name, const std::vector<double>& numbers = {},
+                               const std::vector<std::string>& options = {}) {
+  std::vector<std::string> operands{name};
+  for (const double number : numbers) operands.push_back(base::format_number(number));
+  return base::command_words({verb}, operands, options);
 }
 
 std::vector<std::string> with_numbers(std::vector<std::string> words, const std::vector<double>& numbers) {
@@ -109,8 +118,7 @@ Result<Plan> speed(const ActContext& context, const Json& args) {
 
 Result<Plan> tree(const ActContext& context, const Json& args) {
   const auto model = text_or(args, "model", "");
-  std::vector<std::string> words{"tree"};
-  if (!model.empty()) words.push_back(model);
+  const auto words = model.empty() ? std::vector<std::string>{"tree"} : about("tree", model);
   return plan(context, shm::TreeRequest{model}, words, json_of, Touches::nothing);
 }
 
@@ -121,7 +129,7 @@ Result<Plan> models(const ActContext& context, const Json&) {
 Result<Plan> contacts(const ActContext& context, const Json& args) {
   const auto model = text_of(args, "model");
   if (!model) return model.error();
-  return plan(context, shm::ContactsRequest{*model}, {"contacts", *model}, json_of, Touches::nothing);
+  return plan(context, shm::ContactsRequest{*model}, about("contacts", *model), json_of, Touches::nothing);
 }
 
 Result<Plan> set_pose(const ActContext& context, const Json& args) {
@@ -134,13 +142,13 @@ Result<Plan> set_pose(const ActContext& context, const Json& args) {
     if (!numbers) return numbers.error();
     request.is_planar = true;
     request.pose = shm::planar_pose((*numbers)[0], (*numbers)[1], 0, (*numbers)[2]);
-    return plan(context, request, with_numbers({"pose", *model}, *numbers));
+    return plan(context, request, about("pose", *model, *numbers));
   }
   const auto numbers = numbers_of(args, "pose", 7, 7);
   if (!numbers) return numbers.error();
   request.pose = pose_from(*numbers);
   const auto [roll, pitch, yaw] = angles_of(request.pose);
-  return plan(context, request, with_numbers({"pose", *model}, {request.pose.x, request.pose.y, request.pose.z, roll, pitch, yaw}));
+  return plan(context, request, about("pose", *model, {request.pose.x, request.pose.y, request.pose.z, roll, pitch, yaw}));
 }
 
 Result<Plan> push(const ActContext& context, const Json& args) {
@@ -157,10 +165,11 @@ Result<Plan> push(const ActContext& context, const Json& args) {
   std::copy(force->begin(), force->end(), request.force);
   std::copy(torque->begin(), torque->end(), request.torque);
   request.duration = seconds;
-  auto words = with_numbers({"wrench", *name}, *force);
-  if (args.contains("torque")) words = with_numbers(std::move(words), *torque);
-  if (seconds > 0) words.insert(words.end(), {"--for", base::format_number(seconds)});
-  return plan(context, request, words);
+  auto numbers = *force;
+  if (args.contains("torque")) numbers.insert(numbers.end(), torque->begin(), torque->end());
+  std::vector<std::string> options;
+  if (seconds > 0) options = {"--for", base::format_number(seconds)};
+  return plan(context, request, about("wrench", *name, numbers, options));
 }
 
 Result<Plan> set_velocity(const ActContext& context, const Json& args) {
@@ -169,11 +178,13 @@ Result<Plan> set_velocity(const ActContext& context, const Json& args) {
   const auto linear = numbers_of(args, "linear", 3, 3), angular = numbers_of(args, "angular", 3, 3);
   if (!linear) return linear.error();
   if (!angular) return angular.error();
+  auto numbers = *linear;
+  numbers.insert(numbers.end(), angular->begin(), angular->end());
   shm::SetVelocityRequest request;
   request.model = *model;
   std::copy(linear->begin(), linear->end(), request.linear);
   std::copy(angular->begin(), angular->end(), request.angular);
-  return plan(context, request, with_numbers(with_numbers({"velocity", *model}, *linear), *angular));
+  return plan(context, request, about("velocity", *model, numbers));
 }
 
 // A model of the model path, or SDF as text; never a file of the server's, not in an address in the text either.
@@ -196,7 +207,10 @@ Result<Plan> spawn(const ActContext& context, const Json& args) {
   }
   request.name = text_or(args, "name", "");
   std::vector<std::string> words{"spawn", request.is_path ? request.sdf : "MODEL.sdf"};
-  if (!request.name.empty()) words.insert(words.end(), {"--name", request.name});
+  if (!request.name.empty()) {
+    const auto option = base::option_words("--name", request.name);
+    words.insert(words.end(), option.begin(), option.end());
+  }
   if (args.contains("pose")) {
     const auto numbers = numbers_of(args, "pose", 7, 7);
     if (!numbers) return numbers.error();
@@ -215,13 +229,13 @@ Result<Plan> spawn(const ActContext& context, const Json& args) {
 Result<Plan> delete_model(const ActContext& context, const Json& args) {
   const auto model = text_of(args, "model");
   if (!model) return model.error();
-  return plan(context, shm::DeleteRequest{*model}, {"delete", *model});
+  return plan(context, shm::DeleteRequest{*model}, about("delete", *model));
 }
 
 Result<Plan> drop_participant(const ActContext& context, const Json& args) {
   const auto name = text_of(args, "name");
   if (!name) return name.error();
-  return plan(context, shm::DropParticipantRequest{*name}, {"drop", *name});
+  return plan(context, shm::DropParticipantRequest{*name}, about("drop", *name));
 }
 
 Result<Plan> reset_odometry(const ActContext& context, const Json& args) {
@@ -229,14 +243,14 @@ Result<Plan> reset_odometry(const ActContext& context, const Json& args) {
   if (!iface) return iface.error();
   shm::ResetOdometryRequest request;
   request.iface = *iface;
-  return plan(context, request, {"odometry", *iface});
+  return plan(context, request, about("odometry", *iface));
 }
 
 Result<Plan> set_motors(const ActContext& context, const Json& args) {
   const auto iface = text_of(args, "iface");
   if (!iface) return iface.error();
   const bool are_enabled = flag_of(args, "on");
-  return plan(context, shm::SetMotorsRequest{*iface, are_enabled}, {"motors", *iface, are_enabled ? "on" : "off"});
+  return plan(context, shm::SetMotorsRequest{*iface, are_enabled}, base::command_words({"motors"}, {*iface, are_enabled ? "on" : "off"}));
 }
 
 }  // namespace

@@ -211,8 +211,9 @@ class Hunt {
       if (!first.first_problem().empty()) find.problem = first.first_problem();
       find.is_repeatable = first.state_hash == second.state_hash && signature(first) == kind && signature(second) == kind;
     }
+    // Another line of it would be one of the plan.
     std::ofstream file(find.file);
-    file << "# " << find.problem << "\n# state " << (find.state_hash.empty() ? "-" : find.state_hash) << "\n"
+    file << "# " << base::printable(find.problem) << "\n# state " << (find.state_hash.empty() ? "-" : find.state_hash) << "\n"
          << plan_text(campaign_, find.tried);
     file.close();
     if (!file) problem_ = "find " + base::in_quotes(find.file) + ": cannot be written: " + find.problem;

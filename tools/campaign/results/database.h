@@ -1,6 +1,7 @@
 // A thin interface to SQLite: a file, statements, values. One thread at a time.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -35,6 +36,8 @@ class Statement {
   std::int64_t integer(int column) const;
   double number(int column) const;
   bool is_null(int column) const;
+  int columns() const;
+  std::size_t size(int column) const;  // [byte] of a text; of a number 0
 
  private:
   friend class Database;
@@ -48,12 +51,20 @@ class Statement {
   std::string file_;
 };
 
+// What reading a file may take, whatever is in it.
+struct ReadLimits {
+  std::chrono::milliseconds time{std::chrono::minutes(2)};  // from its opening on, all statements together
+};
+
 class Database {
  public:
   enum class Access { read, write };
   // Writing makes the file when there is none. While somebody writes, SQLite keeps a log beside the file; the last one takes it away, so
   // that what stays is one file that can be read wherever it lies.
-  static Result<Database> open(const std::string& file, Access access);
+  //
+  // A file that is read may come from others: it and the logs beside it must be regular files, nothing is written, and nothing in it is
+  // executed (views, triggers, functions, virtual tables). Statements may only select from its tables.
+  static Result<Database> open(const std::string& file, Access access, const ReadLimits& limits = {});
   // Several statements, without values.
   Result<void> execute(const std::string& sql);
   Result<Statement> prepare(const std::string& sql) const;
@@ -66,7 +77,10 @@ class Database {
   };
   Database(sqlite3* database, std::string file, std::string folder)
       : database_(database, Close{std::move(folder)}), file_(std::move(file)) {}
+  static Result<Database> open_to_read(const std::string& file, const ReadLimits& limits);
   Result<void> begin_log();
+  Result<void> guard(const ReadLimits& limits);
+  std::shared_ptr<std::chrono::steady_clock::time_point> deadline_;  // SQLite has its address; only when reading
   std::unique_ptr<sqlite3, Close> database_;
   std::string file_;
 };

@@ -12,21 +12,56 @@ namespace {
 
 using RowsByKey = std::map<std::string, std::vector<std::size_t>>;
 
-template <class Take>
-Result<void> for_rows(Database& database, const std::string& sql, Take take) {
-  auto statement = database.prepare(sql);
-  if (!statement) return statement.error();
-  for (;;) {
-    const auto more = statement->next();
-    if (!more) return more.error();
-    if (!*more) return {};
-    take(*statement);
-  }
-}
+// What is kept of a file, all its tables together.
+class Budget {
+ public:
+  static constexpr std::size_t most_names = 1000;
 
-Result<void> read_facts(Database& database, Results& results) {
+  explicit Budget(Database& database) : database_(database) {}
+
+  // `copies` says how often what is in a row is kept, before `take` keeps it.
+  template <class Copies, class Take>
+  Result<void> for_rows(const std::string& sql, Copies copies, Take take) {
+    auto statement = database_.prepare(sql);
+    if (!statement) return statement.error();
+    for (;;) {
+      const auto more = statement->next();
+      if (!more) return more.error();
+      if (!*more) return {};
+      std::size_t text = 0;
+      for (int column = 0; column < statement->columns(); ++column) text += statement->size(column);
+      const std::size_t count = std::max<std::size_t>(1, copies(*statement));
+      values_ += count;
+      text_ += text * count;
+      if (text_ > most_text) return too_much("1 GiB of text");
+      if (values_ > most_values) return too_much("30 million values");
+      take(*statement);
+    }
+  }
+  template <class Take>
+  Result<void> for_rows(const std::string& sql, Take take) {
+    return for_rows(
+        sql, [](const Statement&) { return std::size_t{1}; }, take);
+  }
+  Result<void> check_names(const std::set<std::string>& names) const {
+    return names.size() > most_names ? too_much("1000 parameters or measures") : Result<void>();
+  }
+  Database& database() { return database_; }
+
+ private:
+  static constexpr std::size_t most_values = 30'000'000, most_text = std::size_t{1} << 30;
+
+  Result<void> too_much(const std::string& what) const {
+    return Error{"results " + base::in_quotes(database_.file()) + ": hold more than " + what};
+  }
+
+  Database& database_;
+  std::size_t values_ = 0, text_ = 0;
+};
+
+Result<void> read_facts(Budget& budget, Results& results) {
   std::string version;
-  const auto read = for_rows(database, "SELECT name, value FROM campaign", [&](Statement& row) {
+  const auto read = budget.for_rows("SELECT name, value FROM campaign", [&](Statement& row) {
     const auto name = row.text(0);
     if (name == "version") version = row.text(1);
     if (name == "plan_file") results.plan_file = row.text(1);
@@ -36,15 +71,15 @@ Result<void> read_facts(Database& database, Results& results) {
   });
   if (!read) return read;
   if (version != std::to_string(Store::version))
-    return Error{"results " + base::in_quotes(database.file()) + ": are of version " + base::in_quotes(version) + ", expected " +
+    return Error{"results " + base::in_quotes(budget.database().file()) + ": are of version " + base::in_quotes(version) + ", expected " +
                  std::to_string(Store::version)};
   return {};
 }
 
-Result<void> read_rows(Database& database, Results& results, RowsByKey& by_key) {
+Result<void> read_rows(Budget& budget, Results& results, RowsByKey& by_key) {
   std::map<std::int64_t, std::size_t> by_number;
   std::set<std::uint64_t> seeds;
-  auto read = for_rows(database, "SELECT number, key, seed FROM rows ORDER BY number", [&](Statement& row) {
+  auto read = budget.for_rows("SELECT number, key, seed FROM rows ORDER BY number", [&](Statement& row) {
     by_number[row.integer(0)] = results.rows.size();
     by_key[row.text(1)].push_back(results.rows.size());
     results.rows.push_back({static_cast<std::size_t>(row.integer(0)), row.text(1), static_cast<std::uint64_t>(row.integer(2)), {}, {}, {}});
@@ -53,18 +88,25 @@ Result<void> read_rows(Database& database, Results& results, RowsByKey& by_key) 
   if (!read) return read;
   if (seeds.size() > 1) results.parameters.emplace_back("seed");
   std::set<std::string> names;
-  read = for_rows(database, "SELECT number, name, value FROM parameters", [&](Statement& row) {
+  read = budget.for_rows("SELECT number, name, value FROM parameters", [&](Statement& row) {
     const auto found = by_number.find(row.integer(0));
     if (found == by_number.end()) return;
     results.rows[found->second].values[row.text(1)] = row.text(2);
-    names.insert(row.text(1));
+    if (names.size() <= Budget::most_names) names.insert(row.text(1));
   });
+  if (!read) return read;
+  if (const auto checked = budget.check_names(names); !checked) return checked;
   results.parameters.insert(results.parameters.end(), names.begin(), names.end());
   return read;
 }
 
-Result<void> read_runs(Database& database, Results& results, const RowsByKey& by_key) {
-  auto read = for_rows(database, "SELECT key, passed, problem, state, folder, simulated, wall FROM runs", [&](Statement& row) {
+Result<void> read_runs(Budget& budget, Results& results, const RowsByKey& by_key) {
+  // A file of ours has each key once.
+  const auto copies = [&](const Statement& row) {
+    const auto found = by_key.find(row.text(0));
+    return found == by_key.end() ? std::size_t{0} : found->second.size();
+  };
+  auto read = budget.for_rows("SELECT key, passed, problem, state, folder, simulated, wall FROM runs", copies, [&](Statement& row) {
     const auto found = by_key.find(row.text(0));
     if (found == by_key.end()) return;
     for (const auto place : found->second)
@@ -72,21 +114,20 @@ Result<void> read_runs(Database& database, Results& results, const RowsByKey& by
   });
   if (!read) return read;
   std::set<std::string> names;
-  read = for_rows(database, "SELECT key, name, value FROM measures", [&](Statement& row) {
+  read = budget.for_rows("SELECT key, name, value FROM measures", copies, [&](Statement& row) {
     const auto found = by_key.find(row.text(0));
     if (found == by_key.end()) return;
     for (const auto place : found->second) results.rows[place].measures[row.text(1)] = row.number(2);
-    names.insert(row.text(1));
+    if (names.size() <= Budget::most_names) names.insert(row.text(1));
   });
   if (!read) return read;
+  if (const auto checked = budget.check_names(names); !checked) return checked;
   results.measures.assign(names.begin(), names.end());
   const std::string unmet =
       "SELECT v.expectation, COUNT(*) FROM verdicts v JOIN rows r ON r.key = v.key WHERE v.problem <> '' GROUP BY 1 ORDER BY 2 DESC, 1";
-  read = for_rows(database, unmet, [&](Statement& row) {
-    results.unmet.push_back({row.text(0), static_cast<std::size_t>(row.integer(1))});
-  });
+  read = budget.for_rows(unmet, [&](Statement& row) { results.unmet.push_back({row.text(0), static_cast<std::size_t>(row.integer(1))}); });
   if (!read) return read;
-  return for_rows(database, "SELECT COUNT(*), COALESCE(SUM(same = 0), 0) FROM audits", [&](Statement& row) {
+  return budget.for_rows("SELECT COUNT(*), COALESCE(SUM(same = 0), 0) FROM audits", [&](Statement& row) {
     results.audits = static_cast<std::size_t>(row.integer(0));
     results.different = static_cast<std::size_t>(row.integer(1));
   });
@@ -123,15 +164,16 @@ std::size_t Results::passed_count() const {
   return static_cast<std::size_t>(std::ranges::count_if(rows, [](const ResultRow& row) { return row.run && row.run->is_passed; }));
 }
 
-Result<Results> read_results(const std::string& file) {
-  auto database = Database::open(file, Database::Access::read);
+Result<Results> read_results(const std::string& file, const ReadLimits& limits) {
+  auto database = Database::open(file, Database::Access::read, limits);
   if (!database) return database.error();
   Results results;
   results.file = file;
-  if (const auto read = read_facts(*database, results); !read) return read.error();
+  Budget budget(*database);
+  if (const auto read = read_facts(budget, results); !read) return read.error();
   RowsByKey by_key;
-  if (const auto read = read_rows(*database, results, by_key); !read) return read.error();
-  if (const auto read = read_runs(*database, results, by_key); !read) return read.error();
+  if (const auto read = read_rows(budget, results, by_key); !read) return read.error();
+  if (const auto read = read_runs(budget, results, by_key); !read) return read.error();
   return results;
 }
 

@@ -38,7 +38,9 @@ struct Results {
   std::size_t passed_count() const;
 };
 
-Result<Results> read_results(const std::string& file);
+// The file may come from others (see Database). Fails when it holds more than a campaign can: 30 million values, 1 GiB of text, 1000
+// parameters or measures.
+Result<Results> read_results(const std::string& file, const ReadLimits& limits = {});
 
 // Of a row: its seed as text, or the value of a parameter.
 std::string value_of(const ResultRow& row, const std::string& parameter);

@@ -4,8 +4,8 @@
 #include <iomanip>
 #include <pugixml.hpp>
 
+#include "base/shell_word.h"
 #include "base/text.h"
-#include "campaign/run/shell_word.h"
 #include "run/run_files.h"
 
 namespace campaign {
@@ -66,7 +66,7 @@ void print_groups(std::ostream& out, const Results& results, const std::string& 
 }  // namespace
 
 std::string command_again(const Results& results, const ResultRow& row) {
-  return "rtse sweep " + shell_word(results.plan_file) + " --row " + std::to_string(row.number);
+  return base::shell_line(base::command_words({"rtse", "sweep"}, {results.plan_file}, {"--row", std::to_string(row.number)}));
 }
 
 void print_tables(std::ostream& out, const Results& results, const std::vector<std::string>& by) {

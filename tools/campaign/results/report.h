@@ -13,8 +13,9 @@ void print_tables(std::ostream& out, const Results& results, const std::vector<s
 // One line for each row, with all parameters and measures. RFC 4180.
 void print_csv(std::ostream& out, const Results& results);
 Result<void> write_junit(const Results& results, const std::string& file);
-// One page that needs no other file.
-Result<void> write_html(const Results& results, const std::string& file);
+// One page that needs no other file. Pictures of failed rows are taken from `runs`, the folder that the sweep kept files in, and from
+// nowhere else: it may be no link.
+Result<void> write_html(const Results& results, const std::string& file, const std::string& runs);
 
 // What runs a row again.
 std::string command_again(const Results& results, const ResultRow& row);

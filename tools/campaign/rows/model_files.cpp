@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 
+#include "base/beneath.h"
 #include "base/child_process.h"
 #include "base/text.h"
 
@@ -9,16 +10,19 @@ namespace campaign {
 namespace fs = std::filesystem;
 namespace {
 
+// What a world may name: no device and no pipe, which could keep us for ever.
 bool is_there(const fs::path& path) {
   std::error_code error;
-  return fs::exists(path, error);
+  const auto status = fs::status(path, error);
+  return fs::is_regular_file(status) || fs::is_directory(status);
 }
 
 // Of a model's folder.
 std::optional<fs::path> model_in(const fs::path& folder) {
   if (is_there(folder / "model.sdf")) return folder / "model.sdf";
   pugi::xml_document config;
-  if (!config.load_file((folder / "model.config").c_str())) return std::nullopt;
+  const auto file = folder / "model.config";
+  if (!base::check_regular_file(file) || !config.load_file(file.c_str())) return std::nullopt;
   const auto named = folder / config.child("model").child("sdf").text().get();
   std::error_code error;
   return fs::is_regular_file(named, error) ? std::optional(named) : std::nullopt;

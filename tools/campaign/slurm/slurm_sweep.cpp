@@ -9,8 +9,8 @@
 #include <map>
 
 #include "base/interrupt.h"
+#include "base/shell_word.h"
 #include "base/text.h"
-#include "campaign/run/shell_word.h"
 #include "campaign/run/tally.h"
 #include "campaign/slurm/queue.h"
 #include "campaign/slurm/task_folder.h"
@@ -126,18 +126,19 @@ class SlurmSweep {
       const auto left = slurm::count(folder_.name());
       if (left && *left == 0) return {};
     }
-    return Error{"jobs " + folder_.name() + ": are still there after scancel; scancel --name=" + folder_.name()};
+    return Error{"jobs " + folder_.name() + ": are still there after scancel; " +
+                 base::shell_line({"scancel", "--name=" + folder_.name()})};
   }
 
   std::string script(int attempt) const {
     std::string command;
-    for (const auto& word : slurm_.command) command += shell_word(word) + " ";
+    for (const auto& word : slurm_.command) command += base::script_word(word) + " ";
     const auto number = std::to_string(attempt);
     return "#!/bin/sh\n# A task of rtse sweep --engine slurm. $1: the number of its array's first task.\ntask=$(($1 + "
            "SLURM_ARRAY_TASK_ID))\n"
            "exec >>" +
-           shell_word(slurm_.folder + "/logs/" + number + "-") + "$task 2>&1\nexec " + command + "--task " +
-           shell_word(slurm_.folder + ":" + number + ":") + "$task\n";
+           base::script_word(slurm_.folder + "/logs/" + number + "-") + "$task 2>&1\nexec " + command + "--task " +
+           base::script_word(slurm_.folder + ":" + number + ":") + "$task\n";
   }
 
   Result<void> submit(std::size_t chunk) {

@@ -9,9 +9,9 @@
 
 #include "base/command_line.h"
 #include "base/interrupt.h"
+#include "base/shell_word.h"
 #include "base/text.h"
 #include "campaign/hunt/hunt.h"
-#include "campaign/run/shell_word.h"
 #include "rtse/campaign/campaign_commands.h"
 #include "rtse/command.h"
 
@@ -48,12 +48,14 @@ nlohmann::ordered_json to_json(const Find& find) {
 }
 
 void tell(const Find& find, std::size_t number) {
-  const auto again = "rtse sweep " + shell_word(find.file) + " --row 1" + (find.state_hash.empty() ? "" : " --state " + find.state_hash);
+  std::vector<std::string> options{"--row", "1"};
+  if (!find.state_hash.empty()) options.insert(options.end(), {"--state", find.state_hash});
+  const auto again = base::shell_line(base::command_words({"rtse", "sweep"}, {find.file}, options));
   const char* doubt = !find.was_repeated   ? "\n  interrupted: it may not be the simplest, and was not run again"
                       : find.is_repeatable ? ""
                                            : "\n  it was not the same when it was run again";
-  std::printf("find %zu after %.0f s, case %zu: %s\n  %s\n  %s%s\n", number, find.after_s, find.case_number, find.problem.c_str(),
-              text_of(find.tried).c_str(), again.c_str(), doubt);
+  std::printf("find %zu after %.0f s, case %zu: %s\n  %s\n  %s%s\n", number, find.after_s, find.case_number,
+              base::printable(find.problem, "\n\t").c_str(), base::printable(text_of(find.tried), "\n\t").c_str(), again.c_str(), doubt);
   std::fflush(stdout);
 }
 

@@ -1,5 +1,6 @@
 // results: what a campaign has shown, as tables, files and a page.
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -16,10 +17,16 @@ namespace {
 using editor::Editor;
 
 struct ResultsCall {
-  std::string file, junit, html;
+  std::string file, junit, html, runs;
   std::vector<std::string> by;
   bool csv = false;
 };
+
+std::string runs_of(const ResultsCall& call) {
+  if (call.runs.empty()) return std::filesystem::path(call.file).replace_extension(".runs").string();
+  std::error_code absent;                                                // then there are no pictures
+  return std::filesystem::weakly_canonical(call.runs, absent).string();  // whoever names a link means what it leads to
+}
 
 void show_results(Editor& editor, const ResultsCall& call) {
   const auto results = read_results(call.file);
@@ -48,7 +55,7 @@ void show_results(Editor& editor, const ResultsCall& call) {
     if (const auto written = write_junit(*results, call.junit); !written) editor.fail(written.error());
   }
   if (!call.html.empty()) {
-    if (const auto written = write_html(*results, call.html); !written) editor.fail(written.error());
+    if (const auto written = write_html(*results, call.html, runs_of(call)); !written) editor.fail(written.error());
   }
 }
 
@@ -62,6 +69,8 @@ void add_results(base::Command& app, editor::Chosen& chosen) {
   command->add_flag("--csv", call->csv, "Print one line per row");
   command->add_option("--junit", call->junit, "Write a test case per row (JUnit XML)");
   command->add_option("--html", call->html, "Write one page with plots and failed runs");
+  command->add_option("--runs", call->runs,
+                      "Folder of kept files (sweep --keep), for pictures in the page; default: the results' name with .runs");
   command->callback([&chosen, call] {
     chosen.needs_orb = false;
     chosen.work = [call](Editor& e) { show_results(e, *call); };

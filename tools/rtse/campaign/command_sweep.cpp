@@ -16,10 +16,10 @@
 #include "base/child_process.h"
 #include "base/command_line.h"
 #include "base/interrupt.h"
+#include "base/shell_word.h"
 #include "base/text.h"
 #include "campaign/plan/grammar.h"
 #include "campaign/results/statistics.h"
-#include "campaign/run/shell_word.h"
 #include "campaign/run/sweep.h"
 #include "campaign/slurm/slurm_sweep.h"
 #include "rtse/campaign/campaign_commands.h"
@@ -89,7 +89,7 @@ void run_one(Editor& editor, const Campaign& campaign, const SweepCall& call) {
   const auto row = campaign.row(call.row);
   if (!row) return editor.fail(row.error());
   const auto folder = call.keep.empty() ? "row-" + std::to_string(call.row) : call.keep;
-  if (!editor.json()) std::printf("row %zu  %s\n", row->number, values_text(*row).c_str());
+  if (!editor.json()) std::printf("row %zu  %s\n", row->number, base::printable(values_text(*row)).c_str());
   std::fflush(stdout);
   remove_files_of_run(folder);
   const auto outcome = run_row(editor.orb(), campaign, *row, {.folder = folder, .keeps_files = true, .records = call.records});
@@ -107,11 +107,11 @@ void run_one(Editor& editor, const Campaign& campaign, const SweepCall& call) {
     std::cout << json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
   } else {
     std::printf("%s  %.1f s simulated in %.1f s  state %s  files in %s\n", outcome.is_passed() ? "passed" : "FAILED", outcome.simulated_s,
-                outcome.wall_s, outcome.state_hash.empty() ? no_state : outcome.state_hash.c_str(), folder.c_str());
-    for (const auto& [name, value] : outcome.measures) std::printf("  %s  %.6g\n", name.c_str(), value);
+                outcome.wall_s, outcome.state_hash.empty() ? no_state : outcome.state_hash.c_str(), base::printable(folder).c_str());
+    for (const auto& [name, value] : outcome.measures) std::printf("  %s  %.6g\n", base::printable(name).c_str(), value);
   }
   std::fflush(stdout);
-  for (const auto& note : outcome.notes) std::fprintf(stderr, "rtse: %s\n", note.c_str());
+  for (const auto& note : outcome.notes) std::fprintf(stderr, "rtse: %s\n", base::printable(note, "\n\t").c_str());
   const std::string state = outcome.state_hash.empty() ? no_state : outcome.state_hash;
   if (!call.state.empty() && call.state != state)
     editor.fail({"row " + std::to_string(call.row) + ": state " + state + ", expected " + call.state});
@@ -134,16 +134,19 @@ void tell(Editor& editor, const SweepResult& result, const SweepCall& call) {
     const auto rate = wilson(p.passed, p.passed + p.failed);
     std::printf(
         "%zu rows: %zu passed, %zu failed, %zu were in the results; pass rate %.1f %% (95 %%: %.1f to %.1f %%); %.1f s; results in %s\n",
-        p.rows, p.passed, p.failed, p.stored, rate.rate * 100, rate.low * 100, rate.high * 100, p.wall_s, results.c_str());
+        p.rows, p.passed, p.failed, p.stored, rate.rate * 100, rate.low * 100, rate.high * 100, p.wall_s, base::printable(results).c_str());
     if (p.audited > 0) std::printf("audit: %zu rows run again, %zu differ\n", p.audited, p.different);
   }
   std::fflush(stdout);
   constexpr std::size_t enough = 10;
   for (std::size_t i = 0; i < result.failed.size() && i < enough; ++i) {
-    std::fprintf(stderr, "rtse: row %zu: %s\nrtse:   again: rtse sweep %s --row %zu\n", result.failed[i].number,
-                 result.failed[i].problem.c_str(), shell_word(call.plan).c_str(), result.failed[i].number);
+    const auto again = base::command_words({"rtse", "sweep"}, {call.plan}, {"--row", std::to_string(result.failed[i].number)});
+    std::fprintf(stderr, "rtse: row %zu: %s\nrtse:   again: %s\n", result.failed[i].number,
+                 base::printable(result.failed[i].problem, "\n\t").c_str(), base::shell_line(again).c_str());
   }
-  if (p.failed > enough) std::fprintf(stderr, "rtse: and %zu more; rtse results %s\n", p.failed - enough, results.c_str());
+  if (p.failed > enough)
+    std::fprintf(stderr, "rtse: and %zu more; %s\n", p.failed - enough,
+                 base::shell_line(base::command_words({"rtse", "results"}, {results})).c_str());
   if (p.failed > 0) editor.set_failed();
   if (!result.problem.empty()) editor.fail({result.problem});
   for (const auto number : result.different) editor.fail({"audit: row " + std::to_string(number) + " has another state than stored"});
@@ -160,13 +163,13 @@ std::optional<std::pair<std::size_t, std::size_t>> parse_row_range(const std::st
   return std::pair(static_cast<std::size_t>(*first), static_cast<std::size_t>(*last));
 }
 
-// For GNU parallel and its like: each line runs some rows and adds them to the same results.
+// For GNU parallel and its like: each line runs some rows and adds them to the same results. A plain shell may read them from a pipe.
 void print_commands(const Campaign& campaign, const SweepCall& call) {
+  const auto word = isatty(STDOUT_FILENO) ? base::shell_word : base::script_word;
   for (std::size_t first = 1; first <= campaign.rows(); first += call.chunk) {
     const auto last = std::min(campaign.rows(), first + call.chunk - 1);
-    std::printf("%s sweep %s --rows %zu..%zu -o %s\n", shell_word(editor::own_program("rtse")).c_str(),
-                shell_word(fs::absolute(call.plan).string()).c_str(), first, last,
-                shell_word(fs::absolute(results_of(call)).string()).c_str());
+    std::printf("%s sweep %s --rows %zu..%zu -o %s\n", word(editor::own_program("rtse")).c_str(),
+                word(fs::absolute(call.plan).string()).c_str(), first, last, word(fs::absolute(results_of(call)).string()).c_str());
   }
 }
 

@@ -31,7 +31,7 @@ void list_contexts(Editor& editor, const ComponentView& component) {
                      {"state", state_text(context.state)},
                      {"problem", context.problem}});
     } else if (context.is_gone()) {
-      std::printf("%zu  %-6s  %s\n", i, owner, context.problem.c_str());
+      std::printf("%zu  %-6s  %s\n", i, owner, base::printable(context.problem).c_str());
     } else {
       std::printf("%zu  %-6s  %-12s %10s Hz  %-8s %s\n", i, owner, kind_text(context.kind).c_str(),
                   base::format_number(context.rate).c_str(), context.is_running ? "runs" : "stopped", state_text(context.state).c_str());

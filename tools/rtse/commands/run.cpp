@@ -65,7 +65,7 @@ void print_row(const RunResult& result) {
   }
   std::printf("%10llu  %-6s  %9.1f s  %7.1f x  %7.2f m  %-16s  %s\n", static_cast<unsigned long long>(result.seed),
               result.is_passed() ? "passed" : "FAILED", result.simulated_s, times_real_time(result), result.path_m,
-              result.state_hash.empty() ? "-" : result.state_hash.c_str(), unmet.empty() ? "-" : unmet.c_str());
+              result.state_hash.empty() ? "-" : result.state_hash.c_str(), unmet.empty() ? "-" : base::printable(unmet).c_str());
 }
 
 // A line on standard output, or a row of the table of seeds; what is wrong on standard error, with the seed before it when there are
@@ -84,7 +84,7 @@ void report(Editor& editor, const RunResult& result, bool is_row) {
   }
   std::fflush(stdout);
   const std::string seed = is_row ? "seed " + std::to_string(result.seed) + ": " : "";
-  for (const auto& note : result.notes) std::cerr << "rtse: " + seed + note + "\n";
+  for (const auto& note : result.notes) std::cerr << "rtse: " + seed + base::printable(note, "\n\t") + "\n";
   if (!result.problem.empty()) editor.fail({seed + result.problem});
   for (const auto& verdict : result.verdicts) {
     if (!verdict.problem.empty()) editor.fail({seed + verdict.expectation + ": " + verdict.problem});

@@ -110,7 +110,8 @@ void Stand::say() const {
     return;
   }
   std::cout << "stands at " << base::format_number(now()) << " s, after " << steps_ << " steps\n";
-  for (const auto& process : system_->processes()) std::printf("%8d  %s\n", static_cast<int>(process.pid), process.what.c_str());
+  for (const auto& process : system_->processes())
+    std::printf("%8d  %s\n", static_cast<int>(process.pid), base::printable(process.what).c_str());
   std::fflush(stdout);
   std::cout << "export RTMSIM_SERVER_ID=" << system_->simulator() << " RTCTREE_NAMESERVERS=" << system_->naming() << std::endl;
 }

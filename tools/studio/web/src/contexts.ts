@@ -1,7 +1,7 @@
 // What the contexts of components have really done, asked for while somebody looks: cycles a second, time of one, missed ones.
 import { h } from './dom';
 import { recording } from './playback';
-import { state_words } from './states';
+import { hertz, state_words } from './states';
 import { component, on, wire } from './store';
 import { short_path } from './tree';
 
@@ -40,7 +40,7 @@ export class Contexts {
       const cycles = told.cycles ?? 0, since = last?.told.cycles ?? 0, count = cycles - since;
       const has_both = last !== undefined && count > 0;
       const mean = (of: (t: Told) => number) => (has_both && cycles < 1e7 ? (of(told) * cycles - of(last.told) * since) / count : of(told));
-      const waits = mean((t) => t.wait_ms ?? 0) * told.rate >= 1000;
+      const waits = mean((t) => t.wait_ms ?? 0) * (told.rate ?? 0) >= 1000;
       return { told, done: last && told.cycles !== undefined && count >= 0 ? (count * 1000) / (at - last.at) : null, mean: told.cycles ? Math.max(0, mean((t) => t.mean_ms ?? 0)) : null, waits };
     });
     this.before = now;
@@ -53,7 +53,7 @@ export class Contexts {
     return h('table', { class: 'contexts' }, h('caption', null, 'What contexts of components do, by the wall clock'),
       h('thead', null, h('tr', null, ['component', 'asked', 'done', 'mean', 'worst', 'missed', 'state'].map((t) => h('th', { scope: 'col' }, t)))),
       h('tbody', null, this.rows.slice(0, 300).map(({ told, done, mean, waits }) => h('tr', null, h('th', { scope: 'row' }, component(told.path)?.instance ?? short_path(told.path)),
-        h('td', null, `${Number(told.rate.toPrecision(4))} Hz`), h('td', null, number(done, 1, ' Hz')), h('td', null, number(mean, 3, ' ms')), h('td', null, number(told.max_ms, 2, ' ms')), h('td', null, number(told.missed, 0, '')),
+        h('td', null, hertz(told.rate)), h('td', null, number(done, 1, ' Hz')), h('td', null, number(mean, 3, ' ms')), h('td', null, number(told.max_ms, 2, ' ms')), h('td', null, number(told.missed, 0, '')),
         h('td', null, !told.running ? 'stopped' : state_of(told.path) !== 'Active' ? state_words[state_of(told.path)] : waits ? 'waits for data' : '')))));
   }
 }

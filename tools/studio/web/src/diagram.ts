@@ -3,7 +3,8 @@ import { button, h, once_a_frame, put, s, unless_pressed, with_code } from './do
 import { connect_dialog } from './connect_dialog';
 import { arrange, Place } from './diagram_layout';
 import { keep, settings } from './settings';
-import { state_class, state_shape, state_words } from './states';
+import { shell_word } from './shell';
+import { hertz, state_class, state_shape, state_words } from './states';
 import {
   component, component_of_port, components_of, connections_of, is_selected, link_problem, name_of_port, on, port_of, read_only, select, selected_model, shown_state, store, wire,
 } from './store';
@@ -66,7 +67,7 @@ export class Diagram {
     let text = '';
     if (wire.status !== 'open') text = store.system.components.length > 0 ? '' : link_problem();
     else if (hello?.recording) text = store.has_system && system.components.length === 0 ? 'This recording has no components.' : '';
-    else if (system.problem) text = `No naming service answers at ${server}. Start one with components: \`rtcd --with-naming -o corba.nameservers:localhost:${port} RTCLaser\`. It appears here by itself.`;
+    else if (system.problem) text = `No naming service answers at ${server}. Start one with components: \`rtcd --with-naming -o ${shell_word(`corba.nameservers:localhost:${port}`)} RTCLaser\`. It appears here by itself.`;
     else if (store.has_system && system.components.length === 0) text = `The naming service at ${server} knows no components. Start some: \`rtcd RTCLaser RTCPosition2d LaserObstacleAvoid\`, or create them in a manager of the tree.`;
     this.element.classList.toggle('stale', wire.status !== 'open' && wire.status !== 'connecting');
     put(this.notice, text ? h('div', { class: 'card' }, h('p', null, ...with_code(text))) : null);
@@ -317,7 +318,7 @@ export class Diagram {
   }
 
   private listen(): void {
-    let drag: { what: 'pan' | 'box' | 'port'; path: string; x: number; y: number; moved: boolean } | null = null;
+    let drag: { what: 'pan' | 'box' | 'port'; path: string; edge: string; x: number; y: number; moved: boolean } | null = null;
     const target_of = (event: Event, attribute: string) => (event.target as Element).closest?.(`[${attribute}]`)?.getAttribute(attribute) ?? '';
     this.canvas.addEventListener('pointerdown', (event) => {
       if (event.button > 1) return;
@@ -325,7 +326,7 @@ export class Diagram {
       if (port) select({ kind: 'port', id: port });
       else if (path) select({ kind: 'component', id: path });
       else if (edge) select({ kind: 'connection', id: edge });
-      drag = { what: port && !read_only() ? 'port' : path ? 'box' : 'pan', path: port || path, x: event.clientX, y: event.clientY, moved: false };
+      drag = { what: port && !read_only() ? 'port' : path ? 'box' : 'pan', path: port || path, edge, x: event.clientX, y: event.clientY, moved: false };
       this.canvas.setPointerCapture(event.pointerId);
       this.canvas.focus({ preventScroll: true });
     });
@@ -351,7 +352,8 @@ export class Diagram {
       drag = null;
       if (!last) return;
       if (last.what === 'pan' && last.moved) this.apply_pan();
-      if (last.what === 'pan' && !last.moved && !target_of(event, 'data-connection')) select(null);
+      // Where the finger went down counts: with it captured, this event is of the canvas.
+      if (last.what === 'pan' && !last.moved && !last.edge) select(null);
       if (last.what === 'box' && last.moved) {
         this.has_panned = true;
         // All of them: what was arranged around it stays where it is.
@@ -461,7 +463,7 @@ function rate_text(one: Component): string {
   const context = one.contexts[0];
   if (!context) return '';
   const more = one.contexts.length > 1 ? ` +${one.contexts.length - 1}` : '';
-  return `${Number(context.rate.toPrecision(4))} Hz${context.running ? '' : ' stopped'}${more}`;
+  return `${hertz(context.rate)}${context.running ? '' : ' stopped'}${more}`;
 }
 
 // With the members of a composite component.

@@ -87,6 +87,7 @@ export function icon(name: string): SVGSVGElement {
 interface ButtonOptions {
   icon?: string;
   label?: string;
+  name?: string; // for those who do not see the icon beside the label
   key?: string;
   id?: string;
   class?: string;
@@ -99,7 +100,7 @@ export function button(does: string, options: ButtonOptions, act: (event: MouseE
   const title = options.key ? `${does} (${options.key})` : does;
   const element = h('button', { type: 'button', class: options.class, id: options.id, title, disabled: options.disabled, onclick: act },
     options.icon ? icon(options.icon) : null, options.label ?? null);
-  if (!options.label) element.setAttribute('aria-label', does);
+  if (options.name ?? !options.label) element.setAttribute('aria-label', options.name ?? does);
   if (options.pressed !== undefined) element.setAttribute('aria-pressed', String(options.pressed));
   return element;
 }

@@ -5,7 +5,7 @@ import { changed, on, store } from './store';
 import type { State } from './wire';
 import type { WorldView } from './world';
 
-interface Moment { time: number; places: Float32Array }
+interface Moment { time: number; places: Float32Array; names: string[] }
 export interface Change { time: number; state: State }
 
 const period = 0.1, longest = 300; // [s]
@@ -15,7 +15,7 @@ export class History {
   readonly states = new Map<string, Change[]>();
   private moments: Moment[] = [];
   private octets = 0;
-  private version = -1;
+  private run = ''; // of which simulator
   private was_recording = false;
 
   constructor(private readonly world: WorldView) {
@@ -58,15 +58,16 @@ export class History {
     const scene = this.world.world;
     if (!scene || recording()) return;
     const newest = this.moments[this.moments.length - 1]?.time ?? -1;
-    if (scene.version !== this.version || this.last < newest) {
+    const run = `${store.world?.server_id}|${store.world?.birth}`;
+    if (run !== this.run || this.last < newest) {
       this.moments = [];
       this.octets = 0;
-      this.version = scene.version;
+      this.run = run;
       for (const changes of this.states.values()) changes.splice(0, changes.length - 1).forEach(() => {});
       for (const changes of this.states.values()) if (changes[0]) changes[0].time = 0;
     } else if (this.last - newest < period) return;
     const places = this.world.places();
-    this.moments.push({ time: this.last, places });
+    this.moments.push({ time: this.last, places, names: this.world.link_names() });
     this.octets += places.byteLength;
     while (this.octets > most_octets || (this.moments.length > 1 && this.moments[0].time < this.last - longest)) this.octets -= this.moments.shift()!.places.byteLength;
   }
@@ -78,7 +79,7 @@ export class History {
     if (time === null) return this.world.show_past(null);
     let best = this.moments[0];
     for (const moment of this.moments) if (moment.time <= time) best = moment;
-    this.world.show_past(best?.places ?? null);
+    this.world.show_past(best?.places ?? null, best?.names);
   }
 
   private states_at(time: number): Map<string, State> {

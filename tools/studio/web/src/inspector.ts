@@ -1,15 +1,16 @@
 // What is selected, in full, and what can be done with it.
 import { Euler } from 'three';
+import { in_degrees, in_radians } from './angles';
 import { button, h, put, unless_pressed } from './dom';
 import { connect_dialog } from './connect_dialog';
 import { short_type } from './diagram';
-import { ask_text } from './dialog';
+import { ask_text, open_dialog } from './dialog';
 import { pose_of } from './glb';
 import { inject_dialog, join_dialog } from './rtse_dialogs';
 import { control, is_edited } from './widgets';
 import { state_class, state_mark, state_words } from './states';
 import {
-  act, component, component_of_port, components_of, connection, connections_of, iface_id, is_selected, model_of, name_of_port, on, port_of, read_only, refresh_details, select, state_act, store, wire,
+  act, component, component_of_port, components_of, connection, connections_of, forget_undo, iface_id, is_selected, model_of, name_of_port, on, port_of, read_only, refresh_details, select, state_act, store, wire,
 } from './store';
 import { short_path, signal_name } from './tree';
 import type { ConfigValue, Context, Values } from './wire';
@@ -136,7 +137,7 @@ export class Inspector {
         can && !model?.is_static ? button('Set the pose', { label: 'Put …' }, () => this.put_model(name)) : null,
         can && !model?.is_static ? button('Push it', { label: 'Push …' }, () => this.push_model(name)) : null,
         can && !model?.is_static ? button('Set its velocity', { label: 'Set moving …' }, () => this.set_moving(name)) : null,
-        can ? button('Delete the model', { label: 'Delete', class: 'danger' }, () => act(`Delete ${name}`, 'delete_model', { model: name })) : null),
+        can ? button('Delete the model', { label: 'Delete', class: 'danger' }, () => this.delete_model(name)) : null),
       h('h3', null, 'Pose'), pose,
       ifaces.length > 0 ? h('h3', null, 'Ifaces') : null,
       h('ul', { class: 'list' }, ifaces.map((i) => h('li', null, link_to(i.name.replace(`${name}::`, ''), { kind: 'iface', id: iface_id(i) }), h('span', { class: 'more' }, i.type)))),
@@ -177,8 +178,9 @@ export class Inspector {
     const pose = model?.canonical ? pose_of(model) : null;
     const start = pose ? [pose.position.x, pose.position.y, new Euler().setFromQuaternion(pose.quaternion, 'ZYX').z] : [0, 0, 0];
     const from = pose ? [...pose.position.toArray(), pose.quaternion.w, pose.quaternion.x, pose.quaternion.y, pose.quaternion.z] : null;
-    ask_text(`Put ${name}`, 'X Y YAW [m, m, rad]', start.map((v) => v.toFixed(3)).join(' '), 'Put', (text) => {
-      const planar = text.split(/[\s,]+/).map(Number);
+    ask_text(`Put ${name}`, 'X Y YAW [m, m, °]', [...start.slice(0, 2).map((v) => v.toFixed(3)), in_degrees(start[2]).toFixed(1)].join(' '), 'Put', (text) => {
+      const [x, y, yaw, ...more] = text.split(/[\s,]+/).map(Number);
+      const planar = [x, y, in_radians(yaw), ...more];
       if (planar.length === 3 && planar.every(Number.isFinite)) {
         act(`Put ${name}`, 'set_pose', { model: name, planar }, () => ({ text: `Put ${name} back`, name: 'set_pose', args: from ? { model: name, pose: from } : { model: name, planar: start } }));
       }
@@ -192,10 +194,16 @@ export class Inspector {
     });
   }
 
+  // Nothing brings it back as it was, so undo means no act before it either.
+  private delete_model(name: string): void {
+    open_dialog(`Delete ${name}`, h('p', null, `${name} and its sensors and drives are removed from the world. This cannot be undone, nor can what was done before it.`), 'Delete',
+      () => act(`Delete ${name}`, 'delete_model', { model: name }).then((result) => { if (result) forget_undo(); }));
+  }
+
   private set_moving(name: string): void {
-    ask_text(`Set ${name} moving`, 'VX VY VZ [m/s], or with WX WY WZ [rad/s]', '0 0 1', 'Set moving', (text) => {
+    ask_text(`Set ${name} moving`, 'VX VY VZ [m/s], or with WX WY WZ [°/s]', '0 0 1', 'Set moving', (text) => {
       const six = text.split(/[\s,]+/).map(Number);
-      if ((six.length === 3 || six.length === 6) && six.every(Number.isFinite)) act(`Set ${name} moving`, 'set_velocity', { model: name, linear: six.slice(0, 3), angular: six.length === 6 ? six.slice(3) : [0, 0, 0] });
+      if ((six.length === 3 || six.length === 6) && six.every(Number.isFinite)) act(`Set ${name} moving`, 'set_velocity', { model: name, linear: six.slice(0, 3), angular: six.length === 6 ? six.slice(3).map(in_radians) : [0, 0, 0] });
     });
   }
 
@@ -316,9 +324,9 @@ export class Inspector {
 
   private context(path: string, context: Context, is_one: boolean): HTMLElement {
     const id = `rate-${context.index}`;
-    const rate = h('input', { id, type: 'number', min: 0.001, step: 'any', value: context.rate, class: 'number', disabled: read_only(), 'data-known': String(context.rate) });
+    const rate = h('input', { id, type: 'number', min: 0.001, step: 'any', value: context.rate ?? '', class: 'number', disabled: read_only(), 'data-known': String(context.rate ?? '') });
     rate.addEventListener('change', () => { rate.dataset.known = rate.value; act(`Set the rate of ${short_path(path)}`, 'set_rate', { path, context: context.index, rate: Number(rate.value) },
-      () => ({ text: `Set the rate of ${short_path(path)} back`, name: 'set_rate', args: { path, context: context.index, rate: context.rate } })); });
+      () => (context.rate === null ? undefined : { text: `Set the rate of ${short_path(path)} back`, name: 'set_rate', args: { path, context: context.index, rate: context.rate } })); });
     return h('div', { class: 'line' }, h('label', { for: id }, `${context.index}${context.owned ? '' : ' (joined)'}`), rate, h('span', null, 'Hz'), h('span', { class: 'more' }, context.running ? 'runs' : 'stopped'),
       read_only() ? null : button(context.running ? `Stop context ${context.index}` : `Start context ${context.index}`, { label: context.running ? 'Stop' : 'Start', id: `context-${context.index}` },
         () => act(`${context.running ? 'Stop' : 'Start'} a context of ${short_path(path)}`, context.running ? 'stop_context' : 'start_context', { path, context: context.index })),

@@ -6,12 +6,14 @@ import { button, h, once_a_frame, put } from './dom';
 import { Drive } from './drive';
 import { History } from './history';
 import { disconnect, Inspector } from './inspector';
+import { is_pasteable, shell_line, shell_word } from './shell';
 import { apply_theme, keep, linked, settings, to_link } from './settings';
 import { act, changed, component, on, read_only, select, selected_model, state_act, store, undo_last, wire } from './store';
 import { Playback, recording } from './playback';
 import { profile_dialog } from './profile_dialog';
 import { recordings_dialog } from './recordings_dialog';
 import { spawn_dialog } from './spawn_dialog';
+import { with_token } from './token';
 import { Tree } from './tree';
 import { WorldView } from './world';
 
@@ -55,7 +57,7 @@ const top_bar = h('header', { class: 'top' },
   button('Save the system as RTSProfile', { icon: 'save', id: 'save' }, () => save_profile()),
   button('Open an RTSProfile', { icon: 'open', id: 'open' }, () => profile_input.click()),
   button('Open a recording', { icon: 'record', key: 'R', id: 'open-recording' }, () => recordings_dialog()),
-  button('Copy a link to this view', { icon: 'link', id: 'copy-link' }, () => copy_link()),
+  button('Copy a link to this view, with the right to act', { icon: 'link', id: 'copy-link' }, () => copy_link()),
   button('Light or dark', { icon: 'theme', id: 'theme' }, () => next_theme()),
   button('Keys', { icon: 'help', key: '?', id: 'help' }, () => show_keys()));
 
@@ -157,10 +159,14 @@ on('acts', () => {
 function copy_link(): void {
   write_link();
   write_link.now();
-  copy(location.href);
+  copy(with_token(location.href));
 }
 
 async function copy(text: string): Promise<void> {
+  if (!is_pasteable(text)) {
+    act_text.textContent = 'This is not copied: a terminal would obey what is in it';
+    return;
+  }
   try {
     await navigator.clipboard.writeText(text);
     act_text.textContent = 'Copied';
@@ -176,8 +182,8 @@ const world_panel = h('section', { class: 'panel world-panel', 'aria-label': 'Wo
   world.element, drive.element);
 const system_panel = h('section', { class: 'panel system-panel', 'aria-label': 'System' },
   h('div', { class: 'bar', role: 'toolbar', 'aria-label': 'System' }, h('h2', null, 'System'), h('span', { class: 'counts' }), h('span', { class: 'spring' }),
-    button('Activate every inactive component', { icon: 'run', label: 'All', id: 'activate-all' }, () => all_components('Inactive', 'activate', 'Activate')),
-    button('Deactivate every active component', { icon: 'stop', label: 'All', id: 'deactivate-all' }, () => all_components('Active', 'deactivate', 'Deactivate')),
+    button('Activate every inactive component', { icon: 'run', label: 'All', name: 'Activate all', id: 'activate-all' }, () => all_components('Inactive', 'activate', 'Activate')),
+    button('Deactivate every active component', { icon: 'stop', label: 'All', name: 'Deactivate all', id: 'deactivate-all' }, () => all_components('Active', 'deactivate', 'Deactivate')),
     button('Forget all names whose components are gone', { icon: 'broom', id: 'forget-dead' }, () => act('Forget the names of what is gone', 'forget_dead', {})), diagram.tools()),
   diagram.element);
 const tree_panel = h('nav', { class: 'panel tree-panel', 'aria-label': 'Everything by name' }, tree.element);
@@ -265,7 +271,7 @@ function show_head(): void {
   const { status } = wire;
   const whole = recording();
   world_name.textContent = whole ? `${whole.file}, ${(whole.to - whole.from).toFixed(1)} s recorded` : store.world?.present ? store.world.name : '';
-  const text = status === 'forbidden' ? 'another token: open the new URL' : status === 'lost' ? 'rtm-studio is gone; waiting for it' : status === 'connecting' ? 'connecting' : whole ? (whole.damage ? 'the file is damaged; what could be read is shown' : '') : store.system.problem ? 'no naming service' : store.world && !store.world.present ? 'no simulator' : '';
+  const text = status === 'no token' ? 'no token: open the URL that rtm-studio printed' : status === 'forbidden' ? 'another token: open the new URL' : status === 'lost' ? 'rtm-studio is gone; waiting for it' : status === 'connecting' ? 'connecting' : whole ? (whole.damage ? 'the file is damaged; what could be read is shown' : '') : store.system.problem ? 'no naming service' : store.world && !store.world.present ? 'no simulator' : '';
   link_state.textContent = text;
   link_state.title = whole?.damage ?? '';
   link_state.classList.toggle('bad', text !== '');
@@ -363,4 +369,4 @@ if (typeof linked.moment === 'number') playback.moment = linked.moment;
 wire.connect();
 
 // For tests, and for whoever looks with the browser's console.
-Object.assign(window, { studio: { world, diagram, store, wire, settings, select, act, playback, bottom } });
+Object.assign(window, { studio: { world, diagram, store, wire, settings, select, act, playback, bottom, shell_word, shell_line } });

@@ -1,4 +1,5 @@
 // A model of the model path, put into the world.
+import { in_radians } from './angles';
 import { open_dialog } from './dialog';
 import { h, put } from './dom';
 import { act, select, wire } from './store';
@@ -19,8 +20,9 @@ export function spawn_dialog(): void {
     put(hints, names.map((n) => h('option', { value: n })));
     show();
   }, (error) => put(list, h('li', { class: 'problem' }, (error as Error).message)));
-  open_dialog('Spawn a model', h('div', { class: 'grid' }, h('label', { for: 'spawn-model' }, 'Model'), h('div', null, model, list), h('label', { for: 'spawn-name' }, 'Name (or empty)'), name, h('label', { for: 'spawn-pose' }, 'X Y YAW [m, rad]'), pose, hints), 'Spawn', () => {
-    const [x, y, yaw] = pose.value.split(/[\s,]+/).map(Number);
+  open_dialog('Spawn a model', h('div', { class: 'grid' }, h('label', { for: 'spawn-model' }, 'Model'), h('div', null, model, list), h('label', { for: 'spawn-name' }, 'Name (or empty)'), name, h('label', { for: 'spawn-pose' }, 'X Y YAW [m, m, °]'), pose, hints), 'Spawn', () => {
+    const [x, y, degrees] = pose.value.split(/[\s,]+/).map(Number);
+    const yaw = in_radians(degrees);
     const args: { [key: string]: unknown } = { model: model.value.trim(), pose: [x || 0, y || 0, 0, Math.cos((yaw || 0) / 2), 0, 0, Math.sin((yaw || 0) / 2)] };
     if (name.value.trim()) args.name = name.value.trim();
     if (args.model) act(`Spawn ${args.model}`, 'spawn', args, (result) => ({ text: `Delete ${result.name}`, name: 'delete_model', args: { model: result.name } })).then((result) => { if (result?.name) select({ kind: 'model', id: result.name }); });

@@ -19,3 +19,6 @@ export const state_class = (state: string | undefined): string => `state-${(stat
 export function state_mark(state: State | undefined): SVGSVGElement {
   return s('svg', { viewBox: '0 0 10 10', class: `mark ${state_class(state)}`, 'aria-hidden': 'true' }, s('path', { d: state_shape(state) }));
 }
+
+// A rate [Hz]; null: it is infinite or no number, which JSON has no word for.
+export const hertz = (rate: number | null): string => (rate === null ? '– Hz' : `${Number(rate.toPrecision(4))} Hz`);

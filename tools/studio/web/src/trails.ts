@@ -17,6 +17,17 @@ export class Trails {
     for (const trail of this.trails.values()) trail.line.visible = settings.trails;
   }
 
+  // Of models that are not there any more.
+  keep(names: Set<string>): void {
+    for (const [name, { line }] of this.trails) {
+      if (names.has(name)) continue;
+      this.scene.remove(line);
+      line.geometry.dispose();
+      (line.material as LineBasicMaterial).dispose();
+      this.trails.delete(name);
+    }
+  }
+
   forget(): void {
     for (const trail of this.trails.values()) {
       trail.count = 0;

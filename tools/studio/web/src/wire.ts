@@ -1,7 +1,8 @@
 // The socket to rtm-studio: requests and replies, events, poses and images. It waits for a server that is gone and comes back by itself.
+import { fetch_data, token } from './token';
 
 export interface Port { name: string; kind: 'in' | 'out' | 'service'; data_type: string; interfaces?: { instance: string; type: string; provided: boolean }[]; properties?: Record<string, string>; connections?: string[] }
-export interface Context { index: number; owned: boolean; kind: string; rate: number; running: boolean; state: string; type?: string; properties?: Record<string, string> }
+export interface Context { index: number; owned: boolean; kind: string; rate: number | null; running: boolean; state: string; type?: string; properties?: Record<string, string> }
 export interface Component {
   path: string; instance: string; type: string; category?: string; vendor?: string; version?: string; description?: string; problem?: string;
   state: State; composite?: boolean; members?: string[]; active_set?: string; in_simulated_time?: boolean; contexts: Context[]; ports: Port[];
@@ -40,10 +41,10 @@ export class Refused extends Error {
 }
 
 interface Events {
-  status: 'connecting' | 'open' | 'lost' | 'forbidden';
+  status: 'connecting' | 'open' | 'lost' | 'forbidden' | 'no token';
   hello: Hello;
   system: System;
-  states: { states: Record<string, State>; rates?: Record<string, [number, boolean]> };
+  states: { states: Record<string, State>; rates?: Record<string, [number | null, boolean]> };
   world: WorldEvent;
   time: TimeEvent;
   logs: { lines: LogLine[] };
@@ -77,9 +78,12 @@ export class Wire {
     this.tell('status', status);
   }
 
-  connect(): void {
+  // A browser lets a page send nothing but subprotocols with a WebSocket: one of them is the token.
+  async connect(): Promise<void> {
     const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
-    const socket = new WebSocket(`${scheme}://${location.host}/ws`, ['rtmsim.studio.v1']);
+    const right = await token;
+    if (!right) return this.set('no token');
+    const socket = new WebSocket(`${scheme}://${location.host}/ws`, ['rtmsim.studio.v1', `token.${right}`]);
     socket.binaryType = 'arraybuffer';
     this.socket = socket;
     this.is_greeted = false;
@@ -100,7 +104,7 @@ export class Wire {
     this.tries += 1;
     // A server that is there and does not want this page has another token. The answer may come when the connection is there again.
     const say = (status: Events['status']) => { if (this.status !== 'open') this.set(status); };
-    fetch('./', { method: 'HEAD' }).then(({ status }) => say(status === 401 || status === 403 ? 'forbidden' : 'lost'), () => say('lost'));
+    fetch_data('access').then(({ status }) => say(status === 401 || status === 403 ? 'forbidden' : 'lost'), () => say('lost'));
     setTimeout(() => this.connect(), Math.min(3000, 250 * this.tries));
   }
 

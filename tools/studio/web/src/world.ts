@@ -16,6 +16,7 @@ import { settings } from './settings';
 import { changed, link_problem, on, selected_model, store, wire } from './store';
 import { Trails } from './trails';
 import type { Poses } from './wire';
+import { fetch_data } from './token';
 
 export class WorldView {
   readonly element = h('div', { class: 'world' });
@@ -131,14 +132,21 @@ export class WorldView {
     this.early = null;
     const world = octets && (await read_world(octets));
     if (world && world.version === version) return world;
-    const reply = await fetch(`world.glb?v=${version}${settings.collisions ? '&collisions=1' : ''}`);
+    const reply = await fetch_data(`world.glb?v=${version}${settings.collisions ? '&collisions=1' : ''}`);
     if (!reply.ok) throw new Error((await reply.text()).slice(0, 200) || `world.glb: ${reply.status}`);
     return read_world(await reply.arrayBuffer());
   }
 
+  // Which world it is, whatever is in it.
+  private run_key = '';
+
   private show(world: WorldScene): void {
     const is_first = this.world === null;
     if (this.world) this.drop(this.world);
+    const run = `${store.hello?.recording?.file}|${store.world?.server_id}|${store.world?.birth}`;
+    if (run !== this.run_key) this.trails.forget();
+    this.run_key = run;
+    this.trails.keep(new Set(world.models.keys()));
     this.world = world;
     this.is_past = false;
     this.present = null;
@@ -187,7 +195,7 @@ export class WorldView {
   }
 
   // Asked for before the server has said what it has: most often this is it.
-  private early: Promise<ArrayBuffer | null> | null = fetch('world.glb').then((reply) => (reply.ok ? reply.arrayBuffer() : null), () => null);
+  private early: Promise<ArrayBuffer | null> | null = fetch_data('world.glb').then((reply) => (reply.ok ? reply.arrayBuffer() : null), () => null);
   // The newest of each link that the server has told, by what stands where in which frame: a scene may come long after they did.
   private told = new Map<number, { view: DataView; at: number }>();
   private told_version = -1;
@@ -220,9 +228,28 @@ export class WorldView {
     return places;
   }
 
-  // Seven numbers a link: what was. Null: what is.
-  show_past(places: Float32Array | null): void {
+  // Of the links, in their order; the same array as long as the scene is the same.
+  link_names(): string[] {
+    if (!this.world) return [];
+    return (this.world.root.userData.link_names ??= this.world.links.map((link) => link.name));
+  }
+
+  // What was of the links with these names: in the order of now. A link that was not there is far away.
+  private in_order(places: Float32Array, names: string[]): Float32Array {
+    if (names === this.link_names()) return places;
+    const before = new Map(names.map((name, i) => [name, i]));
+    const ordered = new Float32Array(this.link_names().length * 7);
+    this.link_names().forEach((name, i) => {
+      const at = before.get(name);
+      ordered.set(at === undefined ? [0, 0, -1e4, 0, 0, 0, 1] : places.subarray(7 * at, 7 * at + 7), 7 * i);
+    });
+    return ordered;
+  }
+
+  // Seven numbers a link: what was, of links with these names. Null: what is.
+  show_past(was: Float32Array | null, names = this.link_names()): void {
     const links = this.world?.links ?? [];
+    const places = was && this.in_order(was, names);
     if (places && !this.is_past) this.present = this.places();
     const shown = places ?? this.present;
     this.is_past = places !== null;
