@@ -42,7 +42,7 @@ struct Twist {
 };
 
 struct JointState {
-  double position = 0;  // [rad] within (-pi, pi] (of a screw with its whole turns) or [m]
+  double position = 0;  // [m], or [rad]: with whole turns of axes with limits or a spring and of screws, else within (-pi, pi]
   double velocity = 0;  // [rad/s] or [m/s]
 };
 

@@ -233,6 +233,7 @@ void Shard::finish() {
       is_insane = true;
       continue;
     }
+    model->follow_joints(physics_.step);
     // It slept in this step: what it touches stays as it was, with the forces.
     if (!model->may_be_awake && !model->is_awake()) std::swap(model->contacts, model->previous_contacts);
     model->may_be_awake = true;  // ODE wakes what awake bodies touch

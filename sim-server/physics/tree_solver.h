@@ -93,7 +93,7 @@ class TreeSolver {
   void add_model(ModelInstance& model);
   void add_joint(Node& node);
   void add_row(Node& node, const Vector6& on_child, const Vector6& on_parent, double target, double give, double low, double high);
-  void add_axis(Node& node, const Vector6& on_child, const Vector6& on_parent);
+  void add_axis(Node& node, const Vector6& of_child, const Vector6& of_parent);
   void add_contact(const MadeContact& contact);
   void add_contact_row(Touch& touch, const Eigen::Vector3d& line, const ContactRow& row);
   int node_of(dBodyID body) const;
