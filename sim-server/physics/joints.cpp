@@ -285,6 +285,29 @@ JointState JointInstance::within_turn(int axis) const {
   return {sign_ * position, sign_ * rate};
 }
 
+std::uint32_t JointInstance::rows() const {
+  std::uint32_t rows = coupling_ ? 1 : 0;
+  if (joint_.id() == nullptr) return rows;
+  switch (dJointGetType(joint_.id())) {
+    case dJointTypeBall:
+      return rows + 3;
+    case dJointTypeFixed:
+      return rows + 6;
+    case dJointTypeHinge:
+    case dJointTypeSlider:
+      rows += 5;
+      break;
+    default:
+      rows += 4;
+      break;
+  }
+  for (int i = 0; i < axis_count(); ++i) {
+    const AxisDef& axis = def_->axes[static_cast<std::size_t>(i)];
+    if (axis.friction > 0 || axis.damping > damping_[static_cast<std::size_t>(i)]) ++rows;
+  }
+  return rows;
+}
+
 void JointInstance::set_parameter(int axis, int base_parameter, double value) {
   const dJointID joint = joint_.id();
   const int parameter = axis == 0 ? base_parameter : base_parameter + dParamGroup;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace sim {
 namespace {
@@ -146,6 +147,9 @@ void ModelInstance::enter(dWorldID world, const PhysicsDef& physics) {
   has_forces_ = has_forces_ || is_carried_by(physics.fluid, blueprint_->model->name);
   for (const auto j : blueprint_->joints) make_joint(world, physics, j);
   tree_ = joint_tree(bodies_, joints_);
+  joint_rows_ = std::accumulate(joints_.begin(), joints_.end(), 0U, [](auto sum, const auto& joint) { return sum + joint.rows(); });
+  moving_bodies_ =
+      static_cast<std::uint32_t>(std::count_if(bodies_.begin(), bodies_.end(), [](const auto& body) { return body.id() != nullptr; }));
   take_initial_positions();
   begin_joints(physics.step);
   for (const auto& order : orders) {

@@ -75,6 +75,8 @@ class ModelInstance {
   const std::vector<JointInstance>& joints() const { return joints_; }
   JointInstance* joint(std::uint32_t index);
   const JointTree& tree() const { return tree_; }
+  std::uint32_t joint_rows() const { return joint_rows_; }  // of the constraints that its joints make in ODE
+  std::uint32_t moving_body_count() const { return moving_bodies_; }
 
   // Springs, couplings and wind; before each step. Joints that hold for this step alone go into the group.
   void apply_forces(dJointGroupID step_joints, const PhysicsDef& physics);
@@ -130,6 +132,7 @@ class ModelInstance {
   std::vector<ode::Body> bodies_;  // one per assembly; empty handles for anchored ones
   std::vector<JointInstance> joints_;
   JointTree tree_;
+  std::uint32_t joint_rows_ = 0, moving_bodies_ = 0;
   std::vector<int> joint_places_;  // in joints_, by index into ModelDef::joints; -1: it has none
   std::vector<ShapeInstance> shapes_;
   std::vector<Eigen::Isometry3d> shape_in_body_;

@@ -488,6 +488,11 @@ PhysicsStatistics Physics::statistics() const {
   return s;
 }
 
+StepSolver Physics::last_solver(ModelId model) const {
+  const ModelInstance& instance = impl_->at(model);
+  return instance.is_tree_solved ? StepSolver::tree : instance.is_iterative ? StepSolver::iterative : StepSolver::dense;
+}
+
 std::vector<std::string> Physics::take_complaints() { return std::exchange(impl_->complaints_, {}); }
 
 std::uint32_t Physics::piece_count(ModelId model) const {

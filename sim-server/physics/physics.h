@@ -64,6 +64,9 @@ struct PhysicsStatistics {
   std::uint32_t bodies = 0, awake = 0, joints = 0, contacts = 0, shards = 0, moves_between_shards = 0;
 };
 
+// Which solver made a model's last step: ODE's exact one, that along the tree of joints, or ODE's iterative one.
+enum class StepSolver : std::uint8_t { dense, tree, iterative };
+
 class Physics {
  public:
   // What could not be built as written is added to `notes`, one line each; models and shapes that cannot be simulated at all are left out,
@@ -138,6 +141,7 @@ class Physics {
   // As much, quicker: where it was put instead of its pose, which follows from that and its parts. For comparing a model with itself.
   void add_place_and_parts_to(StateHash& hash, ModelId model) const;
   PhysicsStatistics statistics() const;
+  StepSolver last_solver(ModelId model) const;
   // One line for each model that had to be put back because it left the numbers, since the last call.
   std::vector<std::string> take_complaints();
 

@@ -204,7 +204,10 @@ void Shard::solve(std::uint64_t step_count) {
   const auto count = std::count_if(active_.begin(), active_.end(), [](const ModelInstance* model) { return model->is_iterative; });
   if (count == 0) return solve_exactly();
   const auto is_held = [](const ModelInstance* model) { return model->has_stand_ins(); };
-  if (count == std::ssize(active_) || std::any_of(active_.begin(), active_.end(), is_held)) return solve_iteratively(step_count);
+  if (count == std::ssize(active_) || std::any_of(active_.begin(), active_.end(), is_held)) {
+    for (auto* model : active_) model->is_iterative = model->is_iterative || !model->is_tree_solved;
+    return solve_iteratively(step_count);
+  }
   const auto lay_down = [&](bool iterative) {
     for (auto* model : active_) {
       for (std::uint32_t i = 0; i < model->body_count() && model->is_iterative == iterative; ++i) {

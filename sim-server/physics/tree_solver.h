@@ -32,7 +32,6 @@ class TreeSolver {
  public:
   // Fewer bodies are no slower with ODE's dense matrix.
   static constexpr std::size_t least_bodies = 12;
-  static constexpr std::uint32_t most_contacts = 60;
 
   TreeSolver(dWorldID world, const PhysicsDef& physics) : world_(world), physics_(physics) {}
 
