@@ -121,7 +121,8 @@ class Physics {
   bool make_kinematic(ModelId model);
 
   JointState joint_state(JointId joint, int axis = 0) const;
-  // The motor of the joint turns it with `velocity` and at most `effort` [N m or N] until it is set again. Effort 0: runs free.
+  // The motor of the joint turns it with `velocity`, within the joint's own limit, and at most `effort` [N m or N] until it is set again.
+  // Effort 0: runs free.
   void set_motor(JointId joint, int axis, double velocity, double effort);
 
   // What the joint put on its child link in the last step, about the child body's centre of mass. Measured for joints with sensors or

@@ -131,6 +131,19 @@ TEST(RevoluteJoint, a_motor_keeps_its_rate_within_its_torque) {
   EXPECT_NEAR(rate_of(f), 3, 1e-6);
 }
 
+TEST(RevoluteJoint, a_motor_keeps_the_velocity_limit_of_its_joint) {
+  const auto rate_with = [](const std::string& limit, double velocity) {
+    PhysicsFixture f = make({.axes = axis("0 0 1", "<limit><velocity>" + limit + "</velocity><effort>1</effort></limit>")});
+    f.physics.set_motor(f.joint("m", "j"), 0, velocity, 1);
+    f.run(1);
+    return rate_of(f);
+  };
+  EXPECT_NEAR(rate_with("2", 5), 2, 1e-6);
+  EXPECT_NEAR(rate_with("2", -5), -2, 1e-6);
+  EXPECT_NEAR(rate_with("2", 1.5), 1.5, 1e-6);
+  EXPECT_NEAR(rate_with("0", 5), 5, 1e-6) << "0 means none";
+}
+
 TEST(RevoluteJoint, counts_the_same_way_whichever_end_is_the_world) {
   for (const bool is_base_parent : {true, false}) {
     PhysicsFixture f = make({.axes = axis("0 0 1"), .is_base_parent = is_base_parent});
