@@ -593,7 +593,9 @@ void JointInstance::set_drive(int axis, double velocity, double effort) {
     has_forces_ = has_forces_ || def.damping > 0;
   }
   drive = {velocity, effort, true};
-  set_parameter(axis, dParamVel, effort > 0 ? sign_ * velocity : 0);
+  // Files of wheels say 0 where they mean none.
+  const double most = def.velocity > 0 ? def.velocity : infinite;
+  set_parameter(axis, dParamVel, effort > 0 ? sign_ * std::clamp(velocity, -most, most) : 0);
   set_parameter(axis, dParamFMax, effort > 0 ? effort : def.friction);
 }
 

@@ -151,6 +151,7 @@ void ModelInstance::enter(dWorldID world, const PhysicsDef& physics) {
   moving_bodies_ =
       static_cast<std::uint32_t>(std::count_if(bodies_.begin(), bodies_.end(), [](const auto& body) { return body.id() != nullptr; }));
   take_initial_positions();
+  begin_joints(physics.step);
   for (const auto& order : orders) {
     if (auto* restored = this->joint(order.joint)) set_drive(*restored, order.axis, order.velocity, order.effort);
   }
@@ -198,6 +199,23 @@ void ModelInstance::make_joint(dWorldID world, const PhysicsDef& physics, std::u
   has_forces_ = has_forces_ || joint.has_forces();
   joint_places_[index] = static_cast<int>(joints_.size());
   joints_.push_back(std::move(joint));
+}
+
+void ModelInstance::begin_joints(double dt) {
+  const auto& links = blueprint_->model->links;
+  const bool is_saved = std::any_of(links.begin(), links.end(), [](const LinkDef& link) { return link.start_pose.has_value(); });
+  has_followed_ = false;
+  for (auto& joint : joints_) {
+    joint.begin(dt, is_saved);
+    has_followed_ = has_followed_ || joint.is_followed();
+  }
+}
+
+void ModelInstance::follow_joints(double dt) {
+  if (!has_followed_) return;
+  for (auto& joint : joints_) {
+    if (joint.is_followed()) joint.follow(dt);
+  }
 }
 
 // After the joints were made: they count from the places that the file gives.
@@ -320,6 +338,7 @@ void ModelInstance::restore(const State& state, double dt) {
     dBodySetAngularVel(body, s.angular.x(), s.angular.y(), s.angular.z());
     s.is_awake ? dBodyEnable(body) : dBodyDisable(body);
   }
+  for (std::size_t j = 0; j < joints_.size(); ++j) joints_[j].take(state.joints[j], dt);
   left_neighbourhood = may_be_awake = true;
 }
 

@@ -120,6 +120,7 @@ class ModelInstance {
   void make_body(dWorldID world, const Assembly& assembly);
   void make_joint(dWorldID world, const PhysicsDef& physics, std::uint32_t index);
   void take_initial_positions();
+  void begin_joints(double dt);
   void float_in(const FluidDef& fluid, const Eigen::Vector3d& gravity);
   int assembly_of(const std::string& link) const;
   void begin_joints(double dt);
@@ -139,6 +140,7 @@ class ModelInstance {
   std::vector<double> shape_volumes_;  // [m^3]; 0: not known
   double mass_ = 0;
   bool has_forces_ = false;
+  bool has_followed_ = false;  // joints
   bool gravity_ = true, is_kinematic_ = false;
   std::uint32_t still_steps_ = 0, slow_steps_ = 0;  // since it was faster
   Aabb moving_box_;

@@ -121,7 +121,8 @@ class Physics {
   bool make_kinematic(ModelId model);
 
   JointState joint_state(JointId joint, int axis = 0) const;
-  // The motor of the joint turns it with `velocity` and at most `effort` [N m or N] until it is set again. Effort 0: runs free.
+  // The motor of the joint turns it with `velocity`, within the joint's own limit, and at most `effort` [N m or N] until it is set again.
+  // Effort 0: runs free.
   void set_motor(JointId joint, int axis, double velocity, double effort);
 
   // What the joint put on its child link in the last step, about the child body's centre of mass. Measured for joints with sensors or
@@ -141,6 +142,7 @@ class Physics {
   // As much, quicker: where it was put instead of its pose, which follows from that and its parts. For comparing a model with itself.
   void add_place_and_parts_to(StateHash& hash, ModelId model) const;
   PhysicsStatistics statistics() const;
+  StepSolver last_solver(ModelId model) const;
   // One line for each model that had to be put back because it left the numbers, since the last call.
   StepSolver last_solver(ModelId model) const;
   std::vector<std::string> take_complaints();
