@@ -99,12 +99,6 @@ void add_masses(const ModelDef& model, Blueprint& blueprint, Assembly& assembly)
 
 void note_limits_of_simulation(const ModelDef& model, const JointDef& joint, std::vector<std::string>& notes) {
   const auto note = [&](const char* what) { notes.push_back(fmt::format("model {}: joint {}: {}", model.name, joint.name, what)); };
-  const bool turns =
-      joint.kind != JointDef::Kind::prismatic && joint.kind != JointDef::Kind::screw && joint.kind != JointDef::Kind::continuous;
-  const auto is_wide = [](double limit) { return std::isfinite(limit) && std::abs(limit) > std::numbers::pi && std::abs(limit) < 1e10; };
-  for (const auto& axis : joint.axes) {
-    if (turns && (is_wide(axis.lower) || is_wide(axis.upper))) note("limits beyond half a turn are not kept");
-  }
   if (joint.kind == JointDef::Kind::revolute2 && (joint.suspension_cfm || joint.suspension_erp) && std::isfinite(joint.axes[1].upper)) {
     note("limits of the second axis are not kept where the first one has a suspension");
   }

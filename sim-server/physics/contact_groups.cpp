@@ -7,10 +7,11 @@
 namespace sim {
 namespace {
 
-// With more contacts the exact solver, which is cubic in the size of a heap, would take seconds.
-constexpr std::uint32_t exact_contacts = 200;
-// Moving bodies that lie on each other: there the exact solver's handling of friction goes wrong (a stack of ten boxes falls at once).
-constexpr std::uint32_t stacked_contacts = 4;
+// As ODE makes them.
+std::uint32_t rows_of(const dSurfaceParameters& surface) {
+  const double mu2 = (surface.mode & dContactMu2) != 0 ? surface.mu2 : surface.mu;
+  return 1U + (surface.mu > 0 ? 1U : 0U) + (mu2 > 0 ? 1U : 0U);
+}
 
 }  // namespace
 
@@ -20,8 +21,10 @@ void ContactGroups::add(ModelInstance& model) {
   Member member;
   member.model = &model;
   member.parent = place;
-  member.has_many_joints = model.tree().places.size() >= TreeSolver::least_bodies;
-  member.has_trees_only = model.tree().is_one;
+  member.size = {.bodies = model.moving_body_count(),
+                 .joint_rows = model.joint_rows(),
+                 .has_many_joints = model.tree().places.size() >= TreeSolver::least_bodies,
+                 .has_trees_only = model.tree().is_one};
   members_.push_back(member);
 }
 
@@ -36,13 +39,14 @@ void ContactGroups::touch(ModelInstance& a, ModelInstance* b, bool has_mesh, dou
   ++contacts_;
   Member& group = members_[root(a.group_place)];
   ++group.contacts;
+  group.size.contact_rows += rows_of(surface);
   group.has_mesh = group.has_mesh || has_mesh;
   group.is_deep = group.is_deep || depth > deep;
   has_mesh_ = has_mesh_ || has_mesh;
   const double lighter = b != nullptr ? std::min(a.mass(), b->mass()) : a.mass();
   if ((surface.mode & dContactSoftCFM) != 0 && surface.soft_erp < soft * lighter / physics_.step * surface.soft_cfm) group.is_exempt = true;
   if (b == nullptr) return;
-  ++group.moving_contacts;
+  ++group.size.moving_contacts;
   const auto i = root(a.group_place), k = root(b->group_place);
   if (i == k) return;
   Member &kept = members_[std::min(i, k)], &joined = members_[std::max(i, k)];
@@ -50,20 +54,16 @@ void ContactGroups::touch(ModelInstance& a, ModelInstance* b, bool has_mesh, dou
   kept.has_mesh = kept.has_mesh || joined.has_mesh;
   kept.is_exempt = kept.is_exempt || joined.is_exempt;
   kept.is_deep = kept.is_deep || joined.is_deep;
-  kept.has_many_joints = kept.has_many_joints || joined.has_many_joints;
-  kept.has_trees_only = kept.has_trees_only && joined.has_trees_only;
   kept.contacts += joined.contacts;
-  kept.moving_contacts += joined.moving_contacts;
+  kept.size += joined.size;
 }
 
 void ContactGroups::share_out() {
   for (std::uint32_t i = 0; i < members_.size(); ++i) {
-    const Member& group = members_[root(i)];
-    const bool is_large = group.contacts > exact_contacts || group.moving_contacts >= stacked_contacts;
-    const bool is_asked = physics_.solver == PhysicsDef::Solver::iterative;
+    const SolverChoice choice = choose_solver(physics_, members_[root(i)].size);
     ModelInstance& model = *members_[i].model;
-    model.is_iterative = is_asked || (physics_.solver == PhysicsDef::Solver::automatic && is_large);
-    model.is_tree_solved = !is_asked && group.has_many_joints && group.has_trees_only && group.contacts <= TreeSolver::most_contacts;
+    model.is_iterative = choice.is_iterative;
+    model.is_tree_solved = choice.is_tree_solved;
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include "physics/model_instance.h"
 #include "physics/ode.h"
+#include "physics/solver_choice.h"
 
 namespace sim {
 
@@ -43,8 +44,8 @@ class ContactGroups {
     double energy = 0;  // [J] before the step
     // Of the whole group, at its root.
     bool has_mesh = false, is_exempt = false, is_deep = false, may_sleep = true;
-    bool has_many_joints = false, has_trees_only = true;
-    std::uint32_t contacts = 0, moving_contacts = 0;
+    GroupSize size;
+    std::uint32_t contacts = 0;
     double gained = 0, motion = 0;  // [J] by the step; that it moves with now
     double work = 0;                // [J] of the forces on its bodies
   };

@@ -11,6 +11,11 @@ using Kind = JointDef::Kind;
 
 // A thread whose nut hardly moves is a hinge.
 constexpr double least_lead = 1e-7;  // [m/rad]
+constexpr double whole_turn = 2 * std::numbers::pi;
+constexpr double hair = 1e-6;  // [rad] or [m] beyond a stop that is left to ODE
+
+// The nearest number of them.
+int whole_turns(double angle) { return static_cast<int>(std::lround(std::clamp(angle / whole_turn, -1e9, 1e9))); }
 
 // The body's inertia about an axis in the world.
 double inertia_about(dBodyID body, const Eigen::Vector3d& axis) {
@@ -130,7 +135,7 @@ void JointInstance::make(dWorldID world, const Eigen::Isometry3d& frame) {
   const Eigen::Vector3d a = axis(0), b = axis(1);
   const auto create = [&](dJointID joint, dBodyID first, dBodyID second) {
     joint_ = ode::Joint(joint);
-    dJointAttach(joint, first, second);
+    attach(joint, first, second);
     return joint;
   };
   switch (def_->kind) {
@@ -188,6 +193,13 @@ void JointInstance::make_universal(dWorldID world, const Eigen::Vector3d& place,
   dJointSetUniversalAxis2(joint, second.x(), second.y(), second.z());
 }
 
+// With the world first ODE tells the position in the sense that was asked for, and takes motors and stops in the other.
+void JointInstance::attach(dJointID joint, dBodyID first, dBodyID second) {
+  if (first != nullptr) return dJointAttach(joint, first, second);
+  sign_ = -1;
+  dJointAttach(joint, second, nullptr);
+}
+
 // ODE's joints with two axes count wrongly, or refuse to work, with the world on one side: there a body that nothing can move stands for
 // it.
 dBodyID JointInstance::or_stand_in(dBodyID body) {
@@ -205,13 +217,13 @@ void JointInstance::make_screw(dWorldID world, const Eigen::Isometry3d& frame) {
   const double lead = def_->thread_pitch / (2 * std::numbers::pi);
   if (std::abs(lead) < least_lead) {
     joint_ = ode::Joint(dJointCreateHinge(world, nullptr));
-    dJointAttach(joint_.id(), child_, parent_);
+    attach(joint_.id(), child_, parent_);
     dJointSetHingeAnchor(joint_.id(), p.x(), p.y(), p.z());
     dJointSetHingeAxis(joint_.id(), a.x(), a.y(), a.z());
     return;
   }
   joint_ = ode::Joint(dJointCreatePiston(world, nullptr));
-  dJointAttach(joint_.id(), child_, parent_);
+  attach(joint_.id(), child_, parent_);
   dJointSetPistonAnchor(joint_.id(), p.x(), p.y(), p.z());
   dJointSetPistonAxis(joint_.id(), a.x(), a.y(), a.z());
   coupling_ = Coupling{point_in(parent_, p), direction_in(parent_, a), point_in(child_, p), direction_in(child_, a), lead, true};
@@ -232,7 +244,18 @@ void JointInstance::set_gear_anchors(const Eigen::Vector3d& parent, const Eigen:
 
 bool JointInstance::turns(int) const { return dJointGetType(joint_.id()) != dJointTypeSlider; }
 
+// One with a thread. Its place along the axis counts the turns.
+bool JointInstance::is_screw() const { return dJointGetType(joint_.id()) == dJointTypePiston; }
+
 JointState JointInstance::state(int axis) const {
+  JointState now = within_turn(axis);
+  if (const int turns = axis < axis_count_ ? places_[static_cast<std::size_t>(axis)].turns : 0; turns != 0)
+    now.position += turns * whole_turn;
+  return now;
+}
+
+// As ODE has it: an angle within half a turn.
+JointState JointInstance::within_turn(int axis) const {
   const dJointID joint = joint_.id();
   if (joint == nullptr || axis >= axis_count()) return {};
   double position = 0, rate = 0;
@@ -260,6 +283,29 @@ JointState JointInstance::state(int axis) const {
       break;
   }
   return {sign_ * position, sign_ * rate};
+}
+
+std::uint32_t JointInstance::rows() const {
+  std::uint32_t rows = coupling_ ? 1 : 0;
+  if (joint_.id() == nullptr) return rows;
+  switch (dJointGetType(joint_.id())) {
+    case dJointTypeBall:
+      return rows + 3;
+    case dJointTypeFixed:
+      return rows + 6;
+    case dJointTypeHinge:
+    case dJointTypeSlider:
+      rows += 5;
+      break;
+    default:
+      rows += 4;
+      break;
+  }
+  for (int i = 0; i < axis_count(); ++i) {
+    const AxisDef& axis = def_->axes[static_cast<std::size_t>(i)];
+    if (axis.friction > 0 || axis.damping > damping_[static_cast<std::size_t>(i)]) ++rows;
+  }
+  return rows;
 }
 
 void JointInstance::set_parameter(int axis, int base_parameter, double value) {
@@ -375,39 +421,151 @@ std::optional<Wrench> JointInstance::load() const {
 
 // --- limits, friction, damping, motors
 
-void JointInstance::set_stops(int i, double dt) {
+void JointInstance::read_stops(int i, double dt) {
   const AxisDef& axis = def_->axes[static_cast<std::size_t>(i)];
-  const bool is_screw = dJointGetType(joint_.id()) == dJointTypePiston;
-  const auto stop = [&](double v, double sense) {
-    const bool none = !std::isfinite(v) || std::abs(v) > 1e10 || def_->kind == Kind::continuous;
-    // ODE knows the angle of a hinge within half a turn only.
-    return none || (turns(i) && !is_screw && std::abs(v) > std::numbers::pi) ? sense * dInfinity : v;
-  };
-  double low = stop(axis.lower, -1), high = stop(axis.upper, 1);
-  double scale = sign_;
-  if (is_screw) scale *= coupling_->ratio;
-  low *= scale, high *= scale;
-  if (scale < 0) std::swap(low, high);
-  if (!(low <= high)) return;
-  const auto set = [&](int parameter, double value) {
-    is_screw ? dJointSetPistonParam(joint_.id(), parameter, value) : set_parameter(i, parameter, value);
-  };
-  // ODE refuses a low stop above the high one that is there, so that the low one is set again.
-  set(dParamLoStop, low);
-  set(dParamHiStop, high);
-  set(dParamLoStop, low);
+  Stops& stops = stops_[static_cast<std::size_t>(i)];
+  const auto is_limit = [&](double v) { return std::isfinite(v) && std::abs(v) <= 1e10 && def_->kind != Kind::continuous; };
+  if (is_limit(axis.lower)) stops.low = axis.lower;
+  if (is_limit(axis.upper)) stops.high = axis.upper;
+  if (!(stops.low <= stops.high)) stops.low = -infinite, stops.high = infinite;
+  stops.counts_turns = turns(i) && !is_screw() && (stops.exists() || axis.spring_stiffness != 0);
   std::optional<double> erp = def_->stop_erp, cfm = def_->stop_cfm;
   if (axis.limit_stiffness && std::isfinite(*axis.limit_stiffness)) {
     const double spring = dt * *axis.limit_stiffness, both = spring + axis.limit_dissipation.value_or(0);
     if (both > 0) erp = spring / both, cfm = 1 / both;
   }
-  if (cfm) set(dParamStopCFM, std::clamp(*cfm, 0.0, 1e9));
-  if (erp) set(dParamStopERP, std::clamp(*erp, 0.0, 1.0));
+  stops.is_soft = cfm && *cfm > 0;
+  stops.erp = stops.erp_in_ode = std::clamp(erp.value_or(dWorldGetERP(world_)), 0.0, 1.0);
+  if (cfm) set_stop_parameter(i, dParamStopCFM, std::clamp(*cfm, 0.0, 1e9));
+  set_stop_parameter(i, dParamStopERP, stops.erp);
+}
+
+// Those of a screw hold its way.
+void JointInstance::set_stop_parameter(int i, int parameter, double value) {
+  is_screw() ? dJointSetPistonParam(joint_.id(), parameter, value) : set_parameter(i, parameter, value);
+}
+
+// As ODE is to have them in the next step. `rate`: of the axis now.
+void JointInstance::set_stops(int i, double rate, double dt) {
+  constexpr double lock_rate = 1;  // [rad/s] or [m/s] at which a joint is brought to the only place that it may have
+  const Stops& stops = stops_[static_cast<std::size_t>(i)];
+  const Place& place = places_[static_cast<std::size_t>(i)];
+  double low = place.low, high = place.high, erp = stops.erp;
+  const double way = 1.5 * rate * dt;  // forces of the step may add to it
+  if (stops.is_lock()) {
+    const double reach = lock_rate * dt / std::max(stops.erp, 1e-3);
+    low = high = place.position + std::clamp(stops.low - place.position, -reach, reach);
+    if (std::abs(stops.low - place.position) <= reach) low = high = stops.low;
+  } else if (!stops.is_soft && place.position < high && place.position + way > high) {
+    // It arrives at the stop in this step, and may come as far as that: a stop that has been passed by one, with the error reduction that
+    // asks for the rate of the rest of the way.
+    erp = place.position - high;
+    low = -infinite, high = place.position - 1;
+  } else if (!stops.is_soft && place.position > low && place.position + way < low) {
+    erp = low - place.position;
+    high = infinite, low = place.position + 1;
+  }
+  low -= place.turns * whole_turn, high -= place.turns * whole_turn;
+  const double scale = is_screw() ? sign_ * coupling_->ratio : sign_;
+  low *= scale, high *= scale;
+  if (scale < 0) std::swap(low, high);
+  put_stops(i, low, high, erp);
+}
+
+void JointInstance::put_stops(int i, double low, double high, double erp) {
+  Stops& stops = stops_[static_cast<std::size_t>(i)];
+  if (erp != stops.erp_in_ode) set_stop_parameter(i, dParamStopERP, stops.erp_in_ode = erp);
+  if (low == stops.low_in_ode && high == stops.high_in_ode) return;
+  stops.low_in_ode = low, stops.high_in_ode = high;
+  // ODE refuses a low stop above the high one that is there, so that the low one is set again.
+  set_stop_parameter(i, dParamLoStop, low);
+  set_stop_parameter(i, dParamHiStop, high);
+  set_stop_parameter(i, dParamLoStop, low);
+}
+
+void JointInstance::begin(double dt, bool is_saved) {
+  is_followed_ = false;
+  for (int i = 0; i < axis_count(); ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    const Stops& stops = stops_[n];
+    if (!stops.exists() && !stops.counts_turns) continue;
+    is_followed_ = true;
+    Place& place = places_[n];
+    const double seen = within_turn(i).position;
+    place = {seen, 0, stops.low, stops.high};
+    if (stops.counts_turns) {
+      place.turns = whole_turns(def_->axes[n].initial_position - seen);
+      place.position += place.turns * whole_turn;
+      // Of all turns those within the limits.
+      const double missing = place.position < stops.low    ? std::ceil((stops.low - place.position) / whole_turn)
+                             : place.position > stops.high ? std::floor((stops.high - place.position) / whole_turn)
+                                                           : 0;
+      const double moved = place.position + missing * whole_turn;
+      if (is_saved && moved >= stops.low && moved <= stops.high) place.turns += static_cast<int>(missing), place.position = moved;
+    }
+    if (!stops.is_soft && !stops.is_lock()) {
+      if (place.position < stops.low - hair) place.low = place.position;
+      if (place.position > stops.high + hair) place.high = place.position;
+    }
+    set_stops(i, 0, dt);
+  }
+}
+
+void JointInstance::follow(double dt) {
+  for (int i = 0; i < axis_count(); ++i) {
+    const Stops& stops = stops_[static_cast<std::size_t>(i)];
+    if (!stops.exists() && !stops.counts_turns) continue;
+    Place& place = places_[static_cast<std::size_t>(i)];
+    const JointState seen = within_turn(i);
+    const double before = place.position;
+    if (stops.counts_turns) {
+      // ODE adds a body's rate to its quaternion and makes that a unit again: so far does it turn, less than half a turn.
+      place.turns = whole_turns(before + 2 * std::atan(0.5 * dt * seen.velocity) - seen.position);
+    }
+    place.position = seen.position + place.turns * whole_turn;
+    if (!stops.is_soft && !stops.is_lock()) move_stops(i, before, dt);
+    set_stops(i, seen.velocity, dt);
+  }
+}
+
+// A stop that was passed is where the joint came to, and goes back slowly: ODE would give the joint a fifth of the rate at which it came.
+void JointInstance::move_stops(int i, double before, double dt) {
+  constexpr double back = 0.01;  // [rad/s] or [m/s]
+  const Stops& stops = stops_[static_cast<std::size_t>(i)];
+  Place& place = places_[static_cast<std::size_t>(i)];
+  const double now = place.position;
+  if (before < place.high && now > place.high + hair)
+    place.high = now;
+  else if (place.high > stops.high)
+    place.high = std::max(stops.high, std::min(place.high - back * dt, now));
+  if (before > place.low && now < place.low - hair)
+    place.low = now;
+  else if (place.low < stops.low)
+    place.low = std::min(stops.low, std::max(place.low + back * dt, now));
+}
+
+void JointInstance::take(const Places& places, double dt) {
+  places_ = places;
+  for (int i = 0; i < axis_count(); ++i) {
+    const Stops& stops = stops_[static_cast<std::size_t>(i)];
+    if (!stops.exists() && !stops.counts_turns) continue;
+    Place& place = places_[static_cast<std::size_t>(i)];
+    const JointState seen = within_turn(i);
+    if (stops.counts_turns) place.turns = whole_turns(place.position - seen.position);
+    place.position = seen.position + place.turns * whole_turn;
+    set_stops(i, seen.velocity, dt);
+  }
+}
+
+bool JointInstance::has_history(int axis) const {
+  const Place& place = places_[static_cast<std::size_t>(axis)];
+  const Stops& stops = stops_[static_cast<std::size_t>(axis)];
+  return place.turns != 0 || place.low != stops.low || place.high != stops.high;
 }
 
 void JointInstance::set_axis(int i, double dt) {
   const AxisDef& axis = def_->axes[static_cast<std::size_t>(i)];
-  set_stops(i, dt);
+  read_stops(i, dt);
   const bool has_stops = std::isfinite(axis.lower) || std::isfinite(axis.upper);
   auto& damping = damping_[static_cast<std::size_t>(i)];
   if (axis.friction > 0) {
@@ -435,7 +593,9 @@ void JointInstance::set_drive(int axis, double velocity, double effort) {
     has_forces_ = has_forces_ || def.damping > 0;
   }
   drive = {velocity, effort, true};
-  set_parameter(axis, dParamVel, effort > 0 ? sign_ * velocity : 0);
+  // Files of wheels say 0 where they mean none.
+  const double most = def.velocity > 0 ? def.velocity : infinite;
+  set_parameter(axis, dParamVel, effort > 0 ? sign_ * std::clamp(velocity, -most, most) : 0);
   set_parameter(axis, dParamFMax, effort > 0 ? effort : def.friction);
 }
 
@@ -470,8 +630,8 @@ void JointInstance::couple(dJointGroupID step_joints, double dt) {
   // A thread of some radius and its slope: what slides along it turns and rises together.
   const double radius = std::max(std::abs(now.ratio), 0.05);
   const Eigen::Vector3d out = across(now.axis2), slope = now.axis2 - now.axis2.cross(out) * (now.ratio / radius);
-  const double lag = std::remainder(dJointGetPistonPosition(joint_.id()) - now.ratio * dJointGetPistonAngle(joint_.id()),
-                                    2 * std::numbers::pi * now.ratio);
+  const double lag =
+      sign_ * std::remainder(dJointGetPistonPosition(joint_.id()) - now.ratio * dJointGetPistonAngle(joint_.id()), whole_turn * now.ratio);
   tie(world_, step_joints, child_, parent_, now.anchor2 + radius * out, slope.normalized(), -0.2 * lag / dt / slope.norm());
 }
 

@@ -3,9 +3,18 @@
 // ODE has neither screws nor gearboxes between any axes: here two bodies are tied along one line, laid anew for each step, by the friction
 // of a contact that pushes nobody. A joint with two axes gets a body that nothing can move where the world is one side of it, since ODE
 // counts its angles wrongly without.
+//
+// ODE knows an angle within half a turn only. The angle of an axis with limits or a spring is followed from step to step, and ODE gets the
+// stops as seen from the present turn. This is exact: ODE compares a stop with the angle only, also where the stop is beyond half a turn.
+//
+// ODE notices a stop after it was passed, and gives the joint a fifth of its rate back while it pushes it out. Here a joint that would pass
+// its stop in a step comes to the stop and has no rate there. One that is beyond a limit all the same, from the start or by a blow in the
+// step, cannot go further, and the stop goes back to the limit at 0.01 rad/s or m/s. A joint whose limits are one value is moved there at
+// 1 rad/s or m/s. Stops with a stiffness are springs and stay ODE's.
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -42,6 +51,25 @@ class JointInstance {
   const JointDef& def() const { return *def_; }
   int axis_count() const { return axis_count_; }
   JointState state(int axis) const;
+
+  // Where an axis is, and what limits it now. Part of the state of a run.
+  struct Place {
+    double position = 0;                      // [rad] with whole turns, or [m]
+    int turns = 0;                            // whole turns in the position
+    double low = -infinite, high = infinite;  // the stops; beyond the limits while the joint is
+  };
+  using Places = std::array<Place, 2>;
+  // After the bodies were put to where they start. `is_saved`: by poses, so that whole turns are not known; they are chosen within the
+  // limits.
+  void begin(double dt, bool is_saved);
+  // After each step of `dt` that may have moved it. Only is_followed() joints need it.
+  void follow(double dt);
+  bool is_followed() const { return is_followed_; }
+  const Places& places() const { return places_; }
+  void take(const Places& places, double dt);
+  // The place says more than the poses of the bodies do.
+  bool has_history(int axis) const;
+
   // Force and torque that the joint put on the child in the last step, at the child's centre of mass; empty while it is not measured.
   std::optional<Wrench> load() const;
 
@@ -54,6 +82,8 @@ class JointInstance {
 
   // For joint_tree and tree_solver. Empty id: a gearbox.
   dJointID id() const { return joint_.id(); }
+  std::uint32_t rows() const;            // of constraints that it makes while no stop is reached and no motor set
+  double sign() const { return sign_; }  // of ODE's positions, rates, stops and motors
   bool has_coupling() const { return coupling_.has_value(); }
   const JointSeat& seat_on_parent() const { return seat_on_parent_; }
   const JointSeat& seat_on_child() const { return seat_on_child_; }
@@ -67,14 +97,21 @@ class JointInstance {
 
  private:
   void make(dWorldID world, const Eigen::Isometry3d& frame);
+  void attach(dJointID joint, dBodyID first, dBodyID second);
   dBodyID or_stand_in(dBodyID body);
   void make_universal(dWorldID world, const Eigen::Vector3d& place, const Eigen::Vector3d& first, const Eigen::Vector3d& second);
   void make_gearbox(const Eigen::Isometry3d& frame);
   void make_screw(dWorldID world, const Eigen::Isometry3d& frame);
   void set_axis(int axis, double dt);
-  void set_stops(int axis, double dt);
+  void read_stops(int axis, double dt);
+  void set_stops(int axis, double rate, double dt);
+  void put_stops(int axis, double low, double high, double erp);
+  void move_stops(int axis, double before, double dt);
+  void set_stop_parameter(int axis, int parameter, double value);
+  JointState within_turn(int axis) const;
   void set_parameter(int axis, int base_parameter, double value);
   bool turns(int axis) const;
+  bool is_screw() const;
   bool is_asleep() const;
   Eigen::Vector3d axis_in_world(int axis) const;
   double inertia_along(int axis) const;
@@ -90,6 +127,19 @@ class JointInstance {
   ode::Joint joint_;    // empty for a gearbox
   double sign_ = 1;     // of ODE's positions and rates against SDFormat's
   JointSeat seat_on_parent_, seat_on_child_;
+  // The limits of an axis as the file gives them, and how ODE has them now.
+  struct Stops {
+    double low = -infinite, high = infinite;  // [rad] or [m]
+    double erp = 0.2;                         // of ODE's, in a step that begins at the stop
+    bool is_soft = false;                     // a spring
+    bool counts_turns = false;
+    double low_in_ode = -infinite, high_in_ode = infinite, erp_in_ode = 0.2;
+    bool exists() const { return std::isfinite(low) || std::isfinite(high); }
+    bool is_lock() const { return low == high; }
+  };
+  std::array<Stops, 2> stops_;
+  Places places_;
+  bool is_followed_ = false;
   std::array<Drive, 2> drives_;
   std::array<double, 2> damping_{0, 0};  // that is not ODE's
   bool has_forces_ = false;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace sim {
 namespace {
@@ -146,7 +147,11 @@ void ModelInstance::enter(dWorldID world, const PhysicsDef& physics) {
   has_forces_ = has_forces_ || is_carried_by(physics.fluid, blueprint_->model->name);
   for (const auto j : blueprint_->joints) make_joint(world, physics, j);
   tree_ = joint_tree(bodies_, joints_);
+  joint_rows_ = std::accumulate(joints_.begin(), joints_.end(), 0U, [](auto sum, const auto& joint) { return sum + joint.rows(); });
+  moving_bodies_ =
+      static_cast<std::uint32_t>(std::count_if(bodies_.begin(), bodies_.end(), [](const auto& body) { return body.id() != nullptr; }));
   take_initial_positions();
+  begin_joints(physics.step);
   for (const auto& order : orders) {
     if (auto* restored = this->joint(order.joint)) set_drive(*restored, order.axis, order.velocity, order.effort);
   }
@@ -193,6 +198,23 @@ void ModelInstance::make_joint(dWorldID world, const PhysicsDef& physics, std::u
   has_forces_ = has_forces_ || joint.has_forces();
   joint_places_[index] = static_cast<int>(joints_.size());
   joints_.push_back(std::move(joint));
+}
+
+void ModelInstance::begin_joints(double dt) {
+  const auto& links = blueprint_->model->links;
+  const bool is_saved = std::any_of(links.begin(), links.end(), [](const LinkDef& link) { return link.start_pose.has_value(); });
+  has_followed_ = false;
+  for (auto& joint : joints_) {
+    joint.begin(dt, is_saved);
+    has_followed_ = has_followed_ || joint.is_followed();
+  }
+}
+
+void ModelInstance::follow_joints(double dt) {
+  if (!has_followed_) return;
+  for (auto& joint : joints_) {
+    if (joint.is_followed()) joint.follow(dt);
+  }
 }
 
 // After the joints were made: they count from the places that the file gives.
@@ -278,18 +300,19 @@ std::optional<BodyState> ModelInstance::state(std::size_t assembly) const {
                    ode::quaternion(dBodyGetQuaternion(body)), dBodyIsEnabled(body) != 0};
 }
 
-std::vector<BodyState> ModelInstance::save() const {
-  std::vector<BodyState> states;
-  for_each_state([&states](const BodyState& state) { states.push_back(state); });
-  return states;
+ModelInstance::State ModelInstance::save() const {
+  State now;
+  for_each_state([&now](const BodyState& body) { now.bodies.push_back(body); });
+  for (const auto& joint : joints_) now.joints.push_back(joint.places());
+  return now;
 }
 
-void ModelInstance::restore(const std::vector<BodyState>& states) {
+void ModelInstance::restore(const State& state, double dt) {
   std::size_t i = 0;
   for (const auto& handle : bodies_) {
     const dBodyID body = handle.id();
     if (body == nullptr) continue;
-    const BodyState& s = states[i++];
+    const BodyState& s = state.bodies[i++];
     const dQuaternion q = {s.orientation.w(), s.orientation.x(), s.orientation.y(), s.orientation.z()};
     dBodySetQuaternion(body, q);
     dBodySetPosition(body, s.position.x(), s.position.y(), s.position.z());
@@ -297,6 +320,7 @@ void ModelInstance::restore(const std::vector<BodyState>& states) {
     dBodySetAngularVel(body, s.angular.x(), s.angular.y(), s.angular.z());
     s.is_awake ? dBodyEnable(body) : dBodyDisable(body);
   }
+  for (std::size_t j = 0; j < joints_.size(); ++j) joints_[j].take(state.joints[j], dt);
   left_neighbourhood = may_be_awake = true;
 }
 

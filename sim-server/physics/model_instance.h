@@ -40,15 +40,22 @@ class ModelInstance {
   // Moves what never moves, too. Only between enter() calls or for models without joints to the world.
   void set_base(const Eigen::Isometry3d& base);
 
-  std::vector<BodyState> save() const;
-  // The same, without a place for all of them.
+  struct State {
+    std::vector<BodyState> bodies;
+    std::vector<JointInstance::Places> joints;
+  };
+  State save() const;
+  // Its bodies, without a place for all of them.
   template <class Take>
   void for_each_state(const Take& take) const {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       if (const auto each = state(i)) take(*each);
     }
   }
-  void restore(const std::vector<BodyState>& states);
+  // After enter() of the same model; `dt`: the step.
+  void restore(const State& state, double dt);
+  // After each step of `dt` that may have moved it: angles beyond half a turn and the stops of joints.
+  void follow_joints(double dt);
 
   ModelId id() const { return id_; }
   const Blueprint& blueprint() const { return *blueprint_; }
@@ -68,6 +75,8 @@ class ModelInstance {
   const std::vector<JointInstance>& joints() const { return joints_; }
   JointInstance* joint(std::uint32_t index);
   const JointTree& tree() const { return tree_; }
+  std::uint32_t joint_rows() const { return joint_rows_; }  // of the constraints that its joints make in ODE
+  std::uint32_t moving_body_count() const { return moving_bodies_; }
 
   // Springs, couplings and wind; before each step. Joints that hold for this step alone go into the group.
   void apply_forces(dJointGroupID step_joints, const PhysicsDef& physics);
@@ -111,6 +120,7 @@ class ModelInstance {
   void make_body(dWorldID world, const Assembly& assembly);
   void make_joint(dWorldID world, const PhysicsDef& physics, std::uint32_t index);
   void take_initial_positions();
+  void begin_joints(double dt);
   void float_in(const FluidDef& fluid, const Eigen::Vector3d& gravity);
   int assembly_of(const std::string& link) const;
   // Nothing of an anchored one.
@@ -122,12 +132,14 @@ class ModelInstance {
   std::vector<ode::Body> bodies_;  // one per assembly; empty handles for anchored ones
   std::vector<JointInstance> joints_;
   JointTree tree_;
+  std::uint32_t joint_rows_ = 0, moving_bodies_ = 0;
   std::vector<int> joint_places_;  // in joints_, by index into ModelDef::joints; -1: it has none
   std::vector<ShapeInstance> shapes_;
   std::vector<Eigen::Isometry3d> shape_in_body_;
   std::vector<double> shape_volumes_;  // [m^3]; 0: not known
   double mass_ = 0;
   bool has_forces_ = false;
+  bool has_followed_ = false;  // joints
   bool gravity_ = true, is_kinematic_ = false;
   std::uint32_t still_steps_ = 0, slow_steps_ = 0;  // since it was faster
   Aabb moving_box_;

@@ -188,7 +188,7 @@ void Physics::Impl::move_to(ModelInstance& model, int shard) {
   const auto states = model.save();
   const bool had_left = model.left_neighbourhood;
   model.enter(shards_[static_cast<std::size_t>(shard)]->world(), world_->physics);
-  model.restore(states);
+  model.restore(states, world_->physics.step);
   model.update_boxes();
   model.left_neighbourhood = had_left;
   model.shard = shard;
@@ -355,14 +355,14 @@ base::Result<void> Physics::set_model_pose(ModelId model, const Eigen::Isometry3
   } else {
     const Eigen::Isometry3d move = pose * old_pose.inverse();
     auto states = instance.save();
-    for (auto& state : states) {
+    for (auto& state : states.bodies) {
       state.position = move * state.position;
       state.orientation = (Eigen::Quaterniond(move.linear()) * state.orientation).normalized();
       state.linear.setZero();
       state.angular.setZero();
       state.is_awake = true;
     }
-    instance.restore(states);
+    instance.restore(states, impl_->world_->physics.step);
   }
   for (const auto& other : impl_->models_) {
     if (other && impl_->has_bodies(*other)) other->wake();
@@ -439,6 +439,11 @@ void add_parts_to(StateHash& hash, const ModelInstance& model) {
   for (const auto& joint : model.joints()) {
     const auto &first = joint.drive(0), &second = joint.drive(1);
     hash.add_all(first.velocity, first.effort, second.velocity, second.effort);
+    for (int axis = 0; axis < joint.axis_count(); ++axis) {
+      if (!joint.has_history(axis)) continue;
+      const auto& place = joint.places()[static_cast<std::size_t>(axis)];
+      hash.add_all(static_cast<std::uint64_t>(axis), static_cast<std::uint64_t>(place.turns), place.low, place.high);
+    }
   }
 }
 
@@ -481,6 +486,11 @@ PhysicsStatistics Physics::statistics() const {
   }
   s.contacts = (half_contacts + 1) / 2;
   return s;
+}
+
+StepSolver Physics::last_solver(ModelId model) const {
+  const ModelInstance& instance = impl_->at(model);
+  return instance.is_tree_solved ? StepSolver::tree : instance.is_iterative ? StepSolver::iterative : StepSolver::dense;
 }
 
 std::vector<std::string> Physics::take_complaints() { return std::exchange(impl_->complaints_, {}); }

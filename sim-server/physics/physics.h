@@ -42,7 +42,7 @@ struct Twist {
 };
 
 struct JointState {
-  double position = 0;  // [rad] within (-pi, pi] (of a screw with its whole turns) or [m]
+  double position = 0;  // [m], or [rad]: with whole turns of axes with limits or a spring and of screws, else within (-pi, pi]
   double velocity = 0;  // [rad/s] or [m/s]
 };
 
@@ -63,6 +63,9 @@ struct Contact {
 struct PhysicsStatistics {
   std::uint32_t bodies = 0, awake = 0, joints = 0, contacts = 0, shards = 0, moves_between_shards = 0;
 };
+
+// Which solver made a model's last step: ODE's exact one, that along the tree of joints, or ODE's iterative one.
+enum class StepSolver : std::uint8_t { dense, tree, iterative };
 
 class Physics {
  public:
@@ -118,7 +121,8 @@ class Physics {
   bool make_kinematic(ModelId model);
 
   JointState joint_state(JointId joint, int axis = 0) const;
-  // The motor of the joint turns it with `velocity` and at most `effort` [N m or N] until it is set again. Effort 0: runs free.
+  // The motor of the joint turns it with `velocity`, within the joint's own limit, and at most `effort` [N m or N] until it is set again.
+  // Effort 0: runs free.
   void set_motor(JointId joint, int axis, double velocity, double effort);
 
   // What the joint put on its child link in the last step, about the child body's centre of mass. Measured for joints with sensors or
@@ -138,6 +142,7 @@ class Physics {
   // As much, quicker: where it was put instead of its pose, which follows from that and its parts. For comparing a model with itself.
   void add_place_and_parts_to(StateHash& hash, ModelId model) const;
   PhysicsStatistics statistics() const;
+  StepSolver last_solver(ModelId model) const;
   // One line for each model that had to be put back because it left the numbers, since the last call.
   std::vector<std::string> take_complaints();
 

@@ -21,6 +21,8 @@ constexpr std::uint32_t most_partners = 12;
 constexpr double too_deep = 0.25, least_too_deep = 1e-3;  // [m] the latter, for thin sheets
 constexpr std::uint32_t most_deep_partners = 4;
 constexpr double mesh_correction = 0.1;  // [m/s] at most between meshes that are in each other
+constexpr double hard_correction = 0.1;  // [m/s] at most out of contacts without stiffness and restitution
+constexpr double fastest_impact = 25;    // [m/s]: what is deeper than such a step came there by no impact
 
 // ODE's mesh and height field colliders work in global buffers.
 base::Turn<>& shared_collider() {
@@ -204,7 +206,10 @@ void Shard::solve(std::uint64_t step_count) {
   const auto count = std::count_if(active_.begin(), active_.end(), [](const ModelInstance* model) { return model->is_iterative; });
   if (count == 0) return solve_exactly();
   const auto is_held = [](const ModelInstance* model) { return model->has_stand_ins(); };
-  if (count == std::ssize(active_) || std::any_of(active_.begin(), active_.end(), is_held)) return solve_iteratively(step_count);
+  if (count == std::ssize(active_) || std::any_of(active_.begin(), active_.end(), is_held)) {
+    for (auto* model : active_) model->is_iterative = model->is_iterative || !model->is_tree_solved;
+    return solve_iteratively(step_count);
+  }
   const auto lay_down = [&](bool iterative) {
     for (auto* model : active_) {
       for (std::uint32_t i = 0; i < model->body_count() && model->is_iterative == iterative; ++i) {
@@ -233,6 +238,7 @@ void Shard::finish() {
       is_insane = true;
       continue;
     }
+    model->follow_joints(physics_.step);
     // It slept in this step: what it touches stays as it was, with the forces.
     if (!model->may_be_awake && !model->is_awake()) std::swap(model->contacts, model->previous_contacts);
     model->may_be_awake = true;  // ODE wakes what awake bodies touch
@@ -341,6 +347,10 @@ void Shard::add_contact(ModelInstance& model_a, ShapeInstance& a, ModelInstance*
   joint_contact.geom = geometry;
   joint_contact.geom.depth = std::max(geometry.depth - allowed_depth(*a.surface, *b.surface, surface), 0.0);
   groups_.touch(model_a, model_b != &model_a ? model_b : nullptr, is_mesh(a) || is_mesh(b), joint_contact.geom.depth, surface);
+  // What pushes out stays in the motion: a ball without restitution would leave the ground with a fifth of the depth in each step.
+  const bool is_hard = (surface.mode & (dContactSoftERP | dContactBounce)) == 0;
+  if (is_hard && joint_contact.geom.depth < fastest_impact * physics_.step)
+    joint_contact.geom.depth = std::min(joint_contact.geom.depth, hard_correction * physics_.step / erp_);
   // What meshes are pushed apart with stays in their motion.
   if (is_mesh(a) && is_mesh(b)) joint_contact.geom.depth = std::min(joint_contact.geom.depth, mesh_correction * physics_.step / erp_);
   const ShapeInstance* wheel = a.is_wheel ? &a : b.is_wheel ? &b : nullptr;

@@ -145,9 +145,10 @@ void TreeSolver::add_joint(Node& node) {
   }
 }
 
-// The motor and the stops of a joint with one axis.
-void TreeSolver::add_axis(Node& node, const Vector6& on_child, const Vector6& on_parent) {
+// The motor and the stops of a joint with one axis, in ODE's sense.
+void TreeSolver::add_axis(Node& node, const Vector6& of_child, const Vector6& of_parent) {
   const dJointID joint = node.joint->id();
+  const Vector6 on_child = node.joint->sign() * of_child, on_parent = node.joint->sign() * of_parent;
   const bool slides = dJointGetType(joint) == dJointTypeSlider;
   const double low = parameter(joint, dParamLoStop), high = parameter(joint, dParamHiStop);
   bool is_locked = false;

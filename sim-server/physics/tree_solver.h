@@ -32,7 +32,6 @@ class TreeSolver {
  public:
   // Fewer bodies are no slower with ODE's dense matrix.
   static constexpr std::size_t least_bodies = 12;
-  static constexpr std::uint32_t most_contacts = 60;
 
   TreeSolver(dWorldID world, const PhysicsDef& physics) : world_(world), physics_(physics) {}
 
@@ -93,7 +92,7 @@ class TreeSolver {
   void add_model(ModelInstance& model);
   void add_joint(Node& node);
   void add_row(Node& node, const Vector6& on_child, const Vector6& on_parent, double target, double give, double low, double high);
-  void add_axis(Node& node, const Vector6& on_child, const Vector6& on_parent);
+  void add_axis(Node& node, const Vector6& of_child, const Vector6& of_parent);
   void add_contact(const MadeContact& contact);
   void add_contact_row(Touch& touch, const Eigen::Vector3d& line, const ContactRow& row);
   int node_of(dBodyID body) const;

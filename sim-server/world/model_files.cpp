@@ -8,6 +8,7 @@
 #include "world/checks.h"
 #include "world/materials.h"
 #include "world/repairs.h"
+#include "world/urdf.h"
 #include "world/xml_file.h"
 #include "world/xml_values.h"
 
@@ -72,9 +73,15 @@ base::Result<pugi::xml_document> ModelFiles::open_text(const std::string& text, 
   if (!parsed) return parsed;
   pugi::xml_node sdf = parsed->child("sdf");
   if (!sdf && parsed->child("robot")) {
-    base::Result<pugi::xml_document> robot = library_.translate_urdf(to_xml(parsed->child("robot"), false));
-    if (!robot) return base::Error{file_name + ": " + robot.error().message};
+    const pugi::xml_node written = parsed->child("robot");
+    mend_urdf(written);
+    base::Result<pugi::xml_document> robot = library_.translate_urdf(to_xml(written, false));
+    if (!robot) {
+      const auto fault = fault_of_urdf(written);
+      return base::Error{file_name + ": " + (fault ? "the URDF robot cannot be read: " + *fault : robot.error().message)};
+    }
     robot->child("sdf").append_attribute(file_mark) = complaints_.add_file(file_name);
+    for (const std::string& line : left_out_of_urdf(written)) complaints_.warn(robot->child("sdf"), line);
     return robot;
   }
   if (!sdf) return wrong_root(first_element(*parsed), file_name);

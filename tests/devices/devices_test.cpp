@@ -359,6 +359,8 @@ ModelDef helicopter() {
 TEST(Position3d, flies_as_told_and_holds_its_height) {
   SimulationFixture f(world_of({ground(), helicopter()}));
   auto heli = f.open(IfaceType::position3d, "heli::position3d");
+  const double hover[6] = {};
+  ASSERT_TRUE(heli.command(shm::CommandKind::velocity, hover));
   f.run(2);
   ASSERT_TRUE(heli.read());
   EXPECT_NEAR(heli.sample<shm::Position3dSample>().true_pose.z, 5, 1e-3) << "it hovers";
@@ -377,6 +379,24 @@ TEST(Position3d, flies_as_told_and_holds_its_height) {
   f.run(5);
   ASSERT_TRUE(heli.read());
   EXPECT_NEAR(heli.sample<shm::Position3dSample>().true_pose.z, height, 1e-3);
+}
+
+TEST(Position3d, falls_until_the_first_command) {
+  SimulationFixture f(world_of({ground(), helicopter()}));
+  auto heli = f.open(IfaceType::position3d, "heli::position3d");
+  const auto height = [&] { return f.simulation->physics().model_pose(f.simulation->physics().find("heli").value()).translation().z(); };
+  f.run(0.5);
+  EXPECT_NEAR(height(), 5 - 9.8 * 0.25 / 2, 0.01) << "as any other body";
+  std::vector<std::string> notes;
+  ASSERT_TRUE(f.simulation->reset(notes));
+  f.run(0.5);
+  EXPECT_NEAR(height(), 5 - 9.8 * 0.25 / 2, 0.01) << "after a reset";
+  f.run(3);
+  EXPECT_NEAR(height(), 0.25, 0.01) << "it lies on the ground";
+  const double up[6] = {0, 0, 1, 0, 0, 0};
+  ASSERT_TRUE(heli.command(shm::CommandKind::velocity, up));
+  f.run(3);
+  EXPECT_GT(height(), 2);
 }
 
 TEST(Simulation, hash_is_equal_for_equal_runs_on_any_threads_and_after_a_reset) {

@@ -3,6 +3,7 @@
 
 #include <ctime>
 
+#include "physics/solver_choice.h"
 #include "support/heavy_worlds.h"
 #include "support/physics_fixture.h"
 
@@ -96,6 +97,34 @@ TEST(Crowd, what_a_heap_needs_changes_nothing_for_a_robot_beside_it) {
     return f.position("robot");
   };
   EXPECT_EQ(drive(true), drive(false)) << "to the bit";
+}
+
+TEST(Crowd, a_humanoid_in_the_ground_is_solved_by_what_is_worth_its_work) {
+  const auto solver = [](int bodies, double depth, PhysicsDef::Solver asked = PhysicsDef::Solver::automatic) {
+    WorldDef world = world_of({ground(), humanoid(bodies, depth)});
+    world.physics.solver = asked;
+    PhysicsFixture f(std::move(world));
+    f.run(0.002);
+    return f.physics.last_solver(1);
+  };
+  EXPECT_EQ(solver(75, -1), StepSolver::tree) << "in the air";
+  EXPECT_EQ(solver(75, 1.2), StepSolver::iterative) << "half in the ground";
+  EXPECT_EQ(solver(8, -1), StepSolver::dense);
+  EXPECT_EQ(solver(8, 1.2), StepSolver::dense) << "few bodies with few contacts";
+  EXPECT_NE(solver(75, 1.2, PhysicsDef::Solver::exact), StepSolver::iterative) << "the world asks for it";
+  EXPECT_EQ(solver(8, -1, PhysicsDef::Solver::iterative), StepSolver::iterative);
+}
+
+TEST(SolverChoice, goes_by_the_work_of_all_rows_and_not_by_contacts_alone) {
+  const PhysicsDef physics;
+  EXPECT_FALSE(choose_solver(physics, {.bodies = 1, .contact_rows = 60}).is_iterative) << "one body on many points";
+  EXPECT_TRUE(choose_solver(physics, {.bodies = 1, .contact_rows = 600}).is_iterative);
+  EXPECT_FALSE(choose_solver(physics, {.bodies = 75, .joint_rows = 370}).is_iterative) << "many joints alone";
+  EXPECT_TRUE(choose_solver(physics, {.bodies = 75, .joint_rows = 370, .contact_rows = 180}).is_iterative) << "and what they touch";
+  EXPECT_TRUE(choose_solver(physics, {.bodies = 5, .contact_rows = 12, .moving_contacts = 4}).is_iterative) << "a stack";
+  PhysicsDef many = physics;
+  many.iterations = 500;
+  EXPECT_FALSE(choose_solver(many, {.bodies = 75, .joint_rows = 370, .contact_rows = 180}).is_iterative) << "the other is no cheaper";
 }
 
 TEST(Crowd, many_in_one_place_touch_only_so_many_and_come_apart_gently) {

@@ -238,6 +238,19 @@ TEST(Physics, a_ball_bounces_as_high_as_its_restitution_says) {
   EXPECT_NEAR(highest - 0.1, 0.25, 0.02);
 }
 
+TEST(Physics, a_ball_without_restitution_stays_where_it_falls) {
+  for (const double height : {1.0, 0.37, 4.0}) {
+    for (const double step : {0.001, 0.002, 0.0005}) {
+      Fixture f(world_of({ground(), body("ball", SphereShape{0.1}, at(0, 0, 0.1 + height))}, step));
+      while (f.position("ball").z() > 0.1) f.physics.step();
+      double highest = 0;
+      for (int i = 0; i < 1000; ++i) f.physics.step(), highest = std::max(highest, f.position("ball").z());
+      EXPECT_LT(highest - 0.1, 0.001) << height << " m, " << step << " s";
+      EXPECT_NEAR(f.position("ball").z(), 0.1, 1e-3);
+    }
+  }
+}
+
 TEST(Physics, numbers_that_are_not_finite_are_refused) {
   Fixture f(world_of({ground(), pioneer("robot", at(0, 0, 0))}));
   const auto before = f.hash();

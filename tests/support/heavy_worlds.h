@@ -71,6 +71,43 @@ class ManyLinks {
   ModelDef model_;
 };
 
+// A torso with limbs of turning joints, `bodies` in all: a humanoid with hands. It stands in the ground up to `depth` [m] of its height.
+inline ModelDef humanoid(int bodies, double depth) {
+  ModelDef model = body("humanoid", BoxShape{{0.3, 0.4, 0.6}}, at(0, 0, -depth), 20);
+  model.links[0].name = model.canonical_link = "torso";
+  model.links[0].pose = at(0, 0, 1.2);
+  struct Tip {
+    std::string link;
+    Eigen::Vector3d place, step;
+  };
+  // Arms and legs hang down, a head stands up; fingers and toes are what comes when they are long enough.
+  std::vector<Tip> tips = {{"torso", {0, 0.25, 1.4}, {0, 0.02, -0.09}},
+                           {"torso", {0, -0.25, 1.4}, {0, -0.02, -0.09}},
+                           {"torso", {0, 0.12, 0.9}, {0, 0, -0.07}},
+                           {"torso", {0, -0.12, 0.9}, {0, 0, -0.07}},
+                           {"torso", {0, 0, 1.5}, {0, 0, 0.05}}};
+  for (int i = 1; i < bodies; ++i) {
+    Tip& tip = tips[static_cast<std::size_t>(i) % (i < 20 ? 5 : 4)];
+    const std::string name = "link" + std::to_string(i);
+    model.links.push_back(
+        link(name, BoxShape{{0.05, 0.05, 0.05}}, 0.5, at(tip.place.x(), tip.place.y(), tip.place.z() + 0.5 * tip.step.z())));
+    JointDef joint;
+    joint.name = name + "_joint";
+    joint.kind = JointDef::Kind::revolute;
+    joint.parent = tip.link, joint.child = name;
+    joint.pose_in_model = at(tip.place.x(), tip.place.y(), tip.place.z());
+    AxisDef axis;
+    axis.xyz = Eigen::Vector3d::Unit(i / 4 % 3);
+    axis.lower = -1.5, axis.upper = 1.5;
+    axis.damping = 0.1;
+    joint.axes = {axis};
+    model.joints.push_back(joint);
+    tip.link = name;
+    tip.place += tip.step;
+  }
+  return model;
+}
+
 // Boxes, balls and cans side by side on the ground, near enough to be looked at in pairs.
 inline WorldDef resting_shapes(int count, double apart = 0.6) {
   WorldDef world;

@@ -26,7 +26,10 @@ bool is_driveable(const JointDef& joint) {
 JointHold hold_of(const ModelDef& model, ModelId id, std::uint32_t joint) {
   const AxisDef& axis = model.joints[joint].axes[0];
   JointHold hold{{id, joint}};
-  hold.turns = model.joints[joint].kind == JointDef::Kind::revolute || model.joints[joint].kind == JointDef::Kind::continuous;
+  // A limit may lie on the shortest way.
+  const bool has_limits = std::isfinite(axis.lower) || std::isfinite(axis.upper);
+  hold.turns =
+      model.joints[joint].kind == JointDef::Kind::continuous || (model.joints[joint].kind == JointDef::Kind::revolute && !has_limits);
   hold.target = axis.initial_position;
   hold.most = std::isfinite(axis.velocity) && axis.velocity > 0 ? axis.velocity : usual_velocity;
   hold.effort = torque_of(model, joint);

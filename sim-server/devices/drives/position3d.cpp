@@ -91,6 +91,7 @@ void Position3d::before_step(const Moment& moment) {
   switch (poll_command(command)) {
     case shm::CommandChange::fresh:
       is_commanded_ = true;
+      if (is_idle_) begin();
       goal_.reset();
       command_.setZero();
       if (command.kind == shm::CommandKind::velocity)
@@ -106,7 +107,7 @@ void Position3d::before_step(const Moment& moment) {
     case shm::CommandChange::none:
       break;
   }
-  if (!motors_enabled_) return;
+  if (!motors_enabled_ || is_idle_) return;
   const Eigen::Isometry3d pose = physics().model_pose(model());
   const bool is_on_the_way = path_ && !is_commanded_;
   if (is_on_the_way && keep_to_path(moment, pose)) return;
@@ -143,8 +144,15 @@ void Position3d::measure(const Moment&) const {
   out.commanded = is_commanded_ ? 1 : 0;
 }
 
+// From now on it is moved. Until then it falls and rolls as any other body does.
+void Position3d::begin() {
+  is_idle_ = false;
+  world().physics.set_gravity(model(), !motors_enabled_);
+}
+
 void Position3d::restart() {
-  world().physics.set_gravity(model(), false);
+  is_idle_ = !path_ && initial_command_.isZero();
+  world().physics.set_gravity(model(), is_idle_);
   if (is_kinematic_) world().physics.make_kinematic(model());
   command_ = initial_command_;
   velocity_.setZero();
@@ -158,6 +166,7 @@ void Position3d::add_state_to(StateHash& hash) const {
   hash.add(writer().name());
   for (int i = 0; i < 4; ++i) hash.add(velocity_[i]), hash.add(command_[i]);
   if (path_) hash.add(path_time_);
+  if (is_idle_) hash.add(std::uint64_t{1});
 }
 
 bool Position3d::set_odometry(const Eigen::Isometry3d& pose) {
@@ -168,7 +177,7 @@ bool Position3d::set_odometry(const Eigen::Isometry3d& pose) {
 // Without its motors it falls.
 bool Position3d::set_motors(bool enabled) {
   motors_enabled_ = enabled;
-  world().physics.set_gravity(model(), !enabled);
+  world().physics.set_gravity(model(), !enabled || is_idle_);
   velocity_.setZero();
   return true;
 }

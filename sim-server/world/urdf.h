@@ -1,0 +1,22 @@
+// A URDF robot before libsdformat translates it: what that library gets wrong is mended, and what it refuses without a reason gets one.
+// Pure; any thread.
+#pragma once
+
+#include <optional>
+#include <pugixml.hpp>
+#include <string>
+#include <vector>
+
+namespace sim {
+
+// Removes the <inertial> of links without mass that a fixed joint holds. The library divides by the mass of such a link and what it hangs
+// on.
+void mend_urdf(pugi::xml_node robot);
+
+// One line for each thing in it that is not simulated and that the library leaves out in silence.
+std::vector<std::string> left_out_of_urdf(pugi::xml_node robot);
+
+// The first thing in it that URDF does not allow; in lower case, no full stop.
+std::optional<std::string> fault_of_urdf(pugi::xml_node robot);
+
+}  // namespace sim

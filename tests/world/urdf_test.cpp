@@ -1,0 +1,75 @@
+// URDF robots that people bring: what is wrong in one is said, and what the library would lose is kept.
+#include <gtest/gtest.h>
+
+#include "world/world_loader.h"
+
+namespace sim {
+namespace {
+
+const std::string mass = "<inertial><mass value='1'/><inertia ixx='0.1' iyy='0.1' izz='0.1' ixy='0' ixz='0' iyz='0'/></inertial>";
+const std::string no_mass = "<inertial><mass value='0'/><inertia ixx='0' iyy='0' izz='0' ixy='0' ixz='0' iyz='0'/></inertial>";
+const std::string ends = "<parent link='a'/><child link='b'/>";
+
+std::string link(const std::string& name, const std::string& content = mass) { return "<link name='" + name + "'>" + content + "</link>"; }
+std::string joint(const std::string& type, const std::string& content) {
+  return "<joint name='j' type='" + type + "'>" + content + "</joint>";
+}
+
+base::Result<LoadedModel> load(const std::string& content, const std::string& attributes = "name='r'") {
+  return load_model("<robot " + attributes + ">" + content + "</robot>", "", std::nullopt, ModelPath{});
+}
+
+TEST(Urdf, that_is_refused_has_the_reason) {
+  const std::string two = link("a") + link("b");
+  struct Case {
+    std::string content, reason, attributes = "name='r'";
+  };
+  for (const Case& each : {
+           Case{two + joint("revolute", ends), "joint \"j\" is revolute and has no <limit>"},
+           Case{two + joint("prismatic", ends + "<limit lower='0' upper='1' effort='1'/>"), "<limit> of joint \"j\" has no velocity"},
+           Case{two + joint("fixed", ends), "the robot has no name", ""},
+           Case{"<xacro:property name='w' value='1'/>" + two + joint("fixed", ends + "<origin xyz='${w} 0 0'/>"),
+                "it must be expanded by xacro first, it has <xacro:property>", "name='r' xmlns:xacro='http://ros.org/wiki/xacro'"},
+           Case{two + joint("fixed", "<parent link='none'/><child link='b'/>"), "parent \"none\" of joint \"j\" does not exist"},
+           Case{two, "links \"a\" and \"b\" hang on nothing; one root is allowed"},
+           Case{link("a") + link("a") + joint("fixed", ends), "link \"a\" is there twice"},
+           Case{two + joint("hinge", ends), "joint \"j\" has the unknown type \"hinge\""},
+       }) {
+    const auto loaded = load(each.content, each.attributes);
+    ASSERT_FALSE(loaded) << each.reason;
+    EXPECT_NE(loaded.error().message.find(each.reason), std::string::npos) << loaded.error().message << "\nexpected: " << each.reason;
+  }
+}
+
+TEST(Urdf, frames_without_mass_on_frames_without_mass_add_nothing) {
+  const auto fixed = [](const std::string& name, const std::string& parent, const std::string& child) {
+    return "<joint name='" + name + "' type='fixed'><parent link='" + parent + "'/><child link='" + child + "'/></joint>";
+  };
+  for (const std::string& inertial : {no_mass, std::string()}) {
+    const auto loaded = load(link("base") + link("arm") +
+                             "<joint name='j' type='revolute'><parent link='base'/><child link='arm'/><axis xyz='0 1 0'/>"
+                             "<limit lower='-1' upper='1' effort='1' velocity='1'/></joint>" +
+                             link("camera", inertial) + fixed("c", "arm", "camera") + link("optical", inertial) +
+                             fixed("o", "camera", "optical") + link("last", inertial) + fixed("l", "optical", "last"));
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    ASSERT_NE(loaded->model.link("arm"), nullptr);
+    EXPECT_NEAR(loaded->model.link("arm")->mass, 1, 1e-9);
+    EXPECT_LT(loaded->model.link("arm")->center_of_mass.norm(), 1e-9);
+    EXPECT_TRUE(loaded->findings.empty()) << loaded->findings.front().text();
+  }
+}
+
+TEST(Urdf, joints_that_would_mimic_others_have_a_line) {
+  const auto loaded =
+      load(link("palm") + link("left") + link("right") +
+           "<joint name='one' type='prismatic'><parent link='palm'/><child link='left'/><axis xyz='0 0 1'/><limit lower='-1' upper='1' "
+           "effort='1' velocity='1'/></joint><joint name='other' type='prismatic'><parent link='palm'/><child link='right'/><axis xyz='0 0 "
+           "-1'/><limit lower='-1' upper='1' effort='1' velocity='1'/><mimic joint='one' multiplier='1' offset='0'/></joint>");
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  ASSERT_EQ(loaded->findings.size(), 1U);
+  EXPECT_NE(loaded->findings[0].text().find("joint \"other\" does not mimic joint \"one\"; it moves on its own"), std::string::npos)
+      << loaded->findings[0].text();
+}
+
+}  // namespace
+}  // namespace sim
