@@ -1,9 +1,9 @@
-# Programs that tests and scripts run, and whether scripts/setup brings them.
-#   called_programs.py called SOURCE_DIR BUILD_DIR           reads the sources: each program that they call comes from a package of scripts/setup, from one that such a package
-#                                                            depends on, or from Debian's minimal system. Skipped (77) without apt and its lists of packages.
-#   called_programs.py executed BUILD_DIR [CTEST-OPTION...]  by hand, as root: runs the tests and lists the packages of all programs that any process executed meanwhile and
-#                                                            that scripts/setup does not bring, also of programs that programs start. Fails if there is one.
-# The test by the sources knows no program that is started by a name put together at run time, nor helpers of programs; `executed` does.
+# Checks that scripts/setup installs the programs and Python modules that tests and scripts use.
+#   called_programs.py called SOURCE_DIR BUILD_DIR           reads the sources and finds the package of each program that they call. The package must be one of scripts/setup, a
+#                                                            dependency of one, or part of Debian's minimal system. Skipped (77) where apt has no package lists.
+#   called_programs.py executed BUILD_DIR [CTEST-OPTION...]  runs the tests and lists the packages of all programs executed meanwhile that scripts/setup does not install.
+#                                                            Exit code 1 if there is one; hooks of this machine's apt are listed, too. By hand, as root.
+# `called` sees neither names that are made at run time nor programs that programs start, as gpg starts gpg-agent. `executed` sees both.
 import ast
 import collections
 import os
@@ -15,7 +15,7 @@ import sys
 import tempfile
 
 FOLDERS = ("/usr/sbin", "/usr/bin", "/sbin", "/bin", "/usr/local/sbin", "/usr/local/bin")
-# Programs beside these packages: who calls them does without, or finds out beforehand and is skipped or says what to install.
+# Programs of other packages. Their callers work without them, or probe first and then are skipped or print what to install.
 OPTIONAL = {
     "blhc": "scripts/package does without; tests/package/clean, by hand, says what to install",
     "debootstrap": "tests/package/bare and others by hand say what to install",
@@ -23,8 +23,11 @@ OPTIONAL = {
     "scancel": "Slurm: campaigns.slurm_* are skipped without (scripts/setup --with-slurm)",
     "strace": "tests/bench/sim_bench, by hand, does without",
     "sudo": "scripts/setup says what root has to install",
-    "valgrind": "tests/campaign, by hand with --valgrind",
+    "valgrind": "tests/robustness, by hand with --valgrind",
 }
+# Modules of Python's standard library that Debian's python3 does not install.
+SPLIT_OFF = {"distutils", "ensurepip", "idlelib", "lib2to3", "tkinter", "turtle", "venv"}
+OTHER_MODULES = {"omniidl": "a back end of omniidl runs inside it"}
 BUILTINS = set(""". : [ [[ alias bg break builtin cd command compgen complete compopt continue declare dirs disown echo enable eval exec exit export false fc fg getopts hash help
 history jobs kill let local logout mapfile popd printf pushd pwd read readarray readonly return set shift shopt source suspend test times trap true type typeset ulimit umask unalias unset
 wait""".split())
@@ -41,22 +44,25 @@ def output(*words):
     return subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, check=True, env={**os.environ, "LC_ALL": "C"}).stdout
 
 
-# The packages that a machine has after debootstrap --variant=minbase, apt install git and scripts/setup. Not what only Debian's Node.js depends on: another one will do.
+# The packages of a machine after debootstrap --variant=minbase, apt install git and scripts/setup, without those that only Debian's Node.js needs: scripts/setup accepts another one.
 def brought(source):
+    system = pathlib.Path("/etc/os-release")
+    if not system.exists() or "VERSION_CODENAME=bookworm" not in system.read_text():
+        raise Missing("this is not Debian 12")
     listed = output(f"{source}/scripts/setup", "--list").split()
-    minimal = {"apt"}
     try:
-        for stanza in output("apt-cache", "dumpavail").split("\n\n"):
-            if re.search(r"^(Essential: yes|Priority: required)$", stanza, re.M):
-                minimal.add(re.search(r"^Package: (.*)$", stanza, re.M)[1])
-    except (FileNotFoundError, subprocess.CalledProcessError) as why:
-        raise Missing(f"no lists of apt: {why}") from why
+        stanzas = output("apt-cache", "dumpavail").split("\n\n")
+    except (OSError, subprocess.CalledProcessError) as why:
+        raise Missing(f"apt-cache: {why}") from why
+    minimal = {re.search(r"^Package: (.*)$", stanza, re.M)[1] for stanza in stanzas if re.search(r"^(Essential: yes|Priority: required)$", stanza, re.M)}
+    if len(minimal) < 20:
+        raise Missing("apt has no package lists (apt-get update)")
     wanted = [package for package in listed if package not in ("nodejs", "npm")]
     with tempfile.NamedTemporaryFile() as nothing_installed:
         done = subprocess.run(["apt-get", "-s", "-o", f"Dir::State::status={nothing_installed.name}", "-o", "Debug::NoLocking=1", "--no-install-recommends", "install",
-                               *sorted(minimal), "git", *wanted], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False, env={**os.environ, "LC_ALL": "C"})
+                               *sorted(minimal), "apt", "git", *wanted], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False, env={**os.environ, "LC_ALL": "C"})
     if done.returncode != 0:
-        raise Missing(f"apt-get -s: {done.stderr.strip() or done.stdout.strip()}")
+        raise RuntimeError(f"apt-get -s install: {(done.stderr.strip() or done.stdout.strip()).splitlines()[0]}")
     return set(re.findall(r"^Inst (\S+)", done.stdout, re.M)) | set(listed)
 
 
@@ -82,7 +88,7 @@ def installed(name):
 # --- What the sources call ---
 
 
-# Words in the place of commands, in the text of a shell script. Words that are put together at run time are left out.
+# The commands of a shell script: words in command position, without those that are made at run time.
 def shell_commands(text):
     found, position, length = set(), 0, len(text)
     heredocs = []
@@ -263,10 +269,20 @@ def text_of(node):
     return None
 
 
+def modules(text):
+    found = set()
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import):
+            found |= {alias.name.split(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.level == 0:
+            found.add(node.module.split(".")[0])
+    return found
+
+
 RUNNERS = {"run", "Popen", "check_output", "check_call", "call", "getoutput", "system", "popen", "execvp", "execlp", "which", "start", "spawn"}
 
 
-# First words of commands in a Python source; `sure`: the others are words that may be something else.
+# The commands of a Python source: those that are certain, and words that look like one.
 def python_commands(text):
     sure, likely = set(), set()
     for node in ast.walk(ast.parse(text)):
@@ -297,15 +313,14 @@ def python_commands(text):
     return {name for name in sure if re.fullmatch(r"\w[\w.+-]*", name)}, {name for name in likely if re.fullmatch(r"\w[\w.+-]*", name)}
 
 
-# {program: files that call it}, and the same of words that are programs only if one of that name is installed.
+# {program: files that call it}, the same of words that are programs only if one of that name is installed, and of modules of Python that are neither Python's nor ours.
 def called(source):
     sure, likely, functions = collections.defaultdict(set), collections.defaultdict(set), set()
-    folders = ("tests", "scripts", "packaging", "cmake", "tools", "clients", "gateways", "worlds", "docs", "base", "rtm-core", "sim-server", "shm", "iface-components", "idl", ".ci")
-    paths = [source / "CMakeLists.txt", source / "README.md"]
-    for folder in folders:
-        for place, below, names in os.walk(source / folder):
-            below[:] = [name for name in below if name != "node_modules"]
-            paths += [pathlib.Path(place, name) for name in names]
+    imported, ours = collections.defaultdict(set), set()
+    paths = []
+    for place, below, names in os.walk(source):
+        below[:] = [name for name in below if name not in (".git", "build", "node_modules")]
+        paths += [pathlib.Path(place, name) for name in names]
     for path in paths:
         if not path.is_file() or path.stat().st_size > 1_000_000:
             continue
@@ -315,6 +330,9 @@ def called(source):
         text, file = octets.decode(errors="replace"), str(path.relative_to(source))
         first = text.split("\n", 1)[0]
         if path.suffix == ".py" or first.startswith("#!") and "python" in first:
+            ours.add(path.stem)
+            for name in modules(text):
+                imported[name].add(file)
             certain, others = python_commands(text)
             for name in certain:
                 sure[name].add(file)
@@ -344,10 +362,11 @@ def called(source):
     for name in functions:
         sure.pop(name, None)
         likely.pop(name, None)
-    return sure, likely
+    own = (sys.stdlib_module_names - SPLIT_OFF) | ours | set(OTHER_MODULES)
+    return sure, likely, {name: files for name, files in imported.items() if name not in own}
 
 
-# A line for each program that is neither ours (`made`) nor of one of these packages. place: where a program is installed, or None.
+# A line for each program that is neither ours (`made`) nor of one of these packages. place(NAME) is the path of an installed program, or None.
 def problems(sure, likely, packages, made, owner, place=installed):
     found = []
     for name in sorted(set(sure) | set(likely)):
@@ -361,15 +380,16 @@ def problems(sure, likely, packages, made, owner, place=installed):
             continue
         package = owner.get(without_usr(os.path.realpath(path))) or owner.get(without_usr(path))
         if package not in packages and not (package is None and name in ("node", "npm")):
-            found.append(f"{name}: of package {package}, which scripts/setup does not bring; called by {files}")
+            found.append(f"{name}: of package {package}, which scripts/setup does not install; called by {files}")
     return found + [f"{name}: called by nothing; take it out of OPTIONAL" for name in OPTIONAL if name not in sure and name not in likely]
 
 
 def check_called(source, build):
     packages = brought(source)
     made = {path.name for path in (build / "package").iterdir()} | set(re.findall(r"\bbin/([\w.+-]+)", (build / "build.ninja").read_text()))
-    sure, likely = called(source)
+    sure, likely, imported = called(source)
     found = problems(sure, likely, packages, made, owners())
+    found += [f"module {name} of Python: not of Debian's python3; imported by {', '.join(sorted(files))}" for name, files in sorted(imported.items())]
     print("\n".join(found) or f"{len(sure)} programs; {len(packages)} packages")
     return 1 if found else 0
 
@@ -380,7 +400,7 @@ EXECUTED = 0x1000  # FAN_OPEN_EXEC
 OF_MOUNT = 0x11  # FAN_MARK_ADD | FAN_MARK_MOUNT
 
 
-# Paths of what processes of this mount namespace execute while a command runs: the kernel (fanotify) hands over each file, so nothing is missed and nothing is slowed down.
+# Runs a command and returns its exit code and the paths of all files that processes of this mount namespace executed meanwhile, from fanotify. No process waits for this one.
 def executed_by(command, folder):
     import ctypes  # only for this mode
     import select
@@ -427,7 +447,7 @@ def check_executed(build, options):
     for path in sorted(alone):
         print(f"of no package: {path}")
     for package, paths in sorted(beside.items()):
-        print(f"package {package}, which scripts/setup does not bring: {' '.join(sorted(paths))}")
+        print(f"package {package}, which scripts/setup does not install: {' '.join(sorted(paths))}")
     return 1 if beside or code else 0
 
 

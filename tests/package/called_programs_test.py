@@ -1,4 +1,4 @@
-# What called_programs.py takes for a program that a source calls, and what it says of it.
+# Which words of a source called_programs.py takes for programs, and what it reports.
 import collections
 import pathlib
 import tempfile
@@ -46,20 +46,23 @@ class CalledPrograms(unittest.TestCase):
     def test_commands_of_a_python_source_are_found_and_its_lists_are_not(self):
         self.assertEqual(python_commands(PYTHON), ({"first", "second", "third", "sh", "fourth", "fifth"}, {"sh", "sixth", "seventh"}))
 
-    def test_a_program_of_a_package_that_is_not_brought_is_named_with_its_caller(self):
+    def test_a_program_or_module_that_setup_does_not_install_is_named_with_its_caller(self):
         with tempfile.TemporaryDirectory() as folder:
             source = pathlib.Path(folder)
             (source / "tests").mkdir()
             (source / "tests/one").write_text("#!/bin/sh\nplain && beside && absent && ours && own\nown() { for program in plain named; do :; done; }\n")
-            sure, likely = called(source)
+            (source / "tests/two.py").write_text("import os.path, numpy\nfrom venv import x\nimport three\nfrom . import four\n")
+            (source / "tests/three.py").write_text("import sys\n")
+            sure, likely, modules = called(source)
+        self.assertEqual(modules, {"numpy": {"tests/two.py"}, "venv": {"tests/two.py"}})
         self.assertEqual(likely, {})
         for name in OPTIONAL:
             sure[name].add("tests/one")
         places = collections.defaultdict(lambda: None, {name: f"/usr/bin/{name}" for name in ("plain", "beside", "named")})
         owner = {"/bin/plain": "good", "/bin/beside": "bad", "/bin/named": "bad"}
         found = problems(sure, likely, {"good"}, {"ours"}, owner, places.get)
-        self.assertEqual(found, ["absent: not installed here; called by tests/one", "beside: of package bad, which scripts/setup does not bring; called by tests/one",
-                                 "named: of package bad, which scripts/setup does not bring; called by tests/one"])
+        self.assertEqual(found, ["absent: not installed here; called by tests/one", "beside: of package bad, which scripts/setup does not install; called by tests/one",
+                                 "named: of package bad, which scripts/setup does not install; called by tests/one"])
 
     def test_a_program_that_nothing_calls_is_no_exception_any_more(self):
         self.assertEqual(problems({}, {}, set(), set(), {})[0].split(":")[1], " called by nothing; take it out of OPTIONAL")
