@@ -53,6 +53,11 @@ if(RTMSIM_SANITIZE)
 endif()
 add_test(NAME package.repository COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/repository ${PROJECT_SOURCE_DIR})
 set_tests_properties(package.repository PROPERTIES LABELS package TIMEOUT 300 SKIP_RETURN_CODE 77)
+# scripts/setup installs what tests and scripts call. By hand: tests/package/bare, and called_programs.py executed.
+add_test(NAME package.called_programs_test COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/package/called_programs_test.py)
+add_test(NAME package.setup_installs_every_called_program
+  COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/package/called_programs.py called ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR})
+set_tests_properties(package.called_programs_test package.setup_installs_every_called_program PROPERTIES LABELS package TIMEOUT 300 SKIP_RETURN_CODE 77)
 foreach(mode "" --try)
   add_test(NAME package.symbols${mode} COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/symbols ${PROJECT_BINARY_DIR} ${PROJECT_SOURCE_DIR} ${mode})
   set_tests_properties(package.symbols${mode} PROPERTIES LABELS package)

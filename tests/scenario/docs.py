@@ -2,7 +2,7 @@
 #   pages       links and names of files lead somewhere; the index has every page; the table of layers is that of include_rules_test,
 #               those of bundled components are those of their sources
 #   layers      writes the table of layers into docs/ARCHITECTURE.md
-#   promises    each promise of docs/promises.md names tests that exist
+#   promises    each promise of docs/promises.md names tests that exist, in ctest or, those by hand, as files below tests/
 import pathlib
 import re
 import subprocess
@@ -128,7 +128,10 @@ def check_promises(build):
         if not names:
             problems.append(f"docs/promises.md: {promise.strip()}: no test keeps it")
         for name in names:
-            if not any(test.startswith(name) for test in tests) and name.split(".")[0] not in not_built:
+            if name.startswith("tests/"):
+                if not (source / name).is_file():
+                    problems.append(f"docs/promises.md: {promise.strip()}: there is no file {name}")
+            elif not any(test.startswith(name) for test in tests) and name.split(".")[0] not in not_built:
                 problems.append(f"docs/promises.md: {promise.strip()}: there is no test {name}")
 
 

@@ -105,8 +105,8 @@ def no_room():
         command = f"mount -t tmpfs -o size=64k tmpfs {small} && {script}"
         return subprocess.run(["unshare", "-m", "sh", "-c", command], capture_output=True, text=True, timeout=watchdog)
 
-    if alone("true").returncode != 0:
-        print("skipped: this user may not mount")
+    if (probe := alone("true")).returncode != 0:
+        print(f"skipped: needs a mount namespace: {probe.stderr.strip()}")
         sys.exit(77)
     run = f"{bin_dir}/sim-server {course} -s {server_id} --rtf 0"
 
