@@ -18,25 +18,25 @@ namespace RTC {
 namespace {
 
 // A component whose callback this thread runs; several, one inside the other.
-class Inside {
+class InsideCallback {
  public:
-  explicit Inside(const RTObject_impl& component) : component_(component), outer_(std::exchange(innermost, this)) {}
-  ~Inside() { innermost = outer_; }
-  Inside(const Inside&) = delete;
-  Inside& operator=(const Inside&) = delete;
+  explicit InsideCallback(const RTObject_impl& component) : component_(component), outer_(std::exchange(innermost, this)) {}
+  ~InsideCallback() { innermost = outer_; }
+  InsideCallback(const InsideCallback&) = delete;
+  InsideCallback& operator=(const InsideCallback&) = delete;
   static bool any() { return innermost != nullptr; }
   static bool any_of(const RTObject_impl* component) {
-    for (const Inside* one = innermost; one != nullptr; one = one->outer_)
+    for (const InsideCallback* one = innermost; one != nullptr; one = one->outer_)
       if (&one->component_ == component) return true;
     return false;
   }
 
  private:
-  static thread_local const Inside* innermost;
+  static thread_local const InsideCallback* innermost;
   const RTObject_impl& component_;
-  const Inside* const outer_;
+  const InsideCallback* const outer_;
 };
-thread_local const Inside* Inside::innermost = nullptr;
+thread_local const InsideCallback* InsideCallback::innermost = nullptr;
 
 std::string in_seconds(std::chrono::nanoseconds time) {
   return base::format_number(std::round(std::chrono::duration<double>(time).count() * 100) / 100) + " s";
@@ -44,8 +44,8 @@ std::string in_seconds(std::chrono::nanoseconds time) {
 
 }  // namespace
 
-bool isInsideCallback() { return Inside::any(); }
-bool isInsideCallbackOf(const RTObject_impl* component) { return Inside::any_of(component); }
+bool isInsideCallback() { return InsideCallback::any(); }
+bool isInsideCallbackOf(const RTObject_impl* component) { return InsideCallback::any_of(component); }
 
 ReturnCode_t RTObject_impl::onInitialize() { return RTC_OK; }
 ReturnCode_t RTObject_impl::onFinalize() { return RTC_OK; }
@@ -94,7 +94,7 @@ ReturnCode_t RTObject_impl::callInTurn(const char* name, bool is_outside, Refusa
   }
   if (is_outside)
     if (const auto why = refusal()) return refuse(name, *why, PRECONDITION_NOT_MET);
-  const Inside inside(*this);
+  const InsideCallback inside(*this);
   // Called by a context of another process: its time is ours.
   std::optional<base::ScopedClock> clock;
   if (const auto* of_caller = corba::clock_of_caller()) clock.emplace(base::current_clock_or(*of_caller));

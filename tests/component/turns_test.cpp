@@ -171,7 +171,7 @@ TEST_F(TurnsTest, ports_come_and_go_while_the_component_runs_and_tools_look_at_i
         const auto deadline = std::chrono::steady_clock::now() + 60s;
         while (times < 200 && std::chrono::steady_clock::now() < deadline) {
           const RTC::ComponentProfile_var profile = probe->get_component_profile();
-          const RTC::PortServiceList_var ports = probe->get_ports();
+          RTC::PortServiceList_var ports = probe->get_ports();
           try {
             if (ports->length() == 1)
               RTC::PortProfile_var(RTC::PortService_var(RTC::PortService::_duplicate(ports[0u]))->get_port_profile());
