@@ -9,14 +9,14 @@
 namespace base {
 namespace {
 
-class Descriptor {
+class OpenFile {
  public:
-  explicit Descriptor(int file) : file_(file) {}
-  ~Descriptor() {
+  explicit OpenFile(int file) : file_(file) {}
+  ~OpenFile() {
     if (file_ >= 0) ::close(file_);
   }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
   int get() const { return file_; }
 
  private:
@@ -35,7 +35,7 @@ Result<std::string> read_plain_file(const std::filesystem::path& file, std::uint
     return unreadable(errno);
   }
   if (!S_ISREG(is.st_mode)) return Error{"is not a regular file"};
-  const Descriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  const OpenFile opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
   if (opened.get() < 0) return unreadable(errno);
   if (::fstat(opened.get(), &is) != 0) return unreadable(errno);
   if (!S_ISREG(is.st_mode)) return Error{"is not a regular file"};
