@@ -81,6 +81,11 @@ bool ServerLoop::run() {
     const bool stood_still = mode_.stands_still();
     handle_requests(When::between_steps);
     tend();
+    if (waits_for_spawn()) {
+      board_.wait(Clock::now() + tend_period);
+      start_pace();
+      continue;
+    }
     // Also when time is to go on now: who came before that has a sample, however fast the two followed each other.
     if (stood_still) simulation_.answer_new_subscribers();
     // Not while time stands still: who subscribes or joins before it moves has its sample and its tick at time 0, as after a reset.

@@ -1,11 +1,10 @@
-#include "world/mesh_io.h"
+#include "asset-reader/mesh_io.h"
 
 #include <assimp/MemoryIOWrapper.h>
 
 #include <algorithm>
 #include <cstdint>
-#include <fstream>
-#include <iterator>
+#include <filesystem>
 
 #include "base/text.h"
 
@@ -59,20 +58,18 @@ std::string import_fault(std::string_view said) {
   return base::in_quotes(said);
 }
 
-bool MeshIo::Exists(const char* file) const {
-  std::error_code problem;
-  return std::filesystem::is_regular_file(file, problem);
-}
+bool MeshIo::Exists(const char* file) const { return files_.exists(file); }
 
 Assimp::IOStream* MeshIo::Open(const char* file, const char* mode) {
-  if (!Exists(file)) return nullptr;
-  if (base::to_lower(std::filesystem::path(file).extension().string()) != ".dae") return Assimp::DefaultIOSystem::Open(file, mode);
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return nullptr;
-  const std::string text = with_named_images({std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()});
-  auto* bytes = new std::uint8_t[text.size() + 1];  // the stream's from now on
-  std::copy(text.begin(), text.end(), bytes);
-  return new Assimp::MemoryIOStream(bytes, text.size(), true);
+  if (std::string_view(mode).find_first_of("wa+") != std::string_view::npos) return nullptr;
+  const auto content = files_.read(file, most_mesh_file);
+  if (!content) return nullptr;
+  const bool is_collada = base::to_lower(std::filesystem::path(file).extension().string()) == ".dae";
+  const std::string text = is_collada ? with_named_images(*content) : std::string();
+  const std::string& all = is_collada ? text : *content;
+  auto* bytes = new std::uint8_t[all.size() + 1];  // the stream's from now on
+  std::copy(all.begin(), all.end(), bytes);
+  return new Assimp::MemoryIOStream(bytes, all.size(), true);
 }
 
 }  // namespace sim

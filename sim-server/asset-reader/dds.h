@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 
 #include "base/result.h"
 #include "render/image.h"
@@ -13,7 +12,6 @@ namespace sim {
 
 bool is_dds(std::span<const std::uint8_t> bytes);
 
-// `name` stands for the file in messages.
-base::Result<Image> decode_dds(std::span<const std::uint8_t> bytes, const std::string& name);
+base::Result<Image> decode_dds(std::span<const std::uint8_t> bytes);
 
 }  // namespace sim

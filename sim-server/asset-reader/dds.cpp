@@ -1,4 +1,4 @@
-#include "render/dds.h"
+#include "asset-reader/dds.h"
 
 #include <algorithm>
 #include <array>
@@ -32,15 +32,15 @@ struct Layout {
   std::array<std::uint32_t, 4> masks{0xff, 0xff00, 0xff0000, 0xff000000};  // red, green, blue, alpha
 };
 
-base::Result<Layout> layout_of(Bytes bytes, std::size_t& data, const std::string& name) {
+base::Result<Layout> layout_of(Bytes bytes, std::size_t& data) {
   constexpr std::uint32_t has_code = 4, has_luminance = 0x20000;
   constexpr std::size_t extended_header = 20;
   const auto unknown = [&](const std::string& what) {
-    return base::Error{"image " + name + ": DDS of " + what + " is not read; DXT1, DXT3, DXT5 or no compression is expected"};
+    return base::Error{"DDS of " + what + " is not read; DXT1, DXT3, DXT5 or no compression is expected"};
   };
   const std::uint32_t flags = word_at(bytes, 80), format = word_at(bytes, 84);
   if ((flags & has_code) != 0 && format == code("DX10")) {
-    if (bytes.size() < data + extended_header) return base::Error{"image " + name + ": is cut short"};
+    if (bytes.size() < data + extended_header) return base::Error{"is cut short"};
     const std::uint32_t number = word_at(bytes, data);
     data += extended_header;
     if (number >= 70 && number <= 72) return Layout{Packing::bc1, 0, {}};
@@ -145,20 +145,20 @@ void read_plain(Bytes bytes, const Layout& layout, Image& image) {
 
 bool is_dds(Bytes bytes) { return bytes.size() > 4 && std::memcmp(bytes.data(), "DDS ", 4) == 0; }
 
-base::Result<Image> decode_dds(Bytes bytes, const std::string& name) {
+base::Result<Image> decode_dds(Bytes bytes) {
   std::size_t data = 128;
-  if (bytes.size() < data) return base::Error{"image " + name + ": is cut short"};
+  if (bytes.size() < data) return base::Error{"is cut short"};
   const std::uint32_t height = word_at(bytes, 12), width = word_at(bytes, 16);
   if (width < 1 || height < 1 || width > max_dds_side || height > max_dds_side || std::uint64_t{width} * height > most_pixels)
-    return base::Error{"image " + name + ": must have from 1 to 16384 pixels a side and 2^27 in all, got " + std::to_string(width) + " x " +
+    return base::Error{"must have from 1 to 16384 pixels a side and 2^27 in all, got " + std::to_string(width) + " x " +
                        std::to_string(height)};
-  const auto layout = layout_of(bytes, data, name);
+  const auto layout = layout_of(bytes, data);
   if (!layout) return layout.error();
   const std::uint64_t blocks = std::uint64_t{(width + 3) / 4} * ((height + 3) / 4);
   const std::uint64_t needed = (*layout).packing == Packing::none  ? std::uint64_t{width} * height * ((*layout).bits / 8)
                                : (*layout).packing == Packing::bc1 ? blocks * 8
                                                                    : blocks * 16;
-  if (bytes.size() - data < needed) return base::Error{"image " + name + ": is cut short"};
+  if (bytes.size() - data < needed) return base::Error{"is cut short"};
   Image image{static_cast<int>(width), static_cast<int>(height), {}};
   image.rgba.resize(image.size_bytes());
   if ((*layout).packing == Packing::none) {

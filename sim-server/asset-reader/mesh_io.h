@@ -1,12 +1,13 @@
-// What Assimp may open: ordinary files. A mesh can name others (material libraries, buffers), and a pipe or a device among them would be
-// read for ever. One thread at a time.
+// What Assimp may open: regular files, read whole. A mesh can name others (material libraries, buffers), and a pipe or a device among them
+// would be read for ever. One thread at a time.
 #pragma once
 
 #include <assimp/DefaultIOSystem.h>
 
-#include <filesystem>
 #include <string>
 #include <string_view>
+
+#include "asset-reader/jobs.h"
 
 namespace sim {
 
@@ -19,9 +20,13 @@ std::string import_fault(std::string_view said);
 
 class MeshIo : public Assimp::DefaultIOSystem {
  public:
+  explicit MeshIo(FileLog& files) : files_(files) {}
   bool Exists(const char* file) const override;
   // Null: it is none; the importer that asked says what it misses.
   Assimp::IOStream* Open(const char* file, const char* mode) override;
+
+ private:
+  FileLog& files_;
 };
 
 }  // namespace sim
