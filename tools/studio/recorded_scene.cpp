@@ -91,9 +91,10 @@ Result<std::shared_ptr<const RecordedScene>> RecordedScene::make(const std::stri
   options.world = run->world();
   options.resource_paths = run->options().resource_paths;
   Result<std::unique_ptr<StartedRun>> started = Error{"no server id is free"};
+  editor::SilentReporter reporter;  // the error says enough
   for (std::uint32_t i = 0; i < tries && !started; ++i) {
     const auto id = free_server_id(i);
-    started = StartedRun::start(CORBA::ORB::_nil(), options, id);
+    started = StartedRun::start(CORBA::ORB::_nil(), options, id, reporter);
     if (!started && !shm::Requester::open(id)) return started.error();  // else somebody was quicker
   }
   if (!started) return started.error();
