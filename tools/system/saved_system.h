@@ -13,9 +13,9 @@ namespace editor {
 
 // The result of an operation on a system. One failure does not stop the others.
 struct Changes {
-  std::vector<std::string> actions;   // what was done or tried; in a dry run, what would be done
-  std::vector<std::string> warnings;  // what is most likely a mistake of the profile
-  std::vector<Error> errors;
+  std::vector<std::string> actions{};   // what was done or tried; in a dry run, what would be done
+  std::vector<std::string> warnings{};  // what is most likely a mistake of the profile
+  std::vector<Error> errors{};
 
   bool ok() const { return errors.empty(); }
 };

@@ -112,7 +112,7 @@ void run_one(const Session& session, Console& console, const Campaign& campaign,
     for (const auto& [name, value] : outcome.measures) std::printf("  %s  %.6g\n", base::printable(name).c_str(), value);
   }
   std::fflush(stdout);
-  for (const auto& note : outcome.notes) std::fprintf(stderr, "rtse: %s\n", base::printable(note, "\n\t").c_str());
+  for (const auto& note : outcome.notes) console.warn(note);
   const std::string state = outcome.state_hash.empty() ? no_state : outcome.state_hash;
   if (!call.state.empty() && call.state != state)
     console.fail({"row " + std::to_string(call.row) + ": state " + state + ", expected " + call.state});
@@ -141,13 +141,13 @@ void tell(Console& console, const SweepResult& result, const SweepCall& call) {
   std::fflush(stdout);
   constexpr std::size_t enough = 10;
   for (std::size_t i = 0; i < result.failed.size() && i < enough; ++i) {
-    const auto again = base::command_words({"rtse", "sweep"}, {call.plan}, {"--row", std::to_string(result.failed[i].number)});
-    std::fprintf(stderr, "rtse: row %zu: %s\nrtse:   again: %s\n", result.failed[i].number,
-                 base::printable(result.failed[i].problem, "\n\t").c_str(), base::shell_line(again).c_str());
+    const auto number = std::to_string(result.failed[i].number);
+    console.warn("row " + number + ": " + result.failed[i].problem);
+    console.warn("  again: " + base::shell_line(base::command_words({"rtse", "sweep"}, {call.plan}, {"--row", number})));
   }
   if (p.failed > enough)
-    std::fprintf(stderr, "rtse: and %zu more; %s\n", p.failed - enough,
-                 base::shell_line(base::command_words({"rtse", "results"}, {results})).c_str());
+    console.warn("and " + std::to_string(p.failed - enough) + " more; " +
+                 base::shell_line(base::command_words({"rtse", "results"}, {results})));
   if (p.failed > 0) console.set_failed();
   if (!result.problem.empty()) console.fail({result.problem});
   for (const auto number : result.different) console.fail({"audit: row " + std::to_string(number) + " has another state than stored"});

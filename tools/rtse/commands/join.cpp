@@ -88,7 +88,7 @@ struct Joining {
   TimeMember member;
 };
 
-Result<Joining> look_at(const Session& session, const std::string& path, const JoinOptions& options) {
+Result<Joining> look_at(const Session& session, Console& console, const std::string& path, const JoinOptions& options) {
   const auto component = session.component(path, {.contexts = true});
   if (!component) return component.error();
   if (simulated_context(*component)) return Error{"component " + component->path + ": takes part in simulated time already (rtse leave)"};
@@ -101,10 +101,9 @@ Result<Joining> look_at(const Session& session, const std::string& path, const J
   if (!(rate > 0)) return Error{"component " + component->path + ": has no context with a rate to take over; name one with --rate"};
   const auto how = options.ticks ? TimeMember::How::tick : TimeMember::How::member;
   if (options.ticks && ticks_on_its_own(*component))
-    std::cerr
-        << "rtse: component " << component->path
-        << ": its context, an ExtTrigExecutionContext, runs it on a thread of its own after each tick, which nobody can wait for; join it "
-           "as a member (without --tick)\n";
+    console.warn("component " + component->path +
+                 ": its context, an ExtTrigExecutionContext, runs it on a thread of its own after each tick, which nobody can wait for; "
+                 "join it as a member (without --tick)");
   return Joining{component->path, {component->instance, options.phase, base::format_number(rate), how, options.turn}};
 }
 
@@ -152,7 +151,7 @@ void join(const Session& session, Console& console, const JoinOptions& options) 
   HostSettings settings{
       .naming = session.server(), .name = "time" + std::to_string(getpid()), .empty_file = "/dev/null", .options = options.options};
   for (const auto& path : options.components) {
-    auto one = look_at(session, path, options);
+    auto one = look_at(session, console, path, options);
     if (!one) return console.fail(one.error());
     settings.creations.push_back(proxy_creation(one->member, options.server_id) + alone_limit);
     all.push_back(std::move(*one));

@@ -218,11 +218,11 @@ void go(const Session& session, Console& console, const GotoOptions& options) {
       return console.fail({base::in_quotes(options.what) + ": is no recording; with a system's profile say its world: -w WORLD"});
     auto run = RecordedRun::unpack(options.what);
     if (!run) return console.fail(run.error());
-    if (const auto lost = run->lost(); !lost.empty()) std::cerr << "rtse: " << lost << '\n';
+    if (const auto lost = run->lost(); !lost.empty()) console.warn(lost);
     recorded.emplace(std::move(*run));
     call = recorded->options();
     if (options.time_s.value_or(0) > call.duration_s)
-      std::cerr << "rtse: the recorded run ended at " << base::format_number(call.duration_s) << " s\n";
+      console.warn("the recorded run ended at " + base::format_number(call.duration_s) + " s");
   } else {
     call.system = options.what;
     call.world = options.world;

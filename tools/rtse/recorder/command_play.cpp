@@ -101,13 +101,12 @@ std::set<std::string> recorded_links(const mcap::Reader& reader) {
 }
 
 // Without links each recorded port goes where it went; InPorts that are not there now are told.
-base::Result<void> add_recorded_routes(const Session& session, const mcap::Reader& reader, Routes& routes) {
+base::Result<void> add_recorded_routes(const Session& session, Console& console, const mcap::Reader& reader, Routes& routes) {
   const auto links = recorded_links(reader);
   if (links.empty())
     return base::Error{"recording: does not say which InPorts its channels were connected to; expected COMPONENT:PORT=INPORT"};
   for (const auto& link : links) {
-    if (const auto added = add_route(session, reader, link, routes); !added)
-      std::cerr << "rtse: " << base::printable(added.error().message) << '\n';
+    if (const auto added = add_route(session, reader, link, routes); !added) console.warn(base::printable(added.error().message));
   }
   if (routes.empty()) return base::Error{"recording: none of the InPorts that its channels were connected to is there"};
   return {};
@@ -214,13 +213,13 @@ bool play_once(Console& console, mcap::Reader& reader, const PlayOptions& option
 void play(const Session& session, Console& console, const PlayOptions& options) {
   auto reader = open_recording(options.file);
   if (!reader) return console.fail(reader.error());
-  if (reader->damage()) std::cerr << "rtse: " << *reader->damage() << '\n';
+  if (reader->damage()) console.warn(*reader->damage());
   Routes routes;
   for (const auto& link : options.links) {
     if (const auto added = add_route(session, *reader, link, routes); !added) return console.fail(added.error());
   }
   if (options.links.empty()) {
-    if (const auto added = add_recorded_routes(session, *reader, routes); !added) return console.fail(added.error());
+    if (const auto added = add_recorded_routes(session, console, *reader, routes); !added) return console.fail(added.error());
   }
   editor::catch_interrupts();
   const editor::CallLimit limited(session.call_timeout());

@@ -345,8 +345,7 @@ bool record_into(const Session& session, Console& console, const RecordOptions& 
   if (!options.quiet)
     std::cerr << "recording " << source.size() << " ports" << (*views ? " and the simulator" : "") << " into "
               << base::in_quotes(options.file) << "; Ctrl-C ends it\n";
-  if (!stale.empty() && !options.quiet)
-    std::cerr << "rtse: " << names_of(stale) << ": of an earlier ring that was not put together, replaced\n";
+  if (!stale.empty() && !options.quiet) console.warn(names_of(stale) + ": of an earlier ring that was not put together, replaced");
   wait_for_end(options, exchange, end, [&] { look_again(session, console, source, components); });
   if (exchange.failure() || !end->is_raised()) return true;
   if (*views && !(*views)->is_live())

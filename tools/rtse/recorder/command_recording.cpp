@@ -155,8 +155,8 @@ void list(Console& console, const std::string& file, bool with_run) {
   }
   if (console.json()) return console.print(with_run ? all : all["channels"]);
   if (std::ranges::any_of(facts, [](const auto& one) { return !one.second.is_read; }))
-    std::cerr << "rtse: samples of more than " << (most_read >> 30)
-              << " GiB are counted by their indexes: without octets and missing ones\n";
+    console.warn("samples of more than " + std::to_string(most_read >> 30) +
+                 " GiB are counted by their indexes: without octets and missing ones");
   if (with_run) {
     std::cout << "file        " << file << "\nwritten by  " << base::printable(reader->library()) << "\ntime        "
               << seconds_text(reader->statistics().first) << " to " << seconds_text(reader->statistics().last) << " s\nsamples     "

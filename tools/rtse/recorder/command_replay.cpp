@@ -47,7 +47,7 @@ editor::Properties of_receiver(const editor::SavedConnector& connector) {
 }
 
 // The links that the profile has, and those of the command line in their place.
-base::Result<std::vector<ReplayLink>> links_of(const editor::SavedSystem& system, const Options& options) {
+base::Result<std::vector<ReplayLink>> links_of(Console& console, const editor::SavedSystem& system, const Options& options) {
   std::vector<ReplayLink> links;
   for (const auto& text : options.links) {
     const auto equals = text.find('=');
@@ -78,14 +78,13 @@ base::Result<std::vector<ReplayLink>> possible(std::vector<ReplayLink> links, co
   }
   std::erase_if(links, [&](const ReplayLink& link) {
     if (has(link.topic)) return false;
-    std::cerr << "rtse: input " << options.component << ":" << link.port << ": missing, the recording has no "
-              << base::printable(link.topic) << '\n';
+    console.warn("input " + options.component + ":" + link.port + ": missing, the recording has no " + base::printable(link.topic));
     return true;
   });
   for (const auto& connector : system.connectors) {
     if (connector.is_data || (connector.target.instance != options.component && connector.source.instance != options.component)) continue;
-    std::cerr << "rtse: service port " << base::printable(connector.source.port_name) << ": missing, calls of "
-              << base::printable(connector.target.port_name) << " are not recorded\n";
+    console.warn("service port " + base::printable(connector.source.port_name) + ": missing, calls of " +
+                 base::printable(connector.target.port_name) + " are not recorded");
   }
   return links;
 }
@@ -119,7 +118,7 @@ base::Result<void> configure(editor::SavedComponent& component, const std::vecto
 
 // The rate in which it ran; the profile may say something else. Of a component that was recorded outside of lock step it is not known, as
 // is the tick in which it read a sample.
-base::Result<void> take_rate(editor::SavedComponent& component, const std::string& file) {
+base::Result<void> take_rate(Console& console, editor::SavedComponent& component, const std::string& file) {
   auto reader = open_recording(file);
   if (!reader) return reader.error();
   bool is_recorded = false;
@@ -133,8 +132,8 @@ base::Result<void> take_rate(editor::SavedComponent& component, const std::strin
     return {};
   }
   if (is_recorded)
-    std::cerr << "rtse: " << component.instance
-              << " was recorded outside of lock step: in which tick it read a sample is not known, so that its outputs may differ\n";
+    console.warn(component.instance +
+                 " was recorded outside of lock step: in which tick it read a sample is not known, so that its outputs may differ");
   return {};
 }
 
@@ -232,7 +231,7 @@ void replay_file(const Session& session, Console& console, const Options& option
   replayed.tolerated.ignored = options.ignored;
   if (has_own_stamps(*run, options.component)) replayed.tolerated.ignored.emplace_back("tm");
   for (const auto& text : options.tolerances) replayed.tolerated.tolerances.insert(*parse_tolerance(text));
-  const auto links = links_of(*system, options);
+  const auto links = links_of(console, *system, options);
   if (!links) return console.fail(links.error());
   auto given = possible(*links, *system, options);
   if (!given) return console.fail(given.error());
@@ -240,13 +239,13 @@ void replay_file(const Session& session, Console& console, const Options& option
   auto life = RecordedLife::read(options.file, options.component);
   if (!life) return console.fail(life.error());
   if (!life->is_recorded)
-    std::cerr << "rtse: configuration and states of " << options.component << ": those of the profile, the recording has no /rtc/"
-              << options.component << "/state\n";
+    console.warn("configuration and states of " + options.component + ": those of the profile, the recording has no /rtc/" +
+                 options.component + "/state");
   for (const auto& text : options.settings) life->forget(text.substr(0, text.find('=')));
   replayed.life = std::move(*life);
 
   auto one = alone(*system, options.component);
-  if (const auto taken = take_rate(one.components.front(), options.file); !taken) return console.fail(taken.error());
+  if (const auto taken = take_rate(console, one.components.front(), options.file); !taken) return console.fail(taken.error());
   auto call = run->options();
   const auto world = empty_world(*run, one.components.front());
   if (!world) return console.fail(world.error());

@@ -4,7 +4,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <iostream>
 #include <memory>
 
 #include "base/child_process.h"
@@ -60,7 +59,7 @@ std::vector<std::string> words_of(Console& console, const LikeOptions& options, 
 void run_like(Console& console, const LikeOptions& options) {
   const auto run = RecordedRun::unpack(options.file);
   if (!run) return console.fail(run.error());
-  if (const auto lost = run->lost(); !lost.empty()) std::cerr << "rtse: " << lost << '\n';
+  if (const auto lost = run->lost(); !lost.empty()) console.warn(lost);
   auto words = words_of(console, options, *run);
   std::vector<char*> arguments;
   for (auto& word : words) arguments.push_back(word.data());
