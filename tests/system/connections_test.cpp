@@ -29,8 +29,8 @@ TEST_F(ConnectionsTest, the_first_port_is_asked_with_what_a_data_connection_need
   ASSERT_EQ(out_->asked.size(), 1u);
   EXPECT_TRUE(in_->asked.empty());
   const auto& profile = out_->asked.front();
-  EXPECT_STREQ(profile.connector_id, "id1");
-  EXPECT_STREQ(profile.name, "A0.out_B0.in");
+  EXPECT_STREQ(profile.connector_id.in(), "id1");
+  EXPECT_STREQ(profile.name.in(), "A0.out_B0.in");
   ASSERT_EQ(profile.ports.length(), 2u);
   EXPECT_TRUE(profile.ports[1]->_is_equivalent(in_view_.object));
   const Properties expected = {{"dataport.data_type", "IDL:RTC/TimedLong:1.0"},

@@ -126,7 +126,7 @@ TEST_F(SavedSystemTest, an_error_state_is_left_by_a_reset_and_cannot_be_restored
 TEST_F(SavedSystemTest, components_start_in_the_listed_order_and_the_others_after_them) {
   system_.components.push_back(saved("C0"));
   system_.components.back().is_required = false;
-  system_.start_up = {{.instance = "A0", .sequence = 2}, {.instance = "B0", .sequence = 1}};
+  system_.start_up = {{"A0", "", "", "0", 2}, {"B0", "", "", "0", 1}};
   const Matched all({a_, b_, component_view("C0")}, system_);
   EXPECT_THAT(move_all(session_, all, system_, true, Transition::activate).actions,
               ElementsAre("activate /localhost/B0.rtc in context 0", "activate /localhost/A0.rtc in context 0",
@@ -152,9 +152,10 @@ TEST_F(SavedSystemTest, a_connection_that_no_port_has_is_an_error) {
 TEST_F(SavedSystemTest, components_are_activated_with_the_timeout_of_the_session) {
   const Orb orb;
   Served<FakeContext> context;
-  a_.contexts.front().object = context->_this();
+  auto a = a_;  // ends before the ORB
+  a.contexts.front().object = context->_this();
   system_.components.pop_back();
-  const Matched one({a_}, system_);
+  const Matched one({a}, system_);
   const Session session(orb.get(), "localhost", std::chrono::milliseconds(100), std::chrono::seconds(30));
   const auto changes = move_all(session, one, system_, false, Transition::activate);
   EXPECT_THAT(messages(changes), IsEmpty());

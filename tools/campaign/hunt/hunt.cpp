@@ -29,11 +29,12 @@ Result<void> room_for(const HuntOptions& options, std::uintmax_t least) { return
 class Hunt {
  public:
   Hunt(CORBA::ORB_ptr orb, const Campaign& campaign, const std::vector<HuntTarget>& targets, const HuntOptions& options,
-       const std::function<void(const HuntProgress&)>& show)
+       const std::function<void(const HuntProgress&)>& show, editor::Reporter& reporter)
       : orb_(orb),
         campaign_(campaign),
         options_(options),
         show_(show),
+        reporter_(reporter),
         maker_(campaign, targets),
         random_(campaign.plan().hunt.seed, "hunt") {}
 
