@@ -56,19 +56,15 @@ const std::vector<Layer> layers = {
     {"tools/channels", {"channels", "base", "stubs"}, {}, {"channels/views/"}},
     {"tools/recording/mcap", {"recording", "base"}, {"zstd", "lz4", "deflate"}},
     {"tools/recording", {"recording", "channels", "system", "shm", "base", "stubs"}, {"omniORB", "JSON", "PNG"}},
-    {"tools/run",
-     {"run", "recording", "channels", "system", "rtse", "corba", "shm", "base", "stubs"},
-     {"omniORB", "pugixml", "YAML", "JSON"}},
+    {"tools/run", {"run", "recording", "channels", "system", "corba", "shm", "base", "stubs"}, {"omniORB", "pugixml", "YAML", "JSON"}},
     {"tools/campaign",
-     {"campaign", "run", "recording", "system", "rtse", "base", "stubs"},
+     {"campaign", "run", "recording", "system", "base", "stubs"},
      {"omniORB", "pugixml", "JSON", "YAML", "Eigen", "SQLite"}},
     {"tools/rtse",
      {"rtse", "campaign", "run", "recording", "channels", "system", "corba", "shm", "base", "stubs"},
      {"omniORB", "pugixml", "JSON", "YAML", "spdlog", "ncurses"}},
     {"tools/simctl", {"simctl", "shm", "base"}, {"JSON", "PNG"}},
-    {"tools/studio",
-     {"studio", "rtse", "run", "recording", "channels", "system", "shm", "base", "stubs"},
-     {"omniORB", "Boost", "JSON", "deflate"}},
+    {"tools/studio", {"studio", "run", "recording", "channels", "system", "shm", "base", "stubs"}, {"omniORB", "Boost", "JSON", "deflate"}},
     {"clients/examples", {"rtm", "coil", "base", "stubs"}},
     {"clients/obstacle-avoidance", {"rtm", "coil", "base", "stubs"}},
     {"clients/video-player", {"rtm", "coil", "base", "stubs"}, {"SDL2", "X11", "JPEG", "PNG"}},
@@ -283,7 +279,7 @@ TEST_F(PlantedTree, every_kind_of_offence_is_found) {
   plant("sim-server/render/f.cpp", "#include <GL/gl.h>\n#include <ode/ode.h>\n");
   plant("clients/unknown/g.cpp", "\n");
   plant("gateways/player/protocol/h.cpp", "#include \"protocol/xdr.h\"\n#include \"shm/client.h\"\n");
-  plant("gateways/player/m.cpp", "#include \"editor.h\"\n#include \"system/editor.h\"\n#include \"m.h\"\n");
+  plant("gateways/player/m.cpp", "#include \"session.h\"\n#include \"system/session.h\"\n#include \"m.h\"\n");
   plant("gateways/player/m.h", "");
   plant("tools/system/n.cpp", "#include \"n.h\"\n#include \"run/run_system.h\"\n");
   plant("tools/system/n.h", "");
@@ -293,8 +289,8 @@ TEST_F(PlantedTree, every_kind_of_offence_is_found) {
             (Names{
                 "clients/unknown/g.cpp: is in no layer of the table",
                 "clients/video-player/d.cpp:1: clients/video-player may not include <shm/segment.h> of shm",
-                "gateways/player/m.cpp:1: \"editor.h\" is no header of gateways/player",
-                "gateways/player/m.cpp:2: gateways/player may not include <system/editor.h> of system",
+                "gateways/player/m.cpp:1: \"session.h\" is no header of gateways/player",
+                "gateways/player/m.cpp:2: gateways/player may not include <system/session.h> of system",
                 "gateways/player/protocol/h.cpp:2: gateways/player/protocol may not include <shm/client.h> of shm",
                 "iface-components/c.cpp:2: iface-components may not include <core/registry.h> of core",
                 "rtm-core/component/i.h:2: rtm-core/component may not include <manager/manager_impl.h> of manager",

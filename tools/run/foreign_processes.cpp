@@ -207,12 +207,12 @@ std::vector<std::string> ForeignProcesses::creations(const std::string& server_i
   return all;
 }
 
-Result<void> ForeignProcesses::join(const Editor& editor, SavedSystem& system, std::chrono::milliseconds patience) {
+Result<void> ForeignProcesses::join(const Session& session, SavedSystem& system, std::chrono::milliseconds patience) {
   for (const auto& member : members_) {
     if (member.how == TimeMember::How::clock) continue;
     const auto path = member.instance + ".rtc";
-    if (const auto joined = join_time(editor, path, proxy_name(member.instance) + ".rtc", member.how, patience); !joined) return joined;
-    const auto view = editor.component(path, {.contexts = true});
+    if (const auto joined = join_time(session, path, proxy_name(member.instance) + ".rtc", member.how, patience); !joined) return joined;
+    const auto view = session.component(path, {.contexts = true});
     if (!view) return view.error();
     if (member.how == TimeMember::How::tick && ticks_on_its_own(*view))
       chances_.push_back("component " + member.instance +

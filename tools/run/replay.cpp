@@ -122,8 +122,8 @@ std::string in_ports(const editor::ComponentView& component) {
 }
 
 base::Result<void> Player::connect() {
-  editor::Editor editor(orb_, system_.naming(), false, std::chrono::milliseconds(call_limit));
-  auto component = editor.component(options_.component + ".rtc", {.contexts = true, .connectors = true});
+  editor::Session session(orb_, system_.naming(), std::chrono::milliseconds(call_limit));
+  auto component = session.component(options_.component + ".rtc", {.contexts = true, .connectors = true});
   if (!component) return component.error();
   for (auto* life : {&between_ticks_, &within_ticks_}) {
     if (const auto begun = life->begin(*component); !begun) return begun;

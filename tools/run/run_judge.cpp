@@ -28,7 +28,7 @@ Result<void> RunJudge::read() {
   return {};
 }
 
-Result<void> RunJudge::look(const Editor& editor, const std::vector<std::string>& chances, RunResult& result) {
+Result<void> RunJudge::look(const Session& session, const std::vector<std::string>& chances, RunResult& result) {
   const auto stats = simulator_.statistics(look_limit);
   if (!stats.contains("hash")) return Error{"sim-server: does not answer"};
   result.state_hash = stats["hash"].is_string() ? stats["hash"].get<std::string>() : stats["hash"].dump();
@@ -39,7 +39,7 @@ Result<void> RunJudge::look(const Editor& editor, const std::vector<std::string>
   }
   seen_.models = simulator_.models();
   for (const auto& component : system_.components) {
-    const auto view = editor.component(component.instance + ".rtc", {.contexts = true});
+    const auto view = session.component(component.instance + ".rtc", {.contexts = true});
     seen_.states[component.instance] = view ? state_text(view->state()) : "gone";
     if (view) providers_.merge(providers_of(*view));
   }

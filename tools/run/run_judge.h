@@ -13,8 +13,8 @@
 #include "run/run_hosts.h"
 #include "run/run_simulator.h"
 #include "run/run_system.h"
-#include "system/editor.h"
 #include "system/profile/rts_profile.h"
+#include "system/session.h"
 
 namespace editor {
 
@@ -31,7 +31,7 @@ class RunJudge {
   void take_values(std::map<std::string, SeenValue> values) { seen_.values = std::move(values); }
   // What can be seen only while everything still runs: states, poses, the picture, the hash. Fails when the simulator does not answer.
   // `chances`: what is known already to depend on chance.
-  Result<void> look(const Editor& editor, const std::vector<std::string>& chances, RunResult& result);
+  Result<void> look(const Session& session, const std::vector<std::string>& chances, RunResult& result);
   // The user's commands. Fails after an interrupt, and when a command cannot be started; its exit code is for the verdict.
   Result<void> run_commands(const std::string& naming);
   // The record against the expectations. Fails when the record does not reach to the end of the run.

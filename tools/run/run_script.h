@@ -20,7 +20,7 @@ namespace editor {
 // What a script may use of the run while it stands between two steps.
 struct RunScene {
   CORBA::ORB_ptr orb;
-  const Editor& editor;  // of the run's naming service
+  const Session& session;  // of the run's naming service
   RunSimulator& simulator;
   const Workplace& place;
   const std::string& naming;  // HOST:PORT of its service

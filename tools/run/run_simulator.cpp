@@ -163,7 +163,7 @@ Result<void> RunSimulator::make_steps(std::int64_t steps, const std::function<Re
       shown = now;
       passed(last_time_);
     }
-    if (now - moved > long_time && !std::exchange(is_told, true)) std::fprintf(stderr, "rtse: %s\n", base::printable(who_waits()).c_str());
+    if (now - moved > long_time && !std::exchange(is_told, true)) reporter_.warn(base::printable(who_waits()));
     if (now - moved > std::chrono::duration<double>(options_.hang_timeout_s)) return Error{who_hangs()};
   }
 }

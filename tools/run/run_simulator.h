@@ -18,6 +18,7 @@
 #include "run/run_files.h"
 #include "run/run_hashes.h"
 #include "run/run_system.h"
+#include "system/reporter.h"
 
 namespace editor {
 
@@ -27,8 +28,8 @@ class RunSimulator {
   using Wait = std::function<Result<void>(const std::string& what, const std::function<bool()>& ready)>;
 
   // All must live as long.
-  RunSimulator(const RunOptions& options, const Workplace& place, const RunHashes& hashes)
-      : options_(options), place_(place), hashes_(hashes) {}
+  RunSimulator(const RunOptions& options, const Workplace& place, const RunHashes& hashes, Reporter& reporter)
+      : options_(options), place_(place), hashes_(hashes), reporter_(reporter) {}
 
   // Returns when it answers, paused before its first step.
   Result<void> start(const Wait& wait_until);
@@ -70,6 +71,7 @@ class RunSimulator {
   const RunOptions& options_;
   const Workplace& place_;
   const RunHashes& hashes_;
+  Reporter& reporter_;
   std::optional<ChildProcess> process_;
   std::string id_;
   double step_s_ = 0;

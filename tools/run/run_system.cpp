@@ -1,7 +1,5 @@
 #include "run/run_system.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -11,8 +9,6 @@
 
 #include "base/interrupt.h"
 #include "base/text.h"
-#include "rtse/commands/state.h"
-#include "rtse/commands/system.h"
 #include "run/foreign_links.h"
 #include "run/foreign_processes.h"
 #include "run/lost_members.h"
@@ -28,6 +24,8 @@
 #include "run/run_simulator.h"
 #include "run/time_members.h"
 #include "system/remote.h"
+#include "system/reporter.h"
+#include "system/saved_system.h"
 
 namespace editor {
 namespace {
@@ -35,18 +33,19 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-constexpr auto editor_limit = 5s;
+constexpr auto call_timeout = 5s;
 
 // Everything of one run. Its end takes the processes down, the components before the simulator before the naming service.
 class Run final : public RunningSystem {
  public:
-  Run(CORBA::ORB_ptr orb, const RunOptions& options)
+  Run(CORBA::ORB_ptr orb, const RunOptions& options, Reporter& reporter)
       : orb_(CORBA::ORB::_duplicate(orb)),
         options_(options),
+        reporter_(reporter),
         place_(options.keep),
         naming_(place_),
         hashes_(options.hash_log, place_),
-        simulator_(options_, place_, hashes_),
+        simulator_(options_, place_, hashes_, reporter_),
         hosts_(options_, place_, hashes_, simulator_),
         foreign_(place_) {}
 
@@ -117,7 +116,7 @@ class Run final : public RunningSystem {
 
   using Seconds = std::chrono::duration<double>;
   Seconds start_limit() const { return Seconds(options_.start_timeout_s); }
-  std::chrono::milliseconds start_patience() const { return std::chrono::duration_cast<std::chrono::milliseconds>(start_limit()); }
+  std::chrono::milliseconds start_timeout() const { return std::chrono::duration_cast<std::chrono::milliseconds>(start_limit()); }
 
   // A problem that has a reason: what needs the naming service cannot be found without it.
   std::string with_naming(const std::string& problem) {
@@ -138,8 +137,8 @@ class Run final : public RunningSystem {
       if (now - began > limit) return fail(what + ": not ready after " + base::format_number(limit.count()) + " s (--start-timeout)");
       if (now - told > limit / 3) {
         told = now;
-        std::fprintf(stderr, "rtse: %s: not ready after %.0f s, is waited for up to %s s (--start-timeout)\n",
-                     base::printable(what).c_str(), Seconds(now - began).count(), base::format_number(limit.count()).c_str());
+        reporter_.warn(base::printable(what) + ": not ready after " + std::to_string(std::lround(Seconds(now - began).count())) +
+                       " s, is waited for up to " + base::format_number(limit.count()) + " s (--start-timeout)");
       }
       std::this_thread::sleep_for(20ms);  // what is waited for is another program's start, which nobody announces
     }
@@ -257,20 +256,24 @@ class Run final : public RunningSystem {
     const auto links = foreign_.set_links(system_);
     result_.notes.insert(result_.notes.end(), links.begin(), links.end());
     if (const auto written = write_system(system_, file); !written) return written;
-    editor_.emplace(orb_, naming_.address(), false, std::chrono::milliseconds(editor_limit));
-    if (options_.driver) editor_->be_silent();  // who drives the run tells its problem alone
-    load(*editor_, {.file = file});
-    if (!editor_->failed() && !foreign_.empty()) {
-      if (const auto joined = foreign_.join(*editor_, system_, start_patience()); !joined) return joined;
+    session_.emplace(orb_, naming_.address(), call_timeout, start_timeout());
+    if (const auto wired = check("wired and activated", load(*session_, system_)); !wired) return wired;
+    if (!foreign_.empty()) {
+      if (const auto joined = foreign_.join(*session_, system_, start_timeout()); !joined) return joined;
       if (const auto written = write_system(system_, file); !written) return written;
     }
-    wait_for_states(start_patience());
-    if (!editor_->failed()) start(*editor_, file, false);
-    if (!editor_->failed()) {
-      if (const auto joined = wait_for_participants(); !joined) return joined;
+    if (const auto started = check("wired and activated", start(*session_, system_)); !started) return started;
+    return wait_for_participants();
+  }
+
+  // Reports warnings and failures. The first failure is the run's problem. A driver reports failures itself.
+  Result<void> check(const std::string& goal, const Changes& changes) {
+    for (const auto& warning : changes.warnings) reporter_.warn(warning);
+    if (changes.ok()) return {};
+    for (const auto& error : changes.errors) {
+      if (!options_.driver) reporter_.warn(error.message);
     }
-    if (editor_->failed()) return fail("system " + options_.system + ": could not be wired and activated: " + editor_->problem());
-    return {};
+    return fail("system " + options_.system + ": could not be " + goal + ": " + changes.errors.front().message);
   }
 
   // Returns when lock step does not wait for its contexts any more.
@@ -289,28 +292,28 @@ class Run final : public RunningSystem {
     if (!members) return members.error();
     const auto back = wait_until("components of the host of " + instance, [&] {
       return std::ranges::all_of(*members, [&](const auto* member) {
-        const auto view = editor_->component(member->instance + ".rtc", {.contexts = true});
+        const auto view = session_->component(member->instance + ".rtc", {.contexts = true});
         return view.ok() && view->problem.empty();
       });
     });
     if (!back) return back;
     if (const auto wired = wire_again(*members); !wired) return wired;
-    if (const auto heard = ports_.listen_again(orb_, *editor_, instances_of(*members)); !heard) return heard;
+    if (const auto heard = ports_.listen_again(orb_, *session_, instances_of(*members)); !heard) return heard;
     return recorder_.look_again(wait());
   }
 
   // Who is there is known before it cannot be asked.
   void set_naming(bool is_there) {
-    auto names = is_there ? Result<NamingTree>(Error{}) : editor_->tree();
+    auto names = is_there ? Result<NamingTree>(Error{}) : session_->tree();
     names_ = names ? std::optional(std::move(*names)) : std::nullopt;
     naming_.set_running(is_there);
   }
 
   Result<ComponentView> component(const std::string& instance, Detail detail) {
-    if (!names_) return editor_->component(instance + ".rtc", detail);
+    if (!names_) return session_->component(instance + ".rtc", detail);
     const auto entry = names_->find_component({false, {instance + ".rtc"}, ""});
     if (!entry) return entry.error();
-    const CallLimit limited(editor_limit);
+    const CallLimit limited(call_timeout);
     auto view = read_component(**entry, detail);
     return view.problem.empty() ? Result<ComponentView>(std::move(view)) : Error{"component " + instance + " " + view.problem};
   }
@@ -331,13 +334,8 @@ class Run final : public RunningSystem {
     std::erase_if(all.components, [&](const SavedComponent& component) { return hosts_.is_killed(component.instance); });
     const auto is_away = [&](const SavedTarget& end) { return hosts_.is_killed(end.instance); };
     std::erase_if(all.connectors, [&](const SavedConnector& one) { return is_away(one.source) || is_away(one.target); });
-    const auto wired_file = place_.scratch("wired-again.xml"), started_file = place_.scratch("started-again.xml");
-    for (const auto& [system, file] : {std::pair(&all, &wired_file), std::pair(&started, &started_file)}) {
-      if (const auto written = write_system(*system, *file); !written) return written;
-    }
-    load(*editor_, {.file = wired_file});
-    if (!editor_->failed()) start(*editor_, started_file, false);
-    if (editor_->failed()) return fail("system " + options_.system + ": could not be wired and activated again: " + editor_->problem());
+    if (const auto wired = check("wired and activated again", load(*session_, all)); !wired) return wired;
+    if (const auto begun = check("wired and activated again", start(*session_, started)); !begun) return begun;
     return wait_for_participants();
   }
 
@@ -346,7 +344,7 @@ class Run final : public RunningSystem {
     auto expected = foreign_.names();
     for (const auto& component : system_.components) {
       if (!hosts_.has(component.instance)) continue;  // killed by a script
-      const auto view = editor_->component(component.instance + ".rtc", {.contexts = true});
+      const auto view = session_->component(component.instance + ".rtc", {.contexts = true});
       if (!view) return view.error();
       for (const auto& context : view->contexts) {
         if (context.is_owned && context.is_running && property(context.properties, "type") == "SimTimeContext") {
@@ -376,7 +374,7 @@ class Run final : public RunningSystem {
     if (const auto answer = naming_.ask(); !answer) return answer;
     auto chances = links_.chances();
     chances.insert(chances.end(), foreign_.chances().begin(), foreign_.chances().end());
-    return judge_.look(*editor_, chances, result_);
+    return judge_.look(*session_, chances, result_);
   }
 
   Result<void> run_commands() {
@@ -400,18 +398,18 @@ class Run final : public RunningSystem {
   Result<void> listen() {
     if (hashes_.is_wanted() || tells_of_chance(options_)) {
       const auto part = hashes_.is_wanted() ? hashes_.links_part() : std::string();
-      const auto silent = links_.listen(orb_, *editor_, system_, foreign_, simulator_.id(), part);
+      const auto silent = links_.listen(orb_, *session_, system_, foreign_, simulator_.id(), part);
       if (!silent) return silent.error();
       result_.notes.insert(result_.notes.end(), silent->begin(), silent->end());
     }
-    if (const auto listening = ports_.listen(orb_, *editor_, judge_.expectations()); !listening || !options_.script) return listening;
-    return ports_.listen(orb_, *editor_, options_.script->watched());
+    if (const auto listening = ports_.listen(orb_, *session_, judge_.expectations()); !listening || !options_.script) return listening;
+    return ports_.listen(orb_, *session_, options_.script->watched());
   }
 
   Result<void> begin_script() {
     if (!options_.script) return {};
     scene_.emplace(RunScene{
-        orb_, *editor_, simulator_, place_, naming_.address(), system_, ports_,
+        orb_, *session_, simulator_, place_, naming_.address(), system_, ports_,
         [this](const auto& instance) { return kill_host(instance); }, [this](const auto& instance) { return restart_host(instance); },
         [this](const auto& instance) { return hosts_.is_killed(instance); }, [this](bool is_there) { set_naming(is_there); },
         [this](const auto& instance, Detail detail) { return component(instance, detail); }});
@@ -421,9 +419,8 @@ class Run final : public RunningSystem {
   Result<void> drive() {
     if (options_.driver) return options_.driver(*this);
     auto left = static_cast<std::int64_t>(std::llround(options_.duration_s / simulator_.step()));
-    const bool shows = !options_.quiet && isatty(2);
     const auto show = [&](double now) {
-      if (shows) std::fprintf(stderr, "\r%6.1f of %.1f s", now, options_.duration_s);
+      if (!options_.quiet) reporter_.show_progress(now, options_.duration_s);
     };
     for (std::int64_t done = 0; left > 0;) {
       const auto stop = options_.script ? options_.script->next_stop(done).value_or(done + left) : done + left;
@@ -442,7 +439,7 @@ class Run final : public RunningSystem {
         if (const auto acted = options_.script->act(*scene_, done); !acted) return acted;
       }
     }
-    if (shows) std::fprintf(stderr, "\r                         \r");
+    if (!options_.quiet) reporter_.end_progress();
     return check_children();
   }
 
@@ -461,6 +458,7 @@ class Run final : public RunningSystem {
 
   CORBA::ORB_var orb_;
   const RunOptions& options_;
+  Reporter& reporter_;
   Workplace place_;
   RunNaming naming_;
   SavedSystem system_;
@@ -470,10 +468,10 @@ class Run final : public RunningSystem {
   RunSimulator simulator_;
   RunHosts hosts_;
   ForeignProcesses foreign_;
-  LostMembers lost_{foreign_, hosts_, simulator_, [this] { return editor_.has_value(); },
+  LostMembers lost_{foreign_, hosts_, simulator_, [this] { return session_.has_value(); },
                     [this](const auto& instance) { return component(instance, {}).ok(); }};
   RunRecorder recorder_{place_};
-  std::optional<Editor> editor_;
+  std::optional<Session> session_;
   std::optional<NamingTree> names_;  // while the naming service is stopped by a script
   RunJudge judge_{options_, place_, system_, simulator_, hosts_};
   PortValues ports_;
@@ -483,9 +481,9 @@ class Run final : public RunningSystem {
 
 }  // namespace
 
-RunResult run_system(CORBA::ORB_ptr orb, const RunOptions& options) {
+RunResult run_system(CORBA::ORB_ptr orb, const RunOptions& options, Reporter& reporter) {
   try {
-    return Run(orb, options).go();
+    return Run(orb, options, reporter).go();
   } catch (const std::filesystem::filesystem_error& error) {
     RunResult result;
     result.seed = options.seed;

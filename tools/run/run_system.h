@@ -12,11 +12,12 @@
 #include <vector>
 
 #include "run/expectations.h"
-#include "system/editor.h"
 #include "system/profile/rts_profile.h"
+#include "system/session.h"
 
 namespace editor {
 
+class Reporter;
 class RunScript;
 class WarmPrograms;
 
@@ -85,8 +86,9 @@ struct RunResult {
   bool is_passed() const;
 };
 
-// Returns when everything that it started has ended. catch_interrupts() first: an interrupt is a problem like others.
-RunResult run_system(CORBA::ORB_ptr orb, const RunOptions& options);
+// Returns when everything that it started has ended. catch_interrupts() first: an interrupt is a problem like others. `reporter` receives
+// what takes long, what failed beside the first problem, and the progress.
+RunResult run_system(CORBA::ORB_ptr orb, const RunOptions& options, Reporter& reporter);
 
 struct ComponentProperty {
   std::string instance, key, value;

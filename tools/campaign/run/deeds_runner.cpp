@@ -23,7 +23,7 @@ constexpr auto call_limit = 10s;
 
 // "kind:from:for:amount:seed", as core/fault.h reads it.
 std::string fault_text(const Fault& fault, std::uint64_t seed) {
-  const auto own_seed = Random(seed, fault.text()).next() >> 2U;
+  const auto own_seed = base::Random(seed, fault.text()).next() >> 2U;
   return std::string(to_text(fault.kind)) + ":" + base::format_number(fault.at_s) + ":" + base::format_number(fault.for_s.value_or(0)) +
          ":" + base::format_number(fault.amount) + ":" + std::to_string(own_seed);
 }

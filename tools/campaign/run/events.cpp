@@ -5,10 +5,10 @@
 #include "base/child_process.h"
 #include "base/text.h"
 #include "campaign/run/deeds_runner.h"
-#include "rtse/commands/conf.h"
-#include "rtse/commands/connect.h"
-#include "rtse/commands/state.h"
+#include "system/configuration.h"
+#include "system/connections.h"
 #include "system/profile/matched_system.h"
+#include "system/transitions.h"
 
 namespace campaign {
 namespace {
@@ -52,7 +52,7 @@ Result<void> push(editor::RunScene& scene, const Event& event) {
 Result<void> change(editor::RunScene& scene, const std::string& instance, editor::Transition transition) {
   const auto view = scene.component(instance, {.contexts = true});
   if (!view) return view.error();
-  static_cast<void>(editor::change_state(*view, transition, -1));
+  static_cast<void>(editor::change_state(*view, transition, -1, scene.session.transition_timeout()));
   return {};
 }
 

@@ -88,11 +88,11 @@ struct Joining {
   TimeMember member;
 };
 
-Result<Joining> look_at(const Editor& editor, const std::string& path, const JoinOptions& options) {
-  const auto component = editor.component(path, {.contexts = true});
+Result<Joining> look_at(const Session& session, Console& console, const std::string& path, const JoinOptions& options) {
+  const auto component = session.component(path, {.contexts = true});
   if (!component) return component.error();
   if (simulated_context(*component)) return Error{"component " + component->path + ": takes part in simulated time already (rtse leave)"};
-  if (has_proxy(editor, component->instance))
+  if (has_proxy(session, component->instance))
     return Error{"component " + component->path + ": its own context is ticked in simulated time already (rtse leave)"};
   auto rate = options.rate;
   for (const auto& context : component->contexts) {
@@ -101,18 +101,17 @@ Result<Joining> look_at(const Editor& editor, const std::string& path, const Joi
   if (!(rate > 0)) return Error{"component " + component->path + ": has no context with a rate to take over; name one with --rate"};
   const auto how = options.ticks ? TimeMember::How::tick : TimeMember::How::member;
   if (options.ticks && ticks_on_its_own(*component))
-    std::cerr
-        << "rtse: component " << component->path
-        << ": its context, an ExtTrigExecutionContext, runs it on a thread of its own after each tick, which nobody can wait for; join it "
-           "as a member (without --tick)\n";
+    console.warn("component " + component->path +
+                 ": its context, an ExtTrigExecutionContext, runs it on a thread of its own after each tick, which nobody can wait for; "
+                 "join it as a member (without --tick)");
   return Joining{component->path, {component->instance, options.phase, base::format_number(rate), how, options.turn}};
 }
 
-Result<void> await_proxies(const Editor& editor, const ProgramApart& host, const std::vector<Joining>& all) {
+Result<void> await_proxies(const Session& session, const ProgramApart& host, const std::vector<Joining>& all) {
   const auto deadline = Clock::now() + start_limit;
   for (const auto& one : all) {
     for (;;) {
-      const auto names = editor.tree();
+      const auto names = session.tree();
       if (names && names->find_component({false, {proxy_name(one.member.instance) + ".rtc"}, ""})) break;
       if (host.has_ended()) return Error{"host of the contexts on simulated time: has ended: " + host.said()};
       if (Clock::now() > deadline)
@@ -123,8 +122,8 @@ Result<void> await_proxies(const Editor& editor, const ProgramApart& host, const
   return {};
 }
 
-void end_proxy_of(const Editor& editor, const Joining& one) {
-  const auto proxy = editor.component(proxy_name(one.member.instance) + ".rtc", {});
+void end_proxy_of(const Session& session, const Joining& one) {
+  const auto proxy = session.component(proxy_name(one.member.instance) + ".rtc", {});
   if (proxy) static_cast<void>(remote("proxy", [&] { proxy->object->exit(); }));
 }
 
@@ -147,33 +146,33 @@ bool await_participants(const std::vector<Joining>& all, const std::string& serv
   return false;
 }
 
-void join(Editor& editor, const JoinOptions& options) {
+void join(const Session& session, Console& console, const JoinOptions& options) {
   std::vector<Joining> all;
   HostSettings settings{
-      .naming = editor.server(), .name = "time" + std::to_string(getpid()), .empty_file = "/dev/null", .options = options.options};
+      .naming = session.server(), .name = "time" + std::to_string(getpid()), .empty_file = "/dev/null", .options = options.options};
   for (const auto& path : options.components) {
-    auto one = look_at(editor, path, options);
-    if (!one) return editor.fail(one.error());
+    auto one = look_at(session, console, path, options);
+    if (!one) return console.fail(one.error());
     settings.creations.push_back(proxy_creation(one->member, options.server_id) + alone_limit);
     all.push_back(std::move(*one));
   }
   const auto host = ProgramApart::start(host_words(settings), options.log);
-  if (!host) return editor.fail(host.error());
-  if (const auto there = await_proxies(editor, *host, all); !there) {
-    for (const auto& one : all) end_proxy_of(editor, one);
-    return editor.fail(there.error());
+  if (!host) return console.fail(host.error());
+  if (const auto there = await_proxies(session, *host, all); !there) {
+    for (const auto& one : all) end_proxy_of(session, one);
+    return console.fail(there.error());
   }
   for (const auto& one : all) {
-    if (const auto joined = join_time(editor, one.path, proxy_name(one.member.instance) + ".rtc", one.member.how, join_limit); !joined) {
-      end_proxy_of(editor, one);
-      editor.fail(joined.error());
+    if (const auto joined = join_time(session, one.path, proxy_name(one.member.instance) + ".rtc", one.member.how, join_limit); !joined) {
+      end_proxy_of(session, one);
+      console.fail(joined.error());
     }
   }
-  if (editor.failed()) return;
+  if (console.failed()) return;
   const bool runs = await_participants(all, options.server_id);
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const auto& one : all) {
-    if (!editor.json())
+    if (!console.json())
       std::cout << one.path << ": takes part in simulator " << options.server_id << (runs ? "" : ", once that runs,") << " at "
                 << one.member.rate << " Hz, phase " << one.member.phase << '\n';
     json.push_back({{"component", one.path},
@@ -182,12 +181,12 @@ void join(Editor& editor, const JoinOptions& options) {
                     {"rate", one.member.rate},
                     {"takes_part", runs}});
   }
-  if (editor.json()) editor.print(json);
+  if (console.json()) console.print(json);
 }
 
-void leave(Editor& editor, const std::vector<std::string>& components) {
+void leave(const Session& session, Console& console, const std::vector<std::string>& components) {
   for (const auto& path : components) {
-    if (const auto left = leave_time(editor, path); !left) editor.fail(left.error());
+    if (const auto left = leave_time(session, path); !left) console.fail(left.error());
   }
 }
 
@@ -218,12 +217,16 @@ void add_join(base::Command& app, Chosen& chosen) {
   join->add_option("--log", options->log, "File for what the host of the contexts says");
   join->add_option("-o,--option", options->options, "KEY:VALUE of rtc.conf for that host, such as corba.endpoints")
       ->allow_extra_args(false);
-  join->callback([&chosen, options] { chosen.work = [options](Editor& e) { editor::join(e, *options); }; });
+  join->callback([&chosen, options] {
+    chosen.work = [options](const Session& session, Console& console) { editor::join(session, console, *options); };
+  });
 
   auto* leave = app.add_subcommand("leave", "Undo join: components run in their own contexts again");
   auto components = std::make_shared<std::vector<std::string>>();
   leave->add_option("COMPONENT", *components, "Components")->required();
-  leave->callback([&chosen, components] { chosen.work = [components](Editor& e) { editor::leave(e, *components); }; });
+  leave->callback([&chosen, components] {
+    chosen.work = [components](const Session& session, Console& console) { editor::leave(session, console, *components); };
+  });
 }
 
 }  // namespace editor

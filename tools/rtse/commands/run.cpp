@@ -70,8 +70,8 @@ void print_row(const RunResult& result) {
 
 // A line on standard output, or a row of the table of seeds; what is wrong on standard error, with the seed before it when there are
 // several.
-void report(Editor& editor, const RunResult& result, bool is_row) {
-  if (editor.json()) {
+void report(Console& console, const RunResult& result, bool is_row) {
+  if (console.json()) {
     std::cout << to_json(result).dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
   } else if (is_row) {
     print_row(result);
@@ -84,10 +84,10 @@ void report(Editor& editor, const RunResult& result, bool is_row) {
   }
   std::fflush(stdout);
   const std::string seed = is_row ? "seed " + std::to_string(result.seed) + ": " : "";
-  for (const auto& note : result.notes) std::cerr << "rtse: " + seed + base::printable(note, "\n\t") + "\n";
-  if (!result.problem.empty()) editor.fail({seed + result.problem});
+  for (const auto& note : result.notes) console.warn(seed + note);
+  if (!result.problem.empty()) console.fail({seed + result.problem});
   for (const auto& verdict : result.verdicts) {
-    if (!verdict.problem.empty()) editor.fail({seed + verdict.expectation + ": " + verdict.problem});
+    if (!verdict.problem.empty()) console.fail({seed + verdict.expectation + ": " + verdict.problem});
   }
 }
 
@@ -176,7 +176,8 @@ Result<void> check_files(const RunOptions& options) {
   return {};
 }
 
-std::vector<RunResult> run_seeds(Editor& editor, const RunOptions& options, const std::vector<std::uint64_t>& seeds, int jobs) {
+std::vector<RunResult> run_seeds(const Session& session, Console& console, const RunOptions& options,
+                                 const std::vector<std::uint64_t>& seeds, int jobs) {
   base::Turn<> telling;                   // one result at a time
   std::map<std::size_t, RunResult> done;  // by place in `seeds`
   std::size_t reported = 0;               // rows come in the order of the seeds
@@ -188,11 +189,11 @@ std::vector<RunResult> run_seeds(Editor& editor, const RunOptions& options, cons
                  seeds.size());
   };
   const auto hide = [] { std::fprintf(stderr, "\r%60s\r", ""); };
-  if (!editor.json()) print_heading();
+  if (!console.json()) print_heading();
   std::fflush(stdout);
   if (shows) show();
   in_parallel(
-      seeds.size(), editor.limit(),
+      seeds.size(), session.call_timeout(),
       [&](std::size_t i) {
         if (is_interrupted()) return;
         auto result = run_apart(options, seeds[i]);
@@ -200,7 +201,7 @@ std::vector<RunResult> run_seeds(Editor& editor, const RunOptions& options, cons
         done.emplace(i, std::move(result));
         if (shows) hide();
         for (auto next = done.find(reported); next != done.end(); next = done.find(reported)) {
-          report(editor, next->second, true);
+          report(console, next->second, true);
           ++reported;
         }
         if (shows) show();
@@ -210,13 +211,13 @@ std::vector<RunResult> run_seeds(Editor& editor, const RunOptions& options, cons
   std::vector<RunResult> results;
   std::size_t passed = 0;
   for (auto& [place, result] : done) {
-    if (place >= reported) report(editor, result, true);  // an earlier one was interrupted
+    if (place >= reported) report(console, result, true);  // an earlier one was interrupted
     passed += result.is_passed() ? 1U : 0U;
     results.push_back(std::move(result));
   }
-  if (!editor.json()) std::printf("%zu of %zu seeds passed\n", passed, seeds.size());
+  if (!console.json()) std::printf("%zu of %zu seeds passed\n", passed, seeds.size());
   if (results.size() < seeds.size())
-    editor.fail({"run: interrupted after " + std::to_string(results.size()) + " of " + std::to_string(seeds.size()) + " seeds"});
+    console.fail({"run: interrupted after " + std::to_string(results.size()) + " of " + std::to_string(seeds.size()) + " seeds"});
   return results;
 }
 
@@ -234,22 +235,21 @@ Result<std::vector<std::uint64_t>> parse_seeds(const std::string& text) {
 
 // Prints one line per run and one per unmet expectation. Without `seeds_text` one run with the seed of the options, else one for each,
 // `jobs` of them at a time.
-void run(Editor& editor, const RunOptions& options, const std::optional<std::string>& seeds_text, int jobs) {
-  if (const auto good = check_files(options); !good) return editor.fail(good.error());
+void run(const Session& session, Console& console, const RunOptions& options, const std::optional<std::string>& seeds_text, int jobs) {
+  if (const auto good = check_files(options); !good) return console.fail(good.error());
   catch_interrupts();
   std::vector<RunResult> results;
   if (seeds_text) {
     const auto seeds = parse_seeds(*seeds_text);
-    if (!seeds) return editor.fail(seeds.error());
-    results = run_seeds(editor, options, *seeds, jobs);
+    if (!seeds) return console.fail(seeds.error());
+    results = run_seeds(session, console, options, *seeds, jobs);
   } else {
-    results.push_back(options.twice ? run_twice(editor.orb(), options) : run_system(editor.orb(), options));
-    report(editor, results.back(), false);
-    if (!results.back().logs.empty() && options.keep.empty() && !editor.json())
-      std::fprintf(stderr, "rtse: --keep DIR keeps the logs of all processes\n");
+    results.push_back(options.twice ? run_twice(session.orb(), options, console) : run_system(session.orb(), options, console));
+    report(console, results.back(), false);
+    if (!results.back().logs.empty() && options.keep.empty() && !console.json()) console.warn("--keep DIR keeps the logs of all processes");
   }
   if (options.junit.empty()) return;
-  if (const auto written = write_junit(options.junit, options, results); !written) editor.fail(written.error());
+  if (const auto written = write_junit(options.junit, options, results); !written) console.fail(written.error());
 }
 
 }  // namespace
@@ -295,7 +295,9 @@ void add_run(base::Command& app, Chosen& chosen) {
   add_recording_options(*run, *options);
   add_repeatability_options(*run, *options);
   run->add_option("--keep", options->keep, "Keep logs and the record in this folder");
-  run->callback([&chosen, options, seeds, jobs] { chosen.work = [=](Editor& e) { editor::run(e, *options, *seeds, *jobs); }; });
+  run->callback([&chosen, options, seeds, jobs] {
+    chosen.work = [=](const Session& session, Console& console) { editor::run(session, console, *options, *seeds, *jobs); };
+  });
 }
 
 }  // namespace editor

@@ -4,7 +4,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <iostream>
 #include <memory>
 
 #include "base/child_process.h"
@@ -19,7 +18,8 @@ namespace recorder {
 
 namespace {
 
-using editor::Editor;
+using editor::Console;
+using editor::Session;
 
 struct LikeOptions {
   std::string file;
@@ -34,10 +34,10 @@ bool has(const LikeOptions& options, const std::string& name) {
 }
 
 // What the user says counts before what was recorded.
-std::vector<std::string> words_of(const Editor& editor, const LikeOptions& options, const RecordedRun& run) {
+std::vector<std::string> words_of(Console& console, const LikeOptions& options, const RecordedRun& run) {
   const auto call = run.options();
   std::vector<std::string> words = {editor::own_program("rtse")};
-  if (editor.json()) words.emplace_back("--json");
+  if (console.json()) words.emplace_back("--json");
   words.insert(words.end(), {"run", call.system});
   const auto give = [&](const char* name, const char* other, const std::string& value) {
     if (!has(options, name) && !has(options, other)) words.insert(words.end(), {name, value});
@@ -56,22 +56,22 @@ std::vector<std::string> words_of(const Editor& editor, const LikeOptions& optio
   return words;
 }
 
-void run_like(Editor& editor, const LikeOptions& options) {
+void run_like(Console& console, const LikeOptions& options) {
   const auto run = RecordedRun::unpack(options.file);
-  if (!run) return editor.fail(run.error());
-  if (const auto lost = run->lost(); !lost.empty()) std::cerr << "rtse: " << lost << '\n';
-  auto words = words_of(editor, options, *run);
+  if (!run) return console.fail(run.error());
+  if (const auto lost = run->lost(); !lost.empty()) console.warn(lost);
+  auto words = words_of(console, options, *run);
   std::vector<char*> arguments;
   for (auto& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   editor::catch_interrupts();  // the run gets them, too, and takes its processes down
   pid_t child = 0;
   if (const int failed = ::posix_spawn(&child, arguments[0], nullptr, nullptr, arguments.data(), environ); failed != 0)
-    return editor.fail({"program " + words[0] + ": cannot be started: " + std::strerror(failed)});
+    return console.fail({"program " + words[0] + ": cannot be started: " + std::strerror(failed)});
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) editor.set_failed();
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) console.set_failed();
 }
 
 }  // namespace
@@ -85,7 +85,7 @@ void add_run_like(base::Command& app, editor::Chosen& chosen) {
   command->callback([&chosen, options, command] {
     options->more = command->remaining();
     chosen.needs_orb = false;
-    chosen.work = [options](Editor& editor) { run_like(editor, *options); };
+    chosen.work = [options](const Session&, Console& console) { run_like(console, *options); };
   });
 }
 

@@ -1,4 +1,4 @@
-// The configuration sets of a component, for all commands that change some. One thread at a time.
+// Configuration sets of a component: reads, checks and changes them. One thread at a time.
 #pragma once
 
 #include <string>
@@ -9,7 +9,10 @@
 
 namespace editor {
 
-// "" or what the component has said that a value of this parameter must be.
+// Null: the component has no such set.
+const ConfigurationSetView* find_set(const ComponentView& component, const std::string& id);
+
+// "" or what a value of this parameter must be, by the type and the constraint that the component declares.
 std::string value_problem(const ComponentView& component, const std::string& parameter, const std::string& value);
 
 // Merges the values into the set; it is applied when the set is activated.

@@ -1,4 +1,4 @@
-// Connections of ports, for all commands that make or end some. One thread at a time.
+// Connects and disconnects ports. One thread at a time.
 #pragma once
 
 #include <string>
