@@ -38,7 +38,7 @@ class WarmProgram {
   int line_;
 };
 
-// Those that every run starts: the simulator, hosts of components, and simctl.
+// Those that every run starts: the simulator and hosts of components.
 class WarmPrograms {
  public:
   WarmPrograms();
