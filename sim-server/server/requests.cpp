@@ -33,7 +33,7 @@ bool is_one_of(const shm::Request& request) {
 bool leaves_the_world_alone(const shm::Request& request) {
   return is_one_of<shm::PauseRequest, shm::RunRequest, shm::GetPoseRequest, shm::GetVelocityRequest, shm::ListRequest, shm::TreeRequest,
                    shm::StatsRequest, shm::SetRtfRequest, shm::ContactsRequest, shm::DropParticipantRequest, shm::ExportRequest,
-                   shm::PosesRequest, shm::FaultsRequest, shm::ModelsRequest>(request);
+                   shm::PosesRequest, shm::FaultsRequest, shm::ModelsRequest, shm::PoseLogRequest>(request);
 }
 
 // How long a request that needs the world to stand between two steps waits for a tick to end. Clients wait for ten seconds.
@@ -178,6 +178,15 @@ struct ServerLoop::Handler {
     return {};
   }
   shm::Reply operator()(const shm::PosesRequest&) { return poses_reply(simulation); }
+  shm::Reply operator()(const shm::PoseLogRequest& request) {
+    if (!loop.memory_log_) loop.memory_log_.emplace();
+    auto piece = loop.memory_log_->bytes().take(request.from);
+    if (!piece) return failed(piece.error());
+    shm::Reply reply;
+    reply.count = loop.memory_log_->bytes().end();
+    reply.text = std::move(*piece);
+    return reply;
+  }
   template <class Work>
   void order(Work work, shm::Reply reply) {
     if (!loop.desk_) loop.desk_ = std::make_unique<PictureDesk>([board = &loop.board_] { board->wake(); });

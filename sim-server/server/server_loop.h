@@ -11,6 +11,7 @@
 
 #include "base/result.h"
 #include "server/describe.h"
+#include "server/memory_log.h"
 #include "server/mode.h"
 #include "server/pace.h"
 #include "server/picture_desk.h"
@@ -55,6 +56,7 @@ class ServerLoop {
   void handle_requests(When when);
   shm::Reply handle(const shm::Request& request, const shm::RequestTicket& ticket);
   struct Handler;
+  void look_at_poses();
 
   void wait_for_participants();
   // What belongs to a moment: sensors, clock, participants.
@@ -91,7 +93,9 @@ class ServerLoop {
   shm::IfaceWriter& iface_;
   const ModelPath& model_path_;
   LoopOptions options_;
+  PoseWatch poses_;
   std::optional<Recorder> recorder_;
+  std::optional<MemoryLog> memory_log_;  // once a client has asked for it
   std::optional<WorldHashes> hashes_;
   shm::RequestBoard board_;
   std::unique_ptr<shm::Barrier> barrier_;

@@ -115,7 +115,7 @@ Result<ChildProcess> WarmProgram::make(const ProgramCall& call) const {
 WarmPrograms::WarmPrograms(Reporter& reporter) {
   // What decides how they calculate is read when they are loaded.
   for (const auto& [name, environment] :
-       {std::pair<const char*, std::map<std::string, std::string>>{"sim-server", {same_math()}}, {"rtcd", {same_math()}}, {"simctl", {}}}) {
+       {std::pair<const char*, std::map<std::string, std::string>>{"sim-server", {same_math()}}, {"rtcd", {same_math()}}}) {
     if (auto started = WarmProgram::start(name, environment, reporter)) programs_.push_back(std::move(*started));
   }
 }

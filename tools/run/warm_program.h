@@ -41,7 +41,7 @@ class WarmProgram {
   Reporter* reporter_;
 };
 
-// Those that every run starts: the simulator, hosts of components, and simctl.
+// Those that every run starts: the simulator and hosts of components.
 class WarmPrograms {
  public:
   explicit WarmPrograms(Reporter& reporter);  // must live as long

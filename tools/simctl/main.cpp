@@ -9,7 +9,7 @@
 #include "base/command_line.h"
 #include "base/terminal.h"
 #include "base/text.h"
-#include "base/warm_start.h"
+#include "shm/control.h"
 #include "shm/fault_kinds.h"
 #include "simctl/offers.h"
 #include "simctl/simctl.h"
@@ -224,9 +224,7 @@ void add_pictures(base::Command& app, Work& work) {
   auto* screenshot = app.add_subcommand("screenshot", "Write a picture of the world");
   auto options = option_value<simctl::ScreenshotOptions>();
   screenshot->add_option("FILE", options->file, "PNG")->required()->check([](const std::string& file) {
-    const std::string ending = base::to_lower(std::filesystem::path(file).extension().string());
-    return ending.empty() || ending == ".png" ? std::string()
-                                              : "pictures are PNG; expected a name that ends in .png, got " + base::in_quotes(file);
+    return shm::picture_name_problem(file);
   });
   auto* from =
       screenshot->add_option("--from", options->from, "Camera at X Y Z ROLL PITCH YAW, six words or one")->expected(1, 6)->delimiter(' ');
@@ -293,7 +291,9 @@ void add_pictures(base::Command& app, Work& work) {
   });
 }
 
-int control(int argc, char** argv) {
+}  // namespace
+
+int main(int argc, char** argv) {
   base::Command app{"simctl: show and control a running simulation"};
   base::add_standard_options(app, "simctl", RTMSIM_VERSION);
   app.require_subcommand(1);
@@ -316,7 +316,3 @@ int control(int argc, char** argv) {
   work(server);
   return server.failed() ? 1 : 0;
 }
-
-}  // namespace
-
-int main(int argc, char** argv) { return base::is_warm_start(argc, argv) ? base::make_processes(control) : control(argc, argv); }

@@ -87,11 +87,9 @@ class SystemRun final : public StartedRun {
     options.system = start.system;
     options.world = start.world;
     options.in_real_time = true;
-    options.quiet = true;
-    options.script = &standing_;
     std::string problem;
     try {
-      problem = editor::run_system(orb, options, reporter).problem;
+      problem = editor::run_system(orb, options, reporter, {.script = &standing_}).problem;
     } catch (const CORBA::Exception& e) {
       problem = editor::describe(e);
     } catch (const std::exception& e) {

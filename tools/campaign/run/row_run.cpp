@@ -15,21 +15,11 @@ namespace fs = std::filesystem;
 namespace {
 
 editor::RunOptions options_of(const Campaign& campaign, const Row& row, const RowRunOptions& options) {
-  const auto& plan = campaign.plan();
-  editor::RunOptions run;
-  run.system = plan.system;
-  run.world = plan.world;
-  run.duration_s = options.duration_s.value_or(plan.duration_s);
-  run.expectations = plan.expectations;
+  auto run = campaign.plan().run;
   run.seed = row.seed;
-  run.one_process_each = plan.one_process_each;
-  run.hang_timeout_s = plan.hang_timeout_s;
+  run.duration_s = options.duration_s.value_or(run.duration_s);
   run.properties = campaign.properties_of(row);
-  run.module_paths = plan.module_paths;
-  run.resource_paths = plan.resource_paths;
   run.keep = options.folder;
-  run.quiet = true;
-  run.warm = options.warm;
   if (options.records) run.record = options.folder + "/run.mcap";
   return run;
 }
@@ -76,9 +66,8 @@ Outcome run_once(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, c
                     .checks_invariants = options.checks_invariants || campaign.plan().checks_invariants,
                     .draws = options.draws && campaign.plan().has_pictures});
   for (const auto& property : script.properties()) run.properties.push_back(property);
-  run.simulator_options = script.simulator_options();
-  run.script = &script;
-  const auto result = editor::run_system(orb, run, reporter);
+  const editor::RunHooks hooks{.simulator_options = script.simulator_options(), .warm = options.warm, .script = &script};
+  const auto result = editor::run_system(orb, run, reporter, hooks);
   outcome.has_begun = result.has_begun;
   outcome.problem = result.problem;
   outcome.logs = result.logs;
@@ -112,8 +101,7 @@ Result<void> check_values(CORBA::ORB_ptr orb, const Campaign& campaign, const st
   if (!script.is_needed()) return {};
   auto run = options_of(campaign, Row{}, {.folder = folder});
   run.expectations.clear();
-  run.script = &script;
-  static_cast<void>(editor::run_system(orb, run, reporter));
+  static_cast<void>(editor::run_system(orb, run, reporter, {.script = &script}));
   std::error_code ignored;
   fs::remove_all(folder, ignored);
   if (script.problem().empty()) return {};

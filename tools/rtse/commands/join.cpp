@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -17,6 +18,8 @@
 #include "rtse/command.h"
 #include "rtse/commands/commands.h"
 #include "run/time_members.h"
+#include "shm/client.h"
+#include "shm/lockstep.h"
 
 namespace editor {
 namespace {
@@ -129,17 +132,16 @@ void end_proxy_of(const Session& session, const Joining& one) {
 
 // From when on time waits for them; false when there is no such simulator.
 bool await_participants(const std::vector<Joining>& all, const std::string& server_id) {
+  const auto id = static_cast<std::uint32_t>(base::parse_integer(server_id).value_or(0));
   const auto deadline = Clock::now() + participant_limit;
   while (Clock::now() < deadline) {
-    const auto said = output_of({{own_program("simctl"), "-s", server_id, "--json", "participants"}, {}, ""}, 5s);
-    if (!said) return false;
-    const auto json = nlohmann::json::parse(*said, nullptr, false);
-    std::size_t found = 0;
-    for (const auto& one : all) {
-      for (const auto& participant : json.is_array() ? json : nlohmann::json::array()) {
-        if (participant.value("name", "") == one.member.instance) ++found;
-      }
-    }
+    const auto simulation = shm::Iface::open(id, shm::IfaceType::simulation, "world");
+    const auto participants = simulation ? shm::read_participants(*simulation) : Error{simulation.error()};
+    if (!participants) return false;
+    const auto takes_part = [&](const Joining& one) {
+      return std::ranges::any_of(*participants, [&](const auto& participant) { return participant.name == one.member.instance; });
+    };
+    const auto found = static_cast<std::size_t>(std::ranges::count_if(all, takes_part));
     if (found >= all.size()) return true;
     std::this_thread::sleep_for(20ms);  // the simulator takes them in between two steps, and tells nobody
   }

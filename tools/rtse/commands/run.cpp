@@ -1,9 +1,13 @@
 // run: one run, or one for each of several seeds, some of them at a time.
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -14,9 +18,11 @@
 #include "base/text.h"
 #include "rtse/command.h"
 #include "rtse/commands/commands.h"
+#include "rtse/commands/run.h"
 #include "run/run_options.h"
 #include "run/run_system.h"
 #include "run/run_twice.h"
+#include "shm/file_handle.h"
 
 namespace editor {
 namespace {
@@ -24,6 +30,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::chrono::seconds interrupted_limit{60};  // of a run that was interrupted
+constexpr const char* options_from_input = "--options-from-input";
 
 Json to_json(const RunResult& result) {
   Json json{{"seed", result.seed},         {"passed", result.is_passed()}, {"problem", result.problem},
@@ -97,34 +104,37 @@ std::string for_seed(const std::string& file, std::uint64_t seed) {
   return (path.parent_path() / (path.stem().string() + "-" + std::to_string(seed) + path.extension().string())).string();
 }
 
-// Each seed in a process of its own, so that one that fails takes no other with it.
+// A file that is read from its beginning, and gone when all have closed it.
+Result<shm::FileHandle> memory_file(const std::string& text) {
+  shm::FileHandle file(memfd_create("options", MFD_CLOEXEC));
+  if (write(file.get(), text.data(), text.size()) != static_cast<ssize_t>(text.size()) || lseek(file.get(), 0, SEEK_SET) != 0)
+    return Error{std::string("run: no memory for the options of a seed: ") + std::strerror(errno)};
+  return file;
+}
+
+RunOptions of_seed(RunOptions options, std::uint64_t seed) {
+  options.seed = seed;
+  options.junit.clear();
+  for (auto* file : {&options.picture, &options.record, &options.hash_log}) {
+    if (!file->empty()) *file = for_seed(*file, seed);
+  }
+  if (!options.keep.empty()) options.keep = (std::filesystem::path(options.keep) / ("seed-" + std::to_string(seed))).string();
+  return options;
+}
+
+// Each seed in a process of its own, so that one that fails takes no other with it. It reads its options from its standard input.
 RunResult run_apart(const RunOptions& options, std::uint64_t seed) {
   RunResult failed;
   failed.seed = seed;
-  ProgramCall call{{own_program("rtse"), "--json", "run", options.system, "--world", options.world, "--duration",
-                    base::format_number(options.duration_s), "--seed", std::to_string(seed), "--hang-timeout",
-                    base::format_number(options.hang_timeout_s), "--start-timeout", base::format_number(options.start_timeout_s)},
-                   {},
-                   ""};
-  const auto add = [&](std::initializer_list<std::string> words) { call.words.insert(call.words.end(), words); };
-  if (!options.expectations.empty()) add({"--expect", options.expectations});
-  if (!options.run_file.empty()) add({"--run-file", options.run_file});
-  for (const auto& command : options.start) add({"--start", command});
-  if (!options.start_folder.empty()) add({"--start-folder", options.start_folder});
-  if (options.one_process_each) add({"--one-process-each"});
-  if (options.in_real_time) add({"--realtime"});
-  if (!options.picture.empty()) add({"--picture", for_seed(options.picture, seed)});
-  if (!options.record.empty()) add({"--record", for_seed(options.record, seed)});
-  if (options.record_last_s > 0) add({"--last", base::format_number(options.record_last_s)});
-  if (!options.hash_log.empty()) add({"--hash-log", for_seed(options.hash_log, seed)});
-  if (options.hash_period_s > 0) add({"--hash-period", base::format_number(options.hash_period_s)});
-  if (options.twice) add({"--twice"});
-  if (options.strict) add({"--strict"});
-  if (!options.keep.empty()) add({"--keep", (std::filesystem::path(options.keep) / ("seed-" + std::to_string(seed))).string()});
-  for (const auto& property : options.properties) add({"--property", property});
-  for (const auto& path : options.module_paths) add({"--module-path", path});
-  for (const auto& path : options.resource_paths) add({"--resource-path", path});
-  auto child = ChildProcess::start(call);
+  const auto text = to_json(of_seed(options, seed), RunOptionSet::all).dump(-1, ' ', false, Json::error_handler_t::replace);
+  const auto input = memory_file(text);
+  if (!input) {
+    failed.problem = input.error().message;
+    return failed;
+  }
+  auto child =
+      ChildProcess::start({.words = {own_program("rtse"), "--json", "run", options.system, "--world", options.world, options_from_input},
+                           .input = input->get()});
   if (!child) {
     failed.problem = child.error().message;
     return failed;
@@ -181,7 +191,7 @@ std::vector<RunResult> run_seeds(const Session& session, Console& console, const
   base::Turn<> telling;                   // one result at a time
   std::map<std::size_t, RunResult> done;  // by place in `seeds`
   std::size_t reported = 0;               // rows come in the order of the seeds
-  const bool shows = !options.quiet && isatty(2);
+  const bool shows = isatty(2);
   const auto show = [&] {
     constexpr std::size_t width = 30;
     const auto filled = done.size() * width / seeds.size();
@@ -252,52 +262,53 @@ void run(const Session& session, Console& console, const RunOptions& options, co
   if (const auto written = write_junit(options.junit, options, results); !written) console.fail(written.error());
 }
 
-}  // namespace
+// What run_apart() has written.
+Result<RunOptions> read_input() {
+  const std::string text(std::istreambuf_iterator<char>(std::cin), {});
+  return parse_run_options(text);
+}
 
-void add_run(base::Command& app, Chosen& chosen) {
+void declare_run(base::Command& app, Chosen& chosen, ReadLike read_like, const std::function<std::string(const std::string&)>& check) {
   auto* run = app.add_subcommand("run", "Run a saved system against a simulated world in lock step, and judge it");
-  auto options = std::make_shared<RunOptions>();
+  auto given = std::make_shared<RunOptions>();
   auto seeds = std::make_shared<std::optional<std::string>>();
   auto jobs = std::make_shared<int>(1);
-  run->add_option("SYSTEM", options->system, "RTSProfile, XML or YAML")->required()->check(base::existing_file());
-  run->add_option("-w,--world", options->world, "SDFormat world")->required()->check(base::existing_file());
-  run->add_option("-d,--duration", options->duration_s, "Simulated seconds")->seconds_between(0.001, 1e7)->capture_default_str();
-  run->add_option("-x,--expect", options->expectations, "Expectations, YAML")->check(base::existing_file());
-  auto* seed =
-      run->add_option("--seed", options->seed, "Seed of the world's noise")->capture_default_str()->check(base::number_between(0, 1e18));
-  run->add_option("--seeds", *seeds, "A run for each seed FIRST..LAST")->excludes(seed)->check([](const std::string& text) {
-    const auto parsed = parse_seeds(text);
-    return parsed ? std::string() : parsed.error().message;
-  });
-  run->add_option("-j,--jobs", *jobs, "So many seeds at a time")->check(base::integer_between(1, 64))->capture_default_str();
-  run->add_flag("--one-process-each", options->one_process_each, "A process for every component instead of one for all");
-  run->add_flag("--realtime", options->in_real_time, "No faster than real time");
-  run->add_option("--start", options->start, "Command that starts components of others, those that have no module")
-      ->allow_extra_args(false);
-  run->add_option("--start-folder", options->start_folder, "Where these commands are started; default: here");
-  run->add_option("--run-file", options->run_file, "Processes of others and their components, YAML")->check(base::existing_file());
-  run->add_option("--module-path", options->module_paths, "Folder with modules of components")->allow_extra_args(false);
-  run->add_option("--resource-path", options->resource_paths, "Folder with models")->allow_extra_args(false);
-  run->add_option("--property", options->properties, "INSTANCE:KEY=VALUE, a property that a component is created with")
-      ->allow_extra_args(false)
+  auto like = std::make_shared<std::string>();
+  auto has_input = std::make_shared<bool>(false);
+  std::vector<std::string_view> names;
+  for (const auto& row : run_option_rows) {
+    if (!read_like || row.name != "system") names.push_back(row.name);
+  }
+  add_run_options(*run, *given, names);
+  if (read_like) {
+    run->add_option("--like", *like, "Repeat the run of this recording (of rtse run --record)")->required()->check(check);
+  } else {
+    run->option("SYSTEM")->required();
+    run->option("--world")->required();
+  }
+  run->add_option("--seeds", *seeds, "A run for each seed FIRST..LAST")
+      ->excludes(run->option("--seed"))
       ->check([](const std::string& text) {
-        const auto parsed = parse_property(text);
+        const auto parsed = parse_seeds(text);
         return parsed ? std::string() : parsed.error().message;
       });
-  run->add_option("--hang-timeout", options->hang_timeout_s, "Seconds of real time that one tick may take")
-      ->check(base::number_between(0.1, 1e6))
-      ->capture_default_str();
-  run->add_option("--start-timeout", options->start_timeout_s, "Seconds of real time for the simulator's start, and for the components'")
-      ->check(base::number_between(0.1, 1e6))
-      ->capture_default_str();
-  run->add_option("--junit", options->junit, "Write the verdicts as JUnit XML");
-  run->add_option("--picture", options->picture, "Write the world at the end as PNG");
-  add_recording_options(*run, *options);
-  add_repeatability_options(*run, *options);
-  run->add_option("--keep", options->keep, "Keep logs and the record in this folder");
-  run->callback([&chosen, options, seeds, jobs] {
-    chosen.work = [=](const Session& session, Console& console) { editor::run(session, console, *options, *seeds, *jobs); };
+  run->add_option("-j,--jobs", *jobs, "Number of seeds to run in parallel")->check(base::integer_between(1, 64))->capture_default_str();
+  run->add_flag(options_from_input, *has_input)->group("");  // of run_apart() alone
+  run->callback([=, &chosen] {
+    chosen.work = [=](const Session& session, Console& console) {
+      auto base = read_like ? read_like(*like) : *has_input ? read_input() : RunOptions();
+      if (!base) return console.fail(base.error());
+      editor::run(session, console, with_given(std::move(*base), *given, *run), *seeds, *jobs);
+    };
   });
+}
+
+}  // namespace
+
+void add_run(base::Command& app, Chosen& chosen) { declare_run(app, chosen, nullptr, nullptr); }
+
+void add_run_like(base::Command& app, Chosen& chosen, ReadLike read_like, std::function<std::string(const std::string&)> check) {
+  declare_run(app, chosen, std::move(read_like), check);
 }
 
 }  // namespace editor

@@ -38,9 +38,8 @@ struct GotoOptions {
   std::string world;
   std::string then;
   std::optional<std::uint64_t> seed;
-  std::vector<std::string> module_paths, resource_paths, properties, start;
-  std::string run_file;
-  double hang_timeout_s = 30;
+  std::vector<std::string> start;
+  editor::RunOptions run;  // those of a run that can be given here
 };
 
 // A run that stands at a moment: what is done with it, until it is to stand at another one before it, or to end.
@@ -204,7 +203,7 @@ bool is_recording(const std::string& file) {
   return head == mcap::magic;
 }
 
-void go(const Session& session, Console& console, const GotoOptions& options) {
+void go(const Session& session, Console& console, const GotoOptions& options, const base::Command& command) {
   std::optional<Expression> condition;
   if (!options.condition.empty()) {
     auto parsed = Expression::parse(options.condition);
@@ -220,32 +219,29 @@ void go(const Session& session, Console& console, const GotoOptions& options) {
     if (!run) return console.fail(run.error());
     if (const auto lost = run->lost(); !lost.empty()) console.warn(lost);
     recorded.emplace(std::move(*run));
-    call = recorded->options();
+    auto recorded_options = recorded->options();
+    if (!recorded_options) return console.fail(recorded_options.error());
+    call = std::move(*recorded_options);
     if (options.time_s.value_or(0) > call.duration_s)
       console.warn("the recorded run ended at " + base::format_number(call.duration_s) + " s");
   } else {
     call.system = options.what;
     call.world = options.world;
-    call.quiet = true;
   }
   if (!options.start.empty()) {
     call.start = options.start;
     call.start_folder.clear();
   }
-  if (!options.run_file.empty()) call.run_file = options.run_file;
   if (options.seed) call.seed = *options.seed;
-  call.hang_timeout_s = options.hang_timeout_s;
-  call.module_paths.insert(call.module_paths.end(), options.module_paths.begin(), options.module_paths.end());
-  call.resource_paths.insert(call.resource_paths.end(), options.resource_paths.begin(), options.resource_paths.end());
-  call.properties.insert(call.properties.end(), options.properties.begin(), options.properties.end());
+  call = editor::with_given(std::move(call), options.run, command);
   editor::catch_interrupts();
   GotoOptions wanted = options;
   double time_s = options.time_s.value_or(call.duration_s);
   std::string input;
   for (;;) {
     Stand stand(session, console, wanted, condition, time_s, input);
-    call.driver = [&](editor::RunningSystem& system) { return stand.drive(system); };
-    const auto made = editor::run_system(session.orb(), call, console);
+    const auto made =
+        editor::run_system(session.orb(), call, console, {.driver = [&](editor::RunningSystem& system) { return stand.drive(system); }});
     if (!made.problem.empty()) return console.fail({made.problem});
     if (!stand.wish()) return;
     // The same run once more, and not so far.
@@ -275,17 +271,10 @@ void add_goto(base::Command& app, editor::Chosen& chosen) {
   command->add_option("--seed", options->seed, "Seed of the world's noise, if not the recorded one")->check(base::number_between(0, 1e18));
   command->add_option("--start", options->start, "Command that starts components of others, in the place of the recorded ones")
       ->allow_extra_args(false);
-  command->add_option("--run-file", options->run_file, "Processes of others and their components, YAML")->check(base::existing_file());
-  command->add_option("--module-path", options->module_paths, "Folder with modules of components")->allow_extra_args(false);
-  command->add_option("--resource-path", options->resource_paths, "Folder with models")->allow_extra_args(false);
-  command->add_option("--property", options->properties, "INSTANCE:KEY=VALUE, a property that a component is created with")
-      ->allow_extra_args(false);
-  command->add_option("--hang-timeout", options->hang_timeout_s, "Seconds of real time that one tick may take")
-      ->check(base::number_between(0.1, 1e6))
-      ->capture_default_str();
-  command->callback([&chosen, options] {
+  editor::add_run_options(*command, options->run, {"run-file", "module-path", "resource-path", "property", "hang-timeout"});
+  command->callback([&chosen, options, command] {
     editor::require(options->time_s || !options->condition.empty(), "goto", "name a TIME, or a condition with --break");
-    chosen.work = [options](const Session& session, Console& console) { go(session, console, *options); };
+    chosen.work = [options, command](const Session& session, Console& console) { go(session, console, *options, *command); };
   });
 }
 

@@ -1,14 +1,13 @@
 // record.
+#include <fcntl.h>
 #include <fnmatch.h>
 #include <omnithread.h>
 #include <poll.h>
-#include <signal.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -17,6 +16,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "base/clock.h"
 #include "base/command_line.h"
@@ -28,6 +28,7 @@
 #include "recording/mcap/file.h"
 #include "recording/mcap_sink.h"
 #include "recording/port_source.h"
+#include "recording/recorder_line.h"
 #include "recording/ring.h"
 #include "recording/run_clock.h"
 #include "recording/sample_filters.h"
@@ -65,7 +66,8 @@ struct RecordOptions {
   double rate = 0;    // [Hz] of each channel at most; 0: all
   double last_s = 0;  // only so much before the end; 0: all
   bool until_error = false;
-  std::string hashes;  // hash log of the run, which is there when the recorder is interrupted once more
+  std::string hashes;       // hash log of the run that controls this recorder
+  bool controlled = false;  // standard input is the line to that run, see recording/recorder_line.h
   std::string compression = "zstd";
   int server_id = static_cast<int>(default_server_id());
   bool quiet = false;
@@ -88,31 +90,6 @@ class EndHandle {
  private:
   const int descriptor_;
   std::atomic<bool> is_raised_{false};  // relaxed: says nothing but itself
-};
-
-// Readable after SIGUSR1: somebody has started components again. One for the process.
-class LookSignal {
- public:
-  LookSignal() {
-    handle_.store(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
-    struct sigaction action {};
-    action.sa_handler = [](int) {
-      const int saved = errno;
-      (void)::eventfd_write(handle_.load(std::memory_order_relaxed), 1);
-      errno = saved;
-    };
-    ::sigemptyset(&action.sa_mask);
-    ::sigaction(SIGUSR1, &action, nullptr);
-  }
-  static int descriptor() { return handle_.load(std::memory_order_relaxed); }
-  // Whether it has come since the last time.
-  static bool take() {
-    eventfd_t count = 0;
-    return ::eventfd_read(descriptor(), &count) == 0;
-  }
-
- private:
-  static inline std::atomic<int> handle_{-1};  // relaxed: says nothing but itself
 };
 
 bool is_excluded(const RecordOptions& options, const std::string& name) {
@@ -235,11 +212,35 @@ void look_again(const Session& session, Console& console, PortSource& source, Co
       components.attach_again(component);
     }
   }
-  std::cerr << "looked again" << std::endl;
 }
 
+// What a run tells its recorder; without one nothing ever comes.
+class Orders {
+ public:
+  explicit Orders(bool controlled) {
+    if (controlled) line_.emplace(shm::FileHandle(::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 3)));
+  }
+  int descriptor() const { return line_ ? line_->descriptor() : -1; }
+  // A run that has exited hears nothing, and needs not.
+  void tell(RecorderMessage message) {
+    if (line_) static_cast<void>(line_->send(message));
+  }
+  // The next one; a line that is closed is a stop.
+  std::optional<RecorderMessage> next(std::chrono::milliseconds timeout) {
+    if (!line_) return std::nullopt;
+    const auto received = line_->receive(timeout);
+    is_closed_ = !received;
+    return received ? *received : std::optional(RecorderMessage::stop);
+  }
+  bool is_closed() const { return is_closed_; }
+
+ private:
+  std::optional<RecorderLine> line_;
+  bool is_closed_ = false;
+};
+
 // An interrupt, the end of the time that was asked for, or a file that takes no more: which announces itself here.
-void wait_for_end(const RecordOptions& options, channels::Exchange& exchange, const std::shared_ptr<EndHandle>& handle,
+void wait_for_end(const RecordOptions& options, channels::Exchange& exchange, const std::shared_ptr<EndHandle>& handle, Orders& orders,
                   const std::function<void()>& look) {
   exchange.on_failure([handle] { handle->raise(); });
   const auto start = std::chrono::steady_clock::now();
@@ -250,9 +251,13 @@ void wait_for_end(const RecordOptions& options, channels::Exchange& exchange, co
       if (passed.count() >= options.duration_s) return;
       wait_ms = static_cast<int>(std::clamp((options.duration_s - passed.count()) * 1000 + 1, 0.0, 1e9));
     }
-    pollfd handles[3] = {{editor::interrupt_handle(), POLLIN, 0}, {handle->descriptor(), POLLIN, 0}, {LookSignal::descriptor(), POLLIN, 0}};
+    pollfd handles[3] = {{editor::interrupt_handle(), POLLIN, 0}, {handle->descriptor(), POLLIN, 0}, {orders.descriptor(), POLLIN, 0}};
     (void)::poll(handles, 3, wait_ms);
-    if (LookSignal::take()) look();
+    const auto order = orders.next(std::chrono::milliseconds(0));
+    if (order == RecorderMessage::stop) return;
+    if (order != RecorderMessage::look_again) continue;
+    look();
+    orders.tell(RecorderMessage::looked);
   }
 }
 
@@ -311,7 +316,8 @@ base::Result<Sinks> open_sinks(const RecordOptions& options, const RunClock& clo
 
 // From all sources into the sink, until it is to end. False when there is nothing to record.
 bool record_into(const Session& session, Console& console, const RecordOptions& options, const RunClock& clock,
-                 const std::vector<Session::Port>& ports, channels::Exchange& exchange, const std::vector<RingPiece>& stale) {
+                 const std::vector<Session::Port>& ports, channels::Exchange& exchange, const std::vector<RingPiece>& stale,
+                 Orders& orders) {
   const auto end = std::make_shared<EndHandle>();
   PortSource source(session.orb(), exchange, clock);
   ComponentSource components(session.orb(), exchange, clock);
@@ -346,7 +352,8 @@ bool record_into(const Session& session, Console& console, const RecordOptions& 
     std::cerr << "recording " << source.size() << " ports" << (*views ? " and the simulator" : "") << " into "
               << base::in_quotes(options.file) << "; Ctrl-C ends it\n";
   if (!stale.empty() && !options.quiet) console.warn(names_of(stale) + ": of an earlier ring that was not put together, replaced");
-  wait_for_end(options, exchange, end, [&] { look_again(session, console, source, components); });
+  orders.tell(RecorderMessage::recording);
+  wait_for_end(options, exchange, end, orders, [&] { look_again(session, console, source, components); });
   if (exchange.failure() || !end->is_raised()) return true;
   if (*views && !(*views)->is_live())
     console.fail({"record: the simulator has ended, and the recording with it"});
@@ -356,18 +363,16 @@ bool record_into(const Session& session, Console& console, const RecordOptions& 
 }
 
 // Who made the run says when its hash log is there.
-base::Result<void> keep_hashes(channels::Exchange& exchange, const std::string& file) {
+base::Result<void> keep_hashes(channels::Exchange& exchange, const std::string& file, Orders& orders) {
   (void)exchange.drain(lockstep_patience);
-  eventfd_t count = 0;
-  (void)::eventfd_read(editor::interrupt_handle(), &count);
-  std::cerr << "waiting for hashes" << std::endl;
-  pollfd handle{editor::interrupt_handle(), POLLIN, 0};
-  // The signal that says so interrupts the wait, too.
+  orders.tell(RecorderMessage::stopped);
   const auto deadline = std::chrono::steady_clock::now() + hashes_limit;
-  int answer = -1;
-  while (answer < 0 && std::chrono::steady_clock::now() < deadline)
-    answer = ::poll(&handle, 1, static_cast<int>(std::chrono::milliseconds(hashes_limit).count()));
-  if (answer != 1) return base::Error{"record: nobody says that the hash log " + base::in_quotes(file) + " is there"};
+  std::optional<RecorderMessage> order;
+  // A recorder that has stopped by itself is told to stop all the same.
+  while (order != RecorderMessage::hashes_ready && !orders.is_closed() && std::chrono::steady_clock::now() < deadline)
+    order = orders.next(std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now()));
+  if (order != RecorderMessage::hashes_ready)
+    return base::Error{"record: the hash log " + base::in_quotes(file) + " was not reported complete"};
   return put_hashes(exchange, file);
 }
 
@@ -421,17 +426,17 @@ void record(const Session& session, Console& console, const RecordOptions& optio
   auto sinks = open_sinks(options, clock);
   if (!sinks) return console.fail(sinks.error());
   editor::catch_interrupts();
-  const LookSignal caught;
+  Orders orders(options.controlled);
   base::Result<void> written;
   {
     channels::Exchange exchange;
     exchange.attach(sinks->first, {.patience = clock.is_lockstep() ? lockstep_patience : std::chrono::seconds(0)});
-    if (!record_into(session, console, options, clock, *ports, exchange, *stale)) {
+    if (!record_into(session, console, options, clock, *ports, exchange, *stale, orders)) {
       if (is_ring) remove_pieces(ring_pieces(options.file));
       return;
     }
     if (!options.hashes.empty()) {
-      if (const auto kept = keep_hashes(exchange, options.hashes); !kept) console.fail(kept.error());
+      if (const auto kept = keep_hashes(exchange, options.hashes, orders); !kept) console.fail(kept.error());
     }
     if (!exchange.drain(std::chrono::seconds(30))) console.fail({"record: the file took no more samples for 30 s; the last ones are lost"});
     if (const auto failure = exchange.failure()) written = *failure;
@@ -480,7 +485,8 @@ void add_record(base::Command& app, editor::Chosen& chosen) {
       ->seconds_between(0.1, 1e6)
       ->excludes(splitting);
   command->add_flag("--until-error", options->until_error, "End when a component is in its error state");
-  command->add_option("--hashes", options->hashes, "The hash log of the run, which is there at a second interrupt; rtse run uses it");
+  command->add_flag("--controlled", options->controlled)->group("");                   // of rtse run alone
+  command->add_option("--hashes", options->hashes)->group("")->needs("--controlled");  // the same
   command->add_option("--compression", options->compression, "zstd, lz4 or none")
       ->check(base::one_of({"zstd", "lz4", "none"}))
       ->capture_default_str();

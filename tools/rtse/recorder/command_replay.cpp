@@ -246,7 +246,9 @@ void replay_file(const Session& session, Console& console, const Options& option
 
   auto one = alone(*system, options.component);
   if (const auto taken = take_rate(console, one.components.front(), options.file); !taken) return console.fail(taken.error());
-  auto call = run->options();
+  auto recorded = run->options();
+  if (!recorded) return console.fail(recorded.error());
+  auto& call = *recorded;
   const auto world = empty_world(*run, one.components.front());
   if (!world) return console.fail(world.error());
   call.world = *world;
@@ -262,14 +264,15 @@ void replay_file(const Session& session, Console& console, const Options& option
   if (const auto done = configure(one.components.front(), options.settings); !done) return console.fail(done.error());
   if (const auto written = editor::write_system(one, call.system); !written) return console.fail(written.error());
   ReplayResult result;
-  call.driver = [&](editor::RunningSystem& running) -> base::Result<void> {
+  editor::RunHooks hooks;
+  hooks.driver = [&](editor::RunningSystem& running) -> base::Result<void> {
     auto done = replay(session.orb(), running, replayed);
     if (!done) return done.error();
     result = std::move(*done);
     return {};
   };
   editor::catch_interrupts();
-  const auto made = editor::run_system(session.orb(), call, console);
+  const auto made = editor::run_system(session.orb(), call, console, hooks);
   std::string problem = made.problem;
   if (!problem.empty() && options.start.empty() && has_own_stamps(*run, options.component))
     problem += "; it was in a process of others, which --start COMMAND starts here";
