@@ -18,7 +18,7 @@ class LockStepClock : public Clock {
 };
 
 // What such a message begins with.
-inline constexpr std::string_view chance_mark = "depends on chance: ";
+inline constexpr std::string_view chance_mark = "nondeterministic: ";
 
 // "port A:out" "was written by a thread that no tick runs".
 void tell_of_chance(std::string_view where, std::string_view what, std::chrono::nanoseconds simulated);

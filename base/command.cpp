@@ -226,4 +226,6 @@ std::vector<std::string> Command::remaining() const { return inner_->remaining()
 
 std::size_t Command::count(const std::string& option) const { return inner_->count(option); }
 
+bool Command::has(const std::string& option) const { return inner_->get_option_no_throw(option) != nullptr; }
+
 }  // namespace base

@@ -88,7 +88,8 @@ class Command final {
   Command* footer(const std::string& text);
   Command* without_help();
   std::vector<std::string> remaining() const;
-  std::size_t count(const std::string& option) const;
+  std::size_t count(const std::string& option) const;  // of one that was added
+  bool has(const std::string& option) const;
 
   CLI::App& inner() { return *inner_; }
   const CLI::App& inner() const { return *inner_; }

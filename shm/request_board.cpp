@@ -238,7 +238,15 @@ struct Requester::State {
   }
   base::Result<void> enter();
   void leave();
+  std::optional<std::uint64_t> pending = std::nullopt;  // that was begun, and has no answer yet
+
+  void hand_over();
+  base::Result<bool> await(std::uint64_t id, std::chrono::steady_clock::time_point deadline);
+  bool withdraw();
+  void abandon();
   base::Result<void> exchange(std::uint64_t id, std::chrono::steady_clock::time_point deadline);
+  std::uint64_t put(const RawRequest& request);
+  base::Result<Reply> take_reply(std::uint64_t id, std::chrono::steady_clock::time_point deadline);
 };
 
 base::Result<void> Requester::State::enter() {
@@ -266,26 +274,76 @@ void Requester::State::leave() {
   index.reset();
 }
 
-// Hands the slot to the server and waits until it comes back.
-base::Result<void> Requester::State::exchange(std::uint64_t id, std::chrono::steady_clock::time_point deadline) {
-  RequestSlot& mine = slot();
-  store(mine.state, static_cast<std::uint32_t>(RTMSIM_SLOT_ASKED), std::memory_order_seq_cst);  // pairs with RequestBoard's take
+void Requester::State::hand_over() {
+  store(slot().state, static_cast<std::uint32_t>(RTMSIM_SLOT_ASKED), std::memory_order_seq_cst);  // pairs with RequestBoard's take
   call_attention(segment());
+}
+
+// Waits until the slot comes back. False: not until the deadline; the server may still answer.
+base::Result<bool> Requester::State::await(std::uint64_t id, std::chrono::steady_clock::time_point deadline) {
+  RequestSlot& mine = slot();
   while (true) {
     const std::uint32_t seen = load(mine.state, std::memory_order_seq_cst);
-    if (seen == RTMSIM_SLOT_REPLIED && mine.reply_id == id) return {};
+    if (seen == RTMSIM_SLOT_REPLIED && mine.reply_id == id) return true;
     if (seen == RTMSIM_SLOT_REPLIED || seen == RTMSIM_SLOT_IDLE) return fail("answered something that was not asked");
     if (simulation.status() != Status::live) return fail("has ended");
-    auto left = deadline - std::chrono::steady_clock::now();
-    if (left.count() <= 0) {
-      std::uint32_t asked = RTMSIM_SLOT_ASKED;
-      const bool is_ours = word(mine.state).compare_exchange_strong(asked, RTMSIM_SLOT_IDLE, std::memory_order_acq_rel);
-      // A server that is just writing its reply gets another second.
-      if (is_ours || left < -std::chrono::seconds(1)) return fail("did not answer in time");
-      left = board_slice;
-    }
+    const auto left = deadline - std::chrono::steady_clock::now();
+    if (left.count() <= 0) return false;
     futex_wait(mine.state, seen, std::min<std::chrono::nanoseconds>(left, board_slice));
   }
+}
+
+// Takes the slot back. False: the server is just writing its reply.
+bool Requester::State::withdraw() {
+  std::uint32_t asked = RTMSIM_SLOT_ASKED;
+  return word(slot().state).compare_exchange_strong(asked, RTMSIM_SLOT_IDLE, std::memory_order_acq_rel);
+}
+
+// Hands the slot to the server and waits until it comes back.
+base::Result<void> Requester::State::exchange(std::uint64_t id, std::chrono::steady_clock::time_point deadline) {
+  hand_over();
+  auto answered = await(id, deadline);
+  if (answered && !*answered && !withdraw()) answered = await(id, deadline + std::chrono::seconds(1));
+  if (!answered) return answered.error();
+  return *answered ? base::Result<void>() : fail("did not answer in time");
+}
+
+std::uint64_t Requester::State::put(const RawRequest& request) {
+  RequestSlot& mine = slot();
+  const std::uint64_t id = (owner << 32) ^ next_id++;
+  store(mine.id, id);
+  mine.kind = request.kind;
+  mine.body = request.body;
+  return id;
+}
+
+base::Result<Reply> Requester::State::take_reply(std::uint64_t id, std::chrono::steady_clock::time_point deadline) {
+  RequestSlot& mine = slot();
+  Reply reply;
+  reply.status = static_cast<RequestStatus>(mine.status);
+  reply.sim_time_ns = mine.reply.sim_time_ns;
+  reply.steps = mine.reply.steps;
+  reply.hash = mine.reply.hash;
+  reply.count = mine.reply.count;
+  std::copy(std::begin(mine.reply.values), std::end(mine.reply.values), reply.values);
+  reply.message.assign(mine.reply.message, strnlen(mine.reply.message, sizeof mine.reply.message));
+  while (true) {
+    reply.text.append(reply_text(segment(), *index), std::min<std::size_t>(mine.reply_length, text_piece));
+    if (mine.reply_more == 0 || reply.text.size() > max_text) break;
+    mine.text_length = 0;
+    mine.more = 0;
+    if (auto good = exchange(id, deadline); !good) return good.error();
+  }
+  store(mine.state, static_cast<std::uint32_t>(RTMSIM_SLOT_IDLE));
+  return reply;
+}
+
+// A request that nobody waits for any more must not be answered into the next one. A server that is just writing its reply ends it first.
+void Requester::State::abandon() {
+  const auto id = std::exchange(pending, std::nullopt);
+  if (!id || !index || load(slot().owner) != owner || withdraw()) return;
+  static_cast<void>(await(*id, std::chrono::steady_clock::now() + std::chrono::seconds(1)));
+  store(slot().state, static_cast<std::uint32_t>(RTMSIM_SLOT_IDLE));
 }
 
 Requester::Requester(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -308,12 +366,10 @@ base::Result<Reply> Requester::ask_raw(const RawRequest& request, std::chrono::n
   State& state = *state_;
   const auto deadline = std::chrono::steady_clock::now() + timeout;
   if (request.text.size() > max_text) return base::Error{"request text is longer than 64 MiB"};
+  state.abandon();
   if (auto good = state.enter(); !good) return good.error();
   RequestSlot& slot = state.slot();
-  const std::uint64_t id = (state.owner << 32) ^ state.next_id++;
-  store(slot.id, id);
-  slot.kind = request.kind;
-  slot.body = request.body;
+  const std::uint64_t id = state.put(request);
   std::size_t sent = 0;
   do {
     const std::size_t length = std::min(request.text.size() - sent, text_piece);
@@ -323,24 +379,34 @@ base::Result<Reply> Requester::ask_raw(const RawRequest& request, std::chrono::n
     slot.more = sent < request.text.size() ? 1 : 0;
     if (auto good = state.exchange(id, deadline); !good) return good.error();
   } while (sent < request.text.size() && slot.status == RTMSIM_STATUS_OK);
+  return state.take_reply(id, deadline);
+}
 
-  Reply reply;
-  reply.status = static_cast<RequestStatus>(slot.status);
-  reply.sim_time_ns = slot.reply.sim_time_ns;
-  reply.steps = slot.reply.steps;
-  reply.hash = slot.reply.hash;
-  reply.count = slot.reply.count;
-  std::copy(std::begin(slot.reply.values), std::end(slot.reply.values), reply.values);
-  reply.message.assign(slot.reply.message, strnlen(slot.reply.message, sizeof slot.reply.message));
-  while (true) {
-    reply.text.append(reply_text(state.segment(), *state.index), std::min<std::size_t>(slot.reply_length, text_piece));
-    if (slot.reply_more == 0 || reply.text.size() > max_text) break;
-    slot.text_length = 0;
-    slot.more = 0;
-    if (auto good = state.exchange(id, deadline); !good) return good.error();
-  }
-  store(slot.state, static_cast<std::uint32_t>(RTMSIM_SLOT_IDLE));
-  return reply;
+base::Result<void> Requester::begin(const Request& request) {
+  State& state = *state_;
+  const RawRequest raw = encode(request);
+  if (!raw.text.empty()) return base::Error{"request " + std::string(request_name(request)) + ": has a text, which ask() sends"};
+  state.abandon();
+  if (auto good = state.enter(); !good) return good;
+  RequestSlot& slot = state.slot();
+  state.pending = state.put(raw);
+  slot.text_length = 0;
+  slot.more = 0;
+  state.hand_over();
+  return {};
+}
+
+base::Result<std::optional<Reply>> Requester::await(std::chrono::nanoseconds timeout) {
+  State& state = *state_;
+  if (!state.pending) return base::Error{"no request was begun"};
+  const auto answered = state.await(*state.pending, std::chrono::steady_clock::now() + timeout);
+  if (!answered) return answered.error();
+  if (!*answered) return std::optional<Reply>();
+  const auto id = *std::exchange(state.pending, std::nullopt);
+  constexpr std::chrono::seconds rest_of_text{10};
+  auto reply = state.take_reply(id, std::chrono::steady_clock::now() + rest_of_text);
+  if (!reply) return reply.error();
+  return std::optional(std::move(*reply));
 }
 
 }  // namespace shm

@@ -64,6 +64,10 @@ class Requester {
   // The server's answer, also when it is a refusal. An error when the server does not answer in time or is gone.
   base::Result<Reply> ask(const Request& request, std::chrono::nanoseconds timeout = std::chrono::seconds(10));
   base::Result<Reply> ask_raw(const RawRequest& request, std::chrono::nanoseconds timeout = std::chrono::seconds(10));
+  // The same in two calls, for a request without text that takes long: begin() sends it, await() waits for the answer. Nothing: there is
+  // none yet; call await() again. The next begin() or ask(), and the end of this object, withdraw a request without an answer.
+  base::Result<void> begin(const Request& request);
+  base::Result<std::optional<Reply>> await(std::chrono::nanoseconds timeout);
   // The simulation iface: clock, statistics.
   Iface& simulation();
 

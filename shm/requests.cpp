@@ -17,7 +17,7 @@ constexpr std::uint32_t flag_1 = 1, flag_2 = 2, flag_3 = 4;
 constexpr std::int64_t max_steps = 1'000'000'000;
 constexpr std::uint32_t max_pixels = 8192;
 
-constexpr std::array<std::string_view, 27> names = {"",           "pause",          "run",
+constexpr std::array<std::string_view, 28> names = {"",           "pause",          "run",
                                                     "step",       "reset",          "get-pose",
                                                     "set-pose",   "get-velocity",   "set-velocity",
                                                     "wrench",     "list",           "tree",
@@ -25,7 +25,8 @@ constexpr std::array<std::string_view, 27> names = {"",           "pause",      
                                                     "statistics", "reset-odometry", "set-motors",
                                                     "set-rtf",    "contacts",       "drop-participant",
                                                     "export",     "poses",          "fault",
-                                                    "end-faults", "faults",         "models"};
+                                                    "end-faults", "faults",         "models",
+                                                    "pose-log"};
 static_assert(std::variant_size_v<Request> == names.size() - 1);
 
 void put_pose(RequestBody& body, const Pose& pose) {
@@ -118,6 +119,7 @@ struct Encoder {
   }
   void operator()(const FaultsRequest& r) { name(r.iface); }
   void operator()(const ModelsRequest&) {}
+  void operator()(const PoseLogRequest& r) { raw.body.count = r.from; }
 };
 
 class Decoder {
@@ -338,6 +340,9 @@ base::Result<Request> Decoder::decode() {
       return Request(FaultsRequest{name_});
     case RTMSIM_REQUEST_MODELS:
       return Request(ModelsRequest{});
+    case RTMSIM_REQUEST_POSE_LOG:
+      if (body().count < 0) return fail("the first byte must not be negative, got " + std::to_string(body().count));
+      return Request(PoseLogRequest{body().count});
     default:
       return fail("unknown kind");
   }

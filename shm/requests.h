@@ -103,11 +103,15 @@ struct FaultsRequest {
   std::string iface;  // empty = all
 };
 struct ModelsRequest {};
+// See shm/pose_log.h.
+struct PoseLogRequest {
+  std::int64_t from = 0;  // [bytes]; the simulator deletes what is before it
+};
 
 using Request = std::variant<PauseRequest, RunRequest, StepRequest, ResetRequest, GetPoseRequest, SetPoseRequest, GetVelocityRequest,
                              SetVelocityRequest, WrenchRequest, ListRequest, TreeRequest, SpawnRequest, DeleteRequest, ScreenshotRequest,
                              StatsRequest, ResetOdometryRequest, SetMotorsRequest, SetRtfRequest, ContactsRequest, DropParticipantRequest,
-                             ExportRequest, PosesRequest, FaultRequest, EndFaultsRequest, FaultsRequest, ModelsRequest>;
+                             ExportRequest, PosesRequest, FaultRequest, EndFaultsRequest, FaultsRequest, ModelsRequest, PoseLogRequest>;
 
 enum class RequestStatus : std::uint32_t {
   ok = RTMSIM_STATUS_OK,

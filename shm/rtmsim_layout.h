@@ -441,7 +441,9 @@ enum {
                                 that is on gives way */
   RTMSIM_REQUEST_END_FAULTS = 24, /* name = iface or empty for all; text = kind or empty for all; reply count = faults that have ended */
   RTMSIM_REQUEST_FAULTS = 25,     /* name = iface or empty for all; reply text: JSON, those that are on or still to come */
-  RTMSIM_REQUEST_MODELS = 26      /* reply text: JSON, the models of the model path, which SPAWN takes as model://NAME */
+  RTMSIM_REQUEST_MODELS = 26,     /* reply text: JSON, the models of the model path, which SPAWN takes as model://NAME */
+  RTMSIM_REQUEST_POSE_LOG = 27    /* the first one starts the pose log (shm/pose_log.h). count = first byte wanted; earlier ones are
+                                     deleted. Reply count = end of the log [bytes]; text = bytes of it, at most 8 MiB */
 };
 
 /* Views of a screenshot. Without TOP and FOLLOW the camera's pose is in values; none given: one that shows the whole world. */

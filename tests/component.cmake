@@ -1,5 +1,5 @@
-rtmsim_test(component_core_test component/execution_context_test.cpp component/workers_test.cpp component/configuration_test.cpp LIBRARIES rt_core LABELS core)
-rtmsim_test(component_test component/component_test.cpp component/component_context_test.cpp component/component_service_test.cpp component/component_observer_test.cpp component/hanging_callback_test.cpp LIBRARIES openrtm LABELS corba)
+rtmsim_test(component_core_test component/callback_gate_test.cpp component/execution_context_test.cpp component/workers_test.cpp component/configuration_test.cpp LIBRARIES rt_core LABELS core)
+rtmsim_test(component_test component/component_test.cpp component/component_context_test.cpp component/component_service_test.cpp component/component_observer_test.cpp component/hanging_callback_test.cpp component/outside_calls_test.cpp component/turns_test.cpp LIBRARIES openrtm LABELS corba)
 add_executable(component_peer component/component_peer.cpp)
 target_link_libraries(component_peer PRIVATE openrtm GTest::gtest rtmsim_settings)
 target_include_directories(component_peer PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})

@@ -24,6 +24,7 @@ endfunction()
 add_test(NAME campaign.reports COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/robustness/no_report_test.py)
 campaign(doors doors.py)
 campaign(strangers strangers.py)
+campaign(campaign.outside_calls outside_calls.py ${PROJECT_SOURCE_DIR} --calls 1000)
 campaign(fragments fragments.py --messages 20000)
 campaign(tls tls.py Loopback)
 campaign(tls.between_two_hosts tls.py BetweenTwoHosts)
@@ -46,7 +47,7 @@ set_tests_properties(campaign.stores PROPERTIES LABELS "process;campaign" TIMEOU
 
 # What the campaigns run; built alone by scripts/sanitized.
 add_custom_target(campaign_programs)
-add_dependencies(campaign_programs campaign_steps clock_jumps rtcd rtcprof own_account_door rtse rtse-recorder sim-server simctl player-gateway RTCLaser RTCPosition2d
+add_dependencies(campaign_programs campaign_steps clock_jumps rtcd rtcprof own_account_door rtse rtse-recorder sim-server simctl player-gateway RTCLaser RTCPosition2d RTCCamera RTCImu RTCSimulation
                  LaserObstacleAvoid LaserObstacleAvoidComp SourceAll SinkAll EchoProvider EchoConsumer ConfigDemo FailOnRequest manager_fuzz ports_fuzz player_fuzz)
 if(RTMSIM_STUDIO)
   add_dependencies(campaign_programs rtm-studio)

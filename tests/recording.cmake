@@ -2,6 +2,7 @@
 rtmsim_test(mcap_test recording/mcap_test.cpp LIBRARIES mcap)
 rtmsim_test(ros_messages_test recording/ros_messages_test.cpp LIBRARIES recorder)
 rtmsim_test(expression_test recording/expression_test.cpp LIBRARIES recorder)
+rtmsim_test(recorder_line_test recording/recorder_line_test.cpp LIBRARIES recorder)
 foreach(case views excluded whole_run same_run killed full_disk compared played kept of_a_run replayed repeated lives hashed replayed_without_inputs replayed_from_real_time gone_to gone_to_with_others like simulator_ends bad_input)
   add_test(NAME recordings.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/recordings.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})

@@ -1,7 +1,8 @@
 # sim-server and simctl as processes; each case has a server of its own.
 foreach(script_and_cases
     "server requests output_that_takes_no_more motion same_state looked_at_while_paused looked_at_each_device shows_every_type exports check names rate paused_is_idle"
-    "server_faults faults bad_requests no_room scribbled_over killed living_server_is_refused ends ends_while_it_loads cut_short shared")
+    "server_faults faults bad_requests no_room scribbled_over killed living_server_is_refused ends ends_while_it_loads cut_short shared"
+    "server_meshes damaged_in_a_world damaged_and_spawned time_goes_on_while_a_model_is_read lock_step_waits_for_a_model reader_is_killed reader_ends_with_its_server primitives_need_no_reader special_files changed_file_is_read_again")
   separate_arguments(cases UNIX_COMMAND "${script_and_cases}")
   list(POP_FRONT cases script)
   foreach(case ${cases})
@@ -17,3 +18,4 @@ set_tests_properties(worlds.are_what_their_scripts_write PROPERTIES LABELS world
 rtmsim_test(pace_test server/pace_test.cpp LIBRARIES simserver LABELS sim)
 rtmsim_test(world_hashes_test server/world_hashes_test.cpp LIBRARIES simserver LABELS sim)
 rtmsim_test(wild_run_test server/wild_run_test.cpp LIBRARIES simserver LABELS sim world)
+rtmsim_test(pose_watch_test server/pose_watch_test.cpp LIBRARIES simserver LABELS sim)

@@ -1,13 +1,15 @@
-// The callbacks of a component: called one and all through callUser, which knows who is in one.
+// The callbacks of a component: called one and all through callInTurn, one at a time.
 #include "component/component_impl.h"
 
 #include <algorithm>
 #include <cmath>
 #include <exception>
 #include <optional>
+#include <utility>
 
 #include "base/text.h"
 #include "base/tick.h"
+#include "base/waiting.h"
 #include "corba/orb/call_context.h"
 #include "corba/orb/orb.h"
 
@@ -15,8 +17,26 @@ namespace RTC {
 
 namespace {
 
-// How many callbacks of components run on this thread, one inside the other.
-thread_local int callback_depth = 0;
+// A component whose callback this thread runs; several, one inside the other.
+class InsideCallback {
+ public:
+  explicit InsideCallback(const RTObject_impl& component) : component_(component), outer_(std::exchange(innermost, this)) {}
+  ~InsideCallback() { innermost = outer_; }
+  InsideCallback(const InsideCallback&) = delete;
+  InsideCallback& operator=(const InsideCallback&) = delete;
+  static bool any() { return innermost != nullptr; }
+  static bool any_of(const RTObject_impl* component) {
+    for (const InsideCallback* one = innermost; one != nullptr; one = one->outer_)
+      if (&one->component_ == component) return true;
+    return false;
+  }
+
+ private:
+  static thread_local const InsideCallback* innermost;
+  const RTObject_impl& component_;
+  const InsideCallback* const outer_;
+};
+thread_local const InsideCallback* InsideCallback::innermost = nullptr;
 
 std::string in_seconds(std::chrono::nanoseconds time) {
   return base::format_number(std::round(std::chrono::duration<double>(time).count() * 100) / 100) + " s";
@@ -24,7 +44,8 @@ std::string in_seconds(std::chrono::nanoseconds time) {
 
 }  // namespace
 
-bool isInsideCallback() { return callback_depth > 0; }
+bool isInsideCallback() { return InsideCallback::any(); }
+bool isInsideCallbackOf(const RTObject_impl* component) { return InsideCallback::any_of(component); }
 
 ReturnCode_t RTObject_impl::onInitialize() { return RTC_OK; }
 ReturnCode_t RTObject_impl::onFinalize() { return RTC_OK; }
@@ -40,40 +61,46 @@ ReturnCode_t RTObject_impl::onStateUpdate(RTC::UniqueId) { return RTC_OK; }
 ReturnCode_t RTObject_impl::onRateChanged(RTC::UniqueId) { return RTC_OK; }
 ReturnCode_t RTObject_impl::onAction(RTC::UniqueId) { return RTC_OK; }
 
-// Writes down that a thread is in a callback, for its life.
-class RTObject_impl::Impl::Visit {
- public:
-  Visit(Impl& impl, const char* callback) : impl_(impl), callback_(callback) {
-    ++callback_depth;
-    impl_.running.lock()->push_back({callback_, std::chrono::steady_clock::now(), std::this_thread::get_id(), false});
-  }
-  ~Visit() {
-    {
-      auto running = impl_.running.lock();
-      const auto self = std::this_thread::get_id();
-      const auto it = std::find_if(running->rbegin(), running->rend(), [&](const RunningCallback& one) { return one.thread == self; });
-      running->erase(std::next(it).base());
-    }
-    impl_.callback_ended.notify_all();
-    --callback_depth;
-  }
-  Visit(const Visit&) = delete;
-  Visit& operator=(const Visit&) = delete;
+// --- the one way to an author's code
 
- private:
-  Impl& impl_;
-  const char* callback_;
-};
-
-template <class Function>
-ReturnCode_t RTObject_impl::callUser(const char* name, Function function) {
+// `refusal` says why a caller from outside may not call now, `done` comes after a callback that such a caller has called.
+template <class Refusal, class Function, class Done>
+ReturnCode_t RTObject_impl::callInTurn(const char* name, bool is_outside, Refusal refusal, Function function, Done done) {
+  using Gate = rt::CallbackGate;
   base::expect_no_data_held();
-  const Impl::Visit visit(*impl_, name);
+  if (is_outside && !mayBeChangedByCaller(name)) return RTC_ERROR;
+  Gate::Visit visit(impl_->gate, name, is_outside ? Gate::Caller::remote : Gate::Caller::local);
+  if (visit.answer() != Gate::Answer::inside) {
+    if (is_outside)
+      if (const auto why = refusal()) return refuse(name, *why, PRECONDITION_NOT_MET);
+    const bool is_simulated = is_outside ? corba::clock_of_caller() != nullptr : base::tick_in_lock_step() != nullptr;
+    const std::chrono::nanoseconds patience = is_simulated ? std::chrono::nanoseconds(simulated_patience)
+                                              : is_outside ? std::chrono::nanoseconds(remote_patience)
+                                                           : std::max<std::chrono::nanoseconds>(callbackTimeout(), local_patience);
+    {
+      const base::ScopedWait waiting;
+      visit.wait(std::chrono::steady_clock::now() + patience);
+    }
+    if (visit.answer() != Gate::Answer::inside) {
+      const std::string running = impl_->gate.describe();
+      const std::string why = visit.answer() == Gate::Answer::crowded  ? "too many callers wait for its callbacks"
+                              : visit.answer() == Gate::Answer::closed ? "the component ends"
+                              : running.empty()                        ? "other callbacks took too long"
+                                                                       : running;
+      if (is_outside) return refuse(name, why, PRECONDITION_NOT_MET);
+      RTC_ERROR(("%s was not called: %s", name, why.c_str()));
+      return RTC_ERROR;
+    }
+  }
+  if (is_outside)
+    if (const auto why = refusal()) return refuse(name, *why, PRECONDITION_NOT_MET);
+  const InsideCallback inside(*this);
   // Called by a context of another process: its time is ours.
   std::optional<base::ScopedClock> clock;
   if (const auto* of_caller = corba::clock_of_caller()) clock.emplace(base::current_clock_or(*of_caller));
+  ReturnCode_t code = RTC_ERROR;
   try {
-    return function();
+    code = function();
   } catch (const CORBA::Exception& exception) {
     RTC_ERROR(("%s threw %s", name, corba::to_text(exception).c_str()));
   } catch (const std::exception& exception) {
@@ -81,11 +108,37 @@ ReturnCode_t RTObject_impl::callUser(const char* name, Function function) {
   } catch (...) {
     RTC_ERROR(("%s threw something that is no std::exception", name));
   }
-  return RTC_ERROR;
+  if (is_outside) done();
+  return code;
+}
+
+template <class Function>
+ReturnCode_t RTObject_impl::callAction(rt::Action action, ExecutionContextHandle_t exec_handle, Function function) {
+  const auto refusal = [&]() -> std::optional<std::string> {
+    auto data = impl_->shared.lock();
+    if (data->phase != Impl::Phase::initializing && data->phase != Impl::Phase::alive && data->phase != Impl::Phase::exiting)
+      return "the component is not alive";
+    const auto context = data->elsewhere.find(exec_handle);
+    return why_not(action, context == data->elsewhere.end() ? std::nullopt : std::optional(context->second));
+  };
+  const auto done = [&] {
+    auto data = impl_->shared.lock();
+    const auto context = data->elsewhere.find(exec_handle);
+    if (context != data->elsewhere.end()) context->second = is_active_after(action, context->second);
+  };
+  return callInTurn(rt::callback_of(action).data(), OutsideCall::is_mine(*this), refusal, function, done);
 }
 
 ReturnCode_t RTObject_impl::on_initialize() {
-  return callUser("onInitialize", [this] {
+  const auto refusal = [this]() -> std::optional<std::string> {
+    if (m_pManager != nullptr) return "its manager initializes the component";
+    auto data = impl_->shared.lock();
+    if (data->phase != Impl::Phase::created) return "the component is not in its CREATED state";
+    if (data->was_initialized_from_outside) return "it has been called already";
+    return std::nullopt;
+  };
+  const auto done = [this] { impl_->shared.lock()->was_initialized_from_outside = true; };
+  const auto initialize = [this] {
     if (auto faults = rt::ExecuteFaults::parse(property("fault.on_execute", ""))) {
       impl_->faults = std::move(*faults);
     } else {
@@ -98,20 +151,23 @@ ReturnCode_t RTObject_impl::on_initialize() {
     m_configsets.update();
     m_actionListeners.postaction_[POST_ON_INITIALIZE].notify(0, code);
     return code;
-  });
+  };
+  return callInTurn("onInitialize", OutsideCall::is_mine(*this), refusal, initialize, done);
 }
 
 ReturnCode_t RTObject_impl::on_finalize() {
-  return callUser("onFinalize", [this] {
+  const auto refusal = [] { return std::optional<std::string>("the runtime calls it when the component ends; exit ends one"); };
+  const auto finalize = [this] {
     m_actionListeners.preaction_[PRE_ON_FINALIZE].notify(0);
     const ReturnCode_t code = onFinalize();
     m_actionListeners.postaction_[POST_ON_FINALIZE].notify(0, code);
     return code;
-  });
+  };
+  return callInTurn("onFinalize", OutsideCall::is_mine(*this), refusal, finalize, [] {});
 }
 
 ReturnCode_t RTObject_impl::on_startup(ExecutionContextHandle_t exec_handle) {
-  return callUser("onStartup", [&] {
+  return callAction(rt::Action::startup, exec_handle, [&] {
     m_actionListeners.preaction_[PRE_ON_STARTUP].notify(exec_handle);
     const ReturnCode_t code = onStartup(exec_handle);
     m_actionListeners.postaction_[POST_ON_STARTUP].notify(exec_handle, code);
@@ -120,7 +176,7 @@ ReturnCode_t RTObject_impl::on_startup(ExecutionContextHandle_t exec_handle) {
 }
 
 ReturnCode_t RTObject_impl::on_shutdown(ExecutionContextHandle_t exec_handle) {
-  return callUser("onShutdown", [&] {
+  return callAction(rt::Action::shutdown, exec_handle, [&] {
     m_actionListeners.preaction_[PRE_ON_SHUTDOWN].notify(exec_handle);
     const ReturnCode_t code = onShutdown(exec_handle);
     m_actionListeners.postaction_[POST_ON_SHUTDOWN].notify(exec_handle, code);
@@ -129,7 +185,7 @@ ReturnCode_t RTObject_impl::on_shutdown(ExecutionContextHandle_t exec_handle) {
 }
 
 ReturnCode_t RTObject_impl::on_activated(ExecutionContextHandle_t exec_handle) {
-  return callUser("onActivated", [&] {
+  return callAction(rt::Action::activated, exec_handle, [&] {
     m_actionListeners.preaction_[PRE_ON_ACTIVATED].notify(exec_handle);
     m_configsets.update();
     const ReturnCode_t code = onActivated(exec_handle);
@@ -140,7 +196,7 @@ ReturnCode_t RTObject_impl::on_activated(ExecutionContextHandle_t exec_handle) {
 }
 
 ReturnCode_t RTObject_impl::on_deactivated(ExecutionContextHandle_t exec_handle) {
-  return callUser("onDeactivated", [&] {
+  return callAction(rt::Action::deactivated, exec_handle, [&] {
     m_actionListeners.preaction_[PRE_ON_DEACTIVATED].notify(exec_handle);
     deactivatePorts(exec_handle);
     const ReturnCode_t code = onDeactivated(exec_handle);
@@ -150,7 +206,7 @@ ReturnCode_t RTObject_impl::on_deactivated(ExecutionContextHandle_t exec_handle)
 }
 
 ReturnCode_t RTObject_impl::on_aborting(ExecutionContextHandle_t exec_handle) {
-  return callUser("onAborting", [&] {
+  return callAction(rt::Action::aborting, exec_handle, [&] {
     m_actionListeners.preaction_[PRE_ON_ABORTING].notify(exec_handle);
     const ReturnCode_t code = onAborting(exec_handle);
     m_actionListeners.postaction_[POST_ON_ABORTING].notify(exec_handle, code);
@@ -159,7 +215,7 @@ ReturnCode_t RTObject_impl::on_aborting(ExecutionContextHandle_t exec_handle) {
 }
 
 ReturnCode_t RTObject_impl::on_error(ExecutionContextHandle_t exec_handle) {
-  return callUser("onError", [&] {
+  return callAction(rt::Action::error, exec_handle, [&] {
     m_actionListeners.preaction_[PRE_ON_ERROR].notify(exec_handle);
     const ReturnCode_t code = onError(exec_handle);
     m_configsets.update();
@@ -169,7 +225,7 @@ ReturnCode_t RTObject_impl::on_error(ExecutionContextHandle_t exec_handle) {
 }
 
 ReturnCode_t RTObject_impl::on_reset(ExecutionContextHandle_t exec_handle) {
-  return callUser("onReset", [&] {
+  return callAction(rt::Action::reset, exec_handle, [&] {
     m_actionListeners.preaction_[PRE_ON_RESET].notify(exec_handle);
     const ReturnCode_t code = onReset(exec_handle);
     m_actionListeners.postaction_[POST_ON_RESET].notify(exec_handle, code);
@@ -178,7 +234,7 @@ ReturnCode_t RTObject_impl::on_reset(ExecutionContextHandle_t exec_handle) {
 }
 
 ReturnCode_t RTObject_impl::on_execute(ExecutionContextHandle_t exec_handle) {
-  return callUser("onExecute", [&] {
+  return callAction(rt::Action::execute, exec_handle, [&] {
     if (base::tick_in_lock_step()) m_configsets.update();  // at the edge that all ticks of one time have in common
     m_actionListeners.preaction_[PRE_ON_EXECUTE].notify(exec_handle);
     bool reads = false, writes = false;
@@ -196,7 +252,7 @@ ReturnCode_t RTObject_impl::on_execute(ExecutionContextHandle_t exec_handle) {
 }
 
 ReturnCode_t RTObject_impl::on_state_update(ExecutionContextHandle_t exec_handle) {
-  return callUser("onStateUpdate", [&] {
+  return callAction(rt::Action::state_update, exec_handle, [&] {
     m_actionListeners.preaction_[PRE_ON_STATE_UPDATE].notify(exec_handle);
     const ReturnCode_t code = onStateUpdate(exec_handle);
     if (!base::tick_in_lock_step()) m_configsets.update();
@@ -206,7 +262,7 @@ ReturnCode_t RTObject_impl::on_state_update(ExecutionContextHandle_t exec_handle
 }
 
 ReturnCode_t RTObject_impl::on_rate_changed(ExecutionContextHandle_t exec_handle) {
-  return callUser("onRateChanged", [&] {
+  return callAction(rt::Action::rate_changed, exec_handle, [&] {
     m_actionListeners.preaction_[PRE_ON_RATE_CHANGED].notify(exec_handle);
     const ReturnCode_t code = onRateChanged(exec_handle);
     m_actionListeners.postaction_[POST_ON_RATE_CHANGED].notify(exec_handle, code);
@@ -215,27 +271,15 @@ ReturnCode_t RTObject_impl::on_rate_changed(ExecutionContextHandle_t exec_handle
 }
 
 std::vector<RTObject_impl::RunningCallback> RTObject_impl::runningCallbacks() const {
-  std::vector<RunningCallback> others = impl_->running.snapshot();
-  std::erase_if(others, [](const RunningCallback& one) { return one.thread == std::this_thread::get_id(); });
+  std::vector<RunningCallback> others;
+  for (const rt::CallbackGate::Running& one : impl_->gate.others_inside())
+    others.push_back({one.callback, one.since, one.thread, one.is_given_up});
   return others;
 }
 
 bool RTObject_impl::isHeldByCallback() const { return !runningCallbacks().empty(); }
 
-bool RTObject_impl::waitForCallbacks(std::chrono::steady_clock::time_point deadline) {
-  const auto is_other = [](const RunningCallback& one) { return one.thread != std::this_thread::get_id(); };
-  auto running = impl_->running.lock();
-  running.wait_until(impl_->callback_ended, deadline, [&] {
-    return std::none_of(running->begin(), running->end(), [&](const auto& one) { return is_other(one) && !one.is_written_off; });
-  });
-  bool has_others = false;
-  for (RunningCallback& one : *running) {
-    if (!is_other(one)) continue;
-    one.is_written_off = true;
-    has_others = true;
-  }
-  return !has_others;
-}
+bool RTObject_impl::waitForCallbacks(std::chrono::steady_clock::time_point deadline) { return impl_->gate.wait_until_empty(deadline); }
 
 void RTObject_impl::complainAboutCallbacks(const char* consequence) const {
   for (const RunningCallback& one : runningCallbacks())

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <condition_variable>
 #include <map>
 #include <mutex>
 #include <set>
@@ -20,6 +19,8 @@
 #include "base/clock.h"
 #include "base/guarded.h"
 #include "component/execute_fault.h"
+#include "component/outside_calls.h"
+#include "core/callback_gate.h"
 
 namespace RTC {
 
@@ -56,8 +57,10 @@ struct RTObject_impl::Impl {
   struct Data {
     Phase phase = Phase::created;
     RTObject_var reference{};
-    std::vector<ExecutionContext_var> own{};      // by handle
-    std::vector<ExecutionContext_var> foreign{};  // by handle - foreign_offset; nil where one has left
+    std::vector<ExecutionContext_var> own{};               // by handle
+    std::vector<ExecutionContext_var> foreign{};           // by handle - foreign_offset; nil where one has left
+    std::map<ExecutionContextHandle_t, bool> elsewhere{};  // those of `foreign` in other processes; whether the component is active there
+    bool was_initialized_from_outside = false;
     std::vector<ExecutionContextBase*> contexts{};
     std::chrono::nanoseconds callback_timeout = ExecutionContextBase::default_callback_timeout;
     std::vector<Port> ports{};
@@ -82,16 +85,16 @@ struct RTObject_impl::Impl {
   // Of the context that the component joined last; for time stamps.
   const std::shared_ptr<base::FollowingClock> clock = std::make_shared<base::FollowingClock>();
   std::unique_ptr<rt::ExecuteFaults> faults;  // null: none are asked for
-  class Visit;
-  base::Guarded<std::vector<RunningCallback>, base::Rank::buffer> running;
-  std::condition_variable callback_ended;
+  rt::CallbackGate gate;                      // all callbacks pass it
+  RefusalLog refusals;
   base::Guarded<std::thread, base::Rank::registry> exiter;  // runs exit() when a callback asked for it
 };
 
 inline constexpr ExecutionContextHandle_t foreign_offset = 1000;
 
-// This thread runs a callback of some component.
+// This thread runs a callback of some component, or of that one (null: of none).
 bool isInsideCallback();
+bool isInsideCallbackOf(const RTObject_impl* component);
 
 // Takes a servant out of its object adapter; calls in progress end first, then its reference is given back there.
 void deactivateServant(PortableServer::ServantBase& servant, CORBA::Object_ptr reference);

@@ -66,6 +66,8 @@ struct ExecutionContextBase::Impl {
   std::vector<Member> members() const;
   // All participants of `context` are entries.
   static const Member& member_of(const rt::Participant& participant) { return static_cast<const Entry&>(participant).member(); }
+  // The calling thread runs a callback that must return before the context can call the member: it cannot wait for that.
+  bool is_waited_for_by_callback(const Member& member) const;
   // False when somebody else has been faster. `is_left_alone`: no callback of it runs any more.
   bool remove(const Member& member, std::chrono::nanoseconds patience, bool* is_left_alone = nullptr);
   std::shared_ptr<corba::MemberWatch> member_watch();

@@ -1,5 +1,6 @@
 // The members of an execution context: how they come, change their state and leave.
 #include <rtm/RTObject.h>
+#include "component/component_impl.h"
 #include "component/context_impl.h"
 #include "component/local_component.h"
 
@@ -71,6 +72,10 @@ std::optional<ExecutionContextBase::Impl::Member> ExecutionContextBase::Impl::fi
     for (const auto& participant : all)
       if (const Member& member = member_of(*participant); member.local == local.get()) return member;
   return std::nullopt;
+}
+
+bool ExecutionContextBase::Impl::is_waited_for_by_callback(const Member& member) const {
+  return context.is_stepping_thread() || isInsideCallbackOf(member.local);
 }
 
 std::vector<RTC::LightweightRTObject_var> ExecutionContextBase::getComponents() const {
@@ -247,7 +252,7 @@ RTC::ReturnCode_t ExecutionContextBase::activateComponent(RTC::LightweightRTObje
   const auto timeout = impl_->shared.lock()->activation;
   RTC_impl::RTObjectStateMachine* machine = member->machine.get();
   if (!m_syncActivation) return onActivated(machine, 0);
-  if (impl_->context.is_stepping_thread()) return RTC::RTC_OK;
+  if (impl_->is_waited_for_by_callback(*member)) return RTC::RTC_OK;
   if (const auto code = onWaitingActivated(machine, 0); code != RTC::RTC_OK) return code;
   const auto code = impl_->context.wait(member->id, rt::Event::activate, timeout);
   return code == rt::ReturnCode::ok ? onActivated(machine, 1) : corba::to_wire(code);
@@ -261,7 +266,7 @@ RTC::ReturnCode_t ExecutionContextBase::deactivateComponent(RTC::LightweightRTOb
   const auto timeout = impl_->shared.lock()->deactivation;
   RTC_impl::RTObjectStateMachine* machine = member->machine.get();
   if (!m_syncDeactivation) return onDeactivated(machine, 0);
-  if (impl_->context.is_stepping_thread()) return RTC::RTC_OK;
+  if (impl_->is_waited_for_by_callback(*member)) return RTC::RTC_OK;
   if (const auto code = onWaitingDeactivated(machine, 0); code != RTC::RTC_OK) return code;
   const auto code = impl_->context.wait(member->id, rt::Event::deactivate, timeout);
   return code == rt::ReturnCode::ok ? onDeactivated(machine, 1) : corba::to_wire(code);
@@ -275,7 +280,7 @@ RTC::ReturnCode_t ExecutionContextBase::resetComponent(RTC::LightweightRTObject_
   const auto timeout = impl_->shared.lock()->reset;
   RTC_impl::RTObjectStateMachine* machine = member->machine.get();
   if (!m_syncReset) return onReset(machine, 0);
-  if (impl_->context.is_stepping_thread()) return RTC::RTC_OK;
+  if (impl_->is_waited_for_by_callback(*member)) return RTC::RTC_OK;
   if (const auto code = onWaitingReset(machine, 0); code != RTC::RTC_OK) return code;
   const auto code = impl_->context.wait(member->id, rt::Event::reset, timeout);
   return code == rt::ReturnCode::ok ? onReset(machine, 1) : corba::to_wire(code);

@@ -253,6 +253,7 @@ void RTObject_impl::finalizeContexts(std::chrono::steady_clock::time_point deadl
     auto data = impl_->shared.lock();
     data->own.clear();
     data->foreign.clear();
+    data->elsewhere.clear();
   }
   chooseClock();
 }
@@ -345,10 +346,12 @@ UniqueId RTObject_impl::bindContext(ExecutionContext_ptr exec_context) {
 }
 
 ExecutionContextHandle_t RTObject_impl::attach_context(ExecutionContext_ptr exec_context) {
+  if (OutsideCall::is_mine(*this) && !mayBeChangedByCaller("attach_context")) return -1;
   if (!is_context(exec_context) || !corba::may_keep(exec_context)) return -1;
   // The same one again keeps its handle; it is told like the first time, because the context has just added the component.
   ExecutionContextHandle_t id = get_context_handle(exec_context);
   if (id < foreign_offset) {
+    const bool is_elsewhere = findLocalContext(exec_context) == nullptr;
     auto data = impl_->shared.lock();
     auto& list = data->foreign;
     auto free = std::find_if(list.begin(), list.end(), [](const ExecutionContext_var& context) { return CORBA::is_nil(context); });
@@ -357,6 +360,7 @@ ExecutionContextHandle_t RTObject_impl::attach_context(ExecutionContext_ptr exec
     if (!is_full) {
       *free = ExecutionContext::_duplicate(exec_context);
       id = static_cast<ExecutionContextHandle_t>(free - list.begin()) + foreign_offset;
+      if (is_elsewhere) data->elsewhere[id] = false;
     } else {
       id = -1;
     }
@@ -371,12 +375,14 @@ ExecutionContextHandle_t RTObject_impl::attach_context(ExecutionContext_ptr exec
 }
 
 ReturnCode_t RTObject_impl::detach_context(ExecutionContextHandle_t exec_handle) {
+  if (OutsideCall::is_mine(*this) && !mayBeChangedByCaller("detach_context")) return RTC_ERROR;
   {
     auto data = impl_->shared.lock();
     if (exec_handle < foreign_offset) return BAD_PARAMETER;
     const auto index = static_cast<std::size_t>(exec_handle - foreign_offset);
     if (index >= data->foreign.size() || CORBA::is_nil(data->foreign[index])) return BAD_PARAMETER;
     data->foreign[index] = ExecutionContext::_nil();
+    data->elsewhere.erase(exec_handle);
   }
   chooseClock();
   m_actionListeners.ecaction_[EC_DETACHED].notify(exec_handle);

@@ -27,6 +27,11 @@ class RenderWorld {
   // The world as it is now. Builds the scene anew when models have come or gone; what could not be read is logged, once each.
   Snapshot snapshot(std::chrono::nanoseconds time, Scene::Content content = Scene::Content::visuals);
 
+  // Whether a scene of this content has been built: then a model that is spawned should bring what is drawn of it.
+  bool has_scene(Scene::Content content) const { return (content == Scene::Content::visuals ? visuals_ : collisions_).scene != nullptr; }
+  // Read by another thread for a model that is to be spawned.
+  void adopt(Assets&& assets) { assets_.adopt(std::move(assets)); }
+
   // True (lock step, as fast as possible): pictures are finished before time goes on. False: each camera draws in its own time.
   void set_synchronous(bool on) { is_synchronous_ = on; }
   bool is_synchronous() const { return is_synchronous_; }

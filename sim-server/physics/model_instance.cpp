@@ -156,7 +156,6 @@ void ModelInstance::enter(dWorldID world, const PhysicsDef& physics) {
     if (auto* restored = this->joint(order.joint)) set_drive(*restored, order.axis, order.velocity, order.effort);
   }
   left_neighbourhood = may_be_awake = true;
-  begin_joints(physics.step);
   still_steps_ = slow_steps_ = 0;
 }
 
@@ -222,23 +221,6 @@ void ModelInstance::follow_joints(double dt) {
 void ModelInstance::take_initial_positions() {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const Assembly& assembly = blueprint_->assemblies[i];
-void ModelInstance::begin_joints(double dt) {
-  const auto& links = blueprint_->model->links;
-  const bool is_saved = std::any_of(links.begin(), links.end(), [](const LinkDef& link) { return link.start_pose.has_value(); });
-  has_followed_ = false;
-  for (auto& joint : joints_) {
-    joint.begin(dt, is_saved);
-    has_followed_ = has_followed_ || joint.is_followed();
-  }
-}
-
-void ModelInstance::follow_joints(double dt) {
-  if (!has_followed_) return;
-  for (auto& joint : joints_) {
-    if (joint.is_followed()) joint.follow(dt);
-  }
-}
-
     const auto& moved = assembly.moved_at_start;
     const dBodyID body = bodies_[i].id();
     if (body == nullptr) continue;
@@ -343,7 +325,6 @@ void ModelInstance::restore(const State& state, double dt) {
 }
 
 bool ModelInstance::is_awake() const {
-  for (std::size_t j = 0; j < joints_.size(); ++j) joints_[j].take(state.joints[j], dt);
   for (const auto& body : bodies_) {
     if (body.id() != nullptr && dBodyIsEnabled(body.id()) != 0) return true;
   }

@@ -123,7 +123,6 @@ class ModelInstance {
   void begin_joints(double dt);
   void float_in(const FluidDef& fluid, const Eigen::Vector3d& gravity);
   int assembly_of(const std::string& link) const;
-  void begin_joints(double dt);
   // Nothing of an anchored one.
   std::optional<BodyState> state(std::size_t assembly) const;
 
@@ -144,7 +143,6 @@ class ModelInstance {
   bool gravity_ = true, is_kinematic_ = false;
   std::uint32_t still_steps_ = 0, slow_steps_ = 0;  // since it was faster
   Aabb moving_box_;
-  bool has_followed_ = false;  // joints
 };
 
 }  // namespace sim

@@ -144,7 +144,6 @@ class Physics {
   PhysicsStatistics statistics() const;
   StepSolver last_solver(ModelId model) const;
   // One line for each model that had to be put back because it left the numbers, since the last call.
-  StepSolver last_solver(ModelId model) const;
   std::vector<std::string> take_complaints();
 
   // For rays: the rigid pieces that models consist of. A piece is all links of a model that cannot move against each other.

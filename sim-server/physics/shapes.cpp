@@ -27,6 +27,25 @@ Aabb box_of_field(dGeomID geom, const ShapeStore::Field& field) {
   return box;
 }
 
+// Triangles with three corners, and the vertices that they use: ODE ends the process when a mesh has more vertices than edges.
+void fill(ShapeStore::Mesh& mesh, const TriangleMesh& from) {
+  constexpr dTriIndex unused = ~dTriIndex{0};
+  const auto has_corners = [](const auto& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; };
+  std::vector<dTriIndex> places(from.vertices.size(), unused);
+  for (const auto& triangle : from.triangles) {
+    if (!has_corners(triangle)) continue;
+    for (const auto corner : triangle) places[corner] = 0;
+  }
+  mesh.vertices.reserve(from.vertices.size() * 3);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (places[i] == unused) continue;
+    places[i] = static_cast<dTriIndex>(mesh.vertices.size() / 3);
+    mesh.vertices.insert(mesh.vertices.end(), {from.vertices[i].x(), from.vertices[i].y(), from.vertices[i].z()});
+  }
+  for (const auto& t : from.triangles)
+    if (has_corners(t)) mesh.indexes.insert(mesh.indexes.end(), {places[t[0]], places[t[1]], places[t[2]]});
+}
+
 }  // namespace
 
 Aabb box_of(dGeomID geom) {
@@ -42,9 +61,8 @@ base::Result<std::shared_ptr<ShapeStore::Mesh>> ShapeStore::mesh(const GeometryD
   const bool is_cached = std::holds_alternative<MeshShape>(geometry);
   if (const auto found = meshes_.find(triangles->get()); is_cached && found != meshes_.end()) return found->second;
   auto mesh = std::make_shared<Mesh>();
-  mesh->vertices.reserve((*triangles)->vertices.size() * 3);
-  for (const auto& v : (*triangles)->vertices) mesh->vertices.insert(mesh->vertices.end(), {v.x(), v.y(), v.z()});
-  for (const auto& t : (*triangles)->triangles) mesh->indexes.insert(mesh->indexes.end(), {t[0], t[1], t[2]});
+  fill(*mesh, **triangles);
+  if (mesh->indexes.empty()) return base::Error{"mesh: has no triangle with three corners"};
   mesh->triangles = *triangles;
   mesh->data = ode::TriMeshData(dGeomTriMeshDataCreate());
   dGeomTriMeshDataBuildDouble(mesh->data.id(), mesh->vertices.data(), 3 * sizeof(double), static_cast<int>(mesh->vertices.size() / 3),

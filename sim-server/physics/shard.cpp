@@ -244,7 +244,6 @@ void Shard::finish() {
     model->may_be_awake = true;  // ODE wakes what awake bodies touch
     if (!model->neighbourhood.contains(model->update_boxes())) model->left_neighbourhood = has_left = true;
   }
-    model->follow_joints(physics_.step);
   for (auto* model : active_) model->is_active = false;
   active_.clear();
 }

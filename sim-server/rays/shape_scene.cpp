@@ -125,7 +125,7 @@ std::string key_of(std::span<const RayShape> shapes) {
     if (const auto* e = std::get_if<EllipsoidShape>(shape.geometry)) numbers(e->radii.x(), e->radii.y(), e->radii.z());
     if (const auto* m2 = std::get_if<MeshShape>(shape.geometry)) {
       key += m2->path + "|" + m2->submesh;
-      numbers(m2->scale.x(), m2->scale.y(), m2->scale.z(), m2->center_submesh);
+      numbers(m2->scale.x(), m2->scale.y(), m2->scale.z(), m2->center_submesh, m2->version);
     }
     if (const auto* p = std::get_if<PolylineShape>(shape.geometry)) {
       numbers(p->height);

@@ -9,6 +9,9 @@
 #include <cstdlib>
 #include <utility>
 
+#include "reader/asset_reader.h"
+#include "render/mesh_arrays.h"
+
 namespace sim {
 namespace {
 
@@ -68,8 +71,8 @@ Image plain_picture(const std::string& color) {
 }
 
 std::string key_of(const MeshShape& shape) {
-  return fmt::format("{}|{}|{}|{},{},{}", shape.path, shape.submesh, shape.center_submesh, shape.scale.x(), shape.scale.y(),
-                     shape.scale.z());
+  return fmt::format("{}|{}|{}|{},{},{}|{}", shape.path, shape.submesh, shape.center_submesh, shape.scale.x(), shape.scale.y(),
+                     shape.scale.z(), shape.version);
 }
 std::string key_of(const HeightmapShape& shape) {
   return fmt::format("{}|{},{},{}|{}", shape.path, shape.size.x(), shape.size.y(), shape.size.z(), shape.sampling);
@@ -175,8 +178,12 @@ std::shared_ptr<const Mesh> Assets::load(const MeshShape& shape) {
     complaints_.push_back(file.error().message + "; a magenta box stands in");
     return kept = missing_mesh_;
   }
-  for (auto& image : file->images) embedded_[image.name] = std::move(image.bytes);
+  keep_images(std::move(file->images), file->files);
   return kept = std::make_shared<Mesh>(std::move(file->mesh));
+}
+
+void Assets::keep_images(std::vector<EmbeddedImage>&& images, const FileStamps& files) {
+  for (auto& image : images) embedded_[image.name] = {std::move(image.bytes), files};
 }
 
 std::shared_ptr<const SkinFile> Assets::skin(const std::string& path, double scale) {
@@ -188,7 +195,7 @@ std::shared_ptr<const SkinFile> Assets::skin(const std::string& path, double sca
     complaints_.push_back(file.error().message + "; a magenta box stands in");
     return nullptr;
   }
-  for (auto& image : file->images) embedded_[image.name] = std::move(image.bytes);
+  keep_images(std::move(file->images), file->files);
   return kept->second = std::make_shared<SkinFile>(std::move(*file));
 }
 
@@ -226,43 +233,59 @@ std::shared_ptr<const Mesh> Assets::load(const PolylineShape& shape) {
   return std::make_shared<Mesh>(make_flat((*triangles)->vertices, (*triangles)->triangles));
 }
 
-base::Result<Image> Assets::image(const std::string& path) {
+base::Result<Image> Assets::image(const std::string& path, int largest_side, FileStamps& files) {
   if (path.starts_with(color_file)) return plain_picture(path.substr(std::string_view(color_file).size()));
   const auto inside = embedded_.find(path);
-  return inside != embedded_.end() ? decode_image(inside->second, path) : read_image(path);
+  if (inside == embedded_.end()) return read_image(path, largest_side, &files);
+  files = inside->second.files;
+  return decode_image(inside->second.bytes, path, largest_side);
+}
+
+base::Result<std::shared_ptr<const Texture>> Assets::shelved(const std::string& key, const std::string& path, int largest_side,
+                                                             const std::function<Texture(Image)>& make) {
+  static auto& shelf = *new AssetShelf<Texture>(std::size_t{256} << 20U);  // never destroyed: as the reader
+  return shelf
+      .get(key,
+           [&]() -> AssetShelf<Texture>::Made {
+             FileStamps files;
+             auto picture = image(path, largest_side, files);
+             if (!picture) return {picture.error(), files, 0, !files.empty()};
+             const std::size_t bytes = picture->size_bytes() * 4 / 3;
+             return {make(std::move(*picture)), std::move(files), bytes};
+           })
+      .value;
 }
 
 std::shared_ptr<const Texture> Assets::texture(const std::string& path, bool has_alpha) {
   if (path == missing_file) return missing_texture_;
   auto& kept = textures_[(has_alpha ? "" : "opaque|") + path];
   if (kept) return kept;
-  auto picture = image(path);
-  if (!picture) {
-    complaints_.push_back(picture.error().message + "; a chequer stands in");
-    return kept = missing_texture_;
-  }
-  while (std::max(picture->width, picture->height) > largest_texture) *picture = halve(*picture);
-  if (!has_alpha) {
-    for (std::size_t i = 3; i < picture->rgba.size(); i += 4) picture->rgba[i] = 255;
-  }
-  return kept = std::make_shared<Texture>(make_texture(std::move(*picture)));
+  auto texture = shelved((has_alpha ? "alpha|" : "opaque|") + path, path, largest_texture, [&](Image picture) {
+    if (!has_alpha) {
+      for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = 255;
+    }
+    return make_texture(std::move(picture));
+  });
+  if (texture) return kept = *texture;
+  complaints_.push_back(texture.error().message + "; a chequer stands in");
+  return kept = missing_texture_;
 }
 
 std::shared_ptr<const Texture> Assets::normal_map(const std::string& path) {
   auto& kept = textures_["normal|" + path];
   if (kept) return kept;
-  auto picture = image(path);
-  if (!picture) {
-    complaints_.push_back(picture.error().message + "; the surface stays smooth");
-    return kept = flat_normals_;
-  }
-  Texture texture;
-  while (picture->width > 1 || picture->height > 1) {
-    texture.levels.push_back(*picture);
-    *picture = halve(*picture);
-  }
-  texture.levels.push_back(std::move(*picture));
-  return kept = std::make_shared<Texture>(std::move(texture));
+  auto texture = shelved("normal|" + path, path, largest_image, [](Image picture) {
+    Texture levels;
+    while (picture.width > 1 || picture.height > 1) {
+      levels.levels.push_back(picture);
+      picture = halve(picture);
+    }
+    levels.levels.push_back(std::move(picture));
+    return levels;
+  });
+  if (texture) return kept = *texture;
+  complaints_.push_back(texture.error().message + "; the surface stays smooth");
+  return kept = flat_normals_;
 }
 
 std::shared_ptr<const Texture> Assets::height_texture(const HeightmapShape& shape) {
@@ -271,8 +294,10 @@ std::shared_ptr<const Texture> Assets::height_texture(const HeightmapShape& shap
   for (const auto& layer : shape.textures) key += fmt::format("|{},{}", layer.diffuse, layer.size);
   if (const auto kept = textures_.find(key); kept != textures_.end()) return kept->second;
   std::vector<Image> layers;
+  FileStamps files;
   for (const auto& layer : shape.textures) {
-    auto picture = layer.diffuse.empty() || layer.diffuse == missing_file ? base::Result<Image>(chequer()) : image(layer.diffuse);
+    auto picture = layer.diffuse.empty() || layer.diffuse == missing_file ? base::Result<Image>(chequer())
+                                                                          : image(layer.diffuse, largest_image, files);
     if (!picture) complaints_.push_back(picture.error().message + "; a chequer stands in");
     layers.push_back(picture ? std::move(*picture) : chequer());
   }
@@ -302,6 +327,19 @@ std::shared_ptr<const Texture> Assets::height_texture(const HeightmapShape& shap
     }
   }
   return textures_[key] = std::make_shared<Texture>(make_texture(std::move(out)));
+}
+
+void Assets::adopt(Assets&& other) {
+  const auto move_to = [](auto& mine, auto& theirs) {
+    for (auto& [key, value] : theirs) mine.insert_or_assign(key, std::move(value));
+  };
+  // Shapes that both have made for themselves stay: what is drawn from them is shared.
+  for (auto& [key, mesh] : other.meshes_) meshes_.try_emplace(key, std::move(mesh));
+  move_to(textures_, other.textures_);
+  move_to(embedded_, other.embedded_);
+  triangles_.adopt(std::move(other.triangles_));
+  complaints_.insert(complaints_.end(), other.complaints_.begin(), other.complaints_.end());
+  other.complaints_.clear();
 }
 
 std::vector<std::string> Assets::take_complaints() { return std::exchange(complaints_, {}); }

@@ -1,7 +1,9 @@
-// Meshes and textures in memory, each file read once. What cannot be read gets a visible stand-in (a magenta and black chequer, a small
-// box) and one line of complaint. The cache is for one thread at a time; what it hands out never changes and any thread may read it.
+// Meshes and textures in memory, each file read once. Files are read by a process of its own (reader/asset_reader.h). What cannot be read
+// gets a visible stand-in (a magenta and black chequer, a small box) and one line of complaint. The cache is for one thread at a time; what
+// it hands out never changes and any thread may read it.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -45,6 +47,10 @@ class Assets {
   // The layers of a height map blended by height into one picture that covers it; null when it has no readable layer.
   std::shared_ptr<const Texture> height_texture(const HeightmapShape& shape);
 
+  // Takes what another one has read, for a model that is to be spawned: its pictures replace those of the same names. What this one has
+  // handed out stays as it is.
+  void adopt(Assets&& other);
+
   // What could not be read since the last call, one line each.
   std::vector<std::string> take_complaints();
 
@@ -52,7 +58,11 @@ class Assets {
   std::shared_ptr<const Mesh> load(const MeshShape& shape);
   std::shared_ptr<const Mesh> load(const HeightmapShape& shape);
   std::shared_ptr<const Mesh> load(const PolylineShape& shape);
-  base::Result<Image> image(const std::string& path);
+  base::Result<Image> image(const std::string& path, int largest_side, FileStamps& files);
+  void keep_images(std::vector<EmbeddedImage>&& images, const FileStamps& files);
+  // By a key, through the shelf that all share.
+  base::Result<std::shared_ptr<const Texture>> shelved(const std::string& key, const std::string& path, int largest_side,
+                                                       const std::function<Texture(Image)>& make);
 
   ModelPath model_path_;
   std::shared_ptr<const Mesh> box_, sphere_, cylinder_, plane_, missing_mesh_;
@@ -62,7 +72,11 @@ class Assets {
   std::map<std::string, std::shared_ptr<const Texture>> textures_;
   std::map<std::string, std::shared_ptr<const SkinFile>> skins_;
   std::map<std::string, std::shared_ptr<const SkinAnimation>> animations_;
-  std::map<std::string, std::vector<std::uint8_t>> embedded_;
+  struct Embedded {
+    std::vector<std::uint8_t> bytes;
+    FileStamps files;  // that it is a part of
+  };
+  std::map<std::string, Embedded> embedded_;
   std::vector<std::string> complaints_;
 };
 

@@ -1,4 +1,5 @@
-// Pictures in memory and in files: PNG (read, write) and JPEG (read). Values; any thread.
+// Pictures in memory and in files: PNG (read, write), JPEG and DDS (read). What is read is read by a process of its own
+// (reader/asset_reader.h). Values; any thread.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "reader/protocol.h"
 
 namespace sim {
 
@@ -19,9 +21,10 @@ struct Image {
   std::size_t size_bytes() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4; }
 };
 
-// The kind is told from the first bytes. At most 16384 pixels a side.
-base::Result<Image> read_image(const std::filesystem::path& file);
-base::Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& name);
+// The kind is told from the first bytes. At most 16384 pixels a side; one of more than `largest_side` is halved until it has no more.
+// `files` (may be null): what the picture depends on.
+base::Result<Image> read_image(const std::filesystem::path& file, int largest_side = 16384, FileStamps* files = nullptr);
+base::Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& name, int largest_side = 16384);
 
 // A PNG: RGB when every pixel is opaque, otherwise RGBA.
 base::Result<std::vector<std::uint8_t>> encode_png(const Image& image, const std::string& name = "in memory");  // name: for messages

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "reader/protocol.h"
 #include "world/world_def.h"
 
 namespace sim {
@@ -59,6 +60,7 @@ struct EmbeddedImage {
 struct MeshFile {
   Mesh mesh;
   std::vector<EmbeddedImage> images;
+  FileStamps files;  // that it was read from
 };
 
 // Unit shapes, to be scaled: a box, ellipsoid or cylinder of 1 x 1 x 1 m about the origin; a square of 1 m in the x-y plane.
@@ -75,8 +77,9 @@ Mesh make_height_grid(int columns, int rows, double width, double depth, std::sp
 // Every triangle gets its own flat normal; u and v are metres along the sides.
 Mesh make_flat(std::span<const Eigen::Vector3d> vertices, std::span<const std::array<std::uint32_t, 3>> triangles);
 
-// By Assimp: COLLADA, STL, OBJ and the like; all parts, or the submesh (a node or a mesh of that name). The result is scaled and, when
-// asked for, centred. `model_path`: where the pictures lie that it names by model://.
+// COLLADA, STL, OBJ, PLY, glTF and FBX, read by a process of its own (reader/asset_reader.h): all parts, or the submesh (a node or a mesh
+// of that name). The result is scaled and, when asked for, centred. `model_path`: where the pictures lie that it names by model://.
+// What is unchanged is read once for all who ask.
 base::Result<MeshFile> read_mesh_file(const MeshShape& shape, const ModelPath& model_path = {});
 
 }  // namespace sim

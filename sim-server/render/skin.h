@@ -71,12 +71,13 @@ struct SkinFile {
   Mesh mesh;  // at rest [m]
   std::vector<EmbeddedImage> images;
   Skin skin;
+  FileStamps files;  // that it was read from
 };
 
-// By Assimp: COLLADA, glTF and the like, also of things without a skeleton. `scale`: metres in a unit of the file.
+// COLLADA, glTF and the like, also of things without a skeleton. `scale`: metres in a unit of the file.
 base::Result<SkinFile> read_skin_file(const std::string& path, double scale, const ModelPath& model_path = {});
 
-// By Assimp: of COLLADA, BVH and the like. Nodes are known by their names; fails when none of them is the skin's. `scale`: metres in a unit
+// Of COLLADA, BVH and the like. Nodes are known by their names; fails when none of them is the skin's. `scale`: metres in a unit
 // of the file.
 base::Result<SkinAnimation> read_skin_animation(const std::string& path, double scale, const Skin& skin);
 

@@ -9,37 +9,30 @@
 //   contact 3.217 pioneer2dx box_4
 #pragma once
 
-#include <chrono>
 #include <fstream>
-#include <set>
 #include <string>
 #include <utility>
 
 #include "base/result.h"
-#include "devices/device.h"
-#include "physics/physics.h"
+#include "server/pose_watch.h"
 
 namespace sim {
 
-class Recorder {
+class Recorder final : public PoseSink {
  public:
   static base::Result<Recorder> open(const std::string& path, const std::string& world);
-  // After each step. When the disk is full it says so once and stops.
-  void record(std::chrono::nanoseconds time, const Physics& physics);
+  void contact(double time, ModelId model, ModelId other, const Physics& physics) override;
+  void pose(double time, ModelId model, const Physics& physics) override;
+  void still(double time) override;
+  // When the disk is full it says so once and stops.
+  void end_of_moment() override;
   // Writes what is left. False when something could not be written.
   bool finish();
-  void restart() {
-    schedule_.restart();
-    touching_.clear();
-  }
 
  private:
-  void record_contacts(double seconds, const Physics& physics);
-  Recorder(std::string path, std::ofstream file) : path_(std::move(path)), file_(std::move(file)), schedule_(10) {}
+  Recorder(std::string path, std::ofstream file) : path_(std::move(path)), file_(std::move(file)) {}
   std::string path_;
   std::ofstream file_;
-  Schedule schedule_;
-  std::set<std::pair<ModelId, ModelId>> touching_;  // in the last step; the smaller id first
 };
 
 }  // namespace sim

@@ -33,7 +33,7 @@ bool is_one_of(const shm::Request& request) {
 bool leaves_the_world_alone(const shm::Request& request) {
   return is_one_of<shm::PauseRequest, shm::RunRequest, shm::GetPoseRequest, shm::GetVelocityRequest, shm::ListRequest, shm::TreeRequest,
                    shm::StatsRequest, shm::SetRtfRequest, shm::ContactsRequest, shm::DropParticipantRequest, shm::ExportRequest,
-                   shm::PosesRequest, shm::FaultsRequest, shm::ModelsRequest>(request);
+                   shm::PosesRequest, shm::FaultsRequest, shm::ModelsRequest, shm::PoseLogRequest>(request);
 }
 
 // How long a request that needs the world to stand between two steps waits for a tick to end. Clients wait for ten seconds.
@@ -143,23 +143,11 @@ struct ServerLoop::Handler {
     }
     // What is asked for others is made of what the model path offers to everybody.
     const ModelPath& path = loop.model_path_;
-    auto loaded = load_model(request.sdf, request.name, pose, loop.is_shared() || request.is_confined ? path.confined() : path);
-    if (!loaded) return failed(loaded.error());
-    // A name that nobody asked for gives way.
-    if (request.name.empty()) loaded->model.name = unused_name(loaded->model.name);
-    for (const auto& finding : loaded->findings) base::log(base::Level::warn, "sim-server", "{}", finding.text());
-    std::vector<std::string> notes;
-    const auto id = simulation.spawn(loaded->model, notes);
-    for (const auto& note : notes) base::log(base::Level::warn, "sim-server", "{}", note);
-    if (!id) return failed(id.error());
-    shm::Reply reply;
-    reply.message = physics.def(*id).name;
-    return reply;
-  }
-  std::string unused_name(const std::string& name) const {
-    std::string unused = name;
-    for (int i = 1; physics.find(unused); ++i) unused = name + "_" + std::to_string(i);
-    return unused;
+    if (!loop.spawn_desk_) loop.spawn_desk_ = std::make_unique<SpawnDesk>([board = &loop.board_] { board->wake(); });
+    loop.spawn_desk_->take({ticket, request.sdf, request.name, pose, loop.is_shared() || request.is_confined ? path.confined() : path,
+                            simulation.world().model_path, simulation.pictures().has_scene(Scene::Content::visuals),
+                            simulation.pictures().has_scene(Scene::Content::collisions)});
+    return {};
   }
   shm::Reply operator()(const shm::DeleteRequest& request) {
     const auto model = physics.find(request.model);
@@ -190,6 +178,15 @@ struct ServerLoop::Handler {
     return {};
   }
   shm::Reply operator()(const shm::PosesRequest&) { return poses_reply(simulation); }
+  shm::Reply operator()(const shm::PoseLogRequest& request) {
+    if (!loop.memory_log_) loop.memory_log_.emplace();
+    auto piece = loop.memory_log_->bytes().take(request.from);
+    if (!piece) return failed(piece.error());
+    shm::Reply reply;
+    reply.count = loop.memory_log_->bytes().end();
+    reply.text = std::move(*piece);
+    return reply;
+  }
   template <class Work>
   void order(Work work, shm::Reply reply) {
     if (!loop.desk_) loop.desk_ = std::make_unique<PictureDesk>([board = &loop.board_] { board->wake(); });
@@ -262,6 +259,44 @@ struct ServerLoop::Handler {
   }
 };
 
+shm::Reply ServerLoop::spawn(SpawnDesk::Done&& done) {
+  if (!done.model) return failed(done.model.error());
+  ModelDef& model = done.model.value().model;
+  if (done.has_own_name) {  // one that nobody asked for gives way
+    const std::string name = model.name;
+    for (int i = 1; simulation_.physics().find(model.name); ++i) model.name = name + "_" + std::to_string(i);
+  }
+  for (const auto& finding : done.model.value().findings) base::log(base::Level::warn, "sim-server", "{}", finding.text());
+  simulation_.adopt(std::move(done.triangles));
+  if (done.pictures) simulation_.pictures().adopt(std::move(*done.pictures));
+  std::vector<std::string> notes;
+  const auto id = simulation_.spawn(model, notes);
+  for (const auto& note : notes) base::log(base::Level::warn, "sim-server", "{}", note);
+  if (!id) return failed(id.error());
+  shm::Reply reply;
+  reply.message = simulation_.physics().def(*id).name;
+  return reply;
+}
+
+void ServerLoop::spawn_loaded(When when) {
+  std::vector<Loaded> kept;
+  for (auto& [done, since] : std::exchange(loaded_, {})) {
+    if (!board_.is_awaited(done.ticket)) continue;
+    const auto ticket = done.ticket;
+    if (when == When::in_tick && Clock::now() - since < patience) {
+      kept.push_back({std::move(done), since});
+      continue;
+    }
+    shm::Reply reply = when == When::between_steps
+                           ? spawn(std::move(done))
+                           : refused(shm::RequestStatus::failed, "time stands still: " + late_participants() + " has not ended its tick");
+    reply.sim_time_ns = simulation_.time().count();
+    reply.steps = simulation_.steps();
+    board_.reply(ticket, reply);
+  }
+  loaded_ = std::move(kept);
+}
+
 shm::Reply ServerLoop::handle(const shm::Request& request, const shm::RequestTicket& ticket) {
   return std::visit(Handler{*this, ticket}, request);
 }
@@ -270,14 +305,18 @@ void ServerLoop::handle_requests(When when) {
   if (desk_) {
     for (const auto& done : desk_->finished()) board_.reply(done.ticket, done.reply);
   }
+  if (spawn_desk_) {
+    for (auto& done : spawn_desk_->finished()) loaded_.push_back({std::move(done), Clock::now()});
+  }
   auto waiting = std::exchange(postponed_, {});
   for (auto& asked : board_.poll()) waiting.push_back({std::move(asked), Clock::now()});
-  if (when == When::between_steps && !waiting.empty()) {
+  if (when == When::between_steps && !(waiting.empty() && loaded_.empty())) {
     // While an observer is waited for they are those of a tick: some are answered, and what has to wait is told who is late.
     postponed_ = std::move(waiting);
     if (!barrier_->settle()) return;
     waiting = std::exchange(postponed_, {});
   }
+  spawn_loaded(when);
   for (auto& [asked, since] : waiting) {
     // What its client was told has failed must not happen later.
     if (!board_.is_awaited(asked.ticket)) continue;
@@ -292,7 +331,8 @@ void ServerLoop::handle_requests(When when) {
     }
     base::log(base::Level::debug, "sim-server", "request {} of pid {}", shm::request_name(asked.request), asked.pid);
     shm::Reply reply = handle(asked.request, asked.ticket);
-    if (is_one_of<shm::StepRequest, shm::ScreenshotRequest, shm::ExportRequest>(asked.request) && reply.status == shm::RequestStatus::ok)
+    if (is_one_of<shm::StepRequest, shm::ScreenshotRequest, shm::ExportRequest, shm::SpawnRequest>(asked.request) &&
+        reply.status == shm::RequestStatus::ok)
       continue;
     reply.sim_time_ns = simulation_.time().count();
     reply.steps = simulation_.steps();

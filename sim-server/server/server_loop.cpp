@@ -81,6 +81,11 @@ bool ServerLoop::run() {
     const bool stood_still = mode_.stands_still();
     handle_requests(When::between_steps);
     tend();
+    if (waits_for_spawn()) {
+      board_.wait(Clock::now() + tend_period);
+      start_pace();
+      continue;
+    }
     // Also when time is to go on now: who came before that has a sample, however fast the two followed each other.
     if (stood_still) simulation_.answer_new_subscribers();
     // Not while time stands still: who subscribes or joins before it moves has its sample and its tick at time 0, as after a reset.
@@ -145,13 +150,20 @@ bool ServerLoop::finish_moment() {
   // Nobody waits for the wall clock: pictures must not be late in simulated time.
   simulation_.pictures().set_synchronous(options_.is_lockstep || pace_.is_free() || mode_.hurries());
   if (!simulation_.sense(times_, [this] { return barrier_->settle(); })) return false;
-  if (recorder_) recorder_->record(simulation_.time(), simulation_.physics());
+  look_at_poses();
   if (hashes_) hashes_->record(simulation_, barrier_->has_turn(simulation_.time()));
   publish_clock();
   times_.mark(Part::publish);
   const bool goes_on = barrier_->tick(simulation_.time(), simulation_.steps());
   times_.mark(Part::clients);
   return goes_on;
+}
+
+void ServerLoop::look_at_poses() {
+  std::vector<PoseSink*> sinks;
+  if (recorder_) sinks.push_back(&*recorder_);
+  if (memory_log_) sinks.push_back(&*memory_log_);
+  if (!sinks.empty()) poses_.look(simulation_.time(), simulation_.physics(), sinks);
 }
 
 void ServerLoop::publish_clock() {
@@ -270,7 +282,7 @@ void ServerLoop::reset(bool poses_only) {
     contacts_told_.clear();
     is_fresh_moment_ = true;
     pace_.restart_measurement(Clock::now(), simulation_.time());
-    if (recorder_) recorder_->restart();
+    poses_.restart();
     if (hashes_) hashes_->restart();
   }
   start_pace();

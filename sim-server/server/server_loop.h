@@ -11,11 +11,13 @@
 
 #include "base/result.h"
 #include "server/describe.h"
+#include "server/memory_log.h"
 #include "server/mode.h"
 #include "server/pace.h"
 #include "server/picture_desk.h"
 #include "server/recorder.h"
 #include "server/simulation.h"
+#include "server/spawn_desk.h"
 #include "server/world_hashes.h"
 #include "shm/lockstep.h"
 #include "shm/request_board.h"
@@ -54,6 +56,7 @@ class ServerLoop {
   void handle_requests(When when);
   shm::Reply handle(const shm::Request& request, const shm::RequestTicket& ticket);
   struct Handler;
+  void look_at_poses();
 
   void wait_for_participants();
   // What belongs to a moment: sensors, clock, participants.
@@ -64,6 +67,11 @@ class ServerLoop {
   void publish_clock();
   void reset(bool poses_only);
   void finish_step_request();
+  // Models that have been read come into the world, in the order in which they were asked for.
+  void spawn_loaded(When when);
+  shm::Reply spawn(SpawnDesk::Done&& done);
+  // In lock step time waits for the files of a model that is spawned: when it comes must not depend on how fast they are read.
+  bool waits_for_spawn() const { return options_.is_lockstep && spawn_desk_ && spawn_desk_->under_way() > 0; }
   std::string late_participants() const;
   // Ends the steps that a client has asked for before they are all done, and tells it why.
   void end_steps(const std::string& why);
@@ -85,7 +93,9 @@ class ServerLoop {
   shm::IfaceWriter& iface_;
   const ModelPath& model_path_;
   LoopOptions options_;
+  PoseWatch poses_;
   std::optional<Recorder> recorder_;
+  std::optional<MemoryLog> memory_log_;  // once a client has asked for it
   std::optional<WorldHashes> hashes_;
   shm::RequestBoard board_;
   std::unique_ptr<shm::Barrier> barrier_;
@@ -100,8 +110,14 @@ class ServerLoop {
     shm::RequestBoard::Asked asked;
     std::chrono::steady_clock::time_point since;
   };
-  std::vector<Postponed> postponed_;   // until the tick is over
-  std::unique_ptr<PictureDesk> desk_;  // made with the first picture
+  std::vector<Postponed> postponed_;       // until the tick is over
+  std::unique_ptr<PictureDesk> desk_;      // made with the first picture
+  std::unique_ptr<SpawnDesk> spawn_desk_;  // made with the first model that is spawned
+  struct Loaded {
+    SpawnDesk::Done done;
+    std::chrono::steady_clock::time_point since;
+  };
+  std::vector<Loaded> loaded_;  // models that wait for the end of a tick
   std::map<ModelId, std::uint64_t> contacts_told_;
   std::uint64_t last_hash_ = 0, last_hash_steps_ = 0;
   std::uint32_t missing_ = 0;  // participants

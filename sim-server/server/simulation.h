@@ -57,6 +57,8 @@ class Simulation {
   base::Result<void> reset(std::vector<std::string>& notes);
   void reset_poses();
   base::Result<ModelId> spawn(const ModelDef& model, std::vector<std::string>& notes);
+  // What another thread has read of the files of a model that is to be spawned.
+  void adopt(TriangleCache&& triangles) { triangles_.adopt(std::move(triangles)); }
   void remove(ModelId model);
   base::Result<void> set_pose(ModelId model, const Eigen::Isometry3d& pose);
   // For `duration` from the next step on; at least one step.

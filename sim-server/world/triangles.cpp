@@ -1,102 +1,49 @@
 #include "world/triangles.h"
 
-#include <png.h>
 #include <spdlog/fmt/fmt.h>
 
-#include <assimp/config.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
 #include <algorithm>
-#include <assimp/Importer.hpp>
 #include <cmath>
-#include <cstdio>
-#include <exception>
 #include <numbers>
 
-#include "base/text.h"
-#include "world/mesh_io.h"
+#include "reader/asset_reader.h"
+#include "world/triangle_arrays.h"
 
 namespace sim {
 namespace {
 
-constexpr std::size_t most_triangles = 20'000'000;
 constexpr std::size_t most_corners = 5000;  // of all outlines of a polyline: joining and clipping them costs more than their square
-constexpr int most_heights_a_side = 2049;   // what larger maps have between is left out: every height costs some 250 bytes
 
-bool is_finite(const Eigen::Vector3d& v) { return v.allFinite() && v.cwiseAbs().maxCoeff() < 1e7; }
+using MeshShelf = AssetShelf<TriangleMesh>;
+using LevelShelf = AssetShelf<HeightLevels>;
+constexpr std::size_t most_kept = std::size_t{256} << 20U;  // [byte] of what nobody uses any more
 
-// Adds the meshes below `node` that the shape asks for.
-void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent, const MeshShape& shape, bool inside, TriangleMesh& out) {
-  const aiMatrix4x4 transform = parent * node.mTransformation;
-  const bool wanted = inside || shape.submesh.empty() || shape.submesh == node.mName.C_Str();
-  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
-    const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
-    if (!wanted && shape.submesh != mesh.mName.C_Str()) continue;
-    const auto first = static_cast<std::uint32_t>(out.vertices.size());
-    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
-      const aiVector3D p = transform * mesh.mVertices[v];
-      out.vertices.emplace_back(p.x, p.y, p.z);
-    }
-    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-      const aiFace& face = mesh.mFaces[f];
-      if (face.mNumIndices != 3 || out.triangles.size() >= most_triangles) continue;
-      out.triangles.push_back({first + face.mIndices[0], first + face.mIndices[1], first + face.mIndices[2]});
-    }
-  }
-  for (unsigned i = 0; i < node.mNumChildren; ++i)
-    collect(scene, *node.mChildren[i], transform, shape, wanted && !shape.submesh.empty(), out);
+MeshShelf& mesh_shelf() {
+  static auto& shelf = *new MeshShelf(most_kept);  // never destroyed: as the reader
+  return shelf;
+}
+LevelShelf& level_shelf() {
+  static auto& shelf = *new LevelShelf(most_kept);
+  return shelf;
 }
 
-void finish_mesh(const MeshShape& shape, TriangleMesh& mesh) {
-  std::erase_if(mesh.triangles, [&](const auto& t) {
-    return !is_finite(mesh.vertices[t[0]]) || !is_finite(mesh.vertices[t[1]]) || !is_finite(mesh.vertices[t[2]]);
+MeshShelf::Found read_mesh(const MeshShape& shape) {
+  ArrayWriter details;
+  put(details, shape);
+  return mesh_shelf().get(shape.path + '|' + details.bytes(), [&]() -> MeshShelf::Made {
+    const AssetReader::Question question{AssetKind::triangles, shape.path, "mesh", details.bytes()};
+    const auto answer = AssetReader::mine().ask(question);
+    return {AssetReader::decoded<TriangleMesh>(question, answer, take_triangles), answer.files, answer.result.size(),
+            !answer.files.empty()};
   });
-  for (auto& vertex : mesh.vertices) {
-    if (!is_finite(vertex)) vertex.setZero();
-  }
-  if (shape.center_submesh && !shape.submesh.empty() && !mesh.vertices.empty()) {
-    Eigen::AlignedBox3d box;
-    for (const auto& vertex : mesh.vertices) box.extend(vertex);
-    for (auto& vertex : mesh.vertices) vertex -= box.center();
-  }
-  for (auto& vertex : mesh.vertices) vertex = vertex.cwiseProduct(shape.scale);
-  if (shape.scale.prod() < 0) {  // mirrored: keep the outside outside
-    for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
-  }
 }
 
-base::Result<TriangleMesh> read_mesh(const MeshShape& shape, bool by_id = false) {
-  try {
-    Assimp::Importer importer;
-    importer.SetIOHandler(new MeshIo);  // the importer's from now on
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-    // Gazebo finds submeshes by the names of their nodes, older worlds of ours by their ids.
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, !shape.submesh.empty() && !by_id);
-    importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
-                                                            aiComponent_TEXCOORDS | aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
-                                                            aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS |
-                                                            aiComponent_MATERIALS);
-    const aiScene* scene =
-        importer.ReadFile(shape.path, aiProcess_Triangulate | aiProcess_RemoveComponent | aiProcess_JoinIdenticalVertices |
-                                          aiProcess_SortByPType | aiProcess_FindDegenerates);
-    if (scene == nullptr || scene->mRootNode == nullptr) {
-      return base::Error{fmt::format("mesh {}: {}", shape.path, import_fault(importer.GetErrorString()))};
-    }
-    TriangleMesh mesh;
-    collect(*scene, *scene->mRootNode, aiMatrix4x4(), shape, false, mesh);
-    if (mesh.triangles.empty() && !shape.submesh.empty() && !by_id) return read_mesh(shape, true);
-    finish_mesh(shape, mesh);
-    if (mesh.triangles.empty()) {
-      return base::Error{shape.submesh.empty() ? fmt::format("mesh {}: has no triangle", shape.path)
-                                               : fmt::format("mesh {}: has no submesh {}", shape.path, base::in_quotes(shape.submesh))};
-    }
-    return mesh;
-  } catch (const std::bad_alloc&) {
-    return base::Error{fmt::format("mesh {}: is too large for the memory", shape.path)};
-  } catch (const std::exception& e) {
-    return base::Error{fmt::format("mesh {}: {}", shape.path, base::in_quotes(e.what()))};
-  }
+LevelShelf::Found read_levels(const std::string& path) {
+  return level_shelf().get(path, [&]() -> LevelShelf::Made {
+    const AssetReader::Question question{AssetKind::heights, path, "height map", {}};
+    const auto answer = AssetReader::mine().ask(question);
+    return {AssetReader::decoded<HeightLevels>(question, answer, take_levels), answer.files, answer.result.size(), !answer.files.empty()};
+  });
 }
 
 // --- polylines: ear clipping, holes joined to the outline by bridges
@@ -219,43 +166,14 @@ base::Result<TriangleMesh> polyline_triangles(const PolylineShape& shape) {
 
 // --- height maps
 
-struct FileCloser {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-
 base::Result<HeightGrid> read_heights(const HeightmapShape& shape) {
-  const std::unique_ptr<std::FILE, FileCloser> file(std::fopen(shape.path.c_str(), "rb"));
-  if (!file) return base::Error{fmt::format("height map {}: cannot be opened", shape.path)};
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  if (png_image_begin_read_from_stdio(&image, file.get()) == 0) {
-    return base::Error{fmt::format("height map {}: {} (expected a PNG image)", shape.path, image.message)};
-  }
-  if (image.width < 2 || image.height < 2 || image.width > 8193 || image.height > 8193) {
-    png_image_free(&image);
-    return base::Error{fmt::format("height map {}: size {}x{} (expected 2..8193)", shape.path, image.width, image.height)};
-  }
-  // 16-bit images stay linear; 8-bit ones would pass a gamma curve in linear format.
-  const bool is_deep = (image.format & PNG_FORMAT_FLAG_LINEAR) != 0;
-  image.format = is_deep ? PNG_FORMAT_LINEAR_Y : PNG_FORMAT_GRAY;
-  std::vector<std::uint16_t> deep(is_deep ? std::size_t{image.width} * image.height : 0);
-  std::vector<std::uint8_t> flat(is_deep ? 0 : std::size_t{image.width} * image.height);
-  if (png_image_finish_read(&image, nullptr, is_deep ? static_cast<void*>(deep.data()) : flat.data(), 0, nullptr) == 0) {
-    return base::Error{fmt::format("height map {}: {}", shape.path, image.message)};
-  }
-  const auto kept = [](std::uint32_t side) { return std::min(static_cast<int>(side), most_heights_a_side); };
-  HeightGrid grid{kept(image.width), kept(image.height), shape.size.x(), shape.size.y(), {}};
-  grid.heights.reserve(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows));
-  for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) {
-      // The corners stay where they are.
-      const auto x = static_cast<std::size_t>(column) * (image.width - 1) / static_cast<std::size_t>(grid.columns - 1);
-      const auto y = static_cast<std::size_t>(row) * (image.height - 1) / static_cast<std::size_t>(grid.rows - 1);
-      const std::size_t i = y * image.width + x;
-      const double level = is_deep ? deep[i] / 65535.0 : flat[i] / 255.0;
-      grid.heights.push_back(static_cast<float>(level * shape.size.z()));
-    }
-  }
+  const auto found = read_levels(shape.path);
+  if (!found.value) return found.value.error();
+  const HeightLevels& map = **found.value;
+  HeightGrid grid{static_cast<int>(map.columns), static_cast<int>(map.rows), shape.size.x(), shape.size.y(), {}};
+  grid.heights.reserve(map.levels.size());
+  for (const std::uint16_t level : map.levels)
+    grid.heights.push_back(static_cast<float>(level / static_cast<double>(map.highest) * shape.size.z()));
   return grid;
 }
 
@@ -283,8 +201,8 @@ TriangleMesh grid_triangles(const HeightGrid& grid, const Eigen::Vector3d& posit
 
 std::string key_of(const GeometryDef& geometry) {
   if (const auto* mesh = std::get_if<MeshShape>(&geometry)) {
-    return fmt::format("mesh|{}|{}|{}|{} {} {}", mesh->path, mesh->submesh, mesh->center_submesh, mesh->scale.x(), mesh->scale.y(),
-                       mesh->scale.z());
+    return fmt::format("mesh|{}|{}|{}|{} {} {}|{}", mesh->path, mesh->submesh, mesh->center_submesh, mesh->scale.x(), mesh->scale.y(),
+                       mesh->scale.z(), mesh->version);
   }
   if (const auto* map = std::get_if<HeightmapShape>(&geometry)) {
     return fmt::format("map|{}|{} {} {}|{} {} {}", map->path, map->size.x(), map->size.y(), map->size.z(), map->position.x(),
@@ -339,8 +257,13 @@ TriangleMesh ellipsoid_triangles(const Eigen::Vector3d& radii, int rings, int se
 base::Result<std::shared_ptr<const TriangleMesh>> TriangleCache::triangles(const GeometryDef& geometry) {
   const std::string key = key_of(geometry);
   if (const auto found = meshes_.find(key); !key.empty() && found != meshes_.end()) return found->second;
+  if (const auto* shape = std::get_if<MeshShape>(&geometry)) {
+    if (const auto known = faults_.find(key); known != faults_.end()) return known->second;
+    auto found = read_mesh(*shape).value;
+    if (found) meshes_[key] = *found;
+    return found;
+  }
   base::Result<TriangleMesh> mesh = base::Error{fmt::format("{}: has no triangles", kind_of(geometry))};
-  if (const auto* shape = std::get_if<MeshShape>(&geometry)) mesh = read_mesh(*shape);
   if (const auto* shape = std::get_if<PolylineShape>(&geometry)) mesh = polyline_triangles(*shape);
   if (const auto* shape = std::get_if<EllipsoidShape>(&geometry)) mesh = ellipsoid_triangles(shape->radii);
   if (const auto* shape = std::get_if<ConeShape>(&geometry)) mesh = cone_triangles(*shape);
@@ -353,6 +276,31 @@ base::Result<std::shared_ptr<const TriangleMesh>> TriangleCache::triangles(const
   auto shared = std::make_shared<const TriangleMesh>(std::move(*mesh));
   if (!key.empty()) meshes_[key] = shared;
   return shared;
+}
+
+void TriangleCache::prepare(ModelDef& model) {
+  const auto prepare_shape = [&](MeshShape& shape) {
+    if (shape.path == missing_file) return;
+    const auto found = read_mesh(shape);
+    if (!found.files.empty()) shape.version = version_of(found.files);
+    if (found.value) {
+      meshes_[key_of(shape)] = *found.value;
+    } else {
+      faults_.insert_or_assign(key_of(shape), found.value.error());
+    }
+  };
+  for (LinkDef& link : model.links) {
+    for (CollisionDef& collision : link.collisions) {
+      if (auto* shape = std::get_if<MeshShape>(&collision.geometry)) prepare_shape(*shape);
+      if (auto* shape = std::get_if<HeightmapShape>(&collision.geometry)) (void)heights(*shape);
+    }
+  }
+}
+
+void TriangleCache::adopt(TriangleCache&& other) {
+  for (auto& [key, mesh] : other.meshes_) meshes_.insert_or_assign(key, std::move(mesh));
+  for (auto& [key, grid] : other.grids_) grids_.insert_or_assign(key, std::move(grid));
+  for (auto& [key, fault] : other.faults_) faults_.insert_or_assign(key, std::move(fault));
 }
 
 base::Result<std::shared_ptr<const HeightGrid>> TriangleCache::heights(const HeightmapShape& shape) {

@@ -1,5 +1,7 @@
-// Triangles and height grids of the shapes that are no primitives: meshes (Assimp), height maps (PNG), polylines and ellipsoids. What
-// physics and rays are built from. The cache is for one thread at a time; what it hands out never changes and any thread may read it.
+// Triangles and height grids of the shapes that are no primitives: meshes and height maps, whose files a process of its own reads
+// (reader/asset_reader.h), polylines and ellipsoids. Physics and rays are built from them. The cache is for one thread at a time; what it
+// hands out never changes and any thread may read it. A file is read once for all caches of this process, and again when it has changed;
+// one cache keeps what it has once handed out for a shape.
 #pragma once
 
 #include <Eigen/Core>
@@ -33,9 +35,15 @@ class TriangleCache {
   base::Result<std::shared_ptr<const TriangleMesh>> triangles(const GeometryDef& geometry);
   base::Result<std::shared_ptr<const HeightGrid>> heights(const HeightmapShape& shape);
 
+  // Reads the files of all collisions of a model that is to be spawned, and sets the versions of their meshes. What cannot be read is kept
+  // as such: the cache that adopts this one reads nothing for this model.
+  void prepare(ModelDef& model);
+  void adopt(TriangleCache&& other);
+
  private:
   std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;
   std::map<std::string, std::shared_ptr<const HeightGrid>> grids_;
+  std::map<std::string, base::Error> faults_;  // of models that were prepared
 };
 
 // A pyramid with so many sides.

@@ -65,6 +65,7 @@ struct MeshShape {
   std::string submesh;  // empty: all of them
   bool center_submesh = false;
   Eigen::Vector3d scale{1, 1, 1};  // no component is zero; may mirror
+  std::uint64_t version = 0;       // of the file; 0: as it is when it is read first
 };
 struct HeightmapTexture {
   double size = 10;

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <vector>
 
+#include "base/plain_file.h"
 #include "base/text.h"
 #include "world/text_mender.h"
 
@@ -137,15 +138,8 @@ bool is_lfs_pointer_file(const std::filesystem::path& path) {
 }
 
 base::Result<std::string> read_file(const std::filesystem::path& path) {
-  std::error_code problem;
-  if (!std::filesystem::exists(path, problem)) return base::Error{path.string() + ": no such file"};
-  if (!std::filesystem::is_regular_file(path, problem)) return base::Error{path.string() + ": is not a file"};
-  const std::uintmax_t size = std::filesystem::file_size(path, problem);
-  if (problem || size > most_bytes) return base::Error{path.string() + ": a file of at most 64 MiB is expected"};
-  std::ifstream stream(path, std::ios::binary);
-  std::string text(static_cast<std::size_t>(size), '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!stream && size > 0) return base::Error{path.string() + ": cannot be read"};
+  auto text = base::read_plain_file(path, most_bytes);
+  if (!text) return base::Error{path.string() + ": " + text.error().message};
   return text;
 }
 

@@ -135,10 +135,44 @@ def sweep_with_signal(p, name, number, has_made, results):
 def warm_killed():
     p = plan("repeat: 4\n")
     rtse("sweep", p, "-j", "2", "-o", folder / "quiet.db")
-    for name in ("sim-server", "rtcd", "simctl"):
+    for name in ("sim-server", "rtcd"):
         sweep_with_signal(p, name, signal.SIGKILL, True, f"{name}-killed.db")
         said = sweep_with_signal(p, name, signal.SIGSTOP, False, f"{name}-stopped.db")
         assert said.count(f"{name} --warm: has not answered") == 1, said
+
+
+# A folder with all programs but simctl, which no other one needs: conditions and events on models, pictures, a row that fails.
+def without_simctl():
+    programs = folder / "programs"
+    programs.mkdir()
+    for name in ("rtse", "rtse-campaign", "rtse-recorder", "rtcd", "sim-server"):
+        shutil.copy2(f"{bin_dir}/{name}", programs / name)
+    (folder / "lib").symlink_to(lib_dir)  # as beside the programs
+    path = os.pathsep.join(one for one in os.environ["PATH"].split(os.pathsep) if not (pathlib.Path(one) / "simctl").exists())
+    environment = os.environ | {"PATH": path}
+    assert shutil.which("simctl", path=path) is None, path
+    p = plan("""repeat: 2
+measure: [{contacts: {model: pioneer2dx}}, {clearance: {model: pioneer2dx}}]
+events:
+  - {at: 0.1, push: {model: pioneer2dx, force: [0, 40, 0], for: 0.1}}
+  - {at: 0.2, spawn: {model: "model://cow", name: cow, pose: [3, 3, 0]}}
+  - {at: 0.3, pose: {model: cow, to: [4, 3, 0]}}
+  - {when: {model: pioneer2dx, region: [-10, -10, 10, 10], after: 0.4}, delete: cow}
+never:
+  - {model: pioneer2dx, touches: cow}
+  - {model: pioneer2dx, region: [-10, -10, 10, 10]}
+""")
+    found = {}
+    for name, where in (("without.db", programs), ("with.db", pathlib.Path(bin_dir))):
+        done = subprocess.run([where / "rtse", "--json", "sweep", p, "-o", folder / name, "--record"], cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=200)
+        counts = json.loads(done.stdout)
+        assert (done.returncode, counts["rows"], counts["failed"]) == (1, 2, 2), (done, counts)
+        found[name] = states(name)
+    assert found["without.db"] == found["with.db"], found
+    assert len(list(folder.glob("*.runs/*/picture.png"))) > 0
+    done = subprocess.run([programs / "rtse", "run", f"{source}/worlds/systems/obstacle_avoidance.xml", "-w", f"{source}/worlds/obstacle_course.sdf", "-d", "1", "--picture", folder / "end.png"],
+                          cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=200)
+    assert done.returncode == 0 and (folder / "end.png").stat().st_size > 1000, done
 
 
 def ended():
@@ -368,7 +402,7 @@ def faults():
     # A host that is killed comes back; the run with it is the same each time.
     twice("one_process_each: true\nfaults: [{at: 0.3, for: 0.3, component: LaserObstacleAvoid0, is: kill}]\n", "kill.yaml")
     done = rtse("sweep", plan("hang_timeout: 1\nfaults: [{at: 0.3, component: LaserObstacleAvoid0, is: hang}]\n"), "--row", 1, code=1)
-    assert "LaserObstacleAvoid0: has not ended its tick" in done.stderr, done.stderr
+    assert "LaserObstacleAvoid0: did not finish its tick" in done.stderr, done.stderr
 
 
 # A small component that divides by zero when its laser goes on without news is found, with one fault, by one command.
@@ -404,6 +438,6 @@ hunt:
 
 
 try:
-    {"sweep": sweep, "reports": reports, "killed": killed, "warm_killed": warm_killed, "disk_full": disk_full, "interrupted": interrupted, "refused": refused, "events": events, "faults": faults, "hunts": hunts}[case]()
+    {"sweep": sweep, "reports": reports, "killed": killed, "warm_killed": warm_killed, "without_simctl": without_simctl, "disk_full": disk_full, "interrupted": interrupted, "refused": refused, "events": events, "faults": faults, "hunts": hunts}[case]()
 finally:
     subprocess.run(["rm", "-rf", str(folder)], check=False)

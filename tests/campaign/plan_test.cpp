@@ -43,7 +43,7 @@ TEST_F(Plans, hold_what_is_written_in_them) {
                          "faults:\n  - {at: 2, for: 1, sensor: robot::laser, is: bias, amount: 0.25}\n"
                          "events:\n  - {at: 1, push: {model: robot, force: [1, 0, 0], for: 0.5}}\n");
   ASSERT_TRUE(plan) << plan.error().message;
-  EXPECT_EQ(plan->system, (folder_ / "s.xml").string());
+  EXPECT_EQ(plan->run.system, (folder_ / "s.xml").string());
   EXPECT_EQ(plan->repeat, 3U);
   ASSERT_EQ(plan->axes.size(), 3U);
   EXPECT_EQ(plan->axes[0].values, (std::vector<std::string>{"1", "2.5"}));

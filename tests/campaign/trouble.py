@@ -116,12 +116,12 @@ hunt:
     # A find that does not get to its end has no state; its command says so.
     hang = plan("hang_timeout: 1\nhunt: {faults: [{component: LaserObstacleAvoid0, is: hang}]}\n", "hang.yaml")
     find = rtse("hunt", hang, "--finds", 1, "--cases", 16, "-j", 2, code=1).stdout
-    assert "has not ended its tick" in find and "hang.finds/find-1.yaml --row 1\n" in find and "--state" not in find, find
+    assert "did not finish its tick" in find and "hang.finds/find-1.yaml --row 1\n" in find and "--state" not in find, find
     assert "expected" not in rtse("sweep", folder / "hang.finds/find-1.yaml", "--row", 1, "--state", "-", code=1).stderr
     # An interrupt while it is shrunk takes nothing of its reason.
     _, out, _ = interrupted_at("hang.finds/shrinking", "hunt", hang, "--cases", 40)
-    assert "has not ended its tick" in out and "run: interrupted" not in out and "interrupted: it may not be the simplest" in out, out
-    assert "has not ended its tick" in (folder / "hang.finds/find-1.yaml").read_text()
+    assert "did not finish its tick" in out and "run: interrupted" not in out and "interrupted: it may not be the simplest" in out, out
+    assert "did not finish its tick" in (folder / "hang.finds/find-1.yaml").read_text()
 
 
 try:

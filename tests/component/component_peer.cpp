@@ -1,13 +1,18 @@
 // The other process of the component tests: a component with two data ports and an organization. Prints its reference, then works until it
-// is stopped.
+// is stopped. It prints a line if a callback runs beside another one ("overlap") or after onFinalize ("late"). Values of its configuration
+// set "default" that it reads in every callback: `held`, names of callbacks that print "held NAME" and wait until their name is no longer
+// there; `asking`, names of those that set the rate of the execution context with handle 1000.
 #include <omniORB4/CORBA.h>
 #include <rtm/InPort.h>
 #include <rtm/OutPort.h>
 #include <rtm/SdoOrganization.h>
 #include <rtm/idl/BasicDataTypeSkel.h>
 
+#include <atomic>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <thread>
 
 #include "corba/orb/orb.h"
 #include "support/component_fixture.h"
@@ -16,7 +21,9 @@ namespace {
 
 class PeerComponent : public support::ProbeComponent {
  public:
-  PeerComponent() : support::ProbeComponent(nullptr, "Peer0"), in_("in", received_), out_("out", sent_) {}
+  PeerComponent() : support::ProbeComponent(nullptr, "Peer0"), in_("in", received_), out_("out", sent_) {
+    during = [this](const std::string& callback) { look_at(callback); };
+  }
 
   RTC::ReturnCode_t onInitialize() override {
     addInPort("in", in_);
@@ -29,6 +36,30 @@ class PeerComponent : public support::ProbeComponent {
   }
 
  private:
+  static void print(const char* what, const std::string& callback) {
+    std::printf("%s %s\n", what, callback.c_str());
+    std::fflush(stdout);
+  }
+  bool is_named(const char* key, const std::string& callback) {
+    return coil::includes(getConfigService().getConfigurationSet("default").getProperty(key), callback);
+  }
+  void look_at(const std::string& callback) {
+    if (is_inside_.exchange(true)) print("overlap", callback);
+    if (is_finalized_ && callback != "onShutdown") print("late", callback);
+    if (callback == "onFinalize") is_finalized_ = true;
+    if (is_named("held", callback)) {
+      print("held", callback);
+      const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+      while (is_named("held", callback) && std::chrono::steady_clock::now() < deadline)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    if (is_named("asking", callback)) setExecutionRate(1000, getExecutionRate(1000) + 1);
+    std::this_thread::yield();  // others come, if they can
+    is_inside_ = false;
+  }
+
+  std::atomic<bool> is_inside_{false};
+  std::atomic<bool> is_finalized_{false};
   RTC::TimedLong received_{}, sent_{};
   RTC::InPort<RTC::TimedLong> in_;
   RTC::OutPort<RTC::TimedLong> out_;

@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "render/dds.h"
+#include "asset-reader/dds.h"
 #include "support/material_table.h"
 #include "support/memory_limit.h"
 #include "world/materials.h"
@@ -249,44 +249,44 @@ std::array<int, 4> at(const Image& image, int x, int y) {
 TEST(RenderMedia, direct_draw_surfaces_are_unpacked) {
   // Red and blue; the first row red, the second blue, the third 2:1, the fourth 1:2.
   const std::vector<std::uint8_t> colors{0x00, 0xf8, 0x1f, 0x00, 0x00, 0x55, 0xaa, 0xff};
-  const auto plain = decode_dds(dds("DXT1", 4, 4, colors), "t");
+  const auto plain = decode_dds(dds("DXT1", 4, 4, colors));
   ASSERT_TRUE(plain) << plain.error().message;
   EXPECT_EQ(at(*plain, 0, 0), (std::array<int, 4>{255, 0, 0, 255}));
   EXPECT_EQ(at(*plain, 3, 1), (std::array<int, 4>{0, 0, 255, 255}));
   EXPECT_EQ(at(*plain, 0, 2), (std::array<int, 4>{170, 0, 85, 255}));
   EXPECT_EQ(at(*plain, 0, 3), (std::array<int, 4>{85, 0, 170, 255}));
   // The other order of the same colours: the third is the mean, the fourth a hole.
-  const auto holes = decode_dds(dds("DXT1", 3, 4, {0x1f, 0x00, 0x00, 0xf8, 0x00, 0x55, 0xaa, 0xff}), "t");
+  const auto holes = decode_dds(dds("DXT1", 3, 4, {0x1f, 0x00, 0x00, 0xf8, 0x00, 0x55, 0xaa, 0xff}));
   ASSERT_TRUE(holes);
   EXPECT_EQ(at(*holes, 0, 2), (std::array<int, 4>{128, 0, 128, 255}));
   EXPECT_EQ(at(*holes, 2, 3)[3], 0);
   std::vector<std::uint8_t> alpha3{0xf0, 0xff, 0, 0, 0, 0, 0, 0};
   alpha3.insert(alpha3.end(), colors.begin(), colors.end());
-  const auto dxt3 = decode_dds(dds("DXT3", 4, 4, alpha3), "t");
+  const auto dxt3 = decode_dds(dds("DXT3", 4, 4, alpha3));
   ASSERT_TRUE(dxt3);
   EXPECT_EQ(at(*dxt3, 0, 0)[3], 0);
   EXPECT_EQ(at(*dxt3, 1, 0)[3], 255);
   std::vector<std::uint8_t> alpha5{255, 0, 0x88, 0, 0, 0, 0, 0};  // first index 0, second 1, third 2
   alpha5.insert(alpha5.end(), colors.begin(), colors.end());
-  const auto dxt5 = decode_dds(dds("DXT5", 4, 4, alpha5), "t");
+  const auto dxt5 = decode_dds(dds("DXT5", 4, 4, alpha5));
   ASSERT_TRUE(dxt5);
   EXPECT_EQ(at(*dxt5, 0, 0)[3], 255);
   EXPECT_EQ(at(*dxt5, 1, 0)[3], 0);
   EXPECT_EQ(at(*dxt5, 2, 0)[3], 219);
-  const auto bgra = decode_dds(dds("", 1, 1, {10, 20, 30, 40}, {32, 0xff0000, 0xff00, 0xff, 0xff000000}), "t");
+  const auto bgra = decode_dds(dds("", 1, 1, {10, 20, 30, 40}, {32, 0xff0000, 0xff00, 0xff, 0xff000000}));
   ASSERT_TRUE(bgra);
   EXPECT_EQ(at(*bgra, 0, 0), (std::array<int, 4>{30, 20, 10, 40}));
 }
 
 TEST(RenderMedia, direct_draw_surfaces_that_are_cut_short_or_unknown_are_told) {
   const auto why = [](const std::vector<std::uint8_t>& bytes) {
-    const auto image = decode_dds(bytes, "t");
+    const auto image = decode_dds(bytes);
     return image ? std::string("read") : image.error().message;
   };
-  EXPECT_EQ(why(dds("DXT5", 4, 4, {1, 2, 3})), "image t: is cut short");
-  EXPECT_EQ(why(dds("BC7 ", 4, 4, {})), "image t: DDS of format BC7  is not read; DXT1, DXT3, DXT5 or no compression is expected");
+  EXPECT_EQ(why(dds("DXT5", 4, 4, {1, 2, 3})), "is cut short");
+  EXPECT_EQ(why(dds("BC7 ", 4, 4, {})), "DDS of format BC7  is not read; DXT1, DXT3, DXT5 or no compression is expected");
   EXPECT_THAT(why(dds("DXT1", 100000, 4, {})), testing::HasSubstr("got 100000 x 4"));
-  EXPECT_EQ(why({'D', 'D', 'S', ' ', 1}), "image t: is cut short");
+  EXPECT_EQ(why({'D', 'D', 'S', ' ', 1}), "is cut short");
 }
 
 }  // namespace

@@ -351,7 +351,7 @@ TEST(Render, pipes_and_devices_that_a_mesh_names_are_not_read) {
   EXPECT_NE(assets.texture("/dev/zero"), nullptr);
   EXPECT_NE(assets.texture((folder / "pipe").string()), nullptr);
   int told = 0;
-  for (const auto& line : assets.take_complaints()) told += line.find("is no ordinary file") != std::string::npos;
+  for (const auto& line : assets.take_complaints()) told += line.find("is not a regular file") != std::string::npos;
   EXPECT_EQ(told, 2);
   std::filesystem::remove_all(folder);
 }

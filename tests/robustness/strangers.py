@@ -7,6 +7,7 @@ import struct
 import subprocess
 import sys
 import threading
+import time
 import unittest
 
 from attacker import Host, head, message
@@ -180,6 +181,31 @@ class Strangers(unittest.TestCase):
             self.assertTrue(call(stranger, ours.port, "create_component", text("SinkAll?" + argument)).is_nil(), argument)
         self.assertEqual(call(stranger, ours.port, "set_configuration", aligned(text("naming.formats"), text("$(RTMSIM_TEST_SECRET).rtc"))).number(), 1)
         self.assertFalse(call(ourselves, ours.port, "create_component", text("SinkAll?naming.formats=${RTMSIM_TEST_SECRET}.rtc")).is_nil())
+
+    # Callbacks of a component, and its end, need the right to change something; its own account needs none to tick it.
+    def test_strangers_call_no_callback_and_end_no_component_where_they_may_only_look(self):
+        ours = self.host("-o", "corba.open_to:host", "-o", "manager.remote_rights:read", "SinkAll")
+        until = time.monotonic() + 60
+        while (found := call(ourselves, ours.port, "get_components", b"")).number() != 1 and time.monotonic() < until:
+            time.sleep(0.05)
+        found.rest = found.rest[4:]
+        key = found.object_key()
+        handle = struct.pack("<i", 0)
+        refused, not_now = 1, 5  # RTC_ERROR, PRECONDITION_NOT_MET
+        for operation in ("on_execute", "on_activated", "on_deactivated", "on_startup", "on_rate_changed", "on_reset", "detach_context"):
+            self.assertEqual(call(stranger, ours.port, operation, handle, key).number(), refused, operation)
+        for operation in ("on_initialize", "on_finalize", "initialize", "finalize", "exit"):
+            self.assertEqual(call(stranger, ours.port, operation, b"", key).number(), refused, operation)
+        self.assertIn("for onExecute: refused, manager.remote_rights is read", ours.text().replace("on_execute", "onExecute"))
+        context = SentOn(ours.port, b"manager", 0)
+        self.addCleanup(context.close)
+        self.assertEqual(call(stranger, ours.port, "attach_context", reference(context.port, b"context"), key).number(), -1)
+        self.assertEqual(call(ourselves, ours.port, "on_execute", handle, key).number(), not_now)
+        self.assertGreaterEqual(call(ourselves, ours.port, "attach_context", reference(context.port, b"context"), key).number(), 1000)
+        for operation, answer in (("on_execute", not_now), ("on_activated", 0), ("on_execute", 0), ("on_deactivated", 0)):
+            self.assertEqual(call(ourselves, ours.port, operation, struct.pack("<i", 1000), key).number(), answer, operation)
+        self.assertEqual(call(stranger, ours.port, "on_execute", struct.pack("<i", 1000), key).number(), refused)
+        self.assertEqual(call(ourselves, ours.port, "exit", b"", key).number(), 0)
 
     # It takes leave of its masters, on a thread that works for nobody.
     def test_calls_that_an_answer_sends_on_are_for_strangers(self):

@@ -129,36 +129,6 @@ TEST_F(ExpectationsTest, what_cannot_be_judged_is_refused_with_its_line) {
   EXPECT_FALSE(read_expectations("/proc/nowhere.yaml").ok());
 }
 
-TEST_F(ExpectationsTest, records_are_read_whole_or_refused) {
-  const auto record = read_record(file("# rtm-sim record 1\n0.100 robot 1 2 3 1 0 0 0\ncontact 0.2 robot box\n"), 10);
-  ASSERT_TRUE(record.ok());
-  EXPECT_EQ(record->poses.at("robot").at(0).z, 3);
-  EXPECT_EQ(record->contacts.at(0).other, "box");
-  EXPECT_FALSE(read_record(file("0.1 robot 1 x 3\n"), 10).ok());
-  const auto quoted = read_record(file("0.1 \"my \\\"big\\\" box\" 1 2 3 1 0 0 0\ncontact 0.2 robot \"my box\"\n"), 10);
-  ASSERT_TRUE(quoted.ok());
-  EXPECT_EQ(quoted->poses.begin()->first, "my \"big\" box");
-  EXPECT_EQ(quoted->contacts.at(0).other, "my box");
-}
-
-TEST_F(ExpectationsTest, a_record_goes_on_when_the_last_moving_model_has_gone) {
-  const auto record = read_record(file("# rtm-sim record 1, world w\n# time model x\n0.1 robot 1 2 3 1 0 0 0\n# 0.2 nothing moves\n"), 10);
-  ASSERT_TRUE(record.ok());
-  EXPECT_EQ(record->last, 0.2);
-  EXPECT_EQ(record->poses.at("robot").size(), 1U);
-}
-
-TEST_F(ExpectationsTest, a_record_ends_with_the_run_and_with_a_reset) {
-  const auto text = [](const std::string& time, int x) { return time + " robot " + std::to_string(x) + " 0 0 1 0 0 0\n"; };
-  const auto late = read_record(file(text("1", 1) + text("2", 3) + "contact 2.5 robot box\n" + text("3", 9)), 2);
-  ASSERT_TRUE(late.ok());
-  EXPECT_EQ(path_length(late->poses.at("robot")), 2);
-  EXPECT_TRUE(late->contacts.empty());
-  const auto reset = read_record(file(text("1", 1) + text("2", 3) + text("0.1", 0) + text("0.2", 7)), 10);
-  ASSERT_TRUE(reset.ok());
-  EXPECT_EQ(path_length(reset->poses.at("robot")), 2);
-}
-
 TEST_F(ExpectationsTest, what_may_be_touched_must_be_there) {
   EXPECT_EQ(problem("- no_contact: {model: robot, except: [ground_plane, bxo]}"),
             "the world has no model \"bxo\" that may be touched; models: box, ground_plane, robot");

@@ -50,6 +50,7 @@ TEST(Requests, all_kinds_survive_the_way_to_bytes_and_back) {
   EXPECT_TRUE(there_and_back(ExportRequest{true}).with_collisions);
   there_and_back(PosesRequest{});
   there_and_back(ModelsRequest{});
+  EXPECT_EQ(there_and_back(PoseLogRequest{72}).from, 72);
   const auto fault = there_and_back(FaultRequest{"robot::laser", "bias", -1.5, 2});
   EXPECT_EQ(fault.iface, "robot::laser");
   EXPECT_EQ(fault.kind, "bias");
@@ -71,6 +72,7 @@ TEST(Requests, nonsense_is_refused_with_a_message) {
   EXPECT_EQ(message(SetPoseRequest{"r", {0, 0, 0, 0, 0, 0, 0}, false}), "request set-pose: the quaternion of the pose is zero");
   EXPECT_EQ(message(SetPoseRequest{"r", {1e308, 0, 0, 1, 0, 0, 0}, false}), "request set-pose: numbers must be below 1e12, got 1e+308");
   EXPECT_EQ(message(DeleteRequest{""}), "request delete: needs a name");
+  EXPECT_EQ(message(PoseLogRequest{-1}), "request pose-log: the first byte must not be negative, got -1");
   EXPECT_EQ(message(SetRtfRequest{-1}), "request set-rtf: the real-time factor must not be negative, got -1");
   EXPECT_EQ(message(SpawnRequest{}), "request spawn: needs an SDF text or a path");
   ScreenshotRequest shot;
@@ -97,7 +99,7 @@ TEST(Requests, random_bytes_are_decoded_or_refused_but_never_worse) {
   std::mt19937_64 random(42);
   for (int n = 0; n < 20000; ++n) {
     RawRequest raw;
-    raw.kind = static_cast<std::uint32_t>(random() % 27);
+    raw.kind = static_cast<std::uint32_t>(random() % 28);
     auto* bytes = reinterpret_cast<unsigned char*>(&raw.body);
     for (std::size_t i = 0; i < sizeof raw.body; ++i) bytes[i] = static_cast<unsigned char>(random() % 4 == 0 ? random() : 0);
     raw.text.assign(random() % 50, static_cast<char>(random()));
@@ -207,6 +209,49 @@ TEST(RequestBoard, a_client_that_gave_up_does_not_get_the_late_reply) {
   f.board.reply(asked[0].ticket, right);
   f.board.reply(asked[0].ticket, wrong);
   client.join();
+}
+
+TEST(RequestBoard, a_request_in_two_calls_is_answered_when_the_server_gets_to_it) {
+  BoardFixture f;
+  auto requester = Requester::open(f.id);
+  EXPECT_FALSE(requester->await(0ms)) << "nothing was begun";
+  ASSERT_TRUE(requester->begin(StepRequest{5}));
+  auto early = requester->await(1ms);
+  ASSERT_TRUE(early) << early.error().message;
+  EXPECT_FALSE(*early);
+  const auto asked = f.board.poll();
+  ASSERT_EQ(asked.size(), 1U) << "waiting does not withdraw it";
+  EXPECT_EQ(std::get<StepRequest>(asked[0].request).steps, 5);
+  Reply reply;
+  reply.steps = 5;
+  reply.text = "done";
+  f.board.reply(asked[0].ticket, reply);
+  const auto answer = requester->await(60s);
+  ASSERT_TRUE(answer && *answer);
+  EXPECT_EQ((*answer)->steps, 5U);
+  EXPECT_EQ((*answer)->text, "done");
+  EXPECT_FALSE(requester->begin(SpawnRequest{"<sdf/>"})) << "a text goes by ask()";
+}
+
+TEST(RequestBoard, a_request_that_was_begun_and_abandoned_is_not_answered_into_the_next_one) {
+  BoardFixture f;
+  auto requester = Requester::open(f.id);
+  ASSERT_TRUE(requester->begin(GetPoseRequest{"first"}));
+  const auto first = f.board.poll();
+  ASSERT_EQ(first.size(), 1U);
+  ASSERT_TRUE(requester->begin(GetPoseRequest{"second"}));
+  EXPECT_FALSE(f.board.is_awaited(first[0].ticket));
+  Reply late;
+  late.message = "first";
+  f.board.reply(first[0].ticket, late);
+  const auto second = f.board.poll();
+  ASSERT_EQ(second.size(), 1U);
+  Reply right;
+  right.message = "second";
+  f.board.reply(second[0].ticket, right);
+  const auto answer = requester->await(60s);
+  ASSERT_TRUE(answer && *answer);
+  EXPECT_EQ((*answer)->message, "second");
 }
 
 TEST(RequestBoard, replies_may_come_later_and_in_any_order) {

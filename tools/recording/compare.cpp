@@ -1,7 +1,6 @@
 #include "recording/compare.h"
 
 #include <algorithm>
-#include <iostream>
 #include <map>
 #include <memory>
 #include <optional>
@@ -125,7 +124,7 @@ std::optional<std::string> difference(const DifferenceOptions& options, Side& fi
 }
 
 // Channels that only one of them has; those of hash logs are noted and left out.
-std::vector<std::string> lonely_channels(const CompareOptions& options, Side& first, Side& second) {
+std::vector<std::string> lonely_channels(const CompareOptions& options, Side& first, Side& second, editor::Reporter& reporter) {
   std::vector<std::string> differences;
   for (const auto& [one, other, file] : {std::tuple(&first, &second, &options.first), std::tuple(&second, &first, &options.second)}) {
     const auto chosen = one->chosen();
@@ -136,7 +135,7 @@ std::vector<std::string> lonely_channels(const CompareOptions& options, Side& fi
         differences.push_back(what);
         continue;
       }
-      std::cerr << "rtse: " << what << ", and is left out\n";
+      reporter.warn(what + ", and is left out");
       one->leave_out(topic);
     }
   }
@@ -145,40 +144,30 @@ std::vector<std::string> lonely_channels(const CompareOptions& options, Side& fi
 
 }  // namespace
 
-void compare(editor::Editor& editor, const CompareOptions& options) {
+base::Result<Comparison> compare(const CompareOptions& options, editor::Reporter& reporter) {
   std::vector<std::unique_ptr<Side>> sides;
   for (const std::string& file : {options.first, options.second}) {
-    auto reader = open(editor, file);
-    if (!reader) return;
+    auto reader = open(file, reporter);
+    if (!reader) return reader.error();
     sides.push_back(std::make_unique<Side>(std::move(*reader), Selection{.file = file, .topics = options.topics}));
-    if (const auto begun = sides.back()->begin(); !begun) return editor.fail(begun.error());
+    if (const auto begun = sides.back()->begin(); !begun) return begun.error();
   }
-  if (const auto lonely = lonely_channels(options, *sides[0], *sides[1]); !lonely.empty()) {
-    if (editor.json())
-      editor.print(Json{{"equal", false}, {"difference", base::join(lonely, ", ")}});
-    else
-      for (const auto& one : lonely) std::cout << one << '\n';
-    return editor.set_failed();
-  }
+  Comparison result;
+  result.lonely_channels = lonely_channels(options, *sides[0], *sides[1], reporter);
+  if (!result.lonely_channels.empty()) return result;
   for (const auto& side : sides) side->seek();
   Moments first(*sides[0]);
   Moments second(*sides[1]);
-  std::uint64_t samples = 0;
   const auto differ = [&](mcap::Time time, const std::string& topic, const std::string& how) {
-    const std::string what = base::printable(topic) + " " + base::printable(how);
-    const std::string place = "time " + seconds_text(time) + " s" + tick_text(*sides[0], topic, time) + ": " + what;
-    if (editor.json())
-      editor.print(Json{{"equal", false}, {"time", seconds(time)}, {"difference", what}});
-    else
-      std::cout << "first difference at " << place << '\n';
-    editor.set_failed();
+    result.first = {time, tick_text(*sides[0], topic, time), base::printable(topic) + " " + base::printable(how)};
+    return result;
   };
   for (;;) {
     const auto a = first.next();
     const auto b = second.next();
-    if (!a) return editor.fail(a.error());
-    if (!b) return editor.fail(b.error());
-    if (a->empty() && b->empty()) break;
+    if (!a) return a.error();
+    if (!b) return b.error();
+    if (a->empty() && b->empty()) return result;
     for (std::size_t i = 0; i < std::max(a->size(), b->size()); ++i) {
       const bool in_first =
           i < a->size() && (i >= b->size() || std::pair((*a)[i].time, (*a)[i].topic) <= std::pair((*b)[i].time, (*b)[i].topic));
@@ -188,15 +177,11 @@ void compare(editor::Editor& editor, const CompareOptions& options) {
         const Entry& entry = in_first ? (*a)[i] : (*b)[i];
         return differ(entry.time, entry.topic, "has a sample in " + (in_first ? options.first : options.second) + " only");
       }
-      ++samples;
+      ++result.samples;
       if (const auto what = difference(options.tolerated, *sides[0], *sides[1], (*a)[i], (*b)[i]))
         return differ((*a)[i].time, (*a)[i].topic, *what);
     }
   }
-  if (editor.json())
-    editor.print(Json{{"equal", true}, {"samples", samples}});
-  else
-    std::cout << "equal: " << samples << " samples\n";
 }
 
 }  // namespace recorder

@@ -1,11 +1,15 @@
-// Finds the first difference of two recordings (recording compare). One thread.
+// The first difference of two recordings. One thread.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "base/result.h"
+#include "recording/mcap/mcap.h"
 #include "recording/sample_difference.h"
-#include "system/editor.h"
+#include "system/reporter.h"
 
 namespace recorder {
 
@@ -15,7 +19,20 @@ struct CompareOptions {
   DifferenceOptions tolerated;
 };
 
-// Says what it found by the editor, which has failed when the recordings differ or can't be read.
-void compare(editor::Editor& editor, const CompareOptions& options);
+struct Comparison {
+  struct Difference {
+    mcap::Time time{0};
+    std::string tick;  // ", tick 571" of a port in lock step
+    std::string what;  // the channel, and how its samples differ
+  };
+  std::vector<std::string> lonely_channels;  // those of one recording only, in words; the samples are not compared then
+  std::optional<Difference> first;
+  std::uint64_t samples = 0;  // equal ones
+
+  bool are_equal() const { return lonely_channels.empty() && !first; }
+};
+
+// Fails when a recording cannot be read. `reporter` is warned of damage and of channels that are left out.
+base::Result<Comparison> compare(const CompareOptions& options, editor::Reporter& reporter);
 
 }  // namespace recorder

@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
 #include <map>
 #include <memory>
 #include <set>
@@ -102,20 +101,21 @@ class Table {
 
 }  // namespace
 
-void export_tables(editor::Editor& editor, const ExportOptions& options) {
-  auto reader = open(editor, options.selection.file);
-  if (!reader) return;
+base::Result<Exported> export_tables(const ExportOptions& options, editor::Reporter& reporter) {
+  auto reader = open(options.selection.file, reporter);
+  if (!reader) return reader.error();
   std::error_code error;
   std::filesystem::create_directories(options.folder, error);
-  if (error) return editor.fail({base::in_quotes(options.folder) + ": cannot be made: " + error.message()});
+  if (error) return base::Error{base::in_quotes(options.folder) + ": cannot be made: " + error.message()};
+  Exported exported;
   std::map<std::uint16_t, std::unique_ptr<Table>> tables;
   std::set<std::uint16_t> unreadable;
   FileNames names;
   SampleValues values(*reader);
-  for_each(editor, *reader, options.selection, [&](const mcap::Message& message) {
+  const auto broken = for_each(*reader, options.selection, [&](const mcap::Message& message) {
     const std::string& topic = reader->channels().at(message.channel).topic;
     const auto fail = [&](const base::Error& why) {
-      if (unreadable.insert(message.channel).second) editor.fail(why);
+      if (unreadable.insert(message.channel).second) exported.errors.push_back(why);
       return true;
     };
     const auto value = values.of(message);
@@ -132,15 +132,21 @@ void export_tables(editor::Editor& editor, const ExportOptions& options) {
     found->second->add(message.log_time, *value);
     return true;
   });
+  exported.errors.insert(exported.errors.end(), broken.begin(), broken.end());
   for (auto& [id, table] : tables) {
-    if (const auto done = table->close(); !done) return editor.fail(done.error());
+    if (const auto done = table->close(); !done) {
+      exported.errors.push_back(done.error());
+    } else {
+      ++exported.files;
+    }
   }
-  if (!editor.json()) std::cout << tables.size() << " tables in " << options.folder << '\n';
+  return exported;
 }
 
-void export_pictures(editor::Editor& editor, const ExportOptions& options) {
-  auto reader = open(editor, options.selection.file);
-  if (!reader) return;
+base::Result<Exported> export_pictures(const ExportOptions& options, editor::Reporter& reporter) {
+  auto reader = open(options.selection.file, reporter);
+  if (!reader) return reader.error();
+  Exported exported;
   std::map<std::uint16_t, std::uint64_t> written;
   std::set<std::uint16_t> unreadable;
   FileNames names;
@@ -149,11 +155,11 @@ void export_pictures(editor::Editor& editor, const ExportOptions& options) {
     const auto schema = reader->schemas().find(reader->channels().at(channel).schema);
     return schema == reader->schemas().end() ? std::string() : schema->second.name;
   };
-  for_each(editor, *reader, options.selection, [&](const mcap::Message& message) {
+  const auto broken = for_each(*reader, options.selection, [&](const mcap::Message& message) {
     if (!has_pictures(type_of(message.channel)) || unreadable.contains(message.channel)) return true;
     const std::string& topic = reader->channels().at(message.channel).topic;
     const auto fail = [&](const base::Error& error) {
-      editor.fail({"channel " + base::in_quotes(topic) + ": " + error.message});
+      exported.errors.push_back({"channel " + base::in_quotes(topic) + ": " + error.message});
       unreadable.insert(message.channel);
       return true;
     };
@@ -169,10 +175,11 @@ void export_pictures(editor::Editor& editor, const ExportOptions& options) {
     const auto done = write_png(*picture, (folder / name).string());
     return done ? true : fail(done.error());
   });
-  std::uint64_t pictures = 0;
-  for (const auto& [channel, count] : written) pictures += count;
-  if (pictures == 0 && !editor.failed()) editor.fail({base::in_quotes(options.selection.file) + ": has no pictures in these channels"});
-  if (!editor.json()) std::cout << pictures << " pictures in " << options.folder << '\n';
+  exported.errors.insert(exported.errors.end(), broken.begin(), broken.end());
+  for (const auto& [channel, count] : written) exported.files += count;
+  if (exported.files == 0 && exported.errors.empty())
+    exported.errors.push_back({base::in_quotes(options.selection.file) + ": has no pictures in these channels"});
+  return exported;
 }
 
 }  // namespace recorder

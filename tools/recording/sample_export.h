@@ -1,10 +1,11 @@
 // Exports samples of a recording as tables and images. One thread.
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
 #include "recording/selection.h"
-#include "system/editor.h"
 
 namespace recorder {
 
@@ -14,9 +15,14 @@ struct ExportOptions {
   bool png = false;
 };
 
-// FOLDER/CHANNEL.csv for each channel; what cannot be shown is told and left out.
-void export_tables(editor::Editor& editor, const ExportOptions& options);
+struct Exported {
+  std::size_t files = 0;            // tables or pictures
+  std::vector<base::Error> errors;  // of channels and chunks that are left out
+};
+
+// FOLDER/CHANNEL.csv for each channel. Fails when the recording cannot be read or the folder cannot be made.
+base::Result<Exported> export_tables(const ExportOptions& options, editor::Reporter& reporter);
 // FOLDER/CHANNEL/000001.png, ... of each channel that has pictures.
-void export_pictures(editor::Editor& editor, const ExportOptions& options);
+base::Result<Exported> export_pictures(const ExportOptions& options, editor::Reporter& reporter);
 
 }  // namespace recorder

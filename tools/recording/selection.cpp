@@ -3,9 +3,7 @@
 #include <fnmatch.h>
 
 #include <cmath>
-#include <iostream>
 
-#include "base/descriptors.h"
 #include "base/text.h"
 #include "recording/ring.h"
 
@@ -42,14 +40,10 @@ base::Result<mcap::Query> query_of(const mcap::Reader& reader, const Selection& 
   return query;
 }
 
-std::optional<mcap::Reader> open(editor::Editor& editor, const std::string& file) {
+base::Result<mcap::Reader> open(const std::string& file, editor::Reporter& reporter) {
   auto reader = open_recording(file);
-  if (!reader) {
-    editor.fail(reader.error());
-    return std::nullopt;
-  }
-  if (reader->damage()) std::cerr << "rtse: " << *reader->damage() << '\n';
-  return std::move(*reader);
+  if (reader && reader->damage()) reporter.warn(*reader->damage());
+  return reader;
 }
 
 std::vector<std::string> others_of(mcap::Reader& reader) {
@@ -61,22 +55,23 @@ std::vector<std::string> others_of(mcap::Reader& reader) {
   return {};
 }
 
-void for_each(editor::Editor& editor, mcap::Reader& reader, const Selection& selection,
-              const std::function<bool(const mcap::Message&)>& take) {
+std::vector<base::Error> for_each(mcap::Reader& reader, const Selection& selection, const std::function<bool(const mcap::Message&)>& take) {
   auto query = query_of(reader, selection);
-  if (!query) return editor.fail(query.error());
+  if (!query) return {query.error()};
+  std::vector<base::Error> errors;
   reader.seek(std::move(*query));
   std::size_t broken = 0;  // chunks
   for (int n = 0; selection.count <= 0 || n < selection.count;) {
     const auto message = reader.next();
     if (!message) {
-      if (++broken <= most_told) editor.fail(message.error());
+      if (++broken <= most_told) errors.push_back(message.error());
       continue;
     }
-    if (!message->has_value() || base::output_is_closed() || !take(**message)) break;
+    if (!message->has_value() || !take(**message)) break;
     ++n;
   }
-  if (broken > most_told) editor.fail({base::in_quotes(selection.file) + ": ... and " + std::to_string(broken - most_told) + " more"});
+  if (broken > most_told) errors.push_back({base::in_quotes(selection.file) + ": ... and " + std::to_string(broken - most_told) + " more"});
+  return errors;
 }
 
 }  // namespace recorder

@@ -2,13 +2,12 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/result.h"
 #include "recording/mcap/mcap.h"
-#include "system/editor.h"
+#include "system/reporter.h"
 
 namespace recorder {
 
@@ -26,14 +25,13 @@ inline double seconds(mcap::Time time) { return static_cast<double>(time.count()
 // Fails for a pattern that no channel fits.
 base::Result<mcap::Query> query_of(const mcap::Reader& reader, const Selection& selection);
 
-// Nothing, and the editor has said why, when the file can't be read. Damage is told on stderr.
-std::optional<mcap::Reader> open(editor::Editor& editor, const std::string& file);
+// Fails when the file cannot be read. Damage that can be read around is a warning.
+base::Result<mcap::Reader> open(const std::string& file, editor::Reporter& reporter);
 
 // The components of other makers in the run, whose samples have stamps of their own clocks (`tm`), which differ in each run.
 std::vector<std::string> others_of(mcap::Reader& reader);
 
-// Calls `take` with each message of the selection until it says false; broken chunks are told and passed over.
-void for_each(editor::Editor& editor, mcap::Reader& reader, const Selection& selection,
-              const std::function<bool(const mcap::Message&)>& take);
+// Calls `take` with each message of the selection until it returns false. Broken chunks are skipped and returned, the first few in detail.
+std::vector<base::Error> for_each(mcap::Reader& reader, const Selection& selection, const std::function<bool(const mcap::Message&)>& take);
 
 }  // namespace recorder

@@ -6,14 +6,15 @@
 #include <string>
 
 #include "base/command.h"
-#include "system/editor.h"
+#include "rtse/console.h"
+#include "system/session.h"
 
 namespace editor {
 
 // What the user has asked for; it is done when the whole command line has been read.
 struct Chosen {
-  std::function<void(Editor&)> work;
-  bool needs_orb = true;  // without it the editor has no ORB, and asks no name server
+  std::function<void(const Session&, Console&)> work;
+  bool needs_orb = true;  // without it the session has no ORB, and the command calls no name server
 };
 
 // For what the declarations cannot say of a command line: exit code 2 and a line.

@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "base/text.h"
-#include "system/editor.h"
 #include "system/orb.h"
+#include "system/session.h"
 
 namespace editor {
 namespace {
@@ -41,8 +41,8 @@ std::vector<std::string> plain_words(const std::vector<std::string>& words) {
 using Kinds = std::vector<EntryKind>;
 
 // By their short names; by the path where two have the same, or where the user has begun one.
-std::vector<base::Offer> names(const Editor& editor, const std::string& current, const Kinds& kinds, const std::string& ending = "") {
-  const auto tree = editor.tree();
+std::vector<base::Offer> names(const Session& session, const std::string& current, const Kinds& kinds, const std::string& ending = "") {
+  const auto tree = session.tree();
   if (!tree) return {};
   std::map<std::string, int> count;
   for (const auto* entry : tree->objects()) ++count[entry->id];
@@ -68,10 +68,10 @@ std::size_t port_colon(const std::string& path) {
 }
 
 // "NAME:" first, then "NAME:PORT".
-std::vector<base::Offer> ports(const Editor& editor, const std::string& current, const std::string& type) {
+std::vector<base::Offer> ports(const Session& session, const std::string& current, const std::string& type) {
   const auto colon = port_colon(current);
-  if (colon == std::string::npos) return names(editor, current, {EntryKind::component}, ":");
-  const auto component = editor.component(current.substr(0, colon), {});
+  if (colon == std::string::npos) return names(session, current, {EntryKind::component}, ":");
+  const auto component = session.component(current.substr(0, colon), {});
   if (!component) return {};
   std::vector<base::Offer> offers;
   for (const auto& port : component->ports) {
@@ -81,9 +81,9 @@ std::vector<base::Offer> ports(const Editor& editor, const std::string& current,
 }
 
 // For conf: the component, then what it has.
-std::vector<base::Offer> configuration(const Editor& editor, const std::vector<std::string>& words, bool sets) {
+std::vector<base::Offer> configuration(const Session& session, const std::vector<std::string>& words, bool sets) {
   if (words.size() < 2) return {};
-  const auto component = editor.component(words[1], {.configuration = true});
+  const auto component = session.component(words[1], {.configuration = true});
   if (!component) return {};
   std::vector<base::Offer> offers;
   for (const auto& set : component->configuration_sets) {
@@ -95,9 +95,9 @@ std::vector<base::Offer> configuration(const Editor& editor, const std::vector<s
   return offers;
 }
 
-std::vector<base::Offer> types(const Editor& editor, const std::vector<std::string>& words) {
+std::vector<base::Offer> types(const Session& session, const std::vector<std::string>& words) {
   std::vector<base::Offer> offers;
-  const auto tree = editor.tree();
+  const auto tree = session.tree();
   const auto wanted = parse_address(option_value(words, "-m", option_value(words, "--manager", "")), "");
   if (!tree || !wanted) return offers;
   const CallLimit limited(patience_with_modules);
@@ -121,27 +121,27 @@ std::vector<base::Offer> types(const Editor& editor, const std::vector<std::stri
   return offers;
 }
 
-std::optional<std::vector<base::Offer>> offered(const Editor& editor, const std::string& value, const std::vector<std::string>& before,
+std::optional<std::vector<base::Offer>> offered(const Session& session, const std::string& value, const std::vector<std::string>& before,
                                                 const std::string& current) {
   const auto words = plain_words(before);
   const auto command = words.empty() ? std::string() : words.front();
   const auto action = words.size() > 2 ? words[2] : std::string();
-  if (value == "--manager") return names(editor, current, {EntryKind::manager});
-  if (value == "--set") return configuration(editor, words, true);
-  if (value == "PORT") return ports(editor, current, command == "print" ? "DataOutPort" : command == "inject" ? "DataInPort" : "");
+  if (value == "--manager") return names(session, current, {EntryKind::manager});
+  if (value == "--set") return configuration(session, words, true);
+  if (value == "PORT") return ports(session, current, command == "print" ? "DataOutPort" : command == "inject" ? "DataInPort" : "");
   if (value == "PATH" && (command == "dis" || command == "cat") && port_colon(current) != std::string::npos)
-    return ports(editor, current, "");
+    return ports(session, current, "");
   if (value == "PATH" && (command == "ls" || command == "tree" || command == "cat" || command == "del"))
-    return names(editor, current, {EntryKind::component, EntryKind::manager, EntryKind::other});
+    return names(session, current, {EntryKind::component, EntryKind::manager, EntryKind::other});
   if (value == "PATH" && command == "watch") return std::vector<base::Offer>();
-  if (value == "PATH") return names(editor, current, {EntryKind::component});
+  if (value == "PATH") return names(session, current, {EntryKind::component});
   if (value == "ARGUMENT" && command == "conf") {
-    if (words.size() == 3 && (action == "use" || action == "act")) return configuration(editor, words, true);
-    return words.size() == 3 && (action == "get" || action == "set") ? configuration(editor, words, false) : std::vector<base::Offer>();
+    if (words.size() == 3 && (action == "use" || action == "act")) return configuration(session, words, true);
+    return words.size() == 3 && (action == "get" || action == "set") ? configuration(session, words, false) : std::vector<base::Offer>();
   }
   const auto errand = words.size() > 1 ? words[1] : std::string();
-  if (value == "ARGUMENT" && errand == "delete") return names(editor, current, {EntryKind::component});
-  if (value == "ARGUMENT" && errand == "create") return types(editor, before);
+  if (value == "ARGUMENT" && errand == "delete") return names(session, current, {EntryKind::component});
+  if (value == "ARGUMENT" && errand == "create") return types(session, before);
   if (value == "ARGUMENT" && errand == "list") return std::vector<base::Offer>();
   return std::nullopt;
 }
@@ -154,8 +154,8 @@ std::optional<std::vector<base::Offer>> names_offered(const std::string& value, 
   if (std::ranges::find(asked, value) == asked.end()) return std::nullopt;
   try {
     const Orb orb;
-    const Editor editor(orb.get(), option_value(before, "--ns", default_server()), false, offer_limit);
-    return offered(editor, value, before, current);
+    const Session session(orb.get(), option_value(before, "--ns", default_server()), offer_limit);
+    return offered(session, value, before, current);
   } catch (const std::runtime_error&) {
     return std::nullopt;  // no ORB can be had; the command itself will say why
   }

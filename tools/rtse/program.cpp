@@ -60,11 +60,12 @@ int run_program(const std::vector<AddCommand>& commands, int argc, char** argv) 
   if (const auto end = base::parse_command_line(app, "rtse", argc, arguments.data(), names_offered)) return *end;
   try {
     const auto orb = chosen.needs_orb ? std::make_unique<Orb>() : nullptr;
-    Editor editor(orb ? orb->get() : CORBA::ORB::_nil(), settings.server, settings.json,
-                  std::chrono::milliseconds(static_cast<int>(settings.limit_s * 1000)));
-    chosen.work(editor);
-    if (!flush_output()) editor.fail({"standard output: cannot be written"});
-    return editor.failed() ? 1 : 0;
+    const Session session(orb ? orb->get() : CORBA::ORB::_nil(), settings.server,
+                          std::chrono::milliseconds(static_cast<int>(settings.limit_s * 1000)));
+    Console console(settings.json);
+    chosen.work(session, console);
+    if (!flush_output()) console.fail({"standard output: cannot be written"});
+    return console.failed() ? 1 : 0;
   } catch (const CORBA::Exception& e) {
     std::cerr << "rtse: " << describe(e) << '\n';
   } catch (const std::exception& e) {

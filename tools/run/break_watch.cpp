@@ -43,11 +43,11 @@ struct Port {
 }  // namespace
 
 struct BreakWatch::State {
-  State(const Expression& chosen, const editor::Editor& its_editor, shm::Participant its_participant)
-      : condition(chosen), editor(its_editor), participant(std::move(its_participant)) {}
+  State(const Expression& chosen, const editor::Session& its_session, shm::Participant its_participant)
+      : condition(chosen), session(its_session), participant(std::move(its_participant)) {}
 
   const Expression condition;
-  const editor::Editor editor;
+  const editor::Session session;
   shm::Participant participant;
   std::uint32_t simulator = 0;
   std::map<std::string, std::unique_ptr<Port>> ports;  // by COMPONENT:PORT
@@ -71,7 +71,7 @@ base::Result<void> BreakWatch::State::prepare(CORBA::ORB_ptr orb) {
       models.emplace(value.name, std::move(*iface));
     } else if (value.kind == ValueKind::port && !ports.contains(value.name)) {
       const auto colon = value.name.find(':');
-      const auto found = editor.port(value.name.substr(0, colon) + ".rtc" + value.name.substr(colon));
+      const auto found = session.port(value.name.substr(0, colon) + ".rtc" + value.name.substr(colon));
       if (!found) return found.error();
       if (found->port.port_type() != "DataOutPort") return base::Error{"port " + value.name + ": is no OutPort"};
       auto port = std::make_unique<Port>();
@@ -85,7 +85,7 @@ base::Result<void> BreakWatch::State::prepare(CORBA::ORB_ptr orb) {
       port->tap = std::move(*tap);
       ports.emplace(value.name, std::move(port));
     } else if (value.kind == ValueKind::state) {
-      if (const auto found = editor.component(value.name + ".rtc", {.contexts = true}); !found) return found.error();
+      if (const auto found = session.component(value.name + ".rtc", {.contexts = true}); !found) return found.error();
     }
   }
   return {};
@@ -115,7 +115,7 @@ std::optional<double> BreakWatch::State::look_up(const Expression::Value& value,
     case ValueKind::port:
       return sample_member(value);
     case ValueKind::state: {
-      const auto component = editor.component(value.name + ".rtc", {.contexts = true});
+      const auto component = session.component(value.name + ".rtc", {.contexts = true});
       return component ? std::optional(static_cast<double>(component->state())) : std::nullopt;
     }
     case ValueKind::pose:
@@ -159,8 +159,8 @@ base::Result<std::unique_ptr<BreakWatch>> BreakWatch::start(CORBA::ORB_ptr orb, 
   if (!period) return period.error();
   auto participant = shm::Participant::join(number_of(system.simulator()), {.name = "break", .phase = watch_phase, .period = *period});
   if (!participant) return participant.error();
-  const editor::Editor editor(orb, system.naming(), false, std::chrono::milliseconds(watch_limit));
-  auto state = std::make_unique<State>(condition, editor, std::move(*participant));
+  const editor::Session session(orb, system.naming(), std::chrono::milliseconds(watch_limit));
+  auto state = std::make_unique<State>(condition, session, std::move(*participant));
   state->simulator = number_of(system.simulator());
   if (const auto done = state->prepare(orb); !done) return done.error();
   const auto deadline = std::chrono::steady_clock::now() + watch_limit;

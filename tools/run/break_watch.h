@@ -10,7 +10,7 @@
 
 #include "recording/expression.h"
 #include "run/run_system.h"
-#include "system/editor.h"
+#include "system/session.h"
 
 namespace recorder {
 

@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "run/run_files.h"
 #include "run/run_system.h"
+#include "run/simulator.h"
 #include "system/component_view.h"
 #include "system/profile/rts_profile.h"
 
@@ -42,6 +43,13 @@ bool is_ci_job() {
 }
 
 }  // namespace
+
+PlacesInTime places_in_time(Simulator& simulator) {
+  const std::chrono::nanoseconds step(std::llround(simulator.step() * 1e9));
+  PlacesInTime places;
+  for (const auto& one : simulator.participants()) places[one.name] = {one.phase, std::max(one.period, step)};
+  return places;
+}
 
 bool tells_of_chance(const RunOptions& options) { return options.strict || is_ci_job(); }
 

@@ -13,6 +13,7 @@ namespace editor {
 struct ComponentView;
 struct RunOptions;
 struct SavedSystem;
+class Simulator;
 
 // A run that is to be strict, or in a CI job.
 bool tells_of_chance(const RunOptions& options);
@@ -23,6 +24,7 @@ struct PlaceInTime {
   std::chrono::nanoseconds period{0};  // between two calls: at least a step
 };
 using PlacesInTime = std::map<std::string, PlaceInTime>;
+PlacesInTime places_in_time(Simulator& simulator);
 
 // A line that ends in a time with the number of the component's tick behind it: "port A:out was written by a thread that no tick runs at
 // 0.06 s, in tick 6".

@@ -6,11 +6,8 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <functional>
-#include <iomanip>
 #include <set>
-#include <sstream>
 #include <utility>
 
 #include "base/text.h"
@@ -173,7 +170,7 @@ std::string names_in(const Names& all) {
   return names.empty() ? "none" : base::join(names, ", ");
 }
 
-std::string contact_problem(const Expectation& e, const Record& record, const std::vector<std::string>& models) {
+std::string contact_problem(const Expectation& e, const PoseRecord& record, const std::vector<std::string>& models) {
   for (const auto& name : e.except) {
     const bool is_default = name == usually_touched;
     if (!is_default && std::find(models.begin(), models.end(), name) == models.end())
@@ -279,40 +276,6 @@ Result<std::vector<Expectation>> parse_expectations(const std::string& text, con
   return to_expectations([&] { return YAML::LoadAll(text); }, [&](int) { return what + ": "; });
 }
 
-Result<Record> read_record(const std::string& file, double end) {
-  std::ifstream in(file);
-  if (!in) return Error{"record " + base::in_quotes(file) + ": cannot be read"};
-  Record record;
-  for (std::string line; std::getline(in, line);) {
-    std::istringstream words(line);
-    std::string first;
-    words >> first;
-    if (first.empty()) continue;
-    if (first == "#") {
-      double moment = 0;  // in which nothing moved, if it begins with a number
-      if (!(words >> moment)) continue;
-      if (moment < record.last || moment > end) break;
-      record.last = moment;
-      continue;
-    }
-    if (first == "contact") {
-      RecordedContact contact;
-      words >> contact.time >> std::quoted(contact.model) >> std::quoted(contact.other);
-      if (words && contact.time <= end) record.contacts.push_back(contact);
-      continue;
-    }
-    const auto time = base::parse_number(first);
-    RecordedPose pose{time.value_or(0), 0, 0, 0};
-    std::string model;
-    words >> std::quoted(model) >> pose.x >> pose.y >> pose.z;
-    if (!time || !words) return Error{"record " + base::in_quotes(file) + ": line " + base::in_quotes(line) + " is no pose"};
-    if (pose.time < record.last || pose.time > end) break;
-    record.last = pose.time;
-    record.poses[model].push_back(pose);
-  }
-  return record;
-}
-
 Result<std::vector<std::string>> member_path(const std::string& member) {
   std::vector<std::string> steps;
   std::string step;
@@ -361,13 +324,6 @@ void SeenValue::take(double number) {
 std::optional<double> SeenValue::mean() const {
   const auto numbers = samples - not_numbers;
   return numbers > 0 ? std::optional(sum / static_cast<double>(numbers)) : std::nullopt;
-}
-
-double path_length(const std::vector<RecordedPose>& poses) {
-  double length = 0;
-  for (std::size_t i = 1; i < poses.size(); ++i)
-    length += std::hypot(poses[i].x - poses[i - 1].x, poses[i].y - poses[i - 1].y, poses[i].z - poses[i - 1].z);
-  return length;
 }
 
 std::vector<Verdict> judge(const std::vector<Expectation>& expectations, const Seen& seen) {

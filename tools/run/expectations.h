@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "run/pose_record.h"
 
 namespace editor {
 
@@ -42,23 +43,8 @@ base::Result<std::vector<Expectation>> read_expectations(const std::string& file
 // Of a text that stands elsewhere: errors begin with what it is of.
 base::Result<std::vector<Expectation>> parse_expectations(const std::string& text, const std::string& what);
 
-struct RecordedPose {
-  double time, x, y, z;
-};
-struct RecordedContact {
-  double time;
-  std::string model, other;
-};
-struct Record {
-  std::map<std::string, std::vector<RecordedPose>> poses;
-  std::vector<RecordedContact> contacts;
-  double last = 0;  // [s], of the last pose, or of the last moment in which nothing moved
-};
-// What sim-server --record writes, until `end` [s] or a reset of the world.
-base::Result<Record> read_record(const std::string& file, double end);
 // "data.vx", "ranges[0]" -> its steps; the error says what is wrong with it.
 base::Result<std::vector<std::string>> member_path(const std::string& member);
-double path_length(const std::vector<RecordedPose>& poses);
 
 struct SeenValue {
   std::size_t samples = 0;      // that had the member as a number
@@ -81,7 +67,7 @@ struct SeenCommand {
 
 // All that a run has shown.
 struct Seen {
-  Record record;
+  PoseRecord record;
   std::vector<std::string> models;            // all of the world
   std::map<std::string, SeenValue> values;    // by "port member"
   std::map<std::string, std::string> states;  // by component

@@ -43,7 +43,7 @@ std::uint32_t phase_of(const ForeignProcesses& foreign, const std::string& insta
 
 }  // namespace
 
-Result<std::vector<std::string>> ForeignLinks::listen(CORBA::ORB_ptr orb, const Editor& editor, const SavedSystem& system,
+Result<std::vector<std::string>> ForeignLinks::listen(CORBA::ORB_ptr orb, const Session& session, const SavedSystem& system,
                                                       const ForeignProcesses& foreign, const std::string& simulator,
                                                       const std::string& log) {
   std::vector<std::string> silent;
@@ -59,14 +59,15 @@ Result<std::vector<std::string>> ForeignLinks::listen(CORBA::ORB_ptr orb, const 
     log_.emplace(std::move(*writer));
   }
   for (const auto& port : ports) {
-    if (const auto listening = listen_on(orb, editor, foreign, port); !listening) silent.push_back(listening.error().message);
+    if (const auto listening = listen_on(orb, session, foreign, port); !listening) silent.push_back(listening.error().message);
   }
   return silent;
 }
 
-Result<void> ForeignLinks::listen_on(CORBA::ORB_ptr orb, const Editor& editor, const ForeignProcesses& foreign, const SavedTarget& target) {
+Result<void> ForeignLinks::listen_on(CORBA::ORB_ptr orb, const Session& session, const ForeignProcesses& foreign,
+                                     const SavedTarget& target) {
   const auto fail = [&](const std::string& why) { return Error{"port " + target.port_name + ": what it sends is not compared: " + why}; };
-  const auto component = editor.component(target.instance + ".rtc", {.connectors = true});
+  const auto component = session.component(target.instance + ".rtc", {.connectors = true});
   if (!component) return fail(component.error().message);
   const auto prefix = target.instance + ".";
   const auto* view = component->port(target.port_name.starts_with(prefix) ? target.port_name.substr(prefix.size()) : target.port_name);
@@ -150,7 +151,7 @@ Result<void> ForeignLinks::end() {
   write();
   const bool is_whole = log_->finish();
   log_.reset();
-  return is_whole ? Result<void>() : Error{"what components of others sent each other could not be written"};
+  return is_whole ? Result<void>() : Error{"the samples between third-party components could not be written"};
 }
 
 }  // namespace editor

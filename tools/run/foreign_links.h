@@ -21,8 +21,8 @@
 #include "corba/transport/shape.h"
 #include "run/foreign_processes.h"
 #include "shm/client.h"
-#include "system/editor.h"
 #include "system/profile/rts_profile.h"
+#include "system/session.h"
 #include "system/tap.h"
 
 namespace editor {
@@ -31,7 +31,7 @@ class ForeignLinks {
  public:
   // `log`: where the part of the hash log goes; empty: nowhere. To be called once, while time stands still. What cannot be listened to is
   // named, for the user: it is no reason to end a run.
-  Result<std::vector<std::string>> listen(CORBA::ORB_ptr orb, const Editor& editor, const SavedSystem& system,
+  Result<std::vector<std::string>> listen(CORBA::ORB_ptr orb, const Session& session, const SavedSystem& system,
                                           const ForeignProcesses& foreign, const std::string& simulator, const std::string& log);
   // Samples that came while no phase ran. One line for each port, with the time.
   std::vector<std::string> chances();
@@ -50,7 +50,7 @@ class ForeignLinks {
     std::string value;                                        // of the last one
     std::optional<std::chrono::nanoseconds> between_ticks{};  // the first that came so
   };
-  Result<void> listen_on(CORBA::ORB_ptr orb, const Editor& editor, const ForeignProcesses& foreign, const SavedTarget& target);
+  Result<void> listen_on(CORBA::ORB_ptr orb, const Session& session, const ForeignProcesses& foreign, const SavedTarget& target);
   void take(Port& port, std::span<const unsigned char> payload, bool is_little_endian);
   void write();
 

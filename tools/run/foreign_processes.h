@@ -42,7 +42,7 @@ class ForeignProcesses {
   std::vector<std::string> proxies() const;
   // Brings them into simulated time, once they and their proxies are there; each may take so long for it. In `system` their states are then
   // those in these contexts.
-  Result<void> join(const Editor& editor, SavedSystem& system, std::chrono::milliseconds patience);
+  Result<void> join(const Session& session, SavedSystem& system, std::chrono::milliseconds patience);
   struct Ended {
     std::vector<std::string> components;  // those of all open ones, if it is open: nobody has said whose components they are
     bool is_open = false;

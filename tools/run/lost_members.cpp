@@ -46,7 +46,8 @@ Error LostMembers::tell(std::optional<ForeignProcesses::Ended> ended, std::vecto
   if (!ended) return Error{"component " + gone.front().said};
   // Those that were called when they had gone: the first of them before the others, which may have been ended with it.
   const auto known = std::ranges::find_if(gone, [&](const auto& one) { return has(ended->components, one.instance); });
-  const auto time = known == gone.end() ? simulator_.time() : known->time;
+  const auto now = simulator_.now();
+  const auto time = known != gone.end() ? known->time : now ? std::optional(now->time_s) : std::nullopt;
   auto names = ended->components;
   if (known != gone.end()) {
     names = {known->instance};

@@ -9,14 +9,14 @@
 
 #include "run/foreign_processes.h"
 #include "run/run_hosts.h"
-#include "run/run_simulator.h"
+#include "run/simulator.h"
 
 namespace editor {
 
 class LostMembers {
  public:
   // All must live as long. `answers`: whether the component of that name does, once it can be asked.
-  LostMembers(ForeignProcesses& foreign, RunHosts& hosts, const RunSimulator& simulator, std::function<bool()> can_ask,
+  LostMembers(ForeignProcesses& foreign, RunHosts& hosts, Simulator& simulator, std::function<bool()> can_ask,
               std::function<bool(const std::string&)> answers)
       : foreign_(foreign), hosts_(hosts), simulator_(simulator), can_ask_(std::move(can_ask)), answers_(std::move(answers)) {}
 
@@ -29,7 +29,7 @@ class LostMembers {
 
   ForeignProcesses& foreign_;
   RunHosts& hosts_;
-  const RunSimulator& simulator_;
+  Simulator& simulator_;
   const std::function<bool()> can_ask_;
   const std::function<bool(const std::string&)> answers_;
   std::optional<Error> told_;  // is told again: what the contexts have said is read once

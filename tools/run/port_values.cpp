@@ -52,22 +52,22 @@ const Json* find(const Json& sample, const std::vector<std::string>& path) {
 
 }  // namespace
 
-Result<void> PortValues::listen(CORBA::ORB_ptr orb, const Editor& editor, const std::vector<Expectation>& expectations) {
+Result<void> PortValues::listen(CORBA::ORB_ptr orb, const Session& session, const std::vector<Expectation>& expectations) {
   for (const auto& expectation : expectations) {
     if (expectation.kind != Expectation::Kind::value) continue;
     const bool is_known = std::ranges::any_of(listening_, [&](const Listening& one) {
       return one.expectation->port == expectation.port && one.expectation->member == expectation.member;
     });
     if (is_known) continue;
-    auto attached = attach(orb, editor, expectation);
+    auto attached = attach(orb, session, expectation);
     if (!attached) return attached.error();
     listening_.push_back(std::move(*attached));
   }
   return {};
 }
 
-Result<PortValues::Listening> PortValues::attach(CORBA::ORB_ptr orb, const Editor& editor, const Expectation& expectation) {
-  auto port = editor.port(expectation.port);
+Result<PortValues::Listening> PortValues::attach(CORBA::ORB_ptr orb, const Session& session, const Expectation& expectation) {
+  auto port = session.port(expectation.port);
   if (!port) return port.error();
   if (port->port.port_type() != "DataOutPort") return Error{"port " + expectation.port + ": is no OutPort, so there are no values to see"};
   const auto type = type_code_of(port->port.data_type());
@@ -92,10 +92,10 @@ void PortValues::forget(const std::set<std::string>& instances) {
   }
 }
 
-Result<void> PortValues::listen_again(CORBA::ORB_ptr orb, const Editor& editor, const std::set<std::string>& instances) {
+Result<void> PortValues::listen_again(CORBA::ORB_ptr orb, const Session& session, const std::set<std::string>& instances) {
   for (auto& one : listening_) {
     if (!instances.contains(one.instance)) continue;
-    auto attached = attach(orb, editor, *one.expectation);
+    auto attached = attach(orb, session, *one.expectation);
     if (!attached) return attached.error();
     one = std::move(*attached);
   }

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -27,8 +28,6 @@ std::string text_of(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
-
-std::vector<std::string> lines(const std::string& text) { return text.empty() ? std::vector<std::string>() : base::split_list(text, '\n'); }
 
 }  // namespace
 
@@ -92,21 +91,15 @@ std::string RecordedRun::lost() const {
   return note("script") == "yes" ? "what the plan of a campaign did in the run (faults, events) is not done again" : "";
 }
 
-editor::RunOptions RecordedRun::options() const {
-  editor::RunOptions options;
-  options.system = system_;
-  options.world = world_;
-  options.seed = static_cast<std::uint64_t>(base::parse_integer(note("seed")).value_or(0));
-  options.duration_s = base::parse_number(note("duration")).value_or(end_s_);
-  options.one_process_each = note("one_process_each") == "yes";
-  options.properties = lines(note("properties"));
-  options.start = lines(note("start"));
-  options.start_folder = note("start_folder");
-  options.run_file = note("run_file");
-  options.module_paths = lines(note("module_paths"));
-  options.resource_paths = lines(note("resource_paths"));
-  options.resource_paths.insert(options.resource_paths.end(), resource_paths_.begin(), resource_paths_.end());
-  options.quiet = true;
+base::Result<editor::RunOptions> RecordedRun::options() const {
+  auto notes = notes_;
+  if (note("duration").empty())
+    notes["duration"] = base::format_number(std::max(end_s_, editor::run_option("duration").low));  // of `rtse record`
+  auto options = editor::recorded_run_options(notes);
+  if (!options) return options.error();
+  options->system = system_;
+  options->world = world_;
+  options->resource_paths.insert(options->resource_paths.end(), resource_paths_.begin(), resource_paths_.end());
   return options;
 }
 

@@ -16,7 +16,7 @@
 #include "recording/sample_difference.h"
 #include "run/recorded_life.h"
 #include "run/run_system.h"
-#include "system/editor.h"
+#include "system/session.h"
 
 namespace recorder {
 

@@ -77,7 +77,7 @@ Result<void> RunHosts::start(const std::vector<std::string>& creations, const Me
                               .options = more,
                               .creations = creations};
   auto started = start_program(
-      options_.warm, {host_words(settings), {{"RTMSIM_SERVER_ID", simulator_.id()}, {"TMPDIR", place_.scratch("tmp")}, same_math()}, log});
+      hooks_.warm, {host_words(settings), {{"RTMSIM_SERVER_ID", simulator_.id()}, {"TMPDIR", place_.scratch("tmp")}, same_math()}, log});
   if (!started) return started.error();
   hosts_.push_back({std::move(*started), members, names, log});
   return {};
@@ -106,9 +106,9 @@ Result<RunHosts::Members> RunHosts::restart(const std::string& instance) {
 Result<void> RunHosts::check() {
   for (auto& host : hosts_) {
     if (host.process.is_running()) continue;
-    const auto time = simulator_.time();
+    const auto now = simulator_.now();
     return Error{"host of " + host.components + " " + host.process.how_it_ended() +
-                 (time && *time > 0 ? " at " + base::format_number(*time) + " s" : "") +
+                 (now && now->time_s > 0 ? " at " + base::format_number(now->time_s) + " s" : "") +
                  (host.process.exit_code() < 128 ? ": " + telling_line(host.log) : complaint(host.log))};
   }
   return {};
@@ -225,7 +225,7 @@ std::string RunHosts::last_words() const {
 }
 
 void RunHosts::kill() const {
-  if (options_.warm) return;  // somebody else's, whose numbers may belong to others already
+  if (hooks_.warm) return;  // somebody else's, whose numbers may belong to others already
   for (const auto& host : hosts_) ::kill(host.process.pid(), SIGKILL);
 }
 

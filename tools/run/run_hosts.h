@@ -10,8 +10,8 @@
 #include "base/child_process.h"
 #include "run/run_files.h"
 #include "run/run_hashes.h"
-#include "run/run_simulator.h"
 #include "run/run_system.h"
+#include "run/simulator.h"
 #include "system/profile/rts_profile.h"
 
 namespace editor {
@@ -21,8 +21,8 @@ class RunHosts {
   using Members = std::vector<const SavedComponent*>;  // of one process; they must live as long
 
   // All must live as long.
-  RunHosts(const RunOptions& options, const Workplace& place, const RunHashes& hashes, const RunSimulator& simulator)
-      : options_(options), place_(place), hashes_(hashes), simulator_(simulator) {}
+  RunHosts(const RunOptions& options, const RunHooks& hooks, const Workplace& place, const RunHashes& hashes, Simulator& simulator)
+      : options_(options), hooks_(hooks), place_(place), hashes_(hashes), simulator_(simulator) {}
 
   // What all of them have: the naming service, HOST:PORT, and what the user asks of single components.
   void use(std::string naming, std::vector<ComponentProperty> properties);
@@ -76,9 +76,10 @@ class RunHosts {
   std::string creation(const SavedComponent& component) const;
 
   const RunOptions& options_;
+  const RunHooks& hooks_;
   const Workplace& place_;
   const RunHashes& hashes_;
-  const RunSimulator& simulator_;
+  Simulator& simulator_;
   std::string naming_;
   std::vector<ComponentProperty> properties_;
   std::vector<Host> hosts_, killed_;

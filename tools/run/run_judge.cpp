@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <utility>
 
 #include "base/child_process.h"
 #include "base/text.h"
@@ -15,8 +15,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto command_limit = 60s;  // of a command of the user's
-constexpr auto look_limit = 5s;      // of a request for the simulator's statistics
+constexpr auto command_limit = 60s;          // of a command of the user's
+constexpr std::uint32_t picture_size = 900;  // [pixels]
 
 }  // namespace
 
@@ -28,24 +28,30 @@ Result<void> RunJudge::read() {
   return {};
 }
 
-Result<void> RunJudge::look(const Editor& editor, const std::vector<std::string>& chances, RunResult& result) {
-  const auto stats = simulator_.statistics(look_limit);
-  if (!stats.contains("hash")) return Error{"sim-server: does not answer"};
-  result.state_hash = stats["hash"].is_string() ? stats["hash"].get<std::string>() : stats["hash"].dump();
+Result<void> RunJudge::watch() {
+  record_.set_end(options_.duration_s + simulator_.step() / 2);
+  return simulator_.read_events(record_);
+}
+
+Result<void> RunJudge::look(const Session& session, const std::vector<std::string>& chances, RunResult& result) {
+  if (const auto watched = watch(); !watched) return watched;
+  const auto state = simulator_.state();
+  if (!state) return state.error();
+  result.state_hash = state->hash;
   if (!options_.picture.empty()) {
     const auto file = std::filesystem::absolute(options_.picture).string();
-    const auto drawn = simulator_.simctl({"screenshot", file, "--top", "--scans", "--size", "900x900"}, 60s);
+    const auto drawn = simulator_.screenshot(file, picture_size);
     if (!drawn) result.verdicts.push_back({"picture " + options_.picture, drawn.error().message});
   }
-  seen_.models = simulator_.models();
+  if (auto models = simulator_.models()) seen_.models = std::move(*models);
   for (const auto& component : system_.components) {
-    const auto view = editor.component(component.instance + ".rtc", {.contexts = true});
+    const auto view = session.component(component.instance + ".rtc", {.contexts = true});
     seen_.states[component.instance] = view ? state_text(view->state()) : "gone";
     if (view) providers_.merge(providers_of(*view));
   }
   check_states(result);
   // What a script takes down takes its connections with it.
-  if (!options_.script) result.verdicts.push_back({"no connection is lost", base::join(hosts_.lost_connections(system_), "; ")});
+  if (!hooks_.script) result.verdicts.push_back({"no connection is lost", base::join(hosts_.lost_connections(system_), "; ")});
   check_chances(chances, result);
   return {};
 }
@@ -53,7 +59,7 @@ Result<void> RunJudge::look(const Editor& editor, const std::vector<std::string>
 // What a next run may do otherwise: a failure when the run is to be strict, a note for each in a CI job.
 void RunJudge::check_chances(const std::vector<std::string>& known, RunResult& result) const {
   if (!tells_of_chance(options_)) return;
-  const auto places = simulator_.places();
+  const auto places = places_in_time(simulator_);
   auto chances = chances_in(hosts_.logs(), places);
   for (const auto& one : known) chances.push_back(with_tick(one, places));
   for (auto& pair : services_of_one_phase(system_, places)) chances.push_back(std::move(pair));
@@ -61,7 +67,7 @@ void RunJudge::check_chances(const std::vector<std::string>& known, RunResult& r
   if (options_.strict) {
     result.verdicts.push_back({"nothing depends on chance", base::join(chances, "; ")});
   } else {
-    for (const auto& chance : chances) result.notes.push_back("depends on chance: " + chance);
+    for (const auto& chance : chances) result.notes.push_back("nondeterministic: " + chance);
   }
 }
 
@@ -72,7 +78,7 @@ void RunJudge::check_states(RunResult& result) const {
     const bool is_judged = std::ranges::any_of(expectations_, [&](const Expectation& expectation) {
       return expectation.kind == Expectation::Kind::state && expectation.component == component;
     });
-    if (options_.script && options_.script->excuses(component)) continue;
+    if (hooks_.script && hooks_.script->excuses(component)) continue;
     if (!is_judged && (state == "Error" || state == "gone")) problem += (problem.empty() ? "" : ", ") + component + " is " + state;
   }
   result.verdicts.push_back({"no component ends in an error", problem});
@@ -99,14 +105,10 @@ Result<void> RunJudge::run_commands(const std::string& naming) {
 }
 
 Result<void> RunJudge::judge(RunResult& result) {
-  auto record = read_record(place_.file("record.txt"), options_.duration_s + simulator_.step() / 2);
-  if (!record) return record.error();
   constexpr double record_period = 0.1;  // [s]
-  if (record->last < options_.duration_s - record_period - simulator_.step()) {
-    return Error{"the record of the run ends at " + base::format_number(record->last) + " s, by a reset or a full disk" +
-                 complaint(place_.file("sim-server.log"))};
-  }
-  seen_.record = std::move(*record);
+  if (record_.last < options_.duration_s - record_period - simulator_.step())
+    return Error{"the record of the run ends at " + base::format_number(record_.last) + " s: the world was reset"};
+  seen_.record = std::move(record_);
   const auto verdicts = editor::judge(expectations_, seen_);
   result.verdicts.insert(result.verdicts.end(), verdicts.begin(), verdicts.end());
   for (const auto& [model, poses] : seen_.record.poses) result.path_m = std::max(result.path_m, path_length(poses));

@@ -11,27 +11,30 @@
 #include "run/expectations.h"
 #include "run/run_files.h"
 #include "run/run_hosts.h"
-#include "run/run_simulator.h"
 #include "run/run_system.h"
-#include "system/editor.h"
+#include "run/simulator.h"
 #include "system/profile/rts_profile.h"
+#include "system/session.h"
 
 namespace editor {
 
 class RunJudge {
  public:
   // All of these outlive it.
-  RunJudge(const RunOptions& options, const Workplace& place, const SavedSystem& system, RunSimulator& simulator, const RunHosts& hosts)
-      : options_(options), place_(place), system_(system), simulator_(simulator), hosts_(hosts) {}
+  RunJudge(const RunOptions& options, const RunHooks& hooks, const Workplace& place, const SavedSystem& system, Simulator& simulator,
+           const RunHosts& hosts)
+      : options_(options), hooks_(hooks), place_(place), system_(system), simulator_(simulator), hosts_(hosts) {}
 
   // The file of expectations, if there is one.
   Result<void> read();
   const std::vector<Expectation>& expectations() const { return expectations_; }
+  // Takes over what happened to the models since the last call: before the first step, and from time to time.
+  Result<void> watch();
   // What was seen on ports, by "port member".
   void take_values(std::map<std::string, SeenValue> values) { seen_.values = std::move(values); }
   // What can be seen only while everything still runs: states, poses, the picture, the hash. Fails when the simulator does not answer.
   // `chances`: what is known already to depend on chance.
-  Result<void> look(const Editor& editor, const std::vector<std::string>& chances, RunResult& result);
+  Result<void> look(const Session& session, const std::vector<std::string>& chances, RunResult& result);
   // The user's commands. Fails after an interrupt, and when a command cannot be started; its exit code is for the verdict.
   Result<void> run_commands(const std::string& naming);
   // The record against the expectations. Fails when the record does not reach to the end of the run.
@@ -43,11 +46,13 @@ class RunJudge {
   void check_states(RunResult& result) const;
 
   const RunOptions& options_;
+  const RunHooks& hooks_;
   const Workplace& place_;
   const SavedSystem& system_;
-  RunSimulator& simulator_;
+  Simulator& simulator_;
   const RunHosts& hosts_;
   std::vector<Expectation> expectations_;
+  PoseRecord record_;  // part of what was seen when the run has come to its end
   Seen seen_;
   std::set<std::string> providers_;  // full names of ports
 };

@@ -1,14 +1,25 @@
 #include "run/run_options.h"
 
 #include <algorithm>
+#include <cassert>
+#include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
+#include <utility>
 
 #include "base/command.h"
 #include "base/text.h"
-#include "run/run_system.h"
+#include "system/profile/rts_profile.h"
 
 namespace editor {
 namespace {
+
+using base::Error;
+using base::Result;
+using Json = nlohmann::ordered_json;
+using Unit = RunOptionRow::Unit;
+
+const RunOptions defaults{};
 
 Result<void> check_rates(const SavedSystem& system) {
   for (const auto& component : system.components) {
@@ -28,24 +39,176 @@ Result<void> check_folders(const std::string& kind, const std::vector<std::strin
   return {};
 }
 
+std::string json_name(const RunOptionRow& row) {
+  std::string name(row.name);
+  std::ranges::replace(name, '-', '_');
+  return name;
+}
+
+std::string option_name(const RunOptionRow& row) { return "--" + std::string(row.name); }
+
+// Of the command line: "-w,--world"; the system is positional.
+std::string declared_name(const RunOptionRow& row) {
+  if (row.name == "system") return "SYSTEM";
+  return (row.letter.empty() ? "" : "-" + std::string(row.letter) + ",") + option_name(row);
+}
+
+std::string property_problem(const std::string& text) {
+  const auto parsed = parse_property(text);
+  return parsed ? std::string() : parsed.error().message;
+}
+
+void add(base::Command& command, const RunOptionRow& row, RunOptions& options) {
+  base::Option* option = nullptr;
+  const auto name = declared_name(row);
+  const std::string help(row.help);
+  if (const auto* text = std::get_if<std::string RunOptions::*>(&row.member)) {
+    option = command.add_option(name, options.*(*text), help);
+  } else if (const auto* list = std::get_if<std::vector<std::string> RunOptions::*>(&row.member)) {
+    option = command.add_option(name, options.*(*list), help)->allow_extra_args(false);
+    if (*list == &RunOptions::properties) option->check(property_problem);
+  } else if (const auto* number = std::get_if<double RunOptions::*>(&row.member)) {
+    option = command.add_option(name, options.*(*number), help);
+    if (row.unit == Unit::simulated_seconds)
+      option->seconds_between(row.low, row.high);
+    else
+      option->check(base::number_between(row.low, row.high));
+    if (options.*(*number) != 0) option->capture_default_str();
+  } else if (const auto* whole = std::get_if<std::uint64_t RunOptions::*>(&row.member)) {
+    option = command.add_option(name, options.*(*whole), help)->capture_default_str()->check(base::number_between(row.low, row.high));
+  } else if (const auto* flag = std::get_if<bool RunOptions::*>(&row.member)) {
+    option = command.add_flag(name, options.*(*flag), help);
+  }
+  if (row.must_exist) option->check(base::existing_file());
+  if (!row.group.empty()) option->group(std::string(row.group));
+  if (!row.needs.empty()) option->needs("--" + std::string(row.needs));
+}
+
+std::string absolute(const std::string& path) { return path.empty() ? path : std::filesystem::absolute(path).string(); }
+
+Json value_of(const RunOptions& options, const RunOptionRow& row) {
+  return std::visit(
+      [&](auto member) -> Json {
+        auto value = options.*member;
+        if constexpr (std::is_same_v<decltype(value), std::string>) {
+          if (row.is_path) value = absolute(value);
+        } else if constexpr (std::is_same_v<decltype(value), std::vector<std::string>>) {
+          for (auto& one : value) one = row.is_path ? absolute(one) : one;
+        }
+        return value;
+      },
+      row.member);
+}
+
+// Empty: the value was taken.
+std::string problem_of(const Json& value, const RunOptionRow& row, RunOptions& options) {
+  const auto limits = " must be from " + base::format_number(row.low) + " to " + base::format_number(row.high) + ", got " + value.dump();
+  return std::visit(
+      [&](auto member) -> std::string {
+        auto& to = options.*member;
+        using Value = std::remove_reference_t<decltype(to)>;
+        if constexpr (std::is_same_v<Value, bool>) {
+          if (!value.is_boolean()) return " must be true or false, got " + value.dump();
+        } else if constexpr (std::is_same_v<Value, std::string>) {
+          if (!value.is_string()) return " must be a text, got " + value.dump();
+        } else if constexpr (std::is_same_v<Value, std::vector<std::string>>) {
+          if (!value.is_array() || !std::all_of(value.begin(), value.end(), [](const Json& one) { return one.is_string(); }))
+            return " must be a list of texts, got " + value.dump();
+        } else {
+          const bool fits = std::is_same_v<Value, double> ? value.is_number() : value.is_number_unsigned();
+          if (!fits) return limits;
+          const auto number = value.template get<double>();
+          const bool is_default = value.template get<Value>() == defaults.*member;       // 0 for "not given" is beyond some limits
+          if (!is_default && !(number >= row.low && number <= row.high)) return limits;  // no NaN either
+        }
+        to = value.template get<Value>();
+        return "";
+      },
+      row.member);
+}
+
 }  // namespace
 
-void add_repeatability_options(base::Command& run, RunOptions& options) {
-  const auto* group = "Repeatability";
-  run.add_option("--hash-log", options.hash_log, "Write hashes of world, components and samples, for rtse diff")->group(group);
-  run.add_option("--hash-period", options.hash_period_s, "Simulated seconds between world hashes (default: every component tick)")
-      ->seconds_between(1e-6, 1e6)
-      ->group(group);
-  run.add_flag("--twice", options.twice, "Run twice and print the first difference")->group(group);
-  run.add_flag("--strict", options.strict, "Fail if the run had a nondeterministic event")->group(group);
+const RunOptionRow& run_option(std::string_view name) {
+  const auto* row = std::ranges::find(run_option_rows, name, &RunOptionRow::name);
+  assert(row != run_option_rows.end());
+  return *row;
 }
 
-void add_recording_options(base::Command& run, RunOptions& options) {
-  auto* record = run.add_option("--record", options.record, "Record all ports, component logs and simulator state (MCAP)");
-  run.add_option("--last", options.record_last_s, "With --record: keep only the last N seconds, and only if the run fails")
-      ->needs(record)
-      ->seconds_between(0.1, 1e6);
+void add_run_options(base::Command& command, RunOptions& options, const std::vector<std::string_view>& names) {
+  for (const auto& row : run_option_rows) {
+    if (names.empty() || std::ranges::find(names, row.name) != names.end()) add(command, row, options);
+  }
 }
+
+RunOptions with_given(RunOptions base, const RunOptions& given, const base::Command& command) {
+  for (const auto& row : run_option_rows) {
+    const auto name = row.name == "system" ? "SYSTEM" : option_name(row);
+    if (!command.has(name) || command.count(name) == 0) continue;
+    std::visit(
+        [&](auto member) {
+          if constexpr (std::is_same_v<decltype(member), std::vector<std::string> RunOptions::*>) {
+            (base.*member).insert((base.*member).end(), (given.*member).begin(), (given.*member).end());
+          } else {
+            base.*member = given.*member;
+          }
+        },
+        row.member);
+  }
+  return base;
+}
+
+Json to_json(const RunOptions& options, RunOptionSet set) {
+  Json json = Json::object();
+  for (const auto& row : run_option_rows) {
+    if (set == RunOptionSet::all || row.repeats_run) json[json_name(row)] = value_of(options, row);
+  }
+  return json;
+}
+
+Result<RunOptions> run_options_from(const Json& json) {
+  if (!json.is_object()) return Error{"options of a run: expected a JSON object, got " + json.dump().substr(0, 40)};
+  RunOptions options;
+  for (const auto& [key, value] : json.items()) {
+    const auto* row = std::ranges::find_if(run_option_rows, [&](const auto& one) { return json_name(one) == key; });
+    if (row == run_option_rows.end()) return Error{"options of a run: unknown option " + base::in_quotes(key)};
+    if (const auto problem = problem_of(value, *row, options); !problem.empty()) return Error{"options of a run: " + key + problem};
+  }
+  return options;
+}
+
+namespace {
+
+// The texts of recordings that were made before there was one for all options: numbers, "yes", and lists with an option in each line.
+Result<RunOptions> options_from_texts(const std::map<std::string, std::string>& notes) {
+  Json json = Json::object();
+  for (const auto& row : run_option_rows) {
+    // Two lists had names of their own.
+    const auto name = row.name == "property"                                     ? "properties"
+                      : row.name == "module-path" || row.name == "resource-path" ? json_name(row) + "s"
+                                                                                 : json_name(row);
+    const auto note = notes.find(name);
+    if (!row.repeats_run || note == notes.end() || note->second.empty()) continue;
+    const auto& text = note->second;
+    auto& value = json[json_name(row)];
+    if (std::holds_alternative<std::string RunOptions::*>(row.member)) value = text;
+    if (std::holds_alternative<std::vector<std::string> RunOptions::*>(row.member)) value = base::split_list(text, '\n');
+    if (std::holds_alternative<bool RunOptions::*>(row.member)) value = text == "yes";
+    if (std::holds_alternative<double RunOptions::*>(row.member)) value = base::parse_number(text).value_or(NAN);
+    if (std::holds_alternative<std::uint64_t RunOptions::*>(row.member))
+      value = static_cast<std::uint64_t>(base::parse_integer(text).value_or(0));
+  }
+  return run_options_from(json);
+}
+
+}  // namespace
+
+Result<RunOptions> recorded_run_options(const std::map<std::string, std::string>& notes) {
+  const auto text = notes.find(options_note);
+  return text == notes.end() ? options_from_texts(notes) : parse_run_options(text->second);
+}
+
+Result<RunOptions> parse_run_options(const std::string& text) { return run_options_from(Json::parse(text, nullptr, false)); }
 
 Result<ComponentProperty> parse_property(const std::string& text) {
   const auto colon = text.find(':');
@@ -59,7 +222,7 @@ Result<ComponentProperty> parse_property(const std::string& text) {
   return ComponentProperty{text.substr(0, colon), text.substr(colon + 1, equals - colon - 1), text.substr(equals + 1)};
 }
 
-Result<std::vector<ComponentProperty>> read_wishes(const RunOptions& options, const SavedSystem& system) {
+Result<std::vector<ComponentProperty>> check_against(const RunOptions& options, const SavedSystem& system) {
   for (const auto& checked :
        {check_rates(system), check_folders("module", options.module_paths), check_folders("resource", options.resource_paths)}) {
     if (!checked) return checked.error();
@@ -73,23 +236,6 @@ Result<std::vector<ComponentProperty>> read_wishes(const RunOptions& options, co
     properties.push_back(std::move(*property));
   }
   return properties;
-}
-
-std::vector<std::pair<std::string, std::string>> notes_on(const RunOptions& options, const std::vector<std::string>& others) {
-  const auto absolute = [](std::vector<std::string> paths) {
-    for (auto& path : paths) path = std::filesystem::absolute(path).string();
-    return base::join(paths, "\n");
-  };
-  return {{"duration", base::format_number(options.duration_s)},
-          {"one_process_each", options.one_process_each ? "yes" : "no"},
-          {"properties", base::join(options.properties, "\n")},
-          {"start", base::join(options.start, "\n")},
-          {"start_folder", options.start_folder.empty() ? std::filesystem::current_path().string() : options.start_folder},
-          {"run_file", options.run_file.empty() ? "" : std::filesystem::absolute(options.run_file).string()},
-          {"others", base::join(others, "\n")},
-          {"script", options.script != nullptr ? "yes" : "no"},
-          {"module_paths", absolute(options.module_paths)},
-          {"resource_paths", absolute(options.resource_paths)}};
 }
 
 }  // namespace editor

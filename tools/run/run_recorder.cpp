@@ -1,20 +1,22 @@
 #include "run/run_recorder.h"
 
-#include <signal.h>
-
-#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #include "base/text.h"
 
 namespace editor {
 
+using recorder::RecorderMessage;
+
 namespace {
 
 // What waits in its queue is written first.
 constexpr std::chrono::seconds recorder_limit{40};
+constexpr std::chrono::milliseconds no_wait{0};  // the caller waits
+constexpr std::chrono::seconds exit_limit{1};    // after the end of its line
 
 }  // namespace
 
@@ -23,10 +25,21 @@ std::string RunRecorder::said() const {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// The line may come after others: what the ORB has to say of a component.
-bool RunRecorder::has_begun() const {
-  const auto lines = base::split_list(said(), '\n');
-  return std::ranges::any_of(lines, [](const std::string& line) { return line.starts_with("recording "); });
+// Whether it has sent this, or never will: one that stops by itself, because its disk is full, does nothing else any more.
+bool RunRecorder::has_told(RecorderMessage message, std::chrono::milliseconds timeout) {
+  if (has_stopped_) return true;
+  const auto received = line_->receive(timeout);
+  if (!received) return process_->wait(exit_limit), true;
+  has_begun_ = has_begun_ || *received == RecorderMessage::recording;
+  has_stopped_ = *received == RecorderMessage::stopped;
+  return *received == message || has_stopped_;
+}
+
+bool RunRecorder::tell(RecorderMessage message) {
+  if (!process_->is_running()) return false;
+  if (line_->send(message)) return true;
+  process_->terminate();
+  return false;
 }
 
 base::Result<void> RunRecorder::start(const RecorderCall& call, const Wait& wait_until) {
@@ -34,17 +47,22 @@ base::Result<void> RunRecorder::start(const RecorderCall& call, const Wait& wait
   file_ = call.file;
   is_ring_ = call.last_s > 0;
   ProgramCall program{{own_program("rtse-recorder"), "--ns", call.server, "record", "--all", "-s", call.simulator, "-o", call.file,
-                       "--attach", "system.xml=" + call.system},
+                       "--controlled", "--attach", "system.xml=" + call.system},
                       {},
                       log_};
   if (call.last_s > 0) program.words.insert(program.words.end(), {"--last", base::format_number(call.last_s)});
   takes_hashes_ = !call.hashes.empty();
   if (takes_hashes_) program.words.insert(program.words.end(), {"--hashes", call.hashes});
   for (const auto& [key, value] : call.notes) program.words.insert(program.words.end(), {"--note", key + "=" + value});
+  auto line = recorder::RecorderLine::make();
+  if (!line) return line.error();
+  program.input = line->second.get();
   auto started = ChildProcess::start(program);
   if (!started) return started.error();
+  line_.emplace(std::move(line->first));
   process_.emplace(std::move(*started));
-  const auto ready = wait_until("recorder", [&] { return has_begun() || !process_->is_running(); });
+  line->second = shm::FileHandle();  // theirs alone
+  const auto ready = wait_until("recorder", [&] { return has_told(RecorderMessage::recording, no_wait); });
   if (!ready) return ready;
   if (process_->is_running()) return {};
   const auto lines = base::split_list(said(), '\n');
@@ -52,33 +70,16 @@ base::Result<void> RunRecorder::start(const RecorderCall& call, const Wait& wait
 }
 
 base::Result<void> RunRecorder::look_again(const Wait& wait_until) {
-  constexpr std::string_view mark = "looked again";
-  const auto looks = [&] {
-    const auto text = said();
-    std::size_t count = 0;
-    for (auto at = text.find(mark); at != std::string::npos; at = text.find(mark, at + 1)) ++count;
-    return count;
-  };
-  if (!process_ || !process_->is_running()) return {};
-  const auto before = looks();
-  ::kill(process_->pid(), SIGUSR1);
-  return wait_until("recorder", [&] { return looks() > before || !process_->is_running(); });
-}
-
-bool RunRecorder::await_word(const char* word) {
-  const auto deadline = std::chrono::steady_clock::now() + recorder_limit;
-  while (said().find(word) == std::string::npos) {
-    if (!process_->is_running() || std::chrono::steady_clock::now() > deadline) return false;
-    process_->wait(std::chrono::milliseconds(5));  // its end comes by itself, its words must be looked for
-  }
-  return true;
+  if (!process_ || !tell(RecorderMessage::look_again)) return {};
+  return wait_until("recorder", [&] { return has_told(RecorderMessage::looked, no_wait); });
 }
 
 void RunRecorder::end() {
   if (!process_) return;
-  if (process_->is_running()) process_->terminate();
+  if (!has_begun_) process_->terminate();  // it reads no message yet
+  if (!tell(RecorderMessage::stop)) return;
   if (takes_hashes_) {
-    (void)await_word("waiting for hashes");
+    (void)has_told(RecorderMessage::stopped, recorder_limit);
   } else {
     (void)process_->wait(recorder_limit);
   }
@@ -86,7 +87,7 @@ void RunRecorder::end() {
 
 base::Result<void> RunRecorder::finish() {
   if (!process_) return {};
-  if (takes_hashes_ && process_->is_running()) ::kill(process_->pid(), SIGTERM);  // a second time, which says that they are there
+  if (takes_hashes_) (void)tell(RecorderMessage::hashes_ready);
   const bool has_ended = process_->wait(recorder_limit);
   const bool is_good = has_ended && process_->exit_code() == 0;
   const auto lines = base::split_list(said(), '\n');
@@ -96,7 +97,7 @@ base::Result<void> RunRecorder::finish() {
   if (is_good) return {};
   // A recorder that ends by itself says what is where.
   if (was_killed && is_ring_)
-    return base::Error{"recorder: " + how + "; what came before is in pieces of the ring, rtse recording repair " + file_ +
+    return base::Error{"recorder: " + how + "; earlier samples are in the segments of the ring: rtse recording repair " + file_ +
                        " puts it together"};
   if (was_killed) return base::Error{"recorder: " + how + "; what came before is in the file"};
   return base::Error{"recorder: " + how + (lines.empty() ? "" : ": " + lines.back())};

@@ -2,6 +2,7 @@
 // time.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "base/child_process.h"
+#include "recording/recorder_line.h"
 #include "run/run_files.h"
 
 namespace editor {
@@ -42,15 +44,17 @@ class RunRecorder {
 
  private:
   std::string said() const;
-  bool has_begun() const;
-  bool await_word(const char* word);
+  bool has_told(recorder::RecorderMessage message, std::chrono::milliseconds timeout);
+  bool tell(recorder::RecorderMessage message);
 
   const Workplace& place_;
   std::optional<ChildProcess> process_;
+  std::optional<recorder::RecorderLine> line_;
   std::string log_;
   std::string file_;
   bool is_ring_ = false;
   bool takes_hashes_ = false;
+  bool has_begun_ = false, has_stopped_ = false;
 };
 
 }  // namespace editor

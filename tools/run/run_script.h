@@ -12,16 +12,16 @@
 #include <vector>
 
 #include "run/port_values.h"
-#include "run/run_simulator.h"
+#include "run/run_files.h"
 #include "run/run_system.h"
+#include "run/simulator.h"
 
 namespace editor {
 
 // What a script may use of the run while it stands between two steps.
 struct RunScene {
-  CORBA::ORB_ptr orb;
-  const Editor& editor;  // of the run's naming service
-  RunSimulator& simulator;
+  const Session& session;  // of the run's naming service
+  Simulator& simulator;
   const Workplace& place;
   const std::string& naming;  // HOST:PORT of its service
   const SavedSystem& system;

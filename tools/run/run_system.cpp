@@ -1,18 +1,16 @@
 #include "run/run_system.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <thread>
 
 #include "base/interrupt.h"
 #include "base/text.h"
-#include "rtse/commands/state.h"
-#include "rtse/commands/system.h"
+#include "run/chance_report.h"
 #include "run/foreign_links.h"
 #include "run/foreign_processes.h"
 #include "run/lost_members.h"
@@ -26,8 +24,11 @@
 #include "run/run_recorder.h"
 #include "run/run_script.h"
 #include "run/run_simulator.h"
+#include "run/stepping.h"
 #include "run/time_members.h"
 #include "system/remote.h"
+#include "system/reporter.h"
+#include "system/saved_system.h"
 
 namespace editor {
 namespace {
@@ -35,19 +36,26 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-constexpr auto editor_limit = 5s;
+constexpr auto call_timeout = 5s;
+
+bool is_among(const std::vector<LockstepParticipant>& participants, const std::string& name) {
+  return std::ranges::any_of(participants, [&](const auto& one) { return one.name == name; });
+}
 
 // Everything of one run. Its end takes the processes down, the components before the simulator before the naming service.
 class Run final : public RunningSystem {
  public:
-  Run(CORBA::ORB_ptr orb, const RunOptions& options)
+  Run(CORBA::ORB_ptr orb, const RunOptions& options, Reporter& reporter, const RunHooks& hooks)
       : orb_(CORBA::ORB::_duplicate(orb)),
         options_(options),
+        hooks_(hooks),
+        reporter_(reporter),
         place_(options.keep),
         naming_(place_),
         hashes_(options.hash_log, place_),
-        simulator_(options_, place_, hashes_),
-        hosts_(options_, place_, hashes_, simulator_),
+        simulator_process_(options_, hooks_, place_, hashes_),
+        simulator_(simulator_process_.control()),
+        hosts_(options_, hooks_, place_, hashes_, simulator_),
         foreign_(place_) {}
 
   RunResult go() {
@@ -63,7 +71,7 @@ class Run final : public RunningSystem {
     if (!hashes_.is_wanted()) keep_recording();
     const auto warnings = hosts_.warnings();
     result_.notes.insert(result_.notes.end(), warnings.begin(), warnings.end());
-    if (options_.script) options_.script->end(scene_ ? &*scene_ : nullptr, judge_.seen(), result_);
+    if (hooks_.script) hooks_.script->end(scene_ ? &*scene_ : nullptr, judge_.seen(), result_);
     stop();
     keep_hashes();
     if (hashes_.is_wanted()) keep_recording();
@@ -76,7 +84,7 @@ class Run final : public RunningSystem {
   const std::string& simulator() const override { return simulator_.id(); }
   double step() const override { return simulator_.step(); }
   std::vector<Process> processes() const override {
-    std::vector<Process> all = {{"sim-server", simulator_.pid()}};
+    std::vector<Process> all = {{"sim-server", simulator_process_.pid()}};
     const auto hosts = hosts_.processes();
     all.insert(all.end(), hosts.begin(), hosts.end());
     const auto foreign = foreign_.processes();
@@ -85,7 +93,7 @@ class Run final : public RunningSystem {
     return all;
   }
   Result<void> make_steps(std::int64_t steps) override {
-    return simulator_.make_steps(steps, [this] { return check_children(); });
+    return editor::make_steps(simulator_, steps, stepping([](double) {}));
   }
 
  private:
@@ -94,7 +102,7 @@ class Run final : public RunningSystem {
                       &Run::listen, &Run::record, &Run::begin_script, &Run::drive, &Run::look, &Run::run_commands, &Run::judge_all}) {
       const auto done = (this->*step)();
       if (!done) return is_interrupted() ? fail("run: interrupted") : lost_.with_reason(done.error());
-      if (options_.driver && step == &Run::drive) return done;
+      if (hooks_.driver && step == &Run::drive) return done;
     }
     return {};
   }
@@ -103,11 +111,11 @@ class Run final : public RunningSystem {
     auto system = read_system(options_.system);
     if (!system) return system.error();
     system_ = std::move(*system);
-    auto properties = read_wishes(options_, system_);
+    auto properties = check_against(options_, system_);
     if (!properties) return properties.error();
     properties_ = std::move(*properties);
-    if (options_.script) {
-      if (const auto altered = options_.script->alter(system_); !altered) return altered;
+    if (hooks_.script) {
+      if (const auto altered = hooks_.script->alter(system_); !altered) return altered;
     }
     if (const auto known = foreign_.read(options_, system_, properties_); !known) return known;
     return judge_.read();
@@ -117,7 +125,7 @@ class Run final : public RunningSystem {
 
   using Seconds = std::chrono::duration<double>;
   Seconds start_limit() const { return Seconds(options_.start_timeout_s); }
-  std::chrono::milliseconds start_patience() const { return std::chrono::duration_cast<std::chrono::milliseconds>(start_limit()); }
+  std::chrono::milliseconds start_timeout() const { return std::chrono::duration_cast<std::chrono::milliseconds>(start_limit()); }
 
   // A problem that has a reason: what needs the naming service cannot be found without it.
   std::string with_naming(const std::string& problem) {
@@ -138,8 +146,8 @@ class Run final : public RunningSystem {
       if (now - began > limit) return fail(what + ": not ready after " + base::format_number(limit.count()) + " s (--start-timeout)");
       if (now - told > limit / 3) {
         told = now;
-        std::fprintf(stderr, "rtse: %s: not ready after %.0f s, is waited for up to %s s (--start-timeout)\n",
-                     base::printable(what).c_str(), Seconds(now - began).count(), base::format_number(limit.count()).c_str());
+        reporter_.warn(base::printable(what) + ": not ready after " + std::to_string(std::lround(Seconds(now - began).count())) +
+                       " s, is waited for up to " + base::format_number(limit.count()) + " s (--start-timeout)");
       }
       std::this_thread::sleep_for(20ms);  // what is waited for is another program's start, which nobody announces
     }
@@ -148,9 +156,20 @@ class Run final : public RunningSystem {
 
   Result<void> check_children() {
     if (const auto alive = naming_.check(); !alive) return alive;
-    if (const auto alive = simulator_.check(); !alive) return alive;
+    if (const auto alive = simulator_process_.check(); !alive) return alive;
     if (const auto whole = lost_.check(); !whole) return whole;
     return hosts_.check();
+  }
+
+  Stepping stepping(std::function<void(double)> passed) {
+    return {options_.in_real_time, options_.hang_timeout_s, [this] { return check_children(); }, std::move(passed),
+            [this](const std::string& text) { reporter_.warn(text); }};
+  }
+
+  // For the commands of the user, and for whoever looks at a run afterwards.
+  bool writes_poses() const {
+    return !options_.keep.empty() ||
+           std::ranges::any_of(judge_.expectations(), [](const auto& one) { return one.kind == Expectation::Kind::command; });
   }
 
   RunSimulator::Wait wait() {
@@ -164,8 +183,8 @@ class Run final : public RunningSystem {
   }
 
   Result<void> start_simulator() {
-    const auto started = simulator_.start(wait());
-    if (started) result_.notes = simulator_.notes();
+    const auto started = simulator_process_.start(wait(), writes_poses());
+    if (started) result_.notes = simulator_process_.notes();
     return started;
   }
 
@@ -199,7 +218,7 @@ class Run final : public RunningSystem {
 
   // The contexts in which components of others are called.
   Result<void> start_time_host() {
-    return foreign_.empty() ? Result<void>() : hosts_.start(foreign_.creations(simulator_.id()), "the contexts of components of others");
+    return foreign_.empty() ? Result<void>() : hosts_.start(foreign_.creations(simulator_.id()), "the contexts of third-party components");
   }
 
   Result<void> start_hosts() {
@@ -257,20 +276,24 @@ class Run final : public RunningSystem {
     const auto links = foreign_.set_links(system_);
     result_.notes.insert(result_.notes.end(), links.begin(), links.end());
     if (const auto written = write_system(system_, file); !written) return written;
-    editor_.emplace(orb_, naming_.address(), false, std::chrono::milliseconds(editor_limit));
-    if (options_.driver) editor_->be_silent();  // who drives the run tells its problem alone
-    load(*editor_, {.file = file});
-    if (!editor_->failed() && !foreign_.empty()) {
-      if (const auto joined = foreign_.join(*editor_, system_, start_patience()); !joined) return joined;
+    session_.emplace(orb_, naming_.address(), call_timeout, start_timeout());
+    if (const auto wired = check("wired and activated", load(*session_, system_)); !wired) return wired;
+    if (!foreign_.empty()) {
+      if (const auto joined = foreign_.join(*session_, system_, start_timeout()); !joined) return joined;
       if (const auto written = write_system(system_, file); !written) return written;
     }
-    wait_for_states(start_patience());
-    if (!editor_->failed()) start(*editor_, file, false);
-    if (!editor_->failed()) {
-      if (const auto joined = wait_for_participants(); !joined) return joined;
+    if (const auto started = check("wired and activated", start(*session_, system_)); !started) return started;
+    return wait_for_participants();
+  }
+
+  // Reports warnings and failures. The first failure is the run's problem. A driver reports failures itself.
+  Result<void> check(const std::string& goal, const Changes& changes) {
+    for (const auto& warning : changes.warnings) reporter_.warn(warning);
+    if (changes.ok()) return {};
+    for (const auto& error : changes.errors) {
+      if (!hooks_.driver) reporter_.warn(error.message);
     }
-    if (editor_->failed()) return fail("system " + options_.system + ": could not be wired and activated: " + editor_->problem());
-    return {};
+    return fail("system " + options_.system + ": could not be " + goal + ": " + changes.errors.front().message);
   }
 
   // Returns when lock step does not wait for its contexts any more.
@@ -280,7 +303,7 @@ class Run final : public RunningSystem {
     ports_.forget(instances_of(*members));
     return wait_until("end of the host of " + names_of(*members), [&] {
       const auto there = simulator_.participants();
-      return std::ranges::none_of(*members, [&](const auto* member) { return there.contains(member->instance); });
+      return std::ranges::none_of(*members, [&](const auto* member) { return is_among(there, member->instance); });
     });
   }
 
@@ -289,28 +312,28 @@ class Run final : public RunningSystem {
     if (!members) return members.error();
     const auto back = wait_until("components of the host of " + instance, [&] {
       return std::ranges::all_of(*members, [&](const auto* member) {
-        const auto view = editor_->component(member->instance + ".rtc", {.contexts = true});
+        const auto view = session_->component(member->instance + ".rtc", {.contexts = true});
         return view.ok() && view->problem.empty();
       });
     });
     if (!back) return back;
     if (const auto wired = wire_again(*members); !wired) return wired;
-    if (const auto heard = ports_.listen_again(orb_, *editor_, instances_of(*members)); !heard) return heard;
+    if (const auto heard = ports_.listen_again(orb_, *session_, instances_of(*members)); !heard) return heard;
     return recorder_.look_again(wait());
   }
 
   // Who is there is known before it cannot be asked.
   void set_naming(bool is_there) {
-    auto names = is_there ? Result<NamingTree>(Error{}) : editor_->tree();
+    auto names = is_there ? Result<NamingTree>(Error{}) : session_->tree();
     names_ = names ? std::optional(std::move(*names)) : std::nullopt;
     naming_.set_running(is_there);
   }
 
   Result<ComponentView> component(const std::string& instance, Detail detail) {
-    if (!names_) return editor_->component(instance + ".rtc", detail);
+    if (!names_) return session_->component(instance + ".rtc", detail);
     const auto entry = names_->find_component({false, {instance + ".rtc"}, ""});
     if (!entry) return entry.error();
-    const CallLimit limited(editor_limit);
+    const CallLimit limited(call_timeout);
     auto view = read_component(**entry, detail);
     return view.problem.empty() ? Result<ComponentView>(std::move(view)) : Error{"component " + instance + " " + view.problem};
   }
@@ -331,13 +354,8 @@ class Run final : public RunningSystem {
     std::erase_if(all.components, [&](const SavedComponent& component) { return hosts_.is_killed(component.instance); });
     const auto is_away = [&](const SavedTarget& end) { return hosts_.is_killed(end.instance); };
     std::erase_if(all.connectors, [&](const SavedConnector& one) { return is_away(one.source) || is_away(one.target); });
-    const auto wired_file = place_.scratch("wired-again.xml"), started_file = place_.scratch("started-again.xml");
-    for (const auto& [system, file] : {std::pair(&all, &wired_file), std::pair(&started, &started_file)}) {
-      if (const auto written = write_system(*system, *file); !written) return written;
-    }
-    load(*editor_, {.file = wired_file});
-    if (!editor_->failed()) start(*editor_, started_file, false);
-    if (editor_->failed()) return fail("system " + options_.system + ": could not be wired and activated again: " + editor_->problem());
+    if (const auto wired = check("wired and activated again", load(*session_, all)); !wired) return wired;
+    if (const auto begun = check("wired and activated again", start(*session_, started)); !begun) return begun;
     return wait_for_participants();
   }
 
@@ -346,7 +364,7 @@ class Run final : public RunningSystem {
     auto expected = foreign_.names();
     for (const auto& component : system_.components) {
       if (!hosts_.has(component.instance)) continue;  // killed by a script
-      const auto view = editor_->component(component.instance + ".rtc", {.contexts = true});
+      const auto view = session_->component(component.instance + ".rtc", {.contexts = true});
       if (!view) return view.error();
       for (const auto& context : view->contexts) {
         if (context.is_owned && context.is_running && property(context.properties, "type") == "SimTimeContext") {
@@ -360,7 +378,7 @@ class Run final : public RunningSystem {
       const auto there = simulator_.participants();
       missing.clear();
       for (const auto& name : expected) {
-        if (!there.contains(name)) missing = name;
+        if (!is_among(there, name)) missing = name;
       }
       return missing.empty();
     });
@@ -376,7 +394,7 @@ class Run final : public RunningSystem {
     if (const auto answer = naming_.ask(); !answer) return answer;
     auto chances = links_.chances();
     chances.insert(chances.end(), foreign_.chances().begin(), foreign_.chances().end());
-    return judge_.look(*editor_, chances, result_);
+    return judge_.look(*session_, chances, result_);
   }
 
   Result<void> run_commands() {
@@ -391,58 +409,72 @@ class Run final : public RunningSystem {
 
   Result<void> record() {
     if (options_.record.empty()) return {};
-    return recorder_.start(
-        {naming_.address(), simulator_.id(), place_.file("system.xml"), std::filesystem::absolute(options_.record).string(),
-         options_.record_last_s, hashes_.file(), notes_on(options_, foreign_.names())},
-        wait());
+    return recorder_.start({naming_.address(), simulator_.id(), place_.file("system.xml"),
+                            std::filesystem::absolute(options_.record).string(), options_.record_last_s, hashes_.file(), notes()},
+                           wait());
+  }
+
+  // What makes the run again, beside the profile and the world.
+  std::vector<std::pair<std::string, std::string>> notes() const {
+    RunOptions options = options_;
+    if (options.start_folder.empty()) options.start_folder = std::filesystem::current_path().string();
+    return {
+        {options_note, to_json(options, RunOptionSet::repeats_run).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)},
+        {"others", base::join(foreign_.names(), "\n")},
+        {"script", hooks_.script != nullptr ? "yes" : "no"}};
   }
 
   Result<void> listen() {
     if (hashes_.is_wanted() || tells_of_chance(options_)) {
       const auto part = hashes_.is_wanted() ? hashes_.links_part() : std::string();
-      const auto silent = links_.listen(orb_, *editor_, system_, foreign_, simulator_.id(), part);
+      const auto silent = links_.listen(orb_, *session_, system_, foreign_, simulator_.id(), part);
       if (!silent) return silent.error();
       result_.notes.insert(result_.notes.end(), silent->begin(), silent->end());
     }
-    if (const auto listening = ports_.listen(orb_, *editor_, judge_.expectations()); !listening || !options_.script) return listening;
-    return ports_.listen(orb_, *editor_, options_.script->watched());
+    if (const auto listening = ports_.listen(orb_, *session_, judge_.expectations()); !listening || !hooks_.script) return listening;
+    return ports_.listen(orb_, *session_, hooks_.script->watched());
   }
 
   Result<void> begin_script() {
-    if (!options_.script) return {};
+    if (!hooks_.script) return {};
     scene_.emplace(RunScene{
-        orb_, *editor_, simulator_, place_, naming_.address(), system_, ports_,
-        [this](const auto& instance) { return kill_host(instance); }, [this](const auto& instance) { return restart_host(instance); },
+        *session_, simulator_, place_, naming_.address(), system_, ports_, [this](const auto& instance) { return kill_host(instance); },
+        [this](const auto& instance) { return restart_host(instance); },
         [this](const auto& instance) { return hosts_.is_killed(instance); }, [this](bool is_there) { set_naming(is_there); },
         [this](const auto& instance, Detail detail) { return component(instance, detail); }});
-    return options_.script->begin(*scene_);
+    return hooks_.script->begin(*scene_);
   }
 
   Result<void> drive() {
-    if (options_.driver) return options_.driver(*this);
+    if (hooks_.driver) return hooks_.driver(*this);
     auto left = static_cast<std::int64_t>(std::llround(options_.duration_s / simulator_.step()));
-    const bool shows = !options_.quiet && isatty(2);
-    const auto show = [&](double now) {
-      if (shows) std::fprintf(stderr, "\r%6.1f of %.1f s", now, options_.duration_s);
+    if (const auto watched = judge_.watch(); !watched) return watched;
+    double last = 0;  // [s], simulated
+    auto shown = Clock::now();
+    const auto passed = [&](double now) {
+      last = now;
+      if (Clock::now() - shown < 1s) return;
+      shown = Clock::now();
+      if (!hooks_.driver) reporter_.show_progress(now, options_.duration_s);
+      static_cast<void>(judge_.watch());  // so that the simulator need not keep it; at the end it must succeed
     };
     for (std::int64_t done = 0; left > 0;) {
-      const auto stop = options_.script ? options_.script->next_stop(done).value_or(done + left) : done + left;
+      const auto stop = hooks_.script ? hooks_.script->next_stop(done).value_or(done + left) : done + left;
       const auto steps = std::min(left, stop - done);
-      if (const auto stepped = simulator_.make_steps(
-              steps, [this] { return check_children(); }, show);
-          !stepped) {
-        result_.simulated_s = simulator_.time().value_or(std::max(simulator_.last_time(), result_.simulated_s));
+      if (const auto stepped = editor::make_steps(simulator_, steps, stepping(passed)); !stepped) {
+        const auto now = simulator_.now();
+        result_.simulated_s = now ? now->time_s : std::max(last, result_.simulated_s);
         return fail(stepped.error().message + hosts_.who_is_waited_for(system_) +
-                    foreign_.who_may_be_waited_for(system_, simulator_.late()));
+                    foreign_.who_may_be_waited_for(system_, late_participants(simulator_)));
       }
       left -= steps;
       done += steps;
       result_.simulated_s = static_cast<double>(done) * simulator_.step();
-      if (options_.script && stop == done) {
-        if (const auto acted = options_.script->act(*scene_, done); !acted) return acted;
+      if (hooks_.script && stop == done) {
+        if (const auto acted = hooks_.script->act(*scene_, done); !acted) return acted;
       }
     }
-    if (shows) std::fprintf(stderr, "\r                         \r");
+    reporter_.end_progress();
     return check_children();
   }
 
@@ -455,27 +487,33 @@ class Run final : public RunningSystem {
     if (!result_.problem.empty()) foreign_.end();  // a host may wait for one that hangs
     hosts_.end();
     foreign_.end();
-    simulator_.end();
+    if (const auto ended = simulator_process_.end(); !ended && result_.problem.empty()) {
+      result_.problem = ended.error().message;
+      result_.logs = last_words();
+    }
     naming_.end();
   }
 
   CORBA::ORB_var orb_;
   const RunOptions& options_;
+  const RunHooks& hooks_;
+  Reporter& reporter_;
   Workplace place_;
   RunNaming naming_;
   SavedSystem system_;
   std::vector<ComponentProperty> properties_;
   RunResult result_;
   RunHashes hashes_;
-  RunSimulator simulator_;
+  RunSimulator simulator_process_;
+  Simulator& simulator_;
   RunHosts hosts_;
   ForeignProcesses foreign_;
-  LostMembers lost_{foreign_, hosts_, simulator_, [this] { return editor_.has_value(); },
+  LostMembers lost_{foreign_, hosts_, simulator_, [this] { return session_.has_value(); },
                     [this](const auto& instance) { return component(instance, {}).ok(); }};
   RunRecorder recorder_{place_};
-  std::optional<Editor> editor_;
+  std::optional<Session> session_;
   std::optional<NamingTree> names_;  // while the naming service is stopped by a script
-  RunJudge judge_{options_, place_, system_, simulator_, hosts_};
+  RunJudge judge_{options_, hooks_, place_, system_, simulator_, hosts_};
   PortValues ports_;
   ForeignLinks links_;
   std::optional<RunScene> scene_;  // of a script
@@ -483,9 +521,9 @@ class Run final : public RunningSystem {
 
 }  // namespace
 
-RunResult run_system(CORBA::ORB_ptr orb, const RunOptions& options) {
+RunResult run_system(CORBA::ORB_ptr orb, const RunOptions& options, Reporter& reporter, const RunHooks& hooks) {
   try {
-    return Run(orb, options).go();
+    return Run(orb, options, reporter, hooks).go();
   } catch (const std::filesystem::filesystem_error& error) {
     RunResult result;
     result.seed = options.seed;

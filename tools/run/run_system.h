@@ -12,11 +12,13 @@
 #include <vector>
 
 #include "run/expectations.h"
-#include "system/editor.h"
+#include "run/run_options.h"
 #include "system/profile/rts_profile.h"
+#include "system/session.h"
 
 namespace editor {
 
+class Reporter;
 class RunScript;
 class WarmPrograms;
 
@@ -36,32 +38,8 @@ class RunningSystem {
   virtual Result<void> make_steps(std::int64_t steps) = 0;
 };
 
-struct RunOptions {
-  std::string system;        // RTSProfile
-  std::string world;         // SDFormat
-  double duration_s = 60;    // simulated
-  std::string expectations;  // YAML; empty: only that everything runs
-  std::uint64_t seed = 0;
-  bool one_process_each = false;  // a host for every component, instead of one for all
-  bool in_real_time = false;
-  double hang_timeout_s = 30;           // of real time, that one tick may take
-  double start_timeout_s = 30;          // of real time, that the simulator and every other step of the start may take
-  std::vector<std::string> properties;  // "INSTANCE:key=value", of the component when it is created
-  std::vector<std::string> start;       // commands that start components of others
-  std::string start_folder;             // where they are started; empty: that of rtse
-  std::string run_file;                 // YAML, see run_file.h
-  std::vector<std::string> module_paths;
-  std::vector<std::string> resource_paths;
-  std::string junit;         // file to write
-  std::string picture;       // PNG to write
-  std::string record;        // MCAP to write
-  double record_last_s = 0;  // only so much of it, and only of a run that fails; 0: all
-  std::string hash_log;      // to write
-  double hash_period_s = 0;  // of the world's part; 0: when components are called
-  bool twice = false;        // and compare
-  bool strict = false;       // what could depend on chance fails the run; else it is a note, when the run is in a CI job
-  std::string keep;          // folder for logs and the record; empty: a temporary one, removed at the end
-  bool quiet = false;        // no progress line
+// What a program adds to a run that it makes itself.
+struct RunHooks {
   std::vector<std::string> simulator_options{};  // more words for sim-server
   const WarmPrograms* warm = nullptr;            // that make what is started; null: everything is started alone
   RunScript* script = nullptr;                   // see run_script.h; null: nothing happens but the run
@@ -85,13 +63,9 @@ struct RunResult {
   bool is_passed() const;
 };
 
-// Returns when everything that it started has ended. catch_interrupts() first: an interrupt is a problem like others.
-RunResult run_system(CORBA::ORB_ptr orb, const RunOptions& options);
-
-struct ComponentProperty {
-  std::string instance, key, value;
-};
-Result<ComponentProperty> parse_property(const std::string& text);
+// Returns when everything that it started has ended. catch_interrupts() first: an interrupt is a problem like others. `reporter` receives
+// what takes long, what failed beside the first problem, and the progress.
+RunResult run_system(CORBA::ORB_ptr orb, const RunOptions& options, Reporter& reporter, const RunHooks& hooks = {});
 
 // The verdicts as JUnit XML: a test case for each run and for each of its expectations; a run with a problem is an error.
 Result<void> write_junit(const std::string& file, const RunOptions& options, const std::vector<RunResult>& results);

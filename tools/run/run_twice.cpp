@@ -22,7 +22,7 @@ std::string below(const std::string& folder, const char* name) {
 
 }  // namespace
 
-RunResult run_twice(CORBA::ORB_ptr orb, const RunOptions& options) {
+RunResult run_twice(CORBA::ORB_ptr orb, const RunOptions& options, Reporter& reporter) {
   const Workplace place("");
   RunOptions first = options, second = options;
   if (first.hash_log.empty()) first.hash_log = place.scratch("first.hashlog");
@@ -31,9 +31,9 @@ RunResult run_twice(CORBA::ORB_ptr orb, const RunOptions& options) {
   second.keep = below(options.keep, "second");
   second.picture.clear();
   second.record.clear();
-  RunResult result = run_system(orb, first);
+  RunResult result = run_system(orb, first, reporter);
   if (!result.problem.empty()) return result;
-  const RunResult again = run_system(orb, second);
+  const RunResult again = run_system(orb, second, reporter);
   result.wall_s += again.wall_s;
   result.runs = 2;
   result.verdicts.push_back(again.problem.empty() ? compare(first.hash_log, second.hash_log) : Verdict{verdict_name, again.problem});

@@ -6,8 +6,8 @@
 #include "base/text.h"
 #include "rtm/idl/LogicalTimeTriggeredECStub.h"
 #include "rtm/idl/OpenRTMStub.h"
-#include "rtse/commands/conf.h"
-#include "rtse/commands/state.h"
+#include "system/configuration.h"
+#include "system/transitions.h"
 
 namespace editor {
 namespace {
@@ -19,30 +19,32 @@ bool is_simulated(const ContextView& context) { return property(context.properti
 int index_of(const ComponentView& component, const ContextView& context) { return static_cast<int>(&context - component.contexts.data()); }
 
 // It may run in one context only. True when it was active.
-Result<bool> rest_in_own_contexts(const ComponentView& component) {
+Result<bool> rest_in_own_contexts(const Session& session, const ComponentView& component) {
   bool was_active = false;
   for (const auto& context : component.contexts) {
     if (!context.is_owned) continue;
-    if (context.state == RTC::ERROR_STATE) return Error{"component " + component.path + ": is Error in its own context (try: rtse reset)"};
+    if (context.state == RTC::ERROR_STATE) return Error{"component " + component.path + ": is in the ERROR state (try: rtse reset)"};
     if (context.state != RTC::ACTIVE_STATE) continue;
-    if (const auto rests = change_state(component, Transition::deactivate, index_of(component, context)); !rests) return rests.error();
+    if (const auto rests = change_state(component, Transition::deactivate, index_of(component, context), session.transition_timeout());
+        !rests)
+      return rests.error();
     was_active = true;
   }
   return was_active;
 }
 
-Result<void> activate_in(const Editor& editor, const std::string& path, bool in_simulated_time) {
-  const auto component = editor.component(path, {.contexts = true});
+Result<void> activate_in(const Session& session, const std::string& path, bool in_simulated_time) {
+  const auto component = session.component(path, {.contexts = true});
   if (!component) return component.error();
   for (const auto& context : component->contexts) {
     if (in_simulated_time ? &context == simulated_context(*component) : context.is_owned)
-      return change_state(*component, Transition::activate, index_of(*component, context));
+      return change_state(*component, Transition::activate, index_of(*component, context), session.transition_timeout());
   }
   return {};  // without a context of its own it rests
 }
 
 // The proxy, active from now on, ticks the first context of the component's own.
-Result<void> tick_own_context(const Editor& editor, const ComponentView& component, const ComponentView& proxy) {
+Result<void> tick_own_context(const Session& session, const ComponentView& component, const ComponentView& proxy) {
   const auto own = std::ranges::find_if(component.contexts, [](const auto& context) { return context.is_owned; });
   if (own == component.contexts.end()) return Error{"component " + component.path + ": has no context of its own that could be ticked"};
   bool is_ticked = false;
@@ -54,10 +56,10 @@ Result<void> tick_own_context(const Editor& editor, const ComponentView& compone
   if (!is_ticked)
     return Error{"component " + component.path + ": its context (" + property(own->properties, "type", "of no type") +
                  ") is not ticked from outside; join it as a member"};
-  const CORBA::String_var reference = editor.orb()->object_to_string(own->object);
+  const CORBA::String_var reference = session.orb()->object_to_string(own->object);
   if (const auto set = set_values(proxy, "default", {{"ticks", reference.in()}}); !set) return set;
   if (const auto used = use_set(proxy, "default"); !used) return used;
-  return change_state(proxy, Transition::activate, 0);
+  return change_state(proxy, Transition::activate, 0, session.transition_timeout());
 }
 
 // Ends the owner of a context if that is a proxy of ours.
@@ -73,8 +75,8 @@ Result<void> end_proxy(const ContextView& context) {
 }
 
 // Of one whose own context is ticked.
-bool leave_proxy(const Editor& editor, const std::string& instance) {
-  const auto proxy = editor.component(proxy_name(instance) + ".rtc", {});
+bool leave_proxy(const Session& session, const std::string& instance) {
+  const auto proxy = session.component(proxy_name(instance) + ".rtc", {});
   return proxy && proxy->type == proxy_type && remote("proxy of " + instance, [&] { proxy->object->exit(); });
 }
 
@@ -82,8 +84,8 @@ bool leave_proxy(const Editor& editor, const std::string& instance) {
 
 std::string proxy_name(const std::string& instance) { return instance + "_time"; }
 
-bool has_proxy(const Editor& editor, const std::string& instance) {
-  const auto proxy = editor.component(proxy_name(instance) + ".rtc", {});
+bool has_proxy(const Session& session, const std::string& instance) {
+  const auto proxy = session.component(proxy_name(instance) + ".rtc", {});
   return proxy && proxy->type == proxy_type;
 }
 
@@ -140,16 +142,17 @@ bool ticks_on_its_own(const ComponentView& component) {
   return own != component.contexts.end() && property(own->properties, "type") == "ExtTrigExecutionContext";
 }
 
-Result<void> join_time(const Editor& editor, const std::string& path, const std::string& proxy, TimeMember::How how,
+Result<void> join_time(const Session& session, const std::string& path, const std::string& proxy, TimeMember::How how,
                        std::chrono::milliseconds patience) {
-  const auto component = editor.component(path, {.contexts = true});
+  const auto component = session.component(path, {.contexts = true});
   if (!component) return component.error();
   if (simulated_context(*component)) return Error{"component " + component->path + ": takes part in simulated time already (rtse leave)"};
-  const auto host = editor.component(proxy, {.contexts = true});
+  const auto host = session.component(proxy, {.contexts = true});
   if (!host) return host.error();
-  if (host->contexts.empty() || !is_simulated(host->contexts.front())) return Error{"component " + host->path + ": is no proxy of ours"};
-  if (how == TimeMember::How::tick) return tick_own_context(editor, *component, *host);
-  const auto was_active = rest_in_own_contexts(*component);
+  if (host->contexts.empty() || !is_simulated(host->contexts.front()))
+    return Error{"component " + host->path + ": is not a SimTimeProxy of this runtime"};
+  if (how == TimeMember::How::tick) return tick_own_context(session, *component, *host);
+  const auto was_active = rest_in_own_contexts(session, *component);
   if (!was_active) return was_active.error();
   RTC::ReturnCode_t code = RTC::RTC_ERROR;
   const auto what = "component " + component->path + ": joining simulated time";
@@ -158,11 +161,11 @@ Result<void> join_time(const Editor& editor, const std::string& path, const std:
   if (!called) return called.error();
   if (const auto added = check(what, code, "it does not answer attach_context, or has refused; the log of its process may say why"); !added)
     return added;
-  return *was_active ? activate_in(editor, path, true) : Result<void>();
+  return *was_active ? activate_in(session, path, true) : Result<void>();
 }
 
-Result<void> leave_time(const Editor& editor, const std::string& path) {
-  const auto component = editor.component(path, {.contexts = true});
+Result<void> leave_time(const Session& session, const std::string& path) {
+  const auto component = session.component(path, {.contexts = true});
   if (!component) return component.error();
   bool is_active = false;
   int left = 0;
@@ -177,7 +180,8 @@ Result<void> leave_time(const Editor& editor, const std::string& path) {
     if (context.state == RTC::ACTIVE_STATE || context.state == RTC::ERROR_STATE) {
       is_active = is_active || context.state == RTC::ACTIVE_STATE;
       const auto step = context.state == RTC::ACTIVE_STATE ? Transition::deactivate : Transition::reset;
-      if (const auto rests = change_state(*component, step, index_of(*component, context)); !rests) return rests;
+      if (const auto rests = change_state(*component, step, index_of(*component, context), session.transition_timeout()); !rests)
+        return rests;
     }
     RTC::ReturnCode_t code = RTC::RTC_OK;
     const auto what = "component " + component->path + ": leaving simulated time";
@@ -186,9 +190,9 @@ Result<void> leave_time(const Editor& editor, const std::string& path) {
     if (const auto removed = check(what, code); !removed) return removed;
     if (const auto ended = end_proxy(context); !ended) return ended;
   }
-  if (left == 0 && leave_proxy(editor, component->instance)) return {};
+  if (left == 0 && leave_proxy(session, component->instance)) return {};
   if (left == 0) return Error{"component " + component->path + ": takes no part in simulated time"};
-  return is_active ? activate_in(editor, path, false) : Result<void>();
+  return is_active ? activate_in(session, path, false) : Result<void>();
 }
 
 }  // namespace editor

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/child_process.h"
-#include "system/editor.h"
+#include "system/session.h"
 
 namespace editor {
 
@@ -30,7 +30,7 @@ std::optional<TimeMember::How> parse_how(const std::string& text);
 // The instance name of the proxy of a component.
 std::string proxy_name(const std::string& instance);
 // It is there, and answers.
-bool has_proxy(const Editor& editor, const std::string& instance);
+bool has_proxy(const Session& session, const std::string& instance);
 // What a manager makes it from.
 std::string proxy_creation(const TimeMember& member, const std::string& server_id);
 
@@ -60,9 +60,9 @@ bool ticks_on_its_own(const ComponentView& component);
 // Brings a component into the context of its proxy. Where it was active in contexts of its own it is deactivated there and activated here;
 // these contexts run on. With `tick` its own first context is ticked instead, and its state there stays. A component that takes part
 // already, or is in its error state, is refused. `patience`: with its attach_context.
-Result<void> join_time(const Editor& editor, const std::string& component, const std::string& proxy, TimeMember::How how,
+Result<void> join_time(const Session& session, const std::string& component, const std::string& proxy, TimeMember::How how,
                        std::chrono::milliseconds patience);
 // Undoes it: active here becomes active in its own first context. The proxy ends.
-Result<void> leave_time(const Editor& editor, const std::string& component);
+Result<void> leave_time(const Session& session, const std::string& component);
 
 }  // namespace editor

@@ -67,7 +67,7 @@ bool send_with(int line, const std::string& text, int output, int watcher) {
 
 }  // namespace
 
-std::optional<WarmProgram> WarmProgram::start(const std::string& name, std::map<std::string, std::string> environment) {
+std::optional<WarmProgram> WarmProgram::start(const std::string& name, std::map<std::string, std::string> environment, Reporter& reporter) {
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) return std::nullopt;
   Descriptor ours(ends[0]), theirs(ends[1]);
@@ -75,7 +75,7 @@ std::optional<WarmProgram> WarmProgram::start(const std::string& name, std::map<
   call.input = theirs.number;
   auto started = ChildProcess::start(call);
   if (!started) return std::nullopt;
-  return WarmProgram(std::move(*started), call.words.front(), ours.release());
+  return WarmProgram(std::move(*started), call.words.front(), ours.release(), reporter);
 }
 
 WarmProgram::~WarmProgram() {
@@ -104,19 +104,19 @@ Result<ChildProcess> WarmProgram::make(const ProgramCall& call) const {
   int pid = 0;
   const int answers = poll(&event, 1, answer_limit);
   if (answers == 0 && !is_silent_->exchange(true))
-    std::fprintf(stderr, "rtse: %s --warm: has not answered for %d s; what it should make is started without it\n",
-                 std::filesystem::path(path_).filename().c_str(), answer_limit / 1000);
+    reporter_->warn(std::filesystem::path(path_).filename().string() + " --warm: has not answered for " +
+                    std::to_string(answer_limit / 1000) + " s; what it should make is started without it");
   if (answers <= 0 || read(watched.number, &pid, sizeof pid) != sizeof pid) return ChildProcess::start(call);
   ChildProcess made(pid, collects ? output.release() : -1, std::filesystem::path(call.words[0]).filename().string(), call.ends_as_group);
   made.watched_ = watched.release();
   return made;
 }
 
-WarmPrograms::WarmPrograms() {
+WarmPrograms::WarmPrograms(Reporter& reporter) {
   // What decides how they calculate is read when they are loaded.
   for (const auto& [name, environment] :
-       {std::pair<const char*, std::map<std::string, std::string>>{"sim-server", {same_math()}}, {"rtcd", {same_math()}}, {"simctl", {}}}) {
-    if (auto started = WarmProgram::start(name, environment)) programs_.push_back(std::move(*started));
+       {std::pair<const char*, std::map<std::string, std::string>>{"sim-server", {same_math()}}, {"rtcd", {same_math()}}}) {
+    if (auto started = WarmProgram::start(name, environment, reporter)) programs_.push_back(std::move(*started));
   }
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/child_process.h"
+#include "system/reporter.h"
 
 namespace editor {
 
@@ -18,7 +19,8 @@ class WarmProgram {
  public:
   // One of our own programs. To be called by a thread that outlives it: the kernel ends the program when that thread ends. Nothing when it
   // cannot be started, which is no loss but of time.
-  static std::optional<WarmProgram> start(const std::string& name, std::map<std::string, std::string> environment);
+  // `reporter` must live as long.
+  static std::optional<WarmProgram> start(const std::string& name, std::map<std::string, std::string> environment, Reporter& reporter);
   WarmProgram(WarmProgram&&) noexcept = default;
   ~WarmProgram();
 
@@ -30,18 +32,19 @@ class WarmProgram {
   const std::string& path() const { return path_; }
 
  private:
-  WarmProgram(ChildProcess program, std::string path, int line)
-      : program_(std::make_unique<ChildProcess>(std::move(program))), path_(std::move(path)), line_(line) {}
+  WarmProgram(ChildProcess program, std::string path, int line, Reporter& reporter)
+      : program_(std::make_unique<ChildProcess>(std::move(program))), path_(std::move(path)), line_(line), reporter_(&reporter) {}
   std::unique_ptr<ChildProcess> program_;
   std::string path_;
   std::unique_ptr<std::atomic<bool>> is_silent_ = std::make_unique<std::atomic<bool>>(false);
   int line_;
+  Reporter* reporter_;
 };
 
-// Those that every run starts: the simulator, hosts of components, and simctl.
+// Those that every run starts: the simulator and hosts of components.
 class WarmPrograms {
  public:
-  WarmPrograms();
+  explicit WarmPrograms(Reporter& reporter);  // must live as long
   // As ChildProcess::start(call), by the one whose program it is.
   base::Result<ChildProcess> make(const ProgramCall& call) const;
   std::size_t count() const;  // of those that are there

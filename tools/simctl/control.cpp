@@ -10,8 +10,7 @@
 #include <thread>
 
 #include "base/text.h"
-#include "base/whole_file.h"
-#include "shm/request_board.h"
+#include "shm/control.h"
 #include "simctl/simctl.h"
 
 namespace simctl {
@@ -21,17 +20,6 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 volatile std::sig_atomic_t interrupted = 0;
-
-shm::Pose pose_of(const std::vector<double>& v) {
-  switch (v.size()) {
-    case 3:
-      return shm::planar_pose(v[0], v[1], 0, v[2]);
-    case 4:
-      return shm::planar_pose(v[0], v[1], v[2], v[3]);
-    default:
-      return shm::euler_pose(v[0], v[1], v[2], v[3], v[4], v[5]);
-  }
-}
 
 }  // namespace
 
@@ -53,9 +41,8 @@ void Control::print(const Json& value) const { std::cout << value.dump(2, ' ', f
 std::optional<shm::Reply> Control::ask(const shm::Request& request, std::chrono::seconds limit) {
   auto requester = shm::Requester::open(server_id_);
   if (!requester) return fail(requester.error().message), std::nullopt;
-  auto reply = requester->ask(request, limit);
+  auto reply = shm::ask_for(*requester, request, limit);
   if (!reply) return fail(reply.error().message), std::nullopt;
-  if (reply->status != shm::RequestStatus::ok) return fail(std::string(shm::request_name(request)) + ": " + reply->message), std::nullopt;
   return std::move(*reply);
 }
 
@@ -104,11 +91,9 @@ void step(Control& control, std::int64_t steps, bool is_paced) {
 
 void pose(Control& control, const std::string& model, const std::vector<double>& values) {
   if (!values.empty()) {
-    shm::SetPoseRequest request;
-    request.model = model;
-    request.is_planar = values.size() == 3;
-    request.pose = pose_of(values);
-    control.ask(request);
+    const auto request = shm::set_pose_request(model, values);
+    if (!request) return control.fail(request.error().message);
+    control.ask(*request);
     return;
   }
   const auto reply = control.ask(shm::GetPoseRequest{model});
@@ -148,30 +133,18 @@ void velocity(Control& control, const std::string& name, const std::vector<doubl
 }
 
 void spawn(Control& control, const SpawnOptions& options) {
-  shm::SpawnRequest request;
-  std::error_code error;
-  request.is_path = options.file.find('<') == std::string::npos;
-  request.sdf = options.file;
-  auto simulation = control.open(shm::IfaceType::simulation, "world");
+  const auto simulation = control.open(shm::IfaceType::simulation, "world");
   if (!simulation) return;
-  // Paths are ours, not the server's; model:// and the like stay as they are.
-  if (request.is_path && options.file.find("://") == std::string::npos) {
-    const bool is_there = std::filesystem::exists(options.file, error);
-    if (!is_there && options.file.find('/') != std::string::npos)
-      return control.fail("file " + base::in_quotes(options.file) + ": does not exist");
-    request.sdf = is_there ? std::filesystem::absolute(options.file, error).string() : "model://" + options.file;
-    // A server that is shared with other users opens only what lies in its model path: it gets the text of our own files.
-    if (simulation->segment().is_shared() && std::filesystem::is_regular_file(options.file, error)) {
-      std::ifstream in(options.file, std::ios::binary);
-      request.sdf.assign(std::istreambuf_iterator<char>(in), {});
-      if (!in) return control.fail("file " + base::in_quotes(options.file) + ": cannot be read");
-      request.is_path = false;
-    }
+  auto request = shm::spawn_request(options.file, simulation->segment().is_shared());
+  if (!request) return control.fail(request.error().message);
+  request->name = options.name;
+  request->has_pose = !options.pose.empty();
+  if (request->has_pose) {
+    const auto pose = shm::pose_of(options.pose);
+    if (!pose) return control.fail(pose.error().message);
+    request->pose = *pose;
   }
-  request.name = options.name;
-  request.has_pose = !options.pose.empty();
-  if (request.has_pose) request.pose = pose_of(options.pose);
-  const auto reply = control.ask(request);
+  const auto reply = control.ask(*request);
   if (!reply) return;
   if (control.json()) return control.print({{"name", reply->message}});
   std::cout << reply->message << '\n';
@@ -189,7 +162,6 @@ void screenshot(Control& control, const ScreenshotOptions& options) {
   shm::ScreenshotRequest request;
   const auto size = parse_size(options.size);
   if (!size) return control.fail("size " + base::in_quotes(options.size) + ": expected WIDTHxHEIGHT, each from 1 to 8192");
-  request.path = std::filesystem::absolute(options.file).string();
   request.width = size->first;
   request.height = size->second;
   request.with_scans = options.with_scans;
@@ -207,16 +179,13 @@ void screenshot(Control& control, const ScreenshotOptions& options) {
     if (options.at.size() == 2) request.pose = shm::planar_pose(options.at[0], options.at[1], 0, 0);
   } else if (!options.from.empty()) {
     request.view = View::from;
-    request.pose = pose_of(options.from);
+    const auto pose = shm::pose_of(options.from);
+    if (!pose) return control.fail(pose.error().message);
+    request.pose = *pose;
   }
-  // A server that is shared with other users writes no files: the picture comes here.
-  auto simulation = control.open(shm::IfaceType::simulation, "world");
-  if (!simulation) return;
-  const bool is_shared = simulation->segment().is_shared();
-  if (is_shared) request.path.clear();
-  const auto reply = control.ask(request, std::chrono::minutes(10));  // very large ones take their time; a dead server is noticed anyway
-  if (!reply || !is_shared) return;
-  if (const auto written = base::write_whole_file(options.file, reply->text); !written) control.fail(written.error().message);
+  auto requester = shm::Requester::open(control.server_id());
+  if (!requester) return control.fail(requester.error().message);
+  if (const auto written = shm::write_screenshot(*requester, request, options.file); !written) control.fail(written.error().message);
 }
 
 void export_world(Control& control, const std::string& file, bool with_collisions) {

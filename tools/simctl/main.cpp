@@ -9,7 +9,7 @@
 #include "base/command_line.h"
 #include "base/terminal.h"
 #include "base/text.h"
-#include "base/warm_start.h"
+#include "shm/control.h"
 #include "shm/fault_kinds.h"
 #include "simctl/offers.h"
 #include "simctl/simctl.h"
@@ -230,9 +230,7 @@ void add_pictures(base::Command& app, Work& work) {
   auto* screenshot = app.add_subcommand("screenshot", "Save an image of the world (PNG)");
   auto options = option_value<simctl::ScreenshotOptions>();
   screenshot->add_option("FILE", options->file, "PNG file")->required()->check([](const std::string& file) {
-    const std::string ending = base::to_lower(std::filesystem::path(file).extension().string());
-    return ending.empty() || ending == ".png" ? std::string()
-                                              : "images are PNG files; expected a name that ends in .png, got " + base::in_quotes(file);
+    return shm::picture_name_problem(file);
   });
   auto* from = screenshot->add_option("--from", options->from, "Pose of the camera, X Y Z ROLL PITCH YAW [m, rad], as six words or one")
                    ->expected(1, 6)
@@ -302,7 +300,9 @@ void add_pictures(base::Command& app, Work& work) {
   });
 }
 
-int control(int argc, char** argv) {
+}  // namespace
+
+int main(int argc, char** argv) {
   base::Command app{"simctl: show and control a running simulator"};
   base::add_standard_options(app, "simctl", RTMSIM_VERSION);
   app.require_subcommand(1);
@@ -330,7 +330,3 @@ int control(int argc, char** argv) {
   work(server);
   return server.failed() ? 1 : 0;
 }
-
-}  // namespace
-
-int main(int argc, char** argv) { return base::is_warm_start(argc, argv) ? base::make_processes(control) : control(argc, argv); }

@@ -4,7 +4,7 @@
 
 #include "base/clock.h"
 #include "channels/idl_text.h"
-#include "system/editor.h"
+#include "system/session.h"
 #include "system/value_codec.h"
 
 namespace studio {
@@ -79,7 +79,7 @@ void ChannelBook::connect(Port& port) {
                      channel = port.channel] {
     std::shared_ptr<editor::Tap> tap;
     const editor::CallLimit limited(settings.call_limit);
-    const auto found = editor::Editor(settings.orb, settings.name_server, false, settings.call_limit).port(path);
+    const auto found = editor::Session(settings.orb, settings.name_server, settings.call_limit).port(path);
     if (found) {
       auto made = editor::Tap::connect(settings.orb, found->port, {{"dataport.subscription_type", "new"}},
                                        [exchange, now, channel](std::span<const unsigned char> payload, bool is_little_endian) {

@@ -4,8 +4,8 @@
 #include <boost/asio/post.hpp>
 #include <set>
 
-#include "system/editor.h"
 #include "system/remote.h"
+#include "system/session.h"
 
 namespace studio {
 namespace {
@@ -64,7 +64,7 @@ void LogBook::attach(const std::string& path) {
   };
   component.is_attaching = workers_.give([this, &loop = loop_, lives = lives_, settings = settings_, path, take] {
     const editor::CallLimit limited(settings.call_limit);
-    const auto found = editor::Editor(settings.orb, settings.name_server, false, settings.call_limit).component(path, {});
+    const auto found = editor::Session(settings.orb, settings.name_server, settings.call_limit).component(path, {});
     auto service =
         std::make_shared<Service>(found && !CORBA::is_nil(found->object) ? recorder::LoggerService::of_log(*found, take) : nullptr);
     boost::asio::post(loop, [this, lives, path, service] {

@@ -11,7 +11,7 @@
 #include "shm/iface_json.h"
 #include "shm/request_board.h"
 #include "studio/acts.h"
-#include "system/editor.h"
+#include "system/session.h"
 #include "system/value_codec.h"
 
 namespace studio {
@@ -72,8 +72,8 @@ void add_members(Json& list, const Json& value, const std::string& path) {
 
 // With a value of that type in which everything is zero: what one changes to write to such a port.
 Result<Json> members_of_port(const ActContext& context, const std::string& path) {
-  const editor::Editor editor(context.orb, context.name_server, false, context.call_limit);
-  const auto port = editor.port(path);
+  const editor::Session session(context.orb, context.name_server, context.call_limit);
+  const auto port = session.port(path);
   if (!port) return port.error();
   const auto type = editor::type_code_of(port->port.data_type());
   if (CORBA::is_nil(type)) return Error{"port " + path + ": its type " + port->port.data_type() + " is not known"};
@@ -111,8 +111,8 @@ Result<Plan> members(const ActContext& context, const Json& args) {
 
 // What contexts of this runtime have really done, by component; others tell their rate.
 Result<Json> context_statistics(const ActContext& context) {
-  const editor::Editor editor(context.orb, context.name_server, false, context.call_limit);
-  const auto tree = editor.tree();
+  const editor::Session session(context.orb, context.name_server, context.call_limit);
+  const auto tree = session.tree();
   if (!tree) return tree.error();
   Json list = Json::array();
   for (const auto& component : editor::read_components(*tree, {.contexts = true}, context.call_limit)) {

@@ -53,6 +53,11 @@ void add_options(base::Command& app, Settings& settings) {
       ->capture_default_str();
 }
 
+class ErrorStream final : public editor::Reporter {
+ public:
+  void warn(const std::string& text) override { std::cerr << "rtm-studio: " + text + "\n"; }
+};
+
 int fail(const base::Error& error) {
   std::cerr << "rtm-studio: " << error.message << '\n';
   return 1;
@@ -89,9 +94,10 @@ int show_run(boost::asio::io_context& loop, Settings settings, const studio::Pag
   if (!settings.start.system.empty() && settings.start.world.empty())
     return fail({"system " + base::in_quotes(settings.start.system) + ": needs --world WORLD.sdf"});
   const editor::Orb orb;
+  ErrorStream errors;
   std::unique_ptr<studio::StartedRun> started;
   if (!settings.start.world.empty()) {
-    auto run = studio::StartedRun::start(orb.get(), settings.start, settings.studio.server_id);
+    auto run = studio::StartedRun::start(orb.get(), settings.start, settings.studio.server_id, errors);
     if (!run) return fail(run.error());
     started = std::move(*run);
     settings.studio.server_id = started->server_id();

@@ -90,10 +90,11 @@ Result<std::shared_ptr<const RecordedScene>> RecordedScene::make(const std::stri
   StartOptions options;
   options.world = run->world();
   options.resource_paths = run->options().resource_paths;
+  editor::SilentReporter reporter;  // the error says enough
   Result<std::unique_ptr<StartedRun>> started = Error{"no server id is free"};
   for (std::uint32_t i = 0; i < tries && !started; ++i) {
     const auto id = free_server_id(i);
-    started = StartedRun::start(CORBA::ORB::_nil(), options, id);
+    started = StartedRun::start(CORBA::ORB::_nil(), options, id, reporter);
     if (!started && !shm::Requester::open(id)) return started.error();  // else somebody was quicker
   }
   if (!started) return started.error();

@@ -7,7 +7,7 @@
 #include "shm/client.h"
 #include "shm/iface_json.h"
 #include "studio/signals.h"
-#include "system/editor.h"
+#include "system/session.h"
 #include "system/tap.h"
 #include "system/value_codec.h"
 
@@ -83,8 +83,8 @@ class PortTap : public std::enable_shared_from_this<PortTap> {
  public:
   // On a worker.
   void connect(const SignalSettings& settings, const std::string& path) {
-    editor::Editor editor(settings.orb, settings.name_server, false, settings.call_limit);
-    auto port = editor.port(path);
+    editor::Session session(settings.orb, settings.name_server, settings.call_limit);
+    auto port = session.port(path);
     if (!port) return fail(port.error().message);
     const auto type = editor::type_code_of(port->port.data_type());
     if (CORBA::is_nil(type)) return fail("port " + path + ": its type " + port->port.data_type() + " is not known");

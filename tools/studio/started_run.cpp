@@ -70,7 +70,8 @@ class Standing final : public editor::RunScript {
 
 class SystemRun final : public StartedRun {
  public:
-  SystemRun(CORBA::ORB_ptr orb, const StartOptions& start) : thread_([this, orb, start] { run(orb, start); }) {}
+  SystemRun(CORBA::ORB_ptr orb, const StartOptions& start, editor::Reporter& reporter)
+      : thread_([this, orb, start, &reporter] { run(orb, start, reporter); }) {}
   ~SystemRun() override {
     standing_.let_go();
     thread_.join();
@@ -80,17 +81,15 @@ class SystemRun final : public StartedRun {
   std::uint32_t server_id() const override { return standing_.state().server_id; }
 
  private:
-  void run(CORBA::ORB_ptr orb, const StartOptions& start) {
+  void run(CORBA::ORB_ptr orb, const StartOptions& start, editor::Reporter& reporter) {
     const omni_thread::ensure_self known_to_the_orb;  // time-outs per thread need it
     editor::RunOptions options;
     options.system = start.system;
     options.world = start.world;
     options.in_real_time = true;
-    options.quiet = true;
-    options.script = &standing_;
     std::string problem;
     try {
-      problem = editor::run_system(orb, options).problem;
+      problem = editor::run_system(orb, options, reporter, {.script = &standing_}).problem;
     } catch (const CORBA::Exception& e) {
       problem = editor::describe(e);
     } catch (const std::exception& e) {
@@ -132,9 +131,10 @@ class WorldRun final : public StartedRun {
 
 }  // namespace
 
-Result<std::unique_ptr<StartedRun>> StartedRun::start(CORBA::ORB_ptr orb, const StartOptions& options, std::uint32_t server_id) {
+Result<std::unique_ptr<StartedRun>> StartedRun::start(CORBA::ORB_ptr orb, const StartOptions& options, std::uint32_t server_id,
+                                                      editor::Reporter& reporter) {
   if (!options.system.empty()) {
-    auto run = std::make_unique<SystemRun>(orb, options);
+    auto run = std::make_unique<SystemRun>(orb, options, reporter);
     if (const auto there = run->wait(); !there) return there.error();
     return std::unique_ptr<StartedRun>(std::move(run));
   }

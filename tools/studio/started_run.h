@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "system/reporter.h"
 
 namespace studio {
 
@@ -21,8 +22,10 @@ struct StartOptions {
 
 class StartedRun {
  public:
-  // Returns when everything is there, or says why it will not be. Without a system, the simulator gets this id.
-  static base::Result<std::unique_ptr<StartedRun>> start(CORBA::ORB_ptr orb, const StartOptions& options, std::uint32_t server_id);
+  // Returns when everything is there, or says why it will not be. Without a system, the simulator gets this id. `reporter` must live as
+  // long as the run.
+  static base::Result<std::unique_ptr<StartedRun>> start(CORBA::ORB_ptr orb, const StartOptions& options, std::uint32_t server_id,
+                                                         editor::Reporter& reporter);
   virtual ~StartedRun() = default;
   virtual std::string name_server() const = 0;  // empty: none of ours
   virtual std::uint32_t server_id() const = 0;

@@ -5,12 +5,12 @@
 #include "base/id.h"
 #include "base/shell_word.h"
 #include "base/text.h"
-#include "rtse/commands/conf.h"
-#include "rtse/commands/connect.h"
-#include "rtse/commands/state.h"
 #include "studio/acts.h"
 #include "studio/system_json.h"
-#include "system/editor.h"
+#include "system/configuration.h"
+#include "system/connections.h"
+#include "system/session.h"
+#include "system/transitions.h"
 
 namespace studio {
 namespace {
@@ -18,14 +18,14 @@ namespace {
 using base::Error;
 using base::Result;
 using editor::ComponentView;
-using editor::Editor;
+using editor::Session;
 using editor::Transition;
 using Touches = Plan::Touches;
 
 constexpr std::chrono::seconds exit_limit{10};
 constexpr std::size_t most_ports = 64;
 
-Editor editor_of(const ActContext& context) { return {context.orb, context.name_server, false, context.call_limit}; }
+Session session_of(const ActContext& context) { return {context.orb, context.name_server, context.call_limit}; }
 
 std::string rtse_line(const ActContext& context, std::vector<std::string> words) {
   std::vector<std::string> line{"rtse"};
@@ -44,7 +44,7 @@ Result<Plan> component(const ActContext& context, const Json& args) {
   if (!path) return path.error();
   return Plan{rtse_line(context, base::command_words({"cat"}, {*path})), [context, path = *path]() -> Result<Json> {
                 const auto view =
-                    editor_of(context).component(path, {.contexts = true, .connectors = true, .configuration = true, .members = true});
+                    session_of(context).component(path, {.contexts = true, .connectors = true, .configuration = true, .members = true});
                 if (!view) return view.error();
                 return details_json(*view);
               }};
@@ -60,7 +60,7 @@ Result<Plan> change(const ActContext& context, const Json& args) {
   if (index > 0) options = {"-e", std::to_string(index)};
   return Plan{rtse_line(context, base::command_words({verb}, {*path}, options)),
               [context, path = *path, index]() -> Result<Json> {
-                const auto view = editor_of(context).component(path, {.contexts = true});
+                const auto view = session_of(context).component(path, {.contexts = true});
                 if (!view) return view.error();
                 return done(editor::change_state(*view, transition, index));
               },
@@ -68,7 +68,7 @@ Result<Plan> change(const ActContext& context, const Json& args) {
 }
 
 Result<Json> exit_component(const ActContext& context, const std::string& path) {
-  const auto view = editor_of(context).component(path, {});
+  const auto view = session_of(context).component(path, {});
   if (!view) return view.error();
   RTC::ReturnCode_t code = RTC::RTC_OK;
   const editor::CallLimit limited(exit_limit);
@@ -87,14 +87,14 @@ Result<Plan> exit(const ActContext& context, const Json& args) {
 // ---- connections
 
 struct Ends {
-  std::vector<Editor::Port> found;
+  std::vector<Session::Port> found;
   std::vector<const editor::PortView*> ports;
 };
 
 Result<Ends> find_ends(const ActContext& context, const std::vector<std::string>& paths) {
   Ends ends;
   for (const auto& path : paths) {
-    auto port = editor_of(context).port(path);
+    auto port = session_of(context).port(path);
     if (!port) return port.error();
     ends.found.push_back(std::move(*port));
   }
@@ -142,7 +142,7 @@ Json undo_of(const ActContext& context, const editor::ConnectorView& connector) 
     if (!is_of_this_run) properties[key] = value;
   }
   Json ports = Json::array();
-  const auto tree = editor_of(context).tree();
+  const auto tree = session_of(context).tree();
   if (tree) {
     const auto components = editor::read_components(*tree, {}, context.call_limit);
     for (CORBA::ULong i = 0; i < connector.ports.length(); ++i) {
@@ -154,7 +154,7 @@ Json undo_of(const ActContext& context, const editor::ConnectorView& connector) 
 }
 
 Result<Json> disconnect_port(const ActContext& context, const std::string& path, const std::string& id) {
-  const auto port = editor_of(context).port(path, true);
+  const auto port = session_of(context).port(path, true);
   if (!port) return port.error();
   const auto& connectors = port->port.connectors;
   const auto found = std::find_if(connectors.begin(), connectors.end(), [&](const auto& connector) { return connector.id == id; });
@@ -309,7 +309,7 @@ struct Wish {
 
 Result<Json> configure(const ActContext& context, const Wish& wish) {
   const auto& [path, set_id, values, is_used, is_forced] = wish;
-  const auto view = editor_of(context).component(path, {.configuration = true});
+  const auto view = session_of(context).component(path, {.configuration = true});
   if (!view) return view.error();
   const auto* set = find_set(*view, set_id);
   if (!set || set->is_hidden()) return Error{"component " + view->path + ": has no configuration set " + base::in_quotes(set_id)};
@@ -346,7 +346,7 @@ Result<Plan> use_set(const ActContext& context, const Json& args) {
   if (!set) return set.error();
   return Plan{rtse_line(context, base::command_words({"conf"}, {*path, "use", *set})),
               [context, path = *path, set = *set]() -> Result<Json> {
-                const auto view = editor_of(context).component(path, {.configuration = true});
+                const auto view = session_of(context).component(path, {.configuration = true});
                 if (!view) return view.error();
                 const editor::CallLimit limited(context.call_limit);
                 return done(editor::use_set(*view, set));
@@ -360,7 +360,7 @@ using ContextCall = std::function<RTC::ReturnCode_t(RTC::ExecutionContext_ptr)>;
 
 Result<Json> call_context(const ActContext& context, const std::string& path, std::size_t index, const std::string& what,
                           const ContextCall& call) {
-  const auto view = editor_of(context).component(path, {.contexts = true});
+  const auto view = session_of(context).component(path, {.contexts = true});
   if (!view) return view.error();
   if (index >= view->contexts.size())
     return Error{"component " + view->path + ": has no execution context number " + std::to_string(index)};

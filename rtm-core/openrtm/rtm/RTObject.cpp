@@ -1,6 +1,7 @@
 #include "rtm/RTObject.h"
 
 #include <coil/stringutil.h>
+#include <omniORB4/callHandle.h>
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/Manager.h>
 #include <rtm/NVUtil.h>
@@ -12,8 +13,10 @@
 #include "base/text.h"
 #include "corba/members/remote_participant.h"
 #include "corba/orb/asker.h"
+#include "corba/orb/guarded_transport.h"
 #include "corba/orb/object_names.h"
 #include "corba/orb/orb.h"
+#include "core/remote_rights.h"
 
 namespace RTC {
 
@@ -64,9 +67,37 @@ DataFlowComponentBase::DataFlowComponentBase(Manager* manager) : RTObject_impl(m
 DataFlowComponentBase::DataFlowComponentBase(CORBA::ORB_ptr orb, PortableServer::POA_ptr poa) : RTObject_impl(orb, poa) {}
 DataFlowComponentBase::~DataFlowComponentBase() = default;
 
+// --- who calls from outside
+
+_CORBA_Boolean RTObject_impl::_dispatch(omniCallHandle& call) {
+  // Without a message the call is of this process.
+  if (call.iop_s() == nullptr || !is_watched_operation(call.operation_name())) return POA_OpenRTM::DataFlowComponent::_dispatch(call);
+  const OutsideCall from_outside(*this);
+  return POA_OpenRTM::DataFlowComponent::_dispatch(call);
+}
+
+ReturnCode_t RTObject_impl::refuse(const char* operation, const std::string& why, ReturnCode_t code) const {
+  if (const auto left_out = impl_->refusals.next()) {
+    const std::string more = *left_out == 0 ? "" : " (" + std::to_string(*left_out) + " more refused calls are not in the log)";
+    RTC_WARN(("%s asked for %s: refused, %s%s", corba::caller().c_str(), operation, why.c_str(), more.c_str()));
+  }
+  return code;
+}
+
+bool RTObject_impl::mayBeChangedByCaller(const char* operation) const {
+  if (corba::asker() == corba::Asker::own || m_pManager == nullptr) return true;
+  if (rt::parse_remote_rights(m_pManager->configValue("manager.remote_rights")) != rt::RemoteRights::read) return true;
+  refuse(operation, "manager.remote_rights is read", RTC_ERROR);
+  return false;
+}
+
 // --- life
 
 ReturnCode_t RTObject_impl::initialize() {
+  if (OutsideCall::is_mine(*this)) {
+    if (!mayBeChangedByCaller("initialize")) return RTC_ERROR;
+    if (m_pManager != nullptr) return refuse("initialize", "its manager initializes the component", PRECONDITION_NOT_MET);
+  }
   {
     auto data = impl_->shared.lock();
     if (data->phase != Impl::Phase::created) return PRECONDITION_NOT_MET;
@@ -118,7 +149,13 @@ void RTObject_impl::discard() {
   shutdown();
 }
 
-ReturnCode_t RTObject_impl::finalize() { return finalizeBy(std::chrono::steady_clock::now() + callbackTimeout()); }
+ReturnCode_t RTObject_impl::finalize() {
+  if (OutsideCall::is_mine(*this)) {
+    if (!mayBeChangedByCaller("finalize")) return RTC_ERROR;
+    return refuse("finalize", "exit ends a component", PRECONDITION_NOT_MET);
+  }
+  return finalizeBy(std::chrono::steady_clock::now() + callbackTimeout());
+}
 
 ReturnCode_t RTObject_impl::finalizeBy(std::chrono::steady_clock::time_point deadline) {
   {
@@ -126,6 +163,7 @@ ReturnCode_t RTObject_impl::finalizeBy(std::chrono::steady_clock::time_point dea
     if (data->phase != Impl::Phase::exiting) return PRECONDITION_NOT_MET;
     data->phase = Impl::Phase::finalizing;
   }
+  impl_->gate.close_to_remote();
   // Authors rely on it that their callbacks do not run side by side.
   if (waitForCallbacks(deadline))
     on_finalize();
@@ -139,7 +177,10 @@ ReturnCode_t RTObject_impl::finalizeBy(std::chrono::steady_clock::time_point dea
   return RTC_OK;
 }
 
-ReturnCode_t RTObject_impl::exit() { return exitBy(std::chrono::steady_clock::now() + callbackTimeout()); }
+ReturnCode_t RTObject_impl::exit() {
+  if (OutsideCall::is_mine(*this) && !mayBeChangedByCaller("exit")) return RTC_ERROR;
+  return exitBy(std::chrono::steady_clock::now() + callbackTimeout());
+}
 
 ReturnCode_t RTObject_impl::exitBy(std::chrono::steady_clock::time_point deadline) {
   bool is_first = false;
@@ -211,6 +252,7 @@ void RTObject_impl::shutdown() {
     configuration_reference = std::exchange(data->configuration_reference, SDOPackage::Configuration_var());
     self = data->reference;
   }
+  impl_->gate.close_to_remote();
   for (SDOPackage::Organization_impl* organization : organizations) {
     try {
       SDOPackage::Organization_var reference = organization->getObjRef();

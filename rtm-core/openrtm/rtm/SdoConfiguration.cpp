@@ -5,6 +5,11 @@
 #include <rtm/RTObject.h>
 #include <rtm/SdoServiceAdmin.h>
 
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "base/guarded.h"
 #include "base/text.h"
 #include "base/tick.h"
 #include "corba/orb/gate.h"
@@ -56,41 +61,54 @@ ConfigurationSet to_set(const coil::Properties& node) {
 
 }  // namespace
 
+// Changes come one after another, so listeners of sets are not called by two callers at once. A listener may make further changes.
+struct Configuration_impl::Door {
+  corba::Gate gate;
+  base::UsersTurn turn;
+
+  // Throws if a listener that another caller's change has called does not return in time.
+  base::UsersTurn::Mine turn_to_change(std::chrono::nanoseconds patience) {
+    auto mine = turn.take(std::max<std::chrono::nanoseconds>(patience, std::chrono::seconds(1)));
+    if (!mine) throw InternalError("another change of the configuration has not ended: a listener does not return");
+    return std::move(*mine);
+  }
+};
+
 Configuration_impl::Configuration_impl(RTC::RTObject_impl& component, RTC::ConfigAdmin& configuration, RTC::SdoServiceAdmin& services)
-    : gate_(std::make_unique<corba::Gate>()), component_(component), configuration_(configuration), services_(services) {}
+    : door_(std::make_unique<Door>()), component_(component), configuration_(configuration), services_(services) {}
 
 Configuration_impl::~Configuration_impl() = default;
 
-void Configuration_impl::close() { gate_->close(); }
+void Configuration_impl::close() { door_->gate.close(); }
 
 CORBA::Boolean Configuration_impl::set_device_profile(const DeviceProfile& profile) {
-  const Inside inside(*gate_);
+  const Inside inside(door_->gate);
   check_names("property of the device", profile.properties);
   component_.setDeviceProfile(profile);
   return true;
 }
 
 CORBA::Boolean Configuration_impl::add_service_profile(const ServiceProfile& profile) {
-  const Inside inside(*gate_);
+  const Inside inside(door_->gate);
   if (profile.id.in()[0] != '\0') check_id("id of the service", profile.id);
   check_names("property of the service", profile.properties);
   return services_.addSdoServiceConsumer(profile);
 }
 
 CORBA::Boolean Configuration_impl::add_organization(Organization_ptr organization) {
-  const Inside inside(*gate_);
+  const Inside inside(door_->gate);
   if (CORBA::is_nil(organization)) throw InvalidParameter("the organization is nil");
   return component_.addOrganization(organization);
 }
 
 CORBA::Boolean Configuration_impl::remove_service_profile(const char* id) {
-  const Inside inside(*gate_);
+  const Inside inside(door_->gate);
   if (id[0] == '\0') throw InvalidParameter("the id is empty");
   return services_.removeSdoServiceConsumer(id);
 }
 
 CORBA::Boolean Configuration_impl::remove_organization(const char* organization_id) {
-  const Inside inside(*gate_);
+  const Inside inside(door_->gate);
   if (organization_id[0] == '\0') throw InvalidParameter("the id is empty");
   return component_.removeOrganization(organization_id);
 }
@@ -110,7 +128,7 @@ CORBA::Boolean Configuration_impl::set_configuration_parameter(const char* name,
 }
 
 ConfigurationSetList* Configuration_impl::get_configuration_sets() {
-  const Inside inside(*gate_);
+  const Inside inside(door_->gate);
   const std::vector<coil::Properties> nodes = configuration_.getConfigurationSets();
   ConfigurationSetList_var sets = new ConfigurationSetList();
   sets->length(static_cast<CORBA::ULong>(nodes.size()));
@@ -119,35 +137,39 @@ ConfigurationSetList* Configuration_impl::get_configuration_sets() {
 }
 
 ConfigurationSet* Configuration_impl::get_configuration_set(const char* id) {
-  const Inside inside(*gate_);
+  const Inside inside(door_->gate);
   if (!configuration_.haveConfig(id)) throw InternalError(("no configuration set " + base::in_quotes(id)).c_str());
   return new ConfigurationSet(to_set(configuration_.getConfigurationSet(id)));
 }
 
 CORBA::Boolean Configuration_impl::set_configuration_set_values(const ConfigurationSet& set) {
-  const Inside inside(*gate_);
+  const Inside inside(door_->gate);
+  const auto mine = door_->turn_to_change(component_.callbackTimeout());
   return configuration_.setConfigurationSetValues(to_properties(set));
 }
 
 ConfigurationSet* Configuration_impl::get_active_configuration_set() {
-  const Inside inside(*gate_);
+  const Inside inside(door_->gate);
   if (!configuration_.isActive()) throw NotAvailable("a set has changed and none has been activated since");
   return new ConfigurationSet(to_set(configuration_.getActiveConfigurationSet()));
 }
 
 CORBA::Boolean Configuration_impl::add_configuration_set(const ConfigurationSet& set) {
-  const Inside inside(*gate_);
+  const Inside inside(door_->gate);
+  const auto mine = door_->turn_to_change(component_.callbackTimeout());
   return configuration_.addConfigurationSet(to_properties(set));
 }
 
 CORBA::Boolean Configuration_impl::remove_configuration_set(const char* id) {
-  const Inside inside(*gate_);
+  const Inside inside(door_->gate);
+  const auto mine = door_->turn_to_change(component_.callbackTimeout());
   if (id[0] == '\0') throw InvalidParameter("the id is empty");
   return configuration_.removeConfigurationSet(id);
 }
 
 CORBA::Boolean Configuration_impl::activate_configuration_set(const char* id) {
-  const Inside inside(*gate_);
+  const Inside inside(door_->gate);
+  const auto mine = door_->turn_to_change(component_.callbackTimeout());
   if (id[0] == '\0') throw InvalidParameter("the id is empty");
   if (!configuration_.activateConfigurationSet(id))
     throw InvalidParameter(("no configuration set " + base::in_quotes(id) + " that can be active").c_str());

@@ -29,11 +29,12 @@ Result<void> room_for(const HuntOptions& options, std::uintmax_t least) { return
 class Hunt {
  public:
   Hunt(CORBA::ORB_ptr orb, const Campaign& campaign, const std::vector<HuntTarget>& targets, const HuntOptions& options,
-       const std::function<void(const HuntProgress&)>& show)
+       const std::function<void(const HuntProgress&)>& show, editor::Reporter& reporter)
       : orb_(orb),
         campaign_(campaign),
         options_(options),
         show_(show),
+        reporter_(reporter),
         maker_(campaign, targets),
         random_(campaign.plan().hunt.seed, "hunt") {}
 
@@ -81,7 +82,7 @@ class Hunt {
     options.checks_invariants = true;
     options.draws = false;
     options.warm = &warm_;
-    auto outcome = run_row(orb_, campaign_, tried.row, options);
+    auto outcome = run_row(orb_, campaign_, tried.row, options, reporter_);
     std::error_code ignored;
     fs::remove_all(options.folder, ignored);
     return outcome;
@@ -224,6 +225,7 @@ class Hunt {
   const Campaign& campaign_;
   const HuntOptions& options_;
   const std::function<void(const HuntProgress&)>& show_;
+  editor::Reporter& reporter_;
   CaseMaker maker_;
   base::Random random_;
   std::vector<HuntCase> corpus_;
@@ -231,7 +233,7 @@ class Hunt {
   Broken broken_;  // the simplest case so far of what is being shrunk
   HuntResult result_;
   std::size_t not_begun_ = 0;  // cases one after the other
-  const editor::WarmPrograms warm_;
+  const editor::WarmPrograms warm_{reporter_};
   std::string problem_;  // why nothing can be found
   Clock::time_point began_ = Clock::now();
 };
@@ -255,19 +257,19 @@ std::string signature(const Outcome& outcome) {
 }
 
 Result<HuntResult> hunt(CORBA::ORB_ptr orb, const Campaign& campaign, const HuntOptions& options,
-                        const std::function<void(const HuntProgress&)>& show) {
+                        const std::function<void(const HuntProgress&)>& show, editor::Reporter& reporter) {
   std::error_code error;
   fs::create_directories(options.folder, error);
   if (error) return Error{"folder " + base::in_quotes(options.folder) + ": " + error.message()};
   if (const auto room = room_for(options, room_to_begin); !room) return room.error();
   if (const auto writable = check_writable(temporary_folder()); !writable) return writable.error();
-  if (const auto good = check_values(orb, campaign, options.folder + "/values"); !good) {
+  if (const auto good = check_values(orb, campaign, options.folder + "/values", reporter); !good) {
     fs::remove(options.folder, error);
     return good.error();
   }
   const auto targets = hunt_targets(campaign);
   if (!targets) return targets.error();
-  auto result = Hunt(orb, campaign, *targets, options, show).go();
+  auto result = Hunt(orb, campaign, *targets, options, show, reporter).go();
   fs::remove(options.folder, error);  // when it is empty
   return result;
 }

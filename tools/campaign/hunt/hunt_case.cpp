@@ -100,7 +100,7 @@ void CaseMaker::add_deed(HuntCase& to, base::Random& random) {
 
 HuntCase CaseMaker::fresh(base::Random& random) {
   HuntCase made;
-  made.duration_s = campaign_.plan().duration_s;
+  made.duration_s = campaign_.plan().run.duration_s;
   const auto row = campaign_.row(1 + random.below(campaign_.rows()));
   if (row) made.row = *row;
   made.row.seed = 1 + random.below(1000);
@@ -176,9 +176,9 @@ std::string plan_text(const Campaign& campaign, const HuntCase& tried) {
     return std::string(out.c_str());
   };
   const auto path = [&](const std::string& file) { return quoted(fs::absolute(file).lexically_normal().string()); };
-  std::string text = "system: " + path(plan.system) + "\nworld: " + path(plan.world) +
+  std::string text = "system: " + path(plan.run.system) + "\nworld: " + path(plan.run.world) +
                      "\nduration: " + base::format_number(tried.duration_s) + "\nseed: " + std::to_string(tried.row.seed) + "\n";
-  if (!plan.expectations.empty()) text += "expect: " + path(plan.expectations) + "\n";
+  if (!plan.run.expectations.empty()) text += "expect: " + path(plan.run.expectations) + "\n";
   if (!plan.expect_text.empty()) text += "expect:\n" + plan.expect_text + "\n";
   if (!tried.row.values.empty()) text += "vary:\n";
   for (const auto& [name, value] : tried.row.values) text += "  " + quoted(name) + ": [" + quoted(value) + "]\n";
@@ -196,14 +196,14 @@ std::string plan_text(const Campaign& campaign, const HuntCase& tried) {
   add_list("faults", faults, false);
   add_list("never", never, false);
   add_list("eventually", eventually, false);
-  add_list("properties", plan.properties, true);
+  add_list("properties", plan.run.properties, true);
   std::vector<std::string> modules, resources;
-  for (const auto& folder : plan.module_paths) modules.push_back(fs::absolute(folder).string());
-  for (const auto& folder : plan.resource_paths) resources.push_back(fs::absolute(folder).string());
+  for (const auto& folder : plan.run.module_paths) modules.push_back(fs::absolute(folder).string());
+  for (const auto& folder : plan.run.resource_paths) resources.push_back(fs::absolute(folder).string());
   add_list("module_path", modules, true);
   add_list("resource_path", resources, true);
-  if (plan.one_process_each) text += "one_process_each: true\n";
-  return text + "hang_timeout: " + base::format_number(plan.hang_timeout_s) + "\ninvariants: true\n";
+  if (plan.run.one_process_each) text += "one_process_each: true\n";
+  return text + "hang_timeout: " + base::format_number(plan.run.hang_timeout_s) + "\ninvariants: true\n";
 }
 
 std::string text_of(const HuntCase& tried) {

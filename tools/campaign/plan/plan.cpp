@@ -27,6 +27,16 @@ std::uint64_t count(const YAML::Node& node, const char* key, std::uint64_t usual
   return node[key] ? static_cast<std::uint64_t>(base::parse_integer(node[key].Scalar()).value_or(0)) : usual;
 }
 
+// An option of a run, within the limits of its row.
+double run_number(const YAML::Node& node, const char* key, double usual, std::string_view option) {
+  const auto value = number(node, key, usual);
+  const auto& row = editor::run_option(option);
+  if (value < row.low || value > row.high)
+    fail_at(node[key], std::string(key) + " must be from " + base::format_number(row.low) + " to " + base::format_number(row.high) +
+                           " s, got " + base::format_number(value));
+  return value;
+}
+
 bool flag(const YAML::Node& node, const char* key, bool usual) { return node[key] ? node[key].Scalar() == "true" : usual; }
 
 std::vector<std::string> words(const YAML::Node& node) {
@@ -126,9 +136,9 @@ std::vector<Measure> to_measures(const YAML::Node& node) {
 
 // What would not happen, or not be looked at, in any run.
 void check_in_run(const YAML::Node& node, const char* key, double time, bool is_end_too, const Plan& plan) {
-  if (time < plan.duration_s || (is_end_too && time == plan.duration_s)) return;
+  if (time < plan.run.duration_s || (is_end_too && time == plan.run.duration_s)) return;
   fail_at(node[key] ? node[key] : node, std::string(key) + (is_end_too ? " must not be more than" : " must be less than") +
-                                            " the duration of " + base::format_number(plan.duration_s) + " s, got " +
+                                            " the duration of " + base::format_number(plan.run.duration_s) + " s, got " +
                                             base::format_number(time));
 }
 
@@ -187,7 +197,7 @@ std::string in_folder(const Plan& plan, const std::string& path) {
 void read_expect(const YAML::Node& node, Plan& plan) {
   if (!node) return;
   if (node.IsScalar()) {
-    plan.expectations = in_folder(plan, node.Scalar());
+    plan.run.expectations = in_folder(plan, node.Scalar());
   } else if (node.IsSequence()) {
     YAML::Emitter block;
     block << node;
@@ -246,21 +256,20 @@ Plan to_plan(const YAML::Node& root, const std::string& file) {
   check_shape(root, plan_shape, "plan");
   Plan plan;
   plan.file = file;
-  plan.system = in_folder(plan, word(root, "system"));
-  plan.world = in_folder(plan, word(root, "world"));
-  plan.duration_s = number(root, "duration", 60);
-  if (plan.duration_s > 1e7) fail_at(root["duration"], "duration must be at most 1e7 s");
+  plan.run.system = in_folder(plan, word(root, "system"));
+  plan.run.world = in_folder(plan, word(root, "world"));
+  plan.run.duration_s = run_number(root, "duration", plan.run.duration_s, "duration");
   read_expect(root["expect"], plan);
   read_variation(root, plan);
   plan.measures = to_measures(root["measure"]);
   check_columns(root, plan);
   read_deeds(root, plan);
   plan.hunt = to_hunt(root["hunt"], plan);
-  plan.properties = words(root["properties"]);
-  for (const auto& path : words(root["module_path"])) plan.module_paths.push_back(in_folder(plan, path));
-  for (const auto& path : words(root["resource_path"])) plan.resource_paths.push_back(in_folder(plan, path));
-  plan.one_process_each = flag(root, "one_process_each", false);
-  plan.hang_timeout_s = number(root, "hang_timeout", 30);
+  plan.run.properties = words(root["properties"]);
+  for (const auto& path : words(root["module_path"])) plan.run.module_paths.push_back(in_folder(plan, path));
+  for (const auto& path : words(root["resource_path"])) plan.run.resource_paths.push_back(in_folder(plan, path));
+  plan.run.one_process_each = flag(root, "one_process_each", false);
+  plan.run.hang_timeout_s = run_number(root, "hang_timeout", plan.run.hang_timeout_s, "hang-timeout");
   plan.has_pictures = flag(root, "pictures", true);
   plan.checks_invariants = flag(root, "invariants", false);
   return plan;

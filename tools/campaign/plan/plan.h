@@ -10,6 +10,7 @@
 #include "base/result.h"
 #include "campaign/plan/condition.h"
 #include "campaign/plan/deeds.h"
+#include "run/run_options.h"
 
 namespace campaign {
 
@@ -66,9 +67,8 @@ struct Plan {
   enum class Sampling { random, latin, sobol };
   std::string file;
   std::string text;
-  std::string system, world, expectations;  // paths of files; the last may be empty
-  std::string expect_text;                  // YAML, when the expectations stand in the plan itself
-  double duration_s = 60;
+  editor::RunOptions run;   // of each row; its seed is that of the row
+  std::string expect_text;  // YAML, when the expectations stand in the plan itself
   std::uint64_t seed = 1;
   std::size_t repeat = 1;
   std::vector<Axis> axes;
@@ -81,9 +81,6 @@ struct Plan {
   std::vector<Fault> faults;
   std::vector<Condition> never, eventually;
   HuntSpace hunt;
-  std::vector<std::string> properties, module_paths, resource_paths;
-  bool one_process_each = false;
-  double hang_timeout_s = 30;
   bool has_pictures = true;
   bool checks_invariants = false;  // no port sends a NaN
 

@@ -94,10 +94,10 @@ Result<bool> Store::begin_rows(const Plan& plan, const std::string& list) {
   if (const auto dropped = database_.execute("DELETE FROM rows; DELETE FROM parameters;"); !dropped) return dropped.error();
   for (const auto& [name, value] : {std::pair<std::string, std::string>("plan", plan.text),
                                     {"plan_file", file},
-                                    {"system", plan.system},
-                                    {"world", plan.world},
+                                    {"system", plan.run.system},
+                                    {"world", plan.run.world},
                                     {"list", list},
-                                    {"duration", base::format_number(plan.duration_s)}}) {
+                                    {"duration", base::format_number(plan.run.duration_s)}}) {
     if (const auto set = statements_[set_fact].bind(1, name).bind(2, value).run(); !set) return set.error();
   }
   return true;

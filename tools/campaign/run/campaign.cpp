@@ -145,9 +145,9 @@ Result<void> set_in_system(SavedSystem& system, const std::string& path, const s
 // What a run loads: our programs and libraries, and every module of the plan.
 Result<void> hash_programs(const Plan& plan, base::ContentHash& hash) {
   std::vector<std::string> files;
-  for (const char* name : {"sim-server", "rtcd", "simctl", "rtse-campaign"}) files.push_back(editor::own_program(name));
+  for (const char* name : {"sim-server", "rtcd", "rtse-campaign"}) files.push_back(editor::own_program(name));
   const auto libraries = fs::path(editor::own_program("rtcd")).parent_path().parent_path() / "lib";
-  auto folders = plan.module_paths;
+  auto folders = plan.run.module_paths;
   folders.push_back(libraries.string());
   folders.push_back((libraries / "rtm-sim").string());
   for (const auto& folder : folders) {
@@ -181,10 +181,10 @@ Result<Campaign> Campaign::prepare(Plan plan) {
   if (const auto good = campaign.check_files(); !good) return good.error();
   if (!spawned) return spawned.error();
   campaign.spawned_files_ = *spawned;
-  auto system = editor::read_system(campaign.plan().system);
+  auto system = editor::read_system(campaign.plan().run.system);
   if (!system) return system.error();
   campaign.system_ = std::move(*system);
-  const auto world = WorldFile::read(campaign.plan().world, campaign.plan().resource_paths);
+  const auto world = WorldFile::read(campaign.plan().run.world, campaign.plan().run.resource_paths);
   if (!world) return world.error();
   campaign.models_ = world->models();
   if (const auto good = campaign.check_axes(); !good) return good.error();
@@ -201,17 +201,17 @@ Result<Campaign> Campaign::prepare(Plan plan) {
 }
 
 Result<void> Campaign::check_files() const {
-  for (const char* program : {"sim-server", "simctl", "rtcd", "omniNames"}) {
+  for (const char* program : {"sim-server", "rtcd", "omniNames"}) {
     if (!can_be_started(program))
       return Error{std::string("program ") + program + ": cannot be started; expected it beside rtse or in PATH"};
   }
   for (const auto& [kind, file] :
-       {std::pair("system", &plan_->system), std::pair("world", &plan_->world), std::pair("expect", &plan_->expectations)}) {
+       {std::pair("system", &plan_->run.system), std::pair("world", &plan_->run.world), std::pair("expect", &plan_->run.expectations)}) {
     std::error_code error;
     if (!file->empty() && !fs::is_regular_file(*file, error))
       return Error{"plan " + base::in_quotes(plan_->file) + ": " + kind + ": there is no file " + base::in_quotes(*file)};
   }
-  for (const auto* paths : {&plan_->module_paths, &plan_->resource_paths}) {
+  for (const auto* paths : {&plan_->run.module_paths, &plan_->run.resource_paths}) {
     for (const auto& path : *paths) {
       std::error_code error;
       if (!fs::is_directory(path, error))
@@ -231,7 +231,7 @@ Result<void> Campaign::check_axes() const {
       values = {base::format_number(axis.range->a), base::format_number(axis.range->b)};
     std::optional<WorldFile> world;
     if (is_world_path(axis.path)) {
-      auto read = WorldFile::read(plan_->world, plan_->resource_paths);
+      auto read = WorldFile::read(plan_->run.world, plan_->run.resource_paths);
       if (!read) return read.error();
       world.emplace(std::move(*read));
     }
@@ -252,20 +252,20 @@ Result<void> Campaign::hash_everything() {
   base::ContentHash hash;
   hash.add("rows of a campaign, 1");
   if (const auto added = hash_programs(*plan_, hash); !added) return added;
-  const auto world = WorldFile::read(plan_->world, plan_->resource_paths);
+  const auto world = WorldFile::read(plan_->run.world, plan_->run.resource_paths);
   if (!world) return world.error();
   auto files = world->files();
-  files.insert(plan_->system);
+  files.insert(plan_->run.system);
   files.insert(spawned_files_.begin(), spawned_files_.end());
-  if (!plan_->expectations.empty()) files.insert(plan_->expectations);
+  if (!plan_->run.expectations.empty()) files.insert(plan_->run.expectations);
   for (const auto& file : files) {
     if (const auto added = hash.add_file(file); !added) return added;
   }
   // What the plan asks of every run; not how many there are.
   hash.add(plan_->expect_text);
-  hash.add(base::format_number(plan_->duration_s) + (plan_->one_process_each ? " each" : "") +
+  hash.add(base::format_number(plan_->run.duration_s) + (plan_->run.one_process_each ? " each" : "") +
            (plan_->checks_invariants ? " invariants" : ""));
-  for (const auto& property : plan_->properties) hash.add(property);
+  for (const auto& property : plan_->run.properties) hash.add(property);
   for (const auto& measure : plan_->measures) {
     hash.add(measure.name + "|" + measure.model + "|" + measure.port + "|" + measure.member + "|" + base::join(measure.to, ",") + "|" +
              std::to_string(static_cast<int>(measure.kind)) + "|" + std::to_string(static_cast<int>(measure.take)));
@@ -300,7 +300,7 @@ std::string Campaign::list_key() const {
 
 Result<std::optional<WorldFile>> Campaign::world_of(const Row& row) const {
   if (std::ranges::none_of(row.values, [](const auto& one) { return is_world_path(one.first); })) return std::optional<WorldFile>();
-  auto world = WorldFile::read(plan_->world, plan_->resource_paths);
+  auto world = WorldFile::read(plan_->run.world, plan_->run.resource_paths);
   if (!world) return world.error();
   for (const auto& [path, value] : row.values) {
     if (!is_world_path(path)) continue;
@@ -318,7 +318,7 @@ Result<void> Campaign::alter(editor::SavedSystem& system, const Row& row) const 
 }
 
 std::vector<std::string> Campaign::properties_of(const Row& row) const {
-  auto properties = plan_->properties;
+  auto properties = plan_->run.properties;
   for (const auto& [path, value] : row.values) {
     const auto words = base::split_list(path, '/');
     if (words.front() == "property") properties.push_back(words[1] + ":" + words[2] + "=" + value);

@@ -1,9 +1,7 @@
 #include "campaign/run/deeds_runner.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "base/random.h"
@@ -13,17 +11,14 @@
 namespace campaign {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Object = Fault::Object;
 using Kind = Fault::Kind;
-using namespace std::chrono_literals;
 
 constexpr double look_period_s = 0.1;
-constexpr auto call_limit = 10s;
 
 // "kind:from:for:amount:seed", as core/fault.h reads it.
 std::string fault_text(const Fault& fault, std::uint64_t seed) {
-  const auto own_seed = Random(seed, fault.text()).next() >> 2U;
+  const auto own_seed = base::Random(seed, fault.text()).next() >> 2U;
   return std::string(to_text(fault.kind)) + ":" + base::format_number(fault.at_s) + ":" + base::format_number(fault.for_s.value_or(0)) +
          ":" + base::format_number(fault.amount) + ":" + std::to_string(own_seed);
 }
@@ -44,7 +39,7 @@ std::map<std::string, std::string> texts_of(const std::vector<Fault>& faults, Ob
 
 bool is_missing(const editor::RunScene& scene, const std::string& model) {
   const auto models = scene.simulator.models();
-  return !models.empty() && std::ranges::find(models, model.substr(0, model.find("::"))) == models.end();
+  return models && std::ranges::find(*models, model.substr(0, model.find("::"))) == models->end();
 }
 
 DeedsRunner::DeedsRunner(Deeds deeds, std::uint64_t seed, double duration_s)
@@ -233,21 +228,18 @@ Result<bool> DeedsRunner::is_true(editor::RunScene& scene, const Condition& cond
     const std::string state = view ? editor::state_text(view->state()) : "gone";
     return base::equal_ignoring_case(state, condition.state);
   }
-  const bool is_region = condition.kind == Condition::Kind::region;
-  const auto said = scene.simulator.simctl({"--json", is_region ? "pose" : "contacts", condition.model}, call_limit);
-  // Of a model that has gone, or is still to come, nothing is true.
-  if (!said) return is_missing(scene, condition.model) ? Result<bool>(false) : said.error();
-  const auto json = Json::parse(*said, nullptr, false);
-  if (!json.is_object()) return Error{"simctl: did not answer as expected"};
-  if (is_region) {
-    const auto position = json.value("position", std::vector<double>(3));
-    const double x = position.at(0), y = position.at(1);
-    return x >= condition.region[0] && y >= condition.region[1] && x <= condition.region[2] && y <= condition.region[3];
+  // Of a model that does not exist, or does not exist yet, nothing is true.
+  const auto false_if_missing = [&](const Error& error) { return is_missing(scene, condition.model) ? Result<bool>(false) : error; };
+  if (condition.kind == Condition::Kind::region) {
+    const auto pose = scene.simulator.pose(condition.model);
+    if (!pose) return false_if_missing(pose.error());
+    const auto& region = condition.region;
+    return pose->x >= region[0] && pose->y >= region[1] && pose->x <= region[2] && pose->y <= region[3];
   }
-  const auto contacts = json.value("contacts", Json::array());
-  return std::ranges::any_of(contacts, [&](const Json& contact) {
-    const auto other = contact.value("other", "");
-    const auto model = other.substr(0, other.find("::"));
+  const auto contacts = scene.simulator.contacts(condition.model);
+  if (!contacts) return false_if_missing(contacts.error());
+  return std::ranges::any_of(*contacts, [&](const editor::ModelContact& contact) {
+    const auto model = contact.other.substr(0, contact.other.find("::"));
     return condition.touched == "any" ? model != editor::usually_touched : model == condition.touched;
   });
 }

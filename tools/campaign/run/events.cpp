@@ -5,54 +5,43 @@
 #include "base/child_process.h"
 #include "base/text.h"
 #include "campaign/run/deeds_runner.h"
-#include "rtse/commands/conf.h"
-#include "rtse/commands/connect.h"
-#include "rtse/commands/state.h"
+#include "system/configuration.h"
+#include "system/connections.h"
 #include "system/profile/matched_system.h"
+#include "system/transitions.h"
 
 namespace campaign {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto simulator_limit = 20s;  // a spawned model is loaded meanwhile
 constexpr auto command_limit = 60s;
 
-Result<void> simctl(editor::RunScene& scene, std::vector<std::string> words, const std::vector<std::string>& more = {}) {
-  words.insert(words.end(), more.begin(), more.end());
-  const auto said = scene.simulator.simctl(words, simulator_limit);
-  return said ? Result<void>() : said.error();
+// As the plan's reader has checked them.
+std::vector<double> numbers_of(const Event& event) {
+  std::vector<double> numbers;
+  for (const auto& text : event.numbers) numbers.push_back(base::parse_number(text).value_or(0));
+  return numbers;
 }
 
 Result<std::string> spawn(editor::RunScene& scene, const Event& event) {
-  std::vector<std::string> words{"spawn", event.target};
-  if (!event.name.empty()) words.insert(words.end(), {"--name", event.name});
-  if (!event.numbers.empty()) words.insert(words.end(), {"--pose", base::join(event.numbers, " ")});
-  const auto done = simctl(scene, words);
+  const auto done = scene.simulator.spawn({event.target, event.name, numbers_of(event)});
   if (done) return std::string();
-  const bool is_there = !event.name.empty() && scene.simulator.models().size() > 0 && !is_missing(scene, event.name);
+  const auto models = event.name.empty() ? std::vector<std::string>() : scene.simulator.models();
+  const bool is_there = models && std::ranges::find(*models, event.name) != models->end();
   return is_there ? Result<std::string>("there is a model " + base::in_quotes(event.name) + " already") : done.error();
 }
 
-// Of a model that has gone, or is still to come: nothing happens.
-Result<void> change_model(editor::RunScene& scene, const std::string& model, const std::vector<std::string>& words,
-                          const std::vector<std::string>& numbers = {}) {
-  const auto done = simctl(scene, words, numbers);
+// What was done to a model that does not exist, or does not exist yet, is not done.
+Result<void> unless_missing(editor::RunScene& scene, const std::string& model, const Result<void>& done) {
   return done || !is_missing(scene, model) ? done : Result<void>();
-}
-
-Result<void> push(editor::RunScene& scene, const Event& event) {
-  std::vector<std::string> words{"wrench"};
-  if (event.duration_s > 0) words.insert(words.end(), {"--for", base::format_number(event.duration_s)});
-  words.insert(words.end(), {"--", event.target});
-  return change_model(scene, event.target, words, event.numbers);
 }
 
 // What a component refuses, because it is in another state, is no failure of the run.
 Result<void> change(editor::RunScene& scene, const std::string& instance, editor::Transition transition) {
   const auto view = scene.component(instance, {.contexts = true});
   if (!view) return view.error();
-  static_cast<void>(editor::change_state(*view, transition, -1));
+  static_cast<void>(editor::change_state(*view, transition, -1, scene.session.transition_timeout()));
   return {};
 }
 
@@ -124,11 +113,11 @@ Result<void> command(editor::RunScene& scene, const Event& event) {
 Result<void> do_it(editor::RunScene& scene, const Event& event) {
   switch (event.kind) {
     case Event::Kind::remove:
-      return change_model(scene, event.target, {"delete", event.target});
+      return unless_missing(scene, event.target, scene.simulator.remove(event.target));
     case Event::Kind::push:
-      return push(scene, event);
+      return unless_missing(scene, event.target, scene.simulator.push(event.target, {numbers_of(event), event.duration_s}));
     case Event::Kind::pose:
-      return change_model(scene, event.target, {"pose", "--", event.target}, event.numbers);
+      return unless_missing(scene, event.target, scene.simulator.set_pose(event.target, numbers_of(event)));
     case Event::Kind::set:
       return set(scene, event);
     case Event::Kind::activate:

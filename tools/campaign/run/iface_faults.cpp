@@ -52,8 +52,8 @@ Result<std::string> refused(const Plan& plan, std::vector<Fault> faults) {
   constexpr auto limit = 60s;
   const auto options = DeedsRunner({.events = {}, .faults = std::move(faults), .never = {}, .eventually = {}}, 1, 0).simulator_options();
   if (options.empty()) return std::string();
-  editor::ProgramCall call{{editor::own_program("sim-server"), plan.world, "--check", "-v", "0"}, {}, ""};
-  for (const auto& path : plan.resource_paths) call.words.insert(call.words.end(), {"--resource-path", path});
+  editor::ProgramCall call{{editor::own_program("sim-server"), plan.run.world, "--check", "-v", "0"}, {}, ""};
+  for (const auto& path : plan.run.resource_paths) call.words.insert(call.words.end(), {"--resource-path", path});
   call.words.insert(call.words.end(), options.begin(), options.end());
   auto started = editor::ChildProcess::start(call);
   if (!started) return started.error();

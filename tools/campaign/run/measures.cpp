@@ -2,40 +2,37 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iomanip>
-#include <sstream>
+#include <utility>
+#include <vector>
 
 #include "base/text.h"
 
 namespace campaign {
 namespace {
 
-// Calls visit(time, poses of all moving models) for each moment of a record.
-template <class Visit>
-void for_moments(const std::string& file, double last, Visit visit) {
-  std::ifstream in(file);
-  std::map<std::string, Eigen::Isometry3d> poses;
-  std::optional<double> now;
-  for (std::string line; std::getline(in, line);) {
-    if (line.starts_with("#") || line.starts_with("contact")) continue;
-    std::istringstream words(line);
-    double time = 0, x = 0, y = 0, z = 0, qw = 1, qx = 0, qy = 0, qz = 0;
-    std::string model;
-    words >> time >> std::quoted(model) >> x >> y >> z >> qw >> qx >> qy >> qz;
-    if (!words || time > last) break;
-    if (now && time != *now) visit(*now, poses);
-    now = time;
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.translation() = Eigen::Vector3d(x, y, z);
-    pose.linear() = Eigen::Quaterniond(qw, qx, qy, qz).normalized().toRotationMatrix();
-    poses[model] = pose;
-  }
-  if (now) visit(*now, poses);
+Eigen::Isometry3d isometry(const editor::RecordedPose& recorded) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() = Eigen::Vector3d(recorded.x, recorded.y, recorded.z);
+  pose.linear() = Eigen::Quaterniond(recorded.qw, recorded.qx, recorded.qy, recorded.qz).normalized().toRotationMatrix();
+  return pose;
 }
 
-std::optional<double> clearance(const Measure& measure, const std::map<std::string, StandingModel>& models, const std::string& file,
-                                double last) {
+// Calls visit(poses of all moving models) for each moment of a record. A model that was deleted keeps its last pose.
+template <class Visit>
+void for_moments(const editor::PoseRecord& record, Visit visit) {
+  std::map<double, std::vector<std::pair<std::string, const editor::RecordedPose*>>> moments;
+  for (const auto& [model, poses] : record.poses) {
+    for (const auto& pose : poses) moments[pose.time].emplace_back(model, &pose);
+  }
+  std::map<std::string, Eigen::Isometry3d> poses;
+  for (const auto& [time, moved] : moments) {
+    for (const auto& [model, pose] : moved) poses[model] = isometry(*pose);
+    visit(poses);
+  }
+}
+
+std::optional<double> clearance(const Measure& measure, const std::map<std::string, StandingModel>& models,
+                                const editor::PoseRecord& record) {
   const auto mine = models.find(measure.model);
   if (mine == models.end() || mine->second.outline.parts.empty()) return std::nullopt;
   std::vector<std::pair<std::string, std::vector<Polygon>>> standing;
@@ -44,7 +41,7 @@ std::optional<double> clearance(const Measure& measure, const std::map<std::stri
     if (is_meant && !model.outline.parts.empty()) standing.emplace_back(name, footprint(model.outline, model.pose));
   }
   double least = std::numeric_limits<double>::infinity();
-  for_moments(file, last, [&](double, const std::map<std::string, Eigen::Isometry3d>& poses) {
+  for_moments(record, [&](const std::map<std::string, Eigen::Isometry3d>& poses) {
     const auto at = poses.find(measure.model);
     const auto shape = footprint(mine->second.outline, at == poses.end() ? mine->second.pose : at->second);
     for (const auto& [name, polygons] : standing) {
@@ -104,8 +101,7 @@ std::vector<editor::Expectation> watched_values(const std::vector<Measure>& meas
 }
 
 std::map<std::string, double> take_measures(const std::vector<Measure>& measures, const editor::Seen& seen,
-                                            const std::map<std::string, StandingModel>& models, const std::string& record_file,
-                                            double wall_s) {
+                                            const std::map<std::string, StandingModel>& models, double wall_s) {
   std::map<std::string, double> numbers;
   for (const auto& measure : measures) {
     std::optional<double> number;
@@ -118,7 +114,7 @@ std::map<std::string, double> take_measures(const std::vector<Measure>& measures
         number = time_to(measure, seen);
         break;
       case Measure::Kind::clearance:
-        number = clearance(measure, models, record_file, seen.record.last);
+        number = clearance(measure, models, seen.record);
         break;
       case Measure::Kind::contacts:
         number = contacts(measure, seen);

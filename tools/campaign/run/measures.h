@@ -15,9 +15,8 @@ namespace campaign {
 // What port values the measures need to be seen, as expectations without limits.
 std::vector<editor::Expectation> watched_values(const std::vector<Measure>& measures);
 
-// By name; what a run does not have (a goal that was not reached) is missing. `record_file` is the record of the run, `models` its world.
+// By name; what a run does not have (a goal that was not reached) is missing. `models`: of the run's world.
 std::map<std::string, double> take_measures(const std::vector<Measure>& measures, const editor::Seen& seen,
-                                            const std::map<std::string, StandingModel>& models, const std::string& record_file,
-                                            double wall_s);
+                                            const std::map<std::string, StandingModel>& models, double wall_s);
 
 }  // namespace campaign

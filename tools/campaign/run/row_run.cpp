@@ -15,21 +15,11 @@ namespace fs = std::filesystem;
 namespace {
 
 editor::RunOptions options_of(const Campaign& campaign, const Row& row, const RowRunOptions& options) {
-  const auto& plan = campaign.plan();
-  editor::RunOptions run;
-  run.system = plan.system;
-  run.world = plan.world;
-  run.duration_s = options.duration_s.value_or(plan.duration_s);
-  run.expectations = plan.expectations;
+  auto run = campaign.plan().run;
   run.seed = row.seed;
-  run.one_process_each = plan.one_process_each;
-  run.hang_timeout_s = plan.hang_timeout_s;
+  run.duration_s = options.duration_s.value_or(run.duration_s);
   run.properties = campaign.properties_of(row);
-  run.module_paths = plan.module_paths;
-  run.resource_paths = plan.resource_paths;
   run.keep = options.folder;
-  run.quiet = true;
-  run.warm = options.warm;
   if (options.records) run.record = options.folder + "/run.mcap";
   return run;
 }
@@ -55,7 +45,7 @@ Result<void> write_files(const Plan& plan, const std::optional<WorldFile>& world
   return {};
 }
 
-Outcome run_once(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, const RowRunOptions& options) {
+Outcome run_once(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, const RowRunOptions& options, editor::Reporter& reporter) {
   Outcome outcome;
   const auto world = campaign.world_of(row);
   if (!world) {
@@ -76,9 +66,8 @@ Outcome run_once(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, c
                     .checks_invariants = options.checks_invariants || campaign.plan().checks_invariants,
                     .draws = options.draws && campaign.plan().has_pictures});
   for (const auto& property : script.properties()) run.properties.push_back(property);
-  run.simulator_options = script.simulator_options();
-  run.script = &script;
-  const auto result = editor::run_system(orb, run);
+  const editor::RunHooks hooks{.simulator_options = script.simulator_options(), .warm = options.warm, .script = &script};
+  const auto result = editor::run_system(orb, run, reporter, hooks);
   outcome.has_begun = result.has_begun;
   outcome.problem = result.problem;
   outcome.logs = result.logs;
@@ -107,29 +96,28 @@ std::string Outcome::first_problem() const {
   return unmet == verdicts.end() ? "" : unmet->expectation + ": " + unmet->problem;
 }
 
-Result<void> check_values(CORBA::ORB_ptr orb, const Campaign& campaign, const std::string& folder) {
+Result<void> check_values(CORBA::ORB_ptr orb, const Campaign& campaign, const std::string& folder, editor::Reporter& reporter) {
   ValueScript script(campaign.plan());
   if (!script.is_needed()) return {};
   auto run = options_of(campaign, Row{}, {.folder = folder});
   run.expectations.clear();
-  run.script = &script;
-  static_cast<void>(editor::run_system(orb, run));
+  static_cast<void>(editor::run_system(orb, run, reporter, {.script = &script}));
   std::error_code ignored;
   fs::remove_all(folder, ignored);
   if (script.problem().empty()) return {};
   return Error{"plan " + base::in_quotes(campaign.plan().file) + ": " + script.problem()};
 }
 
-Outcome run_row(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, const RowRunOptions& options) {
+Outcome run_row(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, const RowRunOptions& options, editor::Reporter& reporter) {
   const auto warm = options.warm != nullptr ? options.warm->count() : 0;
-  auto outcome = run_once(orb, campaign, row, options);
+  auto outcome = run_once(orb, campaign, row, options, reporter);
   if (outcome.problem.empty() || warm == 0 || options.warm->count() == warm || editor::is_interrupted()) return outcome;
   // Who made a program of it was killed and took that along: that says nothing about the row.
   std::error_code ignored;
   fs::remove_all(options.folder, ignored);
   auto alone = options;
   alone.warm = nullptr;
-  return run_once(orb, campaign, row, alone);
+  return run_once(orb, campaign, row, alone, reporter);
 }
 
 }  // namespace campaign

@@ -44,8 +44,8 @@ struct Outcome {
 
 // Whether the components take the values that the plan has for their parameters. Starts the system for it, when there are some; one that
 // does not start is no error here: rows say so. `folder`: as of a row.
-Result<void> check_values(CORBA::ORB_ptr orb, const Campaign& campaign, const std::string& folder);
+Result<void> check_values(CORBA::ORB_ptr orb, const Campaign& campaign, const std::string& folder, editor::Reporter& reporter);
 
-Outcome run_row(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, const RowRunOptions& options);
+Outcome run_row(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, const RowRunOptions& options, editor::Reporter& reporter);
 
 }  // namespace campaign

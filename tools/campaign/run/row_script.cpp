@@ -1,14 +1,11 @@
 #include "campaign/run/row_script.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "campaign/run/measures.h"
 
 namespace campaign {
-
-using namespace std::chrono_literals;
 
 RowScript::RowScript(const Campaign& campaign, const Row& row, const std::optional<WorldFile>& world, RowScriptOptions options)
     : campaign_(campaign),
@@ -50,15 +47,14 @@ void RowScript::end(editor::RunScene* scene, const editor::Seen& seen, editor::R
       if (value == seen.values.end() || value->second.samples > 0 || value->second.problem.empty() || watched.member.empty()) continue;
       result.verdicts.push_back({watched.port + " has " + watched.member, value->second.problem});
     }
-    measures_ =
-        take_measures(campaign_.plan().measures, seen, world_ ? world_->models() : campaign_.models(), scene->place.file("record.txt"), 0);
+    measures_ = take_measures(campaign_.plan().measures, seen, world_ ? world_->models() : campaign_.models(), 0);
   }
   result.notes.insert(result.notes.end(), deeds_.notes().begin(), deeds_.notes().end());
   add_features(seen);
   if (!scene || !options_.draws || result.is_passed()) return;
   // A picture that cannot be drawn takes nothing from the verdict.
-  static_cast<void>(
-      scene->simulator.simctl({"screenshot", options_.folder + "/picture.png", "--top", "--scans", "--size", "480x480"}, 60s));
+  constexpr std::uint32_t picture_size = 480;  // [pixels]
+  static_cast<void>(scene->simulator.screenshot(options_.folder + "/picture.png", picture_size));
 }
 
 void RowScript::add_features(const editor::Seen& seen) {

@@ -30,7 +30,7 @@ Result<void> find_one(const Plan& plan, const ModelFiles& models, Event& event, 
 }  // namespace
 
 Result<std::set<std::string>> find_spawned(Plan& plan) {
-  const ModelFiles models(fs::absolute(plan.world).parent_path(), plan.resource_paths);
+  const ModelFiles models(fs::absolute(plan.run.world).parent_path(), plan.run.resource_paths);
   std::set<std::string> files;
   for (auto* events : {&plan.events, &plan.hunt.events}) {
     for (auto& event : *events) {

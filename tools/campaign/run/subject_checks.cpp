@@ -29,15 +29,15 @@ class SubjectChecks {
 
   Result<void> check() {
     for (const auto& measure : plan_.measures) check_measure(measure);
-    for (const auto& text : plan_.properties) {
+    for (const auto& text : plan_.run.properties) {
       const auto property = editor::parse_property(text);
       if (!property) return property.error();
       check_component("properties", property->instance);
     }
-    if (!plan_.expectations.empty() || !plan_.expect_text.empty()) {
-      const auto expectations = plan_.expectations.empty()
+    if (!plan_.run.expectations.empty() || !plan_.expect_text.empty()) {
+      const auto expectations = plan_.run.expectations.empty()
                                     ? editor::parse_expectations(plan_.expect_text, "plan " + base::in_quotes(plan_.file) + ": expect")
-                                    : editor::read_expectations(plan_.expectations);
+                                    : editor::read_expectations(plan_.run.expectations);
       if (!expectations) return expectations.error();
       for (const auto& expectation : *expectations) check_expectation(expectation);
     }

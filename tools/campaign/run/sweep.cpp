@@ -14,8 +14,9 @@ namespace campaign {
 namespace fs = std::filesystem;
 namespace {
 
-void run_todo(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepOptions& options, const editor::WarmPrograms* warm, Tally& tally,
-              const Tally::Todo& todo) {
+using RunRow = std::function<Outcome(const Row& row, const std::string& folder)>;
+
+void run_todo(const Campaign& campaign, const SweepOptions& options, const RunRow& run, Tally& tally, const Tally::Todo& todo) {
   const auto row = campaign.row(todo.number);
   if (!row) return;  // list_rows() has made it already
   const auto key = campaign.key(*row);
@@ -23,7 +24,7 @@ void run_todo(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepOptions& 
   const auto folder = options.kept + "/" + folder_name(todo.number, key) + (todo.is_audit ? "-audit" : "");
   std::error_code ignored;
   fs::remove_all(folder, ignored);  // of a call that was killed
-  const auto outcome = run_row(orb, campaign, *row, {.folder = folder, .keeps_files = false, .records = options.records, .warm = warm});
+  const auto outcome = run(*row, folder);
   const auto room = outcome.problem.empty() ? Result<void>() : check_room({options.kept, temporary_folder()}, room_to_go_on);
   if (!room) tally.give_up(room.error().message);
   if (!room || (editor::is_interrupted() && !outcome.problem.empty())) {
@@ -33,10 +34,10 @@ void run_todo(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepOptions& 
   tally.take(todo, key, outcome, outcome.is_passed() ? "" : folder);
 }
 
-void work(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepOptions& options, const editor::WarmPrograms* warm, Tally& tally,
-          const RowLocks& locks, const Tally::Todo& todo) {
+void work(const Campaign& campaign, const SweepOptions& options, const RunRow& run, Tally& tally, const RowLocks& locks,
+          const Tally::Todo& todo) {
   if (editor::is_interrupted() || tally.is_stopped() || !locks.take(todo.number)) return;
-  run_todo(orb, campaign, options, warm, tally, todo);
+  run_todo(campaign, options, run, tally, todo);
   locks.give_back(todo.number);
 }
 
@@ -52,13 +53,13 @@ Result<void> make_kept(const SweepOptions& options) {
 }
 
 Result<SweepResult> sweep(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepOptions& options,
-                          const std::function<void(const Progress&)>& show) {
+                          const std::function<void(const Progress&)>& show, editor::Reporter& reporter) {
   if (const auto made = make_kept(options); !made) return made.error();
   if (const auto room = check_room({temporary_folder()}, room_to_begin); !room) return room.error();
   if (const auto writable = check_writable(temporary_folder()); !writable) return writable.error();
   // Once a list of rows is there, the call that made it has asked.
   const bool was_asked = Store::has_list(options.results, campaign.list_key());
-  if (const auto good = was_asked ? Result<void>() : check_values(orb, campaign, options.kept + "/values"); !good) {
+  if (const auto good = was_asked ? Result<void>() : check_values(orb, campaign, options.kept + "/values", reporter); !good) {
     std::error_code ignored;
     fs::remove(options.kept, ignored);
     return good.error();
@@ -68,12 +69,14 @@ Result<SweepResult> sweep(CORBA::ORB_ptr orb, const Campaign& campaign, const Sw
   Tally tally(campaign, options, std::move(*store), show);
   if (const auto listed = tally.list_rows(); !listed) return listed.error();
   const auto& todo = tally.todo();
-  const auto warm = todo.size() > 1 ? std::make_optional<editor::WarmPrograms>() : std::nullopt;
+  const auto warm = todo.size() > 1 ? std::make_optional<editor::WarmPrograms>(reporter) : std::nullopt;
+  const auto run = [&](const Row& row, const std::string& folder) {
+    return run_row(orb, campaign, row, {.folder = folder, .records = options.records, .warm = warm ? &*warm : nullptr}, reporter);
+  };
   {
     const RowLocks locks(options.kept);
     editor::in_parallel(
-        todo.size(), options.call_limit,
-        [&](std::size_t i) { work(orb, campaign, options, warm ? &*warm : nullptr, tally, locks, todo[i]); },
+        todo.size(), options.call_limit, [&](std::size_t i) { work(campaign, options, run, tally, locks, todo[i]); },
         static_cast<std::size_t>(options.jobs));
   }
   std::error_code ignored;

@@ -50,8 +50,8 @@ std::string folder_name(std::size_t number, const std::string& key);
 // The folder for kept files. The error: it cannot be made, or its disk is full.
 Result<void> make_kept(const SweepOptions& options);
 
-// `show` is called after every row, one call at a time.
+// `show` is called after every row, one call at a time; `reporter` receives what the runs report.
 Result<SweepResult> sweep(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepOptions& options,
-                          const std::function<void(const Progress&)>& show);
+                          const std::function<void(const Progress&)>& show, editor::Reporter& reporter);
 
 }  // namespace campaign

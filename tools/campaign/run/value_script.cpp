@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "base/text.h"
-#include "rtse/commands/conf.h"
+#include "system/configuration.h"
 
 namespace campaign {
 

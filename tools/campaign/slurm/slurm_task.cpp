@@ -100,14 +100,15 @@ std::optional<TaskPlace> parse_task(const std::string& text) {
   return TaskPlace{text.substr(0, first), static_cast<int>(*attempt), static_cast<std::size_t>(*task)};
 }
 
-Result<void> run_task(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepOptions& options, const TaskPlace& place) {
+Result<void> run_task(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepOptions& options, const TaskPlace& place,
+                      editor::Reporter& reporter) {
   const TaskFolder shared(place.folder);
   if (const auto same = shared.check_key(campaign.base_key()); !same) return same;
   const auto rows = shared.rows_of(place.attempt, place.task);
   if (!rows) return rows.error();
   Part part(shared.part(place.attempt, place.task));
   const Scratch scratch;
-  const auto warm = rows->size() > 1 ? std::make_optional<editor::WarmPrograms>() : std::nullopt;
+  const auto warm = rows->size() > 1 ? std::make_optional<editor::WarmPrograms>(reporter) : std::nullopt;
   const auto work = [&](std::size_t number) {
     if (editor::is_interrupted() || !part.problem().empty()) return;
     const auto row = campaign.row(number);
@@ -115,8 +116,9 @@ Result<void> run_task(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepO
     const auto key = campaign.key(*row);
     const auto name = folder_name(number, key);
     const auto folder = scratch.folder() / name;
-    auto outcome = run_row(orb, campaign, *row,
-                           {.folder = folder.string(), .keeps_files = false, .records = options.records, .warm = warm ? &*warm : nullptr});
+    auto outcome =
+        run_row(orb, campaign, *row,
+                {.folder = folder.string(), .keeps_files = false, .records = options.records, .warm = warm ? &*warm : nullptr}, reporter);
     if (editor::is_interrupted() && !outcome.problem.empty()) return;
     const auto room = outcome.problem.empty() ? Result<void>() : check_room({options.kept, temporary_folder()}, room_to_go_on);
     if (!room) return part.give_up(room.error().message);

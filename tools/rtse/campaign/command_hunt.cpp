@@ -18,7 +18,8 @@
 namespace campaign {
 namespace {
 
-using editor::Editor;
+using editor::Console;
+using editor::Session;
 
 struct HuntCall {
   std::string plan, folder, budget = "10m";
@@ -59,12 +60,12 @@ void tell(const Find& find, std::size_t number) {
   std::fflush(stdout);
 }
 
-void hunt_plan(Editor& editor, const HuntCall& call) {
+void hunt_plan(const Session& session, Console& console, const HuntCall& call) {
   auto plan = read_plan(call.plan);
-  if (!plan) return editor.fail(plan.error());
+  if (!plan) return console.fail(plan.error());
   if (call.seed >= 0) plan->hunt.seed = static_cast<std::uint64_t>(call.seed);
   const auto campaign = Campaign::prepare(std::move(*plan));
-  if (!campaign) return editor.fail(campaign.error());
+  if (!campaign) return console.fail(campaign.error());
   editor::catch_interrupts();
   HuntOptions options;
   options.budget = std::chrono::seconds(static_cast<long>(*seconds_of(call.budget)));
@@ -72,18 +73,18 @@ void hunt_plan(Editor& editor, const HuntCall& call) {
   options.most_cases = call.cases;
   options.most_finds = call.finds;
   options.folder = call.folder.empty() ? std::filesystem::path(call.plan).replace_extension(".finds").string() : call.folder;
-  options.call_limit = editor.limit();
-  const bool shows = isatty(2) != 0 && !editor.json();
-  const auto result = hunt(editor.orb(), *campaign, options, [&](const HuntProgress& progress) {
+  options.call_limit = session.call_timeout();
+  const bool shows = isatty(2) != 0 && !console.json();
+  const auto result = hunt(session.orb(), *campaign, options, [&](const HuntProgress& progress) {
     if (shows) std::fprintf(stderr, "\r\033[K");
-    if (progress.find && !editor.json()) tell(*progress.find, progress.finds);
+    if (progress.find && !console.json()) tell(*progress.find, progress.finds);
     if (shows)
       std::fprintf(stderr, "%zu cases  %zu finds  %zu states reached  %.0f of %ld s", progress.cases, progress.finds, progress.features,
                    progress.wall_s, static_cast<long>(options.budget.count()));
   });
   if (shows) std::fprintf(stderr, "\r\033[K");
-  if (!result) return editor.fail(result.error());
-  if (editor.json()) {
+  if (!result) return console.fail(result.error());
+  if (console.json()) {
     nlohmann::ordered_json finds = nlohmann::ordered_json::array();
     for (const auto& find : result->finds) finds.push_back(to_json(find));
     std::cout << nlohmann::ordered_json{{"cases", result->cases},
@@ -97,8 +98,8 @@ void hunt_plan(Editor& editor, const HuntCall& call) {
     std::printf("%zu finds in %zu cases, %.0f s; %zu states reached\n", result->finds.size(), result->cases, result->wall_s,
                 result->features);
   }
-  if (!result->finds.empty()) editor.set_failed();
-  if (editor::is_interrupted()) editor.fail({"interrupted after " + std::to_string(result->cases) + " cases"});
+  if (!result->finds.empty()) console.set_failed();
+  if (editor::is_interrupted()) console.fail({"interrupted after " + std::to_string(result->cases) + " cases"});
 }
 
 }  // namespace
@@ -119,7 +120,8 @@ void add_hunt(base::Command& app, editor::Chosen& chosen) {
   command->add_option("--finds", call->finds, "Stop after N failures found")->check(base::number_between(1, 1e6));
   command->add_option("--seed", call->seed, "Seed of the hunt (default: that of the plan)")->check(base::number_between(0, 1e18));
   command->add_option("-o,--folder", call->folder, "Folder for failures found (default: the plan's name with .finds)");
-  command->callback([&chosen, call] { chosen.work = [call](Editor& e) { hunt_plan(e, *call); }; });
+  command->callback(
+      [&chosen, call] { chosen.work = [call](const Session& session, Console& console) { hunt_plan(session, console, *call); }; });
 }
 
 }  // namespace campaign

@@ -14,7 +14,8 @@
 namespace campaign {
 namespace {
 
-using editor::Editor;
+using editor::Console;
+using editor::Session;
 
 struct ResultsCall {
   std::string file, junit, html, runs;
@@ -28,17 +29,17 @@ std::string runs_of(const ResultsCall& call) {
   return std::filesystem::weakly_canonical(call.runs, absent).string();  // whoever names a link means what it leads to
 }
 
-void show_results(Editor& editor, const ResultsCall& call) {
+void show_results(Console& console, const ResultsCall& call) {
   const auto results = read_results(call.file);
-  if (!results) return editor.fail(results.error());
+  if (!results) return console.fail(results.error());
   for (const auto& parameter : call.by) {
     if (std::ranges::find(results->parameters, parameter) == results->parameters.end())
-      return editor.fail({"--by " + base::in_quotes(parameter) + ": nothing of that name varies; it has " +
-                          (results->parameters.empty() ? "nothing" : base::join(results->parameters, ", "))});
+      return console.fail({"--by " + base::in_quotes(parameter) + ": nothing of that name varies; it has " +
+                           (results->parameters.empty() ? "nothing" : base::join(results->parameters, ", "))});
   }
   if (call.csv) {
     print_csv(std::cout, *results);
-  } else if (editor.json()) {
+  } else if (console.json()) {
     const auto rate = wilson(results->passed_count(), results->run_count());
     std::cout << nlohmann::ordered_json{{"rows", results->rows.size()},
                                         {"run", results->run_count()},
@@ -52,10 +53,10 @@ void show_results(Editor& editor, const ResultsCall& call) {
     print_tables(std::cout, *results, call.by);
   }
   if (!call.junit.empty()) {
-    if (const auto written = write_junit(*results, call.junit); !written) editor.fail(written.error());
+    if (const auto written = write_junit(*results, call.junit); !written) console.fail(written.error());
   }
   if (!call.html.empty()) {
-    if (const auto written = write_html(*results, call.html, runs_of(call)); !written) editor.fail(written.error());
+    if (const auto written = write_html(*results, call.html, runs_of(call)); !written) console.fail(written.error());
   }
 }
 
@@ -73,7 +74,7 @@ void add_results(base::Command& app, editor::Chosen& chosen) {
                       "Folder of kept files (sweep --keep), for pictures in the page; default: the results' name with .runs");
   command->callback([&chosen, call] {
     chosen.needs_orb = false;
-    chosen.work = [call](Editor& e) { show_results(e, *call); };
+    chosen.work = [call](const Session&, Console& console) { show_results(console, *call); };
   });
 }
 

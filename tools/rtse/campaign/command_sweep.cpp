@@ -29,7 +29,8 @@ namespace campaign {
 namespace fs = std::filesystem;
 namespace {
 
-using editor::Editor;
+using editor::Console;
+using editor::Session;
 
 constexpr const char* no_state = "-";  // of a run that does not get to its end
 
@@ -83,16 +84,16 @@ void remove_files_of_run(const fs::path& folder) {
 }
 
 // One row, with its files kept: what the command that repeats a row does.
-void run_one(Editor& editor, const Campaign& campaign, const SweepCall& call) {
+void run_one(const Session& session, Console& console, const Campaign& campaign, const SweepCall& call) {
   if (call.row > campaign.rows())
-    return editor.fail({"row " + std::to_string(call.row) + ": the plan has " + std::to_string(campaign.rows()) + " rows"});
+    return console.fail({"row " + std::to_string(call.row) + ": the plan has " + std::to_string(campaign.rows()) + " rows"});
   const auto row = campaign.row(call.row);
-  if (!row) return editor.fail(row.error());
+  if (!row) return console.fail(row.error());
   const auto folder = call.keep.empty() ? "row-" + std::to_string(call.row) : call.keep;
-  if (!editor.json()) std::printf("row %zu  %s\n", row->number, base::printable(values_text(*row)).c_str());
+  if (!console.json()) std::printf("row %zu  %s\n", row->number, base::printable(values_text(*row)).c_str());
   std::fflush(stdout);
   remove_files_of_run(folder);
-  const auto outcome = run_row(editor.orb(), campaign, *row, {.folder = folder, .keeps_files = true, .records = call.records});
+  const auto outcome = run_row(session.orb(), campaign, *row, {.folder = folder, .keeps_files = true, .records = call.records}, console);
   nlohmann::ordered_json json{{"row", row->number},
                               {"seed", row->seed},
                               {"key", campaign.key(*row)},
@@ -103,7 +104,7 @@ void run_one(Editor& editor, const Campaign& campaign, const SweepCall& call) {
                               {"wall", outcome.wall_s},
                               {"folder", folder},
                               {"measures", outcome.measures}};
-  if (editor.json()) {
+  if (console.json()) {
     std::cout << json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
   } else {
     std::printf("%s  %.1f s simulated in %.1f s  state %s  files in %s\n", outcome.is_passed() ? "passed" : "FAILED", outcome.simulated_s,
@@ -111,20 +112,20 @@ void run_one(Editor& editor, const Campaign& campaign, const SweepCall& call) {
     for (const auto& [name, value] : outcome.measures) std::printf("  %s  %.6g\n", base::printable(name).c_str(), value);
   }
   std::fflush(stdout);
-  for (const auto& note : outcome.notes) std::fprintf(stderr, "rtse: %s\n", base::printable(note, "\n\t").c_str());
+  for (const auto& note : outcome.notes) console.warn(note);
   const std::string state = outcome.state_hash.empty() ? no_state : outcome.state_hash;
   if (!call.state.empty() && call.state != state)
-    editor.fail({"row " + std::to_string(call.row) + ": state " + state + ", expected " + call.state});
-  if (!outcome.problem.empty()) editor.fail({outcome.problem});
+    console.fail({"row " + std::to_string(call.row) + ": state " + state + ", expected " + call.state});
+  if (!outcome.problem.empty()) console.fail({outcome.problem});
   for (const auto& verdict : outcome.verdicts) {
-    if (!verdict.problem.empty()) editor.fail({verdict.expectation + ": " + verdict.problem});
+    if (!verdict.problem.empty()) console.fail({verdict.expectation + ": " + verdict.problem});
   }
 }
 
-void tell(Editor& editor, const SweepResult& result, const SweepCall& call) {
+void tell(Console& console, const SweepResult& result, const SweepCall& call) {
   const auto& p = result.progress;
   const auto results = results_of(call);
-  if (editor.json()) {
+  if (console.json()) {
     std::cout << nlohmann::ordered_json{{"rows", p.rows},     {"passed", p.passed},   {"failed", p.failed},
                                         {"stored", p.stored}, {"audited", p.audited}, {"different", p.different},
                                         {"wall", p.wall_s},   {"results", results},   {"interrupted", result.is_interrupted}}
@@ -140,18 +141,18 @@ void tell(Editor& editor, const SweepResult& result, const SweepCall& call) {
   std::fflush(stdout);
   constexpr std::size_t enough = 10;
   for (std::size_t i = 0; i < result.failed.size() && i < enough; ++i) {
-    const auto again = base::command_words({"rtse", "sweep"}, {call.plan}, {"--row", std::to_string(result.failed[i].number)});
-    std::fprintf(stderr, "rtse: row %zu: %s\nrtse:   again: %s\n", result.failed[i].number,
-                 base::printable(result.failed[i].problem, "\n\t").c_str(), base::shell_line(again).c_str());
+    const auto number = std::to_string(result.failed[i].number);
+    console.warn("row " + number + ": " + result.failed[i].problem);
+    console.warn("  again: " + base::shell_line(base::command_words({"rtse", "sweep"}, {call.plan}, {"--row", number})));
   }
   if (p.failed > enough)
-    std::fprintf(stderr, "rtse: and %zu more; %s\n", p.failed - enough,
-                 base::shell_line(base::command_words({"rtse", "results"}, {results})).c_str());
-  if (p.failed > 0) editor.set_failed();
-  if (!result.problem.empty()) editor.fail({result.problem});
-  for (const auto number : result.different) editor.fail({"audit: row " + std::to_string(number) + " has another state than stored"});
+    console.warn("and " + std::to_string(p.failed - enough) + " more; " +
+                 base::shell_line(base::command_words({"rtse", "results"}, {results})));
+  if (p.failed > 0) console.set_failed();
+  if (!result.problem.empty()) console.fail({result.problem});
+  for (const auto number : result.different) console.fail({"audit: row " + std::to_string(number) + " has another state than stored"});
   if (result.is_interrupted)
-    editor.fail({"interrupted after " + std::to_string(p.done) + " of " + std::to_string(p.rows) + " rows; the same command goes on"});
+    console.fail({"interrupted after " + std::to_string(p.done) + " of " + std::to_string(p.rows) + " rows; the same command goes on"});
 }
 
 // "3", "1..20".
@@ -173,7 +174,7 @@ void print_commands(const Campaign& campaign, const SweepCall& call) {
   }
 }
 
-SweepOptions options_of(const Editor& editor, const SweepCall& call) {
+SweepOptions options_of(const Session& session, const SweepCall& call) {
   SweepOptions options;
   options.results = results_of(call);
   options.kept = fs::absolute(call.keep.empty() ? fs::path(options.results).replace_extension(".runs") : fs::path(call.keep)).string();
@@ -181,7 +182,7 @@ SweepOptions options_of(const Editor& editor, const SweepCall& call) {
   if (const auto rows = parse_row_range(call.rows)) std::tie(options.first_row, options.last_row) = *rows;
   options.records = call.records;
   options.fails_fast = call.fails_fast;
-  options.call_limit = editor.limit();
+  options.call_limit = session.call_timeout();
   const auto percent = base::parse_number(call.audit.ends_with("%") ? call.audit.substr(0, call.audit.size() - 1) : call.audit);
   options.audit = percent.value_or(0) / (call.audit.ends_with("%") ? 100 : 1);
   return options;
@@ -199,34 +200,34 @@ SlurmOptions slurm_options_of(const SweepCall& call, const SweepOptions& options
   return slurm;
 }
 
-void sweep_plan(Editor& editor, const SweepCall& call) {
+void sweep_plan(const Session& session, Console& console, const SweepCall& call) {
   if (call.prints_schema) {
     std::cout << plan_schema().dump(2) << '\n';
     return;
   }
   auto plan = read_plan(call.plan);
-  if (!plan) return editor.fail(plan.error());
+  if (!plan) return console.fail(plan.error());
   const auto campaign = Campaign::prepare(std::move(*plan));
-  if (!campaign) return editor.fail(campaign.error());
+  if (!campaign) return console.fail(campaign.error());
   editor::catch_interrupts();
   if (call.engine == "parallel") return print_commands(*campaign, call);
-  if (call.row > 0) return run_one(editor, *campaign, call);
-  const auto options = options_of(editor, call);
+  if (call.row > 0) return run_one(session, console, *campaign, call);
+  const auto options = options_of(session, call);
   if (options.last_row > campaign->rows())
-    return editor.fail({"--rows " + call.rows + ": the plan has " + std::to_string(campaign->rows()) + " rows"});
+    return console.fail({"--rows " + call.rows + ": the plan has " + std::to_string(campaign->rows()) + " rows"});
   if (!call.task.empty()) {
-    if (const auto done = run_task(editor.orb(), *campaign, options, *parse_task(call.task)); !done) editor.fail(done.error());
+    if (const auto done = run_task(session.orb(), *campaign, options, *parse_task(call.task), console); !done) console.fail(done.error());
     return;
   }
-  const bool shows = isatty(2) != 0 && !editor.json();
+  const bool shows = isatty(2) != 0 && !console.json();
   const auto show = [&](const Progress& progress) {
     if (shows) show_progress(progress);
   };
   const auto result = call.engine == "slurm" ? slurm_sweep(*campaign, options, slurm_options_of(call, options), show)
-                                             : sweep(editor.orb(), *campaign, options, show);
+                                             : sweep(session.orb(), *campaign, options, show, console);
   if (shows) std::fprintf(stderr, "\r\033[K");
-  if (!result) return editor.fail(result.error());
-  tell(editor, *result, call);
+  if (!result) return console.fail(result.error());
+  tell(console, *result, call);
 }
 
 // The engine that runs the rows.
@@ -285,7 +286,7 @@ void add_sweep(base::Command& app, editor::Chosen& chosen) {
     editor::require(call->engine == "local" || audit->count() + fails_fast->count() == 0, "sweep",
                     "--audit and --fail-fast are of --engine local");
     chosen.needs_orb = !call->prints_schema;
-    chosen.work = [call](Editor& e) { sweep_plan(e, *call); };
+    chosen.work = [call](const Session& session, Console& console) { sweep_plan(session, console, *call); };
   });
 }
 

@@ -15,15 +15,15 @@ class Differences {
  public:
   void add(const Error& difference) { found_.push_back(difference); }
   // A line each on standard error, or one JSON object on standard output.
-  void tell(Editor& editor) const {
-    if (!editor.json()) {
-      for (const auto& difference : found_) editor.fail(difference);
+  void tell(Console& console) const {
+    if (!console.json()) {
+      for (const auto& difference : found_) console.fail(difference);
       return;
     }
     auto texts = nlohmann::ordered_json::array();
     for (const auto& difference : found_) texts.push_back(difference.message);
-    editor.print({{"same", found_.empty()}, {"differences", texts}});
-    if (!found_.empty()) editor.set_failed();
+    console.print({{"same", found_.empty()}, {"differences", texts}});
+    if (!found_.empty()) console.set_failed();
   }
 
  private:
@@ -93,16 +93,16 @@ void check_component(const Matched& matched, const SavedComponent& saved, const 
 }
 
 // State: that of every component; "any": not compared; "saved": as the file says.
-void check_system(Editor& editor, const std::string& file, const std::string& state) {
+void check_system(const Session& session, Console& console, const std::string& file, const std::string& state) {
   const auto system = read_system(file);
-  if (!system) return editor.fail(system.error());
-  const auto matched = Matched::read(editor, *system, {.contexts = true, .connectors = true, .configuration = true});
-  if (!matched) return editor.fail(matched.error());
+  if (!system) return console.fail(system.error());
+  const auto matched = Matched::read(session, *system, {.contexts = true, .connectors = true, .configuration = true});
+  if (!matched) return console.fail(matched.error());
   Differences differences;
   for (const auto& missing : matched->missing()) differences.add(missing);
   for (const auto& connector : system->connectors) check_connection(*matched, connector, differences);
   for (const auto& component : system->components) check_component(*matched, component, state, differences);
-  differences.tell(editor);
+  differences.tell(console);
 }
 
 }  // namespace
@@ -115,7 +115,9 @@ void add_check(base::Command& app, Chosen& chosen) {
   check->add_option("-s,--state", *state, "Expected state of every component; saved: the state in FILE")
       ->capture_default_str()
       ->check(base::one_of({"created", "inactive", "active", "error", "any", "saved"}, base::Case::does_not_matter));
-  check->callback([&chosen, file, state] { chosen.work = [=](Editor& e) { check_system(e, *file, *state); }; });
+  check->callback([&chosen, file, state] {
+    chosen.work = [=](const Session& session, Console& console) { check_system(session, console, *file, *state); };
+  });
 }
 
 }  // namespace editor

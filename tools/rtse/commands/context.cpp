@@ -17,12 +17,12 @@ struct ContextOptions {
   int index = 0;
 };
 
-void list_contexts(Editor& editor, const ComponentView& component) {
+void list_contexts(Console& console, const ComponentView& component) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < component.contexts.size(); ++i) {
     const auto& context = component.contexts[i];
     const auto owner = context.is_owned ? "own" : "joined";
-    if (editor.json()) {
+    if (console.json()) {
       all.push_back({{"index", i},
                      {"owned", context.is_owned},
                      {"kind", kind_text(context.kind)},
@@ -37,17 +37,17 @@ void list_contexts(Editor& editor, const ComponentView& component) {
                   base::format_number(context.rate).c_str(), context.is_running ? "runs" : "stopped", state_text(context.state).c_str());
     }
   }
-  if (editor.json()) editor.print(all);
+  if (console.json()) console.print(all);
 }
 
-void work_on_context(Editor& editor, const ContextOptions& options) {
-  const auto component = editor.component(options.path, {.contexts = true});
-  if (!component) return editor.fail(component.error());
-  if (options.action == "list") return list_contexts(editor, *component);
+void work_on_context(const Session& session, Console& console, const ContextOptions& options) {
+  const auto component = session.component(options.path, {.contexts = true});
+  if (!component) return console.fail(component.error());
+  if (options.action == "list") return list_contexts(console, *component);
   const auto index = static_cast<std::size_t>(options.index);
   if (index >= component->contexts.size()) {
-    return editor.fail({"component " + component->path + ": has no execution context number " + std::to_string(index) + ", it has " +
-                        std::to_string(component->contexts.size())});
+    return console.fail({"component " + component->path + ": has no execution context number " + std::to_string(index) + ", it has " +
+                         std::to_string(component->contexts.size())});
   }
   const auto& context = component->contexts[index].object;
   const auto what = options.action + " of context " + std::to_string(index) + " of " + component->path;
@@ -55,8 +55,8 @@ void work_on_context(Editor& editor, const ContextOptions& options) {
   const auto called = remote(what + ":", [&] {
     code = options.action == "rate" ? context->set_rate(options.rate) : options.action == "start" ? context->start() : context->stop();
   });
-  if (!called) return editor.fail(called.error());
-  if (const auto checked = check(what, code); !checked) editor.fail(checked.error());
+  if (!called) return console.fail(called.error());
+  if (const auto checked = check(what, code); !checked) console.fail(checked.error());
 }
 
 }  // namespace
@@ -75,7 +75,7 @@ void add_context(base::Command& app, Chosen& chosen) {
     require(rate->size() == (options->action == "rate" ? 1u : 0u), "ec " + options->action,
             options->action == "rate" ? "expected one rate" : "expected nothing more");
     if (!rate->empty()) options->rate = rate->front();
-    chosen.work = [options](Editor& e) { work_on_context(e, *options); };
+    chosen.work = [options](const Session& session, Console& console) { work_on_context(session, console, *options); };
   });
 }
 

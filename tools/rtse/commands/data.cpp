@@ -60,23 +60,23 @@ struct PrintOptions {
   double rate = 0;       // at most so many lines a second; 0: all
 };
 
-void print_ports(Editor& editor, const PrintOptions& options) {
+void print_ports(const Session& session, Console& console, const PrintOptions& options) {
   Queue queue;
-  std::vector<Editor::Port> ports;
+  std::vector<Session::Port> ports;
   std::vector<CORBA::TypeCode_ptr> types;
   std::vector<std::unique_ptr<Tap>> taps;
   for (const auto& path : options.ports) {
-    auto port = editor.port(path);
-    if (!port) return editor.fail(port.error());
+    auto port = session.port(path);
+    if (!port) return console.fail(port.error());
     if (port->port.port_type() != "DataOutPort")
-      return editor.fail({"port " + port->port.full_name + ": is a " + port->port.port_type() + ", print reads OutPorts"});
+      return console.fail({"port " + port->port.full_name + ": is a " + port->port.port_type() + ", print reads OutPorts"});
     types.push_back(type_code_of(port->port.data_type()));
     if (CORBA::is_nil(types.back()))
-      return editor.fail({"port " + port->port.full_name + ": carries " + port->port.data_type() + ", which rtse does not know"});
+      return console.fail({"port " + port->port.full_name + ": carries " + port->port.data_type() + ", which rtse does not know"});
     ports.push_back(std::move(*port));
   }
   for (std::size_t i = 0; i < ports.size(); ++i) {
-    auto tap = Tap::connect(editor.orb(), ports[i].port, {}, [&queue, i](std::span<const unsigned char> payload, bool little_endian) {
+    auto tap = Tap::connect(session.orb(), ports[i].port, {}, [&queue, i](std::span<const unsigned char> payload, bool little_endian) {
       auto content = queue.content.lock();
       if (content->samples.size() >= Queue::longest) {
         content->samples.pop_front();
@@ -85,7 +85,7 @@ void print_ports(Editor& editor, const PrintOptions& options) {
       content->samples.push_back({i, {payload.begin(), payload.end()}, little_endian});
       queue.arrived.notify_one();
     });
-    if (!tap) return editor.fail(tap.error());
+    if (!tap) return console.fail(tap.error());
     taps.push_back(std::move(*tap));
   }
   std::signal(SIGINT, end_by_user);
@@ -114,8 +114,8 @@ void print_ports(Editor& editor, const PrintOptions& options) {
     const auto value = decode(types[sample.port], sample.payload, sample.little_endian);
     ++printed;
     if (!value) {
-      editor.fail({"port " + ports[sample.port].port.full_name + ": " + value.error().message});
-    } else if (editor.json()) {
+      console.fail({"port " + ports[sample.port].port.full_name + ": " + value.error().message});
+    } else if (console.json()) {
       std::cout << Json{{"port", ports[sample.port].port.full_name}, {"value", *value}}.dump() << std::endl;
     } else {
       std::cout << (ports.size() > 1 ? ports[sample.port].port.full_name + " " : "") << as_text(*value) << std::endl;
@@ -123,10 +123,10 @@ void print_ports(Editor& editor, const PrintOptions& options) {
   }
   taps.clear();
   if (const auto dropped = queue.content.lock()->dropped; dropped > 0)
-    editor.fail({"print: " + std::to_string(dropped) + " samples were dropped, they came faster than they could be written"});
+    console.fail({"print: " + std::to_string(dropped) + " samples were dropped, they came faster than they could be written"});
   if (options.count > 0 && printed < options.count && !is_over()) {
-    editor.fail({"print: got " + std::to_string(printed) + " of " + std::to_string(options.count) + " samples in " +
-                 base::format_number(options.timeout_s) + " s"});
+    console.fail({"print: got " + std::to_string(printed) + " of " + std::to_string(options.count) + " samples in " +
+                  base::format_number(options.timeout_s) + " s"});
   }
 }
 
@@ -137,26 +137,26 @@ struct InjectOptions {
   int count = 1;    // how often the values are sent
 };
 
-void inject(Editor& editor, const InjectOptions& options) {
-  auto port = editor.port(options.port);
-  if (!port) return editor.fail(port.error());
+void inject(const Session& session, Console& console, const InjectOptions& options) {
+  auto port = session.port(options.port);
+  if (!port) return console.fail(port.error());
   if (port->port.port_type() != "DataInPort")
-    return editor.fail({"port " + port->port.full_name + ": is a " + port->port.port_type() + ", inject writes to InPorts"});
+    return console.fail({"port " + port->port.full_name + ": is a " + port->port.port_type() + ", inject writes to InPorts"});
   const auto type = type_code_of(port->port.data_type());
   if (CORBA::is_nil(type))
-    return editor.fail({"port " + port->port.full_name + ": carries " + port->port.data_type() + ", which rtse does not know"});
+    return console.fail({"port " + port->port.full_name + ": carries " + port->port.data_type() + ", which rtse does not know"});
   std::vector<std::vector<unsigned char>> payloads;
   for (const auto& text : options.values) {
     const auto value = parse_value(type, text, base::SystemClock().now().count());
-    if (!value) return editor.fail({"port " + port->port.full_name + ": " + value.error().message});
+    if (!value) return console.fail({"port " + port->port.full_name + ": " + value.error().message});
     auto payload = encode(type, *value);
-    if (!payload) return editor.fail({"port " + port->port.full_name + ": " + payload.error().message});
+    if (!payload) return console.fail({"port " + port->port.full_name + ": " + payload.error().message});
     payloads.push_back(std::move(*payload));
   }
-  auto tap = Tap::connect(editor.orb(), port->port, {}, {});
-  if (!tap) return editor.fail(tap.error());
+  auto tap = Tap::connect(session.orb(), port->port, {}, {});
+  if (!tap) return console.fail(tap.error());
   std::signal(SIGINT, end_by_user);
-  const CallLimit limited(editor.limit());
+  const CallLimit limited(session.call_timeout());
   auto next = Clock::now();
   bool is_first = true;
   for (int i = 0; (options.count <= 0 || i < options.count) && !ended_by_user.load(std::memory_order_relaxed); ++i) {
@@ -167,7 +167,7 @@ void inject(Editor& editor, const InjectOptions& options) {
       }
       if (ended_by_user.load(std::memory_order_relaxed)) break;
       const auto sent = (*tap)->put(payload);
-      if (!sent) return editor.fail({"port " + port->port.full_name + ": " + sent.error().message});
+      if (!sent) return console.fail({"port " + port->port.full_name + ": " + sent.error().message});
     }
   }
 }
@@ -181,7 +181,9 @@ void add_data(base::Command& app, Chosen& chosen) {
   print->add_option("-n,--count", options->count, "Stop after N samples")->check(base::number_between(0, 1e9));
   print->add_option("-t,--timeout", options->timeout_s, "Stop after N seconds")->check(base::number_between(0.0, 1e9));
   print->add_option("-r,--rate", options->rate, "Maximum number of samples per second")->check(base::number_between(0.0, 1e6));
-  print->callback([&chosen, options] { chosen.work = [options](Editor& e) { editor::print_ports(e, *options); }; });
+  print->callback([&chosen, options] {
+    chosen.work = [options](const Session& session, Console& console) { editor::print_ports(session, console, *options); };
+  });
 
   auto* inject = app.add_subcommand("inject", "Write values to an InPort");
   auto values = std::make_shared<InjectOptions>();
@@ -191,7 +193,9 @@ void add_data(base::Command& app, Chosen& chosen) {
       ->check(base::number_between(0, 1e9))
       ->capture_default_str();
   inject->add_option("-r,--rate", values->rate, "Samples per second")->check(base::number_between(1e-3, 1e5))->capture_default_str();
-  inject->callback([&chosen, values] { chosen.work = [values](Editor& e) { editor::inject(e, *values); }; });
+  inject->callback([&chosen, values] {
+    chosen.work = [values](const Session& session, Console& console) { editor::inject(session, console, *values); };
+  });
 }
 
 }  // namespace editor

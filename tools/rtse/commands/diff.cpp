@@ -21,24 +21,24 @@ bool is_recording(const std::string& file) {
   return start == "\x89MCAP";
 }
 
-void diff(Editor& editor, const std::string& a, const std::string& b) {
+void diff(Console& console, const std::string& a, const std::string& b) {
   if (is_recording(a) && is_recording(b)) {
     const auto program = own_program("rtse-recorder");
     std::vector<const char*> words = {program.c_str(), "recording", "compare", a.c_str(), b.c_str(), nullptr};
-    if (editor.json()) words.insert(words.begin() + 1, "--json");
+    if (console.json()) words.insert(words.begin() + 1, "--json");
     execv(program.c_str(), const_cast<char* const*>(words.data()));  // it changes none of them
-    return editor.fail({"program " + program + ": cannot be started; expected it beside rtse"});
+    return console.fail({"program " + program + ": cannot be started; expected it beside rtse"});
   }
   const auto comparison = base::compare_hash_logs(a, b);
-  if (!comparison) return editor.fail(comparison.error());
+  if (!comparison) return console.fail(comparison.error());
   const auto difference = difference_text(*comparison);
-  if (editor.json()) {
+  if (console.json()) {
     std::cout << difference_json(*comparison).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
   } else if (difference.empty()) {
     std::printf("the same in %llu ticks, hash %s\n", static_cast<unsigned long long>(comparison->ticks),
                 hash_text(comparison->hash).c_str());
   }
-  if (!difference.empty()) editor.fail({difference});
+  if (!difference.empty()) console.fail({difference});
 }
 
 }  // namespace
@@ -51,7 +51,7 @@ void add_diff(base::Command& app, Chosen& chosen) {
   command->add_option("RUN2", files->second, "Hash log or recording to compare with")->required()->check(base::existing_file());
   command->callback([&chosen, files] {
     chosen.needs_orb = false;
-    chosen.work = [files](Editor& editor) { diff(editor, files->first, files->second); };
+    chosen.work = [files](const Session&, Console& console) { diff(console, files->first, files->second); };
   });
 }
 

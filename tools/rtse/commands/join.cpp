@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -17,6 +18,8 @@
 #include "rtse/command.h"
 #include "rtse/commands/commands.h"
 #include "run/time_members.h"
+#include "shm/client.h"
+#include "shm/lockstep.h"
 
 namespace editor {
 namespace {
@@ -88,11 +91,11 @@ struct Joining {
   TimeMember member;
 };
 
-Result<Joining> look_at(const Editor& editor, const std::string& path, const JoinOptions& options) {
-  const auto component = editor.component(path, {.contexts = true});
+Result<Joining> look_at(const Session& session, Console& console, const std::string& path, const JoinOptions& options) {
+  const auto component = session.component(path, {.contexts = true});
   if (!component) return component.error();
   if (simulated_context(*component)) return Error{"component " + component->path + ": takes part in simulated time already (rtse leave)"};
-  if (has_proxy(editor, component->instance))
+  if (has_proxy(session, component->instance))
     return Error{"component " + component->path + ": its own context is ticked in simulated time already (rtse leave)"};
   auto rate = options.rate;
   for (const auto& context : component->contexts) {
@@ -101,18 +104,17 @@ Result<Joining> look_at(const Editor& editor, const std::string& path, const Joi
   if (!(rate > 0)) return Error{"component " + component->path + ": has no context with a rate to take over; name one with --rate"};
   const auto how = options.ticks ? TimeMember::How::tick : TimeMember::How::member;
   if (options.ticks && ticks_on_its_own(*component))
-    std::cerr
-        << "rtse: component " << component->path
-        << ": its context, an ExtTrigExecutionContext, runs it after each tick on a thread of its own, for which nothing can wait; join "
-           "it as a member (without --tick)\n";
+    console.warn("component " + component->path +
+                 ": its context, an ExtTrigExecutionContext, runs it after each tick on a thread of its own, for which nothing can wait; "
+                 "join it as a member (without --tick)");
   return Joining{component->path, {component->instance, options.phase, base::format_number(rate), how, options.turn}};
 }
 
-Result<void> await_proxies(const Editor& editor, const ProgramApart& host, const std::vector<Joining>& all) {
+Result<void> await_proxies(const Session& session, const ProgramApart& host, const std::vector<Joining>& all) {
   const auto deadline = Clock::now() + start_limit;
   for (const auto& one : all) {
     for (;;) {
-      const auto names = editor.tree();
+      const auto names = session.tree();
       if (names && names->find_component({false, {proxy_name(one.member.instance) + ".rtc"}, ""})) break;
       if (host.has_ended()) return Error{"host of the contexts on simulated time: has ended: " + host.said()};
       if (Clock::now() > deadline)
@@ -123,57 +125,56 @@ Result<void> await_proxies(const Editor& editor, const ProgramApart& host, const
   return {};
 }
 
-void end_proxy_of(const Editor& editor, const Joining& one) {
-  const auto proxy = editor.component(proxy_name(one.member.instance) + ".rtc", {});
+void end_proxy_of(const Session& session, const Joining& one) {
+  const auto proxy = session.component(proxy_name(one.member.instance) + ".rtc", {});
   if (proxy) static_cast<void>(remote("proxy", [&] { proxy->object->exit(); }));
 }
 
 // From when on time waits for them; false when there is no such simulator.
 bool await_participants(const std::vector<Joining>& all, const std::string& server_id) {
+  const auto id = static_cast<std::uint32_t>(base::parse_integer(server_id).value_or(0));
   const auto deadline = Clock::now() + participant_limit;
   while (Clock::now() < deadline) {
-    const auto said = output_of({{own_program("simctl"), "-s", server_id, "--json", "participants"}, {}, ""}, 5s);
-    if (!said) return false;
-    const auto json = nlohmann::json::parse(*said, nullptr, false);
-    std::size_t found = 0;
-    for (const auto& one : all) {
-      for (const auto& participant : json.is_array() ? json : nlohmann::json::array()) {
-        if (participant.value("name", "") == one.member.instance) ++found;
-      }
-    }
+    const auto simulation = shm::Iface::open(id, shm::IfaceType::simulation, "world");
+    const auto participants = simulation ? shm::read_participants(*simulation) : Error{simulation.error()};
+    if (!participants) return false;
+    const auto takes_part = [&](const Joining& one) {
+      return std::ranges::any_of(*participants, [&](const auto& participant) { return participant.name == one.member.instance; });
+    };
+    const auto found = static_cast<std::size_t>(std::ranges::count_if(all, takes_part));
     if (found >= all.size()) return true;
     std::this_thread::sleep_for(20ms);  // the simulator takes them in between two steps, and tells nobody
   }
   return false;
 }
 
-void join(Editor& editor, const JoinOptions& options) {
+void join(const Session& session, Console& console, const JoinOptions& options) {
   std::vector<Joining> all;
   HostSettings settings{
-      .naming = editor.server(), .name = "time" + std::to_string(getpid()), .empty_file = "/dev/null", .options = options.options};
+      .naming = session.server(), .name = "time" + std::to_string(getpid()), .empty_file = "/dev/null", .options = options.options};
   for (const auto& path : options.components) {
-    auto one = look_at(editor, path, options);
-    if (!one) return editor.fail(one.error());
+    auto one = look_at(session, console, path, options);
+    if (!one) return console.fail(one.error());
     settings.creations.push_back(proxy_creation(one->member, options.server_id) + alone_limit);
     all.push_back(std::move(*one));
   }
   const auto host = ProgramApart::start(host_words(settings), options.log);
-  if (!host) return editor.fail(host.error());
-  if (const auto there = await_proxies(editor, *host, all); !there) {
-    for (const auto& one : all) end_proxy_of(editor, one);
-    return editor.fail(there.error());
+  if (!host) return console.fail(host.error());
+  if (const auto there = await_proxies(session, *host, all); !there) {
+    for (const auto& one : all) end_proxy_of(session, one);
+    return console.fail(there.error());
   }
   for (const auto& one : all) {
-    if (const auto joined = join_time(editor, one.path, proxy_name(one.member.instance) + ".rtc", one.member.how, join_limit); !joined) {
-      end_proxy_of(editor, one);
-      editor.fail(joined.error());
+    if (const auto joined = join_time(session, one.path, proxy_name(one.member.instance) + ".rtc", one.member.how, join_limit); !joined) {
+      end_proxy_of(session, one);
+      console.fail(joined.error());
     }
   }
-  if (editor.failed()) return;
+  if (console.failed()) return;
   const bool runs = await_participants(all, options.server_id);
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const auto& one : all) {
-    if (!editor.json())
+    if (!console.json())
       std::cout << one.path << ": takes part in simulator " << options.server_id << (runs ? "" : ", once that runs,") << " at "
                 << one.member.rate << " Hz, phase " << one.member.phase << '\n';
     json.push_back({{"component", one.path},
@@ -182,12 +183,12 @@ void join(Editor& editor, const JoinOptions& options) {
                     {"rate", one.member.rate},
                     {"takes_part", runs}});
   }
-  if (editor.json()) editor.print(json);
+  if (console.json()) console.print(json);
 }
 
-void leave(Editor& editor, const std::vector<std::string>& components) {
+void leave(const Session& session, Console& console, const std::vector<std::string>& components) {
   for (const auto& path : components) {
-    if (const auto left = leave_time(editor, path); !left) editor.fail(left.error());
+    if (const auto left = leave_time(session, path); !left) console.fail(left.error());
   }
 }
 
@@ -218,12 +219,16 @@ void add_join(base::Command& app, Chosen& chosen) {
   join->add_option("--log", options->log, "Log file of the context host");
   join->add_option("-o,--option", options->options, "Key of rtc.conf for that host, KEY:VALUE, e.g. of corba.endpoints")
       ->allow_extra_args(false);
-  join->callback([&chosen, options] { chosen.work = [options](Editor& e) { editor::join(e, *options); }; });
+  join->callback([&chosen, options] {
+    chosen.work = [options](const Session& session, Console& console) { editor::join(session, console, *options); };
+  });
 
   auto* leave = app.add_subcommand("leave", "Undo join: components run in their own contexts again");
   auto components = std::make_shared<std::vector<std::string>>();
   leave->add_option("COMPONENT", *components, "Components")->required();
-  leave->callback([&chosen, components] { chosen.work = [components](Editor& e) { editor::leave(e, *components); }; });
+  leave->callback([&chosen, components] {
+    chosen.work = [components](const Session& session, Console& console) { editor::leave(session, console, *components); };
+  });
 }
 
 }  // namespace editor

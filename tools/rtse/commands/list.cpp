@@ -107,7 +107,7 @@ void print_long(const Entry& entry, const ComponentView* component) {
   print_row(state, rate, counts, display(entry));
 }
 
-void list_level(const Editor& editor, const Entry& entry, const ListOptions& options, const std::vector<ComponentView>& components,
+void list_level(Console& console, const Entry& entry, const ListOptions& options, const std::vector<ComponentView>& components,
                 Json& json) {
   std::vector<const Entry*> shown;
   if (entry.kind == EntryKind::context) {
@@ -115,11 +115,11 @@ void list_level(const Editor& editor, const Entry& entry, const ListOptions& opt
   } else {
     shown.push_back(&entry);
   }
-  if (options.recurse && !editor.json()) std::cout << entry.path() << ":\n";
-  if (options.is_long && !editor.json() && !shown.empty()) print_row("STATE", "RATE", "IN OUT SERVICE", "NAME");
+  if (options.recurse && !console.json()) std::cout << entry.path() << ":\n";
+  if (options.is_long && !console.json() && !shown.empty()) print_row("STATE", "RATE", "IN OUT SERVICE", "NAME");
   for (const auto* child : shown) {
     const auto* component = view_of(*child, components);
-    if (editor.json()) {
+    if (console.json()) {
       json.push_back(summary(*child, component));
     } else if (options.is_long) {
       print_long(*child, component);
@@ -130,8 +130,8 @@ void list_level(const Editor& editor, const Entry& entry, const ListOptions& opt
   if (!options.recurse) return;
   for (const auto* child : shown) {
     if (child->kind != EntryKind::context) continue;
-    if (!editor.json()) std::cout << '\n';
-    list_level(editor, *child, options, components, json);
+    if (!console.json()) std::cout << '\n';
+    list_level(console, *child, options, components, json);
   }
 }
 
@@ -254,8 +254,8 @@ void print_component(const ComponentView& component, const std::vector<Component
   for (const auto& [key, value] : component.properties) std::cout << "     " << key << " = " << value << '\n';
 }
 
-void cat_manager(Editor& editor, const Entry& entry) {
-  const CallLimit limited(editor.limit());
+void cat_manager(const Session& session, Console& console, const Entry& entry) {
+  const CallLimit limited(session.call_timeout());
   Properties properties;
   std::vector<std::string> components;
   const auto read = remote("manager " + entry.path(), [&] {
@@ -266,67 +266,67 @@ void cat_manager(Editor& editor, const Entry& entry) {
     RTC::ComponentProfileList_var profiles = manager->get_component_profiles();
     for (CORBA::ULong i = 0; i < profiles->length(); ++i) components.emplace_back(profiles[i].instance_name.in());
   });
-  if (!read) return editor.fail(read.error());
-  if (editor.json()) return editor.print({{"path", entry.path()}, {"properties", properties}, {"components", components}});
+  if (!read) return console.fail(read.error());
+  if (console.json()) return console.print({{"path", entry.path()}, {"properties", properties}, {"components", components}});
   std::cout << entry.path() << "\n  components: " << base::join(components, ", ") << '\n';
   for (const auto& [key, value] : properties) std::cout << "  " << key << " = " << value << '\n';
 }
 
-void list(Editor& editor, const ListOptions& options) {
+void list(const Session& session, Console& console, const ListOptions& options) {
   const auto address = parse_address(options.path, working_path());
-  if (!address) return editor.fail(address.error());
-  const auto names = editor.tree(options.path);
-  if (!names) return editor.fail(names.error());
+  if (!address) return console.fail(address.error());
+  const auto names = session.tree(options.path);
+  if (!names) return console.fail(names.error());
   const auto entry = names->find(*address);
-  if (!entry) return editor.fail(entry.error());
+  if (!entry) return console.fail(entry.error());
   std::vector<ComponentView> components;
-  if (options.is_long) components = read_components(*names, {.contexts = true, .connectors = true}, editor.limit());
+  if (options.is_long) components = read_components(*names, {.contexts = true, .connectors = true}, session.call_timeout());
   Json json = Json::array();
-  list_level(editor, **entry, options, components, json);
-  if (editor.json()) editor.print(json);
+  list_level(console, **entry, options, components, json);
+  if (console.json()) console.print(json);
 }
 
-void tree(Editor& editor, const std::string& path) {
+void tree(const Session& session, Console& console, const std::string& path) {
   const auto address = parse_address(path, working_path());
-  if (!address) return editor.fail(address.error());
-  const auto names = editor.tree(path);
-  if (!names) return editor.fail(names.error());
+  if (!address) return console.fail(address.error());
+  const auto names = session.tree(path);
+  if (!names) return console.fail(names.error());
   const auto entry = names->find(*address);
-  if (!entry) return editor.fail(entry.error());
-  const auto components = read_components(*names, {.contexts = true}, editor.limit());
-  if (editor.json()) {
+  if (!entry) return console.fail(entry.error());
+  const auto components = read_components(*names, {.contexts = true}, session.call_timeout());
+  if (console.json()) {
     Json json = Json::array();
-    list_level(editor, **entry, {.path = "", .is_long = true, .recurse = true}, components, json);
-    return editor.print(json);
+    list_level(console, **entry, {.path = "", .is_long = true, .recurse = true}, components, json);
+    return console.print(json);
   }
   std::cout << (*entry)->path() << '\n';
   print_tree(**entry, "", components);
 }
 
-void cat(Editor& editor, const std::string& path, bool is_long) {
+void cat(const Session& session, Console& console, const std::string& path, bool is_long) {
   const auto address = parse_address(path, working_path());
-  if (!address) return editor.fail(address.error());
-  const auto names = editor.tree(path, true);
-  if (!names) return editor.fail(names.error());
+  if (!address) return console.fail(address.error());
+  const auto names = session.tree(path, true);
+  if (!names) return console.fail(names.error());
   const auto entry = names->find(*address);
-  if (!entry) return editor.fail(entry.error());
-  if ((*entry)->kind == EntryKind::manager) return cat_manager(editor, **entry);
+  if (!entry) return console.fail(entry.error());
+  if ((*entry)->kind == EntryKind::manager) return cat_manager(session, console, **entry);
   const auto found = names->find_component(*address);
-  if (!found) return editor.fail(found.error());
-  const CallLimit limited(editor.limit());
+  if (!found) return console.fail(found.error());
+  const CallLimit limited(session.call_timeout());
   const auto component = read_component(**found, {.contexts = true, .connectors = true, .configuration = true, .members = true});
-  if (!component.problem.empty()) return editor.fail({"component " + component.path + " " + component.problem});
+  if (!component.problem.empty()) return console.fail({"component " + component.path + " " + component.problem});
   // The other components are read too, to say by name what a port is connected to.
   std::vector<ComponentView> all;
   if (std::ranges::any_of(component.ports, [](const PortView& port) { return !port.connectors.empty(); }))
-    all = read_components(*names, {}, editor.limit());
+    all = read_components(*names, {}, session.call_timeout());
   if (address->port.empty()) {
-    if (editor.json()) return editor.print(to_json(component, all));
+    if (console.json()) return console.print(to_json(component, all));
     return print_component(component, all, is_long);
   }
   const auto* port = component.port(address->port);
-  if (!port) return editor.fail({"component " + component.path + ": has no port " + base::in_quotes(address->port)});
-  if (editor.json()) return editor.print(to_json(*port, all));
+  if (!port) return console.fail({"component " + component.path + ": has no port " + base::in_quotes(address->port)});
+  if (console.json()) return console.print(to_json(*port, all));
   print_port(*port, all, is_long);
 }
 
@@ -338,19 +338,24 @@ void add_list(base::Command& app, Chosen& chosen) {
   ls->add_option("PATH", list->path, "Path to list (default: the whole name server)");
   ls->add_flag("-l,--long", list->is_long, "Also show state, rate and ports (all/connected)");
   ls->add_flag("-R,--recurse", list->recurse, "Also list nested contexts");
-  ls->callback([&chosen, list] { chosen.work = [list](Editor& e) { editor::list(e, *list); }; });
+  ls->callback(
+      [&chosen, list] { chosen.work = [list](const Session& session, Console& console) { editor::list(session, console, *list); }; });
 
   auto* tree = app.add_subcommand("tree", "Show the name server as a tree, with states and ports");
   auto tree_path = std::make_shared<std::string>();
   tree->add_option("PATH", *tree_path, "Path of the root (default: the whole name server)");
-  tree->callback([&chosen, tree_path] { chosen.work = [tree_path](Editor& e) { editor::tree(e, *tree_path); }; });
+  tree->callback([&chosen, tree_path] {
+    chosen.work = [tree_path](const Session& session, Console& console) { editor::tree(session, console, *tree_path); };
+  });
 
   auto* cat = app.add_subcommand("cat", "Show the details of a component, port or manager");
   auto cat_path = std::make_shared<std::string>();
   auto cat_long = std::make_shared<bool>(false);
   cat->add_option("PATH", *cat_path, "COMPONENT, COMPONENT:PORT or MANAGER")->required();
   cat->add_flag("-l,--long", *cat_long, "Also show all properties");
-  cat->callback([&chosen, cat_path, cat_long] { chosen.work = [cat_path, cat_long](Editor& e) { editor::cat(e, *cat_path, *cat_long); }; });
+  cat->callback([&chosen, cat_path, cat_long] {
+    chosen.work = [cat_path, cat_long](const Session& session, Console& console) { editor::cat(session, console, *cat_path, *cat_long); };
+  });
 }
 
 }  // namespace editor

@@ -21,7 +21,7 @@ struct ManagerOptions {
 constexpr const char* refused = "the manager's log says why; it refuses when its manager.remote_rights is read";
 constexpr std::chrono::seconds longest_work{20};  // making a component, reading modules
 
-Result<CORBA::Object_var> manager_object(const Editor& editor, const std::string& manager) {
+Result<CORBA::Object_var> manager_object(const Session& session, const std::string& manager) {
   if (manager.starts_with("corbaloc:")) {
     auto url = manager;
     if (url.find('/') == std::string::npos) {
@@ -29,14 +29,14 @@ Result<CORBA::Object_var> manager_object(const Editor& editor, const std::string
       url += "/manager";
     }
     CORBA::Object_var object;
-    const auto parsed = remote("manager " + manager, [&] { object = editor.orb()->string_to_object(url.c_str()); });
+    const auto parsed = remote("manager " + manager, [&] { object = session.orb()->string_to_object(url.c_str()); });
     if (!parsed) return parsed.error();
     return object;
   }
   const char* working = std::getenv("RTCSH_CWD");
   const auto address = parse_address(manager, working ? working : "");
   if (!address) return address.error();
-  const auto names = editor.tree(manager);
+  const auto names = session.tree(manager);
   if (!names) return names.error();
   const Entry* entry = nullptr;
   if (manager.empty()) {
@@ -85,7 +85,7 @@ std::string why_not_created(RTM::Manager_ptr manager, const std::string& argumen
   return "the manager has no type " + base::in_quotes(type) + " and finds no module with it; see: rtse mgr list";
 }
 
-void list_manager(Editor& editor, RTM::Manager_ptr manager) {
+void list_manager(Console& console, RTM::Manager_ptr manager) {
   nlohmann::ordered_json json{{"components", nlohmann::ordered_json::array()},
                               {"loaded_modules", nlohmann::ordered_json::array()},
                               {"loadable_modules", nlohmann::ordered_json::array()},
@@ -101,8 +101,8 @@ void list_manager(Editor& editor, RTM::Manager_ptr manager) {
     RTM::ModuleProfileList_var factories = manager->get_factory_profiles();
     print_profiles("factories", factories.in(), json);
   });
-  if (!asked) return editor.fail(asked.error());
-  if (editor.json()) return editor.print(json);
+  if (!asked) return console.fail(asked.error());
+  if (console.json()) return console.print(json);
   for (const auto& component : json["components"])
     std::cout << "component " << component["instance"].get<std::string>() << " (" << component["type"].get<std::string>() << ")\n";
   for (const auto& module : json["loaded_modules"])
@@ -112,26 +112,27 @@ void list_manager(Editor& editor, RTM::Manager_ptr manager) {
   for (const auto& factory : json["factories"]) std::cout << "factory   " << factory.value("implementation_id", "?") << '\n';
 }
 
-void manage(Editor& editor, const ManagerOptions& options) {
-  const auto object = manager_object(editor, options.manager);
-  if (!object) return editor.fail(object.error());
+void manage(const Session& session, Console& console, const ManagerOptions& options) {
+  const auto object = manager_object(session, options.manager);
+  if (!object) return console.fail(object.error());
   RTM::Manager_var manager;
   const auto reached = remote("manager " + options.manager, [&] {
-    const CallLimit limited(editor.limit());
+    const CallLimit limited(session.call_timeout());
     manager = RTM::Manager::_narrow(*object);
     if (!CORBA::is_nil(manager)) (void)manager->_non_existent();
   });
-  if (!reached) return editor.fail(reached.error());
-  if (CORBA::is_nil(manager)) return editor.fail({"manager " + options.manager + ": the object there is no manager"});
-  const CallLimit limited(std::max<std::chrono::milliseconds>(longest_work, editor.limit()));  // it answers, and may have much to do
-  if (options.action == "list") return list_manager(editor, manager);
+  if (!reached) return console.fail(reached.error());
+  if (CORBA::is_nil(manager)) return console.fail({"manager " + options.manager + ": the object there is no manager"});
+  const CallLimit limited(
+      std::max<std::chrono::milliseconds>(longest_work, session.call_timeout()));  // it answers, and may have much to do
+  if (options.action == "list") return list_manager(console, manager);
   if (options.action == "load") {
     const auto init = options.arguments.size() > 1 ? options.arguments[1] : "";
     RTC::ReturnCode_t code = RTC::RTC_OK;
     const auto called = remote("manager", [&] { code = manager->load_module(options.arguments[0].c_str(), init.c_str()); });
-    if (!called) return editor.fail(called.error());
+    if (!called) return console.fail(called.error());
     if (const auto done = check("loading module " + options.arguments[0], code, "the manager's log says why"); !done)
-      editor.fail(done.error());
+      console.fail(done.error());
     return;
   }
   for (const auto& argument : options.arguments) {
@@ -157,9 +158,9 @@ void manage(Editor& editor, const ManagerOptions& options) {
                                                     : refused;
       }
     });
-    if (!called) return editor.fail(called.error());
+    if (!called) return console.fail(called.error());
     const auto done = check(options.action + " " + argument, code, meaning);
-    if (!done) editor.fail(done.error());
+    if (!done) console.fail(done.error());
   }
 }
 
@@ -183,7 +184,7 @@ void add_manager(base::Command& app, Chosen& chosen) {
         require(option.empty() || option.find('=') != std::string::npos, "mgr create",
                 "expected KEY=VALUE after the '?', got \"" + option + "\"");
     }
-    chosen.work = [options](Editor& e) { manage(e, *options); };
+    chosen.work = [options](const Session& session, Console& console) { manage(session, console, *options); };
   });
 }
 

@@ -86,11 +86,11 @@ Result<void> write_skeleton(const NewComponent& component, const std::filesystem
   return {};
 }
 
-void make_component(Editor& editor, const Options& options) {
+void make_component(Console& console, const Options& options) {
   const auto component = component_of(options);
-  if (!component) return editor.fail(component.error());
+  if (!component) return console.fail(component.error());
   const auto folder = options.folder.empty() ? component->name : options.folder;
-  if (const auto written = write_skeleton(*component, folder); !written) return editor.fail(written.error());
+  if (const auto written = write_skeleton(*component, folder); !written) return console.fail(written.error());
   std::cout << "wrote " << folder << "; build it: cmake -S " << folder << " -B " << folder << "/build && cmake --build " << folder
             << "/build\n";
 }
@@ -119,7 +119,7 @@ void add_new(base::Command& app, Chosen& chosen) {
   command->add_option("-C,--directory", options->folder, "Output folder (default: the component's name)");
   command->callback([&chosen, options] {
     if (options->name.empty() && options->specification.empty()) base::require_on_command_line("NAME or --spec");
-    chosen = {[options](Editor& e) { make_component(e, *options); }, /*needs_orb*/ false};
+    chosen = {[options](const Session&, Console& console) { make_component(console, *options); }, /*needs_orb*/ false};
   });
 }
 

@@ -1,9 +1,13 @@
 // run: one run, or one for each of several seeds, some of them at a time.
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -14,9 +18,11 @@
 #include "base/text.h"
 #include "rtse/command.h"
 #include "rtse/commands/commands.h"
+#include "rtse/commands/run.h"
 #include "run/run_options.h"
 #include "run/run_system.h"
 #include "run/run_twice.h"
+#include "shm/file_handle.h"
 
 namespace editor {
 namespace {
@@ -24,6 +30,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::chrono::seconds interrupted_limit{60};  // of a run that was interrupted
+constexpr const char* options_from_input = "--options-from-input";
 
 Json to_json(const RunResult& result) {
   Json json{{"seed", result.seed},         {"passed", result.is_passed()}, {"problem", result.problem},
@@ -70,8 +77,8 @@ void print_row(const RunResult& result) {
 
 // A line on standard output, or a row of the table of seeds; what is wrong on standard error, with the seed before it when there are
 // several.
-void report(Editor& editor, const RunResult& result, bool is_row) {
-  if (editor.json()) {
+void report(Console& console, const RunResult& result, bool is_row) {
+  if (console.json()) {
     std::cout << to_json(result).dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
   } else if (is_row) {
     print_row(result);
@@ -84,10 +91,10 @@ void report(Editor& editor, const RunResult& result, bool is_row) {
   }
   std::fflush(stdout);
   const std::string seed = is_row ? "seed " + std::to_string(result.seed) + ": " : "";
-  for (const auto& note : result.notes) std::cerr << "rtse: " + seed + base::printable(note, "\n\t") + "\n";
-  if (!result.problem.empty()) editor.fail({seed + result.problem});
+  for (const auto& note : result.notes) console.warn(seed + note);
+  if (!result.problem.empty()) console.fail({seed + result.problem});
   for (const auto& verdict : result.verdicts) {
-    if (!verdict.problem.empty()) editor.fail({seed + verdict.expectation + ": " + verdict.problem});
+    if (!verdict.problem.empty()) console.fail({seed + verdict.expectation + ": " + verdict.problem});
   }
 }
 
@@ -97,34 +104,37 @@ std::string for_seed(const std::string& file, std::uint64_t seed) {
   return (path.parent_path() / (path.stem().string() + "-" + std::to_string(seed) + path.extension().string())).string();
 }
 
-// Each seed in a process of its own, so that one that fails takes no other with it.
+// A file that is read from its beginning, and gone when all have closed it.
+Result<shm::FileHandle> memory_file(const std::string& text) {
+  shm::FileHandle file(memfd_create("options", MFD_CLOEXEC));
+  if (write(file.get(), text.data(), text.size()) != static_cast<ssize_t>(text.size()) || lseek(file.get(), 0, SEEK_SET) != 0)
+    return Error{std::string("run: no memory for the options of a seed: ") + std::strerror(errno)};
+  return file;
+}
+
+RunOptions of_seed(RunOptions options, std::uint64_t seed) {
+  options.seed = seed;
+  options.junit.clear();
+  for (auto* file : {&options.picture, &options.record, &options.hash_log}) {
+    if (!file->empty()) *file = for_seed(*file, seed);
+  }
+  if (!options.keep.empty()) options.keep = (std::filesystem::path(options.keep) / ("seed-" + std::to_string(seed))).string();
+  return options;
+}
+
+// Each seed in a process of its own, so that one that fails takes no other with it. It reads its options from its standard input.
 RunResult run_apart(const RunOptions& options, std::uint64_t seed) {
   RunResult failed;
   failed.seed = seed;
-  ProgramCall call{{own_program("rtse"), "--json", "run", options.system, "--world", options.world, "--duration",
-                    base::format_number(options.duration_s), "--seed", std::to_string(seed), "--hang-timeout",
-                    base::format_number(options.hang_timeout_s), "--start-timeout", base::format_number(options.start_timeout_s)},
-                   {},
-                   ""};
-  const auto add = [&](std::initializer_list<std::string> words) { call.words.insert(call.words.end(), words); };
-  if (!options.expectations.empty()) add({"--expect", options.expectations});
-  if (!options.run_file.empty()) add({"--run-file", options.run_file});
-  for (const auto& command : options.start) add({"--start", command});
-  if (!options.start_folder.empty()) add({"--start-folder", options.start_folder});
-  if (options.one_process_each) add({"--one-process-each"});
-  if (options.in_real_time) add({"--realtime"});
-  if (!options.picture.empty()) add({"--picture", for_seed(options.picture, seed)});
-  if (!options.record.empty()) add({"--record", for_seed(options.record, seed)});
-  if (options.record_last_s > 0) add({"--last", base::format_number(options.record_last_s)});
-  if (!options.hash_log.empty()) add({"--hash-log", for_seed(options.hash_log, seed)});
-  if (options.hash_period_s > 0) add({"--hash-period", base::format_number(options.hash_period_s)});
-  if (options.twice) add({"--twice"});
-  if (options.strict) add({"--strict"});
-  if (!options.keep.empty()) add({"--keep", (std::filesystem::path(options.keep) / ("seed-" + std::to_string(seed))).string()});
-  for (const auto& property : options.properties) add({"--property", property});
-  for (const auto& path : options.module_paths) add({"--module-path", path});
-  for (const auto& path : options.resource_paths) add({"--resource-path", path});
-  auto child = ChildProcess::start(call);
+  const auto text = to_json(of_seed(options, seed), RunOptionSet::all).dump(-1, ' ', false, Json::error_handler_t::replace);
+  const auto input = memory_file(text);
+  if (!input) {
+    failed.problem = input.error().message;
+    return failed;
+  }
+  auto child =
+      ChildProcess::start({.words = {own_program("rtse"), "--json", "run", options.system, "--world", options.world, options_from_input},
+                           .input = input->get()});
   if (!child) {
     failed.problem = child.error().message;
     return failed;
@@ -176,11 +186,12 @@ Result<void> check_files(const RunOptions& options) {
   return {};
 }
 
-std::vector<RunResult> run_seeds(Editor& editor, const RunOptions& options, const std::vector<std::uint64_t>& seeds, int jobs) {
+std::vector<RunResult> run_seeds(const Session& session, Console& console, const RunOptions& options,
+                                 const std::vector<std::uint64_t>& seeds, int jobs) {
   base::Turn<> telling;                   // one result at a time
   std::map<std::size_t, RunResult> done;  // by place in `seeds`
   std::size_t reported = 0;               // rows come in the order of the seeds
-  const bool shows = !options.quiet && isatty(2);
+  const bool shows = isatty(2);
   const auto show = [&] {
     constexpr std::size_t width = 30;
     const auto filled = done.size() * width / seeds.size();
@@ -188,11 +199,11 @@ std::vector<RunResult> run_seeds(Editor& editor, const RunOptions& options, cons
                  seeds.size());
   };
   const auto hide = [] { std::fprintf(stderr, "\r%60s\r", ""); };
-  if (!editor.json()) print_heading();
+  if (!console.json()) print_heading();
   std::fflush(stdout);
   if (shows) show();
   in_parallel(
-      seeds.size(), editor.limit(),
+      seeds.size(), session.call_timeout(),
       [&](std::size_t i) {
         if (is_interrupted()) return;
         auto result = run_apart(options, seeds[i]);
@@ -200,7 +211,7 @@ std::vector<RunResult> run_seeds(Editor& editor, const RunOptions& options, cons
         done.emplace(i, std::move(result));
         if (shows) hide();
         for (auto next = done.find(reported); next != done.end(); next = done.find(reported)) {
-          report(editor, next->second, true);
+          report(console, next->second, true);
           ++reported;
         }
         if (shows) show();
@@ -210,13 +221,13 @@ std::vector<RunResult> run_seeds(Editor& editor, const RunOptions& options, cons
   std::vector<RunResult> results;
   std::size_t passed = 0;
   for (auto& [place, result] : done) {
-    if (place >= reported) report(editor, result, true);  // an earlier one was interrupted
+    if (place >= reported) report(console, result, true);  // an earlier one was interrupted
     passed += result.is_passed() ? 1U : 0U;
     results.push_back(std::move(result));
   }
-  if (!editor.json()) std::printf("%zu of %zu seeds passed\n", passed, seeds.size());
+  if (!console.json()) std::printf("%zu of %zu seeds passed\n", passed, seeds.size());
   if (results.size() < seeds.size())
-    editor.fail({"run: interrupted after " + std::to_string(results.size()) + " of " + std::to_string(seeds.size()) + " seeds"});
+    console.fail({"run: interrupted after " + std::to_string(results.size()) + " of " + std::to_string(seeds.size()) + " seeds"});
   return results;
 }
 
@@ -234,68 +245,68 @@ Result<std::vector<std::uint64_t>> parse_seeds(const std::string& text) {
 
 // Prints one line per run and one per unmet expectation. Without `seeds_text` one run with the seed of the options, else one for each,
 // `jobs` of them at a time.
-void run(Editor& editor, const RunOptions& options, const std::optional<std::string>& seeds_text, int jobs) {
-  if (const auto good = check_files(options); !good) return editor.fail(good.error());
+void run(const Session& session, Console& console, const RunOptions& options, const std::optional<std::string>& seeds_text, int jobs) {
+  if (const auto good = check_files(options); !good) return console.fail(good.error());
   catch_interrupts();
   std::vector<RunResult> results;
   if (seeds_text) {
     const auto seeds = parse_seeds(*seeds_text);
-    if (!seeds) return editor.fail(seeds.error());
-    results = run_seeds(editor, options, *seeds, jobs);
+    if (!seeds) return console.fail(seeds.error());
+    results = run_seeds(session, console, options, *seeds, jobs);
   } else {
-    results.push_back(options.twice ? run_twice(editor.orb(), options) : run_system(editor.orb(), options));
-    report(editor, results.back(), false);
-    if (!results.back().logs.empty() && options.keep.empty() && !editor.json())
-      std::fprintf(stderr, "rtse: --keep DIR keeps the logs of all processes\n");
+    results.push_back(options.twice ? run_twice(session.orb(), options, console) : run_system(session.orb(), options, console));
+    report(console, results.back(), false);
+    if (!results.back().logs.empty() && options.keep.empty() && !console.json()) console.warn("--keep DIR keeps the logs of all processes");
   }
   if (options.junit.empty()) return;
-  if (const auto written = write_junit(options.junit, options, results); !written) editor.fail(written.error());
+  if (const auto written = write_junit(options.junit, options, results); !written) console.fail(written.error());
 }
 
-}  // namespace
+// What run_apart() has written.
+Result<RunOptions> read_input() {
+  const std::string text(std::istreambuf_iterator<char>(std::cin), {});
+  return parse_run_options(text);
+}
 
-void add_run(base::Command& app, Chosen& chosen) {
+void declare_run(base::Command& app, Chosen& chosen, ReadLike read_like, const std::function<std::string(const std::string&)>& check) {
   auto* run = app.add_subcommand("run", "Run a saved system in a simulated world, in lock step, and check the expectations");
-  auto options = std::make_shared<RunOptions>();
+  auto given = std::make_shared<RunOptions>();
   auto seeds = std::make_shared<std::optional<std::string>>();
   auto jobs = std::make_shared<int>(1);
-  run->add_option("SYSTEM", options->system, "RTSProfile, XML or YAML")->required()->check(base::existing_file());
-  run->add_option("-w,--world", options->world, "SDFormat world")->required()->check(base::existing_file());
-  run->add_option("-d,--duration", options->duration_s, "Duration [simulated s]")->seconds_between(0.001, 1e7)->capture_default_str();
-  run->add_option("-x,--expect", options->expectations, "Expectations (YAML)")->check(base::existing_file());
-  auto* seed =
-      run->add_option("--seed", options->seed, "Seed of the sensor noise")->capture_default_str()->check(base::number_between(0, 1e18));
-  run->add_option("--seeds", *seeds, "Run once per seed FIRST..LAST")->excludes(seed)->check([](const std::string& text) {
+  auto like = std::make_shared<std::string>();
+  auto has_input = std::make_shared<bool>(false);
+  std::vector<std::string_view> names;
+  for (const auto& row : run_option_rows) {
+    if (!read_like || row.name != "system") names.push_back(row.name);
+  }
+  add_run_options(*run, *given, names);
+  if (read_like) {
+    run->add_option("--like", *like, "Repeat the run of this recording (of rtse run --record)")->required()->check(check);
+  } else {
+    run->option("SYSTEM")->required();
+    run->option("--world")->required();
+  }
+  run->add_option("--seeds", *seeds, "Run once per seed FIRST..LAST")->excludes(run->option("--seed"))->check([](const std::string& text) {
     const auto parsed = parse_seeds(text);
     return parsed ? std::string() : parsed.error().message;
   });
   run->add_option("-j,--jobs", *jobs, "Number of seeds to run in parallel")->check(base::integer_between(1, 64))->capture_default_str();
-  run->add_flag("--one-process-each", options->one_process_each, "Start one process per component (default: one for all)");
-  run->add_flag("--realtime", options->in_real_time, "Run in real time");
-  run->add_option("--start", options->start, "Command that starts third-party components (those without a module)")
-      ->allow_extra_args(false);
-  run->add_option("--start-folder", options->start_folder, "Working directory of the --start commands (default: current directory)");
-  run->add_option("--run-file", options->run_file, "YAML file of third-party processes and their components")->check(base::existing_file());
-  run->add_option("--module-path", options->module_paths, "Folder with modules of components")->allow_extra_args(false);
-  run->add_option("--resource-path", options->resource_paths, "Folder with models")->allow_extra_args(false);
-  run->add_option("--property", options->properties, "Property of a component at its creation: INSTANCE:KEY=VALUE")
-      ->allow_extra_args(false)
-      ->check([](const std::string& text) {
-        const auto parsed = parse_property(text);
-        return parsed ? std::string() : parsed.error().message;
-      });
-  run->add_option("--hang-timeout", options->hang_timeout_s, "Timeout of one tick [wall-clock s]")
-      ->check(base::number_between(0.1, 1e6))
-      ->capture_default_str();
-  run->add_option("--start-timeout", options->start_timeout_s, "Timeout for starting the simulator, and the components [wall-clock s]")
-      ->check(base::number_between(0.1, 1e6))
-      ->capture_default_str();
-  run->add_option("--junit", options->junit, "Write the verdicts as JUnit XML");
-  run->add_option("--picture", options->picture, "Save an image of the final world (PNG)");
-  add_recording_options(*run, *options);
-  add_repeatability_options(*run, *options);
-  run->add_option("--keep", options->keep, "Folder for logs and the pose log");
-  run->callback([&chosen, options, seeds, jobs] { chosen.work = [=](Editor& e) { editor::run(e, *options, *seeds, *jobs); }; });
+  run->add_flag(options_from_input, *has_input)->group("");  // of run_apart() alone
+  run->callback([=, &chosen] {
+    chosen.work = [=](const Session& session, Console& console) {
+      auto base = read_like ? read_like(*like) : *has_input ? read_input() : RunOptions();
+      if (!base) return console.fail(base.error());
+      editor::run(session, console, with_given(std::move(*base), *given, *run), *seeds, *jobs);
+    };
+  });
+}
+
+}  // namespace
+
+void add_run(base::Command& app, Chosen& chosen) { declare_run(app, chosen, nullptr, nullptr); }
+
+void add_run_like(base::Command& app, Chosen& chosen, ReadLike read_like, std::function<std::string(const std::string&)> check) {
+  declare_run(app, chosen, std::move(read_like), check);
 }
 
 }  // namespace editor

@@ -150,20 +150,20 @@ void draw_component(Page& page, const ComponentView& component, const std::vecto
   }
 }
 
-void watch(Editor& editor, const std::string& path) {
-  if (!isatty(1)) return editor.fail({"watch: standard output is no terminal; use: rtse ls -l"});
+void watch(const Session& session, Console& console, const std::string& path) {
+  if (!isatty(1)) return console.fail({"watch: standard output is no terminal; use: rtse ls -l"});
   const Screen screen;
   Rates rates;
   int first = 0;
   for (int key = 0; key != 'q' && key != 'Q';) {
-    const auto names = editor.tree(path);
+    const auto names = session.tree(path);
     erase();
-    mvprintw(0, 0, "rtse watch  name server %s   (q: quit, arrows: scroll)", editor.server().c_str());
+    mvprintw(0, 0, "rtse watch  name server %s   (q: quit, arrows: scroll)", session.server().c_str());
     Page page(first);
     if (!names) {
       page.write(names.error().message, COLOR_PAIR(2));
     } else {
-      const auto components = read_components(*names, {.contexts = true, .connectors = true}, editor.limit());
+      const auto components = read_components(*names, {.contexts = true, .connectors = true}, session.call_timeout());
       for (const auto& component : components) draw_component(page, component, components, rates);
     }
     refresh();
@@ -183,7 +183,9 @@ void add_watch(base::Command& app, Chosen& chosen) {
   auto* watch = app.add_subcommand("watch", "Full-screen view of components, states, ports and connections");
   auto watch_path = std::make_shared<std::string>();
   watch->add_option("PATH", *watch_path, "A name server, as /HOST:PORT");
-  watch->callback([&chosen, watch_path] { chosen.work = [watch_path](Editor& e) { editor::watch(e, *watch_path); }; });
+  watch->callback([&chosen, watch_path] {
+    chosen.work = [watch_path](const Session& session, Console& console) { editor::watch(session, console, *watch_path); };
+  });
 }
 
 }  // namespace editor

@@ -27,7 +27,8 @@ namespace recorder {
 
 namespace {
 
-using editor::Editor;
+using editor::Console;
+using editor::Session;
 
 struct GotoOptions {
   std::string what;  // a recording or a profile
@@ -37,17 +38,17 @@ struct GotoOptions {
   std::string world;
   std::string then;
   std::optional<std::uint64_t> seed;
-  std::vector<std::string> module_paths, resource_paths, properties, start;
-  std::string run_file;
-  double hang_timeout_s = 30;
+  std::vector<std::string> start;
+  editor::RunOptions run;  // those of a run that can be given here
 };
 
 // A run that stands at a moment: what is done with it, until it is to stand at another one before it, or to end.
 class Stand {
  public:
   // `input`: what was read of the user's commands and not obeyed yet; it outlives the stands.
-  Stand(Editor& editor, const GotoOptions& options, const std::optional<Expression>& condition, double time_s, std::string& input)
-      : editor_(editor), options_(options), condition_(condition), time_s_(time_s), input_(input) {}
+  Stand(const Session& session, const Console& console, const GotoOptions& options, const std::optional<Expression>& condition,
+        double time_s, std::string& input)
+      : session_(session), console_(console), options_(options), condition_(condition), time_s_(time_s), input_(input) {}
 
   base::Result<void> drive(editor::RunningSystem& system);
   // Where a run that is made anew is to stand.
@@ -64,7 +65,8 @@ class Stand {
   // Nothing below a nanosecond: 57 300 steps of a millisecond are no 57.300000000000004 s.
   double now() const { return std::round(static_cast<double>(steps_) * system_->step() * 1e9) / 1e9; }
 
-  Editor& editor_;
+  const Session& session_;
+  const Console& console_;
   const GotoOptions& options_;
   const std::optional<Expression>& condition_;
   const double time_s_;
@@ -87,7 +89,7 @@ base::Result<void> Stand::go_to(double time_s) {
 }
 
 base::Result<void> Stand::go_to_condition() {
-  auto watch = BreakWatch::start(editor_.orb(), *system_, *condition_);
+  auto watch = BreakWatch::start(session_.orb(), *system_, *condition_);
   if (!watch) return watch.error();
   const auto steps = std::max<std::int64_t>(std::llround(time_s_ / system_->step()), 1);
   const auto made = system_->make_steps(steps);
@@ -102,7 +104,7 @@ base::Result<void> Stand::go_to_condition() {
 }
 
 void Stand::say() const {
-  if (editor_.json()) {
+  if (console_.json()) {
     Json json = {{"time", now()}, {"steps", steps_}, {"simulator", system_->simulator()}, {"naming", system_->naming()}};
     json["processes"] = Json::array();
     for (const auto& process : system_->processes()) json["processes"].push_back({{"what", process.what}, {"pid", process.pid}});
@@ -201,49 +203,46 @@ bool is_recording(const std::string& file) {
   return head == mcap::magic;
 }
 
-void go(Editor& editor, const GotoOptions& options) {
+void go(const Session& session, Console& console, const GotoOptions& options, const base::Command& command) {
   std::optional<Expression> condition;
   if (!options.condition.empty()) {
     auto parsed = Expression::parse(options.condition);
-    if (!parsed) return editor.fail(parsed.error());
+    if (!parsed) return console.fail(parsed.error());
     condition = std::move(*parsed);
   }
   std::optional<RecordedRun> recorded;
   editor::RunOptions call;
   if (options.world.empty()) {
     if (!is_recording(options.what))
-      return editor.fail({base::in_quotes(options.what) + ": is no recording; with a system's profile say its world: -w WORLD"});
+      return console.fail({base::in_quotes(options.what) + ": is no recording; with a system's profile say its world: -w WORLD"});
     auto run = RecordedRun::unpack(options.what);
-    if (!run) return editor.fail(run.error());
-    if (const auto lost = run->lost(); !lost.empty()) std::cerr << "rtse: " << lost << '\n';
+    if (!run) return console.fail(run.error());
+    if (const auto lost = run->lost(); !lost.empty()) console.warn(lost);
     recorded.emplace(std::move(*run));
-    call = recorded->options();
+    auto recorded_options = recorded->options();
+    if (!recorded_options) return console.fail(recorded_options.error());
+    call = std::move(*recorded_options);
     if (options.time_s.value_or(0) > call.duration_s)
-      std::cerr << "rtse: the recorded run ended at " << base::format_number(call.duration_s) << " s\n";
+      console.warn("the recorded run ended at " + base::format_number(call.duration_s) + " s");
   } else {
     call.system = options.what;
     call.world = options.world;
-    call.quiet = true;
   }
   if (!options.start.empty()) {
     call.start = options.start;
     call.start_folder.clear();
   }
-  if (!options.run_file.empty()) call.run_file = options.run_file;
   if (options.seed) call.seed = *options.seed;
-  call.hang_timeout_s = options.hang_timeout_s;
-  call.module_paths.insert(call.module_paths.end(), options.module_paths.begin(), options.module_paths.end());
-  call.resource_paths.insert(call.resource_paths.end(), options.resource_paths.begin(), options.resource_paths.end());
-  call.properties.insert(call.properties.end(), options.properties.begin(), options.properties.end());
+  call = editor::with_given(std::move(call), options.run, command);
   editor::catch_interrupts();
   GotoOptions wanted = options;
   double time_s = options.time_s.value_or(call.duration_s);
   std::string input;
   for (;;) {
-    Stand stand(editor, wanted, condition, time_s, input);
-    call.driver = [&](editor::RunningSystem& system) { return stand.drive(system); };
-    const auto made = editor::run_system(editor.orb(), call);
-    if (!made.problem.empty()) return editor.fail({made.problem});
+    Stand stand(session, console, wanted, condition, time_s, input);
+    const auto made =
+        editor::run_system(session.orb(), call, console, {.driver = [&](editor::RunningSystem& system) { return stand.drive(system); }});
+    if (!made.problem.empty()) return console.fail({made.problem});
     if (!stand.wish()) return;
     // The same run once more, and not so far.
     time_s = *stand.wish();
@@ -272,18 +271,10 @@ void add_goto(base::Command& app, editor::Chosen& chosen) {
       ->check(base::number_between(0, 1e18));
   command->add_option("--start", options->start, "Command that starts third-party components (default: the recorded commands)")
       ->allow_extra_args(false);
-  command->add_option("--run-file", options->run_file, "YAML file of third-party processes and their components")
-      ->check(base::existing_file());
-  command->add_option("--module-path", options->module_paths, "Folder with modules of components")->allow_extra_args(false);
-  command->add_option("--resource-path", options->resource_paths, "Folder with models")->allow_extra_args(false);
-  command->add_option("--property", options->properties, "Property of a component at its creation: INSTANCE:KEY=VALUE")
-      ->allow_extra_args(false);
-  command->add_option("--hang-timeout", options->hang_timeout_s, "Timeout of one tick [wall-clock s]")
-      ->check(base::number_between(0.1, 1e6))
-      ->capture_default_str();
-  command->callback([&chosen, options] {
+  editor::add_run_options(*command, options->run, {"run-file", "module-path", "resource-path", "property", "hang-timeout"});
+  command->callback([&chosen, options, command] {
     editor::require(options->time_s || !options->condition.empty(), "goto", "name a TIME, or a condition with --break");
-    chosen.work = [options](Editor& editor) { go(editor, *options); };
+    chosen.work = [options, command](const Session& session, Console& console) { go(session, console, *options, *command); };
   });
 }
 

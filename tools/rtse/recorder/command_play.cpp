@@ -25,7 +25,8 @@ namespace recorder {
 
 namespace {
 
-using editor::Editor;
+using editor::Console;
+using editor::Session;
 using WallClock = std::chrono::steady_clock;
 
 struct PlayOptions {
@@ -61,7 +62,7 @@ std::string type_of(const mcap::Reader& reader, const mcap::Channel& channel) {
   return schema != reader.schemas().end() ? schema->second.name : "";
 }
 
-base::Result<void> add_route(Editor& editor, const mcap::Reader& reader, const std::string& link, Routes& routes) {
+base::Result<void> add_route(const Session& session, const mcap::Reader& reader, const std::string& link, Routes& routes) {
   const auto equals = link.find('=');
   if (equals == std::string::npos) return base::Error{"link " + base::in_quotes(link) + ": expected COMPONENT:PORT=INPORT"};
   const std::string source = link.substr(0, equals);
@@ -71,7 +72,7 @@ base::Result<void> add_route(Editor& editor, const mcap::Reader& reader, const s
     for (const auto& [id, one] : reader.channels()) topics.push_back(one.topic);
     return base::Error{"recording: has no channel " + base::in_quotes(source) + "; channels: " + base::join(topics, ", ")};
   }
-  const auto port = editor.port(link.substr(equals + 1));
+  const auto port = session.port(link.substr(equals + 1));
   if (!port) return port.error();
   if (port->port.port_type() != "DataInPort") {
     return base::Error{"port " + port->port.full_name + ": is a " + port->port.port_type() + ", play writes to InPorts"};
@@ -81,7 +82,7 @@ base::Result<void> add_route(Editor& editor, const mcap::Reader& reader, const s
   if (!type.empty() && channels::scoped_name(type) != channels::scoped_name(port->port.data_type())) {
     return base::Error{"port " + port->port.full_name + ": takes " + port->port.data_type() + ", " + recorded.topic + " was " + type};
   }
-  auto tap = editor::Tap::connect(editor.orb(), port->port, {{"rtmsim.play.topic", recorded.topic}}, {});
+  auto tap = editor::Tap::connect(session.orb(), port->port, {{"rtmsim.play.topic", recorded.topic}}, {});
   if (!tap) return tap.error();
   routes[*channel].targets.push_back(std::move(*tap));
   return {};
@@ -100,13 +101,12 @@ std::set<std::string> recorded_links(const mcap::Reader& reader) {
 }
 
 // Without links each recorded port goes where it went; InPorts that are not there now are told.
-base::Result<void> add_recorded_routes(Editor& editor, const mcap::Reader& reader, Routes& routes) {
+base::Result<void> add_recorded_routes(const Session& session, Console& console, const mcap::Reader& reader, Routes& routes) {
   const auto links = recorded_links(reader);
   if (links.empty())
     return base::Error{"recording: does not say which InPorts its channels were connected to; expected COMPONENT:PORT=INPORT"};
   for (const auto& link : links) {
-    if (const auto added = add_route(editor, reader, link, routes); !added)
-      std::cerr << "rtse: " << base::printable(added.error().message) << '\n';
+    if (const auto added = add_route(session, reader, link, routes); !added) console.warn(base::printable(added.error().message));
   }
   if (routes.empty()) return base::Error{"recording: none of the InPorts that its channels were connected to is there"};
   return {};
@@ -176,7 +176,7 @@ std::optional<std::span<const unsigned char>> payload_of(const mcap::Message& me
 }
 
 // False when it was interrupted, or failed.
-bool play_once(Editor& editor, mcap::Reader& reader, const PlayOptions& options, Routes& routes, Pace& pace) {
+bool play_once(Console& console, mcap::Reader& reader, const PlayOptions& options, Routes& routes, Pace& pace) {
   mcap::Query query;
   for (const auto& [channel, route] : routes) query.channels.push_back(channel);
   query.from = mcap::Time(static_cast<std::uint64_t>(options.from_s * 1e9));
@@ -186,7 +186,7 @@ bool play_once(Editor& editor, mcap::Reader& reader, const PlayOptions& options,
   for (;;) {
     const auto message = reader.next();
     if (!message) {
-      editor.fail(message.error());
+      console.fail(message.error());
       continue;
     }
     if (!message->has_value()) return true;
@@ -197,12 +197,12 @@ bool play_once(Editor& editor, mcap::Reader& reader, const PlayOptions& options,
     Route& route = routes.at((*message)->channel);
     const std::string& topic = reader.channels().at((*message)->channel).topic;
     if (!payload) {
-      editor.fail({"channel " + topic + ": its samples are not in little-endian CDR"});
+      console.fail({"channel " + topic + ": its samples are not in little-endian CDR"});
       return false;
     }
     for (const auto& target : route.targets) {
       if (const auto sent = target->put(*payload); !sent) {
-        editor.fail({"channel " + topic + ": " + sent.error().message});
+        console.fail({"channel " + topic + ": " + sent.error().message});
         return false;
       }
       ++route.sent;
@@ -210,19 +210,19 @@ bool play_once(Editor& editor, mcap::Reader& reader, const PlayOptions& options,
   }
 }
 
-void play(Editor& editor, const PlayOptions& options) {
+void play(const Session& session, Console& console, const PlayOptions& options) {
   auto reader = open_recording(options.file);
-  if (!reader) return editor.fail(reader.error());
-  if (reader->damage()) std::cerr << "rtse: " << *reader->damage() << '\n';
+  if (!reader) return console.fail(reader.error());
+  if (reader->damage()) console.warn(*reader->damage());
   Routes routes;
   for (const auto& link : options.links) {
-    if (const auto added = add_route(editor, *reader, link, routes); !added) return editor.fail(added.error());
+    if (const auto added = add_route(session, *reader, link, routes); !added) return console.fail(added.error());
   }
   if (options.links.empty()) {
-    if (const auto added = add_recorded_routes(editor, *reader, routes); !added) return editor.fail(added.error());
+    if (const auto added = add_recorded_routes(session, console, *reader, routes); !added) return console.fail(added.error());
   }
   editor::catch_interrupts();
-  const editor::CallLimit limited(editor.limit());
+  const editor::CallLimit limited(session.call_timeout());
   const auto sent = [&] {
     std::uint64_t sum = 0;
     for (const auto& [channel, route] : routes) sum += route.sent;
@@ -231,13 +231,13 @@ void play(Editor& editor, const PlayOptions& options) {
   for (bool goes_on = true; goes_on;) {
     auto pace =
         options.by_simulation ? SimulatedPace::join(options.server_id) : base::Result<std::unique_ptr<Pace>>(std::make_unique<WallPace>());
-    if (!pace) return editor.fail(pace.error());
-    const bool is_over = play_once(editor, *reader, options, routes, **pace);
-    if (is_over && sent() == 0) return editor.fail({"recording: has no sample of these channels in the time that is to be played"});
+    if (!pace) return console.fail(pace.error());
+    const bool is_over = play_once(console, *reader, options, routes, **pace);
+    if (is_over && sent() == 0) return console.fail({"recording: has no sample of these channels in the time that is to be played"});
     goes_on = is_over && options.loop;
   }
-  if (editor.json())
-    editor.print(Json{{"sent", sent()}});
+  if (console.json())
+    console.print(Json{{"sent", sent()}});
   else
     std::cout << "sent " << sent() << " samples\n";
 }
@@ -259,7 +259,8 @@ void add_play(base::Command& app, editor::Chosen& chosen) {
   command->add_flag("--sim-time", options->by_simulation, "Use simulated time; in lock step, simulated time waits for playback");
   command->add_option("-s,--server-id", options->server_id, "With --sim-time: simulator ID (default: $RTMSIM_SERVER_ID, else 0)")
       ->check(base::number_between(0, 9999));
-  command->callback([&chosen, options] { chosen.work = [options](Editor& editor) { play(editor, *options); }; });
+  command->callback(
+      [&chosen, options] { chosen.work = [options](const Session& session, Console& console) { play(session, console, *options); }; });
 }
 
 }  // namespace recorder

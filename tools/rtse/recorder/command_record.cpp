@@ -1,14 +1,13 @@
 // record.
+#include <fcntl.h>
 #include <fnmatch.h>
 #include <omnithread.h>
 #include <poll.h>
-#include <signal.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -17,6 +16,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "base/clock.h"
 #include "base/command_line.h"
@@ -28,6 +28,7 @@
 #include "recording/mcap/file.h"
 #include "recording/mcap_sink.h"
 #include "recording/port_source.h"
+#include "recording/recorder_line.h"
 #include "recording/ring.h"
 #include "recording/run_clock.h"
 #include "recording/sample_filters.h"
@@ -41,7 +42,8 @@ namespace recorder {
 
 namespace {
 
-using editor::Editor;
+using editor::Console;
+using editor::Session;
 
 // How long a port waits for the recorder. In lock step time waits with it, so that nothing is lost; in real time a sample is dropped.
 constexpr std::chrono::seconds lockstep_patience{10};
@@ -64,7 +66,8 @@ struct RecordOptions {
   double rate = 0;    // [Hz] of each channel at most; 0: all
   double last_s = 0;  // only so much before the end; 0: all
   bool until_error = false;
-  std::string hashes;  // hash log of the run, which is there when the recorder is interrupted once more
+  std::string hashes;       // hash log of the run that controls this recorder
+  bool controlled = false;  // standard input is the line to that run, see recording/recorder_line.h
   std::string compression = "zstd";
   int server_id = static_cast<int>(default_server_id());
   bool quiet = false;
@@ -89,31 +92,6 @@ class EndHandle {
   std::atomic<bool> is_raised_{false};  // relaxed: says nothing but itself
 };
 
-// Readable after SIGUSR1: somebody has started components again. One for the process.
-class LookSignal {
- public:
-  LookSignal() {
-    handle_.store(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
-    struct sigaction action {};
-    action.sa_handler = [](int) {
-      const int saved = errno;
-      (void)::eventfd_write(handle_.load(std::memory_order_relaxed), 1);
-      errno = saved;
-    };
-    ::sigemptyset(&action.sa_mask);
-    ::sigaction(SIGUSR1, &action, nullptr);
-  }
-  static int descriptor() { return handle_.load(std::memory_order_relaxed); }
-  // Whether it has come since the last time.
-  static bool take() {
-    eventfd_t count = 0;
-    return ::eventfd_read(descriptor(), &count) == 0;
-  }
-
- private:
-  static inline std::atomic<int> handle_{-1};  // relaxed: says nothing but itself
-};
-
 bool is_excluded(const RecordOptions& options, const std::string& name) {
   return std::any_of(options.excluded.begin(), options.excluded.end(),
                      [&](const std::string& pattern) { return ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0; });
@@ -122,12 +100,12 @@ bool is_excluded(const RecordOptions& options, const std::string& name) {
 std::chrono::nanoseconds nanoseconds(double seconds) { return std::chrono::nanoseconds(std::llround(seconds * 1e9)); }
 
 // OutPorts that the command line names, or all there are.
-base::Result<std::vector<Editor::Port>> chosen_ports(Editor& editor, const RecordOptions& options) {
-  std::vector<Editor::Port> ports;
+base::Result<std::vector<Session::Port>> chosen_ports(const Session& session, Console& console, const RecordOptions& options) {
+  std::vector<Session::Port> ports;
   std::size_t excluded = 0;
   if (!options.all) {
     for (const auto& path : options.ports) {
-      auto port = editor.port(path, true);
+      auto port = session.port(path, true);
       if (!port) return port.error();
       if (port->port.port_type() != "DataOutPort") {
         return base::Error{"port " + port->port.full_name + ": is a " + port->port.port_type() + ", record reads OutPorts"};
@@ -136,10 +114,10 @@ base::Result<std::vector<Editor::Port>> chosen_ports(Editor& editor, const Recor
     }
     return ports;
   }
-  const auto tree = editor.tree();
+  const auto tree = session.tree();
   if (!tree) return tree.error();
-  for (const auto& component : editor::read_components(*tree, {.connectors = true}, editor.limit())) {
-    if (!component.problem.empty()) editor.fail({"component " + component.instance + ": " + component.problem});
+  for (const auto& component : editor::read_components(*tree, {.connectors = true}, session.call_timeout())) {
+    if (!component.problem.empty()) console.fail({"component " + component.instance + ": " + component.problem});
     for (const auto& port : component.ports) {
       if (port.port_type() != "DataOutPort") continue;
       if (is_excluded(options, component.instance + ":" + port.name))
@@ -150,18 +128,19 @@ base::Result<std::vector<Editor::Port>> chosen_ports(Editor& editor, const Recor
   }
   if (ports.empty() && excluded > 0)
     return base::Error{"record: --exclude leaves none of the " + std::to_string(excluded) + " OutPorts of the name server " +
-                       editor.server()};
-  if (ports.empty()) return base::Error{"record: the name server " + editor.server() + " has no component with an OutPort"};
+                       session.server()};
+  if (ports.empty()) return base::Error{"record: the name server " + session.server() + " has no component with an OutPort"};
   return ports;
 }
 
 // Those whose ports are recorded, or all.
-std::vector<editor::ComponentView> chosen_components(Editor& editor, const RecordOptions& options, const std::vector<Editor::Port>& ports) {
+std::vector<editor::ComponentView> chosen_components(const Session& session, const RecordOptions& options,
+                                                     const std::vector<Session::Port>& ports) {
   if (!options.components && !options.until_error && (!options.all || options.only_ports)) return {};
   std::vector<editor::ComponentView> chosen;
-  const auto tree = editor.tree();
+  const auto tree = session.tree();
   if (!tree) return chosen;
-  for (auto& component : editor::read_components(*tree, {.contexts = true, .configuration = true}, editor.limit())) {
+  for (auto& component : editor::read_components(*tree, {.contexts = true, .configuration = true}, session.call_timeout())) {
     const bool is_meant = options.all || std::ranges::any_of(ports, [&](const auto& one) { return one.component.path == component.path; });
     if (is_meant && component.problem.empty()) chosen.push_back(std::move(component));
   }
@@ -222,22 +201,46 @@ std::map<std::string, std::map<std::string, std::string>> lockstep_facts(const R
 }
 
 // Components that were killed and are there again go on in their channels. Who is not there need not be.
-void look_again(Editor& editor, PortSource& source, ComponentSource& components) {
-  if (const auto tree = editor.tree()) {
+void look_again(const Session& session, Console& console, PortSource& source, ComponentSource& components) {
+  if (const auto tree = session.tree()) {
     const editor::Detail all{.contexts = true, .connectors = true, .configuration = true};
-    for (const auto& component : editor::read_components(*tree, all, editor.limit())) {
+    for (const auto& component : editor::read_components(*tree, all, session.call_timeout())) {
       if (!component.problem.empty()) continue;
       for (const auto& port : component.ports) {
-        if (const auto done = source.connect_again(component, port); !done) editor.fail(done.error());
+        if (const auto done = source.connect_again(component, port); !done) console.fail(done.error());
       }
       components.attach_again(component);
     }
   }
-  std::cerr << "looked again" << std::endl;
 }
 
+// What a run tells its recorder; without one nothing ever comes.
+class Orders {
+ public:
+  explicit Orders(bool controlled) {
+    if (controlled) line_.emplace(shm::FileHandle(::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 3)));
+  }
+  int descriptor() const { return line_ ? line_->descriptor() : -1; }
+  // A run that has exited hears nothing, and needs not.
+  void tell(RecorderMessage message) {
+    if (line_) static_cast<void>(line_->send(message));
+  }
+  // The next one; a line that is closed is a stop.
+  std::optional<RecorderMessage> next(std::chrono::milliseconds timeout) {
+    if (!line_) return std::nullopt;
+    const auto received = line_->receive(timeout);
+    is_closed_ = !received;
+    return received ? *received : std::optional(RecorderMessage::stop);
+  }
+  bool is_closed() const { return is_closed_; }
+
+ private:
+  std::optional<RecorderLine> line_;
+  bool is_closed_ = false;
+};
+
 // An interrupt, the end of the time that was asked for, or a file that takes no more: which announces itself here.
-void wait_for_end(const RecordOptions& options, channels::Exchange& exchange, const std::shared_ptr<EndHandle>& handle,
+void wait_for_end(const RecordOptions& options, channels::Exchange& exchange, const std::shared_ptr<EndHandle>& handle, Orders& orders,
                   const std::function<void()>& look) {
   exchange.on_failure([handle] { handle->raise(); });
   const auto start = std::chrono::steady_clock::now();
@@ -248,9 +251,13 @@ void wait_for_end(const RecordOptions& options, channels::Exchange& exchange, co
       if (passed.count() >= options.duration_s) return;
       wait_ms = static_cast<int>(std::clamp((options.duration_s - passed.count()) * 1000 + 1, 0.0, 1e9));
     }
-    pollfd handles[3] = {{editor::interrupt_handle(), POLLIN, 0}, {handle->descriptor(), POLLIN, 0}, {LookSignal::descriptor(), POLLIN, 0}};
+    pollfd handles[3] = {{editor::interrupt_handle(), POLLIN, 0}, {handle->descriptor(), POLLIN, 0}, {orders.descriptor(), POLLIN, 0}};
     (void)::poll(handles, 3, wait_ms);
-    if (LookSignal::take()) look();
+    const auto order = orders.next(std::chrono::milliseconds(0));
+    if (order == RecorderMessage::stop) return;
+    if (order != RecorderMessage::look_again) continue;
+    look();
+    orders.tell(RecorderMessage::looked);
   }
 }
 
@@ -308,65 +315,64 @@ base::Result<Sinks> open_sinks(const RecordOptions& options, const RunClock& clo
 }
 
 // From all sources into the sink, until it is to end. False when there is nothing to record.
-bool record_into(Editor& editor, const RecordOptions& options, const RunClock& clock, const std::vector<Editor::Port>& ports,
-                 channels::Exchange& exchange, const std::vector<RingPiece>& stale) {
+bool record_into(const Session& session, Console& console, const RecordOptions& options, const RunClock& clock,
+                 const std::vector<Session::Port>& ports, channels::Exchange& exchange, const std::vector<RingPiece>& stale,
+                 Orders& orders) {
   const auto end = std::make_shared<EndHandle>();
-  PortSource source(editor.orb(), exchange, clock);
-  ComponentSource components(editor.orb(), exchange, clock);
+  PortSource source(session.orb(), exchange, clock);
+  ComponentSource components(session.orb(), exchange, clock);
   auto facts = lockstep_facts(options);
   for (const auto& [component, port] : ports) {
     if (editor::is_interrupted()) return false;
-    if (const auto added = source.add(component, port, facts[component.instance]); !added) editor.fail(added.error());
+    if (const auto added = source.add(component, port, facts[component.instance]); !added) console.fail(added.error());
   }
   if (options.until_error) {
     components.on_event([end](const std::string&, const ComponentEvent& event) {
       if (event.kind == "RTC_STATUS" && event.event.starts_with("ERROR:")) end->raise();
     });
   }
-  for (const auto& component : chosen_components(editor, options, ports)) {
+  for (const auto& component : chosen_components(session, options, ports)) {
     if (editor::is_interrupted()) return false;
-    if (const auto added = components.add(component); !added) editor.fail(added.error());
+    if (const auto added = components.add(component); !added) console.fail(added.error());
   }
   // On the thread of the views, which end before the others.
   const auto diagnose = [&](channels::Time now) {
     const omni_thread::ensure_self known_to_the_orb;  // time-outs per thread need it
-    const editor::CallLimit limited(editor.limit());
+    const editor::CallLimit limited(session.call_timeout());
     components.diagnose(now, source);
   };
   const auto views =
       open_views(exchange, options, clock, components.size() > 0 ? std::function<void(channels::Time)>(diagnose) : nullptr, end);
   if (!views) {
-    editor.fail(views.error());
+    console.fail(views.error());
     return false;
   }
   if (source.size() == 0 && components.size() == 0 && !*views) return false;
   if (!options.quiet)
     std::cerr << "recording " << source.size() << " ports" << (*views ? " and the simulator" : "") << " into "
               << base::in_quotes(options.file) << "; Ctrl-C ends it\n";
-  if (!stale.empty() && !options.quiet)
-    std::cerr << "rtse: " << names_of(stale) << ": of an earlier ring that was not put together, replaced\n";
-  wait_for_end(options, exchange, end, [&] { look_again(editor, source, components); });
+  if (!stale.empty() && !options.quiet) console.warn(names_of(stale) + ": of an earlier ring that was not put together, replaced");
+  orders.tell(RecorderMessage::recording);
+  wait_for_end(options, exchange, end, orders, [&] { look_again(session, console, source, components); });
   if (exchange.failure() || !end->is_raised()) return true;
   if (*views && !(*views)->is_live())
-    editor.fail({"record: the simulator has ended, and the recording with it"});
+    console.fail({"record: the simulator has ended, and the recording with it"});
   else if (!options.quiet)
     std::cerr << "a component is in its error state\n";
   return true;
 }
 
 // Who made the run says when its hash log is there.
-base::Result<void> keep_hashes(channels::Exchange& exchange, const std::string& file) {
+base::Result<void> keep_hashes(channels::Exchange& exchange, const std::string& file, Orders& orders) {
   (void)exchange.drain(lockstep_patience);
-  eventfd_t count = 0;
-  (void)::eventfd_read(editor::interrupt_handle(), &count);
-  std::cerr << "waiting for hashes" << std::endl;
-  pollfd handle{editor::interrupt_handle(), POLLIN, 0};
-  // The signal that says so interrupts the wait, too.
+  orders.tell(RecorderMessage::stopped);
   const auto deadline = std::chrono::steady_clock::now() + hashes_limit;
-  int answer = -1;
-  while (answer < 0 && std::chrono::steady_clock::now() < deadline)
-    answer = ::poll(&handle, 1, static_cast<int>(std::chrono::milliseconds(hashes_limit).count()));
-  if (answer != 1) return base::Error{"record: nobody says that the hash log " + base::in_quotes(file) + " is there"};
+  std::optional<RecorderMessage> order;
+  // A recorder that has stopped by itself is told to stop all the same.
+  while (order != RecorderMessage::hashes_ready && !orders.is_closed() && std::chrono::steady_clock::now() < deadline)
+    order = orders.next(std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now()));
+  if (order != RecorderMessage::hashes_ready)
+    return base::Error{"record: the hash log " + base::in_quotes(file) + " was not reported complete"};
   return put_hashes(exchange, file);
 }
 
@@ -382,68 +388,68 @@ void report(const RecordOptions& options, std::uint64_t samples, std::uint32_t c
 }
 
 // The end of a file that was written to the end, or why it was not.
-void finish_file(Editor& editor, const RecordOptions& options, const McapSink& sink, const base::Result<void>& written) {
-  if (!written) return editor.fail({written.error().message + "; what came before is in it"});
+void finish_file(Console& console, const RecordOptions& options, const McapSink& sink, const base::Result<void>& written) {
+  if (!written) return console.fail({written.error().message + "; what came before is in it"});
   report(options, sink.samples(), sink.channels(), files_of(options, sink));
 }
 
 // What is in the pieces stays there until it is in the file.
-void finish_ring(Editor& editor, const RecordOptions& options, const base::Result<void>& written) {
+void finish_ring(Console& console, const RecordOptions& options, const base::Result<void>& written) {
   const auto pieces = ring_pieces(options.file);
   const auto fail = [&](const base::Error& error) {
-    editor.fail({error.message + "; " +
-                 (pieces.empty()
-                      ? "nothing was recorded"
-                      : "what came before is in " + names_of(pieces) + ", rtse recording repair " + options.file + " puts it together")});
+    console.fail({error.message + "; " +
+                  (pieces.empty()
+                       ? "nothing was recorded"
+                       : "what came before is in " + names_of(pieces) + ", rtse recording repair " + options.file + " puts it together")});
   };
   if (!written) return fail(written.error());
   const auto joined = join_ring(pieces, options.file, options.file);
   if (!joined) return fail(joined.error());
-  for (const auto& line : joined->losses) editor.fail({line});
+  for (const auto& line : joined->losses) console.fail({line});
   if (joined->losses.empty()) remove_pieces(pieces);
   report(options, joined->samples, joined->channels, base::in_quotes(options.file));
 }
 
-void record(Editor& editor, const RecordOptions& options) {
+void record(const Session& session, Console& console, const RecordOptions& options) {
   const RunClock clock(static_cast<std::uint32_t>(options.server_id));
-  const auto ports = chosen_ports(editor, options);
-  if (!ports) return editor.fail(ports.error());
+  const auto ports = chosen_ports(session, console, options);
+  if (!ports) return console.fail(ports.error());
   // Before the file is made: one that was there before stays.
   if (options.views && !clock.is_simulated()) {
     const auto simulation = shm::Iface::open(static_cast<std::uint32_t>(options.server_id), shm::IfaceType::simulation, "world");
-    if (!simulation) return editor.fail(simulation.error());
+    if (!simulation) return console.fail(simulation.error());
   }
   const bool is_ring = options.last_s > 0;
-  if (const auto free = check_no_live_ring(options.file); !free) return editor.fail(free.error());
+  if (const auto free = check_no_live_ring(options.file); !free) return console.fail(free.error());
   const auto stale = is_ring ? make_room_for_ring(options.file) : std::vector<RingPiece>();
-  if (!stale) return editor.fail(stale.error());
+  if (!stale) return console.fail(stale.error());
   auto sinks = open_sinks(options, clock);
-  if (!sinks) return editor.fail(sinks.error());
+  if (!sinks) return console.fail(sinks.error());
   editor::catch_interrupts();
-  const LookSignal caught;
+  Orders orders(options.controlled);
   base::Result<void> written;
   {
     channels::Exchange exchange;
     exchange.attach(sinks->first, {.patience = clock.is_lockstep() ? lockstep_patience : std::chrono::seconds(0)});
-    if (!record_into(editor, options, clock, *ports, exchange, *stale)) {
+    if (!record_into(session, console, options, clock, *ports, exchange, *stale, orders)) {
       if (is_ring) remove_pieces(ring_pieces(options.file));
       return;
     }
     if (!options.hashes.empty()) {
-      if (const auto kept = keep_hashes(exchange, options.hashes); !kept) editor.fail(kept.error());
+      if (const auto kept = keep_hashes(exchange, options.hashes, orders); !kept) console.fail(kept.error());
     }
-    if (!exchange.drain(std::chrono::seconds(30))) editor.fail({"record: the file took no more samples for 30 s; the last ones are lost"});
+    if (!exchange.drain(std::chrono::seconds(30))) console.fail({"record: the file took no more samples for 30 s; the last ones are lost"});
     if (const auto failure = exchange.failure()) written = *failure;
     for (const auto& [topic, count] : written ? exchange.dropped() : decltype(exchange.dropped())()) {
-      editor.fail(
+      console.fail(
           {"record: " + std::to_string(count) + " samples of " + topic + " were dropped, they came faster than they could be written"});
     }
   }
   if (const auto closed = sinks->file->close(); !closed && written) written = closed;
   if (is_ring)
-    finish_ring(editor, options, written);
+    finish_ring(console, options, written);
   else
-    finish_file(editor, options, *sinks->file, written);
+    finish_file(console, options, *sinks->file, written);
 }
 
 }  // namespace
@@ -477,7 +483,8 @@ void add_record(base::Command& app, editor::Chosen& chosen) {
   command->add_option("--rate", options->rate, "Maximum number of samples per channel and second")->check(base::number_between(1e-3, 1e6));
   command->add_option("--last", options->last_s, "Keep only the last N seconds")->seconds_between(0.1, 1e6)->excludes(splitting);
   command->add_flag("--until-error", options->until_error, "Stop when a component goes to the ERROR state");
-  command->add_option("--hashes", options->hashes, "Internal, for rtse run: hash log of the run, read at the second interrupt");
+  command->add_flag("--controlled", options->controlled)->group("");                   // of rtse run alone
+  command->add_option("--hashes", options->hashes)->group("")->needs("--controlled");  // the same
   command->add_option("--compression", options->compression, "Compression: zstd, lz4 or none")
       ->check(base::one_of({"zstd", "lz4", "none"}))
       ->capture_default_str();
@@ -488,7 +495,7 @@ void add_record(base::Command& app, editor::Chosen& chosen) {
     if (!split->empty()) options->split = *parse_split(*split);
     editor::require(options->all ? options->ports.empty() : options->views || !options->ports.empty(), "record",
                     "name OutPorts, or --all, or --views");
-    chosen.work = [options](Editor& editor) { record(editor, *options); };
+    chosen.work = [options](const Session& session, Console& console) { record(session, console, *options); };
   });
 }
 

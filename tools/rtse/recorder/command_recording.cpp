@@ -25,7 +25,8 @@ namespace recorder {
 
 namespace {
 
-using editor::Editor;
+using editor::Console;
+using editor::Session;
 
 // ---- info, ls ----
 
@@ -84,16 +85,16 @@ std::optional<Facts> indexed_facts(mcap::Reader& reader) {
   return has_all && is_in_order ? std::optional(std::move(facts)) : std::nullopt;
 }
 
-Facts facts_of(Editor& editor, mcap::Reader& reader, const std::string& file) {
+Facts facts_of(Console& console, mcap::Reader& reader, const std::string& file) {
   if (reader.uncompressed() > most_read) {
     if (auto facts = indexed_facts(reader)) return std::move(*facts);
   }
   Facts facts;
   for (const auto& [id, channel] : reader.channels()) facts[id];
-  for_each(editor, reader, {.file = file, .topics = {}}, [&](const mcap::Message& message) {
+  console.fail(for_each(reader, {.file = file, .topics = {}}, [&](const mcap::Message& message) {
     take_in(facts[message.channel], message);
     return true;
-  });
+  }));
   return facts;
 }
 
@@ -127,10 +128,10 @@ void print_channel(const Json& channel) {
   std::cout << '\n';
 }
 
-void list(Editor& editor, const std::string& file, bool with_run) {
-  auto reader = open(editor, file);
-  if (!reader) return;
-  const auto facts = facts_of(editor, *reader, file);
+void list(Console& console, const std::string& file, bool with_run) {
+  auto reader = open(file, console);
+  if (!reader) return console.fail(reader.error());
+  const auto facts = facts_of(console, *reader, file);
   Json all = {{"file", file},
               {"library", reader->library()},
               {"samples", reader->statistics().messages},
@@ -143,7 +144,7 @@ void list(Editor& editor, const std::string& file, bool with_run) {
       for (const auto& [key, value] : one.texts) all["run"][key] = value;
     }
   } else {
-    editor.fail(metadata.error());
+    console.fail(metadata.error());
   }
   all["attachments"] = Json::array();
   for (const auto& one : reader->attachments()) all["attachments"].push_back({{"name", one.name}, {"octets", one.size}});
@@ -152,10 +153,10 @@ void list(Editor& editor, const std::string& file, bool with_run) {
     const auto found = facts.find(id);
     all["channels"].push_back(channel_json(*reader, channel, found == facts.end() ? ChannelFacts{} : found->second));
   }
-  if (editor.json()) return editor.print(with_run ? all : all["channels"]);
+  if (console.json()) return console.print(with_run ? all : all["channels"]);
   if (std::ranges::any_of(facts, [](const auto& one) { return !one.second.is_read; }))
-    std::cerr << "rtse: samples of more than " << (most_read >> 30)
-              << " GiB are counted by their indexes: without bytes and missing ones\n";
+    console.warn("samples of more than " + std::to_string(most_read >> 30) +
+                 " GiB are counted by their indexes: without bytes and missing ones");
   if (with_run) {
     std::cout << "file        " << file << "\nwritten by  " << base::printable(reader->library()) << "\ntime        "
               << seconds_text(reader->statistics().first) << " to " << seconds_text(reader->statistics().last) << " s\nsamples     "
@@ -177,22 +178,51 @@ void list(Editor& editor, const std::string& file, bool with_run) {
 
 // ---- cat ----
 
-void cat(Editor& editor, const Selection& selection) {
-  auto reader = open(editor, selection.file);
-  if (!reader) return;
+void cat(Console& console, const Selection& selection) {
+  auto reader = open(selection.file, console);
+  if (!reader) return console.fail(reader.error());
   std::set<std::uint16_t> unreadable;  // told once
   SampleValues values(*reader);
-  for_each(editor, *reader, selection, [&](const mcap::Message& message) {
+  console.fail(for_each(*reader, selection, [&](const mcap::Message& message) {
+    if (base::output_is_closed()) return false;
     const auto value = values.of(message);
     if (!value) {
-      if (unreadable.insert(message.channel).second) editor.fail(value.error());
+      if (unreadable.insert(message.channel).second) console.fail(value.error());
       return true;
     }
     const std::string& topic = reader->channels().at(message.channel).topic;
     std::cout << json_text({{"time", seconds(message.log_time)}, {"topic", topic}, {"sequence", message.sequence}, {"value", *value}})
               << '\n';
     return true;
-  });
+  }));
+}
+
+// ---- export ----
+
+void export_samples(Console& console, const ExportOptions& options) {
+  const auto exported = options.png ? export_pictures(options, console) : export_tables(options, console);
+  if (!exported) return console.fail(exported.error());
+  console.fail(exported->errors);
+  if (!console.json()) std::cout << exported->files << (options.png ? " pictures in " : " tables in ") << options.folder << '\n';
+}
+
+// ---- compare ----
+
+Json to_json(const Comparison& comparison) {
+  if (!comparison.lonely_channels.empty()) return {{"equal", false}, {"difference", base::join(comparison.lonely_channels, ", ")}};
+  if (comparison.first) return {{"equal", false}, {"time", seconds(comparison.first->time)}, {"difference", comparison.first->what}};
+  return {{"equal", true}, {"samples", comparison.samples}};
+}
+
+void compare_recordings(Console& console, const CompareOptions& options) {
+  const auto comparison = compare(options, console);
+  if (!comparison) return console.fail(comparison.error());
+  if (!comparison->are_equal()) console.set_failed();
+  if (console.json()) return console.print(to_json(*comparison));
+  for (const auto& channel : comparison->lonely_channels) std::cout << channel << '\n';
+  if (const auto& first = comparison->first)
+    std::cout << "first difference at time " << seconds_text(first->time) << " s" << first->tick << ": " << first->what << '\n';
+  if (comparison->are_equal()) std::cout << "equal: " << comparison->samples << " samples\n";
 }
 
 // ---- repair ----
@@ -208,31 +238,31 @@ bool has_newer_pieces(const std::string& file, const std::vector<RingPiece>& pie
 }
 
 // The pieces of a recorder that was killed.
-void put_together(Editor& editor, const std::vector<RingPiece>& pieces, const std::string& file, const std::string& output) {
-  if (const auto at_rest = check_at_rest(pieces); !at_rest) return editor.fail(at_rest.error());
+void put_together(Console& console, const std::vector<RingPiece>& pieces, const std::string& file, const std::string& output) {
+  if (const auto at_rest = check_at_rest(pieces); !at_rest) return console.fail(at_rest.error());
   const auto done = join_ring(pieces, file, output.empty() ? file : output);
-  if (!done) return editor.fail(done.error());
+  if (!done) return console.fail(done.error());
   if (!done->losses.empty())
-    editor.set_failed();
+    console.set_failed();
   else if (output.empty())
     remove_pieces(pieces);
-  if (editor.json()) {
-    return editor.print(Json{{"samples", done->samples},
-                             {"pieces", pieces.size()},
-                             {"samples_lost", done->samples_lost},
-                             {"damage", base::join(done->losses, "\n")}});
+  if (console.json()) {
+    return console.print(Json{{"samples", done->samples},
+                              {"pieces", pieces.size()},
+                              {"samples_lost", done->samples_lost},
+                              {"damage", base::join(done->losses, "\n")}});
   }
   std::cout << done->samples << " samples kept of " << names_of(pieces) << '\n';
   for (const auto& line : done->losses) std::cout << line << '\n';
   if (!done->losses.empty()) std::cout << "the pieces stay\n";
 }
 
-void repair(Editor& editor, const std::string& file, const std::string& output) {
-  if (const auto pieces = ring_pieces(file); has_newer_pieces(file, pieces)) return put_together(editor, pieces, file, output);
+void repair(Console& console, const std::string& file, const std::string& output) {
+  if (const auto pieces = ring_pieces(file); has_newer_pieces(file, pieces)) return put_together(console, pieces, file, output);
   const auto done = mcap::repair(file, output.empty() ? file : output);
-  if (!done) return editor.fail(done.error());
-  if (done->has_losses()) editor.set_failed();
-  if (editor.json()) {
+  if (!done) return console.fail(done.error());
+  if (done->has_losses()) console.set_failed();
+  if (console.json()) {
     Json json = {{"samples", done->messages},
                  {"octets_lost", done->octets_lost},
                  {"broken_chunks", done->broken_chunks},
@@ -241,7 +271,7 @@ void repair(Editor& editor, const std::string& file, const std::string& output) 
                  {"metadata_lost", done->metadata_lost},
                  {"damage", done->damage.value_or("")}};
     if (done->messages_lost) json["samples_lost"] = *done->messages_lost;
-    return editor.print(json);
+    return console.print(json);
   }
   std::cout << done->messages << " samples kept, " << done->octets_lost << " bytes lost";
   const std::string samples = done->messages_lost ? std::to_string(*done->messages_lost) + " samples" : "an unknown number of samples";
@@ -267,7 +297,7 @@ void add_selection(base::Command& command, Selection& selection) {
 void add_recording(base::Command& app, editor::Chosen& chosen) {
   auto* recording = app.add_subcommand("recording", "Inspect recordings");
   recording->require_subcommand(1);
-  const auto choose = [&chosen](base::Command* command, std::function<void(Editor&)> work) {
+  const auto choose = [&chosen](base::Command* command, std::function<void(const Session&, Console&)> work) {
     command->callback([&chosen, work = std::move(work)] {
       chosen.needs_orb = false;
       chosen.work = work;
@@ -278,21 +308,20 @@ void add_recording(base::Command& app, editor::Chosen& chosen) {
                              : recording->add_subcommand("ls", "List the channels");
     auto file = std::make_shared<std::string>();
     command->add_option("FILE", *file, "Recording")->required();
-    choose(command, [file, with_run](Editor& editor) { list(editor, *file, with_run); });
+    choose(command, [file, with_run](const Session&, Console& console) { list(console, *file, with_run); });
   }
   auto* cat_command = recording->add_subcommand("cat", "Print samples as JSON, one per line");
   auto selection = std::make_shared<Selection>();
   add_selection(*cat_command, *selection);
   cat_command->add_option("-n,--count", selection->count, "Stop after N samples")->check(base::number_between(0, 1e9));
-  choose(cat_command, [selection](Editor& editor) { cat(editor, *selection); });
+  choose(cat_command, [selection](const Session&, Console& console) { cat(console, *selection); });
 
   auto* export_command = recording->add_subcommand("export", "Write a CSV table per channel, or the camera images");
   auto exported = std::make_shared<ExportOptions>();
   add_selection(*export_command, exported->selection);
   export_command->add_option("-o,--output", exported->folder, "Output folder")->required();
   export_command->add_flag("--png", exported->png, "Write the camera images as PNG files instead of tables");
-  choose(export_command,
-         [exported](Editor& editor) { exported->png ? export_pictures(editor, *exported) : export_tables(editor, *exported); });
+  choose(export_command, [exported](const Session&, Console& console) { export_samples(console, *exported); });
 
   auto* compare_command = recording->add_subcommand("compare", "Name the first difference of two recordings");
   auto compared = std::make_shared<CompareOptions>();
@@ -307,9 +336,9 @@ void add_recording(base::Command& app, editor::Chosen& chosen) {
         const auto parsed = parse_tolerance(text);
         return parsed ? std::string() : parsed.error().message;
       });
-  choose(compare_command, [compared, tolerances](Editor& editor) {
+  choose(compare_command, [compared, tolerances](const Session&, Console& console) {
     for (const auto& text : *tolerances) compared->tolerated.tolerances.insert(*parse_tolerance(text));
-    compare(editor, *compared);
+    compare_recordings(console, *compared);
   });
 
   auto* repair_command =
@@ -318,7 +347,7 @@ void add_recording(base::Command& app, editor::Chosen& chosen) {
   auto output = std::make_shared<std::string>();
   repair_command->add_option("FILE", *file, "Recording")->required();
   repair_command->add_option("-o,--output", *output, "Output file (default: FILE)");
-  choose(repair_command, [file, output](Editor& editor) { repair(editor, *file, *output); });
+  choose(repair_command, [file, output](const Session&, Console& console) { repair(console, *file, *output); });
 }
 
 }  // namespace recorder

@@ -19,7 +19,8 @@ namespace recorder {
 
 namespace {
 
-using editor::Editor;
+using editor::Console;
+using editor::Session;
 
 struct Options {
   std::string file, component;
@@ -46,7 +47,7 @@ editor::Properties of_receiver(const editor::SavedConnector& connector) {
 }
 
 // The links that the profile has, and those of the command line in their place.
-base::Result<std::vector<ReplayLink>> links_of(const editor::SavedSystem& system, const Options& options) {
+base::Result<std::vector<ReplayLink>> links_of(Console& console, const editor::SavedSystem& system, const Options& options) {
   std::vector<ReplayLink> links;
   for (const auto& text : options.links) {
     const auto equals = text.find('=');
@@ -77,14 +78,13 @@ base::Result<std::vector<ReplayLink>> possible(std::vector<ReplayLink> links, co
   }
   std::erase_if(links, [&](const ReplayLink& link) {
     if (has(link.topic)) return false;
-    std::cerr << "rtse: input " << options.component << ":" << link.port << ": missing, the recording has no "
-              << base::printable(link.topic) << '\n';
+    console.warn("input " + options.component + ":" + link.port + ": missing, the recording has no " + base::printable(link.topic));
     return true;
   });
   for (const auto& connector : system.connectors) {
     if (connector.is_data || (connector.target.instance != options.component && connector.source.instance != options.component)) continue;
-    std::cerr << "rtse: service port " << base::printable(connector.source.port_name) << ": missing, calls of "
-              << base::printable(connector.target.port_name) << " are not recorded\n";
+    console.warn("service port " + base::printable(connector.source.port_name) + ": missing, calls of " +
+                 base::printable(connector.target.port_name) + " are not recorded");
   }
   return links;
 }
@@ -118,7 +118,7 @@ base::Result<void> configure(editor::SavedComponent& component, const std::vecto
 
 // The rate in which it ran; the profile may say something else. Of a component that was recorded outside of lock step it is not known, as
 // is the tick in which it read a sample.
-base::Result<void> take_rate(editor::SavedComponent& component, const std::string& file) {
+base::Result<void> take_rate(Console& console, editor::SavedComponent& component, const std::string& file) {
   auto reader = open_recording(file);
   if (!reader) return reader.error();
   bool is_recorded = false;
@@ -132,8 +132,8 @@ base::Result<void> take_rate(editor::SavedComponent& component, const std::strin
     return {};
   }
   if (is_recorded)
-    std::cerr << "rtse: " << component.instance
-              << " was recorded outside of lock step: in which tick it read a sample is not known, so that its outputs may differ\n";
+    console.warn(component.instance +
+                 " was recorded outside of lock step: in which tick it read a sample is not known, so that its outputs may differ");
   return {};
 }
 
@@ -169,9 +169,9 @@ Json to_json(const ReplayResult& result) {
   return json;
 }
 
-void report(Editor& editor, const Options& options, const ReplayResult& result) {
-  if (editor.json()) {
-    editor.print(to_json(result));
+void report(Console& console, const Options& options, const ReplayResult& result) {
+  if (console.json()) {
+    console.print(to_json(result));
   } else {
     std::printf("%llu ticks, %llu inputs, %.1f s in %.2f s (%.0f x real time)\n", static_cast<unsigned long long>(result.ticks),
                 static_cast<unsigned long long>(result.sent), result.simulated_s, result.wall_s,
@@ -179,7 +179,7 @@ void report(Editor& editor, const Options& options, const ReplayResult& result) 
   }
   for (const auto& output : result.outputs) {
     const bool is_recorded = output.recorded > 0 || !options.compares;
-    if (!editor.json()) {
+    if (!console.json()) {
       std::cout << output.topic << ": " << output.samples << " samples";
       if (options.compares)
         std::cout << (!is_recorded            ? ", none recorded"
@@ -187,7 +187,7 @@ void report(Editor& editor, const Options& options, const ReplayResult& result) 
                                               : ", " + std::to_string(output.different) + " differ");
       std::cout << '\n';
     }
-    if (output.different > 0) editor.fail({output.topic + ": first difference at " + output.first});
+    if (output.different > 0) console.fail({output.topic + ": first difference at " + output.first});
   }
 }
 
@@ -217,38 +217,40 @@ bool has_own_stamps(const RecordedRun& run, const std::string& component) {
   return std::ranges::find(others, component) != others.end();
 }
 
-void replay_file(Editor& editor, const Options& options) {
+void replay_file(const Session& session, Console& console, const Options& options) {
   const auto run = RecordedRun::unpack(options.file);
-  if (!run) return editor.fail(run.error());
+  if (!run) return console.fail(run.error());
   const auto system = editor::read_system(run->system());
-  if (!system) return editor.fail(system.error());
+  if (!system) return console.fail(system.error());
   if (system->component(options.component) == nullptr) {
     std::vector<std::string> names;
     for (const auto& component : system->components) names.push_back(component.instance);
-    return editor.fail({"component " + options.component + ": is not in the recording; components: " + base::join(names, ", ")});
+    return console.fail({"component " + options.component + ": is not in the recording; components: " + base::join(names, ", ")});
   }
   ReplayOptions replayed{.file = options.file, .component = options.component, .compares = options.compares};
   replayed.tolerated.ignored = options.ignored;
   if (has_own_stamps(*run, options.component)) replayed.tolerated.ignored.emplace_back("tm");
   for (const auto& text : options.tolerances) replayed.tolerated.tolerances.insert(*parse_tolerance(text));
-  const auto links = links_of(*system, options);
-  if (!links) return editor.fail(links.error());
+  const auto links = links_of(console, *system, options);
+  if (!links) return console.fail(links.error());
   auto given = possible(*links, *system, options);
-  if (!given) return editor.fail(given.error());
+  if (!given) return console.fail(given.error());
   replayed.links = std::move(*given);
   auto life = RecordedLife::read(options.file, options.component);
-  if (!life) return editor.fail(life.error());
+  if (!life) return console.fail(life.error());
   if (!life->is_recorded)
-    std::cerr << "rtse: configuration and states of " << options.component << ": those of the profile, the recording has no /rtc/"
-              << options.component << "/state\n";
+    console.warn("configuration and states of " + options.component + ": those of the profile, the recording has no /rtc/" +
+                 options.component + "/state");
   for (const auto& text : options.settings) life->forget(text.substr(0, text.find('=')));
   replayed.life = std::move(*life);
 
   auto one = alone(*system, options.component);
-  if (const auto taken = take_rate(one.components.front(), options.file); !taken) return editor.fail(taken.error());
-  auto call = run->options();
+  if (const auto taken = take_rate(console, one.components.front(), options.file); !taken) return console.fail(taken.error());
+  auto recorded = run->options();
+  if (!recorded) return console.fail(recorded.error());
+  auto& call = *recorded;
   const auto world = empty_world(*run, one.components.front());
-  if (!world) return editor.fail(world.error());
+  if (!world) return console.fail(world.error());
   call.world = *world;
   call.system = (run->folder() / "alone.xml").string();
   call.keep = options.keep;
@@ -259,17 +261,18 @@ void replay_file(Editor& editor, const Options& options) {
   call.module_paths.insert(call.module_paths.end(), options.module_paths.begin(), options.module_paths.end());
   std::erase_if(call.properties, [&](const std::string& property) { return !property.starts_with(options.component + ":"); });
   call.properties.insert(call.properties.end(), options.properties.begin(), options.properties.end());
-  if (const auto done = configure(one.components.front(), options.settings); !done) return editor.fail(done.error());
-  if (const auto written = editor::write_system(one, call.system); !written) return editor.fail(written.error());
+  if (const auto done = configure(one.components.front(), options.settings); !done) return console.fail(done.error());
+  if (const auto written = editor::write_system(one, call.system); !written) return console.fail(written.error());
   ReplayResult result;
-  call.driver = [&](editor::RunningSystem& running) -> base::Result<void> {
-    auto done = replay(editor.orb(), running, replayed);
+  editor::RunHooks hooks;
+  hooks.driver = [&](editor::RunningSystem& running) -> base::Result<void> {
+    auto done = replay(session.orb(), running, replayed);
     if (!done) return done.error();
     result = std::move(*done);
     return {};
   };
   editor::catch_interrupts();
-  const auto made = editor::run_system(editor.orb(), call);
+  const auto made = editor::run_system(session.orb(), call, console, hooks);
   std::string problem = made.problem;
   if (!problem.empty() && options.start.empty() && has_own_stamps(*run, options.component))
     problem += "; it was in a third-party process: start that with --start COMMAND";
@@ -279,12 +282,12 @@ void replay_file(Editor& editor, const Options& options) {
               " refuses to be activated alone; one that uses the simulator's devices finds none in the empty world of a replay (" +
               problem + ")";
   if (problem.empty()) {
-    report(editor, options, result);
+    report(console, options, result);
     problem = nothing_compared(options, result);
   }
-  if (!problem.empty()) editor.fail({problem});
+  if (!problem.empty()) console.fail({problem});
   if (options.junit.empty()) return;
-  if (const auto written = write_report(options, result, problem); !written) editor.fail(written.error());
+  if (const auto written = write_report(options, result, problem); !written) console.fail(written.error());
 }
 
 }  // namespace
@@ -316,7 +319,9 @@ void add_replay(base::Command& app, editor::Chosen& chosen) {
       ->capture_default_str();
   command->add_option("--junit", options->junit, "Write the verdicts as JUnit XML");
   command->add_option("--keep", options->keep, "Folder for the logs");
-  command->callback([&chosen, options] { chosen.work = [options](Editor& editor) { replay_file(editor, *options); }; });
+  command->callback([&chosen, options] {
+    chosen.work = [options](const Session& session, Console& console) { replay_file(session, console, *options); };
+  });
 }
 
 }  // namespace recorder

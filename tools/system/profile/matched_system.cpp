@@ -36,18 +36,18 @@ bool same_connection(const ConnectorView& connector, const PortView& source, con
   return has_source && has_target;
 }
 
-Result<Matched> Matched::read(Editor& editor, const SavedSystem& system, Detail detail) {
-  Matched matched;
-  const auto names = editor.tree();
-  if (!names) return names.error();
-  matched.components_ = read_components(*names, detail, editor.limit());
+Matched::Matched(std::vector<ComponentView> components, const SavedSystem& system) : components_(std::move(components)) {
   for (const auto& saved : system.components) {
-    const auto* component = matched.find(saved.path_uri, saved.instance);
-    if (component && component->problem.empty()) continue;
-    const Error missing{"component " + saved.path_uri + ": " + (component ? component->problem : "is not on the name server")};
-    if (saved.is_required) matched.missing_.push_back(missing);
+    const auto* component = find(saved.path_uri, saved.instance);
+    if (!saved.is_required || (component && component->problem.empty())) continue;
+    missing_.push_back({"component " + saved.path_uri + ": " + (component ? component->problem : "is not on the name server")});
   }
-  return matched;
+}
+
+Result<Matched> Matched::read(const Session& session, const SavedSystem& system, Detail detail) {
+  const auto names = session.tree();
+  if (!names) return names.error();
+  return Matched(read_components(*names, detail, session.call_timeout()), system);
 }
 
 const ComponentView* Matched::find(const std::string& uri, const std::string& instance) const {
@@ -59,6 +59,7 @@ const ComponentView* Matched::find(const std::string& uri, const std::string& in
   }
   return by_name;
 }
+
 const PortView* Matched::port(const SavedTarget& target) const {
   const auto* component = find(target.path_uri, target.instance);
   if (!component) return nullptr;

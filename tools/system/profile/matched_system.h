@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "system/editor.h"
 #include "system/profile/rts_profile.h"
+#include "system/session.h"
 
 namespace editor {
 
@@ -23,7 +23,9 @@ bool same_connection(const ConnectorView& connector, const PortView& source, con
 // The components that a file speaks of, found on the name server by path, else by instance name.
 class Matched {
  public:
-  static Result<Matched> read(Editor& editor, const SavedSystem& system, Detail detail);
+  Matched(std::vector<ComponentView> components, const SavedSystem& system);
+  // All components on the name server. Fails when it does not answer.
+  static Result<Matched> read(const Session& session, const SavedSystem& system, Detail detail);
 
   const ComponentView* find(const std::string& uri, const std::string& instance) const;
   const PortView* port(const SavedTarget& target) const;

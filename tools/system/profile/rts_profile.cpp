@@ -51,12 +51,7 @@ base::Result<SavedSystem> read_system(const std::string& file) {
 
 base::Result<void> write_system(const SavedSystem& system, const std::string& file) {
   const bool is_yaml = file.ends_with(".yaml") || file.ends_with(".yml");
-  const auto text = is_yaml ? to_yaml(system) : to_xml(system);
-  if (file == "-") {
-    std::cout << text;
-    return {};
-  }
-  return base::write_whole_file(file, text);
+  return base::write_whole_file(file, is_yaml ? to_yaml(system) : to_xml(system));
 }
 
 }  // namespace editor

@@ -111,7 +111,7 @@ std::string to_yaml(const SavedSystem& system);
 
 // XML or YAML by content. "-" is standard input. Files above 64 MiB are refused.
 base::Result<SavedSystem> read_system(const std::string& file);
-// By the ending: .yaml and .yml YAML, anything else XML. "-" is standard output. Written whole or not at all.
+// By the ending: .yaml and .yml YAML, anything else XML. Written whole or not at all.
 base::Result<void> write_system(const SavedSystem& system, const std::string& file);
 
 }  // namespace editor

@@ -1,6 +1,11 @@
 // A component: servant of OpenRTM::DataFlowComponent and base class of everything that authors write. Its operations may be called from any
 // thread. Callbacks: onInitialize, onFinalize, onStartup, onShutdown and onRateChanged run on the caller's thread, all others on the thread
 // of the execution context. What a callback throws becomes RTC_ERROR and one log line. No lock is held while a callback runs.
+//
+// Callbacks of one component never run at the same time, whoever calls: its own contexts, contexts of other components or processes, the
+// wire. Who comes while one runs waits (component/outside_calls.h says how long), and a callback that calls another one of its component on
+// its own thread does so at once. Component action listeners and listeners of updated parameters belong to the callback that they stand
+// around. All other listeners, and the operations of a component's services, run on the thread of whoever asks, beside callbacks.
 #pragma once
 
 #include <coil/Guard.h>
@@ -27,6 +32,10 @@
 #include <thread>
 #include <type_traits>
 #include <vector>
+
+namespace rt {
+enum class Action;
+}
 
 namespace SDOPackage {
 class Organization_impl;
@@ -83,7 +92,8 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   // -1 when the context is nil or no context.
   UniqueId bindContext(ExecutionContext_ptr exec_context);
 
-  // RTC::ComponentAction and DataFlowComponentAction: what execution contexts, here and elsewhere, call.
+  // RTC::ComponentAction and DataFlowComponentAction: what execution contexts, here and elsewhere, call. Over the wire a context of another
+  // process, with the handle that attach_context has given it; all others get PRECONDITION_NOT_MET (component/outside_calls.h).
   ReturnCode_t on_initialize() override;
   ReturnCode_t on_finalize() override;
   ReturnCode_t on_startup(ExecutionContextHandle_t exec_handle) override;
@@ -358,6 +368,9 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   void finalizePorts();
   void finalizeContexts();
 
+  // The ORB's way in.
+  _CORBA_Boolean _dispatch(omniCallHandle& call) override;
+
  protected:
   void shutdown();
   // A copy of one property; unlike m_properties safe while others change them.
@@ -405,9 +418,14 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   bool waitForCallbacks(std::chrono::steady_clock::time_point deadline);
   void complainAboutCallbacks(const char* consequence) const;
   void waitForExiter();
-  // Calls the author's function; what it throws is logged and RTC_ERROR.
+  // Calls the author's function when its turn comes; what it throws is logged and RTC_ERROR.
   template <class Function>
-  ReturnCode_t callUser(const char* name, Function function);
+  ReturnCode_t callAction(rt::Action action, ExecutionContextHandle_t exec_handle, Function function);
+  template <class Refusal, class Function, class Done>
+  ReturnCode_t callInTurn(const char* name, bool is_outside, Refusal refusal, Function function, Done done);
+  // Says no to a caller from outside; few lines, however many calls.
+  ReturnCode_t refuse(const char* operation, const std::string& why, ReturnCode_t code) const;
+  bool mayBeChangedByCaller(const char* operation) const;
 
   Names profile_;
   std::unique_ptr<Impl> impl_;

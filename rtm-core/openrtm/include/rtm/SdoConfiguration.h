@@ -5,10 +5,6 @@
 
 #include <memory>
 
-namespace corba {
-class Gate;
-}
-
 namespace RTC {
 class ConfigAdmin;
 class RTObject_impl;
@@ -45,7 +41,9 @@ class Configuration_impl : public virtual POA_SDOPackage::Configuration, public 
   CORBA::Boolean activate_configuration_set(const char* id) override;
 
  private:
-  const std::unique_ptr<corba::Gate> gate_;
+  struct Door;
+
+  const std::unique_ptr<Door> door_;
   RTC::RTObject_impl& component_;
   RTC::ConfigAdmin& configuration_;
   RTC::SdoServiceAdmin& services_;

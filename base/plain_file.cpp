@@ -1,0 +1,63 @@
+#include "base/plain_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+namespace base {
+namespace {
+
+class OpenFile {
+ public:
+  explicit OpenFile(int file) : file_(file) {}
+  ~OpenFile() {
+    if (file_ >= 0) ::close(file_);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  int get() const { return file_; }
+
+ private:
+  int file_;
+};
+
+Error unreadable(int code) { return {"cannot be read: " + std::generic_category().message(code)}; }
+
+}  // namespace
+
+Result<std::string> read_plain_file(const std::filesystem::path& file, std::uintmax_t most_bytes, struct stat* status) {
+  struct stat is {};
+  // Looked at before it is opened: opening alone can move a tape or wake a driver.
+  if (::stat(file.c_str(), &is) != 0) {
+    if (errno == ENOENT || errno == ENOTDIR) return Error{"no such file"};
+    return unreadable(errno);
+  }
+  if (!S_ISREG(is.st_mode)) return Error{"is not a regular file"};
+  const OpenFile opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  if (opened.get() < 0) return unreadable(errno);
+  if (::fstat(opened.get(), &is) != 0) return unreadable(errno);
+  if (!S_ISREG(is.st_mode)) return Error{"is not a regular file"};
+  if (static_cast<std::uintmax_t>(is.st_size) > most_bytes)
+    return Error{"a file of at most " + std::to_string(most_bytes >> 20U) + " MiB is expected"};
+  std::string bytes(static_cast<std::size_t>(is.st_size), '\0');
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t count = ::read(opened.get(), bytes.data() + done, bytes.size() - done);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return unreadable(errno);
+    if (count == 0) break;
+    done += static_cast<std::size_t>(count);
+  }
+  bytes.resize(done);  // it has become shorter meanwhile
+  if (status != nullptr) *status = is;
+  return bytes;
+}
+
+bool is_plain_file(const std::filesystem::path& file) {
+  struct stat is {};
+  return ::stat(file.c_str(), &is) == 0 && S_ISREG(is.st_mode);
+}
+
+}  // namespace base

@@ -1,0 +1,52 @@
+#include "asset-reader/import.h"
+
+#include <assimp/BaseImporter.h>
+#include <assimp/config.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <set>
+#include <string_view>
+#include <vector>
+
+#include "asset-reader/mesh_io.h"
+#include "base/text.h"
+
+namespace sim {
+namespace {
+
+constexpr std::array<std::string_view, 8> extensions{"dae", "stl", "obj", "ply", "gltf", "glb", "fbx", "bvh"};
+
+}  // namespace
+
+Import::Import(std::string path, FileLog& files) : path_(std::move(path)) {
+  std::string extension = base::to_lower(std::filesystem::path(path_).extension().string());
+  if (!extension.empty()) extension.erase(0, 1);
+  is_known_ = std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
+  std::vector<Assimp::BaseImporter*> others;
+  for (std::size_t i = 0; i < importer_.GetImporterCount(); ++i) {
+    std::set<std::string> own;
+    importer_.GetImporter(i)->GetExtensionList(own);
+    if (!own.contains(extension)) others.push_back(importer_.GetImporter(i));
+  }
+  for (auto* other : others) {
+    importer_.UnregisterLoader(other);
+    delete other;  // no longer the importer's
+  }
+  importer_.SetIOHandler(new MeshIo(files));  // the importer's from now on
+  importer_.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+}
+
+base::Result<const aiScene*> Import::read(unsigned flags) {
+  if (!is_known_) {
+    std::vector<std::string> known;
+    for (const auto extension : extensions) known.push_back("." + std::string(extension));
+    return base::Error{"is of no format that is read; expected " + base::join(known, ", ")};
+  }
+  const aiScene* scene = importer_.ReadFile(path_, flags);
+  if (scene == nullptr || scene->mRootNode == nullptr) return base::Error{import_fault(importer_.GetErrorString())};
+  return scene;
+}
+
+}  // namespace sim

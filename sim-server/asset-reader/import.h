@@ -1,0 +1,30 @@
+// A file in Assimp: only the importers of the formats that worlds use, each for its own extension, and only regular files. One thread at a
+// time.
+#pragma once
+
+#include <assimp/scene.h>
+
+#include <assimp/Importer.hpp>
+#include <string>
+
+#include "asset-reader/jobs.h"
+#include "base/result.h"
+
+namespace sim {
+
+class Import {
+ public:
+  Import(std::string path, FileLog& files);
+
+  // For its properties.
+  Assimp::Importer& importer() { return importer_; }
+  // With a root. Lives as long as this object. `flags`: of aiPostProcessSteps.
+  base::Result<const aiScene*> read(unsigned flags);
+
+ private:
+  std::string path_;
+  bool is_known_ = false;
+  Assimp::Importer importer_;
+};
+
+}  // namespace sim

@@ -1,0 +1,55 @@
+#include "asset-reader/jobs.h"
+
+#include <exception>
+#include <new>
+#include <utility>
+
+#include "base/plain_file.h"
+#include "base/text.h"
+
+namespace sim {
+
+void FileLog::add(FileStamp stamp) {
+  for (const FileStamp& known : stamps_)
+    if (known.path == stamp.path) return;
+  if (stamps_.size() < most_stamps && stamp.path.size() <= most_path) stamps_.push_back(std::move(stamp));
+}
+
+base::Result<std::string> FileLog::read(const std::string& path, std::uint64_t most_bytes) {
+  add(stamp_of(path));  // before: what changes meanwhile is found to be another file
+  return base::read_plain_file(path, most_bytes);
+}
+
+bool FileLog::exists(const std::string& path) {
+  const FileStamp stamp = stamp_of(path);
+  add(stamp);
+  return stamp.exists && base::is_plain_file(path);
+}
+
+base::Result<void> read_asset(AssetKind kind, Job& job) {
+  try {
+    switch (kind) {
+      case AssetKind::triangles:
+        return read_triangles(job);
+      case AssetKind::mesh:
+        return read_mesh(job);
+      case AssetKind::skin:
+        return read_skin(job);
+      case AssetKind::animation:
+        return read_animation(job);
+      case AssetKind::image:
+        return read_picture(job);
+      case AssetKind::heights:
+        return read_levels(job);
+    }
+    return base::Error{"is of no kind that is read"};
+  } catch (const std::bad_alloc&) {
+    return base::Error{"is too large for the memory"};
+  } catch (const std::exception& e) {
+    return base::Error{base::in_quotes(e.what())};
+  } catch (...) {  // libraries throw what is no exception
+    return base::Error{"cannot be read"};
+  }
+}
+
+}  // namespace sim

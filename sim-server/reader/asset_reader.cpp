@@ -1,0 +1,349 @@
+#include "reader/asset_reader.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "base/text.h"
+
+namespace sim {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds stop_period{200};  // after which stop() is noticed
+
+class Descriptor {
+ public:
+  explicit Descriptor(int file = -1) : file_(file) {}
+  Descriptor(Descriptor&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(file_, other.file_);
+    return *this;
+  }
+  ~Descriptor() {
+    if (file_ >= 0) ::close(file_);
+  }
+  int get() const { return file_; }
+  int release() { return std::exchange(file_, -1); }
+
+ private:
+  int file_;
+};
+
+std::optional<Clock::time_point>& thread_deadline() {
+  thread_local std::optional<Clock::time_point> when;
+  return when;
+}
+
+base::Error broken(const char* what, int code) { return {std::string(what) + ": " + std::generic_category().message(code)}; }
+
+// One packet with at most one descriptor.
+bool send_packet(int socket, const std::string& bytes, int file) {
+  iovec part{const_cast<char*>(bytes.data()), bytes.size()};
+  alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
+  msghdr message{};
+  message.msg_iov = &part;
+  message.msg_iovlen = 1;
+  if (file >= 0) {
+    message.msg_control = control;
+    message.msg_controllen = sizeof control;
+    cmsghdr* head = CMSG_FIRSTHDR(&message);
+    head->cmsg_level = SOL_SOCKET;
+    head->cmsg_type = SCM_RIGHTS;
+    head->cmsg_len = CMSG_LEN(sizeof(int));
+    std::memcpy(CMSG_DATA(head), &file, sizeof(int));
+  }
+  ssize_t count = 0;
+  do count = ::sendmsg(socket, &message, MSG_NOSIGNAL | MSG_DONTWAIT);
+  while (count < 0 && errno == EINTR);
+  return count == static_cast<ssize_t>(bytes.size());
+}
+
+// The head and its descriptor; -1 when something else came. Any further descriptors are closed.
+struct Packet {
+  bool is_end = false;
+  AnswerHead head;
+  Descriptor file;
+};
+Packet receive_packet(int socket) {
+  Packet packet;
+  iovec part{&packet.head, sizeof packet.head};
+  alignas(cmsghdr) char control[CMSG_SPACE(4 * sizeof(int))] = {};
+  msghdr message{};
+  message.msg_iov = &part;
+  message.msg_iovlen = 1;
+  message.msg_control = control;
+  message.msg_controllen = sizeof control;
+  ssize_t count = 0;
+  do count = ::recvmsg(socket, &message, MSG_CMSG_CLOEXEC | MSG_DONTWAIT);
+  while (count < 0 && errno == EINTR);
+  packet.is_end = count <= 0;
+  std::vector<Descriptor> files;
+  for (cmsghdr* head = CMSG_FIRSTHDR(&message); head != nullptr; head = CMSG_NXTHDR(&message, head)) {
+    if (head->cmsg_level != SOL_SOCKET || head->cmsg_type != SCM_RIGHTS) continue;
+    for (std::size_t at = CMSG_LEN(0); at + sizeof(int) <= head->cmsg_len; at += sizeof(int)) {
+      int file = -1;
+      std::memcpy(&file, reinterpret_cast<const char*>(head) + at, sizeof file);
+      files.emplace_back(file);
+    }
+  }
+  if (count == sizeof packet.head && packet.head.magic == asset_magic && files.size() == 1) packet.file = std::move(files.front());
+  return packet;
+}
+
+// The content of a picture, for the reader to see and nobody to change.
+Descriptor memory_with(std::span<const std::uint8_t> content) {
+  Descriptor memory(::memfd_create("rtm-asset", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  std::size_t done = 0;
+  while (memory.get() >= 0 && done < content.size()) {
+    const ssize_t count = ::write(memory.get(), content.data() + done, content.size() - done);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return Descriptor();
+    done += static_cast<std::size_t>(count);
+  }
+  return memory;
+}
+
+std::string reason_of(int status, const ReadLimits& limits) {
+  if (WIFEXITED(status)) return "is damaged: its reader ended with exit status " + std::to_string(WEXITSTATUS(status));
+  const int signal = WTERMSIG(status);
+  if (signal == SIGXCPU) return "takes more than " + std::to_string(limits.cpu.count()) + " s of processor time to read";
+  if (signal == SIGXFSZ) return "is larger than " + std::to_string(most_answer_bytes >> 20U) + " MiB when read";
+  if (signal == SIGKILL) return "was not read: its reader was killed";
+  const char* name = ::sigdescr_np(signal);
+  return "is damaged: its reader ended with signal " + std::to_string(signal) + " (" + (name == nullptr ? "unknown" : name) + ")";
+}
+
+}  // namespace
+
+ReadDeadline::ReadDeadline(std::chrono::steady_clock::time_point when) : before_(thread_deadline()) {
+  thread_deadline() = before_ ? std::min(*before_, when) : when;
+}
+ReadDeadline::~ReadDeadline() { thread_deadline() = before_; }
+
+std::shared_ptr<const SealedMemory> SealedMemory::map(int file, std::uint64_t most) {
+  const Descriptor memory(file);
+  errno = 0;
+  constexpr int needed = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE;
+  const int seals = ::fcntl(file, F_GET_SEALS);
+  struct stat is {};
+  if (seals < 0 || (seals & needed) != needed || ::fstat(file, &is) != 0 || is.st_size < 0 || static_cast<std::uint64_t>(is.st_size) > most)
+    return nullptr;
+  const auto size = static_cast<std::size_t>(is.st_size);
+  if (size == 0) return nullptr;
+  void* data = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file, 0);
+  if (data == MAP_FAILED) return nullptr;  // errno says why, and closing the descriptor keeps it
+  return std::shared_ptr<const SealedMemory>(new SealedMemory(static_cast<const std::byte*>(data), size));
+}
+SealedMemory::~SealedMemory() { ::munmap(const_cast<std::byte*>(data_), size_); }
+
+// A reader that was started and has not been waited for.
+struct AssetReader::Child {
+  pid_t pid = 0;
+  Descriptor socket;
+
+  static base::Result<std::unique_ptr<Child>> start();
+  ~Child() { static_cast<void>(end()); }
+  // Ends it when it has not ended; its status. Again: the same.
+  int end() {
+    if (!status_) {
+      // One that is ending already keeps the status that it ends with.
+      ::kill(pid, SIGKILL);
+      int status = 0;
+      while (::waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+      }
+      status_ = status;
+      socket = Descriptor();
+    }
+    return *status_;
+  }
+
+ private:
+  std::optional<int> status_;
+};
+
+base::Result<std::unique_ptr<AssetReader::Child>> AssetReader::Child::start() {
+  std::error_code problem;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", problem).parent_path() / "rtm-asset-reader";
+  int ends[2] = {-1, -1};
+  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) return broken("no socket for the reader of files", errno);
+  auto child = std::make_unique<Child>();
+  child->socket = Descriptor(ends[0]);
+  // Above the number that it gets: a descriptor that is put in its own place would stay closed on exec.
+  Descriptor theirs(::fcntl(ends[1], F_DUPFD_CLOEXEC, 10));
+  ::close(ends[1]);
+  posix_spawn_file_actions_t actions;
+  posix_spawnattr_t attributes;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawnattr_init(&attributes);
+  for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+#if defined(__SANITIZE_ADDRESS__)
+    if (standard == STDERR_FILENO) continue;  // its reports
+#endif
+    posix_spawn_file_actions_addopen(&actions, standard, "/dev/null", standard == STDIN_FILENO ? O_RDONLY : O_WRONLY, 0);
+  }
+  posix_spawn_file_actions_adddup2(&actions, theirs.get(), reader_socket);
+  posix_spawn_file_actions_addclosefrom_np(&actions, reader_socket + 1);
+  sigset_t none, all;
+  sigemptyset(&none);
+  sigfillset(&all);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setsigdefault(&attributes, &all);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+  std::string name = program.string(), job = "--socket";
+  char* words[] = {name.data(), job.data(), nullptr};
+  const int failed = ::posix_spawn(&child->pid, program.c_str(), &actions, &attributes, words, environ);
+  posix_spawn_file_actions_destroy(&actions);
+  posix_spawnattr_destroy(&attributes);
+  if (failed != 0) {
+    child->status_ = 0;
+    return broken(("the reader of files does not start, " + program.string()).c_str(), failed);
+  }
+  return child;
+}
+
+struct AssetReader::State {
+  base::Turn<> turn;  // everything below is for the thread that has it
+  std::unique_ptr<Child> child;
+  // Files that a reader has ended with.
+  struct Deadly {
+    FileStamp stamp;
+    std::string reason;
+  };
+  std::map<std::string, Deadly> deadly;
+  void remember(const std::string& path, const FileStamp& stamp, const std::string& reason) {
+    if (deadly.size() >= most_stamps) deadly.clear();
+    deadly.insert_or_assign(path, Deadly{stamp, reason});
+  }
+  std::atomic<bool> is_stopped{false};
+  std::atomic<pid_t> process{0};  // relaxed: for people and tests
+  std::atomic<std::size_t> started{0};
+
+  base::Result<Child*> reader() {
+    if (child) return child.get();
+    auto made = Child::start();
+    if (!made) return made.error();
+    child = std::move(*made);
+    process.store(child->pid, std::memory_order_relaxed);
+    started.fetch_add(1, std::memory_order_relaxed);
+    return child.get();
+  }
+  int end_reader() {
+    const int status = child->end();
+    child.reset();
+    process.store(0, std::memory_order_relaxed);
+    return status;
+  }
+};
+
+AssetReader& AssetReader::mine() {
+  static auto& reader = *new AssetReader;  // never destroyed: threads may still read at the very end, and the process ends with its socket
+  return reader;
+}
+AssetReader::AssetReader() : state_(std::make_unique<State>()) {}
+AssetReader::~AssetReader() = default;
+void AssetReader::stop() { state_->is_stopped.store(true, std::memory_order_release); }  // pairs with the acquires in ask
+pid_t AssetReader::process() const { return state_->process.load(std::memory_order_relaxed); }
+std::size_t AssetReader::started() const { return state_->started.load(std::memory_order_relaxed); }
+
+AssetReader::Answer AssetReader::ask(const Question& question, const ReadLimits& limits) {
+  base::expect_no_data_held();
+  const auto mine = state_->turn.take();
+  const bool is_file = question.content.data() == nullptr;
+  const std::string who = question.what + " " + question.path + ": ";
+  const auto fail = [&](const std::string& why, FileStamps files) { return Answer{base::Error{who + why}, nullptr, {}, std::move(files)}; };
+  const FileStamp stamp = is_file ? stamp_of(question.path) : FileStamp{};
+  if (const auto known = state_->deadly.find(question.path); is_file && known != state_->deadly.end()) {
+    if (known->second.stamp == stamp) return fail(known->second.reason, {stamp});
+    state_->deadly.erase(known);
+  }
+
+  ArrayWriter packet;
+  packet.number(RequestHead{asset_magic, question.kind, static_cast<std::uint64_t>(limits.cpu.count())});
+  packet.text(question.path);
+  packet.number<std::uint64_t>(is_file ? 0 : 1);
+  const std::string words = packet.bytes() + question.details;
+  if (words.size() > most_request_bytes || question.path.size() > most_path || question.path.find('\0') != std::string::npos)
+    return fail("has too long a name", {});
+  Descriptor content;
+  if (!is_file) {
+    content = memory_with(question.content);
+    if (content.get() < 0) return fail("the memory is not enough to read it", {});
+  }
+
+  const auto own_deadline = Clock::now() + limits.wall;
+  const auto deadline = thread_deadline() ? std::min(own_deadline, *thread_deadline()) : own_deadline;
+  if (state_->is_stopped.load(std::memory_order_acquire))
+    return fail("was not read: the simulator ends", {});  // pairs with the release in stop
+  if (Clock::now() >= deadline) return fail("was not read: the time for all files of this model is over", {});
+  // A reader that was killed while it had nothing to do, or by somebody else, is no reason to go without the file.
+  for (int attempt = 0;; ++attempt) {
+    const auto reader = state_->reader();
+    if (!reader) return fail(reader.error().message, {});
+    Packet answer;
+    bool is_late = false;
+    if (send_packet((*reader)->socket.get(), words, content.get())) {
+      pollfd waiting{(*reader)->socket.get(), POLLIN, 0};
+      while (true) {
+        const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
+        const int ready = left > left.zero() ? ::poll(&waiting, 1, static_cast<int>(std::min(left, stop_period).count())) : 0;
+        const bool is_stopped = state_->is_stopped.load(std::memory_order_acquire);  // pairs with the release in stop
+        if (!is_stopped && ((ready < 0 && errno == EINTR) || (ready == 0 && Clock::now() < deadline))) continue;
+        is_late = ready <= 0;
+        break;
+      }
+      if (!is_late) answer = receive_packet((*reader)->socket.get());
+    } else {
+      answer.is_end = true;
+    }
+    if (is_late) {
+      state_->end_reader();
+      const std::string reason = "was not read in time";
+      if (!is_file || deadline < own_deadline) return fail(reason, {});
+      state_->remember(question.path, stamp, reason + " (" + std::to_string(limits.wall.count()) + " s)");
+      return fail(state_->deadly.at(question.path).reason, {stamp});
+    }
+    if (answer.is_end) {
+      const int status = state_->end_reader();
+      if (attempt == 0 && WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) continue;
+      const std::string reason = reason_of(status, limits);
+      const bool is_by_file = !(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
+      if (is_file && is_by_file) state_->remember(question.path, stamp, reason);
+      return fail(reason, is_by_file && is_file ? FileStamps{stamp} : FileStamps{});
+    }
+    errno = 0;
+    const auto memory = answer.file.get() >= 0 ? SealedMemory::map(answer.file.release(), most_answer_bytes) : nullptr;
+    const bool is_short = !memory && errno == ENOMEM;
+    const std::size_t padded = memory ? (static_cast<std::size_t>(answer.head.result_bytes) + 7) / 8 * 8 : 0;
+    if (!memory || answer.head.result_bytes > memory->bytes().size() || padded > memory->bytes().size()) {
+      state_->end_reader();
+      return fail(is_short ? "is too large for the memory" : "is damaged: its reader sent no result", {stamp});
+    }
+    ArrayReader rest(memory->bytes().subspan(padded));
+    FileStamps files = take_stamps(rest);
+    if (!rest.ok()) files = {stamp};
+    const auto result = memory->bytes().first(static_cast<std::size_t>(answer.head.result_bytes));
+    if (answer.head.is_error == 0) return {std::nullopt, memory, result, std::move(files)};
+    std::string why(reinterpret_cast<const char*>(result.data()), std::min<std::size_t>(result.size(), 1000));
+    // One line of printable characters, whatever the reader made of the file.
+    for (char& c : why) c = static_cast<unsigned char>(c) < 32 || c == 127 ? ' ' : c;
+    return fail(why, std::move(files));
+  }
+}
+
+}  // namespace sim

@@ -1,0 +1,63 @@
+// What sim-server and rtm-asset-reader say to each other over a socket pair (SOCK_SEQPACKET). Any thread.
+//
+// A request is one packet: RequestHead, then what the kind of request needs (reader/arrays.h), perhaps with a descriptor (the bytes of a
+// picture). The answer is one packet, AnswerHead, with a sealed memfd: the result's arrays (or the text of an error), padded to 8 bytes,
+// then the stamps of all files that were opened or missed. One request at a time.
+//
+// The reader (child) trusts the server; the server trusts nothing of what it gets: sizes, seals, counts, indexes and numbers are checked.
+// Failures: the reader dies (end of file on the socket), hangs (the server's deadline, then SIGKILL), sends something else (SIGKILL). When
+// the server dies, the reader sees the socket's end, also in the middle of a request, and exits.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "reader/arrays.h"
+
+namespace sim {
+
+enum class AssetKind : std::uint32_t { triangles = 1, mesh, skin, animation, image, heights };
+
+struct RequestHead {
+  std::uint32_t magic = 0;
+  AssetKind kind{};
+  std::uint64_t cpu_seconds = 0;  // after which the reader is ended by SIGXCPU
+};
+struct AnswerHead {
+  std::uint32_t magic = 0;
+  std::uint32_t is_error = 0;
+  std::uint64_t result_bytes = 0;  // before the stamps; a multiple of 8 but for an error
+};
+
+inline constexpr std::uint32_t asset_magic = 0x72746101;
+inline constexpr int reader_socket = 3;  // the descriptor that the reader is started with
+inline constexpr std::size_t most_request_bytes = 32768;
+inline constexpr std::uint64_t most_answer_bytes = (std::uint64_t{1} << 30U) + (std::uint64_t{1} << 24U);  // the largest picture, and more
+inline constexpr std::uint64_t most_reader_memory = std::uint64_t{4} << 30U;                               // of address space
+inline constexpr std::uint64_t most_mesh_file = std::uint64_t{512} << 20U;
+inline constexpr std::uint64_t most_image_file = std::uint64_t{1} << 30U;
+inline constexpr std::size_t most_path = 4096;
+inline constexpr std::size_t most_stamps = 4096;
+
+// The state of a file when it was opened: equal stamps, equal content.
+struct FileStamp {
+  std::string path;
+  bool exists = false;
+  std::uint64_t device = 0, inode = 0, size = 0;
+  std::int64_t modified_ns = 0, changed_ns = 0;
+  bool operator==(const FileStamp&) const = default;
+};
+// As it is now.
+FileStamp stamp_of(const std::string& path);
+using FileStamps = std::vector<FileStamp>;
+bool are_unchanged(const FileStamps& files);
+// Differs when the files differ; never 0.
+std::uint64_t version_of(const FileStamps& files);
+
+void put(ArrayWriter& out, const FileStamps& files);
+FileStamps take_stamps(ArrayReader& in);
+
+}  // namespace sim

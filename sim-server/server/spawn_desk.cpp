@@ -1,0 +1,83 @@
+#include "server/spawn_desk.h"
+
+#include <exception>
+#include <new>
+#include <utility>
+
+#include "base/text.h"
+#include "reader/asset_reader.h"
+#include "render/scene.h"
+
+namespace sim {
+namespace {
+
+constexpr std::chrono::seconds time_to_read{8};  // for all files of a model: clients wait for ten seconds
+
+// What Scene::build() will ask for when the model has come.
+std::unique_ptr<Assets> pictures_of(const ModelDef& model, const SpawnDesk::Order& order) {
+  if (!order.has_visuals && !order.has_collisions) return nullptr;
+  auto assets = std::make_unique<Assets>(order.world_path);
+  const Scene::Parts parts{{}, {}, {&model}, {}};
+  if (order.has_visuals) (void)Scene::build(parts, *assets, Scene::Content::visuals);
+  if (order.has_collisions) (void)Scene::build(parts, *assets, Scene::Content::collisions);
+  return assets;
+}
+
+SpawnDesk::Done read(const SpawnDesk::Order& order) {
+  const ReadDeadline deadline(std::chrono::steady_clock::now() + time_to_read);
+  SpawnDesk::Done done{order.ticket, base::Error{}, order.name.empty(), {}, {}};
+  const auto fail = [&](const std::string& why) { done.model = base::Error{"model: " + why}; };
+  try {
+    done.model = load_model(order.model, order.name, order.pose, order.model_path);
+    if (!done.model) return done;
+    done.triangles.prepare(done.model.value().model);
+    done.pictures = pictures_of(done.model.value().model, order);
+  } catch (const std::bad_alloc&) {
+    fail("is too large for the memory");
+  } catch (const std::exception& e) {
+    fail(base::in_quotes(e.what()));
+  }
+  return done;
+}
+
+}  // namespace
+
+SpawnDesk::SpawnDesk(std::function<void()> on_done) : on_done_(std::move(on_done)) {}
+
+SpawnDesk::~SpawnDesk() {
+  state_.lock()->is_ending = true;
+  changed_.notify_all();
+  AssetReader::mine().stop();  // the server ends
+}
+
+void SpawnDesk::take(Order order) {
+  if (!thread_.joinable()) thread_ = std::jthread([this] { run(); });
+  ++under_way_;
+  state_.lock()->orders.push_back(std::move(order));
+  changed_.notify_all();
+}
+
+std::vector<SpawnDesk::Done> SpawnDesk::finished() {
+  if (under_way_ == 0) return {};
+  auto done = std::exchange(state_.lock()->done, {});
+  under_way_ -= done.size();
+  return done;
+}
+
+void SpawnDesk::run() {
+  while (true) {
+    std::optional<Order> order;
+    {
+      auto state = state_.lock();
+      state.wait(changed_, [&] { return state->is_ending || !state->orders.empty(); });
+      if (state->is_ending) return;
+      order = std::move(state->orders.front());
+      state->orders.erase(state->orders.begin());
+    }
+    Done done = read(*order);
+    state_.lock()->done.push_back(std::move(done));
+    on_done_();
+  }
+}
+
+}  // namespace sim

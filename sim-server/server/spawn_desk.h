@@ -1,0 +1,71 @@
+// Where models that are to be spawned are read, in a thread of their own: their files may take as long as thousands of steps, and time goes
+// on meanwhile (but not in lock step). The stepping thread only, but for what `on_done` does.
+//
+// States of an order: taken, read (its model and all that its shapes need, or an error), finished. Orders are read in the order in which
+// they come. Nothing that the desk's thread reads is seen by the stepping thread before finished() hands it over.
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/guarded.h"
+#include "render/assets.h"
+#include "shm/request_board.h"
+#include "world/triangles.h"
+#include "world/world_loader.h"
+
+namespace sim {
+
+class SpawnDesk {
+ public:
+  // Called in the desk's thread after each model.
+  explicit SpawnDesk(std::function<void()> on_done);
+  // The file that is being read is given up.
+  ~SpawnDesk();
+  SpawnDesk(const SpawnDesk&) = delete;
+  SpawnDesk& operator=(const SpawnDesk&) = delete;
+
+  struct Order {
+    shm::RequestTicket ticket;
+    std::string model;  // as load_model() takes it
+    std::string name;   // empty: its own
+    std::optional<Eigen::Isometry3d> pose;
+    ModelPath model_path;
+    ModelPath world_path;                              // of pictures that mesh files name
+    bool has_visuals = false, has_collisions = false;  // what is drawn now: their files are read, too
+  };
+  void take(Order order);
+
+  struct Done {
+    shm::RequestTicket ticket;
+    base::Result<LoadedModel> model;
+    bool has_own_name = false;
+    TriangleCache triangles;
+    std::unique_ptr<Assets> pictures;  // null: nothing is drawn
+  };
+  // One load when nothing is ordered.
+  std::vector<Done> finished();
+  // Orders that finished() has not handed over.
+  std::size_t under_way() const { return under_way_; }
+
+ private:
+  struct State {
+    std::vector<Order> orders;
+    std::vector<Done> done;
+    bool is_ending = false;
+  };
+  void run();
+
+  std::function<void()> on_done_;
+  std::size_t under_way_ = 0;
+  base::Guarded<State, base::Rank::buffer> state_;
+  std::condition_variable changed_;
+  std::jthread thread_;  // last: ends before what it uses
+};
+
+}  // namespace sim

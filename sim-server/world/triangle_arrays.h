@@ -1,0 +1,34 @@
+// Triangles and heights as they cross from the reader of files (reader/protocol.h), and their checks. Values; any thread.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "reader/arrays.h"
+#include "world/triangles.h"
+
+namespace sim {
+
+inline constexpr std::size_t most_triangles = 20'000'000;
+inline constexpr double largest_coordinate = 1e7;  // [m]
+inline constexpr int largest_height_map = 8193;    // [pixel] a side
+inline constexpr int most_heights_a_side = 2049;   // what larger maps have between is left out: every height costs some 250 bytes
+
+void put(ArrayWriter& out, const MeshShape& shape);
+MeshShape take_shape(ArrayReader& in, const std::string& path);
+
+void put(ArrayWriter& out, const TriangleMesh& mesh);
+// False when an index is out of range, a corner is not finite or too far away, or there is no triangle.
+bool take_triangles(ArrayReader& in, TriangleMesh& mesh);
+
+// What a picture says of heights, before it has a size.
+struct HeightLevels {
+  std::uint32_t columns = 0, rows = 0;
+  std::uint32_t highest = 255;  // 65535 for deep pictures
+  std::vector<std::uint16_t> levels;
+};
+void put(ArrayWriter& out, const HeightLevels& map);
+bool take_levels(ArrayReader& in, HeightLevels& map);
+
+}  // namespace sim

@@ -1,0 +1,139 @@
+// Conditions and events of a plan on a simulator without a process.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "campaign/run/deeds_runner.h"
+#include "run/fake_simulator.h"
+
+namespace campaign {
+namespace {
+
+using editor::test::FakeSimulator;
+
+struct Scene {
+  FakeSimulator simulator;
+  editor::Workplace place{""};
+  std::string naming = "127.0.0.1:1";
+  editor::SavedSystem system;
+  editor::PortValues values;
+  editor::RunScene scene{simulator,
+                         place,
+                         naming,
+                         system,
+                         values,
+                         [](const std::string&) { return Result<void>(); },
+                         [](const std::string&) { return Result<void>(); },
+                         [](const std::string&) { return false; },
+                         [](bool) {},
+                         [](const std::string& instance, editor::Detail) {
+                           return Result<editor::ComponentView>(Error{"component " + instance + ": is not there"});
+                         }};
+
+  // After ten steps, so at the first look.
+  Result<void> look(DeedsRunner& runner, double time_s) { return runner.act(scene, std::llround(time_s / simulator.step())); }
+};
+
+Condition region(const std::string& model) {
+  Condition condition;
+  condition.kind = Condition::Kind::region;
+  condition.text = model + " in region";
+  condition.model = model;
+  condition.region[0] = 1, condition.region[1] = -1, condition.region[2] = 2, condition.region[3] = 1;
+  return condition;
+}
+
+Condition contact(const std::string& model, const std::string& touched) {
+  Condition condition;
+  condition.kind = Condition::Kind::touches;
+  condition.text = model + " touches " + touched;
+  condition.model = model;
+  condition.touched = touched;
+  return condition;
+}
+
+std::string problem(DeedsRunner& runner) { return runner.verdicts().at(0).problem; }
+
+TEST(Conditions, a_model_in_a_region_is_seen_at_the_next_look) {
+  Scene s;
+  s.simulator.poses["robot"] = {0, 0, 0, 1, 0, 0, 0};
+  DeedsRunner runner({.never = {region("robot")}}, 1, 10);
+  ASSERT_TRUE(runner.begin(s.scene));
+  ASSERT_TRUE(s.look(runner, 0.1));
+  EXPECT_EQ(problem(runner), "");
+  s.simulator.poses["robot"].x = 1.5;
+  ASSERT_TRUE(s.look(runner, 0.2));
+  EXPECT_EQ(problem(runner), "it was so at 0.2 s");
+}
+
+TEST(Conditions, nothing_is_true_of_a_model_that_does_not_exist_yet) {
+  Scene s;
+  s.simulator.poses["ground_plane"] = shm::identity_pose;
+  DeedsRunner runner({.eventually = {region("box")}}, 1, 10);
+  ASSERT_TRUE(runner.begin(s.scene));
+  ASSERT_TRUE(s.look(runner, 0.1));
+  EXPECT_EQ(problem(runner), "it never was");
+  s.simulator.poses["box"] = {1.5, 0, 0, 1, 0, 0, 0};
+  ASSERT_TRUE(s.look(runner, 0.2));
+  EXPECT_EQ(problem(runner), "");
+}
+
+TEST(Conditions, a_simulator_that_does_not_answer_ends_the_run) {
+  Scene s;
+  DeedsRunner runner({.never = {region("robot")}}, 1, 10);
+  ASSERT_TRUE(runner.begin(s.scene));
+  s.simulator.broken = Error{"server 42 did not answer in time"};
+  const auto looked = s.look(runner, 0.1);
+  ASSERT_FALSE(looked);
+  EXPECT_EQ(looked.error().message, "server 42 did not answer in time");
+}
+
+TEST(Conditions, any_contact_leaves_out_the_ground) {
+  Scene s;
+  s.simulator.poses["robot"] = shm::identity_pose;
+  s.simulator.touching["robot"] = {{"robot::base::hull", "ground_plane::link::plane"}};
+  DeedsRunner any({.never = {contact("robot", "any")}}, 1, 10), wall({.never = {contact("robot", "wall")}}, 1, 10);
+  ASSERT_TRUE(any.begin(s.scene));
+  ASSERT_TRUE(wall.begin(s.scene));
+  ASSERT_TRUE(s.look(any, 0.1));
+  EXPECT_EQ(problem(any), "");
+  s.simulator.touching["robot"].push_back({"robot::base::hull", "box::link::hull"});
+  ASSERT_TRUE(s.look(any, 0.2));
+  ASSERT_TRUE(s.look(wall, 0.2));
+  EXPECT_EQ(problem(any), "it was so at 0.2 s");
+  EXPECT_EQ(problem(wall), "");
+}
+
+TEST(Events, change_models_and_leave_those_that_do_not_exist) {
+  Scene s;
+  s.simulator.poses["robot"] = shm::identity_pose;
+  Event push;
+  push.kind = Event::Kind::push;
+  push.target = "robot";
+  push.numbers = {"1", "0", "0"};
+  auto pose = push;
+  pose.kind = Event::Kind::pose;
+  auto missing = push;
+  missing.target = "nobody";
+  for (const auto& event : {push, pose, missing}) {
+    const auto done = carry_out_event(s.scene, event);
+    ASSERT_TRUE(done) << done.error().message;
+    EXPECT_EQ(*done, "");
+  }
+  EXPECT_EQ(s.simulator.asked, (std::vector<std::string>{"push robot 3", "pose robot 3"}));
+}
+
+TEST(Events, a_model_whose_name_is_taken_is_not_spawned_and_the_reason_is_told) {
+  Scene s;
+  Event spawn;
+  spawn.kind = Event::Kind::spawn;
+  spawn.target = "model://box";
+  spawn.name = "box";
+  EXPECT_EQ(*carry_out_event(s.scene, spawn), "");
+  EXPECT_EQ(*carry_out_event(s.scene, spawn), "there is a model \"box\" already");
+}
+
+}  // namespace
+}  // namespace campaign

@@ -1,0 +1,241 @@
+# Files of meshes and pictures that are damaged, hostile, or read again and again, one case per run: server_meshes.py CASE BIN_DIR SOURCE_DIR.
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import threading
+import time
+
+from server_rig import *
+
+folder = pathlib.Path(work.name)
+damaged = sorted(pathlib.Path(f"{source}/tests/worlds/damaged_meshes").iterdir())
+crate = f"{source}/tests/worlds/models/crate/meshes/crate.dae"
+reasons = ("is damaged: its reader ended with", "processor time to read", "is too large for the memory", "was not read")
+
+
+def model(mesh, name="m", texture=None):
+    material = f"<material><pbr><metal><albedo_map>{texture}</albedo_map></metal></pbr></material>" if texture else ""
+    shape = f"<geometry><mesh><uri>{mesh}</uri></mesh></geometry>"
+    return f"<model name='{name}'><link name='l'><collision name='c'>{shape}</collision><visual name='v'>{shape}{material}</visual></link></model>"
+
+
+def world(*models):
+    path = folder / f"{len(list(folder.iterdir()))}.sdf"
+    path.write_text(f"<sdf version='1.9'><world name='w'>{''.join(models)}</world></sdf>")
+    return str(path)
+
+
+def spawned(mesh, name, texture=None):
+    return simctl("spawn", f"<sdf version='1.9'>{model(mesh, name, texture)}</sdf>")
+
+
+def log_of(process):
+    return open(process.log.name).read()
+
+
+def readers(process):
+    children = []
+    for task in os.listdir(f"/proc/{process.pid}/task"):
+        try:
+            children += open(f"/proc/{process.pid}/task/{task}/children").read().split()
+        except FileNotFoundError:
+            pass  # the thread has ended
+    return [int(pid) for pid in children]
+
+
+def descriptors(process):
+    return len(os.listdir(f"/proc/{process.pid}/fd"))
+
+
+def is_running(pid):
+    try:
+        return open(f"/proc/{pid}/stat").read().rsplit(")", 1)[1].split()[0] != "Z"
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+
+
+def steps():
+    return read("stats")["steps"]
+
+
+# Each damaged file costs a line, in the world's own loading and in pictures; the rest of the world is there.
+def damaged_in_a_world():
+    for mesh in damaged:
+        done = subprocess.run([f"{bin_dir}/sim-server", "--check", "-s", server_id, world(model(mesh))], capture_output=True, text=True, timeout=watchdog)
+        lines = done.stderr.strip().splitlines()
+        assert done.returncode == 1 and len(lines) == 2, f"{mesh}: exit {done.returncode}, {lines}"
+        assert all(str(mesh) in line and any(reason in line for reason in reasons) for line in lines), lines
+
+
+# A running simulator survives them all, and leaves no process and no descriptor behind.
+def damaged_and_spawned():
+    process = started()
+    assert spawned(crate, "first").returncode == 0
+    before = descriptors(process)
+    for round in range(2):
+        for i, mesh in enumerate(damaged):
+            done = spawned(mesh, f"bad{round}{i}")
+            assert done.returncode == 0, f"{mesh}: {done.stderr}"
+            assert f"collision l::c: mesh {mesh}: " in log_of(process), log_of(process)
+    assert len(readers(process)) <= 1 and descriptors(process) <= before, (readers(process), before, descriptors(process))
+    assert spawned(crate, "last").returncode == 0 and "crate.dae" not in log_of(process)
+    stop(process)
+
+
+# Steps are made and other clients are served while the files of a model are read.
+def time_goes_on_while_a_model_is_read():
+    process = started()
+    assert spawned(crate, "first").returncode == 0
+    before = steps()
+    begun = time.monotonic()
+    results = []
+    thread = threading.Thread(target=lambda: results.append(spawned(next(m for m in damaged if m.name == "no_end_header.ply"), "slow")))
+    thread.start()
+    served = 0
+    while not results:
+        ok("list")
+        served += 1
+    thread.join()
+    made, took = steps() - before, time.monotonic() - begun
+    print(f"{made} steps and {served} requests in {took:.1f} s")
+    assert results[0].returncode == 0 and made > 100 and served > 1, (results[0].stderr, made, served)
+    # As the files are known, it is read at once the next time.
+    assert spawned(crate, "second").returncode == 0
+    stop(process)
+
+
+# In lock step a model comes at the step at which it was asked for, however long its files take.
+def lock_step_waits_for_a_model():
+    process = started("-u", "--lockstep")
+    hashes = []
+    for _ in range(2):
+        ok("step", "100")
+        assert spawned(crate, "crate").returncode == 0
+        ok("step", "300")
+        hashes.append(state())
+        ok("reset")
+    assert hashes[0] == hashes[1], hashes
+    stop(process)
+    # A reader that is held makes the model late, and time stands meanwhile.
+    process = started("--lockstep")
+    assert spawned(crate, "first").returncode == 0
+    reader, = readers(process)
+    os.kill(reader, signal.SIGSTOP)
+    copy = folder / "copy.dae"
+    shutil.copy(crate, copy)
+    results = []
+    thread = threading.Thread(target=lambda: results.append(spawned(copy, "late")))
+    thread.start()
+    await_("time to stand", lambda: steps() == (time.sleep(0.3), steps())[1])
+    at = steps()
+    ok("list")
+    os.kill(reader, signal.SIGCONT)
+    thread.join()
+    assert results[0].returncode == 0, results[0].stderr
+    await_("time to go on", lambda: steps() > at)
+    stop(process)
+
+
+# kill -9 of the reader, idle or at work, costs nothing but a new one.
+def reader_is_killed():
+    process = started()
+    assert spawned(crate, "first").returncode == 0
+    for i in range(5):
+        copy = folder / f"copy{i}.dae"
+        shutil.copy(crate, copy)
+        reader, = readers(process)
+        os.kill(reader, signal.SIGKILL if i % 2 else signal.SIGSTOP)
+        results = []
+        thread = threading.Thread(target=lambda: results.append(spawned(copy, f"m{i}")))
+        thread.start()
+        if i % 2 == 0:  # in the middle of a request
+            time.sleep(0.2)
+            os.kill(reader, signal.SIGKILL)
+        thread.join()
+        assert results[0].returncode == 0 and "copy" not in log_of(process), (results[0].stderr, log_of(process))
+        assert reader not in readers(process) and len(readers(process)) == 1
+    stop(process)
+
+
+# However the simulator ends, its reader ends, also in the middle of a file.
+def reader_ends_with_its_server():
+    for with_signal in (signal.SIGTERM, signal.SIGKILL):
+        process = started()
+        assert spawned(crate, "first").returncode == 0
+        reader, = readers(process)
+        thread = threading.Thread(target=lambda: spawned(next(m for m in damaged if m.name == "no_end_header.ply"), "slow"))
+        thread.start()
+        time.sleep(0.5)
+        process.send_signal(with_signal)
+        process.wait(watchdog)
+        await_("the reader to end", lambda: not is_running(reader))
+        thread.join()
+        simctl("clean")
+    process = started()
+    assert spawned(crate, "first").returncode == 0
+    reader, = readers(process)
+    process.kill()
+    process.wait(watchdog)
+    await_("the idle reader to end", lambda: not is_running(reader))
+    simctl("clean")
+
+
+# Only a world that has meshes or pictures has a reader.
+def primitives_need_no_reader():
+    process = started()
+    assert readers(process) == []
+    stop(process)
+
+
+# Pipes, devices and pseudo-files are not read, by whatever link.
+def special_files():
+    os.mkfifo(folder / "pipe.dae")
+    (folder / "zero.stl").symlink_to("/dev/zero")
+    (folder / "kmsg.obj").symlink_to("/proc/kmsg")
+    (folder / "status.ply").symlink_to("/proc/self/status")
+    os.mkfifo(folder / "pipe.png")
+    (folder / "kmsg.png").symlink_to("/proc/kmsg")
+    process = started()
+    for name in ("pipe.dae", "zero.stl", "kmsg.obj", "status.ply"):
+        done = spawned(folder / name, name)
+        assert done.returncode == 0 and name in log_of(process), (name, done.stderr, log_of(process))
+    assert spawned(crate, "crate").returncode == 0 and "crate.dae" not in log_of(process)
+    stop(process)
+    for name in ("pipe.png", "kmsg.png"):
+        done = subprocess.run([f"{bin_dir}/sim-server", "--check", "-s", server_id, world(model(crate, texture=folder / name))], capture_output=True, text=True, timeout=watchdog)
+        assert done.returncode in (0, 1) and done.stderr.strip(), (name, done.stderr)
+
+
+# What is unchanged is read once; a file that has changed is read again, and what is there keeps its shape.
+def changed_file_is_read_again():
+    def box(size):
+        corners = [(x, y, z) for x in (0, size) for y in (0, size) for z in (0, size)]
+        faces = ["1 2 4", "1 4 3", "5 7 8", "5 8 6", "1 5 6", "1 6 2", "3 4 8", "3 8 7", "1 3 7", "1 7 5", "2 6 8", "2 8 4"]
+        return "".join(f"v {x} {y} {z}\n" for x, y, z in corners) + "".join(f"f {face}\n" for face in faces)
+
+    def read_bytes(pid):
+        return int(dict(line.split(": ") for line in open(f"/proc/{pid}/io").read().splitlines())["rchar"])
+
+    process = started("-u", world=world("<model name='floor'><static>1</static><link name='l'><collision name='c'><geometry><box><size>9 9 0.2</size></box></geometry></collision></link></model>"))
+    mesh = folder / "box.obj"
+    mesh.write_text(box(0.5))
+    assert spawned(mesh, "a").returncode == 0
+    reader, = readers(process)
+    before = read_bytes(reader)
+    for name in ("b", "c", "d"):
+        assert spawned(mesh, name).returncode == 0
+    assert read_bytes(reader) == before, "an unchanged file is read again"
+    mesh.write_text(box(1.5))
+    for name in ("a", "b", "c", "d"):
+        ok("delete", name)
+    done = simctl("spawn", f"<sdf version='1.9'>{model(mesh, 'big')}</sdf>", "--pose", "0", "0", "3", "0", "0", "0")
+    assert done.returncode == 0 and read_bytes(reader) > before, done.stderr
+    picture = folder / "big.png"
+    ok("screenshot", str(picture))
+    stop(process)
+
+
+run(damaged_in_a_world, damaged_and_spawned, time_goes_on_while_a_model_is_read, lock_step_waits_for_a_model, reader_is_killed, reader_ends_with_its_server,
+    primitives_need_no_reader, special_files, changed_file_is_read_again)

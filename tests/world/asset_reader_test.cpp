@@ -1,0 +1,187 @@
+// Meshes and pictures read by a process of their own: what comes of it is checked, read once, and read again when the file has changed.
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+
+#include "reader/asset_reader.h"
+#include "render/mesh_arrays.h"
+#include "support/paths.h"
+#include "support/world_files.h"
+#include "world/triangle_arrays.h"
+
+namespace sim {
+namespace {
+
+std::span<const std::byte> bytes_of(const ArrayWriter& out) { return std::as_bytes(std::span(out.bytes())); }
+
+TriangleMesh corner() { return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}; }
+
+bool is_taken(const TriangleMesh& mesh) {
+  ArrayWriter out;
+  put(out, mesh);
+  ArrayReader in(bytes_of(out));
+  TriangleMesh taken;
+  return take_triangles(in, taken) && taken.vertices == mesh.vertices && taken.triangles == mesh.triangles;
+}
+
+TEST(AssetArrays, triangles_come_as_they_were_sent) { EXPECT_TRUE(is_taken(corner())); }
+
+TEST(AssetArrays, triangles_with_indexes_out_of_range_or_impossible_corners_are_refused) {
+  TriangleMesh mesh = corner();
+  mesh.triangles[0][2] = 3;
+  EXPECT_FALSE(is_taken(mesh));
+  for (const double value : {std::nan(""), infinite, 2e7}) {
+    mesh = corner();
+    mesh.vertices[1].y() = value;
+    EXPECT_FALSE(is_taken(mesh)) << value;
+  }
+  mesh = corner();
+  mesh.triangles.clear();
+  EXPECT_FALSE(is_taken(mesh));
+}
+
+TEST(AssetArrays, what_is_cut_short_is_refused_at_every_length) {
+  ArrayWriter out;
+  put(out, corner());
+  const auto all = bytes_of(out);
+  for (std::size_t size = 0; size < all.size(); ++size) {
+    ArrayReader in(all.first(size));
+    TriangleMesh mesh;
+    EXPECT_FALSE(take_triangles(in, mesh)) << size;
+  }
+}
+
+TEST(AssetArrays, a_count_beyond_all_bytes_takes_no_memory) {
+  ArrayWriter out;
+  out.number<std::uint64_t>(~std::uint64_t{0} / 8);
+  ArrayReader in(bytes_of(out));
+  EXPECT_TRUE(in.array<double>(~std::uint64_t{0}).empty());
+  EXPECT_FALSE(in.ok());
+}
+
+TEST(AssetArrays, meshes_and_skins_that_make_no_sense_are_refused) {
+  MeshFile file;
+  file.mesh.vertices.resize(3, Vertex{{0, 0, 0}, {0, 0, 1}, {0, 0}});
+  file.mesh.indices = {0, 1, 2};
+  file.mesh.parts.push_back({0, 3, {}, {}, false});
+  Skin skin;
+  skin.nodes.resize(2);
+  skin.nodes[1].parent = 0;
+  skin.bones.push_back({1, Eigen::Affine3d::Identity()});
+  skin.vertices = file.mesh.vertices;
+  skin.weights.resize(3);
+  const auto is_taken = [](const MeshFile& sent, const Skin& with) {
+    ArrayWriter out;
+    put(out, sent, &with);
+    ArrayReader in(bytes_of(out));
+    MeshFile taken;
+    Skin worn;
+    return take(in, taken, &worn);
+  };
+  EXPECT_TRUE(is_taken(file, skin));
+  MeshFile bad = file;
+  bad.mesh.indices[1] = 3;
+  EXPECT_FALSE(is_taken(bad, skin)) << "index";
+  bad = file;
+  bad.mesh.vertices[2].position[0] = std::nanf("");
+  EXPECT_FALSE(is_taken(bad, skin)) << "corner";
+  bad = file;
+  bad.mesh.parts[0].index_count = 6;
+  EXPECT_FALSE(is_taken(bad, skin)) << "part";
+  Skin odd = skin;
+  odd.nodes[1].parent = 1;
+  EXPECT_FALSE(is_taken(file, odd)) << "parent";
+  odd = skin;
+  odd.bones[0].node = 2;
+  EXPECT_FALSE(is_taken(file, odd)) << "node";
+  odd = skin;
+  odd.weights[0].bones[3] = 1;
+  EXPECT_FALSE(is_taken(file, odd)) << "bone";
+  odd = skin;
+  odd.weights.pop_back();
+  EXPECT_FALSE(is_taken(file, odd)) << "weights";
+}
+
+TEST(AssetReader, memory_that_the_reader_could_still_change_is_refused) {
+  for (const int seals : {0, F_SEAL_SHRINK | F_SEAL_GROW, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE}) {
+    const int file = memfd_create("test", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+    ASSERT_EQ(write(file, "12345678", 8), 8);
+    ASSERT_EQ(fcntl(file, F_ADD_SEALS, seals), 0);
+    const auto memory = SealedMemory::map(file, 8);
+    EXPECT_EQ(memory != nullptr, (seals & F_SEAL_WRITE) != 0) << seals;
+  }
+}
+
+std::string obj(double size) { return "v 0 0 0\nv " + std::to_string(size) + " 0 0\nv 0 1 0\nf 1 2 3\n"; }
+
+TEST(AssetReader, a_file_is_read_once_and_again_when_it_has_changed) {
+  const WorldFiles files;
+  const MeshShape shape{files.write("a.obj", obj(1)), "", false, {1, 1, 1}};
+  TriangleCache first, second;
+  const auto one = first.triangles(shape), same = second.triangles(shape);
+  ASSERT_TRUE(one) << one.error().message;
+  EXPECT_EQ(*one, *same);
+  files.write("a.obj", obj(2.5));
+  TriangleCache third;
+  const auto other = third.triangles(shape);
+  ASSERT_TRUE(other);
+  EXPECT_DOUBLE_EQ((*other)->vertices[1].x(), 2.5);
+  EXPECT_EQ(*first.triangles(shape), *one);  // what is there keeps its shape
+}
+
+TEST(AssetReader, a_mesh_is_read_again_when_a_file_that_it_names_has_come) {
+  const WorldFiles files;
+  const MeshShape shape{files.write("a.obj", "mtllib a.mtl\nusemtl red\n" + obj(1)), "", false, {1, 1, 1}};
+  const auto before = read_mesh_file(shape);
+  ASSERT_TRUE(before) << before.error().message;
+  files.write("a.mtl", "newmtl red\nKd 1 0 0\n");
+  const auto after = read_mesh_file(shape);
+  ASSERT_TRUE(after);
+  EXPECT_EQ(after.value().mesh.parts[0].material.diffuse, (Color{1, 0, 0, 1}));
+}
+
+TEST(AssetReader, a_file_that_ends_the_reader_is_not_tried_again_until_it_changes) {
+  const WorldFiles files;
+  const auto cycle = std::filesystem::path(paths::source_dir) / "tests/worlds/damaged_meshes/node_cycle.dae";
+  const std::string path = (files.folder() / "a.dae").string();
+  std::filesystem::copy_file(cycle, path);
+  const MeshShape shape{path, "", false, {1, 1, 1}};
+  const auto started = [] { return AssetReader::mine().started(); };
+  const auto met = TriangleCache().triangles(shape);
+  ASSERT_FALSE(met);
+  EXPECT_THAT(met.error().message, testing::HasSubstr(path + ": is damaged: its reader ended with"));
+  const auto readers = started();
+  EXPECT_FALSE(read_mesh_file(shape));
+  EXPECT_FALSE(TriangleCache().triangles(shape));
+  EXPECT_EQ(started(), readers);
+  std::ofstream(path, std::ios::app) << " ";
+  EXPECT_FALSE(TriangleCache().triangles(shape));
+  EXPECT_EQ(started(), readers + 1);
+}
+
+TEST(AssetReader, formats_that_no_world_uses_are_refused_by_their_names) {
+  const WorldFiles files;
+  const auto met = TriangleCache().triangles(MeshShape{files.write("a.blend", "BLENDER"), "", false, {1, 1, 1}});
+  ASSERT_FALSE(met);
+  EXPECT_THAT(met.error().message, testing::HasSubstr("expected .dae, .stl, .obj, .ply, .gltf, .glb, .fbx, .bvh"));
+}
+
+TEST(AssetReader, a_deadline_that_is_over_costs_no_reader) {
+  const WorldFiles files;
+  const MeshShape shape{files.write("a.obj", obj(1)), "", false, {1, 1, 1}};
+  {
+    const ReadDeadline over(std::chrono::steady_clock::now());
+    EXPECT_FALSE(TriangleCache().triangles(shape));
+  }
+  EXPECT_TRUE(TriangleCache().triangles(shape));
+}
+
+}  // namespace
+}  // namespace sim

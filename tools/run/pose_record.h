@@ -1,0 +1,42 @@
+// What a run has shown of its models: where they were, and which ones began to touch. Values; any thread.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace editor {
+
+struct RecordedPose {
+  double time, x, y, z;                   // [s, m]
+  double qw = 1, qx = 0, qy = 0, qz = 0;  // unit quaternion, world frame
+};
+struct RecordedContact {
+  double time;
+  std::string model, other;
+};
+
+class PoseRecord {
+ public:
+  std::map<std::string, std::vector<RecordedPose>> poses;  // by model
+  std::vector<RecordedContact> contacts;
+  double last = 0;  // [s], of the last pose, or of the last moment in which nothing moved
+
+  // Nothing after this time [s] is recorded. A reset of the world, which sets the time back, ends the record.
+  void set_end(double end) { end_ = end; }
+
+  void add_pose(const std::string& model, const RecordedPose& pose);
+  void add_contact(const RecordedContact& contact);
+  // A moment in which nothing moved.
+  void add_still(double time);
+
+ private:
+  bool take(double time);
+  double end_ = 1e12;
+  bool is_over_ = false;
+};
+
+// [m]
+double path_length(const std::vector<RecordedPose>& poses);
+
+}  // namespace editor

@@ -1,0 +1,132 @@
+#include "system/connections.h"
+
+#include <algorithm>
+
+#include "base/text.h"
+
+namespace editor {
+namespace {
+
+constexpr std::chrono::milliseconds connect_limit{10'000};
+
+bool offers(const PortView& port, const std::string& key, const std::string& value) {
+  const auto offered = base::split_list(property(port.properties, key));
+  if (offered.empty()) return true;
+  return std::any_of(offered.begin(), offered.end(), [&](const std::string& one) {
+    return base::equal_ignoring_case(one, "any") || base::equal_ignoring_case(one, value);
+  });
+}
+
+// An end with an encoding of its own may turn one type into another.
+bool is_converted(const Properties& properties) {
+  for (const auto* key : {"dataport.marshaling_type", "dataport.inport.marshaling_type", "dataport.outport.marshaling_type"}) {
+    const auto type = property(properties, key);
+    if (!type.empty() && type != "cdr") return true;
+  }
+  return false;
+}
+
+Result<void> check_data_ports(const std::vector<const PortView*>& ports, const Properties& properties) {
+  const auto count = [&](const char* type) {
+    return std::count_if(ports.begin(), ports.end(), [&](const auto* port) { return port->port_type() == type; });
+  };
+  if (count("DataInPort") == 0 || count("DataOutPort") == 0) {
+    return Error{"ports " + ports[0]->full_name + " and " + ports[1]->full_name + ": are both " + ports[0]->port_type() +
+                 ", expected an OutPort and an InPort"};
+  }
+  for (const auto* port : ports) {
+    const bool are_known = !port->data_type().empty() && !ports[0]->data_type().empty();
+    if (are_known && port->data_type() != ports[0]->data_type() && !is_converted(properties)) {
+      return Error{"ports " + ports[0]->full_name + " and " + port->full_name + ": carry different types, " + ports[0]->data_type() +
+                   " and " + port->data_type()};
+    }
+    for (const auto* key : {"dataport.interface_type", "dataport.dataflow_type", "dataport.subscription_type"}) {
+      const auto wanted = property(properties, key);
+      if (!wanted.empty() && !offers(*port, key, wanted)) {
+        return Error{"port " + port->full_name + ": does not offer " + key + " " + base::in_quotes(wanted) + ", it offers " +
+                     property(port->properties, key)};
+      }
+    }
+  }
+  return {};
+}
+
+Result<void> check_ports(const std::vector<const PortView*>& ports, const Properties& properties) {
+  const bool data = ports.front()->is_data_port();
+  for (const auto* port : ports) {
+    if (port->is_data_port() != data) {
+      return Error{"ports " + ports.front()->full_name + " (" + ports.front()->port_type() + ") and " + port->full_name + " (" +
+                   port->port_type() + "): cannot be connected"};
+    }
+  }
+  return data ? check_data_ports(ports, properties) : Result<void>{};
+}
+
+Properties with_defaults(const PortView& port, Properties properties) {
+  if (!port.is_data_port()) {
+    properties.emplace("port.port_type", "CorbaPort");
+    return properties;
+  }
+  properties.emplace("dataport.interface_type", "corba_cdr");
+  properties.emplace("dataport.dataflow_type", "push");
+  properties.emplace("dataport.subscription_type", "flush");
+  if (!port.data_type().empty()) properties.emplace("dataport.data_type", port.data_type());
+  return properties;
+}
+
+std::string names_of(const std::vector<const PortView*>& ports, const std::string& separator) {
+  std::vector<std::string> names;
+  for (const auto* port : ports) names.push_back(port->full_name);
+  return base::join(names, separator);
+}
+
+bool is_in_use(const std::vector<const PortView*>& ports, const std::string& id) {
+  bool found = false;
+  for (const auto* port : ports) {
+    const auto asked = remote("port", [&] {
+      RTC::ConnectorProfileList_var list = port->object->get_connector_profiles();
+      for (CORBA::ULong i = 0; i < list->length(); ++i) found = found || (!id.empty() && id == list[i].connector_id.in());
+    });
+    if (!asked) continue;  // the other port knows it too
+  }
+  return found;
+}
+
+}  // namespace
+
+Result<void> connect_ports(const std::vector<const PortView*>& ports, const std::string& id, const std::string& name,
+                           const Properties& given) {
+  const auto properties = with_defaults(*ports.front(), given);
+  if (const auto fit = check_ports(ports, properties); !fit) return fit;
+  for (std::size_t i = 1; i < ports.size(); ++i) {
+    if (ports[i]->object->_is_equivalent(ports[0]->object)) return Error{"port " + ports[0]->full_name + ": cannot be connected to itself"};
+  }
+  RTC::ConnectorProfile profile;
+  profile.name = name.empty() ? names_of(ports, "_").c_str() : name.c_str();
+  profile.connector_id = id.c_str();
+  profile.ports.length(static_cast<CORBA::ULong>(ports.size()));
+  for (CORBA::ULong i = 0; i < ports.size(); ++i) profile.ports[i] = RTC::PortService::_duplicate(ports[i]->object);
+  profile.properties = to_nv_list(properties);
+  RTC::ReturnCode_t code = RTC::RTC_ERROR;
+  const auto what = "connecting " + names_of(ports, " and ");
+  const CallLimit limited(connect_limit);
+  const auto called = remote(what + ": a port", [&] { code = ports.front()->object->connect(profile); });
+  if (!called) return called;
+  std::string meaning;
+  if (code == RTC::PRECONDITION_NOT_MET)
+    meaning = is_in_use(ports, id) ? "connector id " + base::in_quotes(id) + " is in use" : "they are connected already";
+  if (code == RTC::BAD_PARAMETER) meaning = "a property has a value that a port does not take";
+  if (code == RTC::RTC_ERROR) meaning = "a port refused, its component's log says why";
+  return check(what, code, meaning);
+}
+
+Result<void> disconnect_connector(const PortView& port, const std::string& id) {
+  RTC::ReturnCode_t code = RTC::RTC_ERROR;
+  const auto what = "port " + port.full_name + ": disconnecting " + id;
+  const CallLimit limited(connect_limit);
+  const auto called = remote(what + ": the port", [&] { code = port.object->disconnect(id.c_str()); });
+  if (!called) return called;
+  return check(what, code);
+}
+
+}  // namespace editor

@@ -1,0 +1,16 @@
+// Connects and disconnects ports. One thread at a time.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "system/component_view.h"
+
+namespace editor {
+
+// Connects ports in the given order; the first starts. Empty id: the runtime makes one. The error says what does not fit.
+Result<void> connect_ports(const std::vector<const PortView*>& ports, const std::string& id, const std::string& name,
+                           const Properties& properties);
+Result<void> disconnect_connector(const PortView& port, const std::string& id);
+
+}  // namespace editor

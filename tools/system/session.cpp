@@ -1,0 +1,52 @@
+#include "system/session.h"
+
+#include "base/text.h"
+
+namespace editor {
+
+Session::Session(CORBA::ORB_ptr orb, std::string server, std::chrono::milliseconds call_timeout,
+                 std::chrono::milliseconds transition_timeout)
+    : orb_(CORBA::ORB::_duplicate(orb)), server_(std::move(server)), call_timeout_(call_timeout), transition_timeout_(transition_timeout) {
+  // "/HOST:PORT/" is how paths name it.
+  while (server_.ends_with('/')) server_.pop_back();
+  while (server_.starts_with('/')) server_.erase(0, 1);
+}
+
+Result<NamingTree> Session::tree(const std::string& path, bool only) const {
+  auto address = parse_address(path, working_path());
+  if (!address) return address.error();
+  const bool elsewhere = address->is_absolute && !address->segments.empty();
+  return NamingTree::read(orb_, elsewhere ? address->segments.front() : server_, call_timeout_, only ? &*address : nullptr);
+}
+
+Result<ComponentView> Session::component(const std::string& path, Detail detail) const {
+  auto address = parse_address(path, working_path());
+  if (!address) return address.error();
+  auto names = tree(path, true);
+  if (!names) return names.error();
+  auto entry = names->find_component(*address);
+  if (!entry) return entry.error();
+  const CallLimit limited(call_timeout_);
+  auto component = read_component(**entry, detail);
+  if (!component.problem.empty()) return Error{"component " + component.path + " " + component.problem};
+  return component;
+}
+
+Result<Session::Port> Session::port(const std::string& path, bool with_connectors) const {
+  auto address = parse_address(path, working_path());
+  if (!address) return address.error();
+  if (address->port.empty()) return Error{"path " + base::in_quotes(path) + ": names no port, expected COMPONENT:PORT"};
+  auto view = component(path, {.connectors = with_connectors});
+  if (!view) return view.error();
+  const auto* port = view->port(address->port);
+  if (!port) {
+    std::vector<std::string> names;
+    for (const auto& candidate : view->ports) names.push_back(candidate.name);
+    return Error{"component " + view->path + ": has no port " + base::in_quotes(address->port) +
+                 (names.empty() ? ", it has none at all" : "; it has " + base::join(names, ", "))};
+  }
+  const auto copy = *port;
+  return Port{std::move(*view), copy};
+}
+
+}  // namespace editor
