@@ -45,7 +45,7 @@ void Tally::take_stored(std::size_t number, const std::string& key, const Stored
   ++progress.stored;
   ++(run.is_passed ? progress.passed : progress.failed);
   if (!run.is_passed && result_.failed.size() < most_failed_told) result_.failed.push_back({number, run.problem});
-  if (Random(options_.results.size(), key).uniform() < options_.audit) todo_.push_back({number, run.state_hash, true});
+  if (base::Random(options_.results.size(), key).uniform() < options_.audit) todo_.push_back({number, run.state_hash, true});
 }
 
 void Tally::give_up(const std::string& problem) {
