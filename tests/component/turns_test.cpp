@@ -65,12 +65,13 @@ TEST_F(TurnsTest, a_callback_that_hangs_fails_the_component_in_its_other_context
   Gate gate;
   auto* probe = new TwoContexts;
   probe->getProperties()["exec_cxt.callback_timeout"] = "0.05";
-  ASSERT_EQ(probe->initialize(), RTC::RTC_OK);
-  ASSERT_EQ(probe->activate(1), RTC::RTC_OK);
-  std::atomic<bool> hangs{true};
+  std::atomic<bool> hangs{false};
   probe->during = [&](const std::string& callback) {
     if (callback == "onStartup" && hangs.exchange(false)) gate.pass();
   };
+  ASSERT_EQ(probe->initialize(), RTC::RTC_OK);
+  ASSERT_EQ(probe->activate(1), RTC::RTC_OK);
+  hangs = true;
   std::jthread caller([&] { probe->on_startup(0); });
   ASSERT_TRUE(gate.wait_for_visitors());
   EXPECT_TRUE(eventually([&] { return state(*probe, 1) == RTC::ERROR_STATE; }));
@@ -184,7 +185,6 @@ TEST_F(TurnsTest, ports_come_and_go_while_the_component_runs_and_tools_look_at_i
   probe->deactivate(0);
   probe->deactivate(1);
   EXPECT_GE(times, 200);
-  probe->during = {};
   probe->removeInPort(port);
 }
 

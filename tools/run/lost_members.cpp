@@ -46,8 +46,12 @@ Error LostMembers::tell(std::optional<ForeignProcesses::Ended> ended, std::vecto
   if (!ended) return Error{"component " + gone.front().said};
   // Those that were called when they had gone: the first of them before the others, which may have been ended with it.
   const auto known = std::ranges::find_if(gone, [&](const auto& one) { return has(ended->components, one.instance); });
-  const auto now = simulator_.now();
-  const auto time = known != gone.end() ? known->time : now ? std::optional(now->time_s) : std::nullopt;
+  double time_s = 0;  // [s], simulated; 0: not known
+  if (known != gone.end()) {
+    time_s = known->time.value_or(0);
+  } else if (const auto now = simulator_.now()) {
+    time_s = now->time_s;
+  }
   auto names = ended->components;
   if (known != gone.end()) {
     names = {known->instance};
@@ -57,7 +61,7 @@ Error LostMembers::tell(std::optional<ForeignProcesses::Ended> ended, std::vecto
     names.clear();
   }
   return Error{"process " + (names.empty() ? "" : "of " + base::join(names, ", ") + " ") + "(" + ended->command + ") " + ended->how +
-               (time && *time > 0 ? ", at " + base::format_number(*time) + " s" : "") + ": " + ended->said};
+               (time_s > 0 ? ", at " + base::format_number(time_s) + " s" : "") + ": " + ended->said};
 }
 
 }  // namespace editor

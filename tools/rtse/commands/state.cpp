@@ -32,7 +32,7 @@ void exit_components(const Session& session, Console& console, const std::vector
       continue;
     }
     RTC::ReturnCode_t code = RTC::RTC_OK;
-    const CallLimit limited(transition_limit);
+    const CallLimit limited(default_transition_timeout);
     const auto called = remote("exit of " + component->path + ":", [&] { code = component->object->exit(); });
     if (!called) console.fail(called.error());
     if (const auto checked = check("exit of " + component->path, code); !checked) console.fail(checked.error());

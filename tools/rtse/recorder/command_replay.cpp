@@ -47,7 +47,7 @@ editor::Properties of_receiver(const editor::SavedConnector& connector) {
 }
 
 // The links that the profile has, and those of the command line in their place.
-base::Result<std::vector<ReplayLink>> links_of(Console& console, const editor::SavedSystem& system, const Options& options) {
+base::Result<std::vector<ReplayLink>> links_of(const editor::SavedSystem& system, const Options& options) {
   std::vector<ReplayLink> links;
   for (const auto& text : options.links) {
     const auto equals = text.find('=');
@@ -66,7 +66,8 @@ base::Result<std::vector<ReplayLink>> links_of(Console& console, const editor::S
 }
 
 // What the recording cannot give the component is said, and left out; what the command line names has to be there.
-base::Result<std::vector<ReplayLink>> possible(std::vector<ReplayLink> links, const editor::SavedSystem& system, const Options& options) {
+base::Result<std::vector<ReplayLink>> possible(Console& console, std::vector<ReplayLink> links, const editor::SavedSystem& system,
+                                               const Options& options) {
   auto reader = open_recording(options.file);
   if (!reader) return reader.error();
   const auto has = [&](const std::string& topic) {
@@ -231,9 +232,9 @@ void replay_file(const Session& session, Console& console, const Options& option
   replayed.tolerated.ignored = options.ignored;
   if (has_own_stamps(*run, options.component)) replayed.tolerated.ignored.emplace_back("tm");
   for (const auto& text : options.tolerances) replayed.tolerated.tolerances.insert(*parse_tolerance(text));
-  const auto links = links_of(console, *system, options);
+  const auto links = links_of(*system, options);
   if (!links) return console.fail(links.error());
-  auto given = possible(*links, *system, options);
+  auto given = possible(console, *links, *system, options);
   if (!given) return console.fail(given.error());
   replayed.links = std::move(*given);
   auto life = RecordedLife::read(options.file, options.component);
